@@ -1,0 +1,443 @@
+//! Acceptance intervals: every value that the accuracy rules of a shading language permit.
+//!
+//! The method is that of the WebGPU conformance suite's `fp_primer`, carried through whole formulas. An interval's ends
+//! are f64 numbers on the grid of the format, rounded outward. Rules, each where it is used:
+//!
+//! * `+ − ×` are correctly rounded, up *or* down, so one operation reaches both neighbours of the exact result. A fused
+//!   multiply-add keeps the exact product, which lies between those neighbours and so inside.
+//! * A chain may be reassociated: any order of Σxᵢ over n terms errs by at most ((1+ε)ⁿ⁻¹ − 1)·Σ|xᵢ| with ε = 2⁻²³ for
+//!   directed rounding; a product of n factors by the same factor of its value.
+//! * A value that may be subnormal may be flushed: the hull with 0.
+//! * Built-ins are widened by the bound that the [`Profile`](super::Profile) states.
+//! * Where rules permit anything (overflow, a divisor that may be 0) the value is [`Accept::ANY`].
+
+use super::format::{F32, Format};
+use super::profile::{Excess, GrowingUlp, current};
+use lightmeter_reference::{Components, Real};
+use std::marker::PhantomData;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// An interval of legal values of a format.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accept<F = F32> {
+    low: f64,
+    high: f64,
+    format: PhantomData<F>,
+}
+
+/// f64 endpoints computed by a few correctly rounded operations err by less than this, relatively.
+const F64_SLACK: f64 = 16.0 * f64::EPSILON;
+
+impl<F: Format> Accept<F> {
+    /// The rules permit any value, NaN included.
+    pub const ANY: Self = Self::raw(f64::NEG_INFINITY, f64::INFINITY);
+
+    const fn raw(low: f64, high: f64) -> Self {
+        Self { low, high, format: PhantomData }
+    }
+
+    /// Exactly one value, which must be one of the format.
+    #[must_use]
+    pub const fn exactly(x: f64) -> Self {
+        Self::raw(x, x)
+    }
+
+    /// All values of the format from `low` to `high`, rounded outward.
+    #[must_use]
+    pub fn from_bounds(low: f64, high: f64) -> Self {
+        Self::seal(low, high)
+    }
+
+    /// The least legal value.
+    #[must_use]
+    pub const fn low(&self) -> f64 {
+        self.low
+    }
+
+    /// The greatest legal value.
+    #[must_use]
+    pub const fn high(&self) -> f64 {
+        self.high
+    }
+
+    /// Whether the rules permit anything here.
+    #[must_use]
+    pub fn is_any(&self) -> bool {
+        self.low == f64::NEG_INFINITY
+    }
+
+    /// Whether `x` is a legal value. A NaN is legal only where anything is.
+    #[must_use]
+    pub fn contains(&self, x: f64) -> bool {
+        self.is_any() || (self.low <= x && x <= self.high)
+    }
+
+    /// high − low.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        self.high - self.low
+    }
+
+    /// The smallest interval that holds both.
+    #[must_use]
+    pub fn hull(self, other: Self) -> Self {
+        Self::raw(self.low.min(other.low), self.high.max(other.high))
+    }
+
+    /// Outward to the format's grid, then the hull with 0 where a subnormal may be flushed.
+    #[inline]
+    fn seal(low: f64, high: f64) -> Self {
+        // A NaN fails this too.
+        if !(low >= -F::MAX && high <= F::MAX) {
+            return Self::ANY;
+        }
+        let (low, high) = (F::round_down(low), F::round_up(high));
+        if low < F::MIN_NORMAL && high > -F::MIN_NORMAL {
+            return Self::flush(low, high);
+        }
+        Self::raw(low, high)
+    }
+
+    /// [`Accept::seal`] for an interval that reaches into the subnormal range, where the grid is even.
+    fn flush(low: f64, high: f64) -> Self {
+        let subnormal = |x: f64| x != 0.0 && x.abs() < F::MIN_NORMAL;
+        let grid = F::MIN_SUBNORMAL;
+        let low = match subnormal(low) {
+            true if low > 0.0 => 0.0,
+            true => (low / grid).floor() * grid,
+            false => low,
+        };
+        let high = match subnormal(high) {
+            true if high < 0.0 => 0.0,
+            true => (high / grid).ceil() * grid,
+            false => high,
+        };
+        Self::raw(low, high)
+    }
+
+    fn is_exactly(&self, x: f64) -> bool {
+        self.low == x && self.high == x
+    }
+
+    fn is_point(&self) -> bool {
+        self.low == self.high
+    }
+
+    fn magnitude(&self) -> f64 {
+        self.low.abs().max(self.high.abs())
+    }
+
+    fn contains_zero(&self) -> bool {
+        self.low <= 0.0 && self.high >= 0.0
+    }
+
+    /// low·low′ … high·high′: the exact range of the product, unrounded.
+    #[inline]
+    fn product_range(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+        let (p, q, r, s) = (a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1);
+        (p.min(q).min(r.min(s)), p.max(q).max(r.max(s)))
+    }
+
+    /// Widened on both ends by a number of ULP and sealed. `f` is monotone, and its values at the interval's ends, of
+    /// stated relative error below [`F64_SLACK`], are given. For a point the ULP is that of the value; within a wide
+    /// interval a value just past a power of two has twice the ULP of one just before, so the relative bound stands in.
+    fn widen(point: bool, low: f64, high: f64, ulps: f64) -> Self {
+        let error = |x: f64| {
+            let ulp = if point { F::ulp(x) } else { (x.abs() * F::EPSILON).max(F::MIN_SUBNORMAL) };
+            ulps * ulp + x.abs() * F64_SLACK
+        };
+        Self::seal(low - error(low), high + error(high))
+    }
+
+    /// An exponential `f` with a bound that grows with |x|.
+    fn exponential(self, f: impl Fn(f64) -> f64, bound: GrowingUlp, excess: Option<Excess>) -> Self {
+        if self.is_any() {
+            return Self::ANY;
+        }
+        let mut ulps = bound.slope.mul_add(self.magnitude(), bound.base);
+        if let Some(excess) = excess
+            && self.high >= excess.from
+            && self.low <= excess.to
+        {
+            ulps *= excess.factor;
+        }
+        let low = f(self.low);
+        let high = if self.is_point() { low } else { f(self.high) };
+        Self::widen(self.is_point(), low, high, ulps)
+    }
+
+    /// 0 for exponents above 0; with exponent 0 both 0 and 1 are legal. (Ruling 12, at a cosine ≤ 0.)
+    fn lobe_at_no_cosine(exponent: Self) -> Self {
+        let zero = Self::exactly(0.0);
+        if exponent.contains_zero() { zero.hull(Self::exactly(1.0)) } else { zero }
+    }
+
+    /// x·x, which is never negative: the two factors are one value.
+    fn square(self) -> Self {
+        let x = self.abs();
+        Self::seal(x.low * x.low, x.high * x.high)
+    }
+
+    fn mix_by_products(a: Self, b: Self, t: Self) -> Self {
+        a * (Self::exactly(1.0) - t) + b * t
+    }
+}
+
+/// a + b in f64, stepped down where that rounded up.
+#[inline]
+fn add_down(a: f64, b: f64) -> f64 {
+    let sum = a + b;
+    let (from_b, from_a) = (sum - a, sum - (sum - a));
+    let error = (a - from_a) + (b - from_b);
+    if error < 0.0 { sum.next_down() } else { sum }
+}
+
+/// Greater only for rounding at the last bits of f64 than the true ((1 + ε)ⁿ⁻¹ − 1).
+fn chain_error<F: Format>(n: usize) -> f64 {
+    (1..n).fold(1.0, |growth, _| growth * (1.0 + F::EPSILON)) - 1.0 + F64_SLACK
+}
+
+impl<F: Format> Add for Accept<F> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self::seal(add_down(self.low, other.low), -add_down(-self.high, -other.high))
+    }
+}
+
+impl<F: Format> Neg for Accept<F> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self::raw(-self.high, -self.low)
+    }
+}
+
+impl<F: Format> Sub for Accept<F> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<F: Format> Mul for Accept<F> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        // A product of two numbers of at most 24 bits is exact in f64.
+        let (low, high) = Self::product_range((self.low, self.high), (other.low, other.high));
+        Self::seal(low, high)
+    }
+}
+
+impl<F: Format> Div for Accept<F> {
+    type Output = Self;
+    #[inline]
+    fn div(self, divisor: Self) -> Self {
+        // The bound holds for divisors whose magnitude lies in [2⁻¹²⁶, 2¹²⁶]; beyond, nothing is promised.
+        let (least, most) = (divisor.low.abs().min(divisor.high.abs()), divisor.magnitude());
+        if divisor.contains_zero() || least < F::MIN_NORMAL || most > 1.0 / F::MIN_NORMAL || self.is_any() {
+            return Self::ANY;
+        }
+        let inverse = [self.low / divisor.low, self.low / divisor.high, self.high / divisor.low, self.high / divisor.high];
+        let low = inverse.into_iter().fold(f64::INFINITY, f64::min);
+        let high = inverse.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        if low == 0.0 && high == 0.0 {
+            return Self::exactly(0.0);
+        }
+        Self::widen(low == high, low, high, current(|p| p.divide_ulp))
+    }
+}
+
+impl<F: Format> Real for Accept<F> {
+    fn input(x: f32) -> Self {
+        // On the grid already for binary32; a conversion, rounded up or down, for a narrower format.
+        Self::seal(f64::from(x), f64::from(x))
+    }
+
+    fn literal(x: f64) -> Self {
+        Self::seal(x, x)
+    }
+
+    fn max(self, other: Self) -> Self {
+        if self.is_any() || other.is_any() {
+            return Self::ANY;
+        }
+        Self::raw(self.low.max(other.low), self.high.max(other.high))
+    }
+
+    fn min(self, other: Self) -> Self {
+        -(-self).max(-other)
+    }
+
+    fn abs(self) -> Self {
+        if self.is_any() {
+            return Self::ANY;
+        }
+        let least = if self.contains_zero() { 0.0 } else { self.low.abs().min(self.high.abs()) };
+        Self::raw(least, self.magnitude())
+    }
+
+    fn round(self) -> Self {
+        // Shading languages leave the direction at a tie open.
+        let down = |x: f64| (x - 0.5).ceil();
+        let up = |x: f64| (x + 0.5).floor();
+        Self::raw(down(self.low), up(self.high))
+    }
+
+    fn sqrt(self) -> Self {
+        Self::exactly(1.0) / self.inverse_sqrt()
+    }
+
+    fn inverse_sqrt(self) -> Self {
+        if self.is_any() || self.low <= 0.0 {
+            return Self::ANY;
+        }
+        let (low, high) = (1.0 / self.high.sqrt(), 1.0 / self.low.sqrt());
+        Self::widen(self.is_point(), low, high, current(|p| p.inverse_sqrt_ulp))
+    }
+
+    fn exp(self) -> Self {
+        let (bound, excess) = current(|p| (p.exp_ulp, p.exp_excess));
+        self.exponential(core_math::exp, bound, excess)
+    }
+
+    fn exp2(self) -> Self {
+        let (bound, excess) = current(|p| (p.exp2_ulp, p.exp2_excess));
+        self.exponential(core_math::exp2, bound, excess)
+    }
+
+    fn log2(self) -> Self {
+        if self.is_any() || self.low <= 0.0 {
+            return Self::ANY;
+        }
+        let (absolute, ulps) = current(|p| (p.log2_absolute, p.log2_ulp));
+        let touches_middle = self.low <= 2.0 && self.high >= 0.5;
+        let low = core_math::log2(self.low);
+        let high = if self.is_point() { low } else { core_math::log2(self.high) };
+        let error = |y: f64| {
+            let relative = if self.is_point() { F::ulp(y) } else { y.abs() * F::EPSILON };
+            let relative = ulps * relative + y.abs() * F64_SLACK;
+            match (touches_middle, self.is_point()) {
+                (true, true) => absolute + y.abs() * F64_SLACK,
+                // The bounds differ on the two sides of 0.5 and of 2: the greater serves for both.
+                (true, false) => absolute.max(relative) + y.abs() * F64_SLACK,
+                (false, _) => relative,
+            }
+        };
+        Self::seal(low - error(low), high + error(high))
+    }
+
+    fn pow(self, exponent: Self) -> Self {
+        (exponent * self.log2()).exp2()
+    }
+
+    fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {
+        if a.low >= b.high && !a.is_any() {
+            then()
+        } else if a.high < b.low {
+            otherwise()
+        } else {
+            then().zip(otherwise(), Self::hull)
+        }
+    }
+
+    fn sum<const N: usize>(terms: [Self; N]) -> Self {
+        // Adding an exact 0 rounds nothing; what remains of two terms is one addition.
+        let mut rest = [Self::exactly(0.0); N];
+        let mut count = 0;
+        for term in terms {
+            if !term.is_exactly(0.0) {
+                rest[count] = term;
+                count += 1;
+            }
+        }
+        match rest[..count] {
+            [] => return Self::exactly(0.0),
+            [x] => return x,
+            [x, y] if !F::SUMS_BY_TERMS => return x + y,
+            _ => {}
+        }
+        let (mut low, mut high, mut magnitude) = (0.0, 0.0, 0.0);
+        for term in &rest[..count] {
+            low += term.low;
+            high += term.high;
+            magnitude += term.magnitude();
+        }
+        // A partial sum may overflow in another order than this one.
+        if magnitude.is_nan() || magnitude > F::MAX {
+            return Self::ANY;
+        }
+        let mut error = chain_error::<F>(count) * magnitude;
+        // Partial sums that cancel to a subnormal may be flushed; above this magnitude the rounding term covers that.
+        if magnitude < F::MIN_NORMAL / F::EPSILON * 16.0 {
+            error += rest[..count].iter().fold(0.0, |e, _| e + F::MIN_NORMAL);
+        }
+        Self::seal(low - error, high + error)
+    }
+
+    fn product<const N: usize>(factors: [Self; N]) -> Self {
+        let (mut range, mut rounded) = ((1.0, 1.0), 0);
+        // The greatest and the least magnitude that some order of partial products can reach.
+        let (mut greatest, mut least) = (1.0_f64, 1.0_f64);
+        let mut any_zero = false;
+        for x in factors {
+            range = Self::product_range(range, (x.low, x.high));
+            greatest *= x.magnitude().max(1.0);
+            let smallest = if x.contains_zero() { 0.0 } else { x.low.abs().min(x.high.abs()) };
+            least *= smallest.min(1.0);
+            any_zero |= x.is_exactly(0.0);
+            // Scaling by a power of two rounds nothing.
+            let power_of_two = x.is_point() && x.low.to_bits() & ((1 << 52) - 1) == 0;
+            rounded += usize::from(!power_of_two);
+        }
+        if greatest.is_nan() || greatest > F::MAX {
+            return Self::ANY;
+        }
+        if any_zero {
+            return Self::exactly(0.0);
+        }
+        let mut error = if rounded > 2 { chain_error::<F>(rounded) } else { 0.0 };
+        if rounded <= 2 && least >= F::MIN_NORMAL {
+            return Self::seal(range.0, range.1);
+        }
+        error *= range.0.abs().max(range.1.abs());
+        // A partial product below the normal range may be flushed, and what it lost is then scaled up again.
+        if least < F::MIN_NORMAL {
+            error += 2.0 * F::MIN_NORMAL * greatest;
+        }
+        Self::seal(range.0 - error, range.1 + error)
+    }
+
+    fn mix(a: Self, b: Self, t: Self) -> Self {
+        let products = Self::mix_by_products(a, b, t);
+        if current(|p| p.mix_by_difference) { products.hull(a + t * (b - a)) } else { products }
+    }
+
+    fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
+        let square = Self::sum(v.map(|x| x.square()));
+        let (length, inverse) = (square.sqrt(), square.inverse_sqrt());
+        v.map(|x| (x / length).hull(x * inverse))
+    }
+
+    fn quadratic([c0, c1, c2]: [Self; 3], x: Self) -> Self {
+        let expanded = Self::sum([c0, c1 * x, Self::product([c2, x, x])]);
+        expanded.hull(c0 + x * (c1 + x * c2))
+    }
+
+    fn lobe(self, exponent: Self) -> Self {
+        if self.is_any() || exponent.is_any() || exponent.low < 0.0 {
+            return Self::ANY;
+        }
+        if self.high <= 0.0 {
+            return Self::lobe_at_no_cosine(exponent);
+        }
+        if self.low > 0.0 {
+            return self.pow(exponent);
+        }
+        // From 0 to the upper end: the power grows with the cosine.
+        let top = Self::raw(self.high, self.high).pow(exponent);
+        if top.is_any() { top } else { top.hull(Self::lobe_at_no_cosine(exponent)) }
+    }
+}

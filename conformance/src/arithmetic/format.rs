@@ -1,0 +1,102 @@
+//! Floating-point formats and distances in them.
+
+use std::fmt::Debug;
+
+/// A binary floating-point format, as constants, so that interval operations compile to straight code.
+pub trait Format: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
+    /// Bits of the significand after the leading one.
+    const FRACTION_BITS: u32;
+    /// 2 to the power of minus [`Format::FRACTION_BITS`]: the largest relative error of one directed rounding.
+    const EPSILON: f64;
+    /// The least positive normal number.
+    const MIN_NORMAL: f64;
+    /// The least positive number, which is the spacing of subnormals.
+    const MIN_SUBNORMAL: f64;
+    /// The greatest finite number.
+    const MAX: f64;
+
+    /// Whether a sum errs relative to the sum of its terms' magnitudes, as fixed hardware's may, rather than to its result.
+    const SUMS_BY_TERMS: bool = false;
+
+    /// The greatest value of the format that is ≤ x, for |x| at least [`Format::MIN_NORMAL`] or 0.
+    #[inline]
+    #[must_use]
+    fn round_down(x: f64) -> f64 {
+        let below = (1u64 << (52 - Self::FRACTION_BITS)) - 1;
+        // Sign and magnitude: dropping bits moves towards zero, adding them first moves away from it.
+        let away = if x < 0.0 { below } else { 0 };
+        f64::from_bits((x.to_bits() + away) & !below)
+    }
+
+    /// The least value of the format that is ≥ x, for |x| at least [`Format::MIN_NORMAL`] or 0.
+    #[inline]
+    #[must_use]
+    fn round_up(x: f64) -> f64 {
+        -Self::round_down(-x)
+    }
+
+    /// The distance between the two values of the format that bracket x most narrowly (Muller 2005); never below the
+    /// spacing of subnormals.
+    #[inline]
+    #[must_use]
+    fn ulp(x: f64) -> f64 {
+        let x = x.abs().max(Self::MIN_NORMAL);
+        let power = f64::from_bits(x.to_bits() & (0x7ff << 52));
+        let ulp = power * Self::EPSILON;
+        // At a power of two the bracket below is half as wide.
+        if x == power && x > Self::MIN_NORMAL { ulp * 0.5 } else { ulp }
+    }
+}
+
+/// binary32.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct F32;
+
+impl Format for F32 {
+    const FRACTION_BITS: u32 = 23;
+    const EPSILON: f64 = 1.0 / 8_388_608.0;
+    const MIN_NORMAL: f64 = f64::from_bits((1023 - 126) << 52);
+    const MIN_SUBNORMAL: f64 = f64::from_bits((1023 - 149) << 52);
+    const MAX: f64 = 340_282_346_638_528_859_811_704_183_484_516_925_440.0;
+}
+
+/// binary16.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct F16;
+
+impl Format for F16 {
+    const FRACTION_BITS: u32 = 10;
+    const EPSILON: f64 = 1.0 / 1024.0;
+    const MIN_NORMAL: f64 = f64::from_bits((1023 - 14) << 52);
+    const MIN_SUBNORMAL: f64 = f64::from_bits((1023 - 24) << 52);
+    const MAX: f64 = 65_504.0;
+}
+
+/// The arithmetic of fixed hardware on a format: one ULP for each conversion, factor, product and sum, a sum's relative to
+/// the magnitudes of its terms. No interface promises a blend unit more; lavapipe's takes out a factor that both sides share.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hardware<F>(F);
+
+impl<F: Format> Format for Hardware<F> {
+    const FRACTION_BITS: u32 = F::FRACTION_BITS;
+    const EPSILON: f64 = F::EPSILON;
+    const MIN_NORMAL: f64 = F::MIN_NORMAL;
+    const MIN_SUBNORMAL: f64 = F::MIN_SUBNORMAL;
+    const MAX: f64 = F::MAX;
+    const SUMS_BY_TERMS: bool = true;
+}
+
+/// The error of `value` against `reference` in units in the last place of binary32 at the reference.
+///
+/// 0 where both are equal or both NaN; infinite where only one of them is finite.
+#[must_use]
+pub fn error_ulp(value: f32, reference: f64) -> f64 {
+    let value = f64::from(value);
+    if value == reference || (value.is_nan() && reference.is_nan()) {
+        0.0
+    } else if value.is_finite() && reference.is_finite() {
+        (value - reference).abs() / F32::ulp(reference)
+    } else {
+        f64::INFINITY
+    }
+}

@@ -1,0 +1,13 @@
+//! What formulas are evaluated in besides `f64` and `f32`: intervals of legal values, derivatives, recorded steps.
+
+pub mod accept;
+pub mod dual;
+pub mod format;
+pub mod profile;
+pub mod trace;
+
+pub use accept::Accept;
+pub use dual::Dual;
+pub use format::{F16, F32, Format, Hardware};
+pub use profile::Profile;
+pub use trace::Trace;

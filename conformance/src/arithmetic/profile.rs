@@ -1,0 +1,111 @@
+//! What a shading language promises of its arithmetic, as data.
+
+use std::cell::Cell;
+
+/// A bound that grows with the argument: `base + slope·|x|` ULP.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrowingUlp {
+    /// ULP at 0.
+    pub base: f64,
+    /// ULP per unit of |x|.
+    pub slope: f64,
+}
+
+/// A driver's excess over the promised bound of an exponential on a range of its argument; a named deviation's data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Excess {
+    /// The least argument concerned.
+    pub from: f64,
+    /// The greatest argument concerned.
+    pub to: f64,
+    /// How many times the promised bound is granted there.
+    pub factor: f64,
+}
+
+/// The accuracy of a shading language: correct rounding up or down for `+ − ×`, and the bounds of the rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profile {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// Where the figures come from.
+    pub source: &'static str,
+    /// `/`, for a divisor whose magnitude lies in [2⁻¹²⁶, 2¹²⁶]; undefined elsewhere.
+    pub divide_ulp: f64,
+    /// inverseSqrt; sqrt is 1 / inverseSqrt.
+    pub inverse_sqrt_ulp: f64,
+    /// exp.
+    pub exp_ulp: GrowingUlp,
+    /// exp2; pow(x, y) is exp2(y · log2(x)).
+    pub exp2_ulp: GrowingUlp,
+    /// log2 on [0.5, 2]: an absolute error.
+    pub log2_absolute: f64,
+    /// log2 elsewhere.
+    pub log2_ulp: f64,
+    /// Whether a + t(b − a) is a legal `mix` beside a(1 − t) + b·t.
+    pub mix_by_difference: bool,
+    /// Bits after the point to which a rasteriser snaps positions, at least.
+    pub subpixel_bits: u32,
+    /// A named deviation's excess of exp, on top of the promise.
+    pub exp_excess: Option<Excess>,
+    /// A named deviation's excess of exp2, on top of the promise.
+    pub exp2_excess: Option<Excess>,
+}
+
+const EXPONENTIAL: GrowingUlp = GrowingUlp { base: 3.0, slope: 2.0 };
+
+/// WGSL §"Floating point accuracy", with the forms of mix and normalize that implementations are known to use.
+pub const WGSL: Profile = Profile {
+    name: "wgsl",
+    source: "WGSL, Floating Point Accuracy",
+    divide_ulp: 2.5,
+    inverse_sqrt_ulp: 2.0,
+    exp_ulp: EXPONENTIAL,
+    exp2_ulp: EXPONENTIAL,
+    log2_absolute: 1.0 / 2_097_152.0,
+    log2_ulp: 3.0,
+    mix_by_difference: true,
+    subpixel_bits: 4,
+    exp_excess: None,
+    exp2_excess: None,
+};
+
+/// Vulkan's table of SPIR-V precision: WGSL's figures, with mix as its extended instruction set defines it.
+pub const VULKAN: Profile = Profile {
+    name: "vulkan",
+    source: "Vulkan, Precision and Operation of SPIR-V Instructions",
+    mix_by_difference: false,
+    ..WGSL
+};
+
+/// The profiles by name, the default first.
+pub const PROFILES: [&Profile; 2] = [&WGSL, &VULKAN];
+
+impl Profile {
+    /// The profile of that name.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<&'static Self> {
+        PROFILES.into_iter().find(|profile| profile.name == name)
+    }
+
+    /// Runs `f` with this profile as the one that intervals on this thread are computed by.
+    pub fn scope<T>(&self, f: impl FnOnce() -> T) -> T {
+        struct Restore(Profile);
+        impl Drop for Restore {
+            fn drop(&mut self) {
+                CURRENT.set(self.0);
+            }
+        }
+        let _restore = Restore(CURRENT.replace(*self));
+        f()
+    }
+}
+
+thread_local! {
+    static CURRENT: Cell<Profile> = const { Cell::new(WGSL) };
+}
+
+/// One figure of the profile in force on this thread.
+#[inline]
+pub(crate) fn current<T>(figure: impl FnOnce(&Profile) -> T) -> T {
+    figure(&CURRENT.get())
+}

@@ -1,0 +1,122 @@
+//! An f64 value and its acceptance interval side by side, which records the steps that a formula names.
+
+use super::Accept;
+use lightmeter_reference::{Components, Real};
+use std::cell::RefCell;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// The reference value and the interval of one intermediate result.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trace {
+    /// In f64.
+    pub value: f64,
+    /// What is legal.
+    pub interval: Accept,
+}
+
+/// One recorded step.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// The formula's own name for it.
+    pub name: &'static str,
+    /// What it was.
+    pub result: Trace,
+}
+
+thread_local! {
+    static STEPS: RefCell<Vec<Step>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Runs `f` and returns what it named, in order, beside its result.
+pub fn record<T>(f: impl FnOnce() -> T) -> (T, Vec<Step>) {
+    STEPS.with_borrow_mut(Vec::clear);
+    let result = f();
+    (result, STEPS.with_borrow_mut(std::mem::take))
+}
+
+macro_rules! both {
+    ($($method:ident($($other:ident),*)),+ $(,)?) => {$(
+        fn $method(self $(, $other: Self)*) -> Self {
+            Self {
+                value: Real::$method(self.value $(, $other.value)*),
+                interval: self.interval.$method($($other.interval),*),
+            }
+        }
+    )+};
+}
+
+macro_rules! operator {
+    ($($trait:ident::$method:ident),+ $(,)?) => {$(
+        impl $trait for Trace {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                Self { value: self.value.$method(other.value), interval: self.interval.$method(other.interval) }
+            }
+        }
+    )+};
+}
+
+operator!(Add::add, Sub::sub, Mul::mul, Div::div);
+
+impl Neg for Trace {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { value: -self.value, interval: -self.interval }
+    }
+}
+
+impl Real for Trace {
+    fn input(x: f32) -> Self {
+        Self { value: Real::input(x), interval: Real::input(x) }
+    }
+    fn literal(x: f64) -> Self {
+        Self { value: x, interval: Real::literal(x) }
+    }
+    both!(max(other), min(other), abs(), round(), sqrt(), inverse_sqrt(), exp(), exp2(), log2(), pow(e), lobe(e));
+    fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {
+        // The value follows its own branch; the interval takes the hull where it cannot decide.
+        let hull = |value_first: bool| {
+            move |x: Self, y: Self| Self {
+                value: if value_first { x.value } else { y.value },
+                interval: x.interval.hull(y.interval),
+            }
+        };
+        if a.interval.low() >= b.interval.high() && !a.interval.is_any() {
+            then()
+        } else if a.interval.high() < b.interval.low() {
+            otherwise()
+        } else {
+            then().zip(otherwise(), hull(a.value >= b.value))
+        }
+    }
+    fn sum<const N: usize>(terms: [Self; N]) -> Self {
+        Self { value: Real::sum(terms.map(|x| x.value)), interval: Real::sum(terms.map(|x| x.interval)) }
+    }
+    fn product<const N: usize>(factors: [Self; N]) -> Self {
+        Self { value: Real::product(factors.map(|x| x.value)), interval: Real::product(factors.map(|x| x.interval)) }
+    }
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
+    }
+    fn mix(a: Self, b: Self, t: Self) -> Self {
+        Self {
+            value: Real::mix(a.value, b.value, t.value),
+            interval: Real::mix(a.interval, b.interval, t.interval),
+        }
+    }
+    fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
+        let values = <f64 as Real>::normalize(v.map(|x| x.value));
+        let intervals = Accept::normalize(v.map(|x| x.interval));
+        std::array::from_fn(|k| Self { value: values[k], interval: intervals[k] })
+    }
+    fn quadratic(c: [Self; 3], x: Self) -> Self {
+        Self {
+            value: Real::quadratic(c.map(|c| c.value), x.value),
+            interval: Real::quadratic(c.map(|c| c.interval), x.interval),
+        }
+    }
+    fn named(self, name: &'static str) -> Self {
+        STEPS.with_borrow_mut(|steps| steps.push(Step { name, result: self }));
+        self
+    }
+}

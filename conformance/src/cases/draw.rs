@@ -1,0 +1,196 @@
+//! Inputs drawn by counter: those of case k follow from the generator's version, the seed, the formula's id and k alone,
+//! so that shards, baselines and a case shown by itself agree.
+
+use super::spec::{Domain, Input, Shape, Spec};
+
+/// Raised whenever the same seed would give other inputs.
+pub const GENERATOR_VERSION: u64 = 1;
+
+/// The inputs of random case `k` of a formula.
+pub fn inputs(spec: &Spec, seed: u64, k: u64, row: &mut Vec<f32>) {
+    let mut numbers = Numbers::new(&spec.id, seed, k);
+    let start = row.len();
+    for input in spec.inputs {
+        draw(input, &mut numbers, row);
+    }
+    if let Some(fit) = spec.fit {
+        fit(&mut row[start..]);
+    }
+}
+
+impl Input {
+    /// A value in the middle of the domain, for the inputs that a hard case leaves open.
+    pub(crate) fn middle(&self, row: &mut Vec<f32>) {
+        let middle = match self.domain {
+            Domain::Uniform(low, high) | Domain::Halves(low, high) => low.midpoint(high),
+            Domain::LogUniform(low, high) => (low * high).sqrt(),
+            Domain::Unit | Domain::Around => 0.5,
+            Domain::Whole(low, _) => small(low),
+            Domain::Pixel => 128.0,
+            Domain::Weights => 1.0 / small(u32::try_from(self.shape.len()).unwrap_or(1)),
+            Domain::Direction | Domain::Vector(..) => {
+                row.extend([0.0, 0.0, 1.0]);
+                return;
+            }
+            Domain::Transform(..) => {
+                let side = if self.shape == Shape::Mat4 { 4 } else { 3 };
+                row.extend((0..side * side).map(|k| if k % (side + 1) == 0 { 1.0 } else { 0.0 }));
+                return;
+            }
+        };
+        row.extend(std::iter::repeat_n(middle, self.shape.len()));
+    }
+}
+
+fn draw(input: &Input, numbers: &mut Numbers, row: &mut Vec<f32>) {
+    let len = input.shape.len();
+    match input.domain {
+        Domain::Around => row.extend((0..len).map(|_| numbers.uniform(0.0, 1.0))),
+        Domain::Uniform(low, high) => row.extend((0..len).map(|_| numbers.uniform(low, high))),
+        Domain::LogUniform(low, high) => row.extend((0..len).map(|_| numbers.log_uniform(low, high))),
+        Domain::Unit => row.extend((0..len).map(|_| numbers.unit())),
+        Domain::Direction => row.extend(numbers.direction(1.0)),
+        Domain::Vector(low, high) => {
+            let length = numbers.log_uniform(low, high);
+            row.extend(numbers.direction(length.into()));
+        }
+        Domain::Weights => numbers.weights(len, row),
+        Domain::Whole(low, high) => row.extend((0..len).map(|_| numbers.whole(low, high))),
+        Domain::Halves(low, high) => {
+            let steps = whole((high - low) * 2.0);
+            row.extend((0..len).map(|_| low + numbers.whole(0, steps) * 0.5));
+        }
+        Domain::Transform(low, high) => numbers.transform(input.shape, (low, high), row),
+        Domain::Pixel => row.extend(numbers.pixel()),
+    }
+}
+
+/// The numbers of one case.
+struct Numbers {
+    key: u64,
+    k: u64,
+    path: u64,
+    drawn: u64,
+}
+
+impl Numbers {
+    fn new(id: &str, seed: u64, k: u64) -> Self {
+        // FNV-1a of the id, then mixed with the rest.
+        let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+        let path = mix(hash ^ mix(seed ^ mix(GENERATOR_VERSION)));
+        Self { key: mix(path ^ mix(k)), k, path, drawn: 0 }
+    }
+
+    fn next(&mut self) -> u64 {
+        self.drawn += 1;
+        mix(self.key.wrapping_add(self.drawn.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
+    }
+
+    /// Evenly in [0, 1), in steps of 2⁻⁵³.
+    fn fraction(&mut self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "53 bits fit an f64")]
+        let fraction = (self.next() >> 11) as f64 / (1u64 << 53) as f64;
+        fraction
+    }
+
+    fn uniform(&mut self, low: f32, high: f32) -> f32 {
+        let (low, high) = (f64::from(low), f64::from(high));
+        narrow(low + self.fraction() * (high - low))
+    }
+
+    fn log_uniform(&mut self, low: f32, high: f32) -> f32 {
+        let (low, high) = (core_math::log2(low.into()), core_math::log2(high.into()));
+        narrow(core_math::exp2(low + self.fraction() * (high - low)))
+    }
+
+    fn unit(&mut self) -> f32 {
+        match self.next() & 31 {
+            0 => 0.0,
+            1 => 1.0,
+            _ => self.uniform(0.0, 1.0),
+        }
+    }
+
+    fn whole(&mut self, low: u32, high: u32) -> f32 {
+        let span = u64::from(high - low) + 1;
+        low_bits(u64::from(low) + (self.next() >> 16) % span)
+    }
+
+    /// A vector of that length whose direction is evenly distributed.
+    fn direction(&mut self, length: f64) -> [f32; 3] {
+        let z = 2.0 * self.fraction() - 1.0;
+        let angle = std::f64::consts::TAU * self.fraction();
+        let r = (1.0 - z * z).max(0.0).sqrt();
+        let (sin, cos) = (core_math::sin(angle), core_math::cos(angle));
+        [r * cos, r * sin, z].map(|x| narrow(x * length))
+    }
+
+    fn weights(&mut self, len: usize, row: &mut Vec<f32>) {
+        let mut cuts: Vec<f64> = (1..len).map(|_| self.fraction()).collect();
+        cuts.sort_by(f64::total_cmp);
+        let mut last = 0.0;
+        let start = row.len();
+        for cut in cuts {
+            row.push(narrow(cut - last));
+            last = cut;
+        }
+        let rest: f64 = row[start..].iter().map(|&w| f64::from(w)).sum();
+        row.push(narrow((1.0 - rest).max(0.0)));
+    }
+
+    fn transform(&mut self, shape: Shape, (low, high): (f32, f32), row: &mut Vec<f32>) {
+        // A random unit quaternion (Shoemake), then a scale of each axis.
+        let (u, a, b) = (self.fraction(), self.fraction(), self.fraction());
+        let (a, b) = (a * std::f64::consts::TAU, b * std::f64::consts::TAU);
+        let (p, q) = ((1.0 - u).sqrt(), u.sqrt());
+        let (x, y, z, w) =
+            (p * core_math::sin(a), p * core_math::cos(a), q * core_math::sin(b), q * core_math::cos(b));
+        let columns = [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)],
+            [2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)],
+            [2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)],
+        ];
+        for column in columns {
+            let scale = f64::from(self.log_uniform(low, high));
+            row.extend(column.map(|x| narrow(x * scale)));
+            if shape == Shape::Mat4 {
+                row.push(0.0);
+            }
+        }
+        if shape == Shape::Mat4 {
+            row.extend([self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), 1.0]);
+        }
+    }
+
+    /// A pixel in [64, 192)². Multiplication by an odd number permutes the 2¹⁴ of them.
+    fn pixel(&self) -> [f32; 2] {
+        let place = self.k.wrapping_mul(0x2545).wrapping_add(self.path) & 0x3fff;
+        [low_bits(64 + (place & 127)), low_bits(64 + (place >> 7))]
+    }
+}
+
+/// The finaliser of SplitMix64.
+const fn mix(x: u64) -> u64 {
+    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "inputs are the nearest f32")]
+pub(super) const fn narrow(x: f64) -> f32 {
+    x as f32
+}
+
+#[expect(clippy::cast_precision_loss, reason = "whole numbers below 2²⁴ are exact")]
+const fn low_bits(x: u64) -> f32 {
+    (x & 0xff_ffff) as f32
+}
+
+fn small(x: u32) -> f32 {
+    low_bits(x.into())
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive whole number")]
+const fn whole(x: f32) -> u32 {
+    x as u32
+}

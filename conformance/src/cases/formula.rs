@@ -1,0 +1,170 @@
+//! A formula that is judged: its description, and its evaluation in any arithmetic.
+
+use super::rows::{Reader, Writer};
+use super::spec::{Kind, Spec};
+use super::{blend, raster};
+use crate::arithmetic::{Accept, Dual, F16, F32, Format, Hardware, Trace, dual};
+use lightmeter_gpu::Raster;
+use lightmeter_reference::Real;
+
+/// What an acceptance interval may depend on besides the accuracy rules.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// Bits after the point to which the device's rasteriser snaps positions.
+    pub subpixel_bits: u32,
+    /// Whether the blend unit's target is binary16 rather than binary32.
+    pub half_float: bool,
+}
+
+/// A formula over any arithmetic.
+pub trait Formula: Send + Sync + 'static {
+    /// Its description.
+    fn spec(&self) -> Spec;
+
+    /// Its outputs for a row of inputs.
+    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>);
+}
+
+/// Is shown formulas one by one, each of a type of its own.
+pub trait Visitor {
+    /// The next formula.
+    fn formula<F: Formula>(&mut self, formula: F);
+}
+
+/// A formula in the arithmetics of the suite, its type forgotten.
+pub trait AnyFormula: Send + Sync {
+    /// Its description.
+    fn spec(&self) -> Spec;
+
+    /// The reference.
+    fn reference(&self, inputs: &[f32], out: &mut [f64]);
+
+    /// The embedded implementation in f32.
+    fn embedded(&self, inputs: &[f32], out: &mut [f32]);
+
+    /// The values that are legal in the programmable stages.
+    fn interval(&self, inputs: &[f32], out: &mut [Accept]);
+
+    /// The values that are legal as they leave the fixed hardware of a device.
+    fn hardware_interval(&self, kind: Kind, inputs: &[f32], target: Target, out: &mut [Accept]);
+
+    /// The reference and the interval of each output, with the steps that lead to them.
+    fn trace(&self, inputs: &[f32], out: &mut [Trace]);
+
+    /// The condition number of each output.
+    fn condition(&self, inputs: &[f32]) -> Vec<f64>;
+}
+
+/// Room for the inputs of any formula, so that a row is widened without an allocation.
+const MOST_INPUTS: usize = 64;
+
+fn run<F: Formula, R: Real>(formula: &F, inputs: &[f32], out: &mut [R]) {
+    let mut row = [R::literal(0.0); MOST_INPUTS];
+    for (wide, &narrow) in row.iter_mut().zip(inputs) {
+        *wide = R::input(narrow);
+    }
+    formula.evaluate(&mut Reader::new(&row[..inputs.len()]), &mut Writer::new(out));
+}
+
+fn in_hardware<F: Formula, N: Format>(formula: &F, inputs: &[f32], out: &mut [Accept]) {
+    let mut values = [Accept::<Hardware<N>>::ANY; blend::OUTPUTS];
+    run(formula, inputs, &mut values);
+    for (out, value) in out.iter_mut().zip(values) {
+        *out = Accept::from_bounds(value.low(), value.high());
+    }
+}
+
+impl<F: Formula> AnyFormula for F {
+    fn spec(&self) -> Spec {
+        Formula::spec(self)
+    }
+
+    fn reference(&self, inputs: &[f32], out: &mut [f64]) {
+        run(self, inputs, out);
+    }
+
+    fn embedded(&self, inputs: &[f32], out: &mut [f32]) {
+        run(self, inputs, out);
+    }
+
+    fn interval(&self, inputs: &[f32], out: &mut [Accept]) {
+        run(self, inputs, out);
+    }
+
+    fn hardware_interval(&self, kind: Kind, inputs: &[f32], target: Target, out: &mut [Accept]) {
+        match kind {
+            Kind::Raster(Raster::Flat { .. }) => run(self, inputs, out),
+            Kind::Raster(kind) => raster::interval(kind, inputs, target, out),
+            Kind::Blend(_) if target.half_float => in_hardware::<F, F16>(self, inputs, out),
+            Kind::Blend(_) => in_hardware::<F, F32>(self, inputs, out),
+            _ => run(self, inputs, out),
+        }
+    }
+
+    fn trace(&self, inputs: &[f32], out: &mut [Trace]) {
+        run(self, inputs, out);
+    }
+
+    fn condition(&self, inputs: &[f32]) -> Vec<f64> {
+        let outputs = Formula::spec(self).output_len();
+        let by_input: Vec<Vec<Dual>> = (0..inputs.len())
+            .map(|moved| {
+                let row: Vec<Dual> = inputs
+                    .iter()
+                    .enumerate()
+                    .map(|(k, &x)| if k == moved { Dual::variable(x.into()) } else { Dual::constant(x.into()) })
+                    .collect();
+                let mut out = vec![Dual::constant(0.0); outputs];
+                self.evaluate(&mut Reader::new(&row), &mut Writer::new(&mut out));
+                out
+            })
+            .collect();
+        (0..outputs).map(|output| dual::condition(inputs, &by_input, output)).collect()
+    }
+}
+
+/// Defines a formula of a fixed description.
+macro_rules! formula {
+    (
+        $(#[$doc:meta])* $name:ident: $id:literal by $function:literal,
+        $text:literal, $source:literal,
+        [$($input:expr),* $(,)?] -> [$($output:expr),* $(,)?],
+        $(fit $fit:expr,)?
+        $(kind $kind:expr,)?
+        |$x:ident, $out:ident| $body:block
+        $(, hard [$($hard:expr),* $(,)?])? $(,)?
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        struct $name;
+
+        impl $crate::cases::Formula for $name {
+            fn spec(&self) -> $crate::cases::Spec {
+                const FIT: &[fn(&mut [f32])] = &[$($fit)?];
+                const KIND: &[$crate::cases::Kind] = &[$($kind)?];
+                const INPUTS: &[$crate::cases::Input] = &[$($input),*];
+                const OUTPUTS: &[$crate::cases::Output] = &[$($output),*];
+                const HARD: &[$crate::cases::Hard] = &[$($($hard),*)?];
+                $crate::cases::Spec {
+                    id: $id.into(),
+                    text: $text,
+                    source: $source,
+                    function: $function,
+                    kind: KIND.first().copied().unwrap_or($crate::cases::Kind::Arithmetic),
+                    selectors: vec![],
+                    inputs: INPUTS,
+                    outputs: OUTPUTS,
+                    fit: FIT.first().copied(),
+                    hard: HARD,
+                }
+            }
+
+            fn evaluate<R: lightmeter_reference::Real>(
+                &self,
+                $x: &mut $crate::cases::Reader<'_, R>,
+                $out: &mut $crate::cases::Writer<'_, R>,
+            ) $body
+        }
+    };
+}
+pub(crate) use formula;

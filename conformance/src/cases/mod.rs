@@ -1,0 +1,50 @@
+//! What is judged: the formulas by family, their inputs and outputs, and the cases drawn from them.
+//!
+//! A family has a file here, and files of the same stem in `reference/src`, `gpu/src/shaders` and `tests/properties`.
+
+pub mod attenuation;
+pub mod blend;
+pub mod color;
+pub mod fog;
+pub mod interpolation;
+pub mod lighting;
+pub mod vector;
+
+mod draw;
+mod formula;
+mod raster;
+mod rows;
+mod spec;
+
+pub use draw::{GENERATOR_VERSION, inputs};
+pub use formula::{AnyFormula, Formula, Target, Visitor};
+pub use rows::{Reader, Writer};
+pub use spec::{Domain, Hard, Input, Kind, Output, Shape, Spec, Stage};
+
+/// The families, in the order of reports.
+pub const FAMILIES: [&str; 7] = ["interpolation", "color", "vector", "lighting", "attenuation", "fog", "blend"];
+
+/// Shows every formula of every family to a visitor, which may then evaluate it in an arithmetic of its own.
+pub fn visit(visitor: &mut impl Visitor) {
+    interpolation::visit(visitor);
+    color::visit(visitor);
+    vector::visit(visitor);
+    lighting::visit(visitor);
+    attenuation::visit(visitor);
+    fog::visit(visitor);
+    blend::visit(visitor);
+}
+
+/// Every formula, evaluable in the arithmetics of the suite.
+#[must_use]
+pub fn all() -> Vec<Box<dyn AnyFormula>> {
+    struct Collect(Vec<Box<dyn AnyFormula>>);
+    impl Visitor for Collect {
+        fn formula<F: Formula>(&mut self, formula: F) {
+            self.0.push(Box::new(formula));
+        }
+    }
+    let mut collect = Collect(vec![]);
+    visit(&mut collect);
+    collect.0
+}

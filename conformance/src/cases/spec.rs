@@ -1,0 +1,287 @@
+//! The description of a formula: what goes in, what comes out, where it is from, and its hard cases.
+
+use lightmeter_gpu::Raster;
+use lightmeter_scene::blend::State;
+use serde::Serialize;
+
+/// Where a formula is evaluated on a renderer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stage {
+    /// Arithmetic in a compute shader.
+    Compute,
+    /// Arithmetic in a fragment shader.
+    Fragment,
+    /// The blend unit.
+    FixedFunction,
+    /// The rasteriser.
+    Raster,
+}
+
+impl Stage {
+    /// The name in ids, JSON and reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Compute => "compute",
+            Self::Fragment => "fragment",
+            Self::FixedFunction => "fixed-function",
+            Self::Raster => "raster",
+        }
+    }
+}
+
+/// How a renderer evaluates a formula.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// As arithmetic, by a function of a shader file, in the compute and the fragment stage.
+    Arithmetic,
+    /// As arithmetic and by the blend unit: a blend state.
+    Blend(State),
+    /// By the rasteriser alone.
+    Raster(Raster),
+}
+
+impl Kind {
+    /// The stages that it is judged in.
+    #[must_use]
+    pub const fn stages(self) -> &'static [Stage] {
+        match self {
+            Self::Arithmetic => &[Stage::Compute, Stage::Fragment],
+            Self::Blend(_) => &[Stage::FixedFunction, Stage::Compute, Stage::Fragment],
+            Self::Raster(_) => &[Stage::Raster],
+        }
+    }
+}
+
+/// The components of an input or output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Shape {
+    /// One number.
+    Scalar,
+    /// Two.
+    Vec2,
+    /// Three.
+    Vec3,
+    /// Four.
+    Vec4,
+    /// Nine, column by column.
+    Mat3,
+    /// Sixteen, column by column.
+    Mat4,
+}
+
+impl Shape {
+    /// How many numbers it has.
+    #[must_use]
+    pub const fn len(self) -> usize {
+        match self {
+            Self::Scalar => 1,
+            Self::Vec2 => 2,
+            Self::Vec3 => 3,
+            Self::Vec4 => 4,
+            Self::Mat3 => 9,
+            Self::Mat4 => 16,
+        }
+    }
+}
+
+/// What random cases draw an input from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Domain {
+    /// Evenly from low to high, each component.
+    Uniform(f32, f32),
+    /// Evenly in the logarithm, each component.
+    LogUniform(f32, f32),
+    /// Colour components: evenly from 0 to 1, now and then exactly 0 or 1.
+    Unit,
+    /// A unit vector, as near as f32 holds one.
+    Direction,
+    /// A vector of any direction and of a length drawn evenly in the logarithm.
+    Vector(f32, f32),
+    /// Barycentric weights: they sum to 1 as nearly as f32 allows.
+    Weights,
+    /// Whole numbers, the ends included.
+    Whole(u32, u32),
+    /// Multiples of 1/2 from low to high.
+    Halves(f32, f32),
+    /// A rotation, a scale of each axis drawn evenly in the logarithm and, in a 4 × 4 matrix, a translation.
+    Transform(f32, f32),
+    /// A vertex in clip coordinates: its place 8 to 60 pixels from the case's pixel, w from 0.5 to 8.
+    Around,
+    /// A pixel of the middle of the rasteriser's target, another for each of 16,384 consecutive cases.
+    Pixel,
+}
+
+/// One input.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Input {
+    /// Its name, the same in Rust, WGSL, JSON and reports.
+    pub name: &'static str,
+    /// Its components.
+    pub shape: Shape,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What random cases draw it from.
+    pub domain: Domain,
+}
+
+/// One output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Output {
+    /// Its name.
+    pub name: &'static str,
+    /// Its components.
+    pub shape: Shape,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+impl Input {
+    /// An input.
+    #[must_use]
+    pub const fn new(name: &'static str, shape: Shape, unit: &'static str, domain: Domain) -> Self {
+        Self { name, shape, unit, domain }
+    }
+
+    /// A number.
+    #[must_use]
+    pub const fn scalar(name: &'static str, unit: &'static str, domain: Domain) -> Self {
+        Self::new(name, Shape::Scalar, unit, domain)
+    }
+
+    /// A colour without alpha.
+    #[must_use]
+    pub const fn rgb(name: &'static str) -> Self {
+        Self::new(name, Shape::Vec3, "color", Domain::Unit)
+    }
+
+    /// A colour with alpha.
+    #[must_use]
+    pub const fn rgba(name: &'static str) -> Self {
+        Self::new(name, Shape::Vec4, "color", Domain::Unit)
+    }
+
+    /// A unit vector.
+    #[must_use]
+    pub const fn direction(name: &'static str) -> Self {
+        Self::new(name, Shape::Vec3, "1", Domain::Direction)
+    }
+
+    /// A vector of any length from 1/4 to 4.
+    #[must_use]
+    pub const fn vector(name: &'static str) -> Self {
+        Self::new(name, Shape::Vec3, "1", Domain::Vector(0.25, 4.0))
+    }
+
+    /// A position in eye space.
+    #[must_use]
+    pub const fn position(name: &'static str) -> Self {
+        Self::new(name, Shape::Vec3, "unit", Domain::Uniform(-10.0, 10.0))
+    }
+}
+
+impl Output {
+    /// An output.
+    #[must_use]
+    pub const fn new(name: &'static str, shape: Shape, unit: &'static str) -> Self {
+        Self { name, shape, unit }
+    }
+}
+
+/// A named hard case: some inputs given, the others in the middle of their domain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hard {
+    /// The case's name, the last segment of its id.
+    pub name: &'static str,
+    /// What it pins.
+    pub pins: &'static str,
+    /// The inputs that are given.
+    pub inputs: &'static [(&'static str, &'static [f32])],
+}
+
+/// A formula's description.
+#[derive(Clone, Debug)]
+pub struct Spec {
+    /// `family/formula`, and for blend states the two factors too.
+    pub id: String,
+    /// The formula, on a line.
+    pub text: &'static str,
+    /// Where it is from.
+    pub source: &'static str,
+    /// The WGSL function that evaluates it as arithmetic.
+    pub function: &'static str,
+    /// How a renderer evaluates it.
+    pub kind: Kind,
+    /// Whole numbers that the function takes before its inputs.
+    pub selectors: Vec<u32>,
+    /// What goes in.
+    pub inputs: &'static [Input],
+    /// What comes out.
+    pub outputs: &'static [Output],
+    /// Makes independently drawn inputs fit each other.
+    pub fit: Option<fn(&mut [f32])>,
+    /// The named hard cases.
+    pub hard: &'static [Hard],
+}
+
+impl Spec {
+    /// The family: the first segment of the id.
+    #[must_use]
+    pub fn family(&self) -> &str {
+        self.id.split('/').next().unwrap_or_default()
+    }
+
+    /// The group that verdicts are counted in: the first two segments of the id.
+    #[must_use]
+    pub fn group(&self) -> &str {
+        let end = self.id.match_indices('/').nth(1).map_or(self.id.len(), |(at, _)| at);
+        &self.id[..end]
+    }
+
+    /// Numbers of an input row.
+    #[must_use]
+    pub fn input_len(&self) -> usize {
+        self.inputs.iter().map(|input| input.shape.len()).sum()
+    }
+
+    /// Numbers of an output row.
+    #[must_use]
+    pub fn output_len(&self) -> usize {
+        self.outputs.iter().map(|output| output.shape.len()).sum()
+    }
+
+    /// Where an input stands in a row.
+    #[must_use]
+    pub fn place(&self, name: &str) -> Option<std::ops::Range<usize>> {
+        let mut start = 0;
+        for input in self.inputs {
+            let end = start + input.shape.len();
+            if input.name == name {
+                return Some(start..end);
+            }
+            start = end;
+        }
+        None
+    }
+
+    /// The name of one number of the output, such as `color.g`.
+    #[must_use]
+    pub fn output_name(&self, mut number: usize) -> String {
+        for output in self.outputs {
+            if number < output.shape.len() {
+                let component = match (output.shape, output.unit) {
+                    (Shape::Scalar, _) => return output.name.into(),
+                    (_, "color") => ["r", "g", "b", "a"][number].into(),
+                    (Shape::Vec2 | Shape::Vec3 | Shape::Vec4, _) => ["x", "y", "z", "w"][number].into(),
+                    _ => number.to_string(),
+                };
+                return format!("{}.{component}", output.name);
+            }
+            number -= output.shape.len();
+        }
+        String::new()
+    }
+}

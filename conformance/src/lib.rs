@@ -1,0 +1,11 @@
+//! The suite: cases, acceptance, verdicts, the runner and its reports, as a library for the `lightmeter` binary and others.
+
+pub mod arithmetic;
+pub mod cases;
+pub mod devices;
+pub mod filter;
+pub mod judge;
+pub mod report;
+pub mod run;
+pub mod select;
+pub mod subject;

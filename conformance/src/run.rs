@@ -1,0 +1,549 @@
+//! The runner: draws cases, has every subject evaluate them, computes what is legal meanwhile, and judges.
+//!
+//! Work goes group by group and chunk by chunk, so that memory stays flat however many cases there are. A chunk's inputs
+//! are handed to every stage of every subject before the reference is computed on all cores; then the results are read.
+
+use crate::arithmetic::{Accept, Profile};
+use crate::cases::{Kind, Stage, Target, blend};
+use crate::filter::Filter;
+use crate::judge::{Outcome, judge};
+use crate::report::{DeviationUse, Failure, Group, Number, Report, Timing, Totals};
+use crate::select::{CaseRef, Member, Selected, Shard, catalogue, select};
+use crate::subject::{Compiled, Rows, Subject};
+use lightmeter_gpu::{Error, Kernel, Shaders};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Cases of a chunk.
+const CHUNK: usize = 1 << 16;
+/// Cases that a task of the pool takes at once.
+const TASK: usize = 512;
+/// Failures that are kept for each group.
+const KEPT_FAILURES: usize = 5;
+/// The share of indeterminate verdicts, hard cases apart, above which a group fails.
+const MOST_INDETERMINATE: f64 = 0.01;
+
+/// What to run.
+pub struct Options {
+    /// Which cases.
+    pub filter: Filter,
+    /// Random cases for each formula.
+    pub cases: u64,
+    /// The seed.
+    pub seed: u64,
+    /// Which part.
+    pub shard: Shard,
+    /// The accuracy rules.
+    pub profile: &'static Profile,
+    /// The shaders.
+    pub shaders: Shaders,
+    /// What to add to a command that runs one case again.
+    pub rerun: String,
+}
+
+/// Is told how far a run has come.
+pub trait Progress {
+    /// So many cases in all are about to be run.
+    fn start(&mut self, cases: u64);
+    /// A group begins.
+    fn group(&mut self, id: &str);
+    /// So many more cases are done.
+    fn advance(&mut self, cases: u64);
+}
+
+/// Nobody looks.
+pub struct Silent;
+
+impl Progress for Silent {
+    fn start(&mut self, _cases: u64) {}
+    fn group(&mut self, _id: &str) {}
+    fn advance(&mut self, _cases: u64) {}
+}
+
+/// Runs what the options select on every subject.
+///
+/// # Errors
+/// Where a shader is invalid or a device fails.
+pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Progress) -> Result<Report, Error> {
+    let started = Instant::now();
+    let catalogue = catalogue();
+    let selected = select(&catalogue, &options.filter, options.cases, options.shard);
+    progress.start(selected.iter().map(Selected::len).sum());
+    let mut report = empty(subjects, options);
+    if !selected.is_empty() {
+        probe_deviations(subjects, options, &mut report)?;
+    }
+    for group in selected.chunk_by(|a, b| catalogue[a.member].spec.group() == catalogue[b.member].spec.group()) {
+        progress.group(catalogue[group[0].member].spec.group());
+        run_group(&catalogue, group, subjects, options, &mut report, progress)?;
+    }
+    for group in &report.groups {
+        report.totals.add(&group.totals);
+    }
+    report.aliases = blend::aliases()
+        .filter(|(alias, canonical)| options.filter.selects(alias) || options.filter.selects(canonical))
+        .count() as u64;
+    report.routes = routes(&catalogue, &selected);
+    report.seconds = started.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+fn empty(subjects: &[Subject], options: &Options) -> Report {
+    Report {
+        schema: "lightmeter.run/1",
+        seed: options.seed,
+        seconds: 0.0,
+        profile: options.profile.name,
+        adapters: subjects.iter().map(|subject| subject.identity.clone()).collect(),
+        totals: Totals::default(),
+        aliases: 0,
+        routes: serde_json::Map::new(),
+        timing: Timing::default(),
+        deviations: vec![],
+        groups: vec![],
+        failures: vec![],
+    }
+}
+
+fn routes(catalogue: &[Member], selected: &[Selected]) -> serde_json::Map<String, serde_json::Value> {
+    let mut routes = std::collections::BTreeMap::<&str, u64>::new();
+    for chosen in selected {
+        if let Kind::Blend(state) = catalogue[chosen.member].spec.kind {
+            *routes.entry(lightmeter_gpu::route(state).name()).or_default() += 1;
+        }
+    }
+    routes.into_iter().map(|(route, states)| (route.into(), states.into())).collect()
+}
+
+/// Evaluates the witness of each deviation in force: where the driver is inside the promised bound there, the deviation is
+/// no longer needed, which fails the run.
+fn probe_deviations(subjects: &[Subject], options: &Options, report: &mut Report) -> Result<(), Error> {
+    for subject in subjects {
+        for deviation in &subject.known.deviations {
+            let Some(bits) = subject.probe(&options.shaders, deviation.builtin.probe(), deviation.witness)? else {
+                continue;
+            };
+            let interval = options.profile.scope(|| deviation.builtin.interval(deviation.witness));
+            let verdict = judge(bits, deviation.builtin.exact(deviation.witness), &interval);
+            let still_needed = verdict.outcome == Outcome::Fail;
+            let mut totals = Totals { cases: 1, verdicts: 1, ..Totals::default() };
+            if still_needed { totals.expected_failures = 1 } else { totals.unexpected_passes = 1 }
+            report.totals.add(&totals);
+            report.deviations.push(DeviationUse {
+                name: deviation.name,
+                adapter: subject.identity.name.clone(),
+                reason: deviation.reason,
+                still_needed,
+                excused: 0,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A chunk of a group's cases, with everything about them that does not depend on a subject.
+struct Chunk<'a> {
+    members: &'a [&'a Member],
+    cases: Vec<CaseRef>,
+    of: Vec<usize>,
+    inputs: Vec<f32>,
+    selected: Vec<f32>,
+    references: Vec<f64>,
+    intervals: Vec<Accept>,
+}
+
+impl Chunk<'_> {
+    fn rows(&self) -> Rows<'_> {
+        Rows {
+            members: self.members,
+            of: &self.of,
+            inputs: &self.inputs,
+            selected: &self.selected,
+            outputs: self.members[0].spec.output_len(),
+        }
+    }
+
+    fn inputs_of(&self, case: usize) -> &[f32] {
+        let stride = self.members[0].spec.input_len();
+        &self.inputs[case * stride..(case + 1) * stride]
+    }
+}
+
+fn run_group(
+    catalogue: &[Member],
+    group: &[Selected],
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut Report,
+    progress: &mut impl Progress,
+) -> Result<(), Error> {
+    let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
+    let spec = &members[0].spec;
+    let clock = Instant::now();
+    let kernel = match spec.function {
+        "" => None,
+        function => Some(kernel(options, members[0], function)?),
+    };
+    let compiled: Vec<Compiled> = subjects
+        .iter_mut()
+        .map(|subject| subject.compile(&options.shaders, spec.kind, kernel.as_ref()))
+        .collect::<Result<_, Error>>()?;
+    let compiling = clock.elapsed().as_secs_f64();
+    report.timing.compile += compiling;
+
+    let mut tallies: Vec<Vec<Tally>> =
+        compiled.iter().map(|compiled| compiled.stages.iter().map(|_| Tally::default()).collect()).collect();
+    let cases: Vec<(usize, CaseRef)> = vec![];
+    let mut all = group.iter().enumerate().flat_map(|(of, chosen)| chosen.cases().map(move |case| (of, case)));
+    let mut next = cases;
+    loop {
+        next.clear();
+        next.extend(all.by_ref().take(CHUNK));
+        if next.is_empty() {
+            break;
+        }
+        let clock = Instant::now();
+        let mut chunk = draw(&members, &next, options.seed);
+        report.timing.generate += clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        let mut jobs = vec![];
+        for (subject, compiled) in subjects.iter_mut().zip(&compiled) {
+            for (_, work) in &compiled.stages {
+                let clock = Instant::now();
+                let job = work.as_ref().ok().map(|work| subject.submit(work, &chunk.rows())).transpose()?;
+                jobs.push((job, clock.elapsed().as_secs_f64()));
+            }
+        }
+        report.timing.devices += clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        refer(&mut chunk, options.profile);
+        report.timing.reference += clock.elapsed().as_secs_f64();
+
+        let mut jobs = jobs.into_iter();
+        for ((subject, compiled), tallies) in subjects.iter().zip(&compiled).zip(&mut tallies) {
+            for ((stage, work), tally) in compiled.stages.iter().zip(tallies) {
+                let (Some((Some(job), submitting)), Ok(work)) = (jobs.next(), work) else {
+                    tally.totals.cases += next.len() as u64;
+                    tally.totals.skipped += next.len() as u64;
+                    continue;
+                };
+                let clock = Instant::now();
+                let words = subject.finish(work, job, &chunk.rows())?;
+                let waiting = clock.elapsed().as_secs_f64();
+                report.timing.devices += waiting;
+                let clock = Instant::now();
+                tally.merge(judge_chunk(&chunk, &words, *stage, subject, options));
+                report.timing.judge += clock.elapsed().as_secs_f64();
+                tally.seconds += submitting + waiting + clock.elapsed().as_secs_f64();
+            }
+        }
+        progress.advance(next.len() as u64);
+    }
+
+    for ((subject, compiled), tallies) in subjects.iter().zip(compiled).zip(tallies) {
+        for ((stage, work), tally) in compiled.stages.into_iter().zip(tallies) {
+            for (name, excused) in &tally.excused {
+                let uses = report.deviations.iter_mut().find(|d| d.name == *name && d.adapter == subject.identity.name);
+                if let Some(uses) = uses {
+                    uses.excused += excused;
+                }
+            }
+            report.failures.extend(tally.failures);
+            let problem = problem(&tally.totals, tally.random);
+            report.groups.push(Group {
+                id: spec.group().into(),
+                adapter: subject.identity.name.clone(),
+                stage: stage.name(),
+                totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
+                error_ulp_max: Number(tally.error_ulp_max),
+                margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
+                seconds: tally.seconds,
+                worst: tally.worst.map(|(_, id)| id),
+                skip_reason: work.err(),
+                problem,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The group verdict on indeterminate values: more than 1 % of them, hard cases apart, make a run of little.
+fn problem(totals: &Totals, random: (u64, u64)) -> Option<String> {
+    let (verdicts, indeterminate) = random;
+    #[expect(clippy::cast_precision_loss, reason = "a share")]
+    let share = indeterminate as f64 / verdicts.max(1) as f64;
+    if share > MOST_INDETERMINATE {
+        return Some(format!("{:.1} % of the verdicts are indeterminate, hard cases apart; at most 1 % may be", 100.0 * share));
+    }
+    (totals.verdicts > 0 && verdicts > 0 && totals.indeterminate == totals.verdicts).then(|| "nothing but indeterminate verdicts".into())
+}
+
+/// The shader function of a formula, held against the formula's description.
+pub(crate) fn kernel(options: &Options, member: &Member, function: &str) -> Result<Kernel, Error> {
+    let file = format!("{}.wgsl", member.spec.family());
+    let kernel = Kernel::new(&options.shaders, &file, function)?;
+    let (inputs, outputs) = (member.spec.input_len() + member.spec.selectors.len(), member.spec.output_len());
+    if (kernel.inputs, kernel.outputs, kernel.selectors) != (inputs, outputs, member.spec.selectors.len()) {
+        let found = format!(
+            "{} numbers to {}, where {} takes {inputs} to {outputs}",
+            kernel.inputs, kernel.outputs, member.spec.id
+        );
+        return Err(Error::Signature { file, function: function.into(), found });
+    }
+    Ok(kernel)
+}
+
+fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], seed: u64) -> Chunk<'a> {
+    let parts: Vec<(Vec<f32>, Vec<f32>)> = cases
+        .par_chunks(TASK)
+        .map(|cases| {
+            let (mut inputs, mut selected) = (vec![], vec![]);
+            for &(of, case) in cases {
+                let start = inputs.len();
+                members[of].inputs(case, seed, &mut inputs);
+                if !members[of].spec.selectors.is_empty() {
+                    selected.extend(members[of].spec.selectors.iter().map(|&code| f32::from_bits(code)));
+                    selected.extend_from_slice(&inputs[start..]);
+                }
+            }
+            (inputs, selected)
+        })
+        .collect();
+    let inputs = parts.iter().flat_map(|(inputs, _)| inputs).copied().collect::<Vec<f32>>();
+    let selected = parts.iter().flat_map(|(_, selected)| selected).copied().collect::<Vec<f32>>();
+    Chunk {
+        members,
+        cases: cases.iter().map(|(_, case)| *case).collect(),
+        of: cases.iter().map(|(of, _)| *of).collect(),
+        selected: if selected.is_empty() { inputs.clone() } else { selected },
+        inputs,
+        references: vec![],
+        intervals: vec![],
+    }
+}
+
+/// Reference values and intervals, on all cores.
+fn refer(chunk: &mut Chunk<'_>, profile: &Profile) {
+    let outputs = chunk.members[0].spec.output_len();
+    let mut references = vec![0.0; chunk.cases.len() * outputs];
+    let mut intervals = vec![Accept::ANY; chunk.cases.len() * outputs];
+    references.par_chunks_mut(TASK * outputs).zip(intervals.par_chunks_mut(TASK * outputs)).enumerate().for_each(
+        |(task, (references, intervals))| {
+            profile.scope(|| {
+                let rows = references.chunks_exact_mut(outputs).zip(intervals.chunks_exact_mut(outputs));
+                for (case, (reference, interval)) in (task * TASK..).zip(rows) {
+                    let formula = &chunk.members[chunk.of[case]].formula;
+                    formula.reference(chunk.inputs_of(case), reference);
+                    formula.interval(chunk.inputs_of(case), interval);
+                }
+            });
+        },
+    );
+    chunk.references = references;
+    chunk.intervals = intervals;
+}
+
+/// What a group has come to on one subject in one stage.
+#[derive(Default)]
+struct Tally {
+    totals: Totals,
+    /// Verdicts of random cases, and the indeterminate ones among them.
+    random: (u64, u64),
+    error_ulp_max: f64,
+    worst: Option<(f64, String)>,
+    failures: Vec<Failure>,
+    excused: Vec<(&'static str, u64)>,
+    seconds: f64,
+}
+
+impl Tally {
+    fn merge(&mut self, other: Self) {
+        self.totals.add(&other.totals);
+        self.random.0 += other.random.0;
+        self.random.1 += other.random.1;
+        self.error_ulp_max = self.error_ulp_max.max(other.error_ulp_max);
+        if other.worst.as_ref().is_some_and(|(margin, _)| self.worst.as_ref().is_none_or(|(most, _)| margin > most)) {
+            self.worst = other.worst;
+        }
+        self.failures.extend(other.failures);
+        self.failures.truncate(KEPT_FAILURES);
+        for (name, count) in other.excused {
+            self.excuse(name, count);
+        }
+        self.seconds += other.seconds;
+    }
+
+    fn excuse(&mut self, name: &'static str, count: u64) {
+        match self.excused.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, excused)) => *excused += count,
+            None => self.excused.push((name, count)),
+        }
+    }
+}
+
+fn judge_chunk(chunk: &Chunk<'_>, words: &[u32], stage: Stage, subject: &Subject, options: &Options) -> Tally {
+    let tallies: Vec<Tally> = (0..chunk.cases.len().div_ceil(TASK))
+        .into_par_iter()
+        .map(|task| {
+            options.profile.scope(|| {
+                let cases = task * TASK..chunk.cases.len().min((task + 1) * TASK);
+                let mut tally = Tally::default();
+                for case in cases {
+                    judge_case(chunk, words, case, stage, subject, options, &mut tally);
+                }
+                tally
+            })
+        })
+        .collect();
+    let mut sum = Tally::default();
+    for tally in tallies {
+        sum.merge(tally);
+    }
+    sum
+}
+
+/// The intervals of one case as they hold for a stage of a subject, by the profile in force.
+pub(crate) fn intervals(member: &Member, inputs: &[f32], stage: Stage, subject: &Subject, options: &Options, out: &mut [Accept]) {
+    let target = Target {
+        subpixel_bits: subject.known.subpixel_bits.unwrap_or(options.profile.subpixel_bits),
+        half_float: stage == Stage::FixedFunction && subject.blends_halves(),
+    };
+    match stage {
+        Stage::Raster | Stage::FixedFunction => member.formula.hardware_interval(member.spec.kind, inputs, target, out),
+        Stage::Compute | Stage::Fragment => member.formula.interval(inputs, out),
+    }
+}
+
+fn judge_case(
+    chunk: &Chunk<'_>,
+    words: &[u32],
+    case: usize,
+    stage: Stage,
+    subject: &Subject,
+    options: &Options,
+    tally: &mut Tally,
+) {
+    let (member, outputs) = (chunk.members[chunk.of[case]], chunk.members[0].spec.output_len());
+    let range = case * outputs..(case + 1) * outputs;
+    let mut own = [Accept::ANY; 16];
+    let shared = matches!(stage, Stage::Compute | Stage::Fragment);
+    let legal = if shared {
+        &chunk.intervals[range.clone()]
+    } else {
+        intervals(member, chunk.inputs_of(case), stage, subject, options, &mut own[..outputs]);
+        &own[..outputs]
+    };
+    let is_random = matches!(chunk.cases[case], CaseRef::Random(_));
+    tally.totals.cases += 1;
+    tally.totals.verdicts += outputs as u64;
+    if is_random {
+        tally.random.0 += outputs as u64;
+    }
+    for (output, at) in range.enumerate() {
+        let (bits, reference) = (words[at], chunk.references[at]);
+        let verdict = judge(bits, reference, &legal[output]);
+        match verdict.outcome {
+            Outcome::Indeterminate => {
+                tally.totals.indeterminate += 1;
+                tally.random.1 += u64::from(is_random);
+                continue;
+            }
+            Outcome::Pass => tally.totals.passed += 1,
+            Outcome::Fail => {
+                if let Some(name) = excuse(chunk, case, output, bits, stage, subject, options) {
+                    tally.totals.expected_failures += 1;
+                    tally.excuse(name, 1);
+                } else {
+                    tally.totals.failed += 1;
+                    if tally.failures.len() < KEPT_FAILURES {
+                        let inputs = chunk.inputs_of(case);
+                        let id = member.case_id(chunk.cases[case]);
+                        let seen = Seen { bits, reference, interval: legal[output], error_ulp: verdict.error_ulp };
+                        tally.failures.push(failure(member, id, inputs, output, stage, subject, options, &seen));
+                    }
+                }
+            }
+        }
+        tally.error_ulp_max = tally.error_ulp_max.max(verdict.error_ulp);
+        if tally.worst.as_ref().is_none_or(|(most, _)| verdict.margin > *most) {
+            tally.worst = Some((verdict.margin, member.case_id(chunk.cases[case])));
+        }
+    }
+}
+
+/// The named deviation that makes a value legal, if one does.
+fn excuse(
+    chunk: &Chunk<'_>,
+    case: usize,
+    output: usize,
+    bits: u32,
+    stage: Stage,
+    subject: &Subject,
+    options: &Options,
+) -> Option<&'static str> {
+    let member = chunk.members[chunk.of[case]];
+    subject.known.deviations.iter().find_map(|deviation| {
+        let mut legal = vec![Accept::ANY; member.spec.output_len()];
+        deviation
+            .grant(*options.profile)
+            .scope(|| intervals(member, chunk.inputs_of(case), stage, subject, options, &mut legal));
+        let reference = chunk.references[case * legal.len() + output];
+        (judge(bits, reference, &legal[output]).outcome == Outcome::Pass).then_some(deviation.name)
+    })
+}
+
+struct Seen {
+    bits: u32,
+    reference: f64,
+    interval: Accept,
+    error_ulp: f64,
+}
+
+#[expect(clippy::too_many_arguments, reason = "a failure tells everything about its verdict")]
+fn failure(
+    member: &Member,
+    id: String,
+    inputs: &[f32],
+    output: usize,
+    stage: Stage,
+    subject: &Subject,
+    options: &Options,
+    seen: &Seen,
+) -> Failure {
+    Failure {
+        rerun: format!("lightmeter run '{id}' --adapter {}{}", subject.identity.name, options.rerun),
+        id,
+        adapter: subject.identity.name.clone(),
+        stage: stage.name(),
+        output: member.spec.output_name(output),
+        inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
+        inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
+        reference: Number(seen.reference),
+        interval: [Number(seen.interval.low()), Number(seen.interval.high())],
+        value: Number(f32::from_bits(seen.bits).into()),
+        value_hex: format!("0x{:08x}", seen.bits),
+        unwritten: seen.bits == lightmeter_gpu::SENTINEL,
+        error_ulp: Number(seen.error_ulp),
+    }
+}
+
+/// A row of inputs as an object: a number for a scalar, an array for the rest.
+pub(crate) fn by_name(
+    member: &Member,
+    inputs: &[f32],
+    value: impl Fn(f32) -> serde_json::Value,
+) -> serde_json::Map<String, serde_json::Value> {
+    let mut rest = inputs;
+    let named = member.spec.inputs.iter().map(|input| {
+        let (these, others) = rest.split_at(input.shape.len());
+        rest = others;
+        let value = match these {
+            [x] => value(*x),
+            many => many.iter().map(|&x| value(x)).collect(),
+        };
+        (input.name.to_owned(), value)
+    });
+    named.collect()
+}

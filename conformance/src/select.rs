@@ -1,0 +1,169 @@
+//! Which cases a run is made of: ids, and the choice among them by filter and shard.
+
+use crate::cases::{self, AnyFormula, Kind, Spec};
+use crate::filter::Filter;
+use std::num::NonZeroU64;
+
+/// A case of a formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CaseRef {
+    /// The k-th random case.
+    Random(u64),
+    /// A named hard case, by its place in the description.
+    Hard(usize),
+}
+
+/// A formula with its description.
+pub struct Member {
+    /// The formula.
+    pub formula: Box<dyn AnyFormula>,
+    /// Its description.
+    pub spec: Spec,
+}
+
+impl Member {
+    /// The path of the random cases.
+    fn random_path(&self) -> String {
+        if matches!(self.spec.kind, Kind::Blend(_)) { self.spec.id.clone() } else { format!("{}/random", self.spec.id) }
+    }
+
+    /// The case's id: `fog/linear/random/000017`, `blend/add/zero/one/0007`, `fog/linear/hard/dmin-equals-dmax`.
+    #[must_use]
+    pub fn case_id(&self, case: CaseRef) -> String {
+        match case {
+            CaseRef::Random(k) if matches!(self.spec.kind, Kind::Blend(_)) => format!("{}/{k:04}", self.random_path()),
+            CaseRef::Random(k) => format!("{}/{k:06}", self.random_path()),
+            CaseRef::Hard(place) => format!("{}/hard/{}", self.spec.group(), self.spec.hard[place].name),
+        }
+    }
+
+    /// The case of that id, if it is one of this formula's.
+    #[must_use]
+    pub fn case(&self, id: &str) -> Option<CaseRef> {
+        if let Some(name) = id.strip_prefix(self.spec.group()).and_then(|rest| rest.strip_prefix("/hard/")) {
+            return self.spec.hard.iter().position(|hard| hard.name == name).map(CaseRef::Hard);
+        }
+        let number = id.strip_prefix(&self.random_path())?.strip_prefix('/')?;
+        number.parse().ok().map(CaseRef::Random)
+    }
+
+    /// The case's inputs, appended to a row.
+    pub fn inputs(&self, case: CaseRef, seed: u64, row: &mut Vec<f32>) {
+        match case {
+            CaseRef::Random(k) => cases::inputs(&self.spec, seed, k, row),
+            CaseRef::Hard(place) => {
+                let start = row.len();
+                for input in self.spec.inputs {
+                    input.middle(row);
+                }
+                for (name, values) in self.spec.hard[place].inputs {
+                    let range = self.spec.place(name).unwrap_or_default();
+                    row[start..][range].copy_from_slice(values);
+                }
+            }
+        }
+    }
+}
+
+/// Random cases of a formula in a run of `cases`: all of them, or a sixteenth for each of the many blend states.
+#[must_use]
+pub fn random_cases(spec: &Spec, cases: u64) -> u64 {
+    if matches!(spec.kind, Kind::Blend(_)) { cases.div_ceil(16) } else { cases }
+}
+
+/// A part of a run: cases whose number leaves `index` when divided by `count`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// From 0.
+    pub index: u64,
+    /// How many shards make the whole.
+    pub count: NonZeroU64,
+}
+
+impl Shard {
+    /// The whole.
+    pub const WHOLE: Self = Self { index: 0, count: NonZeroU64::MIN };
+
+    const fn has(self, number: u64) -> bool {
+        number % self.count.get() == self.index
+    }
+}
+
+/// The cases of one formula that are selected.
+#[derive(Clone, Debug)]
+pub enum Random {
+    /// All of the first n.
+    First(u64),
+    /// Some.
+    Some(Vec<u64>),
+}
+
+/// What is selected of one formula.
+#[derive(Clone, Debug)]
+pub struct Selected {
+    /// The formula's place in the catalogue.
+    pub member: usize,
+    /// Its random cases.
+    pub random: Random,
+    /// Its hard cases.
+    pub hard: Vec<usize>,
+    shard: Shard,
+}
+
+impl Selected {
+    /// The cases, hard ones first.
+    pub fn cases(&self) -> impl Iterator<Item = CaseRef> + '_ {
+        let random: Box<dyn Iterator<Item = u64>> = match &self.random {
+            Random::First(n) => Box::new((self.shard.index..*n).step_by(usize::try_from(self.shard.count.get()).unwrap_or(usize::MAX))),
+            Random::Some(some) => Box::new(some.iter().copied()),
+        };
+        self.hard.iter().copied().map(CaseRef::Hard).chain(random.map(CaseRef::Random))
+    }
+
+    /// How many cases there are.
+    #[must_use]
+    pub fn len(&self) -> u64 {
+        let random = match &self.random {
+            Random::First(n) if *n > self.shard.index => (n - self.shard.index).div_ceil(self.shard.count.get()),
+            Random::First(_) => 0,
+            Random::Some(some) => some.len() as u64,
+        };
+        random + self.hard.len() as u64
+    }
+}
+
+/// The formulas in order.
+#[must_use]
+pub fn catalogue() -> Vec<Member> {
+    cases::all().into_iter().map(|formula| Member { spec: formula.spec(), formula }).collect()
+}
+
+/// The cases of a catalogue that a filter and a shard select, of `cases` random ones for each formula.
+///
+/// A state that is judged under another's name is selected by its own name too.
+#[must_use]
+pub fn select(catalogue: &[Member], filter: &Filter, cases: u64, shard: Shard) -> Vec<Selected> {
+    let aliased: Vec<String> = if filter.is_empty() {
+        vec![]
+    } else {
+        cases::blend::aliases().filter(|(alias, _)| filter.selects(alias)).map(|(_, canonical)| canonical).collect()
+    };
+    let mut selected = vec![];
+    for (place, member) in catalogue.iter().enumerate() {
+        let count = random_cases(&member.spec, cases);
+        let path = member.random_path();
+        let random = if filter.selects(&path) || aliased.contains(&member.spec.id) {
+            Random::First(count)
+        } else {
+            Random::Some((0..count).filter(|&k| shard.has(k) && filter.selects(&member.case_id(CaseRef::Random(k)))).collect())
+        };
+        let hard = (0..member.spec.hard.len())
+            .filter(|&k| shard.has(k as u64) && filter.selects(&member.case_id(CaseRef::Hard(k))))
+            .collect();
+        let chosen = Selected { member: place, random, hard, shard };
+        if chosen.len() > 0 {
+            selected.push(chosen);
+        }
+    }
+    selected
+}

@@ -1,0 +1,263 @@
+//! What is judged: an adapter, or the embedded implementation, and how each of its stages evaluates a group of formulas.
+
+use crate::cases::{Kind, Stage};
+use crate::devices::{Known, known};
+use crate::select::Member;
+use lightmeter_gpu::{
+    Adapter, ArithmeticPipeline, BlendTarget, BlendUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Shaders,
+};
+use lightmeter_scene::blend::State;
+use serde::Serialize;
+
+/// How a subject is named in reports.
+#[derive(Clone, Debug, Serialize)]
+pub struct Identity {
+    /// The short name.
+    pub name: String,
+    /// The device as the driver names it.
+    pub device: String,
+    /// `vulkan`, `gl` or `embedded`.
+    pub backend: &'static str,
+    /// The driver and its version.
+    pub driver: String,
+}
+
+/// An implementation under test.
+pub struct Subject {
+    /// How it is named.
+    pub identity: Identity,
+    /// What is known of it.
+    pub known: Known,
+    gpu: Option<Device>,
+}
+
+struct Device {
+    gpu: Gpu,
+    /// The blend unit with its pipelines, kept from group to group.
+    blend: Option<BlendUnit>,
+}
+
+/// The stages of a subject, compiled for one group of formulas.
+pub struct Compiled {
+    /// Each stage, or why it is skipped.
+    pub stages: Vec<(Stage, Result<Work, &'static str>)>,
+}
+
+/// How a stage evaluates.
+pub enum Work {
+    /// A shader over rows.
+    Arithmetic(ArithmeticPipeline),
+    /// The blend unit, which the subject holds.
+    Blend,
+    /// The rasteriser.
+    Raster(RasterPipeline),
+    /// The formulas in f32, on this processor.
+    Embedded,
+}
+
+/// Rows of inputs of one group, and whose they are.
+pub struct Rows<'a> {
+    /// The formulas of the group.
+    pub members: &'a [&'a Member],
+    /// For each case, its formula's place among the members.
+    pub of: &'a [usize],
+    /// The inputs, row after row.
+    pub inputs: &'a [f32],
+    /// The same with selectors before each row, for the shaders.
+    pub selected: &'a [f32],
+    /// Numbers of a row of outputs.
+    pub outputs: usize,
+}
+
+impl Rows<'_> {
+    fn stride(&self) -> usize {
+        self.inputs.len() / self.of.len()
+    }
+}
+
+/// Work that a device may still be doing.
+pub enum Job {
+    /// A pending batch.
+    Arithmetic(Pending),
+    /// A pending batch of the blend unit.
+    Blend(Pending),
+    /// Pending batches of the rasteriser, each with its number of cases.
+    Raster(Vec<(usize, Pending)>),
+    /// Done.
+    Done(Vec<u32>),
+}
+
+impl Subject {
+    /// A device on an adapter.
+    ///
+    /// # Errors
+    /// Where the driver gives none.
+    pub fn open(adapter: &Adapter) -> Result<Self, Error> {
+        let identity = Identity {
+            name: adapter.name.clone(),
+            device: adapter.device.clone(),
+            backend: adapter.backend,
+            driver: adapter.driver.clone(),
+        };
+        let gpu = Some(Device { gpu: adapter.open()?, blend: None });
+        Ok(Self { identity, known: known(adapter), gpu })
+    }
+
+    /// The formulas themselves in f32, which need no driver. They prove nothing about the reference, which they share.
+    #[must_use]
+    pub fn embedded() -> Self {
+        let identity = Identity {
+            name: "cpu".into(),
+            device: "the reference's formulas in f32".into(),
+            backend: "embedded",
+            driver: concat!("lightmeter ", env!("CARGO_PKG_VERSION")).into(),
+        };
+        Self { identity, known: Known { subpixel_bits: None, deviations: vec![] }, gpu: None }
+    }
+
+    /// Whether its blend unit works on binary16.
+    #[must_use]
+    pub fn blends_halves(&self) -> bool {
+        matches!(&self.gpu, Some(Device { blend: Some(unit), .. }) if unit.target() == BlendTarget::Rgba16Float)
+    }
+
+    /// Compiles what the group's formulas need.
+    ///
+    /// # Errors
+    /// Where a shader is invalid or the device refuses it.
+    pub fn compile(&mut self, shaders: &Shaders, kind: Kind, kernel: Option<&Kernel>) -> Result<Compiled, Error> {
+        let Some(device) = &mut self.gpu else {
+            let stage = if matches!(kind, Kind::Raster(_)) { Stage::Raster } else { Stage::Compute };
+            return Ok(Compiled { stages: vec![(stage, Ok(Work::Embedded))] });
+        };
+        let stages = kind.stages().iter().map(|&stage| Ok((stage, device.work(shaders, kind, kernel, stage)?)));
+        Ok(Compiled { stages: stages.collect::<Result<_, Error>>()? })
+    }
+
+    /// Starts the evaluation of rows by a stage.
+    ///
+    /// # Errors
+    /// Where the device refuses it.
+    ///
+    /// # Panics
+    /// Where the work was not compiled by this subject.
+    pub fn submit(&mut self, work: &Work, rows: &Rows<'_>) -> Result<Job, Error> {
+        if let Work::Embedded = work {
+            return Ok(Job::Done(embedded(rows)));
+        }
+        let device = self.gpu.as_mut().expect("only a device compiles work for a device");
+        match work {
+            Work::Arithmetic(pipeline) => Ok(Job::Arithmetic(pipeline.submit(&device.gpu, rows.selected))),
+            Work::Blend => {
+                let Some(unit) = &mut device.blend else { unreachable!("the blend unit is made before its work") };
+                let states: Vec<State> = rows
+                    .of
+                    .iter()
+                    .map(|&member| match rows.members[member].spec.kind {
+                        Kind::Blend(state) => state,
+                        _ => unreachable!("only blend states reach the blend unit"),
+                    })
+                    .collect();
+                Ok(Job::Blend(unit.submit(&device.gpu, &states, rows.inputs)?))
+            }
+            Work::Raster(pipeline) => {
+                let (mut jobs, mut rest) = (vec![], rows.inputs);
+                while !rest.is_empty() {
+                    let (count, pending) = pipeline.submit(&device.gpu, rest);
+                    rest = &rest[count * rows.stride()..];
+                    jobs.push((count, pending));
+                }
+                Ok(Job::Raster(jobs))
+            }
+            Work::Embedded => unreachable!("handled above"),
+        }
+    }
+
+    /// The outputs of rows, bit for bit, once they are there.
+    ///
+    /// # Errors
+    /// Where the device failed or was lost.
+    ///
+    /// # Panics
+    /// Where the job is not of this work.
+    pub fn finish(&self, work: &Work, job: Job, rows: &Rows<'_>) -> Result<Vec<u32>, Error> {
+        let gpu = || &self.gpu.as_ref().expect("only a device has pending work").gpu;
+        match (work, job) {
+            (_, Job::Done(words)) => Ok(words),
+            (Work::Arithmetic(pipeline), Job::Arithmetic(pending)) => {
+                Ok(pipeline.outputs(pending.wait(gpu())?, rows.of.len()))
+            }
+            (Work::Blend, Job::Blend(pending)) => {
+                let mut words = pending.wait(gpu())?;
+                words.truncate(rows.of.len() * rows.outputs);
+                Ok(words)
+            }
+            (Work::Raster(pipeline), Job::Raster(jobs)) => {
+                let (mut words, mut rest) = (vec![], rows.inputs);
+                for (count, pending) in jobs {
+                    words.extend(pipeline.outputs(&pending.wait(gpu())?, rest, count));
+                    rest = &rest[count * rows.stride()..];
+                }
+                Ok(words)
+            }
+            _ => unreachable!("a job is finished by the work that submitted it"),
+        }
+    }
+
+    /// A function of `probe.wgsl` at one argument, in the compute stage; `None` where the subject has no such stage.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn probe(&self, shaders: &Shaders, function: &str, x: f32) -> Result<Option<u32>, Error> {
+        let Some(Device { gpu, .. }) = &self.gpu else { return Ok(None) };
+        let kernel = Kernel::new(shaders, "probe.wgsl", function)?;
+        let Ok(pipeline) = ArithmeticPipeline::new(gpu, &kernel, lightmeter_gpu::Stage::Compute)? else {
+            return Ok(None);
+        };
+        Ok(pipeline.submit(gpu, &[x]).wait(gpu)?.first().copied())
+    }
+}
+
+impl Device {
+    fn work(
+        &mut self,
+        shaders: &Shaders,
+        kind: Kind,
+        kernel: Option<&Kernel>,
+        stage: Stage,
+    ) -> Result<Result<Work, &'static str>, Error> {
+        let programmable = match stage {
+            Stage::Compute => lightmeter_gpu::Stage::Compute,
+            Stage::Fragment => lightmeter_gpu::Stage::Fragment,
+            Stage::FixedFunction => {
+                if self.blend.is_none() {
+                    self.blend = Some(BlendUnit::new(&self.gpu, shaders)?);
+                }
+                return Ok(Ok(Work::Blend));
+            }
+            Stage::Raster => {
+                let Kind::Raster(raster) = kind else { return Ok(Err("not a formula of the rasteriser")) };
+                return Ok(RasterPipeline::new(&self.gpu, shaders, raster)?.map(Work::Raster));
+            }
+        };
+        let Some(kernel) = kernel else { return Ok(Err("no shader function evaluates this formula")) };
+        Ok(ArithmeticPipeline::new(&self.gpu, kernel, programmable)?.map(Work::Arithmetic))
+    }
+}
+
+fn embedded(rows: &Rows<'_>) -> Vec<u32> {
+    use rayon::prelude::*;
+    let mut words = vec![0; rows.of.len() * rows.outputs];
+    words
+        .par_chunks_mut(rows.outputs)
+        .zip(rows.inputs.par_chunks(rows.stride()))
+        .zip(rows.of)
+        .for_each(|((words, inputs), &member)| {
+            let mut out = vec![0.0; words.len()];
+            rows.members[member].formula.embedded(inputs, &mut out);
+            for (word, value) in words.iter_mut().zip(out) {
+                *word = value.to_bits();
+            }
+        });
+    words
+}

@@ -1,0 +1,118 @@
+//! One open device and what all evaluations on it share.
+
+use crate::error::Error;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// An open device.
+#[derive(Debug)]
+pub struct Gpu {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    pub(crate) is_gl: bool,
+    features: wgpu::Features,
+    downlevel: wgpu::DownlevelFlags,
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    pub(crate) fn open(name: &str, adapter: &wgpu::Adapter) -> Result<Self, Error> {
+        let features = adapter.features() & wgpu::Features::FLOAT32_BLENDABLE;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("lightmeter"),
+            required_features: features,
+            required_limits: adapter.limits(),
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| Error::Open { adapter: name.into(), message: error.to_string() })?;
+        let failure = Arc::new(Mutex::new(None));
+        let (on_error, on_lost) = (failure.clone(), failure.clone());
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&on_error, error.to_string())));
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                note(&on_lost, format!("device lost: {message}"));
+            }
+        });
+        Ok(Self {
+            device,
+            queue,
+            is_gl: adapter.get_info().backend == wgpu::Backend::Gl,
+            features,
+            downlevel: adapter.get_downlevel_capabilities().flags,
+            failure,
+        })
+    }
+
+    /// The first error that the device reported since the last time this was asked.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
+        failure.map_or(Ok(()), |message| Err(Error::Device(message)))
+    }
+
+    /// Waits until everything submitted is done.
+    pub(crate) fn wait(&self) -> Result<(), Error> {
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| Error::Device(error.to_string()))?;
+        self.check()
+    }
+
+    /// Whether a binary32 target can be blended on.
+    pub(crate) fn blends_f32(&self) -> bool {
+        self.features.contains(wgpu::Features::FLOAT32_BLENDABLE)
+    }
+
+    /// Why a stage that reads storage buffers cannot run here; `None` where it can.
+    pub(crate) fn lacks_storage(&self, vertex: bool) -> Option<&'static str> {
+        let (flag, reason) = if vertex {
+            (wgpu::DownlevelFlags::VERTEX_STORAGE, "the adapter has no storage buffers in the vertex stage")
+        } else {
+            (wgpu::DownlevelFlags::FRAGMENT_STORAGE, "the adapter has no storage buffers in the fragment stage")
+        };
+        (!self.downlevel.contains(flag)).then_some(reason)
+    }
+
+    pub(crate) fn lacks_compute(&self) -> Option<&'static str> {
+        (!self.downlevel.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)).then_some("the adapter has no compute stage")
+    }
+
+    /// A buffer of these bytes.
+    pub(crate) fn buffer(&self, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes.len().max(16) as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    }
+
+    /// A texture that can be drawn to and copied from.
+    pub(crate) fn target(&self, width: u32, height: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
+        let sampled_or_copied = if format.is_depth_stencil_format() || format != wgpu::TextureFormat::Rgba32Uint {
+            wgpu::TextureUsages::TEXTURE_BINDING
+        } else {
+            wgpu::TextureUsages::COPY_SRC
+        };
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | sampled_or_copied,
+            view_formats: &[],
+        })
+    }
+
+    pub(crate) fn module(&self, label: &str, source: String) -> wgpu::ShaderModule {
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(label),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        })
+    }
+}
+
+fn note(failure: &Mutex<Option<String>>, message: String) {
+    failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
+}

@@ -1,0 +1,53 @@
+//! What can go wrong on the GPU's side.
+
+use std::path::PathBuf;
+
+/// An error of the GPU's side: of a shader, of an adapter, or of the device.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A shader does not parse or does not validate.
+    #[error("invalid shader {file}:\n{message}")]
+    Shader {
+        /// The file's name.
+        file: String,
+        /// naga's message, with the line.
+        message: String,
+    },
+    /// A shader lacks a function that a formula is evaluated by.
+    #[error("shader {file} has no function `{function}`, which the formula of that name is evaluated by")]
+    MissingFunction {
+        /// The file's name.
+        file: String,
+        /// The function's name.
+        function: String,
+    },
+    /// A function's signature has a type that cannot be read from a row of numbers.
+    #[error("function `{function}` in {file} has a parameter or result of a type other than f32, u32, vectors, matrices and structs of them: {found}")]
+    Signature {
+        /// The file's name.
+        file: String,
+        /// The function's name.
+        function: String,
+        /// The type.
+        found: String,
+    },
+    /// A folder of shaders cannot be read.
+    #[error("cannot read shaders from {}: {message}", path.display())]
+    Unreadable {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's message, or what was expected.
+        message: String,
+    },
+    /// An adapter gave no device.
+    #[error("adapter {adapter} gave no device: {message}")]
+    Open {
+        /// The adapter's name.
+        adapter: String,
+        /// wgpu's message.
+        message: String,
+    },
+    /// The device was lost or reported an error.
+    #[error("the device failed: {0}")]
+    Device(String),
+}

@@ -1,0 +1,25 @@
+//! The formulas in WGSL and their evaluation on any wgpu adapter.
+//!
+//! Four ways lead through a renderer, and each is judged by itself: the *compute* stage, the *fragment* stage, the
+//! *rasteriser* and the *fixed-function* blend unit. This crate never sees a formula of the reference: what a case
+//! should give is not known here.
+
+mod adapters;
+mod arithmetic;
+mod blend_unit;
+mod device;
+mod error;
+mod kernel;
+mod raster;
+mod readback;
+mod shaders;
+
+pub use adapters::{Adapter, adapters};
+pub use arithmetic::{ArithmeticPipeline, Stage};
+pub use blend_unit::{BlendUnit, BlendTarget, Route, route};
+pub use device::Gpu;
+pub use error::Error;
+pub use kernel::Kernel;
+pub use raster::{Raster, RasterPipeline, TARGET_SIZE};
+pub use readback::{Pending, SENTINEL};
+pub use shaders::{FILES, Shaders};

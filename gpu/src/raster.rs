@@ -1,0 +1,394 @@
+//! Cases that only a rasteriser can answer: each draws its primitive and looks at one pixel of a target.
+
+use crate::arithmetic::{bind, cleared, read_target};
+use crate::device::Gpu;
+use crate::error::Error;
+use crate::readback::Pending;
+use crate::shaders::Shaders;
+use lightmeter_scene::raster::{Provoking, Topology};
+
+/// Width and height of the target in pixels; the viewport is all of it.
+pub const TARGET_SIZE: u32 = 256;
+
+const BITS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+const COUNTS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const FILE: &str = "raster.wgsl";
+
+/// What is drawn and looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Raster {
+    /// A triangle's attribute, perspective-correct and linear.
+    TriangleAttributes,
+    /// A triangle's fragment position: x, y, z, 1/w.
+    TrianglePosition,
+    /// A line's attribute, perspective-correct and linear.
+    LineAttributes,
+    /// How many of two triangles that share an edge cover the pixel.
+    Quad,
+    /// The depth that a fragment writes for itself, as it is stored.
+    OwnDepth,
+    /// Whether the triangle is seen from its front; 0 too where the pixel is not covered.
+    Facing,
+    /// Whether the triangle covers the pixel once it is clipped.
+    Clipped,
+    /// Whether the triangle covers the pixel with this face culled, counter-clockwise triangles or the others being front.
+    Culled {
+        /// Back faces, or front faces.
+        back: bool,
+        /// Whether counter-clockwise triangles are front faces.
+        front_is_ccw: bool,
+    },
+    /// A flat attribute.
+    Flat {
+        /// The topology that is drawn.
+        topology: Topology,
+        /// The vertex that it is taken from.
+        provoking: Provoking,
+    },
+}
+
+impl Raster {
+    /// Numbers in a row, the pixel's x and y last.
+    #[must_use]
+    pub const fn inputs(self) -> usize {
+        match self {
+            Self::TriangleAttributes
+            | Self::TrianglePosition
+            | Self::Facing
+            | Self::Clipped
+            | Self::Culled { .. } => 17,
+            Self::LineAttributes => 12,
+            Self::Quad => 10,
+            Self::OwnDepth => 3,
+            Self::Flat { .. } => 9,
+        }
+    }
+
+    /// Numbers that come out.
+    #[must_use]
+    pub const fn outputs(self) -> usize {
+        match self {
+            Self::TrianglePosition => 4,
+            Self::TriangleAttributes | Self::LineAttributes => 2,
+            _ => 1,
+        }
+    }
+
+    const fn entries(self) -> (&'static str, &'static str) {
+        match self {
+            Self::TriangleAttributes => ("raster_triangle_vertex", "raster_attributes"),
+            Self::TrianglePosition => ("raster_triangle_vertex", "raster_position"),
+            Self::LineAttributes => ("raster_line_vertex", "raster_attributes"),
+            Self::Quad => ("raster_quad_vertex", "raster_count"),
+            Self::OwnDepth => ("raster_depth_vertex", "raster_own_depth"),
+            Self::Facing => ("raster_triangle_vertex", "raster_facing"),
+            Self::Clipped | Self::Culled { .. } => ("raster_triangle_vertex", "raster_covered"),
+            Self::Flat { provoking: Provoking::First, .. } => ("raster_flat_first_vertex", "raster_flat_fragment"),
+            Self::Flat { provoking: Provoking::Last, .. } => ("raster_flat_last_vertex", "raster_flat_fragment"),
+        }
+    }
+
+    /// The topology given to the hardware, and the vertices of a case.
+    fn drawn(self, native_last: bool) -> (wgpu::PrimitiveTopology, u32) {
+        use wgpu::PrimitiveTopology as P;
+        match self {
+            Self::LineAttributes => (P::LineList, 2),
+            Self::Quad => (P::TriangleList, 6),
+            Self::Flat { topology, provoking } => {
+                let as_given = provoking == Provoking::First || native_last;
+                match (topology, as_given) {
+                    (Topology::Points, _) => (P::PointList, 6),
+                    (Topology::LineList, _) => (P::LineList, 6),
+                    (Topology::TriangleList, _) => (P::TriangleList, 6),
+                    (Topology::LineStrip, true) => (P::LineStrip, 6),
+                    (Topology::LineStrip, false) => (P::LineList, 10),
+                    (Topology::TriangleStrip, true) => (P::TriangleStrip, 6),
+                    (Topology::TriangleStrip, false) => (P::TriangleList, 12),
+                }
+            }
+            _ => (P::TriangleList, 3),
+        }
+    }
+
+    /// Whether an uncovered pixel is an answer, 0, rather than a failure to write.
+    const fn counts_uncovered(self) -> bool {
+        matches!(self, Self::Quad | Self::Facing | Self::Clipped | Self::Culled { .. })
+    }
+}
+
+/// A raster case compiled for a device.
+#[derive(Debug)]
+pub struct RasterPipeline {
+    kind: Raster,
+    pipeline: wgpu::RenderPipeline,
+    /// Turns what was drawn into bits, where it was not drawn as bits.
+    reader: Option<wgpu::RenderPipeline>,
+    vertices: u32,
+    selector: u32,
+}
+
+impl RasterPipeline {
+    /// Compiles it. `Ok(Err(reason))` where the adapter lacks what it takes.
+    ///
+    /// # Errors
+    /// Where a shader is invalid or the device refuses the pipeline.
+    pub fn new(gpu: &Gpu, shaders: &Shaders, kind: Raster) -> Result<Result<Self, &'static str>, Error> {
+        if let Some(reason) = gpu.lacks_storage(true) {
+            return Ok(Err(reason));
+        }
+        let (mut entries, mut source) = (kind.entries(), shaders.source(FILE));
+        if gpu.is_gl {
+            // GLSL cannot choose the provoking vertex; OpenGL's own is the last.
+            match kind {
+                Raster::Flat { provoking: Provoking::First, .. } => {
+                    return Ok(Err("OpenGL takes flat attributes from the last vertex and wgpu offers no choice there"));
+                }
+                Raster::Flat { provoking: Provoking::Last, .. } => entries.0 = "raster_flat_first_vertex",
+                _ => {}
+            }
+            source = source.replace("@interpolate(flat, first)", "@interpolate(flat, either)");
+        }
+        let module = gpu.module(FILE, source);
+        let (topology, vertices) = kind.drawn(gpu.is_gl);
+        let pipeline = pipeline(gpu, &module, kind, entries, topology);
+        let reader = match kind {
+            Raster::OwnDepth => Some(screen_pipeline(gpu, &module, "raster_screen_vertex", "raster_read_depth")),
+            Raster::Quad => {
+                let unit = gpu.module("blend_unit.wgsl", shaders.source("blend_unit.wgsl"));
+                Some(screen_pipeline(gpu, &unit, "unit_vertex", "unit_result"))
+            }
+            _ => None,
+        };
+        gpu.check()?;
+        let selector = if let Raster::Flat { topology, .. } = kind { topology.code() } else { 0 };
+        Ok(Ok(Self { kind, pipeline, reader, vertices, selector }))
+    }
+
+    /// Draws every case that can share a target: as many of the rows, from the first on, as look at pixels of their own.
+    /// Returns how many those are. The words of the pending result go to [`RasterPipeline::outputs`].
+    #[must_use]
+    pub fn submit(&self, gpu: &Gpu, rows: &[f32]) -> (usize, Pending) {
+        let inputs = self.kind.inputs();
+        let count = distinct_pixels(rows, inputs);
+        let rows = &rows[..count * inputs];
+        let buffer = gpu.buffer(bytemuck::cast_slice(rows), wgpu::BufferUsages::STORAGE);
+        let stride = [u32::try_from(inputs).unwrap_or(u32::MAX), self.selector, 0, 0];
+        let stride = gpu.buffer(bytemuck::cast_slice(&stride), wgpu::BufferUsages::UNIFORM);
+        let drawn = gpu.target(TARGET_SIZE, TARGET_SIZE, self.format());
+        let view = drawn.create_view(&Default::default());
+        let is_depth = self.kind == Raster::OwnDepth;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &if is_depth { vec![] } else { vec![Some(self.attachment(&view))] },
+                depth_stencil_attachment: is_depth.then(|| clear_depth(&view)),
+                ..Default::default()
+            });
+            pass.set_pipeline(&self.pipeline);
+            let layout = self.pipeline.get_bind_group_layout(0);
+            pass.set_bind_group(0, &bind(gpu, &layout, &[&buffer, &stride]), &[]);
+            for (case, row) in (0..).zip(rows.chunks_exact(inputs)) {
+                let [x, y] = pixel(row);
+                pass.set_scissor_rect(x, y, 1, 1);
+                pass.draw(0..self.vertices, case..case + 1);
+            }
+        }
+        let pending = match &self.reader {
+            None => read_target(gpu, encoder, &drawn),
+            Some(reader) => {
+                let bits = gpu.target(TARGET_SIZE, TARGET_SIZE, BITS);
+                let (layout, binding) = (reader.get_bind_group_layout(0), if is_depth { 2 } else { 1 });
+                draw_screen(&mut encoder, reader, &texture_group(gpu, &layout, binding, &view), &bits);
+                read_target(gpu, encoder, &bits)
+            }
+        };
+        (count, pending)
+    }
+
+    /// The outputs of each of the rows that were drawn, in order.
+    #[must_use]
+    pub fn outputs(&self, words: &[u32], rows: &[f32], count: usize) -> Vec<u32> {
+        let rows = rows.chunks_exact(self.kind.inputs()).take(count);
+        rows.flat_map(|row| {
+            let [x, y] = pixel(row);
+            let first = 4 * (y * TARGET_SIZE + x) as usize;
+            words[first..first + self.kind.outputs()].iter().copied()
+        })
+        .collect()
+    }
+
+    fn format(&self) -> wgpu::TextureFormat {
+        match self.kind {
+            Raster::Quad => COUNTS,
+            Raster::OwnDepth => DEPTH,
+            _ => BITS,
+        }
+    }
+
+    fn attachment<'a>(&self, view: &'a wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'a> {
+        let mut attachment = cleared(view);
+        if self.kind.counts_uncovered() {
+            attachment.ops.load = wgpu::LoadOp::Clear(wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 0.0 });
+        }
+        attachment
+    }
+}
+
+/// The pixel that a row ends with.
+fn pixel(row: &[f32]) -> [u32; 2] {
+    let whole = |x: f32| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the target's pixels")]
+        let x = x.clamp(0.0, 255.0) as u32;
+        x
+    };
+    [whole(row[row.len() - 2]), whole(row[row.len() - 1])]
+}
+
+/// How many rows, from the first on, look at pixels that none before them looks at.
+fn distinct_pixels(rows: &[f32], inputs: usize) -> usize {
+    let mut seen = vec![false; (TARGET_SIZE * TARGET_SIZE) as usize];
+    let taken = rows.chunks_exact(inputs).take_while(|row| {
+        let [x, y] = pixel(row);
+        !std::mem::replace(&mut seen[(y * TARGET_SIZE + x) as usize], true)
+    });
+    taken.count()
+}
+
+/// Depths that no case writes exactly tell an unwritten pixel.
+fn clear_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.314_159_3), store: wgpu::StoreOp::Store }),
+        stencil_ops: None,
+    }
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    kind: Raster,
+    (vertex, fragment): (&str, &str),
+    topology: wgpu::PrimitiveTopology,
+) -> wgpu::RenderPipeline {
+    let is_depth = kind == Raster::OwnDepth;
+    let add = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let target = match kind {
+        Raster::OwnDepth => None,
+        Raster::Quad => Some(wgpu::ColorTargetState {
+            format: COUNTS,
+            blend: Some(wgpu::BlendState { color: add, alpha: add }),
+            write_mask: wgpu::ColorWrites::ALL,
+        }),
+        _ => Some(wgpu::ColorTargetState::from(BITS)),
+    };
+    let mut primitive = wgpu::PrimitiveState { topology, ..Default::default() };
+    if let Raster::Culled { back, front_is_ccw } = kind {
+        primitive.cull_mode = Some(if back { wgpu::Face::Back } else { wgpu::Face::Front });
+        primitive.front_face = if front_is_ccw { wgpu::FrontFace::Ccw } else { wgpu::FrontFace::Cw };
+    }
+    let entries: Vec<wgpu::BindGroupLayoutEntry> = [
+        (0, wgpu::BufferBindingType::Storage { read_only: true }),
+        (1, wgpu::BufferBindingType::Uniform),
+    ]
+    .into_iter()
+    .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    })
+    .collect();
+    let group = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        bind_group_layouts: &[Some(&group)],
+        ..Default::default()
+    });
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(fragment),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(vertex),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive,
+        depth_stencil: is_depth.then(|| wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(fragment),
+            compilation_options: Default::default(),
+            targets: if is_depth { &[] } else { std::slice::from_ref(&target) },
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// A pipeline that draws over a whole target of bits.
+pub(crate) fn screen_pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, vertex: &str, fragment: &str) -> wgpu::RenderPipeline {
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(fragment),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(vertex),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(fragment),
+            compilation_options: Default::default(),
+            targets: &[Some(BITS.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// Draws over the whole of an integer target.
+pub(crate) fn draw_screen(
+    encoder: &mut wgpu::CommandEncoder,
+    pipeline: &wgpu::RenderPipeline,
+    group: &wgpu::BindGroup,
+    target: &wgpu::Texture,
+) {
+    let view = target.create_view(&Default::default());
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(cleared(&view))],
+        ..Default::default()
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.draw(0..3, 0..1);
+}
+
+/// A bind group of one texture.
+pub(crate) fn texture_group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    binding: u32,
+    view: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout,
+        entries: &[wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }],
+    })
+}

@@ -1,0 +1,38 @@
+// Attenuation with distance and a spotlight's cone.
+// d distance to the light, kc kl kq the coefficients, l the unit vector to the light, axis the spotlight's direction.
+// requires: vector
+
+fn attenuation_polynomial(kc: f32, kl: f32, kq: f32, d: f32) -> f32 {
+    return 1.0 / (kc + d * (kl + d * kq));
+}
+
+fn attenuation_constant(d: f32) -> f32 {
+    return attenuation_polynomial(1.0, 0.0, 0.0, d);
+}
+
+fn attenuation_linear(d: f32) -> f32 {
+    return attenuation_polynomial(0.0, 1.0, 0.0, d);
+}
+
+fn attenuation_square(d: f32) -> f32 {
+    return attenuation_polynomial(0.0, 0.0, 1.0, d);
+}
+
+fn attenuation_point(kc: f32, kl: f32, kq: f32, light: vec3f, p: vec3f) -> f32 {
+    return attenuation_polynomial(kc, kl, kq, distance(light, p));
+}
+
+fn attenuation_spot_exponent(l: vec3f, axis: vec3f, cutoff_cosine: f32, exponent: f32) -> f32 {
+    let cosine = dot(-l, axis);
+    if cosine < cutoff_cosine {
+        return 0.0;
+    }
+    if exponent <= 0.0 {
+        return 1.0;
+    }
+    return vector_lobe(cosine, exponent);
+}
+
+fn attenuation_spot_cutoff(l: vec3f, axis: vec3f, cutoff_cosine: f32) -> f32 {
+    return attenuation_spot_exponent(l, axis, cutoff_cosine, 0.0);
+}

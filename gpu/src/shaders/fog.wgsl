@@ -1,0 +1,70 @@
+// Fog: a factor f from the distance, 1 where the air is clear, then a mix from the fog's colour to the surface's.
+
+struct Fogged {
+    f: f32,
+    color: vec3f,
+}
+
+fn fog_mix(f: f32, fog: vec3f, shaded: vec3f) -> Fogged {
+    return Fogged(f, mix(fog, shaded, f));
+}
+
+fn fog_planar_distance(p: vec3f) -> f32 {
+    return abs(p.z);
+}
+
+fn fog_radial_distance(p: vec3f) -> f32 {
+    return length(p);
+}
+
+fn fog_linear_factor(distance: f32, dmin: f32, dmax: f32) -> f32 {
+    if dmin == dmax {
+        return select(1.0, 0.0, distance >= dmax);
+    }
+    return clamp((dmax - distance) / (dmax - dmin), 0.0, 1.0);
+}
+
+fn fog_exp_factor(distance: f32, density: f32) -> f32 {
+    return clamp(exp(-(density * distance)), 0.0, 1.0);
+}
+
+fn fog_exp2_document_factor(distance: f32, density: f32) -> f32 {
+    return clamp(exp(-(density * distance * distance)), 0.0, 1.0);
+}
+
+fn fog_exp2_opengl_factor(distance: f32, density: f32) -> f32 {
+    let t = density * distance;
+    return clamp(exp(-(t * t)), 0.0, 1.0);
+}
+
+fn fog_linear(p: vec3f, dmin: f32, dmax: f32, fog: vec3f, shaded: vec3f) -> Fogged {
+    return fog_mix(fog_linear_factor(fog_planar_distance(p), dmin, dmax), fog, shaded);
+}
+
+fn fog_linear_radial(p: vec3f, dmin: f32, dmax: f32, fog: vec3f, shaded: vec3f) -> Fogged {
+    return fog_mix(fog_linear_factor(fog_radial_distance(p), dmin, dmax), fog, shaded);
+}
+
+fn fog_exp(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
+    return fog_mix(fog_exp_factor(fog_planar_distance(p), density), fog, shaded);
+}
+
+fn fog_exp_radial(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
+    return fog_mix(fog_exp_factor(fog_radial_distance(p), density), fog, shaded);
+}
+
+fn fog_exp2_document(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
+    return fog_mix(fog_exp2_document_factor(fog_planar_distance(p), density), fog, shaded);
+}
+
+fn fog_exp2_document_radial(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
+    return fog_mix(fog_exp2_document_factor(fog_radial_distance(p), density), fog, shaded);
+}
+
+fn fog_exp2_opengl(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
+    return fog_mix(fog_exp2_opengl_factor(fog_planar_distance(p), density), fog, shaded);
+}
+
+fn fog_exp2_opengl_radial(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
+    return fog_mix(fog_exp2_opengl_factor(fog_radial_distance(p), density), fog, shaded);
+}

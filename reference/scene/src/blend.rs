@@ -1,0 +1,216 @@
+//! Blend factors, equations and states, as OpenGL, Vulkan and WebGPU name them.
+//!
+//! A state here has one pair of factors and one equation for colour and alpha alike, which gives 15 × 15 × 5 states.
+
+use std::fmt;
+
+/// What multiplies the source (`S`) or the destination (`D`) colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Factor {
+    /// 0
+    Zero,
+    /// 1
+    One,
+    /// Cs; As
+    SrcColor,
+    /// 1 − Cs; 1 − As
+    OneMinusSrcColor,
+    /// Cd; Ad
+    DstColor,
+    /// 1 − Cd; 1 − Ad
+    OneMinusDstColor,
+    /// As
+    SrcAlpha,
+    /// 1 − As
+    OneMinusSrcAlpha,
+    /// Ad
+    DstAlpha,
+    /// 1 − Ad
+    OneMinusDstAlpha,
+    /// Cc; Ac
+    ConstantColor,
+    /// 1 − Cc; 1 − Ac
+    OneMinusConstantColor,
+    /// Ac
+    ConstantAlpha,
+    /// 1 − Ac
+    OneMinusConstantAlpha,
+    /// min(As, 1 − Ad); 1
+    SrcAlphaSaturate,
+}
+
+impl Factor {
+    /// All 15, in the order of their codes.
+    pub const ALL: [Self; 15] = [
+        Self::Zero,
+        Self::One,
+        Self::SrcColor,
+        Self::OneMinusSrcColor,
+        Self::DstColor,
+        Self::OneMinusDstColor,
+        Self::SrcAlpha,
+        Self::OneMinusSrcAlpha,
+        Self::DstAlpha,
+        Self::OneMinusDstAlpha,
+        Self::ConstantColor,
+        Self::OneMinusConstantColor,
+        Self::ConstantAlpha,
+        Self::OneMinusConstantAlpha,
+        Self::SrcAlphaSaturate,
+    ];
+
+    /// The name used in case ids, JSON and reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Zero => "zero",
+            Self::One => "one",
+            Self::SrcColor => "src-color",
+            Self::OneMinusSrcColor => "one-minus-src-color",
+            Self::DstColor => "dst-color",
+            Self::OneMinusDstColor => "one-minus-dst-color",
+            Self::SrcAlpha => "src-alpha",
+            Self::OneMinusSrcAlpha => "one-minus-src-alpha",
+            Self::DstAlpha => "dst-alpha",
+            Self::OneMinusDstAlpha => "one-minus-dst-alpha",
+            Self::ConstantColor => "constant-color",
+            Self::OneMinusConstantColor => "one-minus-constant-color",
+            Self::ConstantAlpha => "constant-alpha",
+            Self::OneMinusConstantAlpha => "one-minus-constant-alpha",
+            Self::SrcAlphaSaturate => "src-alpha-saturate",
+        }
+    }
+
+    /// Its place in [`Factor::ALL`], which is the selector that the shaders take.
+    #[must_use]
+    pub const fn code(self) -> u32 {
+        self as u32
+    }
+
+    /// Whether it reads the blend constant's colour in its RGB part.
+    #[must_use]
+    pub const fn reads_constant_color(self) -> bool {
+        matches!(self, Self::ConstantColor | Self::OneMinusConstantColor)
+    }
+
+    /// Whether it reads the blend constant's alpha in its RGB part.
+    #[must_use]
+    pub const fn reads_constant_alpha(self) -> bool {
+        matches!(self, Self::ConstantAlpha | Self::OneMinusConstantAlpha)
+    }
+}
+
+/// How the two products are combined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Equation {
+    /// Cs·S + Cd·D
+    Add,
+    /// Cs·S − Cd·D
+    Subtract,
+    /// Cd·D − Cs·S
+    ReverseSubtract,
+    /// min(Cs, Cd), factors ignored
+    Min,
+    /// max(Cs, Cd), factors ignored
+    Max,
+}
+
+impl Equation {
+    /// All 5, in the order of their codes.
+    pub const ALL: [Self; 5] = [Self::Add, Self::Subtract, Self::ReverseSubtract, Self::Min, Self::Max];
+
+    /// The name used in case ids, JSON and reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Add => "add",
+            Self::Subtract => "subtract",
+            Self::ReverseSubtract => "reverse-subtract",
+            Self::Min => "min",
+            Self::Max => "max",
+        }
+    }
+
+    /// Its place in [`Equation::ALL`], which is the selector that the shaders take.
+    #[must_use]
+    pub const fn code(self) -> u32 {
+        self as u32
+    }
+
+    /// MIN and MAX do not read the factors.
+    #[must_use]
+    pub const fn ignores_factors(self) -> bool {
+        matches!(self, Self::Min | Self::Max)
+    }
+}
+
+/// One blend state: a factor a side and an equation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct State {
+    /// The equation.
+    pub equation: Equation,
+    /// The source's factor.
+    pub src: Factor,
+    /// The destination's factor.
+    pub dst: Factor,
+}
+
+impl State {
+    /// Every one of the 15 × 15 × 5 states.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Equation::ALL.into_iter().flat_map(|equation| {
+            Factor::ALL
+                .into_iter()
+                .flat_map(move |src| Factor::ALL.into_iter().map(move |dst| Self { equation, src, dst }))
+        })
+    }
+
+    /// The state that computes the same under the name that is judged: MIN and MAX stand with factors ONE, ONE.
+    #[must_use]
+    pub const fn canonical(self) -> Self {
+        if self.equation.ignores_factors() {
+            Self { equation: self.equation, src: Factor::One, dst: Factor::One }
+        } else {
+            self
+        }
+    }
+
+    /// Whether the blend constant matters.
+    #[must_use]
+    pub const fn reads_constant(self) -> bool {
+        !self.equation.ignores_factors()
+            && (self.src.reads_constant_color()
+                || self.src.reads_constant_alpha()
+                || self.dst.reads_constant_color()
+                || self.dst.reads_constant_alpha())
+    }
+}
+
+impl fmt::Display for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}/{}", self.equation.name(), self.src.name(), self.dst.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn there_are_1125_states_of_which_677_differ() {
+        assert_eq!(State::all().count(), 1125);
+        let distinct: BTreeSet<_> = State::all().map(State::canonical).collect();
+        assert_eq!(distinct.len(), 15 * 15 * 3 + 2);
+    }
+
+    #[test]
+    fn codes_are_places_in_the_tables() {
+        for (place, factor) in Factor::ALL.into_iter().enumerate() {
+            assert_eq!(usize::try_from(factor.code()).ok(), Some(place));
+        }
+        for (place, equation) in Equation::ALL.into_iter().enumerate() {
+            assert_eq!(usize::try_from(equation.code()).ok(), Some(place));
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! How a light weakens with distance, and where a spotlight's cone ends (000 §6.4, 004).
+//!
+//! Symbols: `d` distance surface → light in eye-space units; `kc kl kq` the coefficients of attenuation in 1, 1/unit and
+//! 1/unit²; `l` the unit vector surface → light; `axis` the unit direction in which the spotlight points.
+
+use crate::algebra::Vec3;
+use crate::real::Real;
+
+/// `atten = 1 / (kc + kl·d + kq·d²)`.
+///
+/// The product `kl·d` is 0 for a light at infinity only if `kl` is: a directional light is not attenuated, which is
+/// the caller's to say. Where all three coefficients are 0 there is no value. Source: 004.
+pub fn polynomial<R: Real>(kc: R, kl: R, kq: R, d: R) -> R {
+    R::literal(1.0) / R::quadratic([kc, kl, kq], d).named("kc + kl·d + kq·d²")
+}
+
+/// The falloff of a distant light: (kc, kl, kq) = (1, 0, 0), so `atten = 1`. Source: 004.
+pub fn constant<R: Real>(d: R) -> R {
+    falloff(1.0, 0.0, 0.0, d)
+}
+
+/// The falloff of a tube light: (0, 1, 0), so `atten = 1/d`. No value at d = 0. Source: 004.
+pub fn linear<R: Real>(d: R) -> R {
+    falloff(0.0, 1.0, 0.0, d)
+}
+
+/// The falloff of a point light: (0, 0, 1), so `atten = 1/d²`. No value at d = 0. Source: 004.
+pub fn square<R: Real>(d: R) -> R {
+    falloff(0.0, 0.0, 1.0, d)
+}
+
+fn falloff<R: Real>(kc: f64, kl: f64, kq: f64, d: R) -> R {
+    polynomial(R::literal(kc), R::literal(kl), R::literal(kq), d)
+}
+
+/// `atten` of a point light at `light` on the surface point `p`, with `d = |light − p|`. Source: 004.
+pub fn point<R: Real>(kc: R, kl: R, kq: R, light: Vec3<R>, p: Vec3<R>) -> R {
+    polynomial(kc, kl, kq, (light - p).length().named("d"))
+}
+
+/// 1 where the surface lies inside the cone, `−l·axis ≥ cos(cutoff)`, and 0 outside. Source: 000 §6.4.
+pub fn spot_cutoff<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R) -> R {
+    spot_exponent(l, axis, cutoff_cosine, R::literal(0.0))
+}
+
+/// `max(−l·axis, 0)^e` inside the cone and 0 outside, as OpenGL's fixed function has it.
+///
+/// With e = 0 the cone is evenly lit. Source: OpenGL 2.1 §2.14.1; the cutoff is 000's.
+pub fn spot_exponent<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R, exponent: R) -> R {
+    let (zero, one) = (R::literal(0.0), R::literal(1.0));
+    let cosine = (-l).dot(axis).named("−l·axis");
+    R::if_ge(
+        cosine,
+        cutoff_cosine,
+        || R::if_ge(zero, exponent, || one, || cosine.lobe(exponent)),
+        || zero,
+    )
+}

@@ -1,0 +1,183 @@
+//! The arithmetic that formulas are written over, and its two plain instances, `f64` and `f32`.
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// An arithmetic.
+///
+/// The plain instances compute; others enclose, differentiate or record. Operations that a shading language may carry
+/// out in several legal ways (the order of a chain, `mix`, `normalize`, Horner's scheme) are methods with a default, so
+/// that an enclosing arithmetic can return the union of them.
+pub trait Real:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// An input of a formula.
+    fn input(x: f32) -> Self;
+
+    /// A constant of a formula, which a shader has as the nearest f32.
+    fn literal(x: f64) -> Self;
+
+    /// max(self, other); exact.
+    fn max(self, other: Self) -> Self;
+
+    /// min(self, other); exact.
+    fn min(self, other: Self) -> Self;
+
+    /// |self|; exact.
+    fn abs(self) -> Self;
+
+    /// The nearest whole number; at a tie the even one.
+    fn round(self) -> Self;
+
+    /// √self, for self ≥ 0.
+    fn sqrt(self) -> Self;
+
+    /// 1/√self, for self > 0.
+    fn inverse_sqrt(self) -> Self;
+
+    /// e^self.
+    fn exp(self) -> Self;
+
+    /// 2^self.
+    fn exp2(self) -> Self;
+
+    /// log₂ self, for self > 0.
+    fn log2(self) -> Self;
+
+    /// self^exponent, for self > 0.
+    fn pow(self, exponent: Self) -> Self;
+
+    /// `then` where a ≥ b, `otherwise` elsewhere; the hull of both where that is undecided.
+    fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T;
+
+    /// x₀ + x₁ + … in any order.
+    #[must_use]
+    fn sum<const N: usize>(terms: [Self; N]) -> Self {
+        terms.into_iter().reduce(Add::add).unwrap_or_else(|| Self::literal(0.0))
+    }
+
+    /// x₀ · x₁ · … in any order.
+    #[must_use]
+    fn product<const N: usize>(factors: [Self; N]) -> Self {
+        factors.into_iter().reduce(Mul::mul).unwrap_or_else(|| Self::literal(1.0))
+    }
+
+    /// min(max(self, low), high), for low ≤ high; exact.
+    #[must_use]
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
+    }
+
+    /// a(1 − t) + b·t. The other legal form is a + t(b − a).
+    #[must_use]
+    fn mix(a: Self, b: Self, t: Self) -> Self {
+        a * (Self::literal(1.0) - t) + b * t
+    }
+
+    /// v / |v|. The other legal form is v · 1/√(v·v). The vector must not be zero.
+    #[must_use]
+    fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
+        let length = Self::sum(v.map(|x| x * x)).sqrt();
+        v.map(|x| x / length)
+    }
+
+    /// c₀ + c₁x + c₂x². The other legal form is c₀ + x(c₁ + x·c₂).
+    #[must_use]
+    fn quadratic([c0, c1, c2]: [Self; 3], x: Self) -> Self {
+        Self::sum([c0, c1 * x, Self::product([c2, x, x])])
+    }
+
+    /// max(self, 0)^exponent, the power of a cosine, for exponent ≥ 0.
+    ///
+    /// At self ≤ 0 it is 0 for exponent > 0. With exponent 0 it is 1 for self > 0; at self ≤ 0 both 0 and 1 are legal, and
+    /// the plain instances give 0.
+    #[must_use]
+    fn lobe(self, exponent: Self) -> Self {
+        let zero = Self::literal(0.0);
+        Self::if_ge(zero, self, || zero, || self.pow(exponent))
+    }
+
+    /// Names an intermediate value for an arithmetic that records them; the value is unchanged.
+    #[must_use]
+    fn named(self, _name: &'static str) -> Self {
+        self
+    }
+}
+
+/// A fixed number of `R`s, such as a scalar, a vector or a colour.
+pub trait Components<R>: Sized {
+    /// Combines two of a kind component by component.
+    #[must_use]
+    fn zip(self, other: Self, f: impl FnMut(R, R) -> R) -> Self;
+}
+
+impl<R: Real> Components<R> for R {
+    fn zip(self, other: Self, mut f: impl FnMut(R, R) -> R) -> Self {
+        f(self, other)
+    }
+}
+
+macro_rules! plain_real {
+    ($float:ident, from $literal:expr, $exp:ident, $exp2:ident, $log2:ident, $pow:ident) => {
+        impl Real for $float {
+            fn input(x: f32) -> Self {
+                Self::from(x)
+            }
+            fn literal(x: f64) -> Self {
+                $literal(x)
+            }
+            fn max(self, other: Self) -> Self {
+                $float::max(self, other)
+            }
+            fn min(self, other: Self) -> Self {
+                $float::min(self, other)
+            }
+            fn abs(self) -> Self {
+                $float::abs(self)
+            }
+            fn round(self) -> Self {
+                self.round_ties_even()
+            }
+            fn sqrt(self) -> Self {
+                $float::sqrt(self)
+            }
+            fn inverse_sqrt(self) -> Self {
+                1.0 / $float::sqrt(self)
+            }
+            fn exp(self) -> Self {
+                core_math::$exp(self)
+            }
+            fn exp2(self) -> Self {
+                core_math::$exp2(self)
+            }
+            fn log2(self) -> Self {
+                core_math::$log2(self)
+            }
+            fn pow(self, exponent: Self) -> Self {
+                core_math::$pow(self, exponent)
+            }
+            fn if_ge<T: Components<Self>>(
+                a: Self,
+                b: Self,
+                then: impl FnOnce() -> T,
+                otherwise: impl FnOnce() -> T,
+            ) -> T {
+                if a >= b { then() } else { otherwise() }
+            }
+        }
+    };
+}
+
+plain_real!(f64, from std::convert::identity, exp, exp2, log2, pow);
+plain_real!(f32, from narrow, expf, exp2f, log2f, powf);
+
+#[expect(clippy::cast_possible_truncation, reason = "a literal in a shader is the nearest f32")]
+const fn narrow(x: f64) -> f32 {
+    x as f32
+}

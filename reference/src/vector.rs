@@ -1,0 +1,87 @@
+//! Vectors and transforms (000 §6.3, 003, 004). Symbols as in the crate's conventions.
+
+use crate::algebra::{Mat3, Mat4, Vec3, Vec4, Vector};
+use crate::real::Real;
+
+/// `r = i − 2(i·n)n`: the light's direction of travel mirrored about the unit normal.
+///
+/// Where n is not of length 1, |r| is not |i|. Source: 000 §6.3.
+pub fn reflect<R: Real>(i: Vec3<R>, n: Vec3<R>) -> Vec3<R> {
+    let i_dot_n = i.dot(n).named("i·n");
+    i - n.map(|x| R::product([R::literal(2.0), i_dot_n, x]))
+}
+
+/// `r = −l + 2(l·n)n`: the same mirrored light from the vector that points to the light. Source: 004.
+pub fn reflect_toward<R: Real>(l: Vec3<R>, n: Vec3<R>) -> Vec3<R> {
+    let l_dot_n = l.dot(n).named("l·n");
+    -l + n.map(|x| R::product([R::literal(2.0), l_dot_n, x]))
+}
+
+/// `h = ⟨v + l⟩`, and 0 where v = −l. Source: 004; ruling 3.
+pub fn halfway<R: Real>(v: Vec3<R>, l: Vec3<R>) -> Vec3<R> {
+    halfway_unnormalised(v, l).normalize().named("h")
+}
+
+/// `h = v + l`, as document 000 §6.4 writes it: a dialect.
+pub fn halfway_unnormalised<R: Real>(v: Vec3<R>, l: Vec3<R>) -> Vec3<R> {
+    (v + l).named("v + l")
+}
+
+/// `⟨v⟩ = v/|v|`, and 0 for the zero vector.
+pub fn normalize<R: Real>(v: Vec3<R>) -> Vec3<R> {
+    v.normalize()
+}
+
+/// `modelview · (n, 0)`: right, up to its length, for rigid motion and uniform scale only. Source: 000, 003.
+pub fn normal_modelview<R: Real>(modelview: &Mat3<R>, n: Vec3<R>) -> Vec3<R> {
+    modelview.transform(n)
+}
+
+/// `modelview⁻ᵀ · n` by cofactors over the determinant: right for every invertible matrix, a reflection too.
+///
+/// Where the determinant is 0 there is no value. Source: 004; ruling 6.
+pub fn normal_inverse_transpose<R: Real>(modelview: &Mat3<R>, n: Vec3<R>) -> Vec3<R> {
+    let cofactors = modelview.cofactors();
+    let determinant = modelview.0[0].dot(cofactors.0[0]).named("determinant");
+    cofactors.transform(n).named("cofactors·n").map(|x| x / determinant)
+}
+
+/// `view · (direction, 0)`: a light's direction in eye space. Source: 000 §6.3.
+pub fn light_direction<R: Real>(view: &Mat4<R>, direction: Vec3<R>) -> Vec3<R> {
+    view.transform(direction.extend(R::literal(0.0))).xyz()
+}
+
+/// `(modelview · position)` divided by its w: a light's position in eye space.
+///
+/// With w = 0 the light is infinitely far away and the direction towards it comes out, undivided. Source: 004.
+pub fn light_position<R: Real>(modelview: &Mat4<R>, position: Vec4<R>) -> Vec3<R> {
+    let eye = modelview.transform(position).named("modelview·position");
+    dehomogenise(eye)
+}
+
+/// `xyz / w`, and `xyz` where w = 0. Source: 004.
+pub fn dehomogenise<R: Real>(p: Vec4<R>) -> Vec3<R> {
+    let zero = R::literal(0.0);
+    let divided = || p.xyz().map(|x| x / p.w());
+    R::if_ge(p.w(), zero, || R::if_ge(zero, p.w(), || p.xyz(), divided), divided)
+}
+
+/// `view · (model · (position, 1))`: a light that moves with a model. Source: 004.
+pub fn light_with_model<R: Real>(view: &Mat4<R>, model: &Mat4<R>, position: Vec3<R>) -> Vec3<R> {
+    view.transform(model.transform(position.extend(R::literal(1.0)))).xyz()
+}
+
+/// `⟨light − p⟩`: from the surface point to a positional light. Ruling 2: it points to the light. Source: 000 §6.4, 003.
+pub fn toward<R: Real>(light: Vec3<R>, p: Vec3<R>) -> Vec3<R> {
+    (light - p).normalize().named("l")
+}
+
+/// `⟨n₀ + n₁ + n₂⟩`: face normals averaged at a vertex. Source: 004.
+pub fn average_normal<R: Real>(faces: [Vec3<R>; 3]) -> Vec3<R> {
+    Vector::sum(faces).named("Σn").normalize()
+}
+
+/// `⟨(b − a) × (c − a)⟩`: the normal of a face wound counter-clockwise.
+pub fn face_normal<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>) -> Vec3<R> {
+    (b - a).cross(c - a).named("(b − a)×(c − a)").normalize().named("n")
+}
