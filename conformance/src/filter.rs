@@ -1,12 +1,43 @@
 //! Globs that select cases by id: `*` stays within a segment, `**` crosses segments; a match of any ancestor selects all
 //! that is below it.
 
-use globset::{Glob, GlobBuilder, GlobMatcher};
+use globset::{GlobBuilder, GlobMatcher};
 
 /// A set of globs; empty, it selects everything.
 #[derive(Clone, Debug, Default)]
 pub struct Filter {
-    globs: Vec<GlobMatcher>,
+    globs: Vec<PathGlob>,
+}
+
+/// A glob, whole and by segments.
+#[derive(Clone, Debug)]
+struct PathGlob {
+    whole: GlobMatcher,
+    /// The segments before the first `**`.
+    head: Vec<GlobMatcher>,
+    /// Whether there is a `**`, behind which any number of segments may follow.
+    is_deep: bool,
+}
+
+impl PathGlob {
+    fn new(text: &str) -> Result<Self, globset::Error> {
+        let compile = |text: &str| -> Result<GlobMatcher, globset::Error> {
+            Ok(GlobBuilder::new(text).literal_separator(true).build()?.compile_matcher())
+        };
+        let head: Vec<&str> = text.split('/').take_while(|segment| !segment.contains("**")).collect();
+        Ok(Self {
+            whole: compile(text)?,
+            is_deep: text.contains("**"),
+            head: head.into_iter().map(compile).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Whether some id below the path may match.
+    fn reaches_below(&self, path: &str) -> bool {
+        let depth = path.split('/').count();
+        (self.is_deep || self.head.len() > depth)
+            && path.split('/').zip(&self.head).all(|(segment, glob)| glob.is_match(segment))
+    }
 }
 
 /// A glob that cannot be read.
@@ -23,22 +54,28 @@ impl Filter {
     /// # Errors
     /// Where one cannot be read.
     pub fn new<S: AsRef<str>>(texts: &[S]) -> Result<Self, FilterError> {
-        let glob = |text: &str| -> Result<GlobMatcher, FilterError> {
-            let built: Result<Glob, globset::Error> = GlobBuilder::new(text).literal_separator(true).build();
-            built
-                .map(|glob| glob.compile_matcher())
+        let read = |text: &str| {
+            PathGlob::new(text.trim_end_matches('/'))
                 .map_err(|error| FilterError { text: text.into(), message: error.kind().to_string() })
         };
-        Ok(Self { globs: texts.iter().map(|text| glob(text.as_ref().trim_end_matches('/'))).collect::<Result<_, _>>()? })
+        Ok(Self { globs: texts.iter().map(|text| read(text.as_ref())).collect::<Result<_, _>>()? })
     }
 
     /// Whether everything below `id`, or `id` itself, is selected.
     #[must_use]
     pub fn selects(&self, id: &str) -> bool {
-        self.globs.is_empty() || ancestors(id).any(|ancestor| self.globs.iter().any(|glob| glob.is_match(ancestor)))
+        self.globs.is_empty()
+            || ancestors(id).any(|ancestor| self.globs.iter().any(|glob| glob.whole.is_match(ancestor)))
     }
 
-    /// The globs that match nothing among the ids, by [`Filter::selects`] of each alone.
+    /// Whether something below the path may be selected where the path itself is not: if not, no id below need be tried.
+    #[must_use]
+    pub fn reaches_below(&self, path: &str) -> bool {
+        self.globs.iter().any(|glob| glob.reaches_below(path))
+    }
+
+    /// Whether there is no glob, so that everything is selected.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.globs.is_empty()
     }
@@ -71,6 +108,8 @@ mod tests {
         for (glob, id, expected) in rows {
             let filter = Filter::new(&[glob]).expect("the glob is valid");
             assert_eq!(filter.selects(id), expected, "{glob} on {id}");
+            let path = id.rsplit_once('/').expect("an id has a parent").0;
+            assert!(!expected || filter.selects(path) || filter.reaches_below(path), "{glob} reaches {id}");
         }
     }
 }

@@ -68,7 +68,7 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
     let started = Instant::now();
     let catalogue = catalogue();
     let selected = select(&catalogue, &options.filter, options.cases, options.shard);
-    progress.start(selected.iter().map(Selected::len).sum());
+    progress.start(selected.iter().map(Selected::count).sum());
     let mut report = empty(subjects, options);
     if !selected.is_empty() {
         probe_deviations(subjects, options, &mut report)?;
@@ -127,7 +127,11 @@ fn probe_deviations(subjects: &[Subject], options: &Options, report: &mut Report
             let verdict = judge(bits, deviation.builtin.exact(deviation.witness), &interval);
             let still_needed = verdict.outcome == Outcome::Fail;
             let mut totals = Totals { cases: 1, verdicts: 1, ..Totals::default() };
-            if still_needed { totals.expected_failures = 1 } else { totals.unexpected_passes = 1 }
+            if still_needed {
+                totals.expected_failures = 1
+            } else {
+                totals.unexpected_passes = 1
+            }
             report.totals.add(&totals);
             report.deviations.push(DeviationUse {
                 name: deviation.name,
@@ -180,10 +184,7 @@ fn run_group(
     let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
     let spec = &members[0].spec;
     let clock = Instant::now();
-    let kernel = match spec.function {
-        "" => None,
-        function => Some(kernel(options, members[0], function)?),
-    };
+    let kernel = kernel(&options.shaders, members[0])?;
     let compiled: Vec<Compiled> = subjects
         .iter_mut()
         .map(|subject| subject.compile(&options.shaders, spec.kind, kernel.as_ref()))
@@ -269,30 +270,80 @@ fn run_group(
     Ok(())
 }
 
+/// A group of formulas compiled for one subject, for rows of inputs from anywhere.
+pub struct Evaluator<'a> {
+    members: &'a [&'a Member],
+    compiled: Compiled,
+}
+
+/// The outputs' bits of each row in a stage, or why the stage is skipped.
+pub type StageOutputs = (Stage, Result<Vec<u32>, &'static str>);
+
+impl<'a> Evaluator<'a> {
+    /// Compiles the formulas, which must be of one group.
+    ///
+    /// # Errors
+    /// Where a shader is invalid or the device refuses it.
+    pub fn new(subject: &mut Subject, members: &'a [&'a Member], shaders: &Shaders) -> Result<Self, Error> {
+        let kernel = kernel(shaders, members[0])?;
+        let compiled = subject.compile(shaders, members[0].spec.kind, kernel.as_ref())?;
+        Ok(Self { members, compiled })
+    }
+
+    /// Evaluates rows in every stage: `of` names the formula of each row by its place among the members.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn run(&self, subject: &mut Subject, of: &[usize], inputs: &[f32]) -> Result<Vec<StageOutputs>, Error> {
+        let (stride, mut selected) = (self.members[0].spec.input_len(), vec![]);
+        for (&of, row) in of.iter().zip(inputs.chunks_exact(stride)) {
+            selected.extend(self.members[of].spec.selectors.iter().map(|&code| f32::from_bits(code)));
+            selected.extend_from_slice(row);
+        }
+        let outputs = self.members[0].spec.output_len();
+        let rows = Rows { members: self.members, of, inputs, selected: &selected, outputs };
+        let stages = self.compiled.stages.iter().map(|(stage, work)| match work {
+            Err(reason) => Ok((*stage, Err(*reason))),
+            Ok(work) => {
+                let job = subject.submit(work, &rows)?;
+                Ok((*stage, Ok(subject.finish(work, job, &rows)?)))
+            }
+        });
+        stages.collect()
+    }
+}
+
 /// The group verdict on indeterminate values: more than 1 % of them, hard cases apart, make a run of little.
 fn problem(totals: &Totals, random: (u64, u64)) -> Option<String> {
     let (verdicts, indeterminate) = random;
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     let share = indeterminate as f64 / verdicts.max(1) as f64;
     if share > MOST_INDETERMINATE {
-        return Some(format!("{:.1} % of the verdicts are indeterminate, hard cases apart; at most 1 % may be", 100.0 * share));
+        return Some(format!(
+            "{:.1} % of the verdicts are indeterminate, hard cases apart; at most 1 % may be",
+            100.0 * share
+        ));
     }
-    (totals.verdicts > 0 && verdicts > 0 && totals.indeterminate == totals.verdicts).then(|| "nothing but indeterminate verdicts".into())
+    (totals.verdicts > 0 && verdicts > 0 && totals.indeterminate == totals.verdicts)
+        .then(|| "nothing but indeterminate verdicts".into())
 }
 
-/// The shader function of a formula, held against the formula's description.
-pub(crate) fn kernel(options: &Options, member: &Member, function: &str) -> Result<Kernel, Error> {
-    let file = format!("{}.wgsl", member.spec.family());
-    let kernel = Kernel::new(&options.shaders, &file, function)?;
-    let (inputs, outputs) = (member.spec.input_len() + member.spec.selectors.len(), member.spec.output_len());
-    if (kernel.inputs, kernel.outputs, kernel.selectors) != (inputs, outputs, member.spec.selectors.len()) {
-        let found = format!(
-            "{} numbers to {}, where {} takes {inputs} to {outputs}",
-            kernel.inputs, kernel.outputs, member.spec.id
-        );
+/// The shader function of a formula, held against the formula's description; `None` where no function evaluates it.
+fn kernel(shaders: &Shaders, member: &Member) -> Result<Option<Kernel>, Error> {
+    let (spec, function) = (&member.spec, member.spec.function);
+    if function.is_empty() {
+        return Ok(None);
+    }
+    let file = format!("{}.wgsl", spec.family());
+    let kernel = Kernel::new(shaders, &file, function)?;
+    let (selectors, outputs) = (spec.selectors.len(), spec.output_len());
+    let inputs = spec.input_len() + selectors;
+    if (kernel.inputs, kernel.outputs, kernel.selectors) != (inputs, outputs, selectors) {
+        let found =
+            format!("{} numbers to {}, where {} takes {inputs} to {outputs}", kernel.inputs, kernel.outputs, spec.id);
         return Err(Error::Signature { file, function: function.into(), found });
     }
-    Ok(kernel)
+    Ok(Some(kernel))
 }
 
 fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], seed: u64) -> Chunk<'a> {
@@ -404,10 +455,17 @@ fn judge_chunk(chunk: &Chunk<'_>, words: &[u32], stage: Stage, subject: &Subject
     sum
 }
 
-/// The intervals of one case as they hold for a stage of a subject, by the profile in force.
-pub(crate) fn intervals(member: &Member, inputs: &[f32], stage: Stage, subject: &Subject, options: &Options, out: &mut [Accept]) {
+/// The intervals of one case as they hold for a stage of a subject, by the profile given, which is the one in force.
+pub fn intervals(
+    member: &Member,
+    inputs: &[f32],
+    stage: Stage,
+    subject: &Subject,
+    profile: &Profile,
+    out: &mut [Accept],
+) {
     let target = Target {
-        subpixel_bits: subject.known.subpixel_bits.unwrap_or(options.profile.subpixel_bits),
+        subpixel_bits: subject.known.subpixel_bits.unwrap_or(profile.subpixel_bits),
         half_float: stage == Stage::FixedFunction && subject.blends_halves(),
     };
     match stage {
@@ -432,7 +490,7 @@ fn judge_case(
     let legal = if shared {
         &chunk.intervals[range.clone()]
     } else {
-        intervals(member, chunk.inputs_of(case), stage, subject, options, &mut own[..outputs]);
+        intervals(member, chunk.inputs_of(case), stage, subject, options.profile, &mut own[..outputs]);
         &own[..outputs]
     };
     let is_random = matches!(chunk.cases[case], CaseRef::Random(_));
@@ -488,7 +546,7 @@ fn excuse(
         let mut legal = vec![Accept::ANY; member.spec.output_len()];
         deviation
             .grant(*options.profile)
-            .scope(|| intervals(member, chunk.inputs_of(case), stage, subject, options, &mut legal));
+            .scope(|| intervals(member, chunk.inputs_of(case), stage, subject, options.profile, &mut legal));
         let reference = chunk.references[case * legal.len() + output];
         (judge(bits, reference, &legal[output]).outcome == Outcome::Pass).then_some(deviation.name)
     })
@@ -530,14 +588,15 @@ fn failure(
 }
 
 /// A row of inputs as an object: a number for a scalar, an array for the rest.
-pub(crate) fn by_name(
+#[must_use]
+pub fn by_name(
     member: &Member,
     inputs: &[f32],
     value: impl Fn(f32) -> serde_json::Value,
 ) -> serde_json::Map<String, serde_json::Value> {
     let mut rest = inputs;
     let named = member.spec.inputs.iter().map(|input| {
-        let (these, others) = rest.split_at(input.shape.len());
+        let (these, others) = rest.split_at(input.shape.components());
         rest = others;
         let value = match these {
             [x] => value(*x),

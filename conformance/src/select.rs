@@ -114,7 +114,9 @@ impl Selected {
     /// The cases, hard ones first.
     pub fn cases(&self) -> impl Iterator<Item = CaseRef> + '_ {
         let random: Box<dyn Iterator<Item = u64>> = match &self.random {
-            Random::First(n) => Box::new((self.shard.index..*n).step_by(usize::try_from(self.shard.count.get()).unwrap_or(usize::MAX))),
+            Random::First(n) => {
+                Box::new((self.shard.index..*n).step_by(usize::try_from(self.shard.count.get()).unwrap_or(usize::MAX)))
+            }
             Random::Some(some) => Box::new(some.iter().copied()),
         };
         self.hard.iter().copied().map(CaseRef::Hard).chain(random.map(CaseRef::Random))
@@ -122,7 +124,7 @@ impl Selected {
 
     /// How many cases there are.
     #[must_use]
-    pub fn len(&self) -> u64 {
+    pub fn count(&self) -> u64 {
         let random = match &self.random {
             Random::First(n) if *n > self.shard.index => (n - self.shard.index).div_ceil(self.shard.count.get()),
             Random::First(_) => 0,
@@ -154,14 +156,18 @@ pub fn select(catalogue: &[Member], filter: &Filter, cases: u64, shard: Shard) -
         let path = member.random_path();
         let random = if filter.selects(&path) || aliased.contains(&member.spec.id) {
             Random::First(count)
+        } else if !filter.reaches_below(&path) {
+            Random::Some(vec![])
         } else {
-            Random::Some((0..count).filter(|&k| shard.has(k) && filter.selects(&member.case_id(CaseRef::Random(k)))).collect())
+            Random::Some(
+                (0..count).filter(|&k| shard.has(k) && filter.selects(&member.case_id(CaseRef::Random(k)))).collect(),
+            )
         };
         let hard = (0..member.spec.hard.len())
             .filter(|&k| shard.has(k as u64) && filter.selects(&member.case_id(CaseRef::Hard(k))))
             .collect();
         let chosen = Selected { member: place, random, hard, shard };
-        if chosen.len() > 0 {
+        if chosen.count() > 0 {
             selected.push(chosen);
         }
     }

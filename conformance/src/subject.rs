@@ -248,16 +248,14 @@ impl Device {
 fn embedded(rows: &Rows<'_>) -> Vec<u32> {
     use rayon::prelude::*;
     let mut words = vec![0; rows.of.len() * rows.outputs];
-    words
-        .par_chunks_mut(rows.outputs)
-        .zip(rows.inputs.par_chunks(rows.stride()))
-        .zip(rows.of)
-        .for_each(|((words, inputs), &member)| {
+    words.par_chunks_mut(rows.outputs).zip(rows.inputs.par_chunks(rows.stride())).zip(rows.of).for_each(
+        |((words, inputs), &member)| {
             let mut out = vec![0.0; words.len()];
             rows.members[member].formula.embedded(inputs, &mut out);
             for (word, value) in words.iter_mut().zip(out) {
                 *word = value.to_bits();
             }
-        });
+        },
+    );
     words
 }

@@ -19,11 +19,21 @@ pub struct Adapter {
     adapter: wgpu::Adapter,
 }
 
-/// Every adapter of every backend, lavapipe first, hardware next, then the other software drivers.
+/// Every Vulkan adapter: lavapipe first, hardware next, then the other software drivers.
+#[must_use]
+pub fn vulkan_adapters() -> Vec<Adapter> {
+    enumerate(wgpu::Backends::VULKAN)
+}
+
+/// Every adapter of every backend, in the same order, OpenGL's last of their kind.
 #[must_use]
 pub fn adapters() -> Vec<Adapter> {
+    enumerate(wgpu::Backends::VULKAN | wgpu::Backends::GL)
+}
+
+fn enumerate(backends: wgpu::Backends) -> Vec<Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::GL;
+    descriptor.backends = backends;
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
     let found = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));

@@ -73,7 +73,13 @@ impl ArithmeticPipeline {
         }
     }
 
-    fn submit_compute(&self, gpu: &Gpu, pipeline: &wgpu::ComputePipeline, rows: &wgpu::Buffer, count: usize) -> Pending {
+    fn submit_compute(
+        &self,
+        gpu: &Gpu,
+        pipeline: &wgpu::ComputePipeline,
+        rows: &wgpu::Buffer,
+        count: usize,
+    ) -> Pending {
         let words = count * self.outputs;
         let unwritten = vec![SENTINEL; words];
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
@@ -90,7 +96,13 @@ impl ArithmeticPipeline {
         Pending::submit(gpu, encoder, staging, (self.outputs, self.outputs))
     }
 
-    fn submit_fragment(&self, gpu: &Gpu, pipeline: &wgpu::RenderPipeline, rows: &wgpu::Buffer, count: usize) -> Pending {
+    fn submit_fragment(
+        &self,
+        gpu: &Gpu,
+        pipeline: &wgpu::RenderPipeline,
+        rows: &wgpu::Buffer,
+        count: usize,
+    ) -> Pending {
         let height = u32::try_from(count.div_ceil(FRAGMENT_WIDTH as usize)).unwrap_or(u32::MAX);
         let targets: Vec<wgpu::Texture> = (0..self.targets).map(|_| gpu.target(FRAGMENT_WIDTH, height, BITS)).collect();
         let views: Vec<wgpu::TextureView> = targets.iter().map(|t| t.create_view(&Default::default())).collect();

@@ -170,9 +170,9 @@ impl BlendUnit {
     pub fn submit(&mut self, gpu: &Gpu, states: &[State], rows: &[f32]) -> Result<Pending, Error> {
         let draws = draws(states, rows);
         for draw in &draws {
-            self.sources.entry(draw.lowered).or_insert_with(|| {
-                source_pipeline(gpu, &self.module, self.target, Some(draw.lowered))
-            });
+            self.sources
+                .entry(draw.lowered)
+                .or_insert_with(|| source_pipeline(gpu, &self.module, self.target, Some(draw.lowered)));
         }
         gpu.check()?;
         let count = u32::try_from(states.len()).unwrap_or(u32::MAX);
@@ -249,11 +249,8 @@ fn source_pipeline(
 ) -> wgpu::RenderPipeline {
     let entry = lowered.map_or("unit_destination", |lowered| lowered.entry);
     let blend = lowered.map(|lowered| {
-        let component = wgpu::BlendComponent {
-            src_factor: lowered.src,
-            dst_factor: lowered.dst,
-            operation: lowered.operation,
-        };
+        let component =
+            wgpu::BlendComponent { src_factor: lowered.src, dst_factor: lowered.dst, operation: lowered.operation };
         wgpu::BlendState { color: component, alpha: component }
     });
     const COLOR: u64 = 16;

@@ -22,7 +22,9 @@ pub enum Error {
         function: String,
     },
     /// A function's signature has a type that cannot be read from a row of numbers.
-    #[error("function `{function}` in {file} has a parameter or result of a type other than f32, u32, vectors, matrices and structs of them: {found}")]
+    #[error(
+        "function `{function}` in {file} has a parameter or result of a type other than f32, u32, vectors, matrices and structs of them: {found}"
+    )]
     Signature {
         /// The file's name.
         file: String,

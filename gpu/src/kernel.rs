@@ -33,8 +33,7 @@ impl Kernel {
         let missing = || Error::MissingFunction { file: file.into(), function: function.into() };
         let (_, found) =
             module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)).ok_or_else(missing)?;
-        let unsupported =
-            |found: String| Error::Signature { file: file.into(), function: function.into(), found };
+        let unsupported = |found: String| Error::Signature { file: file.into(), function: function.into(), found };
 
         let (mut inputs, mut selectors, mut arguments) = (0, 0, vec![]);
         for argument in &found.arguments {
@@ -70,7 +69,11 @@ const ROWS: &str = "@group(0) @binding(0) var<storage, read> lightmeter_rows: ar
 
 fn compute_entry(call: &str, inputs: usize, fields: &[String]) -> String {
     let stores = fields.iter().enumerate().fold(String::new(), |mut text, (k, field)| {
-        let _ = writeln!(text, "    lightmeter_results[lightmeter_case * {}u + {k}u] = bitcast<u32>({field});", fields.len());
+        let _ = writeln!(
+            text,
+            "    lightmeter_results[lightmeter_case * {}u + {k}u] = bitcast<u32>({field});",
+            fields.len()
+        );
         text
     });
     format!(

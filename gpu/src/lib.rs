@@ -14,9 +14,9 @@ mod raster;
 mod readback;
 mod shaders;
 
-pub use adapters::{Adapter, adapters};
+pub use adapters::{Adapter, adapters, vulkan_adapters};
 pub use arithmetic::{ArithmeticPipeline, Stage};
-pub use blend_unit::{BlendUnit, BlendTarget, Route, route};
+pub use blend_unit::{BlendTarget, BlendUnit, Route, route};
 pub use device::Gpu;
 pub use error::Error;
 pub use kernel::Kernel;

@@ -53,11 +53,9 @@ impl Raster {
     #[must_use]
     pub const fn inputs(self) -> usize {
         match self {
-            Self::TriangleAttributes
-            | Self::TrianglePosition
-            | Self::Facing
-            | Self::Clipped
-            | Self::Culled { .. } => 17,
+            Self::TriangleAttributes | Self::TrianglePosition | Self::Facing | Self::Clipped | Self::Culled { .. } => {
+                17
+            }
             Self::LineAttributes => 12,
             Self::Quad => 10,
             Self::OwnDepth => 3,
@@ -142,7 +140,9 @@ impl RasterPipeline {
             // GLSL cannot choose the provoking vertex; OpenGL's own is the last.
             match kind {
                 Raster::Flat { provoking: Provoking::First, .. } => {
-                    return Ok(Err("OpenGL takes flat attributes from the last vertex and wgpu offers no choice there"));
+                    return Ok(Err(
+                        "OpenGL takes flat attributes from the last vertex and wgpu offers no choice there",
+                    ));
                 }
                 Raster::Flat { provoking: Provoking::Last, .. } => entries.0 = "raster_flat_first_vertex",
                 _ => {}
@@ -152,14 +152,10 @@ impl RasterPipeline {
         let module = gpu.module(FILE, source);
         let (topology, vertices) = kind.drawn(gpu.is_gl);
         let pipeline = pipeline(gpu, &module, kind, entries, topology);
-        let reader = match kind {
-            Raster::OwnDepth => Some(screen_pipeline(gpu, &module, "raster_screen_vertex", "raster_read_depth")),
-            Raster::Quad => {
-                let unit = gpu.module("blend_unit.wgsl", shaders.source("blend_unit.wgsl"));
-                Some(screen_pipeline(gpu, &unit, "unit_vertex", "unit_result"))
-            }
-            _ => None,
-        };
+        let reader = matches!(kind, Raster::OwnDepth | Raster::Quad).then(|| {
+            let unit = gpu.module("blend_unit.wgsl", shaders.source("blend_unit.wgsl"));
+            screen_pipeline(gpu, &unit, "unit_vertex", "unit_result")
+        });
         gpu.check()?;
         let selector = if let Raster::Flat { topology, .. } = kind { topology.code() } else { 0 };
         Ok(Ok(Self { kind, pipeline, reader, vertices, selector }))
@@ -198,8 +194,8 @@ impl RasterPipeline {
             None => read_target(gpu, encoder, &drawn),
             Some(reader) => {
                 let bits = gpu.target(TARGET_SIZE, TARGET_SIZE, BITS);
-                let (layout, binding) = (reader.get_bind_group_layout(0), if is_depth { 2 } else { 1 });
-                draw_screen(&mut encoder, reader, &texture_group(gpu, &layout, binding, &view), &bits);
+                let group = texture_group(gpu, &reader.get_bind_group_layout(0), 1, &view);
+                draw_screen(&mut encoder, reader, &group, &bits);
                 read_target(gpu, encoder, &bits)
             }
         };
@@ -291,19 +287,18 @@ fn pipeline(
         primitive.cull_mode = Some(if back { wgpu::Face::Back } else { wgpu::Face::Front });
         primitive.front_face = if front_is_ccw { wgpu::FrontFace::Ccw } else { wgpu::FrontFace::Cw };
     }
-    let entries: Vec<wgpu::BindGroupLayoutEntry> = [
-        (0, wgpu::BufferBindingType::Storage { read_only: true }),
-        (1, wgpu::BufferBindingType::Uniform),
-    ]
-    .into_iter()
-    .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::VERTEX,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-        count: None,
-    })
-    .collect();
-    let group = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+    let entries: Vec<wgpu::BindGroupLayoutEntry> =
+        [(0, wgpu::BufferBindingType::Storage { read_only: true }), (1, wgpu::BufferBindingType::Uniform)]
+            .into_iter()
+            .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::VERTEX,
+                ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+                count: None,
+            })
+            .collect();
+    let group =
+        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         bind_group_layouts: &[Some(&group)],
         ..Default::default()
@@ -338,7 +333,12 @@ fn pipeline(
 }
 
 /// A pipeline that draws over a whole target of bits.
-pub(crate) fn screen_pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, vertex: &str, fragment: &str) -> wgpu::RenderPipeline {
+pub(crate) fn screen_pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    vertex: &str,
+    fragment: &str,
+) -> wgpu::RenderPipeline {
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(fragment),
         layout: None,

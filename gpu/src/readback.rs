@@ -65,7 +65,11 @@ pub(crate) fn copy_target(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target:
         target.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
             buffer: &staging,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * size.width), rows_per_image: None },
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(16 * size.width),
+                rows_per_image: None,
+            },
         },
         size,
     );

@@ -80,7 +80,8 @@ impl Shaders {
         let mut open = vec![file.to_owned()];
         while let Some(name) = open.pop() {
             let text = self.files.get(&name).map(String::as_str).unwrap_or_default();
-            let names = text.lines().filter_map(|line| line.strip_prefix("// requires:")).flat_map(str::split_whitespace);
+            let names =
+                text.lines().filter_map(|line| line.strip_prefix("// requires:")).flat_map(str::split_whitespace);
             for stem in names {
                 let name = format!("{stem}.wgsl");
                 if !found.contains(&name) {
@@ -134,8 +135,8 @@ mod tests {
     #[test]
     fn an_error_is_counted_from_the_files_own_start() {
         let mut files: BTreeMap<String, String> = FILES.into_iter().map(|(n, t)| (n.into(), t.into())).collect();
-        files.insert("fog.wgsl".into(), "fn f() -> f32 {\n    return 1;;\n    oops\n}\n".into());
+        files.insert("fog.wgsl".into(), "// a\n// b\nfn f() -> f32 {\n    return nothing;\n}\n".into());
         let error = Shaders::validated(files).expect_err("the file is invalid").to_string();
-        assert!(error.contains("fog.wgsl:2") || error.contains("fog.wgsl:3"), "{error}");
+        assert!(error.contains("fog.wgsl:4:12"), "{error}");
     }
 }

@@ -200,12 +200,7 @@ impl<R: Real> Mat4<R> {
     /// M·v.
     #[must_use]
     pub fn transform(&self, v: Vec4<R>) -> Vec4<R> {
-        Vector::sum([
-            self.0[0].scale(v[0]),
-            self.0[1].scale(v[1]),
-            self.0[2].scale(v[2]),
-            self.0[3].scale(v[3]),
-        ])
+        Vector::sum([self.0[0].scale(v[0]), self.0[1].scale(v[1]), self.0[2].scale(v[2]), self.0[3].scale(v[3])])
     }
 
     /// The upper left 3 × 3 part, which is what acts on directions.

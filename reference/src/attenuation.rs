@@ -49,10 +49,5 @@ pub fn spot_cutoff<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R) -> R {
 pub fn spot_exponent<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R, exponent: R) -> R {
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
     let cosine = (-l).dot(axis).named("−l·axis");
-    R::if_ge(
-        cosine,
-        cutoff_cosine,
-        || R::if_ge(zero, exponent, || one, || cosine.lobe(exponent)),
-        || zero,
-    )
+    R::if_ge(cosine, cutoff_cosine, || R::if_ge(zero, exponent, || one, || cosine.lobe(exponent)), || zero)
 }

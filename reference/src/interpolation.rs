@@ -38,9 +38,7 @@ pub fn weights<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> [R; 3] {
 /// Equal to [`triangle`] wherever y1 ≠ y2, y1 ≠ y3 and xa ≠ xb. Source: 004.
 pub fn scanline<R: Real>(vertices: [Vec2<R>; 3], i: [R; 3], p: Vec2<R>) -> R {
     let [v1, v2, v3] = vertices;
-    let along = |near: R, far: R, top: R, bottom: R| {
-        (near * (p.y() - bottom) + far * (top - p.y())) / (top - bottom)
-    };
+    let along = |near: R, far: R, top: R, bottom: R| (near * (p.y() - bottom) + far * (top - p.y())) / (top - bottom);
     let (ia, xa) = (along(i[0], i[1], v1.y(), v2.y()).named("Ia"), along(v1.x(), v2.x(), v1.y(), v2.y()).named("xa"));
     let (ib, xb) = (along(i[0], i[2], v1.y(), v3.y()).named("Ib"), along(v1.x(), v3.x(), v1.y(), v3.y()).named("xb"));
     (ia * (xb - p.x()) + ib * (p.x() - xa)) / (xb - xa)
@@ -80,9 +78,7 @@ pub fn flat<R: Copy, const N: usize>(attr: [R; N], provoking: Provoking) -> R {
 /// Every point of an edge shared by two triangles belongs to exactly one of them. A triangle without area has no points.
 pub fn coverage<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> R {
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
-    let sides = |a: Vec2<R>, b: Vec2<R>, c: Vec2<R>| {
-        owns(a, b, p, || owns(b, c, p, || owns(c, a, p, || one)))
-    };
+    let sides = |a: Vec2<R>, b: Vec2<R>, c: Vec2<R>| owns(a, b, p, || owns(b, c, p, || owns(c, a, p, || one)));
     let area = edge(a, b, c).named("2·area");
     let wound = || R::if_ge(zero, area, || zero, || sides(a, b, c));
     R::if_ge(area, zero, wound, || sides(a, c, b))

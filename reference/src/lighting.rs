@@ -254,9 +254,7 @@ pub fn scalar_material<R: Real>(
     let [ambient, diffuse, specular] = [ka, kd, ks].map(Vector::splat);
     let material = Material { ambient, diffuse, specular, shininess };
     let vectors = [n.normalize().named("n"), toward(position, p), to_eye(p)];
-    terms((Specular::Phong, Gate::Documents), &light, &material, vectors, R::literal(1.0))
-        .sum()
-        .extend(R::literal(1.0))
+    terms((Specular::Phong, Gate::Documents), &light, &material, vectors, R::literal(1.0)).sum().extend(R::literal(1.0))
 }
 
 /// One light of document 004: `diffuse·color·max(n·l, 0) + specular·color·max(n·h, 0)^S`, in RGBA. Source: 004.

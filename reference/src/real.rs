@@ -9,13 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// out in several legal ways (the order of a chain, `mix`, `normalize`, Horner's scheme) are methods with a default, so
 /// that an enclosing arithmetic can return the union of them.
 pub trait Real:
-    Copy
-    + Debug
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// An input of a formula.
     fn input(x: f32) -> Self;

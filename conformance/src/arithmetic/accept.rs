@@ -8,8 +8,11 @@
 //! * A chain may be reassociated: any order of Σxᵢ over n terms errs by at most ((1+ε)ⁿ⁻¹ − 1)·Σ|xᵢ| with ε = 2⁻²³ for
 //!   directed rounding; a product of n factors by the same factor of its value.
 //! * A value that may be subnormal may be flushed: the hull with 0.
-//! * Built-ins are widened by the bound that the [`Profile`](super::Profile) states.
+//! * Built-ins are widened by the bound that the [`Profile`](super::Profile) states; the values of the format within it
+//!   are legal.
 //! * Where rules permit anything (overflow, a divisor that may be 0) the value is [`Accept::ANY`].
+
+#![expect(clippy::float_cmp, reason = "ends of intervals are compared exactly: a point is a point to the last bit")]
 
 use super::format::{F32, Format};
 use super::profile::{Excess, GrowingUlp, current};
@@ -146,7 +149,12 @@ impl<F: Format> Accept<F> {
             let ulp = if point { F::ulp(x) } else { (x.abs() * F::EPSILON).max(F::MIN_SUBNORMAL) };
             ulps * ulp + x.abs() * F64_SLACK
         };
-        Self::seal(low - error(low), high + error(high))
+        Self::of_results(low - error(low), high + error(high))
+    }
+
+    /// The values of the format between two real bounds: a built-in's result is one of them, so the bounds round inward.
+    fn of_results(low: f64, high: f64) -> Self {
+        Self::seal(F::round_up(low), F::round_down(high))
     }
 
     /// An exponential `f` with a bound that grows with |x|.
@@ -240,7 +248,8 @@ impl<F: Format> Div for Accept<F> {
         if divisor.contains_zero() || least < F::MIN_NORMAL || most > 1.0 / F::MIN_NORMAL || self.is_any() {
             return Self::ANY;
         }
-        let inverse = [self.low / divisor.low, self.low / divisor.high, self.high / divisor.low, self.high / divisor.high];
+        let inverse =
+            [self.low / divisor.low, self.low / divisor.high, self.high / divisor.low, self.high / divisor.high];
         let low = inverse.into_iter().fold(f64::INFINITY, f64::min);
         let high = inverse.into_iter().fold(f64::NEG_INFINITY, f64::max);
         if low == 0.0 && high == 0.0 {
@@ -326,7 +335,7 @@ impl<F: Format> Real for Accept<F> {
                 (false, _) => relative,
             }
         };
-        Self::seal(low - error(low), high + error(high))
+        Self::of_results(low - error(low), high + error(high))
     }
 
     fn pow(self, exponent: Self) -> Self {

@@ -1,5 +1,7 @@
 //! Floating-point formats and distances in them.
 
+#![expect(clippy::float_cmp, reason = "values are told apart to the last bit")]
+
 use std::fmt::Debug;
 
 /// A binary floating-point format, as constants, so that interval operations compile to straight code.

@@ -99,10 +99,7 @@ impl Real for Trace {
         self.max(low).min(high)
     }
     fn mix(a: Self, b: Self, t: Self) -> Self {
-        Self {
-            value: Real::mix(a.value, b.value, t.value),
-            interval: Real::mix(a.interval, b.interval, t.interval),
-        }
+        Self { value: Real::mix(a.value, b.value, t.value), interval: Real::mix(a.interval, b.interval, t.interval) }
     }
     fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
         let values = <f64 as Real>::normalize(v.map(|x| x.value));

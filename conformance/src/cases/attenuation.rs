@@ -1,8 +1,8 @@
 //! Cases of attenuation and spotlights. Formulas: `lightmeter_reference::attenuation`.
 
+use super::Visitor;
 use super::formula::formula;
 use super::spec::{Domain, Hard, Input, Output, Shape};
-use super::Visitor;
 use lightmeter_reference::attenuation;
 
 const ATTEN: Output = Output::new("atten", Shape::Scalar, "1");

@@ -1,9 +1,9 @@
 //! Cases of blending: every distinct state of the 15 × 15 × 5. Formulas: `lightmeter_reference::blend`.
 
+use super::Visitor;
 use super::formula::{Formula, formula};
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
-use super::Visitor;
 use lightmeter_reference::blend::{Operands, Saturate, blend};
 use lightmeter_reference::{Real, Vector};
 use lightmeter_scene::blend::{Equation, Factor, State};
@@ -50,16 +50,34 @@ impl Formula for BlendState {
 fn hard(state: State) -> &'static [Hard] {
     match (state.equation, state.src, state.dst) {
         (Equation::Add, Factor::SrcAlpha, Factor::OneMinusSrcAlpha) => &[
-            Hard { name: "blue-over-red", pins: "document 000's figure", inputs: &[("src", &[0.0, 0.0, 1.0, 0.6]), ("dst", &[1.0, 0.0, 0.0, 1.0])] },
-            Hard { name: "red-over-blue", pins: "document 002's figure", inputs: &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0, 1.0])] },
+            Hard {
+                name: "blue-over-red",
+                pins: "document 000's figure",
+                inputs: &[("src", &[0.0, 0.0, 1.0, 0.6]), ("dst", &[1.0, 0.0, 0.0, 1.0])],
+            },
+            Hard {
+                name: "red-over-blue",
+                pins: "document 002's figure",
+                inputs: &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0, 1.0])],
+            },
         ],
         (Equation::Add, Factor::SrcAlphaSaturate, Factor::One) => &[
-            Hard { name: "no-room-left", pins: "an opaque destination takes nothing", inputs: &[("src", &[1.0, 1.0, 1.0, 0.5]), ("dst", &[0.25, 0.25, 0.25, 1.0])] },
-            Hard { name: "alpha-above-one", pins: "a float target does not clamp: min(As, 1 − Ad) is negative", inputs: &[("src", &[1.0, 1.0, 1.0, 0.5]), ("dst", &[0.25, 0.25, 0.25, 1.5])] },
+            Hard {
+                name: "no-room-left",
+                pins: "an opaque destination takes nothing",
+                inputs: &[("src", &[1.0, 1.0, 1.0, 0.5]), ("dst", &[0.25, 0.25, 0.25, 1.0])],
+            },
+            Hard {
+                name: "alpha-above-one",
+                pins: "a float target does not clamp: min(As, 1 − Ad) is negative",
+                inputs: &[("src", &[1.0, 1.0, 1.0, 0.5]), ("dst", &[0.25, 0.25, 0.25, 1.5])],
+            },
         ],
-        (Equation::Subtract, Factor::One, Factor::One) => {
-            &[Hard { name: "below-zero", pins: "a float target does not clamp", inputs: &[("src", &[0.25, 0.0, 0.5, 0.0]), ("dst", &[0.75, 1.0, 0.5, 1.0])] }]
-        }
+        (Equation::Subtract, Factor::One, Factor::One) => &[Hard {
+            name: "below-zero",
+            pins: "a float target does not clamp",
+            inputs: &[("src", &[0.25, 0.0, 0.5, 0.0]), ("dst", &[0.75, 1.0, 0.5, 1.0])],
+        }],
         _ => &[],
     }
 }

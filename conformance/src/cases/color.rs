@@ -1,8 +1,8 @@
 //! Cases of colours and their storage. Formulas: `lightmeter_reference::color`.
 
+use super::Visitor;
 use super::formula::formula;
 use super::spec::{Domain, Hard, Input, Output, Shape};
-use super::Visitor;
 use lightmeter_reference::color;
 
 const BEYOND: Domain = Domain::Uniform(-0.25, 1.25);

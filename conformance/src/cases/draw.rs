@@ -27,7 +27,7 @@ impl Input {
             Domain::Unit | Domain::Around => 0.5,
             Domain::Whole(low, _) => small(low),
             Domain::Pixel => 128.0,
-            Domain::Weights => 1.0 / small(u32::try_from(self.shape.len()).unwrap_or(1)),
+            Domain::Weights => 1.0 / small(u32::try_from(self.shape.components()).unwrap_or(1)),
             Domain::Direction | Domain::Vector(..) => {
                 row.extend([0.0, 0.0, 1.0]);
                 return;
@@ -38,12 +38,12 @@ impl Input {
                 return;
             }
         };
-        row.extend(std::iter::repeat_n(middle, self.shape.len()));
+        row.extend(std::iter::repeat_n(middle, self.shape.components()));
     }
 }
 
 fn draw(input: &Input, numbers: &mut Numbers, row: &mut Vec<f32>) {
-    let len = input.shape.len();
+    let len = input.shape.components();
     match input.domain {
         Domain::Around => row.extend((0..len).map(|_| numbers.uniform(0.0, 1.0))),
         Domain::Uniform(low, high) => row.extend((0..len).map(|_| numbers.uniform(low, high))),
@@ -143,8 +143,7 @@ impl Numbers {
         let (u, a, b) = (self.fraction(), self.fraction(), self.fraction());
         let (a, b) = (a * std::f64::consts::TAU, b * std::f64::consts::TAU);
         let (p, q) = ((1.0 - u).sqrt(), u.sqrt());
-        let (x, y, z, w) =
-            (p * core_math::sin(a), p * core_math::cos(a), q * core_math::sin(b), q * core_math::cos(b));
+        let (x, y, z, w) = (p * core_math::sin(a), p * core_math::cos(a), q * core_math::sin(b), q * core_math::cos(b));
         let columns = [
             [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)],
             [2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)],

@@ -1,11 +1,11 @@
 //! Cases of fog. Formulas: `lightmeter_reference::fog`.
 
+use super::Visitor;
 use super::formula::formula;
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Output, Shape};
-use super::Visitor;
-use lightmeter_reference::fog::{self, Distance};
 use lightmeter_reference::Real;
+use lightmeter_reference::fog::{self, Distance};
 
 const P: Input = Input::new("p", Shape::Vec3, "unit", Domain::Uniform(-100.0, 100.0));
 const DMIN: Input = Input::scalar("dmin", "unit", Domain::Uniform(0.0, 50.0));
@@ -65,7 +65,10 @@ linear!(
     ]
 );
 linear!(
-    LinearRadial, "fog/linear-radial", "fog_linear_radial", Distance::Radial,
+    LinearRadial,
+    "fog/linear-radial",
+    "fog_linear_radial",
+    Distance::Radial,
     "f = clamp((dmax − |p|)/(dmax − dmin), 0, 1); color = mix(fog, shaded, f)"
 );
 
@@ -95,8 +98,14 @@ exponential!(
     ]
 );
 exponential!(
-    ExpRadial, "fog/exp-radial", "fog_exp_radial", Distance::Radial, fog::exp, DENSITY,
-    "f = clamp(exp(−density·|p|), 0, 1); color = mix(fog, shaded, f)", "000 §6.5, a dialect"
+    ExpRadial,
+    "fog/exp-radial",
+    "fog_exp_radial",
+    Distance::Radial,
+    fog::exp,
+    DENSITY,
+    "f = clamp(exp(−density·|p|), 0, 1); color = mix(fog, shaded, f)",
+    "000 §6.5, a dialect"
 );
 exponential!(
     Exp2Document, "fog/exp2-document", "fog_exp2_document", Distance::Planar, fog::exp2_document, DENSITY_SQUARED,
@@ -106,8 +115,14 @@ exponential!(
     ]
 );
 exponential!(
-    Exp2DocumentRadial, "fog/exp2-document-radial", "fog_exp2_document_radial", Distance::Radial, fog::exp2_document,
-    DENSITY_SQUARED, "f = clamp(exp(−density·|p|²), 0, 1); color = mix(fog, shaded, f)", "000 §6.5, a dialect"
+    Exp2DocumentRadial,
+    "fog/exp2-document-radial",
+    "fog_exp2_document_radial",
+    Distance::Radial,
+    fog::exp2_document,
+    DENSITY_SQUARED,
+    "f = clamp(exp(−density·|p|²), 0, 1); color = mix(fog, shaded, f)",
+    "000 §6.5, a dialect"
 );
 exponential!(
     Exp2OpenGl, "fog/exp2-opengl", "fog_exp2_opengl", Distance::Planar, fog::exp2_opengl, DENSITY,
@@ -118,8 +133,14 @@ exponential!(
     ]
 );
 exponential!(
-    Exp2OpenGlRadial, "fog/exp2-opengl-radial", "fog_exp2_opengl_radial", Distance::Radial, fog::exp2_opengl, DENSITY,
-    "f = clamp(exp(−(density·|p|)²), 0, 1); color = mix(fog, shaded, f)", "OpenGL 2.1 §3.10, a dialect"
+    Exp2OpenGlRadial,
+    "fog/exp2-opengl-radial",
+    "fog_exp2_opengl_radial",
+    Distance::Radial,
+    fog::exp2_opengl,
+    DENSITY,
+    "f = clamp(exp(−(density·|p|)²), 0, 1); color = mix(fog, shaded, f)",
+    "OpenGL 2.1 §3.10, a dialect"
 );
 
 pub(super) fn visit(visitor: &mut impl Visitor) {

@@ -1,10 +1,10 @@
 //! Cases of interpolation: as arithmetic, and by the rasteriser. Formulas: `lightmeter_reference::interpolation`.
 
+use super::Visitor;
 use super::draw::narrow;
 use super::formula::{Formula, formula};
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
-use super::Visitor;
 use lightmeter_gpu::{Raster, TARGET_SIZE};
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::{Real, Vec2, Vector};
@@ -150,11 +150,17 @@ macro_rules! viewport {
 }
 
 viewport!(
-    ViewportWebGpu, "interpolation/viewport", "interpolation_viewport", interpolation::viewport,
+    ViewportWebGpu,
+    "interpolation/viewport",
+    "interpolation_viewport",
+    interpolation::viewport,
     "x = ox + (x/w + 1)·sx/2, y = oy + (1 − y/w)·sy/2, z = near + z/w·(far − near)"
 );
 viewport!(
-    ViewportOpenGl, "interpolation/viewport-opengl", "interpolation_viewport_opengl", interpolation::viewport_opengl,
+    ViewportOpenGl,
+    "interpolation/viewport-opengl",
+    "interpolation_viewport_opengl",
+    interpolation::viewport_opengl,
     "x = ox + (x/w + 1)·sx/2, y = oy + (y/w + 1)·sy/2, z = near + (z/w + 1)·(far − near)/2"
 );
 
@@ -174,12 +180,18 @@ macro_rules! clip_volume {
 }
 
 clip_volume!(
-    ClipVolume, "interpolation/clip-volume", "interpolation_clip_volume", interpolation::clip_volume,
+    ClipVolume,
+    "interpolation/clip-volume",
+    "interpolation_clip_volume",
+    interpolation::clip_volume,
     "1 where −w ≤ x, y ≤ w and 0 ≤ z ≤ w"
 );
 clip_volume!(
-    ClipVolumeOpenGl, "interpolation/clip-volume-opengl", "interpolation_clip_volume_opengl",
-    interpolation::clip_volume_opengl, "1 where −w ≤ x, y, z ≤ w"
+    ClipVolumeOpenGl,
+    "interpolation/clip-volume-opengl",
+    "interpolation_clip_volume_opengl",
+    interpolation::clip_volume_opengl,
+    "1 where −w ≤ x, y, z ≤ w"
 );
 formula!(
     /// Front facing.
@@ -238,8 +250,7 @@ const fn around(name: &'static str) -> Input {
 
 const PIXEL: Input = Input::new("pixel", Shape::Vec2, "pixel", Domain::Pixel);
 const COVERED: Output = Output::new("covered", Shape::Scalar, "1");
-const BOTH: [Output; 2] =
-    [Output::new("perspective", Shape::Scalar, "1"), Output::new("linear", Shape::Scalar, "1")];
+const BOTH: [Output; 2] = [Output::new("perspective", Shape::Scalar, "1"), Output::new("linear", Shape::Scalar, "1")];
 
 macro_rules! raster_triangle {
     ($name:ident, $id:literal, $kind:expr, $fit:expr, $text:literal, [$($output:expr),*], |$x:ident, $out:ident| $body:block) => {
@@ -257,8 +268,12 @@ macro_rules! raster_triangle {
 }
 
 raster_triangle!(
-    RasterAttributes, "interpolation/raster-attributes", Raster::TriangleAttributes, triangle_around_the_pixel,
-    "the attribute of a drawn triangle at a pixel: Σ λa/w / Σ λ/w, and Σ λa", [BOTH[0], BOTH[1]],
+    RasterAttributes,
+    "interpolation/raster-attributes",
+    Raster::TriangleAttributes,
+    triangle_around_the_pixel,
+    "the attribute of a drawn triangle at a pixel: Σ λa/w / Σ λ/w, and Σ λa",
+    [BOTH[0], BOTH[1]],
     |x, out| {
         let (clip, attr) = (x.vectors(), x.array());
         let fragment = interpolation::fragment(clip, attr, &target(), pixel_center(x));
@@ -267,7 +282,10 @@ raster_triangle!(
     }
 );
 raster_triangle!(
-    RasterPosition, "interpolation/raster-position", Raster::TrianglePosition, triangle_around_the_pixel,
+    RasterPosition,
+    "interpolation/raster-position",
+    Raster::TrianglePosition,
+    triangle_around_the_pixel,
     "gl_FragCoord of a drawn triangle: the pixel's centre from the upper left, window z, 1/w",
     [Output::new("position", Shape::Vec4, "pixel")],
     |x, out| {
@@ -277,13 +295,23 @@ raster_triangle!(
     }
 );
 raster_triangle!(
-    RasterFacing, "interpolation/raster-facing", Raster::Facing, triangle_around_the_pixel,
-    "gl_FrontFacing of a drawn triangle: 1 where it is counter-clockwise as seen", [Output::new("front", Shape::Scalar, "1")],
-    |x, out| { out.scalar(facing(x)); }
+    RasterFacing,
+    "interpolation/raster-facing",
+    Raster::Facing,
+    triangle_around_the_pixel,
+    "gl_FrontFacing of a drawn triangle: 1 where it is counter-clockwise as seen",
+    [Output::new("front", Shape::Scalar, "1")],
+    |x, out| {
+        out.scalar(facing(x));
+    }
 );
 raster_triangle!(
-    RasterClip, "interpolation/raster-clip", Raster::Clipped, triangle_across_the_volume,
-    "1 where a triangle that reaches out of the clip volume still covers the pixel", [COVERED],
+    RasterClip,
+    "interpolation/raster-clip",
+    Raster::Clipped,
+    triangle_across_the_volume,
+    "1 where a triangle that reaches out of the clip volume still covers the pixel",
+    [COVERED],
     |x, out| {
         let (clip, _attr) = (x.vectors(), x.array::<3>());
         out.scalar(interpolation::clipped_coverage(clip, &target(), pixel_center(x)));
@@ -302,7 +330,12 @@ fn facing<R: Real>(x: &mut Reader<'_, R>) -> R {
 macro_rules! raster_culled {
     ($name:ident, $id:literal, $back:literal, $ccw:literal, $text:literal) => {
         raster_triangle!(
-            $name, $id, Raster::Culled { back: $back, front_is_ccw: $ccw }, triangle_around_the_pixel, $text, [COVERED],
+            $name,
+            $id,
+            Raster::Culled { back: $back, front_is_ccw: $ccw },
+            triangle_around_the_pixel,
+            $text,
+            [COVERED],
             |x, out| {
                 let (shown, front) = ($back == $ccw, facing(x));
                 out.scalar(if shown { front } else { R::literal(1.0) - front });
@@ -311,10 +344,34 @@ macro_rules! raster_culled {
     };
 }
 
-raster_culled!(CullBackCcw, "interpolation/cull-back-ccw", true, true, "1 where a triangle survives: back faces culled, counter-clockwise is front");
-raster_culled!(CullBackCw, "interpolation/cull-back-cw", true, false, "1 where a triangle survives: back faces culled, clockwise is front");
-raster_culled!(CullFrontCcw, "interpolation/cull-front-ccw", false, true, "1 where a triangle survives: front faces culled, counter-clockwise is front");
-raster_culled!(CullFrontCw, "interpolation/cull-front-cw", false, false, "1 where a triangle survives: front faces culled, clockwise is front");
+raster_culled!(
+    CullBackCcw,
+    "interpolation/cull-back-ccw",
+    true,
+    true,
+    "1 where a triangle survives: back faces culled, counter-clockwise is front"
+);
+raster_culled!(
+    CullBackCw,
+    "interpolation/cull-back-cw",
+    true,
+    false,
+    "1 where a triangle survives: back faces culled, clockwise is front"
+);
+raster_culled!(
+    CullFrontCcw,
+    "interpolation/cull-front-ccw",
+    false,
+    true,
+    "1 where a triangle survives: front faces culled, counter-clockwise is front"
+);
+raster_culled!(
+    CullFrontCw,
+    "interpolation/cull-front-cw",
+    false,
+    false,
+    "1 where a triangle survives: front faces culled, clockwise is front"
+);
 
 formula!(
     /// A line by the rasteriser.
@@ -349,12 +406,16 @@ macro_rules! raster_quad {
 }
 
 raster_quad!(
-    RasterTopLeft, "interpolation/raster-top-left", quad_on_the_grid,
+    RasterTopLeft,
+    "interpolation/raster-top-left",
+    quad_on_the_grid,
     "how many of two triangles with vertices on the half-pixel grid cover the pixel, ties by the top-left rule",
     [half_pixels("a"), half_pixels("b"), half_pixels("c"), half_pixels("d")]
 );
 raster_quad!(
-    RasterSharedEdge, "interpolation/raster-shared-edge", quad_around_the_pixel,
+    RasterSharedEdge,
+    "interpolation/raster-shared-edge",
+    quad_around_the_pixel,
     "how many of two triangles that share an edge cover a pixel near that edge: one, wherever it lies",
     [window("a"), window("b"), window("c"), window("d")]
 );
@@ -389,10 +450,18 @@ impl RasterFlat {
 
 macro_rules! flat_inputs {
     ($last:literal) => {
-        const { &[
-            attr("a0"), attr("a1"), attr("a2"), attr("a3"), attr("a4"), attr("a5"),
-            Input::scalar("primitive", "1", Domain::Whole(0, $last)), PIXEL,
-        ] }
+        const {
+            &[
+                attr("a0"),
+                attr("a1"),
+                attr("a2"),
+                attr("a3"),
+                attr("a4"),
+                attr("a5"),
+                Input::scalar("primitive", "1", Domain::Whole(0, $last)),
+                PIXEL,
+            ]
+        }
     };
 }
 

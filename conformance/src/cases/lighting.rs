@@ -1,12 +1,12 @@
 //! Cases of lighting. Formulas: `lightmeter_reference::lighting`.
 
+use super::Visitor;
 use super::attenuation::{CUTOFF, EXPONENT, KC, KL, KQ};
 use super::formula::formula;
 use super::rows::Reader;
 use super::spec::{Domain, Hard, Input, Output, Shape};
-use super::Visitor;
-use lightmeter_reference::lighting::{self, Falloff, Gate, Light, Material, Specular, Vertex};
 use lightmeter_reference::Real;
+use lightmeter_reference::lighting::{self, Falloff, Gate, Light, Material, Specular, Vertex};
 
 const LA: Input = Input::rgb("la");
 const LD: Input = Input::rgb("ld");
@@ -147,8 +147,12 @@ directional!(
     ]
 );
 directional!(
-    PhongGated, "lighting/phong-gated", "lighting_phong_gated", (Specular::Phong, Gate::OpenGl),
-    "CF as lighting/phong, the highlight 0 where l·n ≤ 0", "OpenGL 2.1 §2.14.1; ruling 9, `opengl`"
+    PhongGated,
+    "lighting/phong-gated",
+    "lighting_phong_gated",
+    (Specular::Phong, Gate::OpenGl),
+    "CF as lighting/phong, the highlight 0 where l·n ≤ 0",
+    "OpenGL 2.1 §2.14.1; ruling 9, `opengl`"
 );
 formula!(
     /// Blinn's model with document 000's halfway vector.
@@ -197,11 +201,17 @@ macro_rules! point {
 }
 
 point!(
-    PointPhong, "lighting/point-phong", "lighting_point_phong", Specular::Phong,
+    PointPhong,
+    "lighting/point-phong",
+    "lighting_point_phong",
+    Specular::Phong,
     "CF = CA + atten·(CD + CS), l = ⟨position − p⟩, Phong's highlight"
 );
 point!(
-    PointBlinn, "lighting/point-blinn", "lighting_point_blinn", Specular::Blinn,
+    PointBlinn,
+    "lighting/point-blinn",
+    "lighting_point_blinn",
+    Specular::Blinn,
     "CF = CA + atten·(CD + CS), l = ⟨position − p⟩, Blinn's highlight"
 );
 formula!(
@@ -311,9 +321,17 @@ macro_rules! along_an_edge {
 }
 
 along_an_edge!(
-    Gouraud, "lighting/gouraud", "lighting_gouraud", lighting::gouraud,
-    "mix(I(a), I(b), t): lit at the vertices, the intensity interpolated", "000 §6.3, 004",
-    hard [Hard { name: "no-highlight-between", pins: "document 004: both vertices dark, so is the middle", inputs: BETWEEN }]
+    Gouraud,
+    "lighting/gouraud",
+    "lighting_gouraud",
+    lighting::gouraud,
+    "mix(I(a), I(b), t): lit at the vertices, the intensity interpolated",
+    "000 §6.3, 004",
+    hard[Hard {
+        name: "no-highlight-between",
+        pins: "document 004: both vertices dark, so is the middle",
+        inputs: BETWEEN
+    }]
 );
 along_an_edge!(
     PhongShading, "lighting/phong-shading", "lighting_phong_shading", lighting::phong,
@@ -324,8 +342,12 @@ along_an_edge!(
     ]
 );
 along_an_edge!(
-    PhongInterpolated, "lighting/phong-interpolated", "lighting_phong_interpolated", lighting::phong_interpolated,
-    "I of n, l and v interpolated from the vertices and normalised at the point", "003"
+    PhongInterpolated,
+    "lighting/phong-interpolated",
+    "lighting_phong_interpolated",
+    lighting::phong_interpolated,
+    "I of n, l and v interpolated from the vertices and normalised at the point",
+    "003"
 );
 
 /// A cylinder's edge from one side to the other: n·v < 0 at one vertex, n·l < 0 at the other, the mirror in the middle.

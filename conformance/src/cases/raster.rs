@@ -166,7 +166,8 @@ fn line(inputs: &[f32], snap: f64, out: &mut [Accept]) {
     let (clip, off) = vertices::<2>(inputs, snap);
     let attr = [inputs[8], inputs[9]].map(f64::from);
     let p = pixel(inputs);
-    let around = square(p, off.map(|off| off + 0.5)).map(|p| interpolation::fragment_of_line(clip, attr, &viewport(), p));
+    let around =
+        square(p, off.map(|off| off + 0.5)).map(|p| interpolation::fragment_of_line(clip, attr, &viewport(), p));
     let number = |x: f64| Accept::from_bounds(x, x);
     let exact = interpolation::fragment_of_line(clip, attr, &viewport(), p);
     let to: Viewport<Accept> = viewport();

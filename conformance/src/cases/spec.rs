@@ -75,7 +75,7 @@ pub enum Shape {
 impl Shape {
     /// How many numbers it has.
     #[must_use]
-    pub const fn len(self) -> usize {
+    pub const fn components(self) -> usize {
         match self {
             Self::Scalar => 1,
             Self::Vec2 => 2,
@@ -244,13 +244,13 @@ impl Spec {
     /// Numbers of an input row.
     #[must_use]
     pub fn input_len(&self) -> usize {
-        self.inputs.iter().map(|input| input.shape.len()).sum()
+        self.inputs.iter().map(|input| input.shape.components()).sum()
     }
 
     /// Numbers of an output row.
     #[must_use]
     pub fn output_len(&self) -> usize {
-        self.outputs.iter().map(|output| output.shape.len()).sum()
+        self.outputs.iter().map(|output| output.shape.components()).sum()
     }
 
     /// Where an input stands in a row.
@@ -258,7 +258,7 @@ impl Spec {
     pub fn place(&self, name: &str) -> Option<std::ops::Range<usize>> {
         let mut start = 0;
         for input in self.inputs {
-            let end = start + input.shape.len();
+            let end = start + input.shape.components();
             if input.name == name {
                 return Some(start..end);
             }
@@ -271,7 +271,7 @@ impl Spec {
     #[must_use]
     pub fn output_name(&self, mut number: usize) -> String {
         for output in self.outputs {
-            if number < output.shape.len() {
+            if number < output.shape.components() {
                 let component = match (output.shape, output.unit) {
                     (Shape::Scalar, _) => return output.name.into(),
                     (_, "color") => ["r", "g", "b", "a"][number].into(),
@@ -280,7 +280,7 @@ impl Spec {
                 };
                 return format!("{}.{component}", output.name);
             }
-            number -= output.shape.len();
+            number -= output.shape.components();
         }
         String::new()
     }

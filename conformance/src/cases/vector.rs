@@ -1,8 +1,8 @@
 //! Cases of vectors and transforms. Formulas: `lightmeter_reference::vector`.
 
+use super::Visitor;
 use super::formula::formula;
 use super::spec::{Domain, Hard, Input, Output, Shape};
-use super::Visitor;
 use lightmeter_reference::vector;
 
 const fn vec3(name: &'static str) -> Output {

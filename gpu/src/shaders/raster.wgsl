@@ -96,19 +96,6 @@ fn raster_own_depth(in: OwnDepth) -> @builtin(frag_depth) f32 {
     return in.depth;
 }
 
-// The depth buffer read back: drawn over the whole target once all cases are in.
-@group(0) @binding(2) var stored_depth: texture_depth_2d;
-
-@vertex
-fn raster_screen_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
-    return vec4f(select(-1.0, 3.0, corner == 1u), select(-1.0, 3.0, corner == 2u), 0.5, 1.0);
-}
-
-@fragment
-fn raster_read_depth(@builtin(position) position: vec4f) -> @location(0) vec4u {
-    return vec4u(bitcast<u32>(textureLoad(stored_depth, vec2i(position.xy), 0)), 0u, 0u, 0u);
-}
-
 // Row: six attributes, the number of the primitive that is looked at, the pixel. Every vertex carries its attribute flat;
 // the strip or list is laid out so that the primitive's middle falls on the pixel's centre.
 struct Flat {

@@ -17,8 +17,7 @@ pub enum Topology {
 
 impl Topology {
     /// All of them, in the order of their codes.
-    pub const ALL: [Self; 5] =
-        [Self::Points, Self::LineList, Self::LineStrip, Self::TriangleList, Self::TriangleStrip];
+    pub const ALL: [Self; 5] = [Self::Points, Self::LineList, Self::LineStrip, Self::TriangleList, Self::TriangleStrip];
 
     /// The name used in case ids, JSON and reports.
     #[must_use]

@@ -1,5 +1,8 @@
 //! The result of a run as data: what the JSON of `run` holds.
 
+pub mod junit;
+pub mod text;
+
 use crate::subject::Identity;
 use serde::{Serialize, Serializer};
 

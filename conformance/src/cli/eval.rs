@@ -1,0 +1,146 @@
+//! `lightmeter eval`.
+
+use super::Status;
+use super::options::Choice;
+use anyhow::{Context as _, bail};
+use clap::Args;
+use lightmeter::arithmetic::{Accept, Profile};
+use lightmeter::cases::Input;
+use lightmeter::cases::blend::aliases;
+use lightmeter::report::Number;
+use lightmeter::select::{Member, catalogue};
+use serde_json::{Map, Value, json};
+use std::collections::HashMap;
+use std::io::{BufRead as _, Write as _};
+
+/// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out.
+///
+/// A line is {"id": …, "formula": "fog/linear", "inputs": {"p": [0, 0, -5], "dmin": 1, …}}. Numbers are read as the nearest
+/// f32; NaN, Inf and -Inf are strings. `lightmeter list --formulas` names the inputs.
+#[derive(Debug, Args)]
+pub(crate) struct Eval {
+    /// Accuracy rules: wgsl or vulkan
+    #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
+    profile: &'static Profile,
+}
+
+impl Eval {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let catalogue = catalogue();
+        let mut by_id: HashMap<String, &Member> = catalogue.iter().map(|m| (m.spec.id.clone(), m)).collect();
+        for (alias, canonical) in aliases() {
+            let member = by_id[&canonical];
+            by_id.insert(alias, member);
+        }
+        let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+        for (number, line) in (1..).zip(std::io::stdin().lock().lines()) {
+            let line = line.with_context(|| format!("line {number} cannot be read"))?;
+            if line.trim().is_empty() {
+                continue;
+            }
+            match self.answer(&line, &by_id) {
+                Ok(answer) => writeln!(out, "{answer}")?,
+                Err(error) => {
+                    out.flush()?;
+                    bail!("line {number}: {error:#}");
+                }
+            }
+        }
+        out.flush()?;
+        Ok(Status::Success)
+    }
+
+    fn answer(&self, line: &str, by_id: &HashMap<String, &Member>) -> anyhow::Result<Value> {
+        let request: Value = serde_json::from_str(line).context("not JSON")?;
+        let Value::Object(request) = request else {
+            bail!("expected an object such as {{\"id\": 1, \"formula\": \"fog/linear\", \"inputs\": {{…}}}}");
+        };
+        for name in request.keys() {
+            if !["id", "formula", "inputs"].contains(&name.as_str()) {
+                bail!("field `{name}` is not known; expected `id`, `formula` and `inputs`");
+            }
+        }
+        let id = request.get("id").context("field `id` is missing; expected a string or a number")?;
+        let formula = request.get("formula").and_then(Value::as_str);
+        let formula =
+            formula.context("field `formula` is missing or not a string; expected one such as \"fog/linear\"")?;
+        let member = by_id.get(formula);
+        let member =
+            member.with_context(|| format!("field `formula`: no formula `{formula}`; see `lightmeter list`"))?;
+        let inputs = request.get("inputs").and_then(Value::as_object);
+        let inputs = row(member, inputs.context("field `inputs` is missing or not an object of numbers by name")?)?;
+
+        let outputs = member.spec.output_len();
+        let (mut value, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
+        member.formula.reference(&inputs, &mut value);
+        self.profile.scope(|| member.formula.interval(&inputs, &mut legal));
+        let condition = member
+            .formula
+            .condition(&inputs)
+            .into_iter()
+            .fold(0.0, |most: f64, c| if c.is_nan() || most.is_nan() { f64::NAN } else { most.max(c) });
+        let numbers = |f: &dyn Fn(usize) -> f64| (0..outputs).map(|k| Number(f(k))).collect::<Vec<_>>();
+        Ok(json!({
+            "id": id,
+            "value": numbers(&|k| value[k]),
+            "low": numbers(&|k| legal[k].low()),
+            "high": numbers(&|k| legal[k].high()),
+            "condition": Number(condition),
+        }))
+    }
+}
+
+/// The row of a formula's inputs.
+fn row(member: &Member, given: &Map<String, Value>) -> anyhow::Result<Vec<f32>> {
+    let names: Vec<&str> = member.spec.inputs.iter().map(|input| input.name).collect();
+    if let Some(unknown) = given.keys().find(|name| !names.contains(&name.as_str())) {
+        bail!("field `inputs.{unknown}`: {} has no such input; expected {}", member.spec.id, names.join(", "));
+    }
+    let mut row = vec![];
+    for input in member.spec.inputs {
+        let expected = || expected(input);
+        let value = given
+            .get(input.name)
+            .with_context(|| format!("field `inputs.{}` is missing; expected {}", input.name, expected()))?;
+        let values = match value {
+            Value::Array(values) if input.shape.components() > 1 => values.as_slice(),
+            single if input.shape.components() == 1 && !single.is_array() => std::slice::from_ref(single),
+            _ => bail!("field `inputs.{}`: expected {}", input.name, expected()),
+        };
+        if values.len() != input.shape.components() {
+            bail!("field `inputs.{}`: {} numbers; expected {}", input.name, values.len(), expected());
+        }
+        for value in values {
+            row.push(
+                number(value).with_context(|| {
+                    format!("field `inputs.{}`: {value} where {} is expected", input.name, expected())
+                })?,
+            );
+        }
+    }
+    Ok(row)
+}
+
+fn expected(input: &Input) -> String {
+    match input.shape.components() {
+        1 => "a number (or \"NaN\", \"Inf\", \"-Inf\")".into(),
+        many => format!("an array of {many} numbers"),
+    }
+}
+
+/// The nearest f32. A finite number beyond the range of f32 has none.
+fn number(value: &Value) -> Option<f32> {
+    match value {
+        Value::String(text) => match text.as_str() {
+            "NaN" => Some(f32::NAN),
+            "Inf" => Some(f32::INFINITY),
+            "-Inf" => Some(f32::NEG_INFINITY),
+            _ => None,
+        },
+        _ => {
+            #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is what is asked for")]
+            let nearest = value.as_f64()? as f32;
+            nearest.is_finite().then_some(nearest)
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! `lightmeter list`.
+
+use super::options::{Amount, Format};
+use super::run::matching;
+use super::{Status, emit};
+use anyhow::bail;
+use clap::Args;
+use lightmeter::cases::blend::aliases;
+use lightmeter::report::text::thousands;
+use lightmeter::select::{CaseRef, Member, Random, Selected, catalogue, select};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// List the cases as a tree, or the formulas with their inputs and outputs.
+#[derive(Debug, Args)]
+pub(crate) struct List {
+    /// Globs that match an id or an ancestor of it
+    filter: Vec<String>,
+    /// Every formula's inputs and outputs with units and ranges
+    #[arg(long)]
+    formulas: bool,
+    #[command(flatten)]
+    amount: Amount,
+    /// How the list is written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write the list to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl List {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let filter = matching(&self.filter, self.amount.cases)?;
+        let catalogue = catalogue();
+        let selected = select(&catalogue, &filter, self.amount.cases, self.amount.shard.0);
+        let text = match (self.format, self.formulas) {
+            (Format::Junit, _) => bail!("a list is written as text or json"),
+            (Format::Json, _) => {
+                let mut by_canonical = BTreeMap::<String, Vec<String>>::new();
+                for (alias, canonical) in aliases() {
+                    by_canonical.entry(canonical).or_default().push(alias);
+                }
+                let key = if self.formulas { "formulas" } else { "cases" };
+                let entries: Vec<Value> = selected
+                    .iter()
+                    .map(|chosen| {
+                        let member = &catalogue[chosen.member];
+                        let aliases = by_canonical.get(&member.spec.id).map_or(&[][..], Vec::as_slice);
+                        if self.formulas { formula(member, aliases) } else { cases(member, chosen, aliases) }
+                    })
+                    .collect();
+                serde_json::to_string_pretty(&json!({ "schema": format!("lightmeter.{key}/1"), key: entries }))? + "\n"
+            }
+            (Format::Text, true) => signatures(&catalogue, &selected)?,
+            (Format::Text, false) => tree(&catalogue, &selected)?,
+        };
+        emit(&text, self.out.as_deref())?;
+        Ok(Status::Success)
+    }
+}
+
+fn formula(member: &Member, aliases: &[String]) -> Value {
+    let spec = &member.spec;
+    json!({
+        "id": spec.id, "formula": spec.text, "source": spec.source,
+        "stages": spec.kind.stages(), "inputs": spec.inputs, "outputs": spec.outputs, "aliases": aliases,
+    })
+}
+
+fn cases(member: &Member, chosen: &Selected, aliases: &[String]) -> Value {
+    let hard: Vec<Value> = chosen
+        .hard
+        .iter()
+        .map(|&place| json!({ "id": member.case_id(CaseRef::Hard(place)), "pins": member.spec.hard[place].pins }))
+        .collect();
+    let random: Vec<String> = chosen
+        .cases()
+        .filter(|case| matches!(case, CaseRef::Random(_)))
+        .enumerate()
+        .filter(|(place, _)| matches!(chosen.random, Random::Some(_)) || *place == 0)
+        .map(|(_, case)| member.case_id(case))
+        .collect();
+    let count = chosen.count() - chosen.hard.len() as u64;
+    let mut entry = json!({ "formula": member.spec.id, "random": count, "hard": hard, "aliases": aliases });
+    let key = if matches!(chosen.random, Random::First(_)) { "first" } else { "ids" };
+    entry[key] = json!(random);
+    entry
+}
+
+fn signatures(catalogue: &[Member], selected: &[Selected]) -> anyhow::Result<String> {
+    let mut text = String::new();
+    for chosen in selected {
+        let spec = &catalogue[chosen.member].spec;
+        writeln!(text, "{}\n  {}  ({})", spec.id, spec.text, spec.source)?;
+        for input in spec.inputs {
+            let shape = format!("{:?}", input.shape).to_lowercase();
+            writeln!(text, "  in   {:<16} {shape:<7} {:<8} {:?}", input.name, input.unit, input.domain)?;
+        }
+        for output in spec.outputs {
+            let shape = format!("{:?}", output.shape).to_lowercase();
+            writeln!(text, "  out  {:<16} {shape:<7} {}", output.name, output.unit)?;
+        }
+    }
+    Ok(text)
+}
+
+fn tree(catalogue: &[Member], selected: &[Selected]) -> anyhow::Result<String> {
+    let mut text = String::new();
+    let mut family = "";
+    let mut total = 0;
+    for group in selected.chunk_by(|a, b| catalogue[a.member].spec.group() == catalogue[b.member].spec.group()) {
+        let spec = &catalogue[group[0].member].spec;
+        if spec.family() != family {
+            family = spec.family();
+            writeln!(text, "{family}")?;
+        }
+        let random: u64 = group.iter().map(|chosen| chosen.count() - chosen.hard.len() as u64).sum();
+        total += group.iter().map(Selected::count).sum::<u64>();
+        let name = spec.group().rsplit('/').next().unwrap_or_default();
+        let states = if group.len() > 1 { format!(" in {} states", group.len()) } else { String::new() };
+        writeln!(text, "  {name:<32} {:>9}{states}  {}", thousands(random), spec.text)?;
+        for chosen in group {
+            let member = &catalogue[chosen.member];
+            for &place in &chosen.hard {
+                writeln!(text, "    hard/{:<28} {}", member.spec.hard[place].name, member.spec.hard[place].pins)?;
+            }
+        }
+    }
+    writeln!(text, "{} cases", thousands(total))?;
+    Ok(text)
+}

@@ -1,0 +1,102 @@
+//! The command line: what can be asked for, and the exit codes.
+
+mod adapters;
+mod eval;
+mod list;
+mod options;
+mod run;
+mod show;
+
+use clap::{Parser, Subcommand};
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Tells whether a renderer computes classical lighting, fog and blending right, and how close it comes.
+#[derive(Debug, Parser)]
+#[command(
+    name = "lightmeter",
+    version,
+    after_help = "Exit codes: 0 all as expected · 1 something failed or passed unexpectedly · 2 bad usage or input · \
+    3 nothing could run · 4 the device failed or was lost"
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Judge the wgpu implementation on an adapter
+    Run(run::Run),
+    /// List the cases as a tree, or the formulas with their inputs and outputs
+    List(list::List),
+    /// Show one case: formula, inputs, each step, the interval, and what the adapter gives
+    Show(show::Show),
+    /// List what can be run on
+    Adapters(adapters::Adapters),
+    /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out
+    Eval(eval::Eval),
+}
+
+impl Cli {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        match self.command {
+            Command::Run(run) => run.run(),
+            Command::List(list) => list.run(),
+            Command::Show(show) => show.run(),
+            Command::Adapters(adapters) => adapters.run(),
+            Command::Eval(eval) => eval.run(),
+        }
+    }
+}
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Status {
+    /// All as expected.
+    Success = 0,
+    /// Something failed, or passed unexpectedly.
+    Failed = 1,
+    /// Bad usage or input.
+    BadInput = 2,
+    /// Nothing could run.
+    Nothing = 3,
+    /// The device failed or was lost.
+    Device = 4,
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        Self::from(status as u8)
+    }
+}
+
+/// Nothing could run: no adapter, or no case.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub(crate) struct NothingToRun(pub(crate) String);
+
+impl Status {
+    /// The status that an error ends with.
+    pub(crate) fn of(error: &anyhow::Error) -> Self {
+        if error.downcast_ref::<NothingToRun>().is_some() {
+            return Self::Nothing;
+        }
+        match error.downcast_ref::<lightmeter_gpu::Error>() {
+            Some(lightmeter_gpu::Error::Device(_)) => Self::Device,
+            Some(lightmeter_gpu::Error::Open { .. }) => Self::Nothing,
+            _ => Self::BadInput,
+        }
+    }
+}
+
+/// Writes to the file, or to standard output.
+pub(crate) fn emit(text: &str, file: Option<&Path>) -> anyhow::Result<()> {
+    match file {
+        Some(path) => {
+            std::fs::write(path, text).map_err(|error| anyhow::anyhow!("cannot write {}: {error}", path.display()))
+        }
+        None => Ok(std::io::stdout().lock().write_all(text.as_bytes())?),
+    }
+}

@@ -1,0 +1,158 @@
+//! Options that several commands share, read into what the library takes.
+
+use super::NothingToRun;
+use anyhow::{Context as _, bail};
+use clap::Args;
+use lightmeter::arithmetic::Profile;
+use lightmeter::arithmetic::profile::PROFILES;
+use lightmeter::filter::Filter;
+use lightmeter::run::Options;
+use lightmeter::select::Shard;
+use lightmeter::subject::Subject;
+use lightmeter_gpu::{Adapter, Shaders};
+use std::num::NonZeroU64;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// How output is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Format {
+    Text,
+    Json,
+    Junit,
+}
+
+/// Which cases, on what, by which rules.
+#[derive(Debug, Args)]
+pub(crate) struct Choice {
+    /// Adapter to run on, by its short name in `lightmeter adapters`; `cpu` for the embedded implementation; `all`.
+    /// Again for several. Without it: lavapipe, or the first adapter there is
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Vec<String>,
+    /// Accuracy rules: wgsl or vulkan
+    #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
+    pub(crate) profile: &'static Profile,
+    /// Seed of the random cases
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Judge the WGSL in this folder in place of the built-in files of the same names
+    #[arg(long, value_name = "DIR")]
+    pub(crate) shaders: Option<PathBuf>,
+}
+
+/// How many cases.
+#[derive(Debug, Args)]
+pub(crate) struct Amount {
+    /// Random cases for each formula; a sixteenth of that for each blend state
+    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) cases: u64,
+    /// Only a part of the cases: the I-th of N
+    #[arg(long, value_name = "I/N", default_value = "1/1")]
+    pub(crate) shard: ShardArgument,
+}
+
+/// `I/N` on the command line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShardArgument(pub(crate) Shard);
+
+impl FromStr for ShardArgument {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("`{text}` is not a shard; expected I/N with 1 ≤ I ≤ N, as 2/8");
+        let (index, count) = text.split_once('/').ok_or_else(expected)?;
+        let (index, count): (u64, NonZeroU64) =
+            (index.parse().map_err(|_| expected())?, count.parse().map_err(|_| expected())?);
+        if index == 0 || index > count.get() {
+            return Err(expected());
+        }
+        Ok(Self(Shard { index: index - 1, count }))
+    }
+}
+
+impl std::fmt::Display for ShardArgument {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.0.index + 1, self.0.count)
+    }
+}
+
+impl Choice {
+    /// The profile of that name.
+    pub(crate) fn profile(name: &str) -> Result<&'static Profile, String> {
+        let names: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
+        Profile::by_name(name).ok_or_else(|| format!("no such profile; expected one of {}", names.join(", ")))
+    }
+
+    /// The shaders to judge.
+    pub(crate) fn shaders(&self) -> anyhow::Result<Shaders> {
+        Ok(match &self.shaders {
+            Some(dir) => Shaders::from_dir(dir)?,
+            None => Shaders::built_in()?,
+        })
+    }
+
+    /// The library's options for a filter.
+    pub(crate) fn options(&self, filter: Filter, cases: u64, shard: Shard) -> anyhow::Result<Options> {
+        let mut rerun = String::new();
+        if self.seed != 1 {
+            rerun += &format!(" --seed {}", self.seed);
+        }
+        if self.profile.name != "wgsl" {
+            rerun += &format!(" --profile {}", self.profile.name);
+        }
+        if let Some(dir) = &self.shaders {
+            rerun += &format!(" --shaders '{}'", dir.display());
+        }
+        Ok(Options { filter, cases, seed: self.seed, shard, profile: self.profile, shaders: self.shaders()?, rerun })
+    }
+
+    /// The subjects that were asked for, opened.
+    pub(crate) fn subjects(&self) -> anyhow::Result<Vec<Subject>> {
+        if self.adapter.is_empty() {
+            let found = lightmeter_gpu::vulkan_adapters();
+            let found = if found.is_empty() { lightmeter_gpu::adapters() } else { found };
+            let Some(first) = found.first() else { return Err(no_adapter().into()) };
+            return Ok(vec![Subject::open(first)?]);
+        }
+        let only_cpu = self.adapter.iter().all(|name| name == "cpu");
+        let mut found = if only_cpu { vec![] } else { lightmeter_gpu::vulkan_adapters() };
+        let known = |found: &[Adapter], name: &String| name == "cpu" || found.iter().any(|a| a.name == *name);
+        if !self.adapter.iter().all(|name| known(&found, name)) {
+            found = lightmeter_gpu::adapters();
+        }
+        let mut subjects = vec![];
+        for name in &self.adapter {
+            match name.as_str() {
+                "cpu" => subjects.push(Subject::embedded()),
+                "all" => {
+                    for adapter in &found {
+                        subjects.push(Subject::open(adapter)?);
+                    }
+                    if found.is_empty() {
+                        return Err(no_adapter().into());
+                    }
+                }
+                name => {
+                    let Some(adapter) = found.iter().find(|adapter| adapter.name == name) else {
+                        if found.is_empty() {
+                            return Err(no_adapter()).context(format!("adapter `{name}` is not here"));
+                        }
+                        let names: Vec<&str> = found.iter().map(|adapter| adapter.name.as_str()).collect();
+                        bail!("no adapter `{name}`; there are {}, cpu and all", names.join(", "));
+                    };
+                    subjects.push(Subject::open(adapter)?);
+                }
+            }
+        }
+        let mut seen = std::collections::HashSet::new();
+        subjects.retain(|subject| seen.insert(subject.identity.name.clone()));
+        Ok(subjects)
+    }
+}
+
+fn no_adapter() -> NothingToRun {
+    NothingToRun(
+        "no Vulkan or OpenGL driver is here. `./x run` installs lavapipe, a driver that needs no GPU; or run on the \
+         embedded implementation with `--adapter cpu`"
+            .into(),
+    )
+}

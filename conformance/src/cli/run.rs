@@ -1,0 +1,115 @@
+//! `lightmeter run`.
+
+use super::options::{Amount, Choice, Format};
+use super::{NothingToRun, Status, emit};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lightmeter::filter::Filter;
+use lightmeter::report::{Report, junit, text};
+use lightmeter::run::{Progress, run};
+use lightmeter::select::{catalogue, select};
+use std::path::PathBuf;
+
+/// Judge the wgpu implementation on an adapter.
+#[derive(Debug, Args)]
+pub(crate) struct Run {
+    /// Globs that match an id or an ancestor of it: `fog`, `fog/*/hard`, `blend/add/**/0007`
+    filter: Vec<String>,
+    #[command(flatten)]
+    choice: Choice,
+    #[command(flatten)]
+    amount: Amount,
+    /// A row for each formula rather than for each family
+    #[arg(long)]
+    groups: bool,
+    /// Say where the time went
+    #[arg(long)]
+    timing: bool,
+    /// How the result is written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write the result to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Run {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let shard = self.amount.shard.0;
+        let options = self.choice.options(matching(&self.filter, self.amount.cases)?, self.amount.cases, shard)?;
+        let mut subjects = self.choice.subjects()?;
+        let mut bar = Bar::default();
+        let report = run(&mut subjects, &options, &mut bar);
+        bar.0.finish_and_clear();
+        let report = report?;
+        emit(&self.write(&report)?, self.out.as_deref())?;
+        Ok(status(&report))
+    }
+
+    fn write(&self, report: &Report) -> anyhow::Result<String> {
+        Ok(match self.format {
+            Format::Json => serde_json::to_string_pretty(report)? + "\n",
+            Format::Junit => junit::to_string(report)?,
+            Format::Text => {
+                let detail = if self.groups { text::Detail::Groups } else { text::Detail::Families };
+                let mut out = String::new();
+                text::write(report, detail, self.timing, &mut out)?;
+                out
+            }
+        })
+    }
+}
+
+/// Nothing ran where every case was skipped, or every verdict permits anything.
+fn status(report: &Report) -> Status {
+    if !report.is_success() {
+        return Status::Failed;
+    }
+    let totals = &report.totals;
+    if totals.passed + totals.expected_failures == 0 {
+        eprintln!("error: nothing was judged: every case was skipped or indeterminate");
+        return Status::Nothing;
+    }
+    Status::Success
+}
+
+/// The filter, each of whose globs must match something.
+pub(crate) fn matching(globs: &[String], cases: u64) -> anyhow::Result<Filter> {
+    let catalogue = catalogue();
+    for glob in globs {
+        let filter = Filter::new(std::slice::from_ref(glob))?;
+        if select(&catalogue, &filter, cases, lightmeter::select::Shard::WHOLE).is_empty() {
+            let families = lightmeter::cases::FAMILIES.join(", ");
+            return Err(NothingToRun(format!(
+                "no case matches `{glob}`; ids begin with a family ({families}), as `fog/linear/random/000017`: see \
+                 `lightmeter list`"
+            ))
+            .into());
+        }
+    }
+    Ok(Filter::new(globs)?)
+}
+
+/// A bar on standard error, where that is a terminal.
+struct Bar(ProgressBar);
+
+impl Default for Bar {
+    fn default() -> Self {
+        Self(ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()))
+    }
+}
+
+impl Progress for Bar {
+    fn start(&mut self, cases: u64) {
+        self.0.set_length(cases);
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} cases  {elapsed}  {msg}") {
+            self.0.set_style(style);
+        }
+    }
+    fn group(&mut self, id: &str) {
+        self.0.set_message(id.to_owned());
+    }
+    fn advance(&mut self, cases: u64) {
+        self.0.inc(cases);
+    }
+}

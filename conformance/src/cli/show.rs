@@ -1,0 +1,242 @@
+//! `lightmeter show`.
+
+use super::options::{Choice, Format};
+use super::{Status, emit};
+use anyhow::bail;
+use clap::Args;
+use lightmeter::arithmetic::{Accept, Trace, trace};
+use lightmeter::cases::blend::aliases;
+use lightmeter::judge::{Outcome, judge};
+use lightmeter::report::Number;
+use lightmeter::run::{Evaluator, by_name, intervals};
+use lightmeter::select::{CaseRef, Member, catalogue};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Show one case: formula, inputs, each step, the interval, and what the adapter gives.
+#[derive(Debug, Args)]
+pub(crate) struct Show {
+    /// The case, as `fog/linear/hard/dmin-equals-dmax` or `lighting/phong/random/000017`
+    id: String,
+    #[command(flatten)]
+    choice: Choice,
+    /// How the case is written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write it to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// A stage's answer on a subject.
+struct Answer {
+    adapter: String,
+    stage: &'static str,
+    values: Result<Vec<(u32, Accept)>, &'static str>,
+}
+
+/// What is known of the case without a renderer.
+struct Known {
+    inputs: Vec<f32>,
+    outputs: Vec<Trace>,
+    steps: Vec<trace::Step>,
+    condition: Vec<f64>,
+}
+
+impl Show {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let catalogue = catalogue();
+        let (member, case) = find(&catalogue, &self.id)?;
+        let mut inputs = vec![];
+        member.inputs(case, self.choice.seed, &mut inputs);
+        let mut outputs = vec![Trace { value: 0.0, interval: Accept::ANY }; member.spec.output_len()];
+        let ((), steps) = self.choice.profile.scope(|| trace::record(|| member.formula.trace(&inputs, &mut outputs)));
+        let condition = member.formula.condition(&inputs);
+        let known = Known { inputs, outputs, steps, condition };
+        let answers = self.answers(member, &known.inputs)?;
+        let text = match self.format {
+            Format::Junit => bail!("a case is written as text or json"),
+            Format::Json => serde_json::to_string_pretty(&as_json(member, case, &known, &answers))? + "\n",
+            Format::Text => as_text(member, case, &known, &answers)?,
+        };
+        emit(&text, self.out.as_deref())?;
+        Ok(Status::Success)
+    }
+
+    /// Without an adapter that was asked for, a machine without a driver still shows the case.
+    fn answers(&self, member: &Member, inputs: &[f32]) -> anyhow::Result<Vec<Answer>> {
+        let shaders = self.choice.shaders()?;
+        let subjects = match self.choice.subjects() {
+            Ok(subjects) => subjects,
+            Err(error) if self.choice.adapter.is_empty() => {
+                eprintln!("note: {error:#}");
+                vec![]
+            }
+            Err(error) => return Err(error),
+        };
+        let (mut answers, members) = (vec![], [member]);
+        for mut subject in subjects {
+            let evaluator = Evaluator::new(&mut subject, &members, &shaders)?;
+            for (stage, words) in evaluator.run(&mut subject, &[0], inputs)? {
+                let mut legal = vec![Accept::ANY; member.spec.output_len()];
+                let profile = self.choice.profile;
+                profile.scope(|| intervals(member, inputs, stage, &subject, profile, &mut legal));
+                let values = words.map(|words| words.into_iter().zip(legal).collect());
+                answers.push(Answer { adapter: subject.identity.name.clone(), stage: stage.name(), values });
+            }
+        }
+        Ok(answers)
+    }
+}
+
+/// The case of an id, which may name an alias.
+fn find<'a>(catalogue: &'a [Member], id: &str) -> anyhow::Result<(&'a Member, CaseRef)> {
+    let canonical = aliases().find_map(|(alias, canonical)| {
+        id.strip_prefix(&alias).filter(|rest| rest.starts_with('/')).map(|rest| canonical + rest)
+    });
+    let id = canonical.as_deref().unwrap_or(id);
+    if let Some(found) = catalogue.iter().find_map(|member| member.case(id).map(|case| (member, case))) {
+        return Ok(found);
+    }
+    match catalogue.iter().find(|member| id == member.spec.id || id.starts_with(&format!("{}/", member.spec.group()))) {
+        Some(member) => bail!(
+            "no case `{id}`; `{}` has cases such as `{}`: see `lightmeter list '{}'`",
+            member.spec.group(),
+            member.case_id(CaseRef::Random(0)),
+            member.spec.group()
+        ),
+        None => bail!("no case `{id}`; an id is as `fog/linear/random/000017`: see `lightmeter list`"),
+    }
+}
+
+fn outcome(bits: u32, reference: f64, legal: &Accept) -> (&'static str, f64) {
+    let verdict = judge(bits, reference, legal);
+    let name = match verdict.outcome {
+        Outcome::Pass => "pass",
+        Outcome::Fail => "fail",
+        Outcome::Indeterminate => "indeterminate",
+    };
+    (name, verdict.error_ulp)
+}
+
+fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) -> anyhow::Result<String> {
+    let mut text = String::new();
+    let spec = &member.spec;
+    writeln!(text, "{}\n  {}  ({})", member.case_id(case), spec.text, spec.source)?;
+    if let CaseRef::Hard(place) = case {
+        writeln!(text, "  pins: {}", spec.hard[place].pins)?;
+    }
+    writeln!(text, "\ninputs")?;
+    let mut rest = known.inputs.as_slice();
+    for input in spec.inputs {
+        let (these, others) = rest.split_at(input.shape.components());
+        rest = others;
+        let decimal: Vec<String> = these.iter().map(|&x| Number(x.into()).to_string()).collect();
+        let hex: Vec<String> = these.iter().map(|x| format!("0x{:08x}", x.to_bits())).collect();
+        writeln!(text, "  {:<22} {}  {}  {}", input.name, decimal.join(" "), hex.join(" "), input.unit)?;
+    }
+    writeln!(text, "\nsteps                    f64                      legal in f32")?;
+    for (step, name) in known.steps.iter().zip(step_names(&known.steps)) {
+        writeln!(text, "  {name:<22} {:<24} {}", Number(step.result.value).to_string(), range(&step.result.interval))?;
+    }
+    writeln!(text, "\noutputs                  reference                legal in f32")?;
+    for (k, output) in known.outputs.iter().enumerate() {
+        let condition = Number(known.condition[k]);
+        writeln!(
+            text,
+            "  {:<22} {:<24} {}  condition {condition}",
+            spec.output_name(k),
+            Number(output.value).to_string(),
+            range(&output.interval)
+        )?;
+    }
+    for Answer { adapter, stage, values } in answers {
+        writeln!(text, "\n{adapter}, {stage}")?;
+        match values {
+            Err(reason) => writeln!(text, "  skipped: {reason}")?,
+            Ok(values) => {
+                for (k, (bits, legal)) in values.iter().enumerate() {
+                    let value = Number(f32::from_bits(*bits).into()).to_string();
+                    let (outcome, error) = outcome(*bits, known.outputs[k].value, legal);
+                    let name = spec.output_name(k);
+                    writeln!(
+                        text,
+                        "  {name:<22} {value:<24} 0x{bits:08x}  {outcome}, {} ULP; legal here {}",
+                        Number(error),
+                        range(legal)
+                    )?;
+                }
+            }
+        }
+    }
+    Ok(text)
+}
+
+/// The steps' names, the components of a vector told apart.
+fn step_names(steps: &[trace::Step]) -> Vec<String> {
+    let mut names = vec![];
+    for run in steps.chunk_by(|a, b| a.name == b.name) {
+        match run {
+            [step] => names.push(step.name.to_owned()),
+            _ => {
+                names.extend(run.iter().zip("xyzw".chars().cycle()).map(|(step, axis)| format!("{}.{axis}", step.name)))
+            }
+        }
+    }
+    names
+}
+
+fn range(interval: &Accept) -> String {
+    if interval.is_any() {
+        "anything".into()
+    } else {
+        format!("{} to {}", Number(interval.low()), Number(interval.high()))
+    }
+}
+
+fn as_json(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) -> Value {
+    let bounds = |interval: &Accept| json!([Number(interval.low()), Number(interval.high())]);
+    let steps: Vec<Value> = known
+        .steps
+        .iter()
+        .map(|s| json!({ "name": s.name, "value": Number(s.result.value), "interval": bounds(&s.result.interval) }))
+        .collect();
+    let outputs: Vec<Value> = (0..known.outputs.len())
+        .map(|k| {
+            let output = &known.outputs[k];
+            json!({
+                "name": member.spec.output_name(k), "reference": Number(output.value),
+                "interval": bounds(&output.interval), "condition": Number(known.condition[k]),
+            })
+        })
+        .collect();
+    let answers: Vec<Value> = answers
+        .iter()
+        .map(|answer| match &answer.values {
+            Err(reason) => json!({ "adapter": answer.adapter, "stage": answer.stage, "skipped": reason }),
+            Ok(values) => {
+                let values: Vec<Value> = values
+                    .iter()
+                    .enumerate()
+                    .map(|(k, (bits, legal))| {
+                        let (outcome, error) = outcome(*bits, known.outputs[k].value, legal);
+                        json!({
+                            "output": member.spec.output_name(k), "value": Number(f32::from_bits(*bits).into()),
+                            "hex": format!("0x{bits:08x}"), "interval": bounds(legal), "outcome": outcome,
+                            "error_ulp": Number(error),
+                        })
+                    })
+                    .collect();
+                json!({ "adapter": answer.adapter, "stage": answer.stage, "values": values })
+            }
+        })
+        .collect();
+    json!({
+        "schema": "lightmeter.show/1", "id": member.case_id(case), "formula": member.spec.text,
+        "source": member.spec.source,
+        "inputs": by_name(member, &known.inputs, |x| json!(Number(x.into()))),
+        "inputs_hex": by_name(member, &known.inputs, |x| json!(format!("0x{:08x}", x.to_bits()))),
+        "steps": steps, "outputs": outputs, "answers": answers,
+    })
+}

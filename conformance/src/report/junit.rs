@@ -1,0 +1,55 @@
+//! A run's result as JUnit XML: a suite for each adapter, a test for each group and stage.
+
+use super::{Group, Report, text};
+use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
+use std::time::Duration;
+
+/// The document.
+///
+/// # Errors
+/// Where it cannot be written as XML.
+pub fn to_string(report: &Report) -> Result<String, SerializeError> {
+    let mut document = Document::new("lightmeter");
+    for adapter in &report.adapters {
+        let mut suite = TestSuite::new(adapter.name.as_str());
+        for group in report.groups.iter().filter(|group| group.adapter == adapter.name) {
+            let mut case = TestCase::new(format!("{} ({})", group.id, group.stage), status(group, report));
+            case.set_classname(group.id.replace('/', ".")).set_time(Duration::from_secs_f64(group.seconds));
+            suite.add_test_case(case);
+        }
+        for deviation in report.deviations.iter().filter(|deviation| deviation.adapter == adapter.name) {
+            let mut status = TestCaseStatus::success();
+            if !deviation.still_needed {
+                status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+                status.set_message("unexpected pass: the deviation is no longer needed");
+            }
+            suite.add_test_case(TestCase::new(format!("deviation/{}", deviation.name), status));
+        }
+        document.add_test_suite(suite);
+    }
+    document.to_string()
+}
+
+fn status(group: &Group, report: &Report) -> TestCaseStatus {
+    if let Some(reason) = group.skip_reason {
+        let mut status = TestCaseStatus::skipped();
+        status.set_message(reason);
+        return status;
+    }
+    if group.totals.failed == 0 && group.problem.is_none() {
+        return TestCaseStatus::success();
+    }
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+    let problem = group.problem.as_deref().unwrap_or_default();
+    status.set_message(format!("{} of {} verdicts failed {problem}", group.totals.failed, group.totals.verdicts));
+    let mut description = String::new();
+    let of_group = |id: &str| id.strip_prefix(&group.id).is_some_and(|rest| rest.starts_with('/'));
+    for failure in
+        report.failures.iter().filter(|f| f.adapter == group.adapter && f.stage == group.stage && of_group(&f.id))
+    {
+        // Writing to a string does not fail.
+        let _ = text::failure(failure, &mut description);
+    }
+    status.set_description(description);
+    status
+}

@@ -1,0 +1,359 @@
+//! The real binary: what it prints, how it ends, and which mistakes in a shader it names.
+
+#![expect(clippy::float_cmp, reason = "what must hold exactly is compared exactly")]
+
+use serde_json::Value;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn command(args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lightmeter"));
+    command.args(args);
+    command
+}
+
+fn lightmeter(args: &[&str]) -> Output {
+    command(args).output().expect("the binary starts")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("the binary ends by itself")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("output is UTF-8")
+}
+
+fn stderr(output: &Output) -> String {
+    let text = String::from_utf8(output.stderr.clone()).expect("messages are UTF-8");
+    assert!(!text.contains("panicked"), "{text}");
+    text
+}
+
+fn json(args: &[&str]) -> Value {
+    let output = lightmeter(args);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)))
+}
+
+/// A folder of this test's own, with a copy of one shader, edited.
+fn edited(test: &str, file: &str, edit: impl Fn(&str) -> String) -> PathBuf {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).expect("a folder for shaders can be made");
+    let (_, text) = lightmeter_gpu::FILES.into_iter().find(|(name, _)| *name == file).expect("the shader is built in");
+    std::fs::write(dir.join(file), edit(text)).expect("a shader can be written");
+    dir
+}
+
+/// A mistake: the file, what stands there, what is put in its place, and the family that must fail.
+const MISTAKES: &[(&str, &str, &str, &str, &str)] = &[
+    ("a normalize dropped", "lighting.wgsl", "let n = vector_normalize(normal);", "let n = normal;", "lighting"),
+    ("reflect with its sign flipped", "vector.wgsl", "return i - 2.0", "return i + 2.0", "vector"),
+    ("v + l not normalised", "vector.wgsl", "vector_normalize(v + l)", "(v + l)", "vector"),
+    ("kl and kq swapped", "attenuation.wgsl", "d * (kl + d * kq)", "d * (kq + d * kl)", "attenuation"),
+    ("|z| for length(p)", "fog.wgsl", "return length(p);", "return abs(p.z);", "fog"),
+    ("min(As, 1 − As)", "blend.wgsl", "min(src.a, 1.0 - dst.a)", "min(src.a, 1.0 - src.a)", "blend"),
+    ("1 − As read as As", "blend.wgsl", "vec4f(1.0 - src.a)", "vec4f(src.a)", "blend"),
+    ("max dropped in the diffuse term", "lighting.wgsl", "max(dot(l, n), 0.0)", "dot(l, n)", "lighting"),
+    ("shininess + 1 %", "vector.wgsl", "pow(cosine, exponent)", "pow(cosine, 1.01 * exponent)", "lighting"),
+    ("shininess − 1 %", "vector.wgsl", "pow(cosine, exponent)", "pow(cosine, 0.99 * exponent)", "lighting"),
+    ("a truncated 8-bit conversion", "color.wgsl", "round(255.0", "floor(255.0", "color"),
+    ("provoking vertex first for last", "raster.wgsl", "(drawn + 2u) % 3u", "drawn % 3u", "interpolation"),
+    (
+        "weights α and β swapped",
+        "interpolation.wgsl",
+        "let alpha = weights.x;\n    let beta = weights.y;",
+        "let alpha = weights.y;\n    let beta = weights.x;",
+        "interpolation",
+    ),
+    ("perspective for linear", "raster.wgsl", "@interpolate(linear)", "@interpolate(perspective)", "interpolation"),
+    ("linear for perspective", "raster.wgsl", "@interpolate(perspective)", "@interpolate(linear)", "interpolation"),
+];
+
+#[test]
+fn each_mistake_in_a_shader_fails_by_family() {
+    for (place, (mistake, file, right, wrong, family)) in MISTAKES.iter().enumerate() {
+        let dir = edited(&format!("mistake-{place}"), file, |text| {
+            assert!(text.contains(right), "{mistake}: `{right}` no longer stands in {file}");
+            text.replace(right, wrong)
+        });
+        let dir = dir.to_str().expect("the folder's name is UTF-8");
+        let args = ["run", family, "--shaders", dir, "--cases", "256", "--groups"];
+        let output = lightmeter(&args);
+        let text = stdout(&output);
+        assert_eq!(code(&output), 1, "{mistake}: {text}{}", stderr(&output));
+        assert!(text.contains(&format!("✗ {family}/")), "{mistake}: {text}");
+        assert!(text.contains(&format!("FAIL {family}/")) && text.contains("again"), "{mistake}: {text}");
+    }
+}
+
+#[test]
+fn unedited_copies_pass() {
+    let dir = edited("unedited", "fog.wgsl", str::to_owned);
+    let output = lightmeter(&["run", "fog", "--cases", "64", "--shaders", dir.to_str().expect("UTF-8")]);
+    assert_eq!(code(&output), 0, "{}", stdout(&output));
+}
+
+#[test]
+fn a_run_in_json_has_what_others_build_upon() {
+    let report = json(&["run", "fog/linear", "attenuation", "--cases", "100", "--format", "json"]);
+    assert_eq!(report["schema"], "lightmeter.run/1");
+    assert_eq!((report["seed"].as_u64(), report["profile"].as_str()), (Some(1), Some("wgsl")));
+    assert!(report["seconds"].as_f64().is_some() && report["adapters"][0]["backend"].is_string());
+    for total in
+        ["cases", "verdicts", "passed", "failed", "expected_failures", "unexpected_passes", "skipped", "indeterminate"]
+    {
+        assert!(report["totals"][total].is_u64(), "{total}");
+    }
+    let groups = report["groups"].as_array().expect("groups");
+    let linear =
+        groups.iter().find(|group| group["id"] == "fog/linear" && group["stage"] == "fragment").expect("fog/linear");
+    for field in [
+        "adapter",
+        "cases",
+        "verdicts",
+        "failed",
+        "skipped",
+        "indeterminate",
+        "error_ulp_max",
+        "margin_max",
+        "seconds",
+        "worst",
+    ] {
+        assert!(!linear[field].is_null(), "{field}");
+    }
+    assert_eq!(linear["cases"], 107);
+    assert_eq!(report["failures"], Value::Array(vec![]));
+}
+
+#[test]
+fn a_failure_in_json_tells_how_to_run_it_again() {
+    let dir = edited("again", "fog.wgsl", |text| text.replace("dmax - distance", "dmax + distance"));
+    let dir = dir.to_str().expect("UTF-8");
+    let report = json(&["run", "fog/linear", "--cases", "64", "--format", "json", "--shaders", dir, "--seed", "5"]);
+    let failure = &report["failures"][0];
+    for field in ["id", "adapter", "inputs", "reference", "interval", "value", "error_ulp", "rerun"] {
+        assert!(!failure[field].is_null(), "{field}");
+    }
+    let rerun = failure["rerun"].as_str().expect("a command");
+    let id = failure["id"].as_str().expect("an id");
+    assert!(rerun.contains(id) && rerun.contains("--seed 5") && rerun.contains("--shaders"), "{rerun}");
+    let again = json(&["run", id, "--format", "json", "--shaders", dir, "--seed", "5"]);
+    assert_eq!(again["failures"][0]["inputs"], failure["inputs"]);
+}
+
+#[test]
+fn shards_make_the_whole() {
+    let cases = |shard: &str| {
+        json(&["run", "fog", "--adapter", "cpu", "--cases", "100", "--shard", shard, "--format", "json"])["totals"]["cases"].as_u64().expect("a count")
+    };
+    assert_eq!(cases("1/3") + cases("2/3") + cases("3/3"), cases("1/1"));
+    assert_eq!(code(&lightmeter(&["run", "--shard", "4/3"])), 2);
+}
+
+#[test]
+fn the_embedded_implementation_passes_without_a_driver() {
+    let output = command(&["run", "--adapter", "cpu", "--cases", "64"]).env("VK_DRIVER_FILES", "/nowhere").output();
+    let output = output.expect("the binary starts");
+    assert_eq!(code(&output), 0, "{}{}", stdout(&output), stderr(&output));
+}
+
+#[test]
+fn all_blend_states_are_judged_or_aliases() {
+    let report = json(&["run", "blend", "--adapter", "cpu", "--cases", "16", "--format", "json"]);
+    let judged: u64 = report["routes"].as_object().expect("routes").values().filter_map(Value::as_u64).sum();
+    assert_eq!((judged, report["aliases"].as_u64()), (677, Some(448)));
+    let alias = json(&["run", "blend/min/src-alpha/zero", "--adapter", "cpu", "--format", "json"]);
+    assert_eq!(alias["groups"][0]["id"], "blend/min");
+}
+
+#[test]
+fn junit_is_written_to_a_file() {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("junit.xml");
+    let name = file.to_str().expect("UTF-8");
+    let output =
+        lightmeter(&["run", "vector/reflect", "--adapter", "cpu", "--cases", "8", "--format", "junit", "--out", name]);
+    assert_eq!((code(&output), stdout(&output).as_str()), (0, ""));
+    let text = std::fs::read_to_string(file).expect("the file was written");
+    assert!(text.contains("<testsuite name=\"cpu\"") && text.contains("vector/reflect (compute)"), "{text}");
+}
+
+#[test]
+fn cases_and_formulas_are_listed() {
+    let tree = stdout(&lightmeter(&["list", "fog"]));
+    assert!(tree.contains("hard/dmin-equals-dmax") && !tree.contains("lighting"), "{tree}");
+    let hard = json(&["list", "*/*/hard", "--format", "json"]);
+    assert!(hard["cases"].as_array().expect("cases").iter().all(|c| c["random"] == 0 && !c["hard"][0]["id"].is_null()));
+    let formulas = json(&["list", "--formulas", "--format", "json"]);
+    let linear = formulas["formulas"]
+        .as_array()
+        .expect("formulas")
+        .iter()
+        .find(|f| f["id"] == "fog/linear")
+        .expect("fog/linear")
+        .clone();
+    assert_eq!(
+        (linear["inputs"][1]["name"].as_str(), linear["inputs"][1]["unit"].as_str()),
+        (Some("dmin"), Some("unit"))
+    );
+    assert!(!linear["inputs"][1]["domain"].is_null() && linear["outputs"][0]["name"] == "f");
+}
+
+#[test]
+fn a_case_is_shown_whole() {
+    let text = stdout(&lightmeter(&["show", "fog/linear/hard/at-dmax"]));
+    for part in
+        ["f = clamp", "pins:", "0xc1200000", "steps", "distance", "reference", "compute", "fragment", "condition"]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let shown = json(&["show", "blend/min/src-alpha/one/0007", "--adapter", "cpu", "--format", "json"]);
+    assert_eq!(shown["id"], "blend/min/one/one/0007");
+    assert_eq!(shown["answers"][0]["values"][0]["outcome"], "pass");
+}
+
+#[test]
+fn adapters_are_listed() {
+    let adapters = json(&["adapters", "--format", "json"]);
+    assert!(adapters["adapters"][0]["name"].is_string());
+    assert!(stdout(&lightmeter(&["adapters"])).contains("cpu"));
+}
+
+fn eval(lines: &str) -> Output {
+    let mut child = command(&["eval"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the binary starts");
+    child.stdin.take().expect("a pipe").write_all(lines.as_bytes()).expect("lines can be written");
+    child.wait_with_output().expect("the binary ends")
+}
+
+const LINE: &str =
+    r#"{"id":"a","formula":"fog/linear","inputs":{"p":[0,0,-5],"dmin":0,"dmax":10,"fog":[0,0,0],"shaded":[1,1,1]}}"#;
+
+#[test]
+fn lines_are_evaluated() {
+    let output =
+        eval(&format!("{LINE}\n\n{}\n", LINE.replace("\"a\"", "2").replace("fog/linear", "fog/linear-radial")));
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let answers: Vec<Value> = stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    assert_eq!((&answers[0]["id"], &answers[1]["id"]), (&Value::from("a"), &Value::from(2)));
+    let first = |field: &str| answers[0][field][0].as_f64().expect("a number");
+    assert!(
+        first("value") == 0.5 && first("low") <= 0.5 && first("high") >= 0.5 && first("high") - first("low") < 1e-6
+    );
+    assert!(answers[0]["condition"].is_f64());
+}
+
+#[test]
+fn nan_and_infinity_are_strings_both_ways() {
+    for given in ["\"NaN\"", "\"Inf\""] {
+        let output = eval(&LINE.replace("[0,0,-5]", &format!("[0,0,{given}]")));
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let answer: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+        assert_eq!((answer["low"][0].as_str(), answer["high"][0].as_str()), (Some("-Inf"), Some("Inf")), "{answer}");
+    }
+}
+
+#[test]
+fn malformed_lines_are_named() {
+    let rows = [
+        ("nonsense", "line 2: not JSON"),
+        ("[1]", "line 2: expected an object"),
+        (r#"{"formula":"fog/linear","inputs":{}}"#, "field `id`"),
+        (r#"{"id":1,"inputs":{}}"#, "field `formula`"),
+        (r#"{"id":1,"formula":"fog/liner","inputs":{}}"#, "no formula `fog/liner`"),
+        (r#"{"id":1,"formula":"fog/linear"}"#, "field `inputs`"),
+        (r#"{"id":1,"formula":"fog/linear","inputs":{},"more":1}"#, "field `more`"),
+        (&LINE.replace("\"dmin\":0,", ""), "field `inputs.dmin` is missing; expected a number"),
+        (&LINE.replace("\"dmin\":0", "\"dmin\":\"zero\""), "field `inputs.dmin`"),
+        (&LINE.replace("\"dmin\":0", "\"dmin\":1e39"), "field `inputs.dmin`"),
+        (&LINE.replace("[0,0,-5]", "[0,0]"), "field `inputs.p`: 2 numbers; expected an array of 3 numbers"),
+        (&LINE.replace("\"dmin\"", "\"near\""), "field `inputs.near`"),
+    ];
+    for (line, message) in rows {
+        let output = eval(&format!("{LINE}\n{line}\n"));
+        let text = stderr(&output);
+        assert_eq!(code(&output), 2, "{line}: {text}");
+        assert!(text.contains("line 2") && text.contains(message), "{line}: {text}");
+        assert_eq!(stdout(&output).lines().count(), 1, "what came before is answered");
+    }
+}
+
+#[test]
+fn bad_usage_is_told_with_its_code() {
+    let rows: &[(&[&str], i32, &str)] = &[
+        (&["run", "--adapter", "vodoo"], 2, "no adapter `vodoo`; there are"),
+        (&["run", "frog"], 3, "no case matches `frog`"),
+        (&["run", "fog", "frog"], 3, "no case matches `frog`"),
+        (&["run", "fog/[", "--adapter", "cpu"], 2, "is not a glob"),
+        (&["run", "--profile", "exact"], 2, "no such profile"),
+        (&["run", "--shaders", "/nowhere"], 2, "cannot read shaders from /nowhere"),
+        (&["run", "--cases", "0"], 2, "0 is not in"),
+        (&["show", "fog/linear/hard/nothing"], 2, "no case `fog/linear/hard/nothing`; `fog/linear` has cases such as"),
+        (&["show", "frog"], 2, "no case `frog`"),
+        (
+            &["run", "fog", "--adapter", "cpu", "--cases", "8", "--out", "/nowhere/file"],
+            2,
+            "cannot write /nowhere/file",
+        ),
+        (&["swim"], 2, "unrecognized subcommand"),
+    ];
+    for (args, expected, message) in rows {
+        let output = lightmeter(args);
+        let text = stderr(&output);
+        assert_eq!(code(&output), *expected, "{args:?}: {text}");
+        assert!(text.contains(message), "{args:?}: {text}");
+    }
+}
+
+#[test]
+fn invalid_shaders_are_told_with_their_line() {
+    let rows = [
+        ("syntax", "fog.wgsl", "return abs(p.z);", "return abs(p.z;", "fog.wgsl:"),
+        ("types", "fog.wgsl", "return abs(p.z);", "return abs(p);", "fog.wgsl:"),
+        ("missing", "fog.wgsl", "fn fog_linear(", "fn fog_lineal(", "no function `fog_linear`"),
+        (
+            "signature",
+            "color.wgsl",
+            "fn color_from_unorm8(byte: f32)",
+            "fn color_from_unorm8(byte: f32, more: f32)",
+            "color/from-unorm8 takes 1 to 1",
+        ),
+    ];
+    for (test, file, right, wrong, message) in rows {
+        let dir = edited(&format!("invalid-{test}"), file, |text| {
+            assert!(text.contains(right), "{test}: `{right}` no longer stands in {file}");
+            text.replace(right, wrong)
+        });
+        let output = lightmeter(&["run", "fog", "color", "--shaders", dir.to_str().expect("UTF-8")]);
+        let text = stderr(&output);
+        assert_eq!(code(&output), 2, "{test}: {text}");
+        assert!(text.contains(message), "{test}: {text}");
+    }
+    let empty = Path::new(env!("CARGO_TARGET_TMPDIR")).join("empty");
+    std::fs::create_dir_all(&empty).expect("a folder can be made");
+    let output = lightmeter(&["run", "--shaders", empty.to_str().expect("UTF-8")]);
+    assert!(code(&output) == 2 && stderr(&output).contains("no .wgsl file there"));
+    let stray = edited("stray", "fog.wgsl", str::to_owned);
+    std::fs::rename(stray.join("fog.wgsl"), stray.join("frog.wgsl")).expect("a file can be renamed");
+    let output = lightmeter(&["run", "--shaders", stray.to_str().expect("UTF-8")]);
+    assert!(code(&output) == 2 && stderr(&output).contains("no such shader; expected one of"));
+}
+
+#[test]
+fn without_a_driver_nothing_can_run() {
+    let output = command(&["run", "fog"])
+        .env("VK_DRIVER_FILES", "/nowhere")
+        .env("VK_ADD_DRIVER_FILES", "")
+        .env("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere")
+        .env("LIBGL_DRIVERS_PATH", "/nowhere")
+        .output()
+        .expect("the binary starts");
+    let text = stderr(&output);
+    assert_eq!(code(&output), 3, "{text}");
+    assert!(text.contains("no Vulkan or OpenGL driver is here") && text.contains("--adapter cpu"), "{text}");
+}
