@@ -38,13 +38,10 @@ impl Adapters {
             Format::Text => {
                 let mut text = String::new();
                 for a in &found {
-                    let deviations: Vec<&str> = known(a).deviations.iter().map(|deviation| deviation.name).collect();
-                    let known = if deviations.is_empty() {
-                        String::new()
-                    } else {
-                        format!("  known: {}", deviations.join(", "))
-                    };
-                    writeln!(text, "{:<14} {:<7} {}  {}{known}", a.name, a.backend, a.device, a.driver)?;
+                    writeln!(text, "{:<14} {:<7} {}  {}", a.name, a.backend, a.device, a.driver)?;
+                    for deviation in known(a).deviations {
+                        writeln!(text, "  deviates: {}: {}", deviation.name, deviation.reason)?;
+                    }
                 }
                 writeln!(text, "{:<14} {:<7} the reference's own formulas in f32: needs no driver", "cpu", "—")?;
                 text

@@ -36,9 +36,15 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
     if !report.failures.is_empty() {
         writeln!(out)?;
     }
+    // One failure a formula and adapter explains more than many; the JSON has the first of every stage.
+    let mut told: Vec<(&str, &str)> = vec![];
     for failure in &report.failures {
-        writeln!(out)?;
-        self::failure(failure, out)?;
+        let formula = failure.id.rsplit_once('/').map_or(failure.id.as_str(), |(formula, _)| formula);
+        if !told.contains(&(formula, &failure.adapter)) {
+            told.push((formula, &failure.adapter));
+            writeln!(out)?;
+            self::failure(failure, out)?;
+        }
     }
     writeln!(out)?;
     notes(report, out)?;
@@ -56,11 +62,17 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
 
 fn notes(report: &Report, out: &mut impl Write) -> Result {
     for deviation in &report.deviations {
-        let state = if deviation.still_needed { "granted" } else { "no longer needed: take it out" };
+        let state = if deviation.still_needed {
+            "still seen, so it is granted".to_owned()
+        } else {
+            format!("no longer seen: take it out ({})", deviation.reason)
+        };
         writeln!(
             out,
-            "deviation {} on {}: {state}, {} verdicts excused ({})",
-            deviation.name, deviation.adapter, deviation.excused, deviation.reason
+            "deviation {} on {}: {state}; {} verdicts excused",
+            deviation.name,
+            deviation.adapter,
+            thousands(deviation.excused)
         )?;
     }
     for group in report.groups.iter().filter(|group| group.skip_reason.is_some()) {

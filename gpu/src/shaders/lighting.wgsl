@@ -75,85 +75,82 @@ fn lighting_sum_of_terms(light: Light, material: Material, incidence: f32, highl
     return ambient + diffuse + specular;
 }
 
-fn lighting_phong(light: Light, material: Material, p: vec3f, normal: vec3f, direction: vec3f) -> vec4f {
+// The unit vectors at a point.
+struct Frame {
+    n: vec3f,
+    l: vec3f,
+    v: vec3f,
+}
+
+fn lighting_frame(p: vec3f, normal: vec3f, l: vec3f) -> Frame {
     let n = vector_normalize(normal);
-    let l = vector_normalize(-direction);
-    let v = vector_normalize(-p);
-    let highlight = lighting_highlight_phong(n, l, v, material.shininess);
-    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, 1.0), 1.0);
+    return Frame(n, l, vector_normalize(-p));
+}
+
+fn lighting_lit(light: Light, material: Material, at: Frame, highlight: f32, atten: f32) -> vec4f {
+    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(at.l, at.n), highlight, atten), 1.0);
+}
+
+fn lighting_phong(light: Light, material: Material, p: vec3f, normal: vec3f, direction: vec3f) -> vec4f {
+    let at = lighting_frame(p, normal, vector_normalize(-direction));
+    return lighting_lit(light, material, at, lighting_highlight_phong(at.n, at.l, at.v, material.shininess), 1.0);
 }
 
 fn lighting_blinn(light: Light, material: Material, p: vec3f, normal: vec3f, direction: vec3f) -> vec4f {
-    let n = vector_normalize(normal);
-    let l = vector_normalize(-direction);
-    let v = vector_normalize(-p);
-    let highlight = lighting_highlight_blinn(n, l, v, material.shininess);
-    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, 1.0), 1.0);
+    let at = lighting_frame(p, normal, vector_normalize(-direction));
+    return lighting_lit(light, material, at, lighting_highlight_blinn(at.n, at.l, at.v, material.shininess), 1.0);
 }
 
 fn lighting_blinn_unnormalised(light: Light, material: Material, p: vec3f, normal: vec3f, direction: vec3f) -> vec4f {
-    let n = vector_normalize(normal);
-    let l = vector_normalize(-direction);
-    let v = vector_normalize(-p);
-    let highlight = lighting_highlight_unnormalised(n, l, v, material.shininess);
-    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, 1.0), 1.0);
+    let at = lighting_frame(p, normal, vector_normalize(-direction));
+    return lighting_lit(light, material, at, lighting_highlight_unnormalised(at.n, at.l, at.v, material.shininess), 1.0);
 }
 
 fn lighting_phong_gated(light: Light, material: Material, p: vec3f, normal: vec3f, direction: vec3f) -> vec4f {
-    let n = vector_normalize(normal);
-    let l = vector_normalize(-direction);
-    let v = vector_normalize(-p);
-    let highlight = lighting_gate(n, l, lighting_highlight_phong(n, l, v, material.shininess));
-    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, 1.0), 1.0);
+    let at = lighting_frame(p, normal, vector_normalize(-direction));
+    let highlight = lighting_highlight_phong(at.n, at.l, at.v, material.shininess);
+    return lighting_lit(light, material, at, lighting_gate(at.n, at.l, highlight), 1.0);
 }
 
 fn lighting_phong_unit_light(light: Light, material: Material, p: vec3f, normal: vec3f, direction: vec3f) -> vec4f {
-    let n = vector_normalize(normal);
-    let l = -direction;
-    let v = vector_normalize(-p);
-    let highlight = lighting_highlight_phong(n, l, v, material.shininess);
-    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, 1.0), 1.0);
+    let at = lighting_frame(p, normal, -direction);
+    return lighting_lit(light, material, at, lighting_highlight_phong(at.n, at.l, at.v, material.shininess), 1.0);
 }
 
 fn lighting_phong_nonlocal(light: Light, material: Material, normal: vec3f, direction: vec3f) -> vec4f {
     let n = vector_normalize(normal);
-    let l = -direction;
-    let highlight = vector_lobe(vector_reflect(-l, n).z, material.shininess);
-    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, 1.0), 1.0);
+    let at = Frame(n, -direction, vec3f(0.0, 0.0, 1.0));
+    return lighting_lit(light, material, at, vector_lobe(vector_reflect(-at.l, n).z, material.shininess), 1.0);
+}
+
+fn lighting_attenuation(falloff: Falloff, position: vec3f, p: vec3f) -> f32 {
+    return attenuation_point(falloff.kc, falloff.kl, falloff.kq, position, p);
 }
 
 fn lighting_point_phong(
     light: Light, material: Material, p: vec3f, normal: vec3f, position: vec3f, falloff: Falloff,
 ) -> vec4f {
-    let n = vector_normalize(normal);
-    let l = vector_toward(position, p);
-    let v = vector_normalize(-p);
-    let atten = attenuation_point(falloff.kc, falloff.kl, falloff.kq, position, p);
-    let highlight = lighting_highlight_phong(n, l, v, material.shininess);
-    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, atten), 1.0);
+    let at = lighting_frame(p, normal, vector_toward(position, p));
+    let highlight = lighting_highlight_phong(at.n, at.l, at.v, material.shininess);
+    return lighting_lit(light, material, at, highlight, lighting_attenuation(falloff, position, p));
 }
 
 fn lighting_point_blinn(
     light: Light, material: Material, p: vec3f, normal: vec3f, position: vec3f, falloff: Falloff,
 ) -> vec4f {
-    let n = vector_normalize(normal);
-    let l = vector_toward(position, p);
-    let v = vector_normalize(-p);
-    let atten = attenuation_point(falloff.kc, falloff.kl, falloff.kq, position, p);
-    let highlight = lighting_highlight_blinn(n, l, v, material.shininess);
-    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, atten), 1.0);
+    let at = lighting_frame(p, normal, vector_toward(position, p));
+    let highlight = lighting_highlight_blinn(at.n, at.l, at.v, material.shininess);
+    return lighting_lit(light, material, at, highlight, lighting_attenuation(falloff, position, p));
 }
 
 fn lighting_point_opengl(
     light: Light, material: Material, p: vec3f, normal: vec3f, position: vec3f, falloff: Falloff, alpha: f32,
 ) -> vec4f {
-    let n = vector_normalize(normal);
-    let l = vector_toward(position, p);
-    let v = vector_normalize(-p);
-    let atten = attenuation_point(falloff.kc, falloff.kl, falloff.kq, position, p);
-    let highlight = lighting_gate(n, l, lighting_highlight_blinn(n, l, v, material.shininess));
+    let at = lighting_frame(p, normal, vector_toward(position, p));
+    let atten = lighting_attenuation(falloff, position, p);
+    let highlight = lighting_gate(at.n, at.l, lighting_highlight_blinn(at.n, at.l, at.v, material.shininess));
     let ambient = lighting_ambient(light.ambient, material.ambient) * atten;
-    let diffuse = light.diffuse * material.diffuse * lighting_incidence(l, n) * atten;
+    let diffuse = light.diffuse * material.diffuse * lighting_incidence(at.l, at.n) * atten;
     let specular = light.specular * material.specular * highlight * atten;
     return vec4f(ambient + diffuse + specular, alpha);
 }
@@ -162,13 +159,10 @@ fn lighting_spot(
     light: Light, material: Material, p: vec3f, normal: vec3f, position: vec3f, axis: vec3f, falloff: Falloff,
     cutoff_cosine: f32, exponent: f32,
 ) -> vec4f {
-    let n = vector_normalize(normal);
-    let l = vector_toward(position, p);
-    let v = vector_normalize(-p);
-    let cone = attenuation_spot_exponent(l, vector_normalize(axis), cutoff_cosine, exponent);
-    let atten = cone * attenuation_point(falloff.kc, falloff.kl, falloff.kq, position, p);
-    let highlight = lighting_highlight_phong(n, l, v, material.shininess);
-    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, atten), 1.0);
+    let at = lighting_frame(p, normal, vector_toward(position, p));
+    let cone = attenuation_spot_exponent(at.l, vector_normalize(axis), cutoff_cosine, exponent);
+    let highlight = lighting_highlight_phong(at.n, at.l, at.v, material.shininess);
+    return lighting_lit(light, material, at, highlight, cone * lighting_attenuation(falloff, position, p));
 }
 
 fn lighting_scalar_material(
