@@ -3,9 +3,11 @@
 pub mod arithmetic;
 pub mod cases;
 pub mod devices;
+pub mod evaluate;
 pub mod filter;
 pub mod judge;
 pub mod report;
 pub mod run;
 pub mod select;
 pub mod subject;
+pub mod tally;

@@ -4,22 +4,22 @@
 //! are handed to every stage of every subject before the reference is computed on all cores; then the results are read.
 
 use crate::arithmetic::{Accept, Profile};
-use crate::cases::{Kind, Stage, Target, blend};
+use crate::cases::{Kind, blend};
+use crate::evaluate::kernel;
 use crate::filter::Filter;
 use crate::judge::{Outcome, judge};
-use crate::report::{DeviationUse, Failure, Group, Number, Report, Timing, Totals};
+use crate::report::{DeviationUse, Group, Number, Report, Timing, Totals};
 use crate::select::{CaseRef, Member, Selected, Shard, catalogue, select};
 use crate::subject::{Compiled, Rows, Subject};
-use lightmeter_gpu::{Error, Kernel, Shaders};
+use crate::tally::{Tally, judge_chunk};
+use lightmeter_gpu::{Error, Shaders};
 use rayon::prelude::*;
 use std::time::Instant;
 
 /// Cases of a chunk.
 const CHUNK: usize = 1 << 16;
 /// Cases that a task of the pool takes at once.
-const TASK: usize = 512;
-/// Failures that are kept for each group.
-const KEPT_FAILURES: usize = 5;
+pub(crate) const TASK: usize = 512;
 /// The share of indeterminate verdicts, hard cases apart, above which a group fails.
 const MOST_INDETERMINATE: f64 = 0.01;
 
@@ -146,14 +146,14 @@ fn probe_deviations(subjects: &[Subject], options: &Options, report: &mut Report
 }
 
 /// A chunk of a group's cases, with everything about them that does not depend on a subject.
-struct Chunk<'a> {
-    members: &'a [&'a Member],
-    cases: Vec<CaseRef>,
-    of: Vec<usize>,
-    inputs: Vec<f32>,
-    selected: Vec<f32>,
-    references: Vec<f64>,
-    intervals: Vec<Accept>,
+pub(crate) struct Chunk<'a> {
+    pub(crate) members: &'a [&'a Member],
+    pub(crate) cases: Vec<CaseRef>,
+    pub(crate) of: Vec<usize>,
+    pub(crate) inputs: Vec<f32>,
+    pub(crate) selected: Vec<f32>,
+    pub(crate) references: Vec<f64>,
+    pub(crate) intervals: Vec<Accept>,
 }
 
 impl Chunk<'_> {
@@ -167,7 +167,7 @@ impl Chunk<'_> {
         }
     }
 
-    fn inputs_of(&self, case: usize) -> &[f32] {
+    pub(crate) fn inputs_of(&self, case: usize) -> &[f32] {
         let stride = self.members[0].spec.input_len();
         &self.inputs[case * stride..(case + 1) * stride]
     }
@@ -270,49 +270,6 @@ fn run_group(
     Ok(())
 }
 
-/// A group of formulas compiled for one subject, for rows of inputs from anywhere.
-pub struct Evaluator<'a> {
-    members: &'a [&'a Member],
-    compiled: Compiled,
-}
-
-/// The outputs' bits of each row in a stage, or why the stage is skipped.
-pub type StageOutputs = (Stage, Result<Vec<u32>, &'static str>);
-
-impl<'a> Evaluator<'a> {
-    /// Compiles the formulas, which must be of one group.
-    ///
-    /// # Errors
-    /// Where a shader is invalid or the device refuses it.
-    pub fn new(subject: &mut Subject, members: &'a [&'a Member], shaders: &Shaders) -> Result<Self, Error> {
-        let kernel = kernel(shaders, members[0])?;
-        let compiled = subject.compile(shaders, members[0].spec.kind, kernel.as_ref())?;
-        Ok(Self { members, compiled })
-    }
-
-    /// Evaluates rows in every stage: `of` names the formula of each row by its place among the members.
-    ///
-    /// # Errors
-    /// Where the device fails.
-    pub fn run(&self, subject: &mut Subject, of: &[usize], inputs: &[f32]) -> Result<Vec<StageOutputs>, Error> {
-        let (stride, mut selected) = (self.members[0].spec.input_len(), vec![]);
-        for (&of, row) in of.iter().zip(inputs.chunks_exact(stride)) {
-            selected.extend(self.members[of].spec.selectors.iter().map(|&code| f32::from_bits(code)));
-            selected.extend_from_slice(row);
-        }
-        let outputs = self.members[0].spec.output_len();
-        let rows = Rows { members: self.members, of, inputs, selected: &selected, outputs };
-        let stages = self.compiled.stages.iter().map(|(stage, work)| match work {
-            Err(reason) => Ok((*stage, Err(*reason))),
-            Ok(work) => {
-                let job = subject.submit(work, &rows)?;
-                Ok((*stage, Ok(subject.finish(work, job, &rows)?)))
-            }
-        });
-        stages.collect()
-    }
-}
-
 /// The group verdict on indeterminate values: more than 1 % of them, hard cases apart, make a run of little.
 fn problem(totals: &Totals, random: (u64, u64)) -> Option<String> {
     let (verdicts, indeterminate) = random;
@@ -326,24 +283,6 @@ fn problem(totals: &Totals, random: (u64, u64)) -> Option<String> {
     }
     (totals.verdicts > 0 && verdicts > 0 && totals.indeterminate == totals.verdicts)
         .then(|| "nothing but indeterminate verdicts".into())
-}
-
-/// The shader function of a formula, held against the formula's description; `None` where no function evaluates it.
-fn kernel(shaders: &Shaders, member: &Member) -> Result<Option<Kernel>, Error> {
-    let (spec, function) = (&member.spec, member.spec.function);
-    if function.is_empty() {
-        return Ok(None);
-    }
-    let file = format!("{}.wgsl", spec.family());
-    let kernel = Kernel::new(shaders, &file, function)?;
-    let (selectors, outputs) = (spec.selectors.len(), spec.output_len());
-    let inputs = spec.input_len() + selectors;
-    if (kernel.inputs, kernel.outputs, kernel.selectors) != (inputs, outputs, selectors) {
-        let found =
-            format!("{} numbers to {}, where {} takes {inputs} to {outputs}", kernel.inputs, kernel.outputs, spec.id);
-        return Err(Error::Signature { file, function: function.into(), found });
-    }
-    Ok(Some(kernel))
 }
 
 fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], seed: u64) -> Chunk<'a> {
@@ -394,215 +333,4 @@ fn refer(chunk: &mut Chunk<'_>, profile: &Profile) {
     );
     chunk.references = references;
     chunk.intervals = intervals;
-}
-
-/// What a group has come to on one subject in one stage.
-#[derive(Default)]
-struct Tally {
-    totals: Totals,
-    /// Verdicts of random cases, and the indeterminate ones among them.
-    random: (u64, u64),
-    error_ulp_max: f64,
-    worst: Option<(f64, String)>,
-    failures: Vec<Failure>,
-    excused: Vec<(&'static str, u64)>,
-    seconds: f64,
-}
-
-impl Tally {
-    fn merge(&mut self, other: Self) {
-        self.totals.add(&other.totals);
-        self.random.0 += other.random.0;
-        self.random.1 += other.random.1;
-        self.error_ulp_max = self.error_ulp_max.max(other.error_ulp_max);
-        if other.worst.as_ref().is_some_and(|(margin, _)| self.worst.as_ref().is_none_or(|(most, _)| margin > most)) {
-            self.worst = other.worst;
-        }
-        self.failures.extend(other.failures);
-        self.failures.truncate(KEPT_FAILURES);
-        for (name, count) in other.excused {
-            self.excuse(name, count);
-        }
-        self.seconds += other.seconds;
-    }
-
-    fn excuse(&mut self, name: &'static str, count: u64) {
-        match self.excused.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, excused)) => *excused += count,
-            None => self.excused.push((name, count)),
-        }
-    }
-}
-
-fn judge_chunk(chunk: &Chunk<'_>, words: &[u32], stage: Stage, subject: &Subject, options: &Options) -> Tally {
-    let tallies: Vec<Tally> = (0..chunk.cases.len().div_ceil(TASK))
-        .into_par_iter()
-        .map(|task| {
-            options.profile.scope(|| {
-                let cases = task * TASK..chunk.cases.len().min((task + 1) * TASK);
-                let mut tally = Tally::default();
-                for case in cases {
-                    judge_case(chunk, words, case, stage, subject, options, &mut tally);
-                }
-                tally
-            })
-        })
-        .collect();
-    let mut sum = Tally::default();
-    for tally in tallies {
-        sum.merge(tally);
-    }
-    sum
-}
-
-/// The intervals of one case as they hold for a stage of a subject, by the profile given, which is the one in force.
-pub fn intervals(
-    member: &Member,
-    inputs: &[f32],
-    stage: Stage,
-    subject: &Subject,
-    profile: &Profile,
-    out: &mut [Accept],
-) {
-    let target = Target {
-        subpixel_bits: subject.known.subpixel_bits.unwrap_or(profile.subpixel_bits),
-        half_float: stage == Stage::FixedFunction && subject.blends_halves(),
-    };
-    match stage {
-        Stage::Raster | Stage::FixedFunction => member.formula.hardware_interval(member.spec.kind, inputs, target, out),
-        Stage::Compute | Stage::Fragment => member.formula.interval(inputs, out),
-    }
-}
-
-fn judge_case(
-    chunk: &Chunk<'_>,
-    words: &[u32],
-    case: usize,
-    stage: Stage,
-    subject: &Subject,
-    options: &Options,
-    tally: &mut Tally,
-) {
-    let (member, outputs) = (chunk.members[chunk.of[case]], chunk.members[0].spec.output_len());
-    let range = case * outputs..(case + 1) * outputs;
-    let mut own = [Accept::ANY; 16];
-    let shared = matches!(stage, Stage::Compute | Stage::Fragment);
-    let legal = if shared {
-        &chunk.intervals[range.clone()]
-    } else {
-        intervals(member, chunk.inputs_of(case), stage, subject, options.profile, &mut own[..outputs]);
-        &own[..outputs]
-    };
-    let is_random = matches!(chunk.cases[case], CaseRef::Random(_));
-    tally.totals.cases += 1;
-    tally.totals.verdicts += outputs as u64;
-    if is_random {
-        tally.random.0 += outputs as u64;
-    }
-    for (output, at) in range.enumerate() {
-        let (bits, reference) = (words[at], chunk.references[at]);
-        let verdict = judge(bits, reference, &legal[output]);
-        match verdict.outcome {
-            Outcome::Indeterminate => {
-                tally.totals.indeterminate += 1;
-                tally.random.1 += u64::from(is_random);
-                continue;
-            }
-            Outcome::Pass => tally.totals.passed += 1,
-            Outcome::Fail => {
-                if let Some(name) = excuse(chunk, case, output, bits, stage, subject, options) {
-                    tally.totals.expected_failures += 1;
-                    tally.excuse(name, 1);
-                } else {
-                    tally.totals.failed += 1;
-                    if tally.failures.len() < KEPT_FAILURES {
-                        let inputs = chunk.inputs_of(case);
-                        let id = member.case_id(chunk.cases[case]);
-                        let seen = Seen { bits, reference, interval: legal[output], error_ulp: verdict.error_ulp };
-                        tally.failures.push(failure(member, id, inputs, output, stage, subject, options, &seen));
-                    }
-                }
-            }
-        }
-        tally.error_ulp_max = tally.error_ulp_max.max(verdict.error_ulp);
-        if tally.worst.as_ref().is_none_or(|(most, _)| verdict.margin > *most) {
-            tally.worst = Some((verdict.margin, member.case_id(chunk.cases[case])));
-        }
-    }
-}
-
-/// The named deviation that makes a value legal, if one does.
-fn excuse(
-    chunk: &Chunk<'_>,
-    case: usize,
-    output: usize,
-    bits: u32,
-    stage: Stage,
-    subject: &Subject,
-    options: &Options,
-) -> Option<&'static str> {
-    let member = chunk.members[chunk.of[case]];
-    subject.known.deviations.iter().find_map(|deviation| {
-        let mut legal = vec![Accept::ANY; member.spec.output_len()];
-        deviation
-            .grant(*options.profile)
-            .scope(|| intervals(member, chunk.inputs_of(case), stage, subject, options.profile, &mut legal));
-        let reference = chunk.references[case * legal.len() + output];
-        (judge(bits, reference, &legal[output]).outcome == Outcome::Pass).then_some(deviation.name)
-    })
-}
-
-struct Seen {
-    bits: u32,
-    reference: f64,
-    interval: Accept,
-    error_ulp: f64,
-}
-
-#[expect(clippy::too_many_arguments, reason = "a failure tells everything about its verdict")]
-fn failure(
-    member: &Member,
-    id: String,
-    inputs: &[f32],
-    output: usize,
-    stage: Stage,
-    subject: &Subject,
-    options: &Options,
-    seen: &Seen,
-) -> Failure {
-    Failure {
-        rerun: format!("lightmeter run '{id}' --adapter {}{}", subject.identity.name, options.rerun),
-        id,
-        adapter: subject.identity.name.clone(),
-        stage: stage.name(),
-        output: member.spec.output_name(output),
-        inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
-        inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
-        reference: Number(seen.reference),
-        interval: [Number(seen.interval.low()), Number(seen.interval.high())],
-        value: Number(f32::from_bits(seen.bits).into()),
-        value_hex: format!("0x{:08x}", seen.bits),
-        unwritten: seen.bits == lightmeter_gpu::SENTINEL,
-        error_ulp: Number(seen.error_ulp),
-    }
-}
-
-/// A row of inputs as an object: a number for a scalar, an array for the rest.
-#[must_use]
-pub fn by_name(
-    member: &Member,
-    inputs: &[f32],
-    value: impl Fn(f32) -> serde_json::Value,
-) -> serde_json::Map<String, serde_json::Value> {
-    let mut rest = inputs;
-    let named = member.spec.inputs.iter().map(|input| {
-        let (these, others) = rest.split_at(input.shape.components());
-        rest = others;
-        let value = match these {
-            [x] => value(*x),
-            many => many.iter().map(|&x| value(x)).collect(),
-        };
-        (input.name.to_owned(), value)
-    });
-    named.collect()
 }

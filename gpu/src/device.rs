@@ -2,6 +2,10 @@
 
 use crate::error::Error;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// How long a submission may take: hundreds of pipelines compiled by a software driver on a slow machine take a minute.
+const PATIENCE: Duration = Duration::from_secs(300);
 
 /// An open device.
 #[derive(Debug)]
@@ -49,10 +53,16 @@ impl Gpu {
         failure.map_or(Ok(()), |message| Err(Error::Device(message)))
     }
 
-    /// Waits until everything submitted is done.
+    /// Waits until everything submitted is done, but not for ever: an edited shader may loop.
     pub(crate) fn wait(&self) -> Result<(), Error> {
-        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| Error::Device(error.to_string()))?;
-        self.check()
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        match self.device.poll(wait) {
+            Ok(_) => self.check(),
+            Err(wgpu::PollError::Timeout) => {
+                Err(Error::Device(format!("no answer within {} s; does a shader loop?", PATIENCE.as_secs())))
+            }
+            Err(error) => Err(Error::Device(error.to_string())),
+        }
     }
 
     /// Whether a binary32 target can be blended on.

@@ -2,10 +2,11 @@
 
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::cases::{AnyFormula, Domain, Spec};
+use lightmeter::evaluate::Evaluator;
 use lightmeter::judge::{Outcome, judge};
-use lightmeter::run::{Evaluator, intervals};
 use lightmeter::select::{CaseRef, Member, catalogue};
 use lightmeter::subject::Subject;
+use lightmeter::tally::intervals;
 use lightmeter_gpu::{Shaders, vulkan_adapters};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;

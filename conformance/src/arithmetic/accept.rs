@@ -169,8 +169,9 @@ impl<F: Format> Accept<F> {
         {
             ulps *= excess.factor;
         }
-        let low = f(self.low);
-        let high = if self.is_point() { low } else { f(self.high) };
+        // exp(1e-20) rounds to 1 in f64, where the ULP below is half that above: a step up asks for the one above.
+        let low = f(self.low).next_up();
+        let high = if self.is_point() { low } else { f(self.high).next_up() };
         Self::widen(self.is_point(), low, high, ulps)
     }
 

@@ -41,7 +41,14 @@ impl Run {
         let mut bar = Bar::default();
         let report = run(&mut subjects, &options, &mut bar);
         bar.0.finish_and_clear();
-        let report = report?;
+        let report = match report {
+            // Closing a device that hangs would hang as well.
+            Err(error @ lightmeter_gpu::Error::Device(_)) => {
+                std::mem::forget(subjects);
+                return Err(error.into());
+            }
+            report => report?,
+        };
         emit(&self.write(&report)?, self.out.as_deref())?;
         Ok(status(&report))
     }

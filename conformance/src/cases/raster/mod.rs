@@ -1,0 +1,317 @@
+//! Cases that only a rasteriser can answer: drawn, and looked at in one pixel. They belong to the interpolation family.
+//! Formulas: `lightmeter_reference::interpolation`; what a rasteriser may give: `bound`.
+
+mod bound;
+mod layout;
+
+use super::Visitor;
+use super::formula::{Formula, formula};
+use super::interpolation::{ATTR, ATTRIBUTE, attr, half_pixels, window};
+use super::rows::{Reader, Writer};
+use super::spec::{Domain, Input, Kind, Output, Shape, Spec};
+pub(super) use bound::interval;
+use layout::{
+    line_through_the_pixel, quad_around_the_pixel, quad_on_the_grid, triangle_across_the_volume,
+    triangle_around_the_pixel,
+};
+use lightmeter_gpu::{Raster, TARGET_SIZE};
+use lightmeter_reference::interpolation::{self, Viewport};
+use lightmeter_reference::{Real, Vec2, Vector};
+use lightmeter_scene::raster::{Provoking, Topology};
+
+/// The whole target, depth from 0 to 1.
+fn target<R: Real>() -> Viewport<R> {
+    let size = R::literal(f64::from(TARGET_SIZE));
+    let (zero, one) = (R::literal(0.0), R::literal(1.0));
+    Viewport { origin: Vector([zero, zero]), size: Vector([size, size]), depth: Vector([zero, one]) }
+}
+
+/// The middle of the pixel that a row ends with.
+fn pixel_center<R: Real>(x: &mut Reader<'_, R>) -> Vec2<R> {
+    x.vector().map(|corner| corner + R::literal(0.5))
+}
+
+const fn around(name: &'static str) -> Input {
+    Input::new(name, Shape::Vec4, "clip", Domain::Around)
+}
+
+const PIXEL: Input = Input::new("pixel", Shape::Vec2, "pixel", Domain::Pixel);
+const COVERED: Output = Output::new("covered", Shape::Scalar, "1");
+const BOTH: [Output; 2] = [Output::new("perspective", Shape::Scalar, "1"), Output::new("linear", Shape::Scalar, "1")];
+
+macro_rules! raster_triangle {
+    ($name:ident, $id:literal, $kind:expr, $fit:expr, $text:literal, [$($output:expr),*], |$x:ident, $out:ident| $body:block) => {
+        formula!(
+            /// A triangle by the rasteriser.
+            $name: $id by "", $text, "000 §6.1",
+            [
+                around("a"), around("b"), around("c"), Input::new("attr", Shape::Vec3, "1", ATTRIBUTE), PIXEL,
+            ] -> [$($output),*],
+            fit $fit,
+            kind Kind::Raster($kind),
+            |$x, $out| $body,
+        );
+    };
+}
+
+raster_triangle!(
+    RasterAttributes,
+    "interpolation/raster-attributes",
+    Raster::TriangleAttributes,
+    triangle_around_the_pixel,
+    "the attribute of a drawn triangle at a pixel: Σ λa/w / Σ λ/w, and Σ λa",
+    [BOTH[0], BOTH[1]],
+    |x, out| {
+        let (clip, attr) = (x.vectors(), x.array());
+        let fragment = interpolation::fragment(clip, attr, &target(), pixel_center(x));
+        out.scalar(fragment.perspective);
+        out.scalar(fragment.linear);
+    }
+);
+raster_triangle!(
+    RasterPosition,
+    "interpolation/raster-position",
+    Raster::TrianglePosition,
+    triangle_around_the_pixel,
+    "gl_FragCoord of a drawn triangle: the pixel's centre from the upper left, window z, 1/w",
+    [Output::new("position", Shape::Vec4, "pixel")],
+    |x, out| {
+        let (clip, attr, p) = (x.vectors(), x.array(), pixel_center(x));
+        let fragment = interpolation::fragment(clip, attr, &target(), p);
+        out.vector(Vector([p.x(), p.y(), fragment.depth, fragment.inverse_w]));
+    }
+);
+raster_triangle!(
+    RasterFacing,
+    "interpolation/raster-facing",
+    Raster::Facing,
+    triangle_around_the_pixel,
+    "gl_FrontFacing of a drawn triangle: 1 where it is counter-clockwise as seen",
+    [Output::new("front", Shape::Scalar, "1")],
+    |x, out| {
+        out.scalar(facing(x));
+    }
+);
+raster_triangle!(
+    RasterClip,
+    "interpolation/raster-clip",
+    Raster::Clipped,
+    triangle_across_the_volume,
+    "1 where a triangle that reaches out of the clip volume still covers the pixel",
+    [COVERED],
+    |x, out| {
+        let (clip, _attr) = (x.vectors(), x.array::<3>());
+        out.scalar(interpolation::clipped_coverage(clip, &target(), pixel_center(x)));
+    }
+);
+
+/// Whether a row's triangle faces front: the pixel, which lies inside, is not looked at.
+fn facing<R: Real>(x: &mut Reader<'_, R>) -> R {
+    let clip = x.vectors::<4, 3>();
+    interpolation::front_facing(clip.map(|v| {
+        let window = interpolation::viewport(v, &target());
+        Vector([window.x(), window.y()])
+    }))
+}
+
+macro_rules! raster_culled {
+    ($name:ident, $id:literal, $back:literal, $ccw:literal, $text:literal) => {
+        raster_triangle!(
+            $name,
+            $id,
+            Raster::Culled { back: $back, front_is_ccw: $ccw },
+            triangle_around_the_pixel,
+            $text,
+            [COVERED],
+            |x, out| {
+                let (shown, front) = ($back == $ccw, facing(x));
+                out.scalar(if shown { front } else { R::literal(1.0) - front });
+            }
+        );
+    };
+}
+
+raster_culled!(
+    CullBackCcw,
+    "interpolation/cull-back-ccw",
+    true,
+    true,
+    "1 where a triangle survives: back faces culled, counter-clockwise is front"
+);
+raster_culled!(
+    CullBackCw,
+    "interpolation/cull-back-cw",
+    true,
+    false,
+    "1 where a triangle survives: back faces culled, clockwise is front"
+);
+raster_culled!(
+    CullFrontCcw,
+    "interpolation/cull-front-ccw",
+    false,
+    true,
+    "1 where a triangle survives: front faces culled, counter-clockwise is front"
+);
+raster_culled!(
+    CullFrontCw,
+    "interpolation/cull-front-cw",
+    false,
+    false,
+    "1 where a triangle survives: front faces culled, clockwise is front"
+);
+
+formula!(
+    /// A line by the rasteriser.
+    RasterLine: "interpolation/raster-line" by "",
+    "the attribute of a drawn line at a pixel that it passes through: perspective-correct, and linear", "000 §6.1",
+    [around("a"), around("b"), attr("attr_a"), attr("attr_b"), PIXEL] -> [BOTH[0], BOTH[1]],
+    fit line_through_the_pixel,
+    kind Kind::Raster(Raster::LineAttributes),
+    |x, out| {
+        let (clip, attr) = (x.vectors(), x.array());
+        let [perspective, linear] = interpolation::fragment_of_line(clip, attr, &target(), pixel_center(x));
+        out.scalar(perspective);
+        out.scalar(linear);
+    },
+);
+const COUNT: Output = Output::new("count", Shape::Scalar, "1");
+
+macro_rules! raster_quad {
+    ($name:ident, $id:literal, $fit:expr, $text:literal, [$($input:expr),*]) => {
+        formula!(
+            /// Two triangles that share an edge.
+            $name: $id by "", $text, "000 §6.1",
+            [$($input),*, PIXEL] -> [COUNT],
+            fit $fit,
+            kind Kind::Raster(Raster::Quad),
+            |x, out| {
+                let ([a, b, c, d], p) = (x.vectors(), pixel_center(x));
+                out.scalar(interpolation::coverage([a, b, c], p) + interpolation::coverage([a, c, d], p));
+            },
+        );
+    };
+}
+
+raster_quad!(
+    RasterTopLeft,
+    "interpolation/raster-top-left",
+    quad_on_the_grid,
+    "how many of two triangles with vertices on the half-pixel grid cover the pixel, ties by the top-left rule",
+    [half_pixels("a"), half_pixels("b"), half_pixels("c"), half_pixels("d")]
+);
+raster_quad!(
+    RasterSharedEdge,
+    "interpolation/raster-shared-edge",
+    quad_around_the_pixel,
+    "how many of two triangles that share an edge cover a pixel near that edge: one, wherever it lies",
+    [window("a"), window("b"), window("c"), window("d")]
+);
+formula!(
+    /// A fragment's own depth, stored.
+    RasterDepth: "interpolation/raster-frag-depth" by "",
+    "the depth that a fragment wrote, read back from the depth buffer: clamp(depth, 0, 1)", "000 §6.1",
+    [Input::scalar("depth", "1", Domain::Uniform(-0.5, 1.5)), PIXEL] -> [Output::new("depth", Shape::Scalar, "1")],
+    kind Kind::Raster(Raster::OwnDepth),
+    |x, out| { out.scalar(interpolation::frag_depth(x.scalar())); },
+);
+
+/// A flat attribute of a drawn list or strip.
+#[derive(Clone, Copy, Debug)]
+struct RasterFlat {
+    topology: Topology,
+    provoking: Provoking,
+}
+
+impl RasterFlat {
+    /// Primitives that six vertices make.
+    const fn primitives(self) -> u32 {
+        match self.topology {
+            Topology::Points => 6,
+            Topology::LineList => 3,
+            Topology::LineStrip => 5,
+            Topology::TriangleList => 2,
+            Topology::TriangleStrip => 4,
+        }
+    }
+}
+
+macro_rules! flat_inputs {
+    ($last:literal) => {
+        const {
+            &[
+                attr("a0"),
+                attr("a1"),
+                attr("a2"),
+                attr("a3"),
+                attr("a4"),
+                attr("a5"),
+                Input::scalar("primitive", "1", Domain::Whole(0, $last)),
+                PIXEL,
+            ]
+        }
+    };
+}
+
+impl Formula for RasterFlat {
+    fn spec(&self) -> Spec {
+        let inputs: &'static [Input] = match self.topology {
+            Topology::Points => flat_inputs!(5),
+            Topology::LineList => flat_inputs!(2),
+            Topology::LineStrip => flat_inputs!(4),
+            Topology::TriangleList => flat_inputs!(1),
+            Topology::TriangleStrip => flat_inputs!(3),
+        };
+        Spec {
+            id: format!("interpolation/raster-flat-{}-{}", self.topology.name(), self.provoking.name()),
+            text: "the flat attribute of one primitive of a drawn list or strip: that of its provoking vertex",
+            source: "000 §6.1; ruling 7",
+            function: "",
+            kind: Kind::Raster(Raster::Flat { topology: self.topology, provoking: self.provoking }),
+            selectors: vec![],
+            inputs,
+            outputs: &[ATTR],
+            fit: None,
+            hard: &[],
+        }
+    }
+
+    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
+        let (attr, primitive) = (x.array::<6>(), x.scalar());
+        let step = match self.topology {
+            Topology::LineList => 2,
+            Topology::TriangleList => 3,
+            _ => 1,
+        };
+        let of = |m: u32| -> R {
+            let first = (m * step) as usize;
+            match self.topology.corners() {
+                1 => attr[first],
+                2 => interpolation::flat([attr[first], attr[first + 1]], self.provoking),
+                _ => interpolation::flat([attr[first], attr[first + 1], attr[first + 2]], self.provoking),
+            }
+        };
+        let chosen = (1..self.primitives())
+            .fold(of(0), |value, m| R::if_ge(primitive, R::literal(f64::from(m)), || of(m), || value));
+        out.scalar(chosen);
+    }
+}
+
+pub(super) fn visit(visitor: &mut impl Visitor) {
+    visitor.formula(RasterAttributes);
+    visitor.formula(RasterPosition);
+    visitor.formula(RasterLine);
+    visitor.formula(RasterFacing);
+    visitor.formula(RasterClip);
+    visitor.formula(CullBackCcw);
+    visitor.formula(CullBackCw);
+    visitor.formula(CullFrontCcw);
+    visitor.formula(CullFrontCw);
+    visitor.formula(RasterTopLeft);
+    visitor.formula(RasterSharedEdge);
+    visitor.formula(RasterDepth);
+    for topology in Topology::ALL {
+        for provoking in Provoking::ALL {
+            visitor.formula(RasterFlat { topology, provoking });
+        }
+    }
+}

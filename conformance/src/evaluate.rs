@@ -1,0 +1,67 @@
+//! Formulas evaluated by a subject on rows of inputs from anywhere, apart from a run.
+
+use crate::cases::Stage;
+use crate::select::Member;
+use crate::subject::{Compiled, Rows, Subject};
+use lightmeter_gpu::{Error, Kernel, Shaders};
+
+/// A group of formulas compiled for one subject, for rows of inputs from anywhere.
+pub struct Evaluator<'a> {
+    members: &'a [&'a Member],
+    compiled: Compiled,
+}
+
+/// The outputs' bits of each row in a stage, or why the stage is skipped.
+pub type StageOutputs = (Stage, Result<Vec<u32>, &'static str>);
+
+impl<'a> Evaluator<'a> {
+    /// Compiles the formulas, which must be of one group.
+    ///
+    /// # Errors
+    /// Where a shader is invalid or the device refuses it.
+    pub fn new(subject: &mut Subject, members: &'a [&'a Member], shaders: &Shaders) -> Result<Self, Error> {
+        let kernel = kernel(shaders, members[0])?;
+        let compiled = subject.compile(shaders, members[0].spec.kind, kernel.as_ref())?;
+        Ok(Self { members, compiled })
+    }
+
+    /// Evaluates rows in every stage: `of` names the formula of each row by its place among the members.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn run(&self, subject: &mut Subject, of: &[usize], inputs: &[f32]) -> Result<Vec<StageOutputs>, Error> {
+        let (stride, mut selected) = (self.members[0].spec.input_len(), vec![]);
+        for (&of, row) in of.iter().zip(inputs.chunks_exact(stride)) {
+            selected.extend(self.members[of].spec.selectors.iter().map(|&code| f32::from_bits(code)));
+            selected.extend_from_slice(row);
+        }
+        let outputs = self.members[0].spec.output_len();
+        let rows = Rows { members: self.members, of, inputs, selected: &selected, outputs };
+        let stages = self.compiled.stages.iter().map(|(stage, work)| match work {
+            Err(reason) => Ok((*stage, Err(*reason))),
+            Ok(work) => {
+                let job = subject.submit(work, &rows)?;
+                Ok((*stage, Ok(subject.finish(work, job, &rows)?)))
+            }
+        });
+        stages.collect()
+    }
+}
+
+/// The shader function of a formula, held against the formula's description; `None` where no function evaluates it.
+pub(crate) fn kernel(shaders: &Shaders, member: &Member) -> Result<Option<Kernel>, Error> {
+    let (spec, function) = (&member.spec, member.spec.function);
+    if function.is_empty() {
+        return Ok(None);
+    }
+    let file = format!("{}.wgsl", spec.family());
+    let kernel = Kernel::new(shaders, &file, function)?;
+    let (selectors, outputs) = (spec.selectors.len(), spec.output_len());
+    let inputs = spec.input_len() + selectors;
+    if (kernel.inputs, kernel.outputs, kernel.selectors) != (inputs, outputs, selectors) {
+        let found =
+            format!("{} numbers to {}, where {} takes {inputs} to {outputs}", kernel.inputs, kernel.outputs, spec.id);
+        return Err(Error::Signature { file, function: function.into(), found });
+    }
+    Ok(Some(kernel))
+}
