@@ -67,6 +67,37 @@ const MISTAKES: &[(&str, &str, &str, &str, &str)] = &[
         "let alpha = weights.y;\n    let beta = weights.x;",
         "interpolation",
     ),
+    (
+        "the inverse transpose without shear",
+        "vector.wgsl",
+        "return (mat3x3f(bc, ca, ab) * n) / dot(modelview[0], bc);",
+        "let m = modelview; return m * (n / vec3f(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2])));",
+        "vector",
+    ),
+    (
+        "divided by the untransformed w",
+        "vector.wgsl",
+        "return vector_dehomogenise(modelview * position);",
+        "return (modelview * position).xyz / position.w;",
+        "vector",
+    ),
+    ("a highlight edge on", "lighting.wgsl", "dot(l, n) <= 0.0", "dot(l, n) < 0.0", "lighting"),
+    ("the near plane left out", "interpolation.wgsl", "clip.z >= 0.0", "clip.z > 0.0", "interpolation"),
+    ("a steep ramp as a step", "fog.wgsl", "dmin == dmax", "abs(dmin - dmax) < 1e-5", "fog"),
+    (
+        "exponential fog not clamped",
+        "fog.wgsl",
+        "clamp(exp(-(density * distance)), 0.0, 1.0)",
+        "exp(-(density * distance))",
+        "fog",
+    ),
+    (
+        "nothing drawn by the blend unit",
+        "blend_unit.wgsl",
+        "return colored.color;",
+        "discard; return colored.color;",
+        "blend",
+    ),
     ("perspective for linear", "raster.wgsl", "@interpolate(linear)", "@interpolate(perspective)", "interpolation"),
     ("linear for perspective", "raster.wgsl", "@interpolate(perspective)", "@interpolate(linear)", "interpolation"),
 ];
@@ -144,6 +175,31 @@ fn a_failure_in_json_tells_how_to_run_it_again() {
 }
 
 #[test]
+fn a_case_beyond_the_number_of_cases_is_run_by_its_name() {
+    let report = json(&["run", "fog/linear/random/123456", "blend/max/zero/zero/0999", "--format", "json"]);
+    assert_eq!(report["failures"], Value::Array(vec![]));
+    let groups = report["groups"].as_array().expect("groups");
+    for id in ["fog/linear", "blend/max"] {
+        assert_eq!(groups.iter().find(|group| group["id"] == id).expect(id)["cases"], 1, "{id}");
+    }
+}
+
+#[test]
+fn every_profile_passes_on_a_right_driver() {
+    for profile in ["wgsl", "vulkan"] {
+        let output = lightmeter(&["run", "fog", "lighting", "--cases", "1000", "--profile", profile]);
+        assert_eq!(code(&output), 0, "{profile}: {}", stdout(&output));
+    }
+}
+
+#[test]
+fn nothing_judged_is_no_success() {
+    let output = lightmeter(&["run", "vector/normalize/hard/tiny"]);
+    assert_eq!(code(&output), 3, "{}", stdout(&output));
+    assert!(stderr(&output).contains("nothing was judged"));
+}
+
+#[test]
 fn shards_make_the_whole() {
     let cases = |shard: &str| {
         json(&["run", "fog", "--adapter", "cpu", "--cases", "100", "--shard", shard, "--format", "json"])["totals"]["cases"].as_u64().expect("a count")
@@ -161,9 +217,17 @@ fn the_embedded_implementation_passes_without_a_driver() {
 
 #[test]
 fn all_blend_states_are_judged_or_aliases() {
-    let report = json(&["run", "blend", "--adapter", "cpu", "--cases", "16", "--format", "json"]);
+    let report = json(&["run", "blend", "--cases", "16", "--format", "json"]);
+    let unit = |id: &str| {
+        let groups = report["groups"].as_array().expect("groups").iter();
+        let mut of = groups.filter(|group| group["id"] == id && group["stage"] == "fixed-function");
+        of.next().expect("the blend unit's group")["verdicts"].as_u64().expect("a count")
+    };
+    assert_eq!((unit("blend/reverse-subtract"), unit("blend/max")), (225 * 4, 4));
     let judged: u64 = report["routes"].as_object().expect("routes").values().filter_map(Value::as_u64).sum();
     assert_eq!((judged, report["aliases"].as_u64()), (677, Some(448)));
+    let embedded = json(&["run", "blend/add", "--adapter", "cpu", "--cases", "16", "--format", "json"]);
+    assert!(embedded["routes"].is_null(), "no blend unit ran");
     let alias = json(&["run", "blend/min/src-alpha/zero", "--adapter", "cpu", "--format", "json"]);
     assert_eq!(alias["groups"][0]["id"], "blend/min");
 }
@@ -316,6 +380,15 @@ fn invalid_shaders_are_told_with_their_line() {
         ("syntax", "fog.wgsl", "return abs(p.z);", "return abs(p.z;", "fog.wgsl:"),
         ("types", "fog.wgsl", "return abs(p.z);", "return abs(p);", "fog.wgsl:"),
         ("missing", "fog.wgsl", "fn fog_linear(", "fn fog_lineal(", "no function `fog_linear`"),
+        ("entry", "raster.wgsl", "fn raster_facing(", "fn raster_farcing(", "no function `raster_facing`"),
+        (
+            "clash",
+            "fog.wgsl",
+            "struct Fogged {",
+            "var<private> lightmeter_rows: f32;\nstruct Fogged {",
+            "lightmeter_rows",
+        ),
+        ("discard", "fog.wgsl", "return abs(p.z);", "if p.z > 0.0 { discard; } return abs(p.z);", "fog.wgsl"),
         (
             "signature",
             "color.wgsl",

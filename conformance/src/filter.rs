@@ -12,6 +12,7 @@ pub struct Filter {
 /// A glob, whole and by segments.
 #[derive(Clone, Debug)]
 struct PathGlob {
+    text: String,
     whole: GlobMatcher,
     /// The segments before the first `**`.
     head: Vec<GlobMatcher>,
@@ -24,10 +25,13 @@ impl PathGlob {
         let compile = |text: &str| -> Result<GlobMatcher, globset::Error> {
             Ok(GlobBuilder::new(text).literal_separator(true).build()?.compile_matcher())
         };
-        let head: Vec<&str> = text.split('/').take_while(|segment| !segment.contains("**")).collect();
+        // Alternatives may hold slashes: such a glob is tried whole.
+        let is_deep = |text: &str| text.contains("**") || text.contains('{');
+        let head: Vec<&str> = text.split('/').take_while(|segment| !is_deep(segment)).collect();
         Ok(Self {
+            text: text.to_owned(),
             whole: compile(text)?,
-            is_deep: text.contains("**"),
+            is_deep: is_deep(text),
             head: head.into_iter().map(compile).collect::<Result<_, _>>()?,
         })
     }
@@ -36,6 +40,7 @@ impl PathGlob {
     fn reaches_below(&self, path: &str) -> bool {
         let depth = path.split('/').count();
         (self.is_deep || self.head.len() > depth)
+            && self.text.contains(['*', '?', '[', '{'])
             && path.split('/').zip(&self.head).all(|(segment, glob)| glob.is_match(segment))
     }
 }
@@ -68,10 +73,16 @@ impl Filter {
             || ancestors(id).any(|ancestor| self.globs.iter().any(|glob| glob.whole.is_match(ancestor)))
     }
 
-    /// Whether something below the path may be selected where the path itself is not: if not, no id below need be tried.
+    /// Whether a wildcard may select something below the path where the path itself is not selected: if not, no id below
+    /// need be tried.
     #[must_use]
     pub fn reaches_below(&self, path: &str) -> bool {
         self.globs.iter().any(|glob| glob.reaches_below(path))
+    }
+
+    /// The globs that may name one case: those without wildcards.
+    pub fn literals(&self) -> impl Iterator<Item = &str> {
+        self.globs.iter().map(|glob| glob.text.as_str()).filter(|text| !text.contains(['*', '?', '[', '{']))
     }
 
     /// Whether there is no glob, so that everything is selected.
@@ -104,12 +115,14 @@ mod tests {
             ("blend/add/**/0007", "blend/add/zero/one/0007", true),
             ("blend/add/**/0007", "blend/add/zero/one/0008", false),
             ("fog/linear/random/000017", "fog/linear/random/000017", true),
+            ("{fog/linear,fog/exp}", "fog/exp/random/000017", true),
         ];
         for (glob, id, expected) in rows {
             let filter = Filter::new(&[glob]).expect("the glob is valid");
             assert_eq!(filter.selects(id), expected, "{glob} on {id}");
             let path = id.rsplit_once('/').expect("an id has a parent").0;
-            assert!(!expected || filter.selects(path) || filter.reaches_below(path), "{glob} reaches {id}");
+            let is_named = filter.literals().any(|literal| literal == id);
+            assert!(!expected || is_named || filter.selects(path) || filter.reaches_below(path), "{glob} reaches {id}");
         }
     }
 }

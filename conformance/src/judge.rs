@@ -1,6 +1,7 @@
 //! One verdict: a value against the reference and the interval of legal values.
 
-use crate::arithmetic::{Accept, format::error_ulp};
+use crate::arithmetic::format::error_ulp;
+use crate::arithmetic::{Accept, F16, F32};
 use lightmeter_gpu::SENTINEL;
 
 /// What became of one scalar output of one case.
@@ -19,17 +20,35 @@ pub enum Outcome {
 pub struct Verdict {
     /// Inside or outside.
     pub outcome: Outcome,
-    /// The error against the reference in ULP of binary32.
+    /// The error against the reference in ULP of the output's format.
     pub error_ulp: f64,
     /// The distance from the reference over the distance to the interval's end on the value's side: above 1 outside.
     pub margin: f64,
 }
 
-/// Judges a value by its bits. An output that was never written fails, even where anything is legal.
+/// The format that an output had before it was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputFormat {
+    /// binary32.
+    Single,
+    /// binary16.
+    Half,
+}
+
+/// Judges a value of binary32 by its bits.
 #[must_use]
 pub fn judge(bits: u32, reference: f64, interval: &Accept) -> Verdict {
+    judge_in(OutputFormat::Single, bits, reference, interval)
+}
+
+/// Judges a value by its bits. An output that was never written fails, even where anything is legal.
+#[must_use]
+pub fn judge_in(format: OutputFormat, bits: u32, reference: f64, interval: &Accept) -> Verdict {
     let value = f32::from_bits(bits);
-    let error_ulp = error_ulp(value, reference);
+    let error_ulp = match format {
+        OutputFormat::Single => error_ulp::<F32>(value, reference),
+        OutputFormat::Half => error_ulp::<F16>(value, reference),
+    };
     if bits == SENTINEL {
         return Verdict { outcome: Outcome::Fail, error_ulp: f64::INFINITY, margin: f64::INFINITY };
     }

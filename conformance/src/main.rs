@@ -13,9 +13,11 @@ fn main() -> ExitCode {
                 .chain()
                 .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
                 .any(|cause| cause.kind() == std::io::ErrorKind::BrokenPipe);
-            if !broken_pipe {
-                eprintln!("error: {error:#}");
+            // Whoever reads has read enough.
+            if broken_pipe {
+                return ExitCode::SUCCESS;
             }
+            eprintln!("error: {error:#}");
             cli::Status::of(&error).into()
         }
     }

@@ -150,18 +150,27 @@ pub fn select(catalogue: &[Member], filter: &Filter, cases: u64, shard: Shard) -
     } else {
         cases::blend::aliases().filter(|(alias, _)| filter.selects(alias)).map(|(_, canonical)| canonical).collect()
     };
+    // A case that is named exactly is selected however many random cases are asked for.
+    let named: Vec<String> = filter.literals().map(canonical_id).collect();
     let mut selected = vec![];
     for (place, member) in catalogue.iter().enumerate() {
         let count = random_cases(&member.spec, cases);
         let path = member.random_path();
         let random = if filter.selects(&path) || aliased.contains(&member.spec.id) {
             Random::First(count)
-        } else if !filter.reaches_below(&path) {
-            Random::Some(vec![])
         } else {
-            Random::Some(
-                (0..count).filter(|&k| shard.has(k) && filter.selects(&member.case_id(CaseRef::Random(k)))).collect(),
-            )
+            let mut some: Vec<u64> = named
+                .iter()
+                .filter_map(|id| member.case(id).filter(|&case| member.case_id(case) == *id))
+                .filter_map(|case| if let CaseRef::Random(k) = case { Some(k) } else { None })
+                .collect();
+            if filter.reaches_below(&path) {
+                some.extend((0..count).filter(|&k| filter.selects(&member.case_id(CaseRef::Random(k)))));
+            }
+            some.retain(|&k| shard.has(k));
+            some.sort_unstable();
+            some.dedup();
+            Random::Some(some)
         };
         let hard = (0..member.spec.hard.len())
             .filter(|&k| shard.has(k as u64) && filter.selects(&member.case_id(CaseRef::Hard(k))))
@@ -172,4 +181,13 @@ pub fn select(catalogue: &[Member], filter: &Filter, cases: u64, shard: Shard) -
         }
     }
     selected
+}
+
+/// The id under which a case is judged: that of its own name, or of the state that its state is an alias of.
+#[must_use]
+pub fn canonical_id(id: &str) -> String {
+    let renamed = cases::blend::aliases().find_map(|(alias, canonical)| {
+        id.strip_prefix(&alias).filter(|rest| rest.starts_with('/')).map(|rest| canonical + rest)
+    });
+    renamed.unwrap_or_else(|| id.to_owned())
 }

@@ -115,10 +115,22 @@ impl Subject {
         Self { identity, known: Known { subpixel_bits: None, deviations: vec![] }, gpu: None }
     }
 
+    /// Whether it is the embedded implementation, which has no fixed hardware.
+    #[must_use]
+    pub const fn is_embedded(&self) -> bool {
+        self.gpu.is_none()
+    }
+
     /// Whether its blend unit works on binary16.
     #[must_use]
     pub fn blends_halves(&self) -> bool {
         matches!(&self.gpu, Some(Device { blend: Some(unit), .. }) if unit.target() == BlendTarget::Rgba16Float)
+    }
+
+    /// The format that its blend unit works on, once it was asked to.
+    #[must_use]
+    pub fn blend_target(&self) -> Option<&'static str> {
+        Some(self.gpu.as_ref()?.blend.as_ref()?.target().name())
     }
 
     /// Compiles what the group's formulas need.

@@ -2,7 +2,7 @@
 
 use crate::arithmetic::{Accept, Profile};
 use crate::cases::{Stage, Target};
-use crate::judge::{Outcome, judge};
+use crate::judge::{Outcome, OutputFormat, judge, judge_in};
 use crate::report::{Failure, Number, Totals};
 use crate::run::{Chunk, Options, TASK};
 use crate::select::{CaseRef, Member};
@@ -121,9 +121,11 @@ fn judge_case(
     if is_random {
         tally.random.0 += outputs as u64;
     }
+    let halves = stage == Stage::FixedFunction && subject.blends_halves();
+    let format = if halves { OutputFormat::Half } else { OutputFormat::Single };
     for (output, at) in range.enumerate() {
         let (bits, reference) = (words[at], chunk.references[at]);
-        let verdict = judge(bits, reference, &legal[output]);
+        let verdict = judge_in(format, bits, reference, &legal[output]);
         match verdict.outcome {
             Outcome::Indeterminate => {
                 tally.totals.indeterminate += 1;

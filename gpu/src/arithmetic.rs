@@ -54,7 +54,7 @@ impl ArithmeticPipeline {
                 Pipeline::Fragment(render_pipeline(gpu, kernel))
             }
         };
-        gpu.check()?;
+        gpu.check_shader(&kernel.file)?;
         Ok(Ok(Self { pipeline, inputs: kernel.inputs, outputs: kernel.outputs, targets: kernel.targets() }))
     }
 

@@ -14,6 +14,7 @@ const WIDTH: u32 = 256;
 /// Numbers of a case: source, destination, constant.
 const ROW: usize = 12;
 const FILE: &str = "blend_unit.wgsl";
+const NOTHING: wgpu::Color = wgpu::Color { r: f64::NAN, g: f64::NAN, b: f64::NAN, a: f64::NAN };
 
 /// The format that is blended on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +23,17 @@ pub enum BlendTarget {
     Rgba32Float,
     /// Four binary16 components, where the adapter cannot blend on binary32.
     Rgba16Float,
+}
+
+impl BlendTarget {
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rgba32Float => "rgba32float",
+            Self::Rgba16Float => "rgba16float",
+        }
+    }
 }
 
 /// How a state reaches the unit, which has no factor of the constant's alpha.
@@ -152,7 +164,7 @@ impl BlendUnit {
         let module = gpu.module(FILE, shaders.source(FILE));
         let destination = source_pipeline(gpu, &module, target, None);
         let reader = screen_pipeline(gpu, &module, "unit_vertex", "unit_result");
-        gpu.check()?;
+        gpu.check_shader(FILE)?;
         Ok(Self { target, module, destination, reader, sources: HashMap::new() })
     }
 
@@ -174,7 +186,7 @@ impl BlendUnit {
                 .entry(draw.lowered)
                 .or_insert_with(|| source_pipeline(gpu, &self.module, self.target, Some(draw.lowered)));
         }
-        gpu.check()?;
+        gpu.check_shader(FILE)?;
         let count = u32::try_from(states.len()).unwrap_or(u32::MAX);
         // A power of two, so that the middle of every pixel is exact in clip coordinates.
         let height = count.div_ceil(WIDTH).next_power_of_two();
@@ -189,7 +201,8 @@ impl BlendUnit {
                     view: &view,
                     depth_slice: None,
                     resolve_target: None,
-                    ops: wgpu::Operations::default(),
+                    // NaN: what is never written stays it, whatever it is blended with.
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(NOTHING), store: wgpu::StoreOp::Store },
                 })],
                 ..Default::default()
             });

@@ -53,6 +53,14 @@ impl Gpu {
         failure.map_or(Ok(()), |message| Err(Error::Device(message)))
     }
 
+    /// The same after a shader was compiled: what the device says then is of the shader.
+    pub(crate) fn check_shader(&self, file: &str) -> Result<(), Error> {
+        self.check().map_err(|error| match error {
+            Error::Device(message) if !message.contains("lost") => Error::Shader { file: file.into(), message },
+            other => other,
+        })
+    }
+
     /// Waits until everything submitted is done, but not for ever: an edited shader may loop.
     pub(crate) fn wait(&self) -> Result<(), Error> {
         let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };

@@ -14,7 +14,7 @@ pub enum Error {
         message: String,
     },
     /// A shader lacks a function that a formula is evaluated by.
-    #[error("shader {file} has no function `{function}`, which the formula of that name is evaluated by")]
+    #[error("shader {file} has no function `{function}`, which the suite evaluates by that name")]
     MissingFunction {
         /// The file's name.
         file: String,

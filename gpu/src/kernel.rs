@@ -1,13 +1,15 @@
 //! A WGSL function as something to evaluate on rows of numbers: its signature read by naga, its entry points written here.
 
 use crate::error::Error;
-use crate::shaders::Shaders;
+use crate::shaders::{Shaders, validate};
 use naga::{Handle, Module, ScalarKind, Type, TypeInner};
 use std::fmt::Write as _;
 
 /// A function of a shader file with the entry points that evaluate it.
 #[derive(Clone, Debug)]
 pub struct Kernel {
+    /// The file that it is in.
+    pub file: String,
     /// The function's name.
     pub function: String,
     /// Numbers that it takes, flattened, selectors included.
@@ -49,14 +51,19 @@ impl Kernel {
 
         let call = format!("let result = {function}({});", arguments.join(", "));
         let source = shaders.source(file);
-        Ok(Self {
+        let kernel = Self {
+            file: file.into(),
             function: function.into(),
             inputs,
             selectors,
             outputs: fields.len(),
             compute: format!("{source}\n{}", compute_entry(&call, inputs, &fields)),
             fragment: format!("{source}\n{}", fragment_entry(&call, inputs, &fields)),
-        })
+        };
+        // A name of the file's may stand in the way of the entry points', or an operation be out of place in a stage.
+        validate(file, &kernel.compute)?;
+        validate(file, &kernel.fragment)?;
+        Ok(kernel)
     }
 
     /// Targets of four words that the fragment stage writes.

@@ -28,7 +28,7 @@ pub enum Raster {
     Quad,
     /// The depth that a fragment writes for itself, as it is stored.
     OwnDepth,
-    /// Whether the triangle is seen from its front; 0 too where the pixel is not covered.
+    /// Whether the triangle is seen from its front.
     Facing,
     /// Whether the triangle covers the pixel once it is clipped.
     Clipped,
@@ -111,7 +111,7 @@ impl Raster {
 
     /// Whether an uncovered pixel is an answer, 0, rather than a failure to write.
     const fn counts_uncovered(self) -> bool {
-        matches!(self, Self::Quad | Self::Facing | Self::Clipped | Self::Culled { .. })
+        matches!(self, Self::Quad | Self::Clipped | Self::Culled { .. })
     }
 }
 
@@ -156,7 +156,7 @@ impl RasterPipeline {
             let unit = gpu.module("blend_unit.wgsl", shaders.source("blend_unit.wgsl"));
             screen_pipeline(gpu, &unit, "unit_vertex", "unit_result")
         });
-        gpu.check()?;
+        gpu.check_shader(FILE)?;
         let selector = if let Raster::Flat { topology, .. } = kind { topology.code() } else { 0 };
         Ok(Ok(Self { kind, pipeline, reader, vertices, selector }))
     }

@@ -110,15 +110,62 @@ impl Shaders {
     /// # Errors
     /// naga's message, with the line.
     pub fn parse(&self, file: &str) -> Result<naga::Module, Error> {
-        let source = self.source(file);
-        let invalid = |message: String| Error::Shader { file: file.into(), message };
-        let module = naga::front::wgsl::parse_str(&source)
-            .map_err(|error| invalid(error.emit_to_string_with_path(&source, file)))?;
-        Validator::new(ValidationFlags::all(), Capabilities::default())
-            .validate(&module)
-            .map_err(|error| invalid(error.emit_to_string_with_path(&source, file)))?;
+        let module = validate(file, &self.source(file))?;
+        let entries = ENTRY_POINTS.iter().filter(|(of, _)| *of == file).flat_map(|(_, names)| names.iter());
+        for name in entries {
+            if !module.entry_points.iter().any(|entry| entry.name == *name) {
+                return Err(Error::MissingFunction { file: file.into(), function: (*name).into() });
+            }
+        }
         Ok(module)
     }
+}
+
+/// The entry points that fixed hardware is driven by.
+const ENTRY_POINTS: [(&str, &[&str]); 2] = [
+    (
+        "blend_unit.wgsl",
+        &[
+            "unit_destination",
+            "unit_source",
+            "unit_source_constant_color",
+            "unit_source_one_minus_constant_color",
+            "unit_source_constant_alpha",
+            "unit_source_one_minus_constant_alpha",
+            "unit_color",
+            "unit_vertex",
+            "unit_result",
+        ],
+    ),
+    (
+        "raster.wgsl",
+        &[
+            "raster_triangle_vertex",
+            "raster_line_vertex",
+            "raster_quad_vertex",
+            "raster_depth_vertex",
+            "raster_flat_first_vertex",
+            "raster_flat_last_vertex",
+            "raster_attributes",
+            "raster_position",
+            "raster_facing",
+            "raster_covered",
+            "raster_count",
+            "raster_own_depth",
+            "raster_flat_fragment",
+        ],
+    ),
+];
+
+/// Parses and validates WGSL that begins with a file's own text.
+pub(crate) fn validate(file: &str, source: &str) -> Result<naga::Module, Error> {
+    let invalid = |message: String| Error::Shader { file: file.into(), message };
+    let module =
+        naga::front::wgsl::parse_str(source).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
+    Validator::new(ValidationFlags::all(), Capabilities::default())
+        .validate(&module)
+        .map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
+    Ok(module)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! Symbols: `src` (Cs, As) the colour drawn, `dst` (Cd, Ad) the colour there before, `constant` (Cc, Ac) the blend
 //! constant; S and D the factors. Nothing is clamped here: clamping belongs to the target's format.
 
-use crate::algebra::{Rgba, Vector};
+use crate::algebra::{Rgb, Rgba, Vector};
 use crate::real::{Components as _, Real};
 use lightmeter_scene::blend::{Equation, Factor, State};
 
@@ -69,4 +69,45 @@ pub fn blend<R: Real>(state: State, of: &Operands<R>, saturate: Saturate) -> Rgb
         Equation::Min => of.src.zip(of.dst, R::min),
         Equation::Max => of.src.zip(of.dst, R::max),
     }
+}
+
+/// The named modes of document 002.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// `src`: what is there is replaced.
+    Solid,
+    /// `src·As + dst·(1 − As)`.
+    Alpha,
+    /// `src * dst`: lightmaps.
+    Mul,
+    /// `src·As + dst`.
+    Add,
+}
+
+impl Mode {
+    /// The state that computes it.
+    #[must_use]
+    pub const fn state(self) -> State {
+        let (src, dst) = match self {
+            Self::Solid => (Factor::One, Factor::Zero),
+            Self::Alpha => (Factor::SrcAlpha, Factor::OneMinusSrcAlpha),
+            Self::Mul => (Factor::DstColor, Factor::Zero),
+            Self::Add => (Factor::SrcAlpha, Factor::One),
+        };
+        State { equation: Equation::Add, src, dst }
+    }
+}
+
+/// A named mode on a back buffer without alpha, which reads as 1. Source: 002.
+pub fn without_alpha<R: Real>(mode: Mode, src: Rgba<R>, dst: Rgb<R>) -> Rgb<R> {
+    let (one, zero) = (R::literal(1.0), R::literal(0.0));
+    let of = Operands { src, dst: dst.extend(one), constant: Vector::splat(zero) };
+    blend(mode.state(), &of, Saturate::SourceAndDestination).xyz()
+}
+
+/// Source-over on a target of [0, 1], as every unorm target is: source, destination and result are clamped.
+pub fn alpha_clamped<R: Real>(src: Rgba<R>, dst: Rgba<R>) -> Rgba<R> {
+    let unit = |c: Rgba<R>| c.map(|x| x.clamp(R::literal(0.0), R::literal(1.0)));
+    let of = Operands { src: unit(src), dst: unit(dst), constant: Vector::splat(R::literal(0.0)) };
+    unit(blend(Mode::Alpha.state(), &of, Saturate::SourceAndDestination))
 }

@@ -205,12 +205,12 @@ pub fn fragment_of_line<R: Real>(clip: [Vec4<R>; 2], attr: [R; 2], to: &Viewport
     [perspective_line(t, clip.map(|v| v.w()), attr), R::mix(attr[0], attr[1], t)]
 }
 
-/// 1 where a triangle that is clipped to WebGPU's volume covers p, 0 elsewhere; vertices may lie behind the eye.
+/// What decides whether a triangle that is clipped to WebGPU's volume covers p: λ₀, λ₁, λ₂, z, w − z, and w, up to one
+/// common sign. Each is a linear function of p; vertices may lie behind the eye.
 ///
-/// In homogeneous coordinates: p is the point Σ λᵢ·clipᵢ with λ from the 2D cross products of the vertices' distances to
-/// p, and is seen where all λ have one sign and the point lies within the volume.
-pub fn clipped_coverage<R: Real>(clip: [Vec4<R>; 3], to: &Viewport<R>, p: Vec2<R>) -> R {
-    let (zero, one, two) = (R::literal(0.0), R::literal(1.0), R::literal(2.0));
+/// In homogeneous coordinates: p is the point Σ λᵢ·clipᵢ, with λ from the 2D cross products of the vertices' distances to p.
+pub fn clip_functions<R: Real>(clip: [Vec4<R>; 3], to: &Viewport<R>, p: Vec2<R>) -> [R; 6] {
+    let (one, two) = (R::literal(1.0), R::literal(2.0));
     let x = R::product([two, p.x() - to.origin.x()]) / to.size.x() - one;
     let y = one - R::product([two, p.y() - to.origin.y()]) / to.size.y();
     let dx = Vector(clip.map(|v| v.x() - x * v.w()));
@@ -218,9 +218,13 @@ pub fn clipped_coverage<R: Real>(clip: [Vec4<R>; 3], to: &Viewport<R>, p: Vec2<R
     let lambda = dx.cross(dy).named("λ");
     let z = lambda.dot(Vector(clip.map(|v| v.z())));
     let w = lambda.dot(Vector(clip.map(|v| v.w())));
-    let inside = |sign: R| {
-        let seen = [lambda.x(), lambda.y(), lambda.z(), w, z, w - z];
-        seen.into_iter().fold(one, |all, value| R::if_ge(sign * value, zero, || all, || zero))
-    };
-    R::if_ge(w, zero, || inside(one), || inside(-one))
+    [lambda.x(), lambda.y(), lambda.z(), z, w - z, w]
+}
+
+/// 1 where a triangle that is clipped to WebGPU's volume covers p, 0 elsewhere: all of [`clip_functions`] have one sign.
+pub fn clipped_coverage<R: Real>(clip: [Vec4<R>; 3], to: &Viewport<R>, p: Vec2<R>) -> R {
+    let (zero, one) = (R::literal(0.0), R::literal(1.0));
+    let functions = clip_functions(clip, to, p);
+    let inside = |sign: R| functions.into_iter().fold(one, |all, value| R::if_ge(sign * value, zero, || all, || zero));
+    R::if_ge(functions[5], zero, || inside(one), || inside(-one))
 }

@@ -222,7 +222,7 @@ pub fn point_opengl<R: Real>(
     let atten = attenuation::point(falloff.kc, falloff.kl, falloff.kq, position, p).named("atten");
     let vectors = [n.normalize().named("n"), toward(position, p), to_eye(p)];
     let mut terms = terms((Specular::Blinn, Gate::OpenGl), light, material, vectors, atten);
-    terms.ambient = terms.ambient.scale(atten);
+    terms.ambient = Vector::product([light.ambient, material.ambient, Vector::splat(atten)]).named("atten·CA");
     terms.sum().extend(alpha)
 }
 

@@ -1,7 +1,7 @@
 //! Laws of blending.
 
 use crate::family;
-use lightmeter_reference::blend::{Operands, Saturate, blend, factor};
+use lightmeter_reference::blend::{Mode, Operands, Saturate, alpha_clamped, blend, factor, without_alpha};
 use lightmeter_reference::{Rgba, Vector};
 use lightmeter_scene::blend::{Equation, Factor, State};
 use proptest::prelude::*;
@@ -107,5 +107,21 @@ proptest! {
         let of = Operands { src: Vector([1.0, 1.0, 1.0, alpha]), dst: Vector([0.0; 4]), constant: Vector([0.0; 4]) };
         let (ruled, document) = (factor(Factor::SrcAlphaSaturate, &of, Saturate::SourceAndDestination), factor(Factor::SrcAlphaSaturate, &of, Saturate::SourceOnly));
         prop_assert!(ruled.x() > document.x());
+    }
+
+    #[test]
+    fn named_modes_are_their_words(src in color(), dst in color()) {
+        let mode = |mode| without_alpha(mode, src, dst.xyz());
+        prop_assert_eq!(mode(Mode::Solid), src.xyz());
+        prop_assert_eq!(mode(Mode::Mul), src.xyz() * dst.xyz());
+        prop_assert_eq!(mode(Mode::Add), src.xyz().scale(src.w()) + dst.xyz());
+        prop_assert_eq!(mode(Mode::Alpha), src.xyz().scale(src.w()) + dst.xyz().scale(1.0 - src.w()));
+    }
+
+    #[test]
+    fn clamping_changes_nothing_inside_and_keeps_within(src in color(), dst in color(), scale in 0.5..3.0_f64) {
+        let of = Operands { src, dst, constant: Vector([0.0; 4]) };
+        prop_assert!(approx::abs_diff_eq!(alpha_clamped(src, dst), blend(Mode::Alpha.state(), &of, Saturate::SourceAndDestination), epsilon = 1e-15));
+        prop_assert!(alpha_clamped(src.scale(scale), dst.scale(-scale)).0.iter().all(|c| (0.0..=1.0).contains(c)));
     }
 }

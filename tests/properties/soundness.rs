@@ -200,7 +200,7 @@ impl Real for Draw {
         chain(factors, Mul::mul)
     }
     fn mix(a: Self, b: Self, t: Self) -> Self {
-        if PROFILE.get().mix_by_difference && coin() { a + t * (b - a) } else { a * (Self::of(1.0) - t) + b * t }
+        if coin() { a + t * (b - a) } else { a * (Self::of(1.0) - t) + b * t }
     }
     fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
         let square = Self::sum(v.map(|x| x * x));

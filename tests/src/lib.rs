@@ -1,7 +1,8 @@
 //! What the property tests share: inputs as proptest strategies, and their evaluation in one dispatch.
 
+use lightmeter::arithmetic::Accept;
 use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::cases::{AnyFormula, Domain, Spec};
+use lightmeter::cases::{AnyFormula, Domain, Spec, Stage, Target};
 use lightmeter::evaluate::Evaluator;
 use lightmeter::judge::{Outcome, judge};
 use lightmeter::select::{CaseRef, Member, catalogue};
@@ -161,17 +162,11 @@ pub fn agree(group: &[Member], rows_at_most: usize) {
     }
 }
 
-fn verdict(
-    member: &Member,
-    row: &[f32],
-    stage: lightmeter::cases::Stage,
-    subject: &Subject,
-    words: &[u32],
-) -> Result<(), TestCaseError> {
+fn verdict(member: &Member, row: &[f32], stage: Stage, subject: &Subject, words: &[u32]) -> Result<(), TestCaseError> {
     let outputs = words.len();
     let mut reference = vec![0.0; outputs];
     member.formula.reference(row, &mut reference);
-    let mut legal = vec![lightmeter::arithmetic::Accept::ANY; outputs];
+    let mut legal = vec![Accept::ANY; outputs];
     let mut profile = WGSL;
     for deviation in &subject.known.deviations {
         profile = deviation.grant(profile);
@@ -212,21 +207,34 @@ pub fn control(family: &str) {
 
 fn control_row(member: &Member, row: &[f32]) {
     let outputs = member.spec.output_len();
-    let (mut reference, mut legal) = (vec![0.0; outputs], vec![lightmeter::arithmetic::Accept::ANY; outputs]);
+    let mut reference = vec![0.0; outputs];
     let formula: &dyn AnyFormula = member.formula.as_ref();
     formula.reference(row, &mut reference);
-    formula.interval(row, &mut legal);
-    for (reference, legal) in reference.iter().zip(&legal) {
-        if legal.is_any() {
-            continue;
+    for &stage in member.spec.kind.stages() {
+        for half_float in [false, true] {
+            let mut legal = vec![Accept::ANY; outputs];
+            match stage {
+                Stage::Compute | Stage::Fragment => formula.interval(row, &mut legal),
+                Stage::FixedFunction | Stage::Raster => {
+                    let target = Target { subpixel_bits: WGSL.subpixel_bits, half_float };
+                    formula.hardware_interval(member.spec.kind, row, target, &mut legal);
+                }
+            }
+            for (reference, legal) in reference.iter().zip(&legal).filter(|(_, legal)| !legal.is_any()) {
+                control_value(&member.spec.id, *reference, legal);
+            }
         }
-        #[expect(clippy::cast_possible_truncation, reason = "ends lie on the grid of f32, but where they were flushed")]
-        let narrow = |x: f64| x as f32;
-        let outcome = |value: f32| judge(value.to_bits(), *reference, legal).outcome;
-        let id = &member.spec.id;
-        assert_eq!(outcome(narrow(*reference)), Outcome::Pass, "{id}: the reference itself, {reference} in {legal:?}");
-        assert_eq!(outcome(narrow(legal.low()).next_down()), Outcome::Fail, "{id}: below {legal:?}");
-        assert_eq!(outcome(narrow(legal.high()).next_up()), Outcome::Fail, "{id}: above {legal:?}");
-        assert_eq!(outcome(f32::NAN), Outcome::Fail, "{id}: NaN");
     }
+}
+
+fn control_value(id: &str, reference: f64, legal: &Accept) {
+    #[expect(clippy::cast_possible_truncation, reason = "ends lie on the grid of f32, but where they were flushed")]
+    let narrow = |x: f64| x as f32;
+    let outcome = |value: f32| judge(value.to_bits(), reference, legal).outcome;
+    assert!(legal.contains(reference), "{id}: the reference itself, {reference} in {legal:?}");
+    assert_eq!(outcome(narrow(legal.low())), Outcome::Pass, "{id}: the lower end of {legal:?}");
+    assert_eq!(outcome(narrow(legal.high())), Outcome::Pass, "{id}: the upper end of {legal:?}");
+    assert_eq!(outcome(narrow(legal.low()).next_down()), Outcome::Fail, "{id}: below {legal:?}");
+    assert_eq!(outcome(narrow(legal.high()).next_up()), Outcome::Fail, "{id}: above {legal:?}");
+    assert_eq!(outcome(f32::NAN), Outcome::Fail, "{id}: NaN");
 }

@@ -186,10 +186,6 @@ impl<F: Format> Accept<F> {
         let x = self.abs();
         Self::seal(x.low * x.low, x.high * x.high)
     }
-
-    fn mix_by_products(a: Self, b: Self, t: Self) -> Self {
-        a * (Self::exactly(1.0) - t) + b * t
-    }
 }
 
 /// a + b in f64, stepped down where that rounded up.
@@ -421,8 +417,8 @@ impl<F: Format> Real for Accept<F> {
     }
 
     fn mix(a: Self, b: Self, t: Self) -> Self {
-        let products = Self::mix_by_products(a, b, t);
-        if current(|p| p.mix_by_difference) { products.hull(a + t * (b - a)) } else { products }
+        let (products, difference) = (a * (Self::exactly(1.0) - t) + b * t, a + t * (b - a));
+        products.hull(difference)
     }
 
     fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {

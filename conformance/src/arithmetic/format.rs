@@ -88,16 +88,16 @@ impl<F: Format> Format for Hardware<F> {
     const SUMS_BY_TERMS: bool = true;
 }
 
-/// The error of `value` against `reference` in units in the last place of binary32 at the reference.
+/// The error of `value` against `reference` in units in the last place of the format at the reference.
 ///
 /// 0 where both are equal or both NaN; infinite where only one of them is finite.
 #[must_use]
-pub fn error_ulp(value: f32, reference: f64) -> f64 {
+pub fn error_ulp<F: Format>(value: f32, reference: f64) -> f64 {
     let value = f64::from(value);
     if value == reference || (value.is_nan() && reference.is_nan()) {
         0.0
     } else if value.is_finite() && reference.is_finite() {
-        (value - reference).abs() / F32::ulp(reference)
+        (value - reference).abs() / F::ulp(reference)
     } else {
         f64::INFINITY
     }

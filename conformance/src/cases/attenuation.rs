@@ -11,7 +11,7 @@ pub(super) const KC: Input = Input::scalar("kc", "1", Domain::Uniform(0.1, 2.0))
 pub(super) const KL: Input = Input::scalar("kl", "1/unit", Domain::Uniform(0.0, 1.0));
 pub(super) const KQ: Input = Input::scalar("kq", "1/unit²", Domain::Uniform(0.0, 0.5));
 const DISTANCE: Input = Input::scalar("d", "unit", Domain::LogUniform(1e-3, 1e3));
-pub(super) const CUTOFF: Input = Input::scalar("cutoff_cosine", "1", Domain::Uniform(0.0, 0.99));
+pub(super) const CUTOFF: Input = Input::scalar("cutoff_cosine", "1", Domain::Uniform(-0.5, 0.99));
 pub(super) const EXPONENT: Input = Input::scalar("exponent", "1", Domain::Uniform(0.0, 128.0));
 
 formula!(
@@ -63,6 +63,7 @@ formula!(
     |x, out| { out.scalar(attenuation::spot_cutoff(x.vector(), x.vector(), x.scalar())); },
     hard [
         Hard { name: "on-the-edge", pins: "the edge belongs to the cone", inputs: &[("l", &[0.0, 0.0, -1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[1.0])] },
+        Hard { name: "all-round", pins: "a cutoff of 180 degrees lights what lies behind too", inputs: &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[-1.0])] },
     ],
 );
 formula!(

@@ -1,10 +1,10 @@
-//! Cases of blending: every distinct state of the 15 × 15 × 5. Formulas: `lightmeter_reference::blend`.
+//! Cases of blending: every distinct state of the 15 × 15 × 5, and the named modes. Formulas: `lightmeter_reference::blend`.
 
 use super::Visitor;
 use super::formula::{Formula, formula};
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
-use lightmeter_reference::blend::{Operands, Saturate, blend};
+use lightmeter_reference::blend::{Mode, Operands, Saturate, alpha_clamped, blend, without_alpha};
 use lightmeter_reference::{Real, Vector};
 use lightmeter_scene::blend::{Equation, Factor, State};
 
@@ -95,6 +95,41 @@ formula!(
     },
 );
 
+macro_rules! mode {
+    ($name:ident, $id:literal, $function:literal, $mode:expr, $text:literal $(, hard [$($hard:expr),* $(,)?])?) => {
+        formula!(
+            /// A named mode on a back buffer without alpha.
+            $name: $id by $function, $text, "002",
+            [Input::rgba("src"), Input::rgb("dst")] -> [Output::new("color", Shape::Vec3, "color")],
+            |x, out| { out.vector(without_alpha($mode, x.vector(), x.vector())); }
+            $(, hard [$($hard),*])?
+        );
+    };
+}
+
+mode!(Solid, "blend/mode-solid", "blend_solid", Mode::Solid, "color = src");
+mode!(
+    Alpha, "blend/mode-alpha", "blend_alpha", Mode::Alpha, "color = src·As + dst·(1 − As)",
+    hard [
+        Hard { name: "half-red-over-blue", pins: "document 002's figure", inputs: &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0])] },
+    ]
+);
+mode!(Mul, "blend/mode-mul", "blend_mul", Mode::Mul, "color = src * dst");
+mode!(Add, "blend/mode-add", "blend_additive", Mode::Add, "color = src·As + dst");
+formula!(
+    /// Source-over as a unorm target has it.
+    AlphaClamped: "blend/alpha-clamped" by "blend_alpha_clamped",
+    "color = clamp(clamp(src)·As + clamp(dst)·(1 − As)), as on a target of [0, 1]", "000 §6.6",
+    [
+        Input::new("src", Shape::Vec4, "color", Domain::Uniform(-0.5, 1.5)),
+        Input::new("dst", Shape::Vec4, "color", Domain::Uniform(-0.5, 1.5)),
+    ] -> [Output::new("color", Shape::Vec4, "color")],
+    |x, out| { out.vector(alpha_clamped(x.vector(), x.vector())); },
+    hard [
+        Hard { name: "alpha-above-one", pins: "1 − As would be negative: clamped before, not after", inputs: &[("src", &[0.5, 0.5, 0.5, 1.5]), ("dst", &[1.0, 1.0, 1.0, 1.0])] },
+    ],
+);
+
 /// The states that are the same as another and judged under its name, with that name.
 pub fn aliases() -> impl Iterator<Item = (String, String)> {
     State::all()
@@ -107,4 +142,9 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
         visitor.formula(BlendState(state));
     }
     visitor.formula(SaturateSourceOnly);
+    visitor.formula(Solid);
+    visitor.formula(Alpha);
+    visitor.formula(Mul);
+    visitor.formula(Add);
+    visitor.formula(AlphaClamped);
 }

@@ -94,6 +94,9 @@ formula!(
         Input::rgb("a"), Input::rgb("b"), Input::rgb("c"),
     ] -> [COLOR],
     |x, out| { out.vector(color::per_vertex(x.array(), x.vectors())); },
+    hard [
+        Hard { name: "outside", pins: "alpha is 1, not the weights' sum", inputs: &[("weights", &[0.5, 0.25, 0.0])] },
+    ],
 );
 
 pub(super) fn visit(visitor: &mut impl Visitor) {

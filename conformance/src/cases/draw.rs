@@ -149,15 +149,24 @@ impl Numbers {
             [2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)],
             [2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)],
         ];
-        for column in columns {
-            let scale = f64::from(self.log_uniform(low, high));
-            row.extend(column.map(|x| narrow(x * scale)));
+        // Scaled along each axis, one of them mirrored half the time, then sheared: no two columns at right angles.
+        let mirrored = if self.next() & 1 == 0 { 1.0 } else { -1.0 };
+        let scales =
+            [0, 1, 2].map(|axis| f64::from(self.log_uniform(low, high)) * if axis == 0 { mirrored } else { 1.0 });
+        let shears: [f64; 3] = std::array::from_fn(|_| self.fraction() - 0.5);
+        let scaled = [0, 1, 2].map(|k| columns[k].map(|x: f64| x * scales[k]));
+        let plus = |a: [f64; 3], b: [f64; 3], s: f64| [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
+        let second = plus(scaled[1], scaled[0], shears[0]);
+        let third = plus(plus(scaled[2], scaled[0], shears[1]), scaled[1], shears[2]);
+        for column in [scaled[0], second, third] {
+            row.extend(column.map(narrow));
             if shape == Shape::Mat4 {
-                row.push(0.0);
+                row.push(self.uniform(-0.01, 0.01));
             }
         }
         if shape == Shape::Mat4 {
-            row.extend([self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), 1.0]);
+            let w = self.log_uniform(0.5, 2.0);
+            row.extend([self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), w]);
         }
     }
 

@@ -61,6 +61,7 @@ linear!(
         Hard { name: "at-dmin", pins: "clear", inputs: &[("p", &[0.0, 0.0, -5.0]), ("dmin", &[5.0]), ("dmax", &[10.0])] },
         Hard { name: "at-dmax", pins: "only fog", inputs: &[("p", &[0.0, 0.0, -10.0]), ("dmin", &[5.0]), ("dmax", &[10.0])] },
         Hard { name: "nearly-a-step", pins: "one ULP between dmin and dmax", inputs: &[("p", &[0.0, 0.0, -10.0]), ("dmin", &[10.0]), ("dmax", &[10.000_001])] },
+        Hard { name: "a-few-ulp-wide", pins: "a ramp, however steep, is no step", inputs: &[("p", &[0.0, 0.0, -10.000_001]), ("dmin", &[10.0]), ("dmax", &[10.000_004])] },
         Hard { name: "in-front-and-behind", pins: "|z|, not z", inputs: &[("p", &[3.0, 4.0, 7.0]), ("dmin", &[5.0]), ("dmax", &[10.0])] },
     ]
 );
@@ -69,7 +70,11 @@ linear!(
     "fog/linear-radial",
     "fog_linear_radial",
     Distance::Radial,
-    "f = clamp((dmax − |p|)/(dmax − dmin), 0, 1); color = mix(fog, shaded, f)"
+    "f = clamp((dmax − |p|)/(dmax − dmin), 0, 1); color = mix(fog, shaded, f)",
+    hard [
+        Hard { name: "dmin-equals-dmax", pins: "a step, clear before it", inputs: &[("p", &[0.0, 0.0, -9.0]), ("dmin", &[10.0]), ("dmax", &[10.0])] },
+        Hard { name: "sideways", pins: "|p|, not |z|", inputs: &[("p", &[10.0, 0.0, 0.0]), ("dmin", &[5.0]), ("dmax", &[10.0])] },
+    ]
 );
 
 macro_rules! exponential {
@@ -94,6 +99,7 @@ exponential!(
     hard [
         Hard { name: "no-density", pins: "density 0 is no fog", inputs: &[("p", &[0.0, 0.0, -50.0]), ("density", &[0.0])] },
         Hard { name: "at-the-eye", pins: "clear", inputs: &[("p", &[0.0, 0.0, 0.0]), ("density", &[1.0])] },
+        Hard { name: "negative-density", pins: "clamped: never clearer than clear", inputs: &[("p", &[0.0, 0.0, -10.0]), ("density", &[-0.1])] },
         Hard { name: "far", pins: "only fog, the factor underflows", inputs: &[("p", &[0.0, 0.0, -1e6]), ("density", &[1.0])] },
     ]
 );

@@ -3,7 +3,7 @@
 use super::rows::{Reader, Writer};
 use super::spec::{Kind, Spec};
 use super::{blend, raster};
-use crate::arithmetic::{Accept, Dual, F16, F32, Format, Hardware, Trace, dual};
+use crate::arithmetic::{Accept, Dual, F16, F32, Format, Hardware, Profile, Trace, dual};
 use lightmeter_gpu::Raster;
 use lightmeter_reference::Real;
 
@@ -47,6 +47,17 @@ pub trait AnyFormula: Send + Sync {
 
     /// The values that are legal as they leave the fixed hardware of a device.
     fn hardware_interval(&self, kind: Kind, inputs: &[f32], target: Target, out: &mut [Accept]);
+
+    /// The values that are legal where only the profile's promise is known: of a raster formula those of a rasteriser.
+    fn promised_interval(&self, kind: Kind, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+        match kind {
+            Kind::Raster(_) => {
+                let target = Target { subpixel_bits: profile.subpixel_bits, half_float: false };
+                self.hardware_interval(kind, inputs, target, out);
+            }
+            Kind::Arithmetic | Kind::Blend(_) => self.interval(inputs, out),
+        }
+    }
 
     /// The reference and the interval of each output, with the steps that lead to them.
     fn trace(&self, inputs: &[f32], out: &mut [Trace]);

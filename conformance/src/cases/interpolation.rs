@@ -4,8 +4,8 @@
 use super::formula::formula;
 use super::spec::{Domain, Hard, Input, Output, Shape};
 use super::{Visitor, raster};
-use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::Vector;
+use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_scene::raster::Provoking;
 
 pub(super) const ATTRIBUTE: Domain = Domain::Uniform(-2.0, 2.0);
@@ -171,6 +171,8 @@ macro_rules! clip_volume {
             |x, out| { out.scalar($formula(x.vector())); },
             hard [
                 Hard { name: "on-a-plane", pins: "the planes belong to the volume", inputs: &[("clip", &[2.0, -2.0, 2.0, 2.0])] },
+                Hard { name: "on-the-near-plane", pins: "z = 0 lies within WebGPU's volume and OpenGL's", inputs: &[("clip", &[0.0, 0.0, 0.0, 1.0])] },
+                Hard { name: "on-opengls-near-plane", pins: "z = −w lies within OpenGL's volume alone", inputs: &[("clip", &[0.0, 0.0, -1.0, 1.0])] },
                 Hard { name: "behind-the-eye", pins: "outside", inputs: &[("clip", &[0.0, 0.0, 0.0, -1.0])] },
             ],
         );

@@ -152,7 +152,10 @@ directional!(
     "lighting_phong_gated",
     (Specular::Phong, Gate::OpenGl),
     "CF as lighting/phong, the highlight 0 where l·n ≤ 0",
-    "OpenGL 2.1 §2.14.1; ruling 9, `opengl`"
+    "OpenGL 2.1 §2.14.1; ruling 9, `opengl`",
+    hard [
+        Hard { name: "light-edge-on", pins: "l·n = 0 has no highlight, though r·v is above 0", inputs: &[("p", &[-1.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[1.0, 0.0, 0.0]), ("shininess", &[1.0])] },
+    ]
 );
 formula!(
     /// Blinn's model with document 000's halfway vector.
@@ -369,6 +372,9 @@ formula!(
     "I of the face's own normal ⟨(b − a) × (c − a)⟩ at its first vertex", "004",
     [Input::position("a"), Input::position("b"), Input::position("c"), LIGHT_POSITION, KD, KS, SHININESS] -> [INTENSITY],
     |x, out| { out.scalar(lighting::flat(x.vectors(), x.vector(), x.array())); },
+    hard [
+        Hard { name: "no-area", pins: "0, not NaN, for three points on a line", inputs: &[("a", &[0.0, 0.0, -1.0]), ("b", &[1.0, 1.0, -1.0]), ("c", &[2.0, 2.0, -1.0])] },
+    ],
 );
 
 pub(super) fn visit(visitor: &mut impl Visitor) {

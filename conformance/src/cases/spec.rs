@@ -107,7 +107,8 @@ pub enum Domain {
     Whole(u32, u32),
     /// Multiples of 1/2 from low to high.
     Halves(f32, f32),
-    /// A rotation, a scale of each axis drawn evenly in the logarithm and, in a 4 × 4 matrix, a translation.
+    /// A rotation, a scale of each axis drawn evenly in the logarithm, mirrored half the time, and a shear; in a 4 × 4
+    /// matrix also a translation and a last row near (0, 0, 0, 1).
     Transform(f32, f32),
     /// A vertex in clip coordinates: its place 8 to 60 pixels from the case's pixel, w from 0.5 to 8.
     Around,

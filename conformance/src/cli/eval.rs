@@ -73,7 +73,8 @@ impl Eval {
         let outputs = member.spec.output_len();
         let (mut value, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
         member.formula.reference(&inputs, &mut value);
-        self.profile.scope(|| member.formula.interval(&inputs, &mut legal));
+        let kind = member.spec.kind;
+        self.profile.scope(|| member.formula.promised_interval(kind, &inputs, self.profile, &mut legal));
         let condition = member
             .formula
             .condition(&inputs)

@@ -44,7 +44,7 @@ pub(crate) struct Choice {
 #[derive(Debug, Args)]
 pub(crate) struct Amount {
     /// Random cases for each formula; a sixteenth of that for each blend state
-    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     pub(crate) cases: u64,
     /// Only a part of the cases: the I-th of N
     #[arg(long, value_name = "I/N", default_value = "1/1")]
@@ -100,7 +100,8 @@ impl Choice {
             rerun += &format!(" --profile {}", self.profile.name);
         }
         if let Some(dir) = &self.shaders {
-            rerun += &format!(" --shaders '{}'", dir.display());
+            let dir = dir.display().to_string().replace('\'', r"'\''");
+            rerun += &format!(" --shaders '{dir}'");
         }
         Ok(Options { filter, cases, seed: self.seed, shard, profile: self.profile, shaders: self.shaders()?, rerun })
     }

@@ -37,6 +37,10 @@ impl Run {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let shard = self.amount.shard.0;
         let options = self.choice.options(matching(&self.filter, self.amount.cases)?, self.amount.cases, shard)?;
+        if let Some(path) = &self.out {
+            // Not after hours of work.
+            emit("", Some(path))?;
+        }
         let mut subjects = self.choice.subjects()?;
         let mut bar = Bar::default();
         let report = run(&mut subjects, &options, &mut bar);

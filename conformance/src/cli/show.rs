@@ -4,12 +4,11 @@ use super::options::{Choice, Format};
 use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
-use lightmeter::arithmetic::{Accept, Trace, trace};
-use lightmeter::cases::blend::aliases;
+use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::evaluate::Evaluator;
 use lightmeter::judge::{Outcome, judge};
 use lightmeter::report::Number;
-use lightmeter::select::{CaseRef, Member, catalogue};
+use lightmeter::select::{CaseRef, Member, canonical_id, catalogue};
 use lightmeter::tally::{by_name, intervals};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -53,6 +52,7 @@ impl Show {
         member.inputs(case, self.choice.seed, &mut inputs);
         let mut outputs = vec![Trace { value: 0.0, interval: Accept::ANY }; member.spec.output_len()];
         let ((), steps) = self.choice.profile.scope(|| trace::record(|| member.formula.trace(&inputs, &mut outputs)));
+        legal_outputs(member, &inputs, self.choice.profile, &mut outputs);
         let condition = member.formula.condition(&inputs);
         let known = Known { inputs, outputs, steps, condition };
         let answers = self.answers(member, &known.inputs)?;
@@ -91,13 +91,23 @@ impl Show {
     }
 }
 
+/// What a rasteriser may give is not what its formula in f32 may: where no device is known, by the profile's promise.
+fn legal_outputs(member: &Member, inputs: &[f32], profile: &Profile, outputs: &mut [Trace]) {
+    let mut legal = vec![Accept::ANY; outputs.len()];
+    profile.scope(|| member.formula.promised_interval(member.spec.kind, inputs, profile, &mut legal));
+    for (output, legal) in outputs.iter_mut().zip(legal) {
+        output.interval = legal;
+    }
+}
+
 /// The case of an id, which may name an alias.
 fn find<'a>(catalogue: &'a [Member], id: &str) -> anyhow::Result<(&'a Member, CaseRef)> {
-    let canonical = aliases().find_map(|(alias, canonical)| {
-        id.strip_prefix(&alias).filter(|rest| rest.starts_with('/')).map(|rest| canonical + rest)
-    });
-    let id = canonical.as_deref().unwrap_or(id);
-    if let Some(found) = catalogue.iter().find_map(|member| member.case(id).map(|case| (member, case))) {
+    let canonical = canonical_id(id);
+    let id = canonical.as_str();
+    if let Some(found) = catalogue
+        .iter()
+        .find_map(|member| member.case(id).filter(|&case| member.case_id(case) == id).map(|case| (member, case)))
+    {
         return Ok(found);
     }
     match catalogue.iter().find(|member| id == member.spec.id || id.starts_with(&format!("{}/", member.spec.group()))) {
@@ -137,11 +147,11 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
         let hex: Vec<String> = these.iter().map(|x| format!("0x{:08x}", x.to_bits())).collect();
         writeln!(text, "  {:<22} {}  {}  {}", input.name, decimal.join(" "), hex.join(" "), input.unit)?;
     }
-    writeln!(text, "\nsteps                    f64                      legal in f32")?;
+    writeln!(text, "\nsteps                    f64                      legal")?;
     for (step, name) in known.steps.iter().zip(step_names(&known.steps)) {
         writeln!(text, "  {name:<22} {:<24} {}", Number(step.result.value).to_string(), range(&step.result.interval))?;
     }
-    writeln!(text, "\noutputs                  reference                legal in f32")?;
+    writeln!(text, "\noutputs                  reference                legal")?;
     for (k, output) in known.outputs.iter().enumerate() {
         let condition = Number(known.condition[k]);
         writeln!(
@@ -174,15 +184,13 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
     Ok(text)
 }
 
-/// The steps' names, the components of a vector told apart.
+/// The steps' names; what is named several times in a row, as a vector's components are, is numbered.
 fn step_names(steps: &[trace::Step]) -> Vec<String> {
     let mut names = vec![];
     for run in steps.chunk_by(|a, b| a.name == b.name) {
         match run {
             [step] => names.push(step.name.to_owned()),
-            _ => {
-                names.extend(run.iter().zip("xyzw".chars().cycle()).map(|(step, axis)| format!("{}.{axis}", step.name)))
-            }
+            _ => names.extend((1..).zip(run).map(|(number, step)| format!("{} {number}", step.name))),
         }
     }
     names

@@ -75,10 +75,13 @@ pub struct Group {
     pub adapter: String,
     /// The stage's name.
     pub stage: &'static str,
+    /// The format that the blend unit worked on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<&'static str>,
     /// The counts.
     #[serde(flatten)]
     pub totals: Totals,
-    /// The greatest error of a verdict that is not indeterminate, in ULP of binary32.
+    /// The greatest error of a verdict that is not indeterminate, in ULP of the output's format.
     pub error_ulp_max: Number,
     /// The greatest margin.
     pub margin_max: Number,

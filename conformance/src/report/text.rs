@@ -79,6 +79,13 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
         let reason = group.skip_reason.unwrap_or_default();
         writeln!(out, "skipped {} on {}, {}: {reason}", group.id, group.adapter, group.stage)?;
     }
+    let mut told = vec![];
+    for group in &report.groups {
+        if let Some(target) = group.target.filter(|target| !told.contains(&(group.adapter.as_str(), *target))) {
+            told.push((&group.adapter, target));
+            writeln!(out, "blend unit of {}: on {target}, errors in its ULP", group.adapter)?;
+        }
+    }
     if !report.routes.is_empty() {
         let states: u64 = report.routes.values().filter_map(serde_json::Value::as_u64).sum();
         let routes: Vec<String> = report.routes.iter().map(|(route, states)| format!("{states} {route}")).collect();

@@ -50,3 +50,28 @@ fn blend_saturate_source_only(src: vec4f, dst: vec4f) -> vec4f {
     let s = blend_factor(14u, src, dst, vec4f(0.0), blend_saturation_source_only(src));
     return blend_combine(0u, src, s, dst, vec4f(1.0));
 }
+
+// The named modes, on a back buffer without alpha.
+
+fn blend_solid(src: vec4f, dst: vec3f) -> vec3f {
+    return src.rgb;
+}
+
+fn blend_alpha(src: vec4f, dst: vec3f) -> vec3f {
+    return src.rgb * src.a + dst * (1.0 - src.a);
+}
+
+fn blend_mul(src: vec4f, dst: vec3f) -> vec3f {
+    return src.rgb * dst;
+}
+
+fn blend_additive(src: vec4f, dst: vec3f) -> vec3f {
+    return src.rgb * src.a + dst;
+}
+
+// On a target of [0, 1].
+fn blend_alpha_clamped(src: vec4f, dst: vec4f) -> vec4f {
+    let s = saturate(src);
+    let d = saturate(dst);
+    return saturate(s * s.a + d * (1.0 - s.a));
+}

@@ -11,7 +11,8 @@
 //! * *The plane equation in binary32*, with its origin at the target's corner: evaluated in acceptance intervals, whose
 //!   distance from the exact value is added.
 //!
-//! Coverage is decided where the corners of the square agree, and either way elsewhere.
+//! Coverage follows from signs of linear functions: it is decided where those agree at the corners of the square, and may go
+//! either way elsewhere.
 
 use super::target as viewport;
 use crate::arithmetic::{Accept, F32};
@@ -199,8 +200,9 @@ fn quad(inputs: &[f32], snap: f64) -> Accept {
     }
     let distance = |from: Vec2<f64>, to: Vec2<f64>| interpolation::edge(from, to, p) / (to - from).length();
     let outline = [distance(a, b), distance(b, c), distance(c, d), distance(d, a)];
-    // A vertex moves by at most √2 δ; twice that is ample for what rounding to clip coordinates adds.
-    let margin = 4.0 * snap;
+    // A vertex moves by less than √2 δ, and so does every point of an edge; clip coordinates hold a place of up to 256 pixels
+    // to 2⁻¹⁵ pixel, and going there and back rounds less than eight times.
+    let margin = std::f64::consts::SQRT_2 * (snap + 8.0 / 32_768.0);
     if outline.iter().all(|&x| x > margin) || outline.iter().all(|&x| x < -margin) {
         Accept::exactly(1.0)
     } else {
@@ -214,14 +216,25 @@ fn facing(inputs: &[f32], snap: f64) -> Accept {
     })
 }
 
-/// Clipping makes new vertices, which are snapped in turn: twice the square. With a vertex behind the eye they may lie
-/// far outside the target, where binary32 has fewer bits after the point: half a pixel more.
+/// Clipping makes new vertices, which are snapped in turn: twice the square. Where a vertex lies behind the eye they may
+/// lie as far away as the guard band reaches, 2¹⁵ pixels, where binary32 has steps of 2⁻⁸ pixel; the product, the sum and
+/// the quotient that make such a vertex, and the viewport, err by at most 8 of those in all.
+///
+/// What decides is linear in the place, so it is certain where it has one sign at the corners of the square: the pixel is
+/// covered where everything has the sign of w, and not covered where something has the other.
 fn clipped(inputs: &[f32], snap: f64) -> Accept {
     let (clip, off) = vertices::<3>(inputs, snap);
     let behind = clip.iter().any(|v| v.w() <= 0.0);
-    let reach = off.map(|off| 2.0 * off + if behind { 0.5 } else { 0.0 });
-    let seen = square(pixel(inputs), reach).map(|p| interpolation::clipped_coverage(clip, &viewport(), p));
-    let low = seen.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = seen.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    Accept::from_bounds(low, high)
+    let reach = off.map(|off| 2.0 * off + if behind { 8.0 / 256.0 } else { 0.0 });
+    let at_corners = square(pixel(inputs), reach).map(|p| interpolation::clip_functions(clip, &viewport(), p));
+    let all = |sign: f64, function: usize| at_corners.iter().all(|values| sign * values[function] > 0.0);
+    for sign in [1.0, -1.0] {
+        if all(sign, 5) && (0..5).all(|function| all(sign, function)) {
+            return Accept::exactly(1.0);
+        }
+        if all(sign, 5) && (0..5).any(|function| all(-sign, function)) {
+            return Accept::exactly(0.0);
+        }
+    }
+    Accept::from_bounds(UNDECIDED.0, UNDECIDED.1)
 }
