@@ -287,6 +287,10 @@ fn pipeline(
         primitive.cull_mode = Some(if back { wgpu::Face::Back } else { wgpu::Face::Front });
         primitive.front_face = if front_is_ccw { wgpu::FrontFace::Ccw } else { wgpu::FrontFace::Cw };
     }
+    if matches!(kind, Raster::Flat { topology: Topology::TriangleStrip, .. }) {
+        // Every triangle of the strip faces front, unless the winding was lost on the way to the last vertex.
+        primitive.cull_mode = Some(wgpu::Face::Back);
+    }
     let entries: Vec<wgpu::BindGroupLayoutEntry> =
         [(0, wgpu::BufferBindingType::Storage { read_only: true }), (1, wgpu::BufferBindingType::Uniform)]
             .into_iter()
