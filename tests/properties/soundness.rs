@@ -2,7 +2,7 @@
 //! the accuracy rules let a compiler and a device choose, must always lie inside. And that they are not idle.
 
 use lightmeter::arithmetic::profile::{VULKAN, WGSL};
-use lightmeter::arithmetic::{Accept, F32, Format as _, Profile};
+use lightmeter::arithmetic::{Accept, F32, Format as _, Hardware, Profile};
 use lightmeter::cases::{Formula, Kind, Reader, Spec, Visitor, Writer, visit};
 use lightmeter::select::{CaseRef, catalogue};
 use lightmeter_reference::{Components, Real};
@@ -331,6 +331,28 @@ fn an_arithmetic_that_errs_more_is_caught() {
     let legal: Accept = Accept::literal(1.0) / Accept::literal(3.0);
     let outside = (0..1000).filter(|_| !legal.contains((Draw::of(1.0) / Draw::of(3.0)).value)).count();
     assert!(outside > 100, "{outside} of 1000");
+}
+
+#[test]
+fn a_blend_unit_may_take_out_a_shared_factor() {
+    // What lavapipe does where both factors are one: (s + d)·f for s·f + d·f. Legal in hardware, not always in a shader.
+    STATE.set(7);
+    PROFILE.set(WGSL);
+    let mut outside_a_shaders_rules = 0;
+    for _ in 0..100_000 {
+        let [s, d, f] = [0; 3].map(|_| Draw::of(share().abs()));
+        let factored = ((s + d) * f).value;
+        let legal = hardware([s.value, d.value, f.value]);
+        assert!(legal.contains(factored), "{factored} outside {legal:?}: {s:?} {d:?} {f:?}");
+        let [s, d, f] = [s, d, f].map(|x| Accept::<F32>::exactly(x.value));
+        outside_a_shaders_rules += u32::from(!(s * f + d * f).contains(factored));
+    }
+    assert!(outside_a_shaders_rules > 100, "only {outside_a_shaders_rules}");
+}
+
+fn hardware([s, d, f]: [f64; 3]) -> Accept<Hardware<F32>> {
+    let [s, d, f] = [s, d, f].map(Accept::exactly);
+    Accept::sum([s * f, d * f])
 }
 
 #[test]
