@@ -4,7 +4,8 @@ use crate::cases::{Kind, Stage};
 use crate::devices::{Known, known};
 use crate::select::Member;
 use lightmeter_gpu::{
-    Adapter, ArithmeticPipeline, BlendTarget, BlendUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Shaders,
+    Adapter, ArithmeticPipeline, BlendPending, BlendTarget, BlendUnit, Error, Gpu, Kernel, Pending, RasterPipeline,
+    Shaders,
 };
 use lightmeter_scene::blend::State;
 use serde::Serialize;
@@ -80,7 +81,7 @@ pub enum Job {
     /// A pending batch.
     Arithmetic(Pending),
     /// A pending batch of the blend unit.
-    Blend(Pending),
+    Blend(BlendPending),
     /// Pending batches of the rasteriser, each with its number of cases.
     Raster(Vec<(usize, Pending)>),
     /// Done.
@@ -170,7 +171,7 @@ impl Subject {
                         _ => unreachable!("only blend states reach the blend unit"),
                     })
                     .collect();
-                Ok(Job::Blend(unit.submit(&device.gpu, &states, rows.inputs)?))
+                Ok(Job::Blend(unit.submit(&states, rows.inputs)?))
             }
             Work::Raster(pipeline) => {
                 let (mut jobs, mut rest) = (vec![], rows.inputs);
@@ -200,9 +201,8 @@ impl Subject {
                 Ok(pipeline.outputs(pending.wait(gpu())?, rows.of.len()))
             }
             (Work::Blend, Job::Blend(pending)) => {
-                let mut words = pending.wait(gpu())?;
-                words.truncate(rows.of.len() * rows.outputs);
-                Ok(words)
+                let unit = self.gpu.as_ref().and_then(|device| device.blend.as_ref());
+                unit.expect("the blend unit is made before its work").wait(pending)
             }
             (Work::Raster(pipeline), Job::Raster(jobs)) => {
                 let (mut words, mut rest) = (vec![], rows.inputs);

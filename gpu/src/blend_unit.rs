@@ -137,14 +137,27 @@ const fn unit_factor(factor: Factor) -> wgpu::BlendFactor {
     }
 }
 
-/// The unit of a device, with the pipelines that were needed so far.
+/// The blend unit of an adapter: cases are shared out among devices that compile side by side.
 #[derive(Debug)]
 pub struct BlendUnit {
+    lanes: Vec<Lane>,
+}
+
+/// One device, with the pipelines that were needed on it so far.
+#[derive(Debug)]
+struct Lane {
+    gpu: Gpu,
     target: BlendTarget,
     module: wgpu::ShaderModule,
     destination: wgpu::RenderPipeline,
     reader: wgpu::RenderPipeline,
     sources: HashMap<Lowered, wgpu::RenderPipeline>,
+}
+
+/// Results of a [`BlendUnit`] that its devices are still working on: how many cases, and their words.
+#[derive(Debug)]
+pub struct BlendPending {
+    parts: Vec<(usize, Pending)>,
 }
 
 /// A run of cases with one state and one constant.
@@ -158,28 +171,60 @@ impl BlendUnit {
     /// The unit on the widest float target that the adapter can blend on.
     ///
     /// # Errors
-    /// Where a shader is invalid or the device refuses a pipeline.
+    /// Where a shader is invalid, or the driver gives no device or refuses a pipeline.
     pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, Error> {
-        let target = if gpu.blends_f32() { BlendTarget::Rgba32Float } else { BlendTarget::Rgba16Float };
-        let module = gpu.module(FILE, shaders.source(FILE));
-        let destination = source_pipeline(gpu, &module, target, None);
-        let reader = screen_pipeline(gpu, &module, "unit_vertex", "unit_result");
-        gpu.check_shader(FILE)?;
-        Ok(Self { target, module, destination, reader, sources: HashMap::new() })
+        let lanes = (0..gpu.lanes()).map(|_| Lane::new(gpu.sibling()?, shaders)).collect::<Result<_, Error>>()?;
+        Ok(Self { lanes })
     }
 
     /// The format that is blended on.
     #[must_use]
-    pub const fn target(&self) -> BlendTarget {
-        self.target
+    pub fn target(&self) -> BlendTarget {
+        self.lanes[0].target
     }
 
-    /// Blends every case: `states[i]` on row i of `rows`, of 12 numbers each: source, destination, constant. The words of
-    /// the result are four a case, with pixels of nothing after the last.
+    /// Blends every case: `states[i]` on row i of `rows`, of 12 numbers each: source, destination, constant.
     ///
     /// # Errors
-    /// Where the device refuses a pipeline.
-    pub fn submit(&mut self, gpu: &Gpu, states: &[State], rows: &[f32]) -> Result<Pending, Error> {
+    /// Where a device refuses a pipeline.
+    pub fn submit(&mut self, states: &[State], rows: &[f32]) -> Result<BlendPending, Error> {
+        let share = states.len().div_ceil(self.lanes.len()).max(1);
+        let shares = states.chunks(share).zip(rows.chunks(share * ROW));
+        let parts = self
+            .lanes
+            .iter_mut()
+            .zip(shares)
+            .map(|(lane, (states, rows))| Ok((states.len(), lane.submit(states, rows)?)))
+            .collect::<Result<_, Error>>()?;
+        Ok(BlendPending { parts })
+    }
+
+    /// The words of the results, four a case.
+    ///
+    /// # Errors
+    /// Where a device failed or was lost.
+    pub fn wait(&self, pending: BlendPending) -> Result<Vec<u32>, Error> {
+        let mut words = vec![];
+        for (lane, (cases, pending)) in self.lanes.iter().zip(pending.parts) {
+            // The target's last row may have pixels of no case.
+            words.extend_from_slice(&pending.wait(&lane.gpu)?[..4 * cases]);
+        }
+        Ok(words)
+    }
+}
+
+impl Lane {
+    fn new(gpu: Gpu, shaders: &Shaders) -> Result<Self, Error> {
+        let target = if gpu.blends_f32() { BlendTarget::Rgba32Float } else { BlendTarget::Rgba16Float };
+        let module = gpu.module(FILE, shaders.source(FILE));
+        let destination = source_pipeline(&gpu, &module, target, None);
+        let reader = screen_pipeline(&gpu, &module, "unit_vertex", "unit_result");
+        gpu.check_shader(FILE)?;
+        Ok(Self { gpu, target, module, destination, reader, sources: HashMap::new() })
+    }
+
+    fn submit(&mut self, states: &[State], rows: &[f32]) -> Result<Pending, Error> {
+        let gpu = &self.gpu;
         let draws = draws(states, rows);
         for draw in &draws {
             self.sources

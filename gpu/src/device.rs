@@ -16,6 +16,8 @@ pub struct Gpu {
     features: wgpu::Features,
     downlevel: wgpu::DownlevelFlags,
     failure: Arc<Mutex<Option<String>>>,
+    name: String,
+    adapter: wgpu::Adapter,
 }
 
 impl Gpu {
@@ -44,7 +46,22 @@ impl Gpu {
             features,
             downlevel: adapter.get_downlevel_capabilities().flags,
             failure,
+            name: name.into(),
+            adapter: adapter.clone(),
         })
+    }
+
+    /// Another device on the same adapter, with a queue of its own.
+    pub(crate) fn sibling(&self) -> Result<Self, Error> {
+        Self::open(&self.name, &self.adapter)
+    }
+
+    /// How many devices compile pipelines side by side: a software Vulkan driver compiles at the first draw, on the one
+    /// thread of its queue.
+    pub(crate) fn lanes(&self) -> usize {
+        let is_cpu = self.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        if is_cpu && !self.is_gl { cores.min(4) } else { 1 }
     }
 
     /// The first error that the device reported since the last time this was asked.

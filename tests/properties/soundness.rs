@@ -356,6 +356,44 @@ fn hardware([s, d, f]: [f64; 3]) -> Accept<Hardware<F32>> {
 }
 
 #[test]
+fn chains_reach_their_bounds_and_not_beyond() {
+    let ulp = f64::from(f32::EPSILON);
+    // Rounded up at each step, 1 and ever so little comes to a ULP more for each term.
+    let dust: Accept = Accept::exactly(2.0_f64.powi(-60));
+    let one: Accept = Accept::exactly(1.0);
+    let sums = [
+        Accept::sum([one, dust, dust]),
+        Accept::sum([one, dust, dust, dust]),
+        Accept::sum([one, dust, dust, dust, dust]),
+    ];
+    for (terms, sum) in (3..).zip(sums) {
+        let most = 1.0 + f64::from(terms - 1) * ulp;
+        assert!(sum.contains(most), "{terms} terms: {most} in {sum:?}");
+        assert!(!sum.contains(most + ulp), "{terms} terms: {sum:?}");
+    }
+    // The same of products: each factor is the one of many that is rounded up the furthest.
+    STATE.set(3);
+    let factor = || F32::round_up(1.0 + 0.03 * share().abs());
+    let mut nearest = 0.0_f64;
+    for _ in 0..2_000 {
+        let mut factors = [factor(); 4];
+        let mut up = factors[0];
+        for next in &mut factors[1..] {
+            let lost = |x: &f64| F32::round_up(up * x) - up * x;
+            let candidates: [f64; 100] = std::array::from_fn(|_| factor());
+            *next = candidates.into_iter().max_by(|a, b| lost(a).total_cmp(&lost(b))).expect("a hundred");
+            up = F32::round_up(up * *next);
+        }
+        let exact: f64 = factors.iter().product();
+        let legal: Accept = Accept::product(factors.map(Accept::exactly));
+        assert!(legal.contains(up), "{up} outside {legal:?}: {factors:?}");
+        nearest = nearest.max((up - exact) / (legal.high() - exact));
+    }
+    // Three roundings of the four ULP that the bound comes to once it is on the grid.
+    assert!(nearest > 0.74, "rounding up comes no nearer to the bound than {nearest}");
+}
+
+#[test]
 fn single_operations_are_sharp() {
     let number = |x: f32| -> Accept { Accept::input(x) };
     let third = number(1.0) + number(2.0_f32.powi(-25));

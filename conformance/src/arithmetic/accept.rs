@@ -380,7 +380,12 @@ impl<F: Format> Real for Accept<F> {
         if magnitude < F::MIN_NORMAL / F::EPSILON * 16.0 {
             error += rest[..count].iter().fold(0.0, |e, _| e + F::MIN_NORMAL);
         }
-        Self::seal(low - error, high + error)
+        if F::SUMS_BY_TERMS {
+            // Fixed hardware's bound does not follow from roundings: it is one ULP more or less.
+            return Self::seal(low - error, high + error);
+        }
+        // The last addition's result is one of the format's values. (A product may stay unrounded in a fused operation.)
+        Self::of_results(low - error, high + error)
     }
 
     fn product<const N: usize>(factors: [Self; N]) -> Self {
