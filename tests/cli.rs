@@ -46,15 +46,21 @@ fn edited(test: &str, file: &str, edit: impl Fn(&str) -> String) -> PathBuf {
     dir
 }
 
-/// A mistake: the file, what stands there, what is put in its place, and the family that must fail.
+/// A mistake: the file, what stands there, what is put in its place, and the filter of what must fail.
 const MISTAKES: &[(&str, &str, &str, &str, &str)] = &[
     ("a normalize dropped", "lighting.wgsl", "let n = vector_normalize(normal);", "let n = normal;", "lighting"),
     ("reflect with its sign flipped", "vector.wgsl", "return i - 2.0", "return i + 2.0", "vector"),
     ("v + l not normalised", "vector.wgsl", "vector_normalize(v + l)", "(v + l)", "vector"),
     ("kl and kq swapped", "attenuation.wgsl", "d * (kl + d * kq)", "d * (kq + d * kl)", "attenuation"),
     ("|z| for length(p)", "fog.wgsl", "return length(p);", "return abs(p.z);", "fog"),
-    ("min(As, 1 − As)", "blend.wgsl", "min(src.a, 1.0 - dst.a)", "min(src.a, 1.0 - src.a)", "blend"),
-    ("1 − As read as As", "blend.wgsl", "vec4f(1.0 - src.a)", "vec4f(src.a)", "blend"),
+    (
+        "min(As, 1 − As)",
+        "blend.wgsl",
+        "min(src.a, 1.0 - dst.a)",
+        "min(src.a, 1.0 - src.a)",
+        "blend/add/src-alpha-saturate/one",
+    ),
+    ("1 − As read as As", "blend.wgsl", "vec4f(1.0 - src.a)", "vec4f(src.a)", "blend/add/one-minus-src-alpha/one"),
     ("max dropped in the diffuse term", "lighting.wgsl", "max(dot(l, n), 0.0)", "dot(l, n)", "lighting"),
     ("shininess + 1 %", "vector.wgsl", "pow(cosine, exponent)", "pow(cosine, 1.01 * exponent)", "lighting"),
     ("shininess − 1 %", "vector.wgsl", "pow(cosine, exponent)", "pow(cosine, 0.99 * exponent)", "lighting"),
@@ -96,7 +102,28 @@ const MISTAKES: &[(&str, &str, &str, &str, &str)] = &[
         "blend_unit.wgsl",
         "return colored.color;",
         "discard; return colored.color;",
-        "blend",
+        "blend/mode-*",
+    ),
+    (
+        "a source folded unclamped",
+        "blend_unit.wgsl",
+        "color = saturate(color);",
+        "",
+        "blend/add/constant-color/constant-alpha",
+    ),
+    (
+        "the constant's alpha for its colour",
+        "blend_unit.wgsl",
+        "select(fold.constant.rgb, fold.constant.aaa, fold.factor >= 12u)",
+        "fold.constant.aaa",
+        "blend/add/constant-color/constant-alpha",
+    ),
+    (
+        "a second source that is the first",
+        "blend_unit_dual.wgsl",
+        "TwoColors(colored.color, colored.constant)",
+        "TwoColors(colored.color, colored.color)",
+        "blend/add/constant-color/constant-alpha",
     ),
     ("a strip's winding lost", "raster.wgsl", "corner = 1u - corner;", "corner = 0u + corner;", "interpolation"),
     ("perspective for linear", "raster.wgsl", "@interpolate(linear)", "@interpolate(perspective)", "interpolation"),
@@ -105,13 +132,14 @@ const MISTAKES: &[(&str, &str, &str, &str, &str)] = &[
 
 #[test]
 fn each_mistake_in_a_shader_fails_by_family() {
-    for (place, (mistake, file, right, wrong, family)) in MISTAKES.iter().enumerate() {
+    for (place, (mistake, file, right, wrong, filter)) in MISTAKES.iter().enumerate() {
         let dir = edited(&format!("mistake-{place}"), file, |text| {
             assert!(text.contains(right), "{mistake}: `{right}` no longer stands in {file}");
             text.replace(right, wrong)
         });
         let dir = dir.to_str().expect("the folder's name is UTF-8");
-        let args = ["run", family, "--shaders", dir, "--cases", "256", "--groups"];
+        let family = filter.split('/').next().expect("a family");
+        let args = ["run", filter, "--shaders", dir, "--cases", "256", "--groups"];
         let output = lightmeter(&args);
         let text = stdout(&output);
         assert_eq!(code(&output), 1, "{mistake}: {text}{}", stderr(&output));
@@ -220,19 +248,60 @@ fn the_embedded_implementation_passes_without_a_driver() {
 
 #[test]
 fn all_blend_states_are_judged_or_aliases() {
-    let report = json(&["run", "blend", "--cases", "16", "--format", "json"]);
+    let product = "blend/{add,subtract,reverse-subtract,min,max}";
+    let report = json(&["run", product, "--cases", "16", "--target", "rgba8unorm", "--timing", "--format", "json"]);
     let unit = |id: &str| {
         let groups = report["groups"].as_array().expect("groups").iter();
         let mut of = groups.filter(|group| group["id"] == id && group["stage"] == "fixed-function");
-        of.next().expect("the blend unit's group")["verdicts"].as_u64().expect("a count")
+        of.next().expect("the blend unit's group").clone()
     };
-    assert_eq!((unit("blend/reverse-subtract"), unit("blend/max")), (225 * 4, 4));
-    let judged: u64 = report["routes"].as_object().expect("routes").values().filter_map(Value::as_u64).sum();
-    assert_eq!((judged, report["aliases"].as_u64()), (677, Some(448)));
-    let embedded = json(&["run", "blend/add", "--adapter", "cpu", "--cases", "16", "--format", "json"]);
-    assert!(embedded["routes"].is_null(), "no blend unit ran");
+    let cases = |id: &str| unit(id)["cases"].as_u64().expect("a count");
+    // Eight states in each equation are drawn by two routes.
+    assert_eq!((cases("blend/reverse-subtract"), cases("blend/max")), (233 * 16, 16));
+    assert!(unit("blend/add")["seconds"].is_f64() && unit("blend/add")["seconds_warm"].is_f64());
+    let routes = report["routes"].as_object().expect("routes");
+    let judged = |route: &str| routes[route].as_u64().expect("a count");
+    assert_eq!(judged("native") + judged("constant-replicated") + judged("folded-into-source"), 677);
+    assert_eq!(report["aliases"].as_u64(), Some(448));
+    let states = report["blend_states"].as_array().expect("states");
+    assert_eq!(states.iter().filter(|state| state["route"] != "dual-source").count(), 677);
+    for tier in ["exact", "nearest", "neighbour", "bound", "outside"] {
+        assert!(states.iter().all(|state| state["tiers"][tier].is_u64()), "{tier}");
+    }
+    let embedded = json(&["run", "blend/min", "--adapter", "cpu", "--cases", "16", "--format", "json"]);
+    assert!(embedded["routes"].as_object().is_none_or(serde_json::Map::is_empty), "no blend unit ran");
     let alias = json(&["run", "blend/min/src-alpha/zero", "--adapter", "cpu", "--format", "json"]);
     assert_eq!(alias["groups"][0]["id"], "blend/min");
+}
+
+#[test]
+fn a_state_separate_for_alpha_is_run_by_its_name() {
+    let id = "blend/separate/subtract.constant-color.constant-alpha/max/0003";
+    for args in
+        [&["run", id, "--target", "all", "--format", "json"][..], &["run", id, "--adapter", "cpu", "--format", "json"]]
+    {
+        let report = json(args);
+        assert_eq!(report["totals"]["failed"], 0);
+        let ids: Vec<&Value> =
+            report["blend_states"].as_array().expect("states").iter().map(|state| &state["id"]).collect();
+        assert!(
+            !ids.is_empty() && ids.iter().all(|id| *id == "blend/separate/subtract.constant-color.constant-alpha/max")
+        );
+    }
+    let shown = stdout(&lightmeter(&["show", id, "--target", "rgba8unorm"]));
+    assert!(shown.contains("folded-into-source") && shown.contains("steps from"), "{shown}");
+}
+
+#[test]
+fn the_self_test_names_every_fault() {
+    let output = lightmeter(&["selftest", "--cases", "64"]);
+    let text = stdout(&output);
+    assert_eq!(code(&output), 0, "{text}");
+    for fault in lightmeter::blend_unit::rules::FAULTS {
+        let row = text.lines().find(|line| line.split_whitespace().next() == Some(fault.name)).expect(fault.name);
+        assert!(row.contains("named"), "{row}");
+    }
+    assert!(text.lines().any(|line| line.starts_with("none") && line.matches("clean").count() == 5), "{text}");
 }
 
 #[test]
@@ -360,6 +429,10 @@ fn bad_usage_is_told_with_its_code() {
         (&["run", "--profile", "exact"], 2, "no such profile"),
         (&["run", "--shaders", "/nowhere"], 2, "cannot read shaders from /nowhere"),
         (&["run", "--cases", "0"], 2, "0 is not in"),
+        (&["run", "--target", "rgba8"], 2, "no such format; expected one of rgba32float"),
+        (&["run", "blend/separate/add.zero/min"], 3, "no case matches"),
+        (&["run", "--separate", "many"], 2, "invalid value"),
+        (&["selftest", "--format", "junit"], 2, "written as text or json"),
         (&["show", "fog/linear/hard/nothing"], 2, "no case `fog/linear/hard/nothing`; `fog/linear` has cases such as"),
         (&["show", "frog"], 2, "no case `frog`"),
         (

@@ -6,8 +6,10 @@
 
 use crate::arithmetic::profile::Excess;
 use crate::arithmetic::{Accept, Profile};
+use crate::blend_unit::model::Model;
 use lightmeter_gpu::Adapter;
 use lightmeter_reference::Real;
+use lightmeter_scene::target::TargetFormat;
 use serde::Serialize;
 
 /// A version of a driver: major, minor, patch.
@@ -108,10 +110,78 @@ pub const DEVIATIONS: &[Deviation] = &[
     },
 ];
 
+/// A blend unit that is known bit for bit.
+#[derive(Clone, Copy, Debug)]
+pub struct BlendModel {
+    /// What the driver's own description contains.
+    pub driver: &'static str,
+    /// The first version concerned.
+    pub from: Version,
+    /// The first version no longer concerned.
+    pub until: Version,
+    /// What it computes.
+    pub model: Model,
+}
+
+/// Every known blend unit.
+pub const BLEND_MODELS: &[BlendModel] =
+    &[BlendModel { driver: "llvmpipe", from: [22, 3, 0], until: [22, 4, 0], model: Model::Llvmpipe }];
+
+impl BlendModel {
+    fn concerns(&self, driver: &str) -> bool {
+        concerns(driver, self.driver, self.from, self.until)
+    }
+}
+
+/// A known departure of a blend unit, of any version until it is no longer seen.
+#[derive(Clone, Copy, Debug)]
+pub struct BlendDeviation {
+    /// Its name in reports.
+    pub name: &'static str,
+    /// What the driver's own description contains.
+    pub driver: &'static str,
+    /// Why, with the evidence.
+    pub reason: &'static str,
+    /// On which target.
+    pub target: TargetFormat,
+    /// Results of at least this magnitude …
+    pub from: f64,
+    /// … are granted a NaN.
+    pub becomes_nan: bool,
+}
+
+/// Every known departure of a blend unit.
+pub const BLEND_DEVIATIONS: &[BlendDeviation] = &[BlendDeviation {
+    name: "swiftshader-half-overflow",
+    driver: "SwiftShader",
+    reason: "a result beyond 65504 is stored as a NaN of binary16: 1e6 as 0x7fff, 60000 + 60000 as 0x7f53",
+    target: TargetFormat::Rgba16Float,
+    // The least that does not round to 65504.
+    from: 65_520.0,
+    becomes_nan: true,
+}];
+
+impl BlendDeviation {
+    /// Whether a result is one that it concerns.
+    #[must_use]
+    pub fn concerns(&self, target: TargetFormat, reference: f64) -> bool {
+        target == self.target && reference.abs() >= self.from
+    }
+
+    /// Whether it makes a value legal.
+    #[must_use]
+    pub fn grants(&self, value: f64) -> bool {
+        self.becomes_nan && value.is_nan()
+    }
+}
+
+fn concerns(driver: &str, part: &str, from: Version, until: Version) -> bool {
+    driver.contains(part) && version(driver).is_some_and(|version| from <= version && version < until)
+}
+
 impl Deviation {
     fn concerns(&self, driver: &str) -> bool {
-        driver.contains(self.driver)
-            && version(driver).is_some_and(|version| self.from <= version && version < self.until)
+        concerns(driver, self.driver, self.from, self.until)
     }
 
     /// The profile with the deviation granted.
@@ -126,12 +196,19 @@ impl Deviation {
 }
 
 /// What is known of one adapter.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Known {
     /// Bits after the point to which its rasteriser snaps; `None` where only the profile's promise is known.
     pub subpixel_bits: Option<u32>,
+    /// The integer model that its blend unit is known to follow on 8 bits, bit for bit.
+    pub blend_model: Option<Model>,
     /// Its deviations.
     pub deviations: Vec<&'static Deviation>,
+    /// Under which name its treatment of NaN and infinity is on record, and whether for this very version: if so, another
+    /// treatment fails the run.
+    pub special_record: Option<(&'static str, bool)>,
+    /// Those of its blend unit.
+    pub blend_deviations: Vec<&'static BlendDeviation>,
 }
 
 /// What is known of an adapter.
@@ -140,7 +217,15 @@ pub fn known(adapter: &Adapter) -> Known {
     // Mesa's software rasteriser works in 1/256 pixel, by its Vulkan limit subPixelPrecisionBits and in its source.
     let subpixel_bits = adapter.device.starts_with("llvmpipe").then_some(8);
     let driver = format!("{} {}", adapter.device, adapter.driver);
-    Known { subpixel_bits, deviations: DEVIATIONS.iter().filter(|deviation| deviation.concerns(&driver)).collect() }
+    let llvmpipe = concerns(&driver, "llvmpipe", [22, 3, 0], [22, 4, 0]).then_some(("llvmpipe", true));
+    Known {
+        subpixel_bits,
+        // SwiftShader does not tell its version.
+        special_record: llvmpipe.or(driver.contains("SwiftShader").then_some(("SwiftShader", false))),
+        blend_model: BLEND_MODELS.iter().find(|known| known.concerns(&driver)).map(|known| known.model),
+        deviations: DEVIATIONS.iter().filter(|deviation| deviation.concerns(&driver)).collect(),
+        blend_deviations: BLEND_DEVIATIONS.iter().filter(|deviation| driver.contains(deviation.driver)).collect(),
+    }
 }
 
 /// The version behind the word `Mesa` in a driver's description.

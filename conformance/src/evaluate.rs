@@ -21,7 +21,7 @@ impl<'a> Evaluator<'a> {
     /// Where a shader is invalid or the device refuses it.
     pub fn new(subject: &mut Subject, members: &'a [&'a Member], shaders: &Shaders) -> Result<Self, Error> {
         let kernel = kernel(shaders, members[0])?;
-        let compiled = subject.compile(shaders, members[0].spec.kind, kernel.as_ref())?;
+        let compiled = subject.compile(shaders, &members[0].spec, kernel.as_ref())?;
         Ok(Self { members, compiled })
     }
 

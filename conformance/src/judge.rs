@@ -1,7 +1,7 @@
 //! One verdict: a value against the reference and the interval of legal values.
 
 use crate::arithmetic::format::error_ulp;
-use crate::arithmetic::{Accept, F16, F32};
+use crate::arithmetic::{Accept, F32};
 use lightmeter_gpu::SENTINEL;
 
 /// What became of one scalar output of one case.
@@ -26,29 +26,11 @@ pub struct Verdict {
     pub margin: f64,
 }
 
-/// The format that an output had before it was read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OutputFormat {
-    /// binary32.
-    Single,
-    /// binary16.
-    Half,
-}
-
-/// Judges a value of binary32 by its bits.
-#[must_use]
-pub fn judge(bits: u32, reference: f64, interval: &Accept) -> Verdict {
-    judge_in(OutputFormat::Single, bits, reference, interval)
-}
-
 /// Judges a value by its bits. An output that was never written fails, even where anything is legal.
 #[must_use]
-pub fn judge_in(format: OutputFormat, bits: u32, reference: f64, interval: &Accept) -> Verdict {
+pub fn judge(bits: u32, reference: f64, interval: &Accept) -> Verdict {
     let value = f32::from_bits(bits);
-    let error_ulp = match format {
-        OutputFormat::Single => error_ulp::<F32>(value, reference),
-        OutputFormat::Half => error_ulp::<F16>(value, reference),
-    };
+    let error_ulp = error_ulp::<F32>(value, reference);
     if bits == SENTINEL {
         return Verdict { outcome: Outcome::Fail, error_ulp: f64::INFINITY, margin: f64::INFINITY };
     }
@@ -57,15 +39,16 @@ pub fn judge_in(format: OutputFormat, bits: u32, reference: f64, interval: &Acce
     }
     let value = f64::from(value);
     let outcome = if interval.contains(value) { Outcome::Pass } else { Outcome::Fail };
-    Verdict { outcome, error_ulp, margin: margin(value, reference, interval) }
+    Verdict { outcome, error_ulp, margin: margin(value, reference, interval.low(), interval.high()) }
 }
 
-fn margin(value: f64, reference: f64, interval: &Accept) -> f64 {
+/// The distance from the reference over the distance to the end of the interval on the value's side.
+pub(crate) fn margin(value: f64, reference: f64, low: f64, high: f64) -> f64 {
     if value.is_nan() {
         return f64::INFINITY;
     }
     let distance = (value - reference).abs();
-    let room = if value >= reference { interval.high() - reference } else { reference - interval.low() };
+    let room = if value >= reference { high - reference } else { reference - low };
     // 0/0 is 0: exactly right where nothing else is legal.
     if distance == 0.0 { 0.0 } else { distance / room.max(0.0) }
 }

@@ -4,15 +4,19 @@
 //! are handed to every stage of every subject before the reference is computed on all cores; then the results are read.
 
 use crate::arithmetic::{Accept, Profile};
-use crate::cases::{Kind, Stage, blend};
+use crate::blend_unit;
+use crate::cases::Kind;
+use crate::cases::blend::{self, Samples};
 use crate::evaluate::kernel;
 use crate::filter::Filter;
 use crate::judge::{Outcome, judge};
-use crate::report::{DeviationUse, Group, Number, Report, Timing, Totals};
-use crate::select::{CaseRef, Member, Selected, Shard, catalogue, select};
+use crate::report::{DeviationUse, Group, Interrupted, Number, Report, Timing, Totals};
+use crate::select::{CaseRef, Member, Selected, Shard, catalogue_of, select};
 use crate::subject::{Compiled, Rows, Subject};
 use crate::tally::{Tally, judge_chunk};
 use lightmeter_gpu::{Error, Shaders};
+use lightmeter_scene::blend::Equation;
+use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -33,6 +37,12 @@ pub struct Options {
     pub seed: u64,
     /// Which part.
     pub shard: Shard,
+    /// The formats that are blended on.
+    pub targets: Vec<TargetFormat>,
+    /// Which states with another one for alpha are judged.
+    pub samples: Samples,
+    /// Whether the blend unit draws everything once more with its pipelines compiled, to tell how long that takes.
+    pub again: bool,
     /// The accuracy rules.
     pub profile: &'static Profile,
     /// The shaders.
@@ -60,22 +70,32 @@ impl Progress for Silent {
     fn advance(&mut self, _cases: u64) {}
 }
 
-/// Runs what the options select on every subject.
+/// Runs what the options select on every subject. Where a device fails, what was judged until then is the report, which says
+/// what was under way.
 ///
 /// # Errors
-/// Where a shader is invalid or a device fails.
+/// Where a shader is invalid, or a device fails before anything ran.
 pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Progress) -> Result<Report, Error> {
     let started = Instant::now();
-    let catalogue = catalogue();
+    let catalogue = catalogue_of(&options.samples);
     let selected = select(&catalogue, &options.filter, options.cases, options.shard);
-    progress.start(selected.iter().map(Selected::count).sum());
+    progress.start(selected.iter().map(|chosen| work(&catalogue[chosen.member], chosen, subjects, options)).sum());
     let mut report = empty(subjects, options);
     if !selected.is_empty() {
         probe_deviations(subjects, options, &mut report)?;
     }
     for group in selected.chunk_by(|a, b| catalogue[a.member].spec.group() == catalogue[b.member].spec.group()) {
-        progress.group(catalogue[group[0].member].spec.group());
-        run_group(&catalogue, group, subjects, options, &mut report, progress)?;
+        let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
+        progress.group(members[0].spec.group());
+        let judged = judge_group(&members, group, subjects, options, &mut report, progress);
+        match judged {
+            Err(Error::Device(message)) => {
+                let under_way = members[0].spec.group().into();
+                report.interrupted.get_or_insert(Interrupted { under_way, message });
+                break;
+            }
+            judged => judged?,
+        }
     }
     for group in &report.groups {
         report.totals.add(&group.totals);
@@ -83,14 +103,40 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
     report.aliases = blend::aliases()
         .filter(|(alias, canonical)| options.filter.selects(alias) || options.filter.selects(canonical))
         .count() as u64;
-    if subjects.iter().any(|subject| !subject.is_embedded()) {
-        report.routes = routes(&catalogue, &selected);
-    }
+    report.routes = routes(&report);
     report.seconds = started.elapsed().as_secs_f64();
     Ok(report)
 }
 
-fn empty(subjects: &[Subject], options: &Options) -> Report {
+/// Cases of a formula, counted once for its stages that take rows, and once for each target of each blend unit.
+fn work(member: &Member, chosen: &Selected, subjects: &[Subject], options: &Options) -> u64 {
+    let unit = match member.spec.kind {
+        Kind::Blend(_) => blend_unit::run::targets_of(member, &options.targets).len() * subjects.len(),
+        _ => 0,
+    };
+    let rows = if member.spec.row_stages().is_empty() { 0 } else { chosen.rows(member).count() };
+    chosen.count() * unit as u64 + rows
+}
+
+/// Judges a group in the blend unit, if that draws it, and in the stages that take rows.
+fn judge_group(
+    members: &[&Member],
+    group: &[Selected],
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut Report,
+    progress: &mut impl Progress,
+) -> Result<(), Error> {
+    if matches!(members[0].spec.kind, Kind::Blend(_)) {
+        blend_unit::run::run_group(members, group, subjects, options, report, progress)?;
+    }
+    if members[0].spec.row_stages().is_empty() {
+        return Ok(());
+    }
+    run_rows(members, group, subjects, options, report, progress)
+}
+
+pub(crate) fn empty(subjects: &[Subject], options: &Options) -> Report {
     Report {
         schema: "lightmeter.run/1",
         seed: options.seed,
@@ -103,18 +149,25 @@ fn empty(subjects: &[Subject], options: &Options) -> Report {
         timing: Timing::default(),
         deviations: vec![],
         groups: vec![],
+        blend_states: vec![],
+        special: vec![],
+        interrupted: None,
         failures: vec![],
     }
 }
 
-fn routes(catalogue: &[Member], selected: &[Selected]) -> serde_json::Map<String, serde_json::Value> {
-    let mut routes = std::collections::BTreeMap::<&str, u64>::new();
-    for chosen in selected {
-        if let Kind::Blend(state) = catalogue[chosen.member].spec.kind {
-            *routes.entry(lightmeter_gpu::route(state).name()).or_default() += 1;
+/// How the distinct states of the 15 × 15 × 5 reached a blend unit: states by route, on any adapter and target.
+fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
+    let mut routes = std::collections::BTreeMap::<&str, std::collections::BTreeSet<&str>>::new();
+    let is_state = |id: &str| id.split('/').nth(1).is_some_and(|name| Equation::ALL.iter().any(|e| e.name() == name));
+    let on_device =
+        |name: &str| report.adapters.iter().any(|adapter| adapter.name == name && adapter.backend != "embedded");
+    for state in report.blend_states.iter().filter(|state| state.is_drawn() && on_device(&state.adapter)) {
+        if is_state(&state.id) {
+            routes.entry(state.route).or_default().insert(&state.id);
         }
     }
-    routes.into_iter().map(|(route, states)| (route.into(), states.into())).collect()
+    routes.into_iter().map(|(route, states)| (route.into(), states.len().into())).collect()
 }
 
 /// Evaluates the witness of each deviation in force: where the driver is inside the promised bound there, the deviation is
@@ -174,21 +227,21 @@ impl Chunk<'_> {
     }
 }
 
-fn run_group(
-    catalogue: &[Member],
+fn run_rows(
+    members: &[&Member],
     group: &[Selected],
     subjects: &mut [Subject],
     options: &Options,
     report: &mut Report,
     progress: &mut impl Progress,
 ) -> Result<(), Error> {
-    let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
+    let group: Vec<Selected> = group.iter().zip(members).map(|(chosen, member)| chosen.rows(member)).collect();
     let spec = &members[0].spec;
     let clock = Instant::now();
     let kernel = kernel(&options.shaders, members[0])?;
     let compiled: Vec<Compiled> = subjects
         .iter_mut()
-        .map(|subject| subject.compile(&options.shaders, spec.kind, kernel.as_ref()))
+        .map(|subject| subject.compile(&options.shaders, spec, kernel.as_ref()))
         .collect::<Result<_, Error>>()?;
     let compiling = clock.elapsed().as_secs_f64();
     report.timing.compile += compiling;
@@ -205,7 +258,7 @@ fn run_group(
             break;
         }
         let clock = Instant::now();
-        let mut chunk = draw(&members, &next, options.seed);
+        let mut chunk = draw(members, &next, options.seed);
         report.timing.generate += clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
@@ -253,16 +306,20 @@ fn run_group(
                 }
             }
             report.failures.extend(tally.failures);
-            let problem = problem(&tally.totals, tally.random);
+            let problem = problem(tally.random, tally.totals.verdicts, tally.totals.indeterminate);
             report.groups.push(Group {
                 id: spec.group().into(),
                 adapter: subject.identity.name.clone(),
                 stage: stage.name(),
-                target: (stage == Stage::FixedFunction).then(|| subject.blend_target()).flatten(),
+                target: None,
+                tiers: None,
+                store: None,
                 totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
                 error_ulp_max: Number(tally.error_ulp_max),
                 margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
                 seconds: tally.seconds,
+                seconds_warm: None,
+                explanation: None,
                 worst: tally.worst.map(|(_, id)| id),
                 skip_reason: work.err(),
                 problem,
@@ -273,18 +330,16 @@ fn run_group(
 }
 
 /// The group verdict on indeterminate values: more than 1 % of them, hard cases apart, make a run of little.
-fn problem(totals: &Totals, random: (u64, u64)) -> Option<String> {
-    let (verdicts, indeterminate) = random;
+pub(crate) fn problem(random: (u64, u64), verdicts: u64, indeterminate: u64) -> Option<String> {
     #[expect(clippy::cast_precision_loss, reason = "a share")]
-    let share = indeterminate as f64 / verdicts.max(1) as f64;
+    let share = random.1 as f64 / random.0.max(1) as f64;
     if share > MOST_INDETERMINATE {
         return Some(format!(
             "{:.1} % of the verdicts are indeterminate, hard cases apart; at most 1 % may be",
             100.0 * share
         ));
     }
-    (totals.verdicts > 0 && verdicts > 0 && totals.indeterminate == totals.verdicts)
-        .then(|| "nothing but indeterminate verdicts".into())
+    (random.0 > 0 && indeterminate == verdicts).then(|| "nothing but indeterminate verdicts".into())
 }
 
 fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], seed: u64) -> Chunk<'a> {

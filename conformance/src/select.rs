@@ -1,5 +1,6 @@
 //! Which cases a run is made of: ids, and the choice among them by filter and shard.
 
+use crate::cases::blend::{Program, Samples};
 use crate::cases::{self, AnyFormula, Kind, Spec};
 use crate::filter::Filter;
 use std::num::NonZeroU64;
@@ -22,16 +23,21 @@ pub struct Member {
 }
 
 impl Member {
+    /// Whether it is one of the many blend states, whose cases stand right below it.
+    fn is_state(&self) -> bool {
+        matches!(self.spec.kind, Kind::Blend(Program::Draw(..)))
+    }
+
     /// The path of the random cases.
     fn random_path(&self) -> String {
-        if matches!(self.spec.kind, Kind::Blend(_)) { self.spec.id.clone() } else { format!("{}/random", self.spec.id) }
+        if self.is_state() { self.spec.id.clone() } else { format!("{}/random", self.spec.id) }
     }
 
     /// The case's id: `fog/linear/random/000017`, `blend/add/zero/one/0007`, `fog/linear/hard/dmin-equals-dmax`.
     #[must_use]
     pub fn case_id(&self, case: CaseRef) -> String {
         match case {
-            CaseRef::Random(k) if matches!(self.spec.kind, Kind::Blend(_)) => format!("{}/{k:04}", self.random_path()),
+            CaseRef::Random(k) if self.is_state() => format!("{}/{k:04}", self.random_path()),
             CaseRef::Random(k) => format!("{}/{k:06}", self.random_path()),
             CaseRef::Hard(place) => format!("{}/hard/{}", self.spec.group(), self.spec.hard[place].name),
         }
@@ -65,10 +71,15 @@ impl Member {
     }
 }
 
-/// Random cases of a formula in a run of `cases`: all of them, or a sixteenth for each of the many blend states.
+/// Random cases of a formula in a run of `cases`: all of them, or a quarter where colour and alpha have states of their own;
+/// none of NaN and infinity, whose cases are all named.
 #[must_use]
 pub fn random_cases(spec: &Spec, cases: u64) -> u64 {
-    if matches!(spec.kind, Kind::Blend(_)) { cases.div_ceil(16) } else { cases }
+    match spec.kind {
+        Kind::Blend(Program::Special(_)) => 0,
+        Kind::Blend(Program::Draw(state, _)) if state.color != state.alpha => cases.div_ceil(4),
+        _ => cases,
+    }
 }
 
 /// A part of a run: cases whose number leaves `index` when divided by `count`.
@@ -111,6 +122,12 @@ pub struct Selected {
 }
 
 impl Selected {
+    /// Random cases of the formula at a place.
+    #[must_use]
+    pub const fn whole(member: usize, random: Random) -> Self {
+        Self { member, random, hard: vec![], shard: Shard::WHOLE }
+    }
+
     /// The cases, hard ones first.
     pub fn cases(&self) -> impl Iterator<Item = CaseRef> + '_ {
         let random: Box<dyn Iterator<Item = u64>> = match &self.random {
@@ -120,6 +137,16 @@ impl Selected {
             Random::Some(some) => Box::new(some.iter().copied()),
         };
         self.hard.iter().copied().map(CaseRef::Hard).chain(random.map(CaseRef::Random))
+    }
+
+    /// What of them is evaluated in stages that take rows of numbers: a sixteenth of the many blend states' cases, since it
+    /// is one function for all.
+    #[must_use]
+    pub fn rows(&self, member: &Member) -> Self {
+        match self.random {
+            Random::First(n) if member.is_state() => Self { random: Random::First(n.div_ceil(16)), ..self.clone() },
+            _ => self.clone(),
+        }
     }
 
     /// How many cases there are.
@@ -137,7 +164,13 @@ impl Selected {
 /// The formulas in order.
 #[must_use]
 pub fn catalogue() -> Vec<Member> {
-    cases::all().into_iter().map(|formula| Member { spec: formula.spec(), formula }).collect()
+    catalogue_of(&Samples::default())
+}
+
+/// The formulas in order, with the states that are to be sampled.
+#[must_use]
+pub fn catalogue_of(samples: &Samples) -> Vec<Member> {
+    cases::all(samples).into_iter().map(|formula| Member { spec: formula.spec(), formula }).collect()
 }
 
 /// The cases of a catalogue that a filter and a shard select, of `cases` random ones for each formula.

@@ -1,13 +1,13 @@
 //! What is judged: an adapter, or the embedded implementation, and how each of its stages evaluates a group of formulas.
 
-use crate::cases::{Kind, Stage};
+use crate::blend_unit::rules::Rules;
+use crate::cases::{Kind, Spec, Stage};
 use crate::devices::{Known, known};
 use crate::select::Member;
 use lightmeter_gpu::{
-    Adapter, ArithmeticPipeline, BlendPending, BlendTarget, BlendUnit, Error, Gpu, Kernel, Pending, RasterPipeline,
-    Shaders,
+    Adapter, ArithmeticPipeline, BlendUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Route, Shaders,
 };
-use lightmeter_scene::blend::State;
+use lightmeter_scene::target::TargetFormat;
 use serde::Serialize;
 
 /// How a subject is named in reports.
@@ -30,6 +30,8 @@ pub struct Subject {
     /// What is known of it.
     pub known: Known,
     gpu: Option<Device>,
+    /// What the embedded blend unit follows.
+    rules: Rules,
 }
 
 struct Device {
@@ -48,8 +50,6 @@ pub struct Compiled {
 pub enum Work {
     /// A shader over rows.
     Arithmetic(ArithmeticPipeline),
-    /// The blend unit, which the subject holds.
-    Blend,
     /// The rasteriser.
     Raster(RasterPipeline),
     /// The formulas in f32, on this processor.
@@ -80,8 +80,6 @@ impl Rows<'_> {
 pub enum Job {
     /// A pending batch.
     Arithmetic(Pending),
-    /// A pending batch of the blend unit.
-    Blend(BlendPending),
     /// Pending batches of the rasteriser, each with its number of cases.
     Raster(Vec<(usize, Pending)>),
     /// Done.
@@ -101,7 +99,7 @@ impl Subject {
             driver: adapter.driver.clone(),
         };
         let gpu = Some(Device { gpu: adapter.open()?, blend: None });
-        Ok(Self { identity, known: known(adapter), gpu })
+        Ok(Self { identity, known: known(adapter), gpu, rules: Rules::RIGHT })
     }
 
     /// The formulas themselves in f32, which need no driver. They prove nothing about the reference, which they share.
@@ -113,7 +111,19 @@ impl Subject {
             backend: "embedded",
             driver: concat!("lightmeter ", env!("CARGO_PKG_VERSION")).into(),
         };
-        Self { identity, known: Known { subpixel_bits: None, deviations: vec![] }, gpu: None }
+        Self { identity, known: Known::default(), gpu: None, rules: Rules::RIGHT }
+    }
+
+    /// The embedded implementation with a blend unit that follows other rules than the right ones.
+    #[must_use]
+    pub fn faulty(rules: Rules) -> Self {
+        Self { rules, ..Self::embedded() }
+    }
+
+    /// What the embedded blend unit follows.
+    #[must_use]
+    pub const fn rules(&self) -> &Rules {
+        &self.rules
     }
 
     /// Whether it is the embedded implementation, which has no fixed hardware.
@@ -122,28 +132,56 @@ impl Subject {
         self.gpu.is_none()
     }
 
-    /// Whether its blend unit works on binary16.
-    #[must_use]
-    pub fn blends_halves(&self) -> bool {
-        matches!(&self.gpu, Some(Device { blend: Some(unit), .. }) if unit.target() == BlendTarget::Rgba16Float)
+    /// The blend unit; `None` where it is the embedded one.
+    ///
+    /// # Errors
+    /// Where a shader is invalid, or the driver gives no device.
+    pub fn blend_unit(&mut self, shaders: &Shaders) -> Result<Option<&mut BlendUnit>, Error> {
+        let Some(device) = &mut self.gpu else { return Ok(None) };
+        if device.blend.is_none() {
+            device.blend = Some(BlendUnit::new(&device.gpu, shaders)?);
+        }
+        Ok(device.blend.as_mut())
     }
 
-    /// The format that its blend unit works on, once it was asked to.
+    /// Gives up the blend unit, whose devices may be lost: the next one has fresh ones.
+    pub fn drop_blend_unit(&mut self) {
+        if let Some(device) = &mut self.gpu
+            && let Some(unit) = device.blend.take()
+        {
+            // Closing a device that hangs would hang as well.
+            std::mem::forget(unit);
+        }
+    }
+
+    /// Why a target cannot be blended on; `None` where it can.
     #[must_use]
-    pub fn blend_target(&self) -> Option<&'static str> {
-        Some(self.gpu.as_ref()?.blend.as_ref()?.target().name())
+    pub fn lacks_blending(&self, target: TargetFormat) -> Option<&'static str> {
+        self.gpu.as_ref()?.gpu.lacks_blending(target)
+    }
+
+    /// Why a route is not open; `None` where it is. The embedded unit has every factor of its own.
+    ///
+    /// # Errors
+    /// Where a shader is invalid, or the driver gives no device.
+    pub fn lacks_route(&mut self, shaders: &Shaders, route: Route) -> Result<Option<&'static str>, Error> {
+        if self.gpu.is_none() {
+            let missing = "the embedded implementation has every factor of its own";
+            return Ok((route == Route::DualSource).then_some(missing));
+        }
+        Ok(self.blend_unit(shaders)?.and_then(|unit| unit.lacks_route(route)))
     }
 
     /// Compiles what the group's formulas need.
     ///
     /// # Errors
     /// Where a shader is invalid or the device refuses it.
-    pub fn compile(&mut self, shaders: &Shaders, kind: Kind, kernel: Option<&Kernel>) -> Result<Compiled, Error> {
+    pub fn compile(&mut self, shaders: &Shaders, spec: &Spec, kernel: Option<&Kernel>) -> Result<Compiled, Error> {
         let Some(device) = &mut self.gpu else {
-            let stage = if matches!(kind, Kind::Raster(_)) { Stage::Raster } else { Stage::Compute };
-            return Ok(Compiled { stages: vec![(stage, Ok(Work::Embedded))] });
+            return Ok(Compiled { stages: vec![(spec.row_stages()[0], Ok(Work::Embedded))] });
         };
-        let stages = kind.stages().iter().map(|&stage| Ok((stage, device.work(shaders, kind, kernel, stage)?)));
+        let stages =
+            spec.row_stages().iter().map(|&stage| Ok((stage, device.work(shaders, spec.kind, kernel, stage)?)));
         Ok(Compiled { stages: stages.collect::<Result<_, Error>>()? })
     }
 
@@ -161,18 +199,6 @@ impl Subject {
         let device = self.gpu.as_mut().expect("only a device compiles work for a device");
         match work {
             Work::Arithmetic(pipeline) => Ok(Job::Arithmetic(pipeline.submit(&device.gpu, rows.selected))),
-            Work::Blend => {
-                let Some(unit) = &mut device.blend else { unreachable!("the blend unit is made before its work") };
-                let states: Vec<State> = rows
-                    .of
-                    .iter()
-                    .map(|&member| match rows.members[member].spec.kind {
-                        Kind::Blend(state) => state,
-                        _ => unreachable!("only blend states reach the blend unit"),
-                    })
-                    .collect();
-                Ok(Job::Blend(unit.submit(&states, rows.inputs)?))
-            }
             Work::Raster(pipeline) => {
                 let (mut jobs, mut rest) = (vec![], rows.inputs);
                 while !rest.is_empty() {
@@ -199,10 +225,6 @@ impl Subject {
             (_, Job::Done(words)) => Ok(words),
             (Work::Arithmetic(pipeline), Job::Arithmetic(pending)) => {
                 Ok(pipeline.outputs(pending.wait(gpu())?, rows.of.len()))
-            }
-            (Work::Blend, Job::Blend(pending)) => {
-                let unit = self.gpu.as_ref().and_then(|device| device.blend.as_ref());
-                unit.expect("the blend unit is made before its work").wait(pending)
             }
             (Work::Raster(pipeline), Job::Raster(jobs)) => {
                 let (mut words, mut rest) = (vec![], rows.inputs);
@@ -241,12 +263,7 @@ impl Device {
         let programmable = match stage {
             Stage::Compute => lightmeter_gpu::Stage::Compute,
             Stage::Fragment => lightmeter_gpu::Stage::Fragment,
-            Stage::FixedFunction => {
-                if self.blend.is_none() {
-                    self.blend = Some(BlendUnit::new(&self.gpu, shaders)?);
-                }
-                return Ok(Ok(Work::Blend));
-            }
+            Stage::FixedFunction => unreachable!("the blend unit is no evaluation of rows"),
             Stage::Raster => {
                 let Kind::Raster(raster) = kind else { return Ok(Err("not a formula of the rasteriser")) };
                 return Ok(RasterPipeline::new(&self.gpu, shaders, raster)?.map(Work::Raster));

@@ -1,8 +1,8 @@
 //! Verdicts on a chunk of a group's cases, and what they come to.
 
 use crate::arithmetic::{Accept, Profile};
-use crate::cases::{Stage, Target};
-use crate::judge::{Outcome, OutputFormat, judge, judge_in};
+use crate::cases::{Kind, Stage};
+use crate::judge::{Outcome, judge};
 use crate::report::{Failure, Number, Totals};
 use crate::run::{Chunk, Options, TASK};
 use crate::select::{CaseRef, Member};
@@ -10,7 +10,7 @@ use crate::subject::Subject;
 use rayon::prelude::*;
 
 /// Failures that are kept for each group.
-const KEPT_FAILURES: usize = 5;
+pub(crate) const KEPT_FAILURES: usize = 5;
 
 /// What a group has come to on one subject in one stage.
 #[derive(Default)]
@@ -86,13 +86,12 @@ pub fn intervals(
     profile: &Profile,
     out: &mut [Accept],
 ) {
-    let target = Target {
-        subpixel_bits: subject.known.subpixel_bits.unwrap_or(profile.subpixel_bits),
-        half_float: stage == Stage::FixedFunction && subject.blends_halves(),
-    };
-    match stage {
-        Stage::Raster | Stage::FixedFunction => member.formula.hardware_interval(member.spec.kind, inputs, target, out),
-        Stage::Compute | Stage::Fragment => member.formula.interval(inputs, out),
+    match member.spec.kind {
+        Kind::Raster(kind) if stage == Stage::Raster => {
+            let subpixel_bits = subject.known.subpixel_bits.unwrap_or(profile.subpixel_bits);
+            member.formula.raster_interval(kind, inputs, subpixel_bits, out);
+        }
+        _ => member.formula.interval(inputs, out),
     }
 }
 
@@ -121,11 +120,9 @@ fn judge_case(
     if is_random {
         tally.random.0 += outputs as u64;
     }
-    let halves = stage == Stage::FixedFunction && subject.blends_halves();
-    let format = if halves { OutputFormat::Half } else { OutputFormat::Single };
     for (output, at) in range.enumerate() {
         let (bits, reference) = (words[at], chunk.references[at]);
-        let verdict = judge_in(format, bits, reference, &legal[output]);
+        let verdict = judge(bits, reference, &legal[output]);
         match verdict.outcome {
             Outcome::Indeterminate => {
                 tally.totals.indeterminate += 1;
@@ -199,6 +196,8 @@ fn failure(
         id,
         adapter: subject.identity.name.clone(),
         stage: stage.name(),
+        target: None,
+        route: None,
         output: member.spec.output_name(output),
         inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),

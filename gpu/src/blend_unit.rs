@@ -1,54 +1,41 @@
-//! The fixed-function blend unit: every state drawn by hardware over a packed target, one read-back for all.
+//! The fixed-function blend unit: any state on any target format, many states in a submission, one read-back.
+//!
+//! A batch is a row of draws over a packed target. A point covers one pixel, so a pixel is a case, and several points on
+//! one pixel are layers that overlap in order. Destinations are uploaded and results read back in the target's own bits, so
+//! that nothing but the unit itself converts them.
 
-use crate::arithmetic::read_target;
 use crate::device::Gpu;
 use crate::error::Error;
-use crate::raster::{draw_screen, screen_pipeline, texture_group};
-use crate::readback::Pending;
+use crate::readback::{Pending, staging};
 use crate::shaders::Shaders;
-use lightmeter_scene::blend::{Equation, Factor, State};
+use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
+use lightmeter_scene::target::TargetFormat;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Pixels of a row of the target.
-const WIDTH: u32 = 256;
-/// Numbers of a case: source, destination, constant.
-const ROW: usize = 12;
+const WIDTH: u32 = 1024;
 const FILE: &str = "blend_unit.wgsl";
-const NOTHING: wgpu::Color = wgpu::Color { r: f64::NAN, g: f64::NAN, b: f64::NAN, a: f64::NAN };
-
-/// The format that is blended on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BlendTarget {
-    /// Four binary32 components.
-    Rgba32Float,
-    /// Four binary16 components, where the adapter cannot blend on binary32.
-    Rgba16Float,
-}
-
-impl BlendTarget {
-    /// The name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rgba32Float => "rgba32float",
-            Self::Rgba16Float => "rgba16float",
-        }
-    }
-}
+const DUAL_FILE: &str = "blend_unit_dual.wgsl";
 
 /// How a state reaches the unit, which has no factor of the constant's alpha.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Route {
     /// The unit's own factors.
     Native,
     /// The constant's alpha given as all four components of the constant.
     ConstantReplicated,
-    /// The source multiplied by its constant factor in the shader, and ONE in the unit: both sides read the constant, one
-    /// its colour and the other its alpha.
+    /// The source's colour multiplied by its constant factor in the shader, and ONE in the unit: one side reads the
+    /// constant's colour and the other its alpha. On a unorm target the source is clamped first, as the unit would have.
     FoldedIntoSource,
+    /// The same states with the constant's alpha as the alpha of a second source colour.
+    DualSource,
 }
 
 impl Route {
+    /// All, in the order of reports.
+    pub const ALL: [Self; 4] = [Self::Native, Self::ConstantReplicated, Self::FoldedIntoSource, Self::DualSource];
+
     /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -56,56 +43,279 @@ impl Route {
             Self::Native => "native",
             Self::ConstantReplicated => "constant-replicated",
             Self::FoldedIntoSource => "folded-into-source",
+            Self::DualSource => "dual-source",
         }
     }
 }
 
-/// The route of a state.
+/// The routes of a state, the first of which every adapter has.
+///
+/// The alpha component's constant factors all read the constant's alpha, so only the colour's decide.
 #[must_use]
-pub const fn route(state: State) -> Route {
-    if state.equation.ignores_factors() {
-        return Route::Native;
+pub const fn routes(state: Separate) -> &'static [Route] {
+    let State { equation, src, dst } = state.color;
+    if equation.ignores_factors() {
+        return &[Route::Native];
     }
-    let (src, dst) = (state.src, state.dst);
     let alpha = src.reads_constant_alpha() || dst.reads_constant_alpha();
     let color = src.reads_constant_color() || dst.reads_constant_color();
     match (alpha, color) {
-        (false, _) => Route::Native,
-        (true, false) => Route::ConstantReplicated,
-        (true, true) => Route::FoldedIntoSource,
+        (false, _) => &[Route::Native],
+        (true, false) => &[Route::ConstantReplicated],
+        (true, true) => &[Route::FoldedIntoSource, Route::DualSource],
     }
+}
+
+/// Points drawn with one state and one constant.
+#[derive(Clone, Debug)]
+pub struct Draw {
+    /// Factors and equations.
+    pub state: Separate,
+    /// The components that are written.
+    pub mask: WriteMask,
+    /// One of the state's [`routes`].
+    pub route: Route,
+    /// The blend constant.
+    pub constant: [f32; 4],
+    /// Which of the batch's points.
+    pub points: Range<u32>,
+}
+
+/// What one device draws on one target.
+#[derive(Clone, Debug, Default)]
+pub struct Batch {
+    /// The draws, in order.
+    pub draws: Vec<Draw>,
+    /// The source colour of each point.
+    pub sources: Vec<[f32; 4]>,
+    /// The pixel of each point.
+    pub pixels: Vec<u32>,
+    /// The target before the first draw, pixel after pixel in its own bits.
+    pub destinations: Vec<u8>,
+}
+
+/// The blend unit of an adapter: several devices, which compile side by side.
+#[derive(Debug)]
+pub struct BlendUnit {
+    lanes: Vec<Lane>,
+}
+
+/// One device, with the pipelines that were needed on it so far.
+#[derive(Debug)]
+struct Lane {
+    gpu: Gpu,
+    module: wgpu::ShaderModule,
+    dual: Option<wgpu::ShaderModule>,
+    pipelines: HashMap<(TargetFormat, Lowered), wgpu::RenderPipeline>,
 }
 
 /// A state as the unit takes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Lowered {
-    operation: wgpu::BlendOperation,
-    src: wgpu::BlendFactor,
-    dst: wgpu::BlendFactor,
-    /// The shader's entry point, which may multiply the source by its constant factor.
+    blend: wgpu::BlendState,
+    mask: WriteMask,
     entry: &'static str,
-    replicated: bool,
 }
 
-fn lower(state: State) -> Lowered {
-    let route = route(state);
-    let folded = route == Route::FoldedIntoSource;
-    let entry = match state.src {
-        _ if !folded => "unit_source",
-        Factor::ConstantColor => "unit_source_constant_color",
-        Factor::OneMinusConstantColor => "unit_source_one_minus_constant_color",
-        Factor::ConstantAlpha => "unit_source_constant_alpha",
-        Factor::OneMinusConstantAlpha => "unit_source_one_minus_constant_alpha",
-        _ => unreachable!("a folded source has a constant factor"),
-    };
-    let ignored = state.equation.ignores_factors();
-    Lowered {
-        operation: operation(state.equation),
-        src: if folded || ignored { wgpu::BlendFactor::One } else { unit_factor(state.src) },
-        dst: if ignored { wgpu::BlendFactor::One } else { unit_factor(state.dst) },
-        entry,
-        replicated: route == Route::ConstantReplicated || (folded && state.dst.reads_constant_alpha()),
+/// The vertex shader of each route.
+const SOURCE: &str = "unit_source";
+const FOLDED_SOURCE: &str = "unit_folded_source";
+const DUAL_SOURCE: &str = "unit_dual_source";
+
+/// What a shader is told of a draw: the constant, the code of the factor that it folds into the source, and whether the
+/// target clamps.
+const INSTANCE_BYTES: usize = 24;
+
+impl BlendUnit {
+    /// The unit, on as many devices as compile side by side.
+    ///
+    /// # Errors
+    /// Where a shader is invalid, or the driver gives no device.
+    pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, Error> {
+        let lanes = (0..gpu.lanes()).map(|_| Lane::new(gpu.sibling()?, shaders)).collect::<Result<_, Error>>()?;
+        Ok(Self { lanes })
     }
+
+    /// How many batches are worked on side by side.
+    #[must_use]
+    pub fn lanes(&self) -> usize {
+        self.lanes.len()
+    }
+
+    /// Why a route is not open on this adapter; `None` where it is.
+    #[must_use]
+    pub fn lacks_route(&self, route: Route) -> Option<&'static str> {
+        (route == Route::DualSource && self.lanes[0].dual.is_none())
+            .then_some("the adapter lacks the feature DUAL_SOURCE_BLENDING")
+    }
+
+    /// Draws a batch on each of the first devices, at most [`BlendUnit::lanes`] of them.
+    ///
+    /// # Errors
+    /// Where a device refuses a pipeline.
+    ///
+    /// # Panics
+    /// Where there are more batches than devices, or a route is not open.
+    pub fn submit(&mut self, target: TargetFormat, batches: &[Batch]) -> Result<Vec<Pending>, Error> {
+        assert!(batches.len() <= self.lanes.len(), "{} batches for {} devices", batches.len(), self.lanes.len());
+        self.lanes.iter_mut().zip(batches).map(|(lane, batch)| lane.submit(target, batch)).collect()
+    }
+
+    /// The pixels of each batch in the target's own bits.
+    ///
+    /// # Errors
+    /// Where a device failed or was lost.
+    pub fn wait(&self, pending: Vec<Pending>) -> Result<Vec<Vec<u8>>, Error> {
+        self.lanes.iter().zip(pending).map(|(lane, pending)| pending.wait_bytes(&lane.gpu)).collect()
+    }
+
+    /// What destroys its devices, as if they were lost: for tests of what then happens.
+    pub fn breaker(&self) -> impl Fn() + use<> {
+        let devices: Vec<wgpu::Device> = self.lanes.iter().map(|lane| lane.gpu.device.clone()).collect();
+        move || devices.iter().for_each(wgpu::Device::destroy)
+    }
+}
+
+impl Lane {
+    fn new(gpu: Gpu, shaders: &Shaders) -> Result<Self, Error> {
+        let module = gpu.module(FILE, shaders.source(FILE));
+        let dual = gpu.has_dual_source().then(|| gpu.module(DUAL_FILE, shaders.source(DUAL_FILE)));
+        gpu.check_shader(FILE)?;
+        Ok(Self { gpu, module, dual, pipelines: HashMap::new() })
+    }
+
+    fn submit(&mut self, target: TargetFormat, batch: &Batch) -> Result<Pending, Error> {
+        let gpu = &self.gpu;
+        let lowered: Vec<Lowered> = batch.draws.iter().map(lower).collect();
+        for lowered in &lowered {
+            let module = match lowered.entry {
+                DUAL_SOURCE => self.dual.as_ref().expect("the route is open"),
+                _ => &self.module,
+            };
+            self.pipelines.entry((target, *lowered)).or_insert_with(|| pipeline(gpu, module, format(target), *lowered));
+        }
+        gpu.check_shader(FILE)?;
+        let pixel_bytes = 4 * target.component_bytes();
+        let count = batch.destinations.len() / pixel_bytes;
+        let count = u32::try_from(count).unwrap_or(u32::MAX);
+        // A power of two, so that the middle of every pixel is exact in clip coordinates.
+        let height = count.div_ceil(WIDTH).next_power_of_two();
+        let drawn = gpu.blend_target(WIDTH, height, format(target));
+        gpu.upload(&drawn, &batch.destinations, pixel_bytes);
+        let vertex = wgpu::BufferUsages::VERTEX;
+        let sources = gpu.buffer(bytemuck::cast_slice(&batch.sources), vertex);
+        let places: Vec<[f32; 2]> = batch.pixels.iter().map(|&pixel| place(pixel, height)).collect();
+        let places = gpu.buffer(bytemuck::cast_slice(&places), vertex);
+        let instances: Vec<u8> = batch.draws.iter().flat_map(|draw| instance(target, draw)).collect();
+        let instances = gpu.buffer(&instances, vertex);
+        let view = drawn.create_view(&Default::default());
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+                })],
+                ..Default::default()
+            });
+            for (slot, buffer) in (0..).zip([&sources, &places, &instances]) {
+                pass.set_vertex_buffer(slot, buffer.slice(..));
+            }
+            for (number, (draw, lowered)) in (0..).zip(batch.draws.iter().zip(&lowered)) {
+                pass.set_pipeline(&self.pipelines[&(target, *lowered)]);
+                pass.set_blend_constant(blend_constant(draw));
+                pass.draw(draw.points.clone(), number..number + 1);
+            }
+        }
+        let row_bytes = pixel_bytes * WIDTH as usize;
+        let staging = staging(gpu, row_bytes * height as usize / 4);
+        encoder.copy_texture_to_buffer(
+            drawn.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &staging,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: u32::try_from(row_bytes).ok(),
+                    rows_per_image: None,
+                },
+            },
+            drawn.size(),
+        );
+        // The target's last row may have pixels of no case.
+        Ok(Pending::submit(gpu, encoder, staging, (row_bytes / 4, row_bytes / 4)).of_bytes(batch.destinations.len()))
+    }
+}
+
+pub(crate) const fn format(target: TargetFormat) -> wgpu::TextureFormat {
+    match target {
+        TargetFormat::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
+        TargetFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        TargetFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+        TargetFormat::Rgba8UnormSrgb => wgpu::TextureFormat::Rgba8UnormSrgb,
+        TargetFormat::Bgra8Unorm => wgpu::TextureFormat::Bgra8Unorm,
+    }
+}
+
+fn lower(draw: &Draw) -> Lowered {
+    let (color, alpha) = (draw.state.color, draw.state.alpha);
+    let folded = draw.route == Route::FoldedIntoSource;
+    let dual = draw.route == Route::DualSource;
+    let of_color = |factor: Factor| match factor {
+        Factor::ConstantAlpha if dual => wgpu::BlendFactor::Src1Alpha,
+        Factor::OneMinusConstantAlpha if dual => wgpu::BlendFactor::OneMinusSrc1Alpha,
+        other => unit_factor(other),
+    };
+    let component = |state: State, src: wgpu::BlendFactor, dst: wgpu::BlendFactor| {
+        let one = wgpu::BlendFactor::One;
+        let ignored = state.equation.ignores_factors();
+        wgpu::BlendComponent {
+            src_factor: if ignored { one } else { src },
+            dst_factor: if ignored { one } else { dst },
+            operation: operation(state.equation),
+        }
+    };
+    let src = if folded { wgpu::BlendFactor::One } else { of_color(color.src) };
+    Lowered {
+        blend: wgpu::BlendState {
+            color: component(color, src, of_color(color.dst)),
+            alpha: component(alpha, unit_factor(alpha.src), unit_factor(alpha.dst)),
+        },
+        mask: draw.mask,
+        entry: match draw.route {
+            Route::FoldedIntoSource => FOLDED_SOURCE,
+            Route::DualSource => DUAL_SOURCE,
+            Route::Native | Route::ConstantReplicated => SOURCE,
+        },
+    }
+}
+
+/// The constant that the unit is given.
+fn blend_constant(draw: &Draw) -> wgpu::Color {
+    let [r, g, b, a] = draw.constant;
+    let replicated = match draw.route {
+        Route::ConstantReplicated => true,
+        Route::FoldedIntoSource => draw.state.color.dst.reads_constant_alpha(),
+        Route::Native | Route::DualSource => false,
+    };
+    let [r, g, b, a] = if replicated { [a; 4] } else { [r, g, b, a] }.map(f64::from);
+    let read = draw.state.reads_constant();
+    if read { wgpu::Color { r, g, b, a } } else { wgpu::Color::TRANSPARENT }
+}
+
+fn instance(target: TargetFormat, draw: &Draw) -> [u8; INSTANCE_BYTES] {
+    let [r, g, b, a] = draw.constant.map(f32::to_bits);
+    let words = [r, g, b, a, draw.state.color.src.code(), u32::from(target.is_unorm())];
+    bytemuck::cast(words)
+}
+
+/// The middle of a pixel in clip coordinates.
+fn place(pixel: u32, height: u32) -> [f32; 2] {
+    let middle = |pixel: u32, size: u32| f64::from(2 * pixel + 1) / f64::from(size);
+    #[expect(clippy::cast_possible_truncation, reason = "exact: sizes are powers of two")]
+    let place = [(middle(pixel % WIDTH, WIDTH) - 1.0) as f32, (1.0 - middle(pixel / WIDTH, height)) as f32];
+    place
 }
 
 const fn operation(equation: Equation) -> wgpu::BlendOperation {
@@ -137,194 +347,36 @@ const fn unit_factor(factor: Factor) -> wgpu::BlendFactor {
     }
 }
 
-/// The blend unit of an adapter: cases are shared out among devices that compile side by side.
-#[derive(Debug)]
-pub struct BlendUnit {
-    lanes: Vec<Lane>,
-}
-
-/// One device, with the pipelines that were needed on it so far.
-#[derive(Debug)]
-struct Lane {
-    gpu: Gpu,
-    target: BlendTarget,
-    module: wgpu::ShaderModule,
-    destination: wgpu::RenderPipeline,
-    reader: wgpu::RenderPipeline,
-    sources: HashMap<Lowered, wgpu::RenderPipeline>,
-}
-
-/// Results of a [`BlendUnit`] that its devices are still working on: how many cases, and their words.
-#[derive(Debug)]
-pub struct BlendPending {
-    parts: Vec<(usize, Pending)>,
-}
-
-/// A run of cases with one state and one constant.
-struct Draw {
-    lowered: Lowered,
-    constant: wgpu::Color,
-    cases: std::ops::Range<u32>,
-}
-
-impl BlendUnit {
-    /// The unit on the widest float target that the adapter can blend on.
-    ///
-    /// # Errors
-    /// Where a shader is invalid, or the driver gives no device or refuses a pipeline.
-    pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, Error> {
-        let lanes = (0..gpu.lanes()).map(|_| Lane::new(gpu.sibling()?, shaders)).collect::<Result<_, Error>>()?;
-        Ok(Self { lanes })
-    }
-
-    /// The format that is blended on.
-    #[must_use]
-    pub fn target(&self) -> BlendTarget {
-        self.lanes[0].target
-    }
-
-    /// Blends every case: `states[i]` on row i of `rows`, of 12 numbers each: source, destination, constant.
-    ///
-    /// # Errors
-    /// Where a device refuses a pipeline.
-    pub fn submit(&mut self, states: &[State], rows: &[f32]) -> Result<BlendPending, Error> {
-        let share = states.len().div_ceil(self.lanes.len()).max(1);
-        let shares = states.chunks(share).zip(rows.chunks(share * ROW));
-        let parts = self
-            .lanes
-            .iter_mut()
-            .zip(shares)
-            .map(|(lane, (states, rows))| Ok((states.len(), lane.submit(states, rows)?)))
-            .collect::<Result<_, Error>>()?;
-        Ok(BlendPending { parts })
-    }
-
-    /// The words of the results, four a case.
-    ///
-    /// # Errors
-    /// Where a device failed or was lost.
-    pub fn wait(&self, pending: BlendPending) -> Result<Vec<u32>, Error> {
-        let mut words = vec![];
-        for (lane, (cases, pending)) in self.lanes.iter().zip(pending.parts) {
-            // The target's last row may have pixels of no case.
-            words.extend_from_slice(&pending.wait(&lane.gpu)?[..4 * cases]);
-        }
-        Ok(words)
-    }
-}
-
-impl Lane {
-    fn new(gpu: Gpu, shaders: &Shaders) -> Result<Self, Error> {
-        let target = if gpu.blends_f32() { BlendTarget::Rgba32Float } else { BlendTarget::Rgba16Float };
-        let module = gpu.module(FILE, shaders.source(FILE));
-        let destination = source_pipeline(&gpu, &module, target, None);
-        let reader = screen_pipeline(&gpu, &module, "unit_vertex", "unit_result");
-        gpu.check_shader(FILE)?;
-        Ok(Self { gpu, target, module, destination, reader, sources: HashMap::new() })
-    }
-
-    fn submit(&mut self, states: &[State], rows: &[f32]) -> Result<Pending, Error> {
-        let gpu = &self.gpu;
-        let draws = draws(states, rows);
-        for draw in &draws {
-            self.sources
-                .entry(draw.lowered)
-                .or_insert_with(|| source_pipeline(gpu, &self.module, self.target, Some(draw.lowered)));
-        }
-        gpu.check_shader(FILE)?;
-        let count = u32::try_from(states.len()).unwrap_or(u32::MAX);
-        // A power of two, so that the middle of every pixel is exact in clip coordinates.
-        let height = count.div_ceil(WIDTH).next_power_of_two();
-        let colors = gpu.buffer(bytemuck::cast_slice(rows), wgpu::BufferUsages::VERTEX);
-        let places = gpu.buffer(bytemuck::cast_slice(&places(count, height)), wgpu::BufferUsages::VERTEX);
-        let blended = gpu.target(WIDTH, height, format(self.target));
-        let view = blended.create_view(&Default::default());
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    // NaN: what is never written stays it, whatever it is blended with.
-                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(NOTHING), store: wgpu::StoreOp::Store },
-                })],
-                ..Default::default()
-            });
-            pass.set_vertex_buffer(0, places.slice(..));
-            pass.set_vertex_buffer(1, colors.slice(..));
-            pass.set_pipeline(&self.destination);
-            pass.draw(0..count, 0..1);
-            for draw in &draws {
-                pass.set_pipeline(&self.sources[&draw.lowered]);
-                pass.set_blend_constant(draw.constant);
-                pass.draw(draw.cases.clone(), 0..1);
-            }
-        }
-        let bits = gpu.target(WIDTH, height, wgpu::TextureFormat::Rgba32Uint);
-        let group = texture_group(gpu, &self.reader.get_bind_group_layout(0), 1, &view);
-        draw_screen(&mut encoder, &self.reader, &group, &bits);
-        Ok(read_target(gpu, encoder, &bits))
-    }
-}
-
-const fn format(target: BlendTarget) -> wgpu::TextureFormat {
-    match target {
-        BlendTarget::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
-        BlendTarget::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
-    }
-}
-
-/// The middle of each case's pixel in clip coordinates.
-fn places(count: u32, height: u32) -> Vec<[f32; 2]> {
-    let middle = |pixel: u32, size: u32| f64::from(2 * pixel + 1) / f64::from(size);
-    #[expect(clippy::cast_possible_truncation, reason = "exact: sizes are powers of two")]
-    let place = |case: u32| [(middle(case % WIDTH, WIDTH) - 1.0) as f32, (1.0 - middle(case / WIDTH, height)) as f32];
-    (0..count).map(place).collect()
-}
-
-/// Neighbouring cases of one state and one constant become one draw.
-fn draws(states: &[State], rows: &[f32]) -> Vec<Draw> {
-    let mut draws: Vec<Draw> = vec![];
-    for ((case, state), row) in (0u32..).zip(states).zip(rows.chunks_exact(ROW)) {
-        let lowered = lower(*state);
-        let constant = if lowered.replicated { [row[11]; 4] } else { [row[8], row[9], row[10], row[11]] };
-        let constant = if state.reads_constant() { constant.map(f64::from) } else { [0.0; 4] };
-        let constant = wgpu::Color { r: constant[0], g: constant[1], b: constant[2], a: constant[3] };
-        match draws.last_mut() {
-            Some(last) if last.lowered == lowered && last.constant == constant => last.cases.end += 1,
-            _ => draws.push(Draw { lowered, constant, cases: case..case + 1 }),
-        }
-    }
-    draws
-}
-
-fn source_pipeline(
+fn pipeline(
     gpu: &Gpu,
     module: &wgpu::ShaderModule,
-    target: BlendTarget,
-    lowered: Option<Lowered>,
+    format: wgpu::TextureFormat,
+    lowered: Lowered,
 ) -> wgpu::RenderPipeline {
-    let entry = lowered.map_or("unit_destination", |lowered| lowered.entry);
-    let blend = lowered.map(|lowered| {
-        let component =
-            wgpu::BlendComponent { src_factor: lowered.src, dst_factor: lowered.dst, operation: lowered.operation };
-        wgpu::BlendState { color: component, alpha: component }
-    });
-    const COLOR: u64 = 16;
-    let place = wgpu::vertex_attr_array![0 => Float32x2];
-    let colors = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4];
-    let buffer = |array_stride, attributes| {
-        Some(wgpu::VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes })
-    };
+    let source = wgpu::vertex_attr_array![0 => Float32x4];
+    let place = wgpu::vertex_attr_array![1 => Float32x2];
+    let draw = wgpu::vertex_attr_array![2 => Float32x4, 3 => Uint32, 4 => Uint32];
+    let buffer =
+        |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
+    let (vertex, instance) = (wgpu::VertexStepMode::Vertex, wgpu::VertexStepMode::Instance);
+    let buffers =
+        [buffer(16, vertex, &source), buffer(8, vertex, &place), buffer(INSTANCE_BYTES as u64, instance, &draw)];
+    // What a shader does not read is not fetched.
+    let buffers = if lowered.entry == SOURCE { &buffers[..2] } else { &buffers };
+    let mut write_mask = wgpu::ColorWrites::empty();
+    let components =
+        [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA];
+    for (component, _) in components.into_iter().zip(lowered.mask.0).filter(|(_, on)| *on) {
+        write_mask |= component;
+    }
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(entry),
+        label: None,
         layout: None,
         vertex: wgpu::VertexState {
             module,
-            entry_point: Some(entry),
+            entry_point: Some(lowered.entry),
             compilation_options: Default::default(),
-            buffers: &[buffer(8, &place), buffer(3 * COLOR, &colors)],
+            buffers,
         },
         primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::PointList, ..Default::default() },
         depth_stencil: None,
@@ -333,11 +385,7 @@ fn source_pipeline(
             module,
             entry_point: Some("unit_color"),
             compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: format(target),
-                blend,
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
+            targets: &[Some(wgpu::ColorTargetState { format, blend: Some(lowered.blend), write_mask })],
         }),
         multiview_mask: None,
         cache: None,
@@ -352,9 +400,21 @@ mod tests {
     #[test]
     fn every_state_has_a_route_and_509_are_native() {
         let distinct: BTreeSet<State> = State::all().map(State::canonical).collect();
-        let count = |wanted| distinct.iter().filter(|state| route(**state) == wanted).count();
+        let count = |wanted| distinct.iter().filter(|state| routes((**state).into()).contains(&wanted)).count();
         assert_eq!(count(Route::Native), 13 * 13 * 3 + 2);
         assert_eq!(count(Route::ConstantReplicated), 48 * 3);
         assert_eq!(count(Route::FoldedIntoSource), 8 * 3);
+        assert_eq!(count(Route::DualSource), 8 * 3);
+    }
+
+    #[test]
+    fn a_folded_source_is_read_by_no_factor() {
+        for state in State::all() {
+            if routes(state.into()).contains(&Route::FoldedIntoSource) {
+                for factor in [state.src, state.dst] {
+                    assert!(factor.reads_constant_color() || factor.reads_constant_alpha(), "{state}");
+                }
+            }
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! One open device and what all evaluations on it share.
 
 use crate::error::Error;
+use lightmeter_scene::target::TargetFormat;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -22,7 +23,8 @@ pub struct Gpu {
 
 impl Gpu {
     pub(crate) fn open(name: &str, adapter: &wgpu::Adapter) -> Result<Self, Error> {
-        let features = adapter.features() & wgpu::Features::FLOAT32_BLENDABLE;
+        let wanted = wgpu::Features::FLOAT32_BLENDABLE | wgpu::Features::DUAL_SOURCE_BLENDING;
+        let features = adapter.features() & wanted;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("lightmeter"),
             required_features: features,
@@ -90,9 +92,25 @@ impl Gpu {
         }
     }
 
-    /// Whether a binary32 target can be blended on.
-    pub(crate) fn blends_f32(&self) -> bool {
-        self.features.contains(wgpu::Features::FLOAT32_BLENDABLE)
+    /// Why a target cannot be blended on here; `None` where it can.
+    #[must_use]
+    pub fn lacks_blending(&self, target: TargetFormat) -> Option<&'static str> {
+        let format = crate::blend_unit::format(target);
+        let on_adapter = self.adapter.get_texture_format_features(format);
+        if target == TargetFormat::Rgba32Float && !self.features.contains(wgpu::Features::FLOAT32_BLENDABLE) {
+            Some("the adapter lacks the feature FLOAT32_BLENDABLE")
+        } else if !on_adapter.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
+            Some("the adapter cannot draw to the format: it lacks RENDER_ATTACHMENT there")
+        } else if !on_adapter.flags.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
+            Some("the adapter cannot blend on the format: it lacks BLENDABLE there")
+        } else {
+            None
+        }
+    }
+
+    /// Whether a fragment may have two source colours.
+    pub(crate) fn has_dual_source(&self) -> bool {
+        self.features.contains(wgpu::Features::DUAL_SOURCE_BLENDING)
     }
 
     /// Why a stage that reads storage buffers cannot run here; `None` where it can.
@@ -138,6 +156,40 @@ impl Gpu {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | sampled_or_copied,
             view_formats: &[],
         })
+    }
+
+    /// A texture that can be written, drawn to and copied from.
+    pub(crate) fn blend_target(&self, width: u32, height: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::COPY_SRC
+                | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        })
+    }
+
+    /// Fills a texture's first pixels, row after row.
+    pub(crate) fn upload(&self, texture: &wgpu::Texture, bytes: &[u8], pixel_bytes: usize) {
+        let (width, mut y) = (texture.width(), 0);
+        let row_bytes = pixel_bytes * width as usize;
+        let whole = bytes.len() / row_bytes * row_bytes;
+        for part in [&bytes[..whole], &bytes[whole..]].into_iter().filter(|part| !part.is_empty()) {
+            let rows = u32::try_from(part.len().div_ceil(row_bytes)).unwrap_or(u32::MAX);
+            let columns = u32::try_from(part.len().min(row_bytes) / pixel_bytes).unwrap_or(u32::MAX);
+            let mut place = texture.as_image_copy();
+            place.origin.y = y;
+            let bytes_per_row = u32::try_from(row_bytes).ok();
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
+            let size = wgpu::Extent3d { width: columns, height: rows, depth_or_array_layers: 1 };
+            self.queue.write_texture(place, part, layout, size);
+            y += rows;
+        }
     }
 
     pub(crate) fn module(&self, label: &str, source: String) -> wgpu::ShaderModule {

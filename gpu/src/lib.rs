@@ -16,7 +16,7 @@ mod shaders;
 
 pub use adapters::{Adapter, adapters, vulkan_adapters};
 pub use arithmetic::{ArithmeticPipeline, Stage};
-pub use blend_unit::{BlendPending, BlendTarget, BlendUnit, Route, route};
+pub use blend_unit::{Batch, BlendUnit, Draw, Route, routes};
 pub use device::Gpu;
 pub use error::Error;
 pub use kernel::Kernel;

@@ -152,10 +152,8 @@ impl RasterPipeline {
         let module = gpu.module(FILE, source);
         let (topology, vertices) = kind.drawn(gpu.is_gl);
         let pipeline = pipeline(gpu, &module, kind, entries, topology);
-        let reader = matches!(kind, Raster::OwnDepth | Raster::Quad).then(|| {
-            let unit = gpu.module("blend_unit.wgsl", shaders.source("blend_unit.wgsl"));
-            screen_pipeline(gpu, &unit, "unit_vertex", "unit_result")
-        });
+        let reader = matches!(kind, Raster::OwnDepth | Raster::Quad)
+            .then(|| screen_pipeline(gpu, &module, "raster_screen", "raster_result"));
         gpu.check_shader(FILE)?;
         let selector = if let Raster::Flat { topology, .. } = kind { topology.code() } else { 0 };
         Ok(Ok(Self { kind, pipeline, reader, vertices, selector }))
@@ -194,7 +192,7 @@ impl RasterPipeline {
             None => read_target(gpu, encoder, &drawn),
             Some(reader) => {
                 let bits = gpu.target(TARGET_SIZE, TARGET_SIZE, BITS);
-                let group = texture_group(gpu, &reader.get_bind_group_layout(0), 1, &view);
+                let group = texture_group(gpu, &reader.get_bind_group_layout(0), 2, &view);
                 draw_screen(&mut encoder, reader, &group, &bits);
                 read_target(gpu, encoder, &bits)
             }

@@ -14,6 +14,8 @@ pub struct Pending {
     mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
     /// Words of a row in the buffer, and how many of them count.
     row: (usize, usize),
+    /// Bytes that count, where pixels are not whole words.
+    bytes: usize,
 }
 
 impl Pending {
@@ -25,7 +27,22 @@ impl Pending {
             // The receiver is gone only where nobody waits for the result any more.
             let _ = done.send(result);
         });
-        Self { buffer, mapped, row }
+        Self { buffer, mapped, row, bytes: 0 }
+    }
+
+    /// The same of which the first bytes count.
+    pub(crate) fn of_bytes(self, bytes: usize) -> Self {
+        Self { bytes, ..self }
+    }
+
+    /// The first bytes that came back.
+    ///
+    /// # Errors
+    /// Where the device failed or was lost.
+    pub(crate) fn wait_bytes(self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
+        let bytes = self.bytes;
+        let words = self.wait(gpu)?;
+        Ok(bytemuck::cast_slice(&words)[..bytes].to_vec())
     }
 
     /// The words that came back, row after row.

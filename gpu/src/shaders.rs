@@ -5,11 +5,12 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The files that are built in: a formula family each, two that drive fixed hardware, and the probes.
-pub const FILES: [(&str, &str); 10] = [
+/// The files that are built in: a formula family each, three that drive fixed hardware, and the probes.
+pub const FILES: [(&str, &str); 11] = [
     ("attenuation.wgsl", include_str!("shaders/attenuation.wgsl")),
     ("blend.wgsl", include_str!("shaders/blend.wgsl")),
     ("blend_unit.wgsl", include_str!("shaders/blend_unit.wgsl")),
+    ("blend_unit_dual.wgsl", include_str!("shaders/blend_unit_dual.wgsl")),
     ("color.wgsl", include_str!("shaders/color.wgsl")),
     ("fog.wgsl", include_str!("shaders/fog.wgsl")),
     ("interpolation.wgsl", include_str!("shaders/interpolation.wgsl")),
@@ -122,21 +123,9 @@ impl Shaders {
 }
 
 /// The entry points that fixed hardware is driven by.
-const ENTRY_POINTS: [(&str, &[&str]); 2] = [
-    (
-        "blend_unit.wgsl",
-        &[
-            "unit_destination",
-            "unit_source",
-            "unit_source_constant_color",
-            "unit_source_one_minus_constant_color",
-            "unit_source_constant_alpha",
-            "unit_source_one_minus_constant_alpha",
-            "unit_color",
-            "unit_vertex",
-            "unit_result",
-        ],
-    ),
+const ENTRY_POINTS: [(&str, &[&str]); 3] = [
+    ("blend_unit.wgsl", &["unit_source", "unit_folded_source", "unit_color"]),
+    ("blend_unit_dual.wgsl", &["unit_dual_source", "unit_color"]),
     (
         "raster.wgsl",
         &[
@@ -153,6 +142,8 @@ const ENTRY_POINTS: [(&str, &[&str]); 2] = [
             "raster_count",
             "raster_own_depth",
             "raster_flat_fragment",
+            "raster_screen",
+            "raster_result",
         ],
     ),
 ];
@@ -162,7 +153,7 @@ pub(crate) fn validate(file: &str, source: &str) -> Result<naga::Module, Error> 
     let invalid = |message: String| Error::Shader { file: file.into(), message };
     let module =
         naga::front::wgsl::parse_str(source).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
-    Validator::new(ValidationFlags::all(), Capabilities::default())
+    Validator::new(ValidationFlags::all(), Capabilities::default() | Capabilities::DUAL_SOURCE_BLENDING)
         .validate(&module)
         .map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
     Ok(module)

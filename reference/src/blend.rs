@@ -5,7 +5,7 @@
 
 use crate::algebra::{Rgb, Rgba, Vector};
 use crate::real::{Components as _, Real};
-use lightmeter_scene::blend::{Equation, Factor, State};
+use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
 
 /// The three colours that a factor may read.
 #[derive(Clone, Copy, Debug)]
@@ -69,6 +69,34 @@ pub fn blend<R: Real>(state: State, of: &Operands<R>, saturate: Saturate) -> Rgb
         Equation::Min => of.src.zip(of.dst, R::min),
         Equation::Max => of.src.zip(of.dst, R::max),
     }
+}
+
+/// The colour by one state, the alpha by another. Source: 000 §6.6.
+pub fn blend_separate<R: Real>(state: Separate, of: &Operands<R>, saturate: Saturate) -> Rgba<R> {
+    let color = blend(state.color, of, saturate);
+    if state.color == state.alpha {
+        return color;
+    }
+    color.xyz().extend(blend(state.alpha, of, saturate).w())
+}
+
+/// What a draw leaves: components that are not written stay as they were. Source: the write masks of OpenGL and WebGPU.
+pub fn masked<R: Copy>(mask: WriteMask, written: Rgba<R>, dst: Rgba<R>) -> Rgba<R> {
+    let keep = |k: usize| if mask.0[k] { written.0[k] } else { dst.0[k] };
+    Vector([keep(0), keep(1), keep(2), keep(3)])
+}
+
+/// Overlapping draws, one after the other, each over what those before it left; the modes in turn. Source: 002.
+pub fn layers<R: Real, const N: usize>(modes: &[Mode], count: R, sources: [Rgba<R>; N], dst: Rgba<R>) -> Rgba<R> {
+    let zero = Vector::splat(R::literal(0.0));
+    let (mut below, mut number) = (dst, 0.0);
+    for (src, mode) in sources.into_iter().zip(modes.iter().cycle()) {
+        number += 1.0;
+        let of = Operands { src, dst: below, constant: zero };
+        let drawn = || blend(mode.state(), &of, Saturate::SourceAndDestination);
+        below = R::if_ge(count, R::literal(number), drawn, || below);
+    }
+    below
 }
 
 /// The named modes of document 002.

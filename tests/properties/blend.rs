@@ -1,10 +1,22 @@
 //! Laws of blending.
 
 use crate::family;
+use lightmeter::blend_unit::draw::{Piece, draw};
+use lightmeter::blend_unit::embedded;
+use lightmeter::blend_unit::expect::expect;
+use lightmeter::blend_unit::model::Model;
+use lightmeter::blend_unit::pixel::{Units, stored};
+use lightmeter::blend_unit::rules::{FAULTS, Rules, Store};
+use lightmeter::blend_unit::tally::{Drawn, Outcome, Tally};
+use lightmeter::cases::blend::Program;
+use lightmeter::devices::Known;
+use lightmeter_gpu::{Shaders, routes};
 use lightmeter_reference::blend::{Mode, Operands, Saturate, alpha_clamped, blend, factor, without_alpha};
 use lightmeter_reference::{Rgba, Vector};
-use lightmeter_scene::blend::{Equation, Factor, State};
+use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
+use lightmeter_scene::target::{Encoding, TargetFormat};
 use proptest::prelude::*;
+use proptest::strategy::ValueTree as _;
 
 family!("blend", 4096);
 
@@ -124,4 +136,213 @@ proptest! {
         prop_assert!(approx::abs_diff_eq!(alpha_clamped(src, dst), blend(Mode::Alpha.state(), &of, Saturate::SourceAndDestination), epsilon = 1e-15));
         prop_assert!(alpha_clamped(src.scale(scale), dst.scale(-scale)).0.iter().all(|c| (0.0..=1.0).contains(c)));
     }
+}
+
+/// Rows for a blend unit: colours also beyond [0, 1], and in whole steps.
+fn unit_row() -> impl Strategy<Value = Vec<f32>> {
+    let component = prop_oneof![
+        4 => -0.5_f32..=1.5,
+        2 => (0..=255_u8).prop_map(|step| f32::from(step) / 255.0),
+        1 => Just(0.0),
+        1 => Just(1.0),
+    ];
+    proptest::collection::vec(component, 8)
+}
+
+fn any_state() -> impl Strategy<Value = State> {
+    (0..State::all().count()).prop_map(|place| State::all().nth(place).expect("one of them").canonical())
+}
+
+/// Sixteen states, two of them mixed and the last with others for alpha, as a driver compiles each for tens of milliseconds.
+fn states() -> Vec<Separate> {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let mut draw = || any_state().new_tree(&mut runner).expect("a state").current();
+    let mixed = |src, dst| State { equation: Equation::Add, src, dst };
+    let mut states: Vec<Separate> = (0..10).map(|_| draw().into()).collect();
+    states.push(mixed(Factor::ConstantColor, Factor::OneMinusConstantAlpha).into());
+    states.push(mixed(Factor::OneMinusConstantAlpha, Factor::ConstantColor).into());
+    states.extend((0..4).map(|_| Separate { color: draw(), alpha: draw() }));
+    states
+}
+
+#[test]
+fn the_blend_unit_agrees_on_every_target() {
+    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+    let mut subject = lightmeter_tests::device();
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    for target in TargetFormat::ALL {
+        let rows = proptest::collection::vec(unit_row(), 256).new_tree(&mut runner).expect("rows").current();
+        let mut pieces = vec![];
+        for state in states() {
+            for &route in routes(state) {
+                if subject.lacks_route(&shaders, route).expect("a unit").is_none() {
+                    let program = Program::Draw(state, WriteMask::ALL);
+                    let constant = [1.25_f32, 0.25, -0.5, 0.75];
+                    let inputs = rows.iter().flat_map(|row| row.iter().chain(&constant)).copied().collect();
+                    pieces.push(Piece { program, route, inputs, stride: 12 });
+                }
+            }
+        }
+        let drawn = draw(&mut subject, &shaders, target, &pieces.iter().collect::<Vec<_>>(), false).expect("a drawing");
+        for (piece, pixels) in pieces.iter().zip(&drawn.pieces) {
+            for (place, pixel) in pixels.iter().enumerate() {
+                let expected = expect(piece.program, target, &piece.case(place), &Rules::RIGHT);
+                for k in 0..4 {
+                    let verdict = expected.judge(target, k, pixel[k]);
+                    assert_eq!(
+                        verdict.outcome,
+                        Outcome::Pass,
+                        "{piece:?} {}: {place} {pixel:?} {expected:?}",
+                        target.name()
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A state with 24 rows, by the first of its routes.
+fn pieces(rows: &[Vec<f32>]) -> impl Iterator<Item = Piece> + '_ {
+    let constants = [[0.25_f32, 0.5, 0.75, 0.6], [1.25, -0.25, 0.5, 1.5]];
+    State::all().map(move |state| {
+        let inputs =
+            rows.iter().enumerate().flat_map(|(k, row)| row.iter().chain(&constants[k % 2])).copied().collect();
+        let program = Program::Draw(state.canonical().into(), WriteMask::ALL);
+        Piece { program, route: routes(state.canonical().into())[0], inputs, stride: 12 }
+    })
+}
+
+/// What units of different kinds give lies within what is legal: one in f32 that stores the nearest step or the one below,
+/// and one of 8 bits throughout.
+#[test]
+fn every_legal_unit_lies_inside() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let rows = proptest::collection::vec(unit_row(), 24).new_tree(&mut runner).expect("rows").current();
+    let truncate = FAULTS.iter().find(|fault| fault.name == "truncate").expect("a fault").rules;
+    let (mut truncated, mut outside) = (0, 0);
+    for piece in pieces(&rows) {
+        for place in 0..piece.count() {
+            let case = piece.case(place);
+            for target in TargetFormat::ALL {
+                let expected = expect(piece.program, target, &case, &Rules::RIGHT);
+                let inside =
+                    |pixel: Units| (0..4).all(|k| expected.judge(target, k, pixel[k]).outcome == Outcome::Pass);
+                let wide = embedded::blend(piece.program, target, &case, &Rules::RIGHT);
+                assert!(inside(wide), "{} {piece:?} {place}: {wide:?} {expected:?}", target.name());
+                if target.is_unorm() {
+                    truncated += 1;
+                    outside += u32::from(!inside(embedded::blend(piece.program, target, &case, &truncate)));
+                }
+                if target.encoding() == Encoding::Unorm8 {
+                    let narrow = Model::Llvmpipe.predict(piece.program, piece.route, &case, stored(target, case.dst));
+                    assert!(inside(narrow), "{} {piece:?} {place}: {narrow:?} {expected:?}", target.name());
+                }
+            }
+        }
+    }
+    // Truncation is legal value by value, but where f32 falls short of a whole step that should have been kept.
+    assert!(outside * 10 < truncated, "{outside} of {truncated}");
+}
+
+/// The controls: what lies just outside fails, and a NaN wherever it stands.
+#[test]
+fn wrong_pixels_fail() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let rows = proptest::collection::vec(unit_row(), 4).new_tree(&mut runner).expect("rows").current();
+    for piece in pieces(&rows) {
+        for target in TargetFormat::ALL {
+            let expected = expect(piece.program, target, &piece.case(3), &Rules::RIGHT);
+            for k in 0..4 {
+                let outcome = |value: f64| expected.judge(target, k, value).outcome;
+                let step = if target.is_unorm() { 1.0 } else { 1e-3 };
+                let (low, high) = (expected.low[k], expected.high[k]);
+                assert_eq!((outcome(low), outcome(high)), (Outcome::Pass, Outcome::Pass));
+                assert_eq!((outcome(low - step), outcome(high + step)), (Outcome::Fail, Outcome::Fail));
+                assert_eq!(outcome(f64::NAN), Outcome::Fail);
+            }
+        }
+    }
+}
+
+/// A tally of every state drawn by the embedded unit under some rules, as if by a known driver.
+fn tally(rules: &Rules, known: &Known, target: TargetFormat) -> Tally {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let rows = proptest::collection::vec(unit_row(), 24).new_tree(&mut runner).expect("rows").current();
+    let mut tally = Tally::default();
+    for piece in pieces(&rows) {
+        let drawn = Drawn { program: piece.program, route: piece.route, target };
+        for place in 0..piece.count() {
+            let case = piece.case(place);
+            tally.pixel(drawn, known, place, &case, embedded::blend(piece.program, target, &case, rules));
+        }
+    }
+    tally
+}
+
+#[test]
+fn a_store_is_identified_and_a_declared_model_holds_to_the_bit() {
+    let known = Known { blend_model: Some(Model::Llvmpipe), ..Known::default() };
+    for (store, name) in Store::ALL.into_iter().zip(["", "truncate", "times-256", "step-up", "step-down"]) {
+        let rules = FAULTS.iter().find(|fault| fault.name == name).map_or(Rules::RIGHT, |fault| fault.rules);
+        for target in TargetFormat::ALL.into_iter().filter(|target| target.is_unorm()) {
+            let tally = tally(&rules, &known, target);
+            let (identified, share) = tally.identified().expect("there are enough values");
+            assert_eq!(identified, store, "{}", target.name());
+            assert!(share > 0.99, "{} {}: {share}", store.name(), target.name());
+            // Even the best of units is not the declared one, which rounds every product.
+            let (of, others) = tally.model;
+            assert!(if target.encoding() == Encoding::Unorm8 { others > 0 } else { of == 0 }, "{others} of {of}");
+        }
+    }
+}
+
+#[test]
+fn layers_blend_in_order_and_masks_hold() {
+    let modes: &[Mode] = &[Mode::Alpha, Mode::Mul, Mode::Add];
+    let program = Program::Layers(modes);
+    let mut row = vec![0.5_f32, 0.25, 0.75, 1.0, 3.0];
+    row.extend([0.9, 0.1, 0.4, 0.5, 0.2, 0.6, 0.9, 0.7, 0.3, 0.3, 0.1, 0.4].iter().chain([0.5; 52].iter()));
+    let case = program.case(&row);
+    assert_eq!(case.layers, 3);
+    let mut reversed = case;
+    reversed.sources[..3].reverse();
+    for target in TargetFormat::ALL {
+        let expected = expect(program, target, &case, &Rules::RIGHT);
+        let passes = |pixel: Units| (0..4).all(|k| expected.judge(target, k, pixel[k]).outcome == Outcome::Pass);
+        assert!(passes(embedded::blend(program, target, &case, &Rules::RIGHT)), "{}", target.name());
+        assert!(
+            !passes(embedded::blend(program, target, &reversed, &Rules::RIGHT)),
+            "{}: the order matters",
+            target.name()
+        );
+        let masked = Program::Draw(Mode::Alpha.state().into(), WriteMask([true, false, true, false]));
+        let expected = expect(masked, target, &case, &Rules::RIGHT);
+        let kept = stored(target, case.dst);
+        assert_eq!((expected.low[1], expected.high[3]), (kept[1], kept[3]), "{}", target.name());
+        let unmasked =
+            embedded::blend(Program::Draw(Mode::Alpha.state().into(), WriteMask::ALL), target, &case, &Rules::RIGHT);
+        assert_eq!(
+            expected.judge(target, 1, unmasked[1]).outcome,
+            Outcome::Fail,
+            "{}: the mask was lost",
+            target.name()
+        );
+    }
+}
+
+#[test]
+fn half_overflow_has_two_outcomes() {
+    let add =
+        Program::Draw(State { equation: Equation::Add, src: Factor::One, dst: Factor::One }.into(), WriteMask::ALL);
+    let case = add.case(&[60000.0, -60000.0, 1.0, 1.0, 60000.0, -60000.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+    let expected = expect(add, TargetFormat::Rgba16Float, &case, &Rules::RIGHT);
+    let outcome = |k: usize, value: f64| expected.judge(TargetFormat::Rgba16Float, k, value).outcome;
+    for legal in [65504.0, f64::INFINITY] {
+        assert_eq!((outcome(0, legal), outcome(1, -legal)), (Outcome::Pass, Outcome::Pass));
+    }
+    for wrong in [65472.0, 0.0, f64::NEG_INFINITY, f64::NAN] {
+        assert_eq!(outcome(0, wrong), Outcome::Fail, "{wrong}");
+    }
+    let single = expect(add, TargetFormat::Rgba32Float, &case, &Rules::RIGHT);
+    assert_eq!(single.judge(TargetFormat::Rgba32Float, 0, f64::INFINITY).outcome, Outcome::Fail);
 }

@@ -2,7 +2,7 @@
 
 use lightmeter::arithmetic::Accept;
 use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::cases::{AnyFormula, Domain, Spec, Stage, Target};
+use lightmeter::cases::{AnyFormula, Domain, Kind, Spec, Stage};
 use lightmeter::evaluate::Evaluator;
 use lightmeter::judge::{Outcome, judge};
 use lightmeter::select::{CaseRef, Member, catalogue};
@@ -14,14 +14,15 @@ use proptest::test_runner::TestCaseError;
 use std::cell::RefCell;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// The formulas of a family, in groups.
+/// The formulas of a family that stages of rows evaluate, in groups.
 ///
 /// # Panics
 /// Where there is no such family.
 #[must_use]
 pub fn groups(family: &str) -> Vec<Vec<Member>> {
     let mut groups: Vec<Vec<Member>> = vec![];
-    for member in catalogue().into_iter().filter(|member| member.spec.family() == family) {
+    let rows = |member: &Member| !member.spec.row_stages().is_empty();
+    for member in catalogue().into_iter().filter(|member| member.spec.family() == family && rows(member)) {
         match groups.last_mut() {
             Some(group) if group[0].spec.group() == member.spec.group() => group.push(member),
             _ => groups.push(vec![member]),
@@ -210,20 +211,13 @@ fn control_row(member: &Member, row: &[f32]) {
     let mut reference = vec![0.0; outputs];
     let formula: &dyn AnyFormula = member.formula.as_ref();
     formula.reference(row, &mut reference);
-    for &stage in member.spec.kind.stages() {
-        for half_float in [false, true] {
-            let mut legal = vec![Accept::ANY; outputs];
-            match stage {
-                Stage::Compute | Stage::Fragment => formula.interval(row, &mut legal),
-                Stage::FixedFunction | Stage::Raster => {
-                    let target = Target { subpixel_bits: WGSL.subpixel_bits, half_float };
-                    formula.hardware_interval(member.spec.kind, row, target, &mut legal);
-                }
-            }
-            for (reference, legal) in reference.iter().zip(&legal).filter(|(_, legal)| !legal.is_any()) {
-                control_value(&member.spec.id, *reference, legal);
-            }
-        }
+    let mut legal = vec![Accept::ANY; outputs];
+    match member.spec.kind {
+        Kind::Raster(kind) => formula.raster_interval(kind, row, WGSL.subpixel_bits, &mut legal),
+        Kind::Arithmetic | Kind::Blend(_) => formula.interval(row, &mut legal),
+    }
+    for (reference, legal) in reference.iter().zip(&legal).filter(|(_, legal)| !legal.is_any()) {
+        control_value(&member.spec.id, *reference, legal);
     }
 }
 

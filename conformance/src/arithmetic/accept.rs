@@ -66,7 +66,7 @@ impl<F: Format> Accept<F> {
     /// Whether the rules permit anything here.
     #[must_use]
     pub fn is_any(&self) -> bool {
-        self.low == f64::NEG_INFINITY
+        self.low == f64::NEG_INFINITY && self.high == f64::INFINITY
     }
 
     /// Whether `x` is a legal value. A NaN is legal only where anything is.
@@ -92,12 +92,23 @@ impl<F: Format> Accept<F> {
     fn seal(low: f64, high: f64) -> Self {
         // A NaN fails this too.
         if !(low >= -F::MAX && high <= F::MAX) {
-            return Self::ANY;
+            return if F::IS_HARDWARE { Self::overflow(low, high) } else { Self::ANY };
         }
         let (low, high) = (F::round_down(low), F::round_up(high));
         if low < F::MIN_NORMAL && high > -F::MIN_NORMAL {
             return Self::flush(low, high);
         }
+        Self::raw(low, high)
+    }
+
+    /// [`Accept::seal`] of fixed hardware, where what is too great becomes infinite or the greatest finite number.
+    #[cold]
+    fn overflow(low: f64, high: f64) -> Self {
+        if low.is_nan() || high.is_nan() {
+            return Self::ANY;
+        }
+        let low = if low < -F::MAX { f64::NEG_INFINITY } else { F::round_down(low.min(F::MAX)) };
+        let high = if high > F::MAX { f64::INFINITY } else { F::round_up(high.max(-F::MAX)) };
         Self::raw(low, high)
     }
 
@@ -188,6 +199,30 @@ impl<F: Format> Accept<F> {
     }
 }
 
+impl<F: Format> Accept<F> {
+    /// A sum that errs by one ULP of its terms' magnitudes for each addition: fixed hardware's bound does not follow from
+    /// roundings. v − ε|v| grows with v, so the ends of the terms give the ends of the sum.
+    fn sum_by_terms(terms: &[Self]) -> Self {
+        let error = chain_error::<F>(terms.len());
+        let flushed = |magnitude: f64| {
+            // Partial sums that cancel to a subnormal may be flushed; above this magnitude the rounding term covers that.
+            if magnitude < F::MIN_NORMAL / F::EPSILON * 16.0 {
+                terms.iter().fold(0.0, |sum, _| sum + F::MIN_NORMAL)
+            } else {
+                0.0
+            }
+        };
+        let (mut low, mut high, mut below, mut above) = (0.0, 0.0, 0.0, 0.0);
+        for term in terms {
+            low += term.low;
+            high += term.high;
+            below += term.low.abs();
+            above += term.high.abs();
+        }
+        Self::seal(low - error * below - flushed(below), high + error * above + flushed(above))
+    }
+}
+
 /// a + b in f64, stepped down where that rounded up.
 #[inline]
 fn add_down(a: f64, b: f64) -> f64 {
@@ -230,6 +265,13 @@ impl<F: Format> Mul for Accept<F> {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
+        // ∞·0 is NaN.
+        let is_infinite = |x: Self| x.low.is_infinite() || x.high.is_infinite();
+        if F::IS_HARDWARE
+            && ((is_infinite(self) && other.contains_zero()) || (is_infinite(other) && self.contains_zero()))
+        {
+            return Self::ANY;
+        }
         // A product of two numbers of at most 24 bits is exact in f64.
         let (low, high) = Self::product_range((self.low, self.high), (other.low, other.high));
         Self::seal(low, high)
@@ -362,8 +404,11 @@ impl<F: Format> Real for Accept<F> {
         match rest[..count] {
             [] => return Self::exactly(0.0),
             [x] => return x,
-            [x, y] if !F::SUMS_BY_TERMS => return x + y,
+            [x, y] if !F::IS_HARDWARE => return x + y,
             _ => {}
+        }
+        if F::IS_HARDWARE {
+            return Self::sum_by_terms(&rest[..count]);
         }
         let (mut low, mut high, mut magnitude) = (0.0, 0.0, 0.0);
         for term in &rest[..count] {
@@ -379,10 +424,6 @@ impl<F: Format> Real for Accept<F> {
         // Partial sums that cancel to a subnormal may be flushed; above this magnitude the rounding term covers that.
         if magnitude < F::MIN_NORMAL / F::EPSILON * 16.0 {
             error += rest[..count].iter().fold(0.0, |e, _| e + F::MIN_NORMAL);
-        }
-        if F::SUMS_BY_TERMS {
-            // Fixed hardware's bound does not follow from roundings: it is one ULP more or less.
-            return Self::seal(low - error, high + error);
         }
         // The last addition's result is one of the format's values. (A product may stay unrounded in a fused operation.)
         Self::of_results(low - error, high + error)

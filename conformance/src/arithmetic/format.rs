@@ -17,8 +17,9 @@ pub trait Format: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// The greatest finite number.
     const MAX: f64;
 
-    /// Whether a sum errs relative to the sum of its terms' magnitudes, as fixed hardware's may, rather than to its result.
-    const SUMS_BY_TERMS: bool = false;
+    /// Whether it is fixed hardware's: a sum errs relative to the sum of its terms' magnitudes rather than to its result, and
+    /// what is too great for the format has a result, infinite or the greatest finite number.
+    const IS_HARDWARE: bool = false;
 
     /// The greatest value of the format that is ≤ x, for |x| at least [`Format::MIN_NORMAL`] or 0.
     #[inline]
@@ -85,7 +86,7 @@ impl<F: Format> Format for Hardware<F> {
     const MIN_NORMAL: f64 = F::MIN_NORMAL;
     const MIN_SUBNORMAL: f64 = F::MIN_SUBNORMAL;
     const MAX: f64 = F::MAX;
-    const SUMS_BY_TERMS: bool = true;
+    const IS_HARDWARE: bool = true;
 }
 
 /// The error of `value` against `reference` in units in the last place of the format at the reference.

@@ -2,12 +2,14 @@
 
 pub mod accept;
 pub mod dual;
+pub mod fixed;
 pub mod format;
 pub mod profile;
 pub mod trace;
 
 pub use accept::Accept;
 pub use dual::Dual;
+pub use fixed::Fixed;
 pub use format::{F16, F32, Format, Hardware};
 pub use profile::Profile;
 pub use trace::Trace;

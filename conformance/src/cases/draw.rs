@@ -1,15 +1,21 @@
 //! Inputs drawn by counter: those of case k follow from the generator's version, the seed, the formula's id and k alone,
 //! so that shards, baselines and a case shown by itself agree.
 
-use super::spec::{Domain, Input, Shape, Spec};
+use super::blend::Program;
+use super::spec::{Domain, Input, Kind, Shape, Spec};
+use lightmeter_scene::blend::{Equation, Factor, Separate, State};
 
 /// Raised whenever the same seed would give other inputs.
-pub const GENERATOR_VERSION: u64 = 1;
+pub const GENERATOR_VERSION: u64 = 2;
 
 /// The inputs of random case `k` of a formula.
 pub fn inputs(spec: &Spec, seed: u64, k: u64, row: &mut Vec<f32>) {
     let mut numbers = Numbers::new(&spec.id, seed, k);
     let start = row.len();
+    if let Kind::Blend(Program::Draw(state, _)) = spec.kind {
+        blend_pair(&spec.id, state, seed, k, row);
+        return;
+    }
     for input in spec.inputs {
         draw(input, &mut numbers, row);
     }
@@ -63,6 +69,70 @@ fn draw(input: &Input, numbers: &mut Numbers, row: &mut Vec<f32>) {
         Domain::Transform(low, high) => numbers.transform(input.shape, (low, high), row),
         Domain::Pixel => row.extend(numbers.pixel()),
     }
+}
+
+/// The corners that source and destination take together.
+const CORNERS: [f32; 7] =
+    [0.0, 1.0, 0.5, 1.0 / 255.0, 254.0 / 255.0, f32::from_bits(0x3f7f_ffff), f32::from_bits(0x3f80_0001)];
+/// Cases after which the corners come again: twice 2¹¹, once for each constant.
+const ROUND: u64 = 1 << 11;
+
+/// Source, destination and constant of a blend state.
+///
+/// Even cases have a constant of [0, 1], odd ones one outside; a state has two constants. Of each 2,048 pairs 833 go
+/// through all corners: each of the 7⁴ combinations of colour and alpha of both sides stands in one of the three colour
+/// components. The rest are drawn: in [0, 1], in whole 255ths, beyond [0, 1], equal, or with both alphas 0 or 1.
+fn blend_pair(id: &str, state: Separate, seed: u64, k: u64, row: &mut Vec<f32>) {
+    let mut numbers = Numbers::new(id, seed, k);
+    // An odd factor permutes the pairs of a round, so that a few cases have some of each kind.
+    let place = (k >> 1).wrapping_mul(0x2f5) & (ROUND - 1);
+    let first_round = k >> 1 < ROUND;
+    let corner = |n: u64| CORNERS[usize::try_from(n % 7).unwrap_or_default()];
+    const ALPHAS: u64 = 49;
+    const TRIPLES: u64 = 17;
+    if first_round && place < ALPHAS * TRIPLES {
+        let (alphas, triple) = (place / TRIPLES, place % TRIPLES);
+        let pair = |component: u64| 3 * triple + component;
+        row.extend((0..3).map(|component| corner(pair(component) / 7)));
+        row.push(corner(alphas / 7));
+        row.extend((0..3).map(|component| corner(pair(component))));
+        row.push(corner(alphas));
+    } else {
+        let start = row.len();
+        match numbers.next() & 7 {
+            0 | 1 => row.extend((0..8).map(|_| numbers.uniform(-0.5, 1.5))),
+            2 => row.extend((0..8).map(|_| numbers.whole(0, 255) / 255.0)),
+            3 => {
+                row.extend((0..4).map(|_| numbers.unit()));
+                row.extend_from_within(start..);
+            }
+            4 => row.extend((0..8).map(|n| if n % 4 == 3 { numbers.whole(0, 1) } else { numbers.unit() })),
+            _ => row.extend((0..8).map(|_| numbers.unit())),
+        }
+    }
+    if !state.reads_constant() {
+        row.extend([0.0; 4]);
+        return;
+    }
+    let outside = k & 1 == 1;
+    let mut numbers = Numbers::new(id, seed, u64::MAX - u64::from(outside));
+    row.extend((0..4).map(|_| match (outside, numbers.next() & 1) {
+        (false, _) => numbers.uniform(0.0, 1.0),
+        (true, 0) => numbers.uniform(-0.5, 0.0),
+        (true, _) => numbers.uniform(1.0, 1.5),
+    }));
+}
+
+/// States drawn from the (15 × 15 × 5)² with separate ones for colour and alpha.
+pub(super) fn separate_states(seed: u64, count: u64) -> Vec<Separate> {
+    let draw = |k| {
+        let mut numbers = Numbers::new("blend/separate", seed, k);
+        let mut below = |n: usize| usize::try_from((numbers.next() >> 32) % n as u64).unwrap_or_default();
+        let mut state =
+            || State { equation: Equation::ALL[below(5)], src: Factor::ALL[below(15)], dst: Factor::ALL[below(15)] };
+        Separate { color: state(), alpha: state() }
+    };
+    (0..count).map(draw).collect()
 }
 
 /// The numbers of one case.

@@ -1,20 +1,11 @@
 //! A formula that is judged: its description, and its evaluation in any arithmetic.
 
+use super::raster;
 use super::rows::{Reader, Writer};
 use super::spec::{Kind, Spec};
-use super::{blend, raster};
-use crate::arithmetic::{Accept, Dual, F16, F32, Format, Hardware, Profile, Trace, dual};
+use crate::arithmetic::{Accept, Dual, Profile, Trace, dual};
 use lightmeter_gpu::Raster;
 use lightmeter_reference::Real;
-
-/// What an acceptance interval may depend on besides the accuracy rules.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Target {
-    /// Bits after the point to which the device's rasteriser snaps positions.
-    pub subpixel_bits: u32,
-    /// Whether the blend unit's target is binary16 rather than binary32.
-    pub half_float: bool,
-}
 
 /// A formula over any arithmetic.
 pub trait Formula: Send + Sync + 'static {
@@ -45,16 +36,13 @@ pub trait AnyFormula: Send + Sync {
     /// The values that are legal in the programmable stages.
     fn interval(&self, inputs: &[f32], out: &mut [Accept]);
 
-    /// The values that are legal as they leave the fixed hardware of a device.
-    fn hardware_interval(&self, kind: Kind, inputs: &[f32], target: Target, out: &mut [Accept]);
+    /// The values that are legal as they leave a rasteriser that snaps positions to so many bits after the point.
+    fn raster_interval(&self, kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]);
 
     /// The values that are legal where only the profile's promise is known: of a raster formula those of a rasteriser.
     fn promised_interval(&self, kind: Kind, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
         match kind {
-            Kind::Raster(_) => {
-                let target = Target { subpixel_bits: profile.subpixel_bits, half_float: false };
-                self.hardware_interval(kind, inputs, target, out);
-            }
+            Kind::Raster(raster) => self.raster_interval(raster, inputs, profile.subpixel_bits, out),
             Kind::Arithmetic | Kind::Blend(_) => self.interval(inputs, out),
         }
     }
@@ -67,7 +55,7 @@ pub trait AnyFormula: Send + Sync {
 }
 
 /// Room for the inputs of any formula, so that a row is widened without an allocation.
-const MOST_INPUTS: usize = 64;
+const MOST_INPUTS: usize = 80;
 
 fn run<F: Formula, R: Real>(formula: &F, inputs: &[f32], out: &mut [R]) {
     let mut row = [R::literal(0.0); MOST_INPUTS];
@@ -75,14 +63,6 @@ fn run<F: Formula, R: Real>(formula: &F, inputs: &[f32], out: &mut [R]) {
         *wide = R::input(narrow);
     }
     formula.evaluate(&mut Reader::new(&row[..inputs.len()]), &mut Writer::new(out));
-}
-
-fn in_hardware<F: Formula, N: Format>(formula: &F, inputs: &[f32], out: &mut [Accept]) {
-    let mut values = [Accept::<Hardware<N>>::ANY; blend::OUTPUTS];
-    run(formula, inputs, &mut values);
-    for (out, value) in out.iter_mut().zip(values) {
-        *out = Accept::from_bounds(value.low(), value.high());
-    }
 }
 
 impl<F: Formula> AnyFormula for F {
@@ -102,13 +82,10 @@ impl<F: Formula> AnyFormula for F {
         run(self, inputs, out);
     }
 
-    fn hardware_interval(&self, kind: Kind, inputs: &[f32], target: Target, out: &mut [Accept]) {
+    fn raster_interval(&self, kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]) {
         match kind {
-            Kind::Raster(Raster::Flat { .. }) => run(self, inputs, out),
-            Kind::Raster(kind) => raster::interval(kind, inputs, target, out),
-            Kind::Blend(_) if target.half_float => in_hardware::<F, F16>(self, inputs, out),
-            Kind::Blend(_) => in_hardware::<F, F32>(self, inputs, out),
-            _ => run(self, inputs, out),
+            Raster::Flat { .. } => run(self, inputs, out),
+            _ => raster::interval(kind, inputs, subpixel_bits, out),
         }
     }
 

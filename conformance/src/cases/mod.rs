@@ -17,7 +17,7 @@ mod rows;
 mod spec;
 
 pub use draw::{GENERATOR_VERSION, inputs};
-pub use formula::{AnyFormula, Formula, Target, Visitor};
+pub use formula::{AnyFormula, Formula, Visitor};
 pub use rows::{Reader, Writer};
 pub use spec::{Domain, Hard, Input, Kind, Output, Shape, Spec, Stage};
 
@@ -35,9 +35,9 @@ pub fn visit(visitor: &mut impl Visitor) {
     blend::visit(visitor);
 }
 
-/// Every formula, evaluable in the arithmetics of the suite.
+/// Every formula, evaluable in the arithmetics of the suite, with some of the many states that are separate for alpha.
 #[must_use]
-pub fn all() -> Vec<Box<dyn AnyFormula>> {
+pub fn all(samples: &blend::Samples) -> Vec<Box<dyn AnyFormula>> {
     struct Collect(Vec<Box<dyn AnyFormula>>);
     impl Visitor for Collect {
         fn formula<F: Formula>(&mut self, formula: F) {
@@ -46,5 +46,6 @@ pub fn all() -> Vec<Box<dyn AnyFormula>> {
     }
     let mut collect = Collect(vec![]);
     visit(&mut collect);
+    blend::visit_separate(samples, &mut collect);
     collect.0
 }

@@ -1,7 +1,7 @@
 //! The description of a formula: what goes in, what comes out, where it is from, and its hard cases.
 
+use super::blend::Program;
 use lightmeter_gpu::Raster;
-use lightmeter_scene::blend::State;
 use serde::Serialize;
 
 /// Where a formula is evaluated on a renderer.
@@ -36,22 +36,10 @@ impl Stage {
 pub enum Kind {
     /// As arithmetic, by a function of a shader file, in the compute and the fragment stage.
     Arithmetic,
-    /// As arithmetic and by the blend unit: a blend state.
-    Blend(State),
+    /// By the blend unit, and as arithmetic where there is a function for it.
+    Blend(Program),
     /// By the rasteriser alone.
     Raster(Raster),
-}
-
-impl Kind {
-    /// The stages that it is judged in.
-    #[must_use]
-    pub const fn stages(self) -> &'static [Stage] {
-        match self {
-            Self::Arithmetic => &[Stage::Compute, Stage::Fragment],
-            Self::Blend(_) => &[Stage::FixedFunction, Stage::Compute, Stage::Fragment],
-            Self::Raster(_) => &[Stage::Raster],
-        }
-    }
 }
 
 /// The components of an input or output.
@@ -229,6 +217,24 @@ pub struct Spec {
 }
 
 impl Spec {
+    /// The stages that it is judged in.
+    #[must_use]
+    pub const fn stages(&self) -> &'static [Stage] {
+        match self.kind {
+            Kind::Arithmetic => &[Stage::Compute, Stage::Fragment],
+            Kind::Blend(_) if self.function.is_empty() => &[Stage::FixedFunction],
+            Kind::Blend(_) => &[Stage::FixedFunction, Stage::Compute, Stage::Fragment],
+            Kind::Raster(_) => &[Stage::Raster],
+        }
+    }
+
+    /// The stages that evaluate rows of numbers, which all but the blend unit do.
+    #[must_use]
+    pub fn row_stages(&self) -> &'static [Stage] {
+        let stages = self.stages();
+        if stages[0] == Stage::FixedFunction { &stages[1..] } else { stages }
+    }
+
     /// The family: the first segment of the id.
     #[must_use]
     pub fn family(&self) -> &str {

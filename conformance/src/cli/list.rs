@@ -5,9 +5,9 @@ use super::run::matching;
 use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
-use lightmeter::cases::blend::aliases;
+use lightmeter::cases::blend::{Samples, aliases, separate_of};
 use lightmeter::report::text::thousands;
-use lightmeter::select::{CaseRef, Member, Random, Selected, catalogue, select};
+use lightmeter::select::{CaseRef, Member, Random, Selected, catalogue_of, select};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -33,8 +33,10 @@ pub(crate) struct List {
 
 impl List {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let filter = matching(&self.filter, self.amount.cases)?;
-        let catalogue = catalogue();
+        let named = self.filter.iter().filter_map(|glob| separate_of(glob)).collect();
+        let samples = Samples { named, ..Samples::default() };
+        let filter = matching(&self.filter, self.amount.cases, &samples)?;
+        let catalogue = catalogue_of(&samples);
         let selected = select(&catalogue, &filter, self.amount.cases, self.amount.shard.0);
         let text = match (self.format, self.formulas) {
             (Format::Junit, _) => bail!("a list is written as text or json"),
@@ -66,7 +68,7 @@ fn formula(member: &Member, aliases: &[String]) -> Value {
     let spec = &member.spec;
     json!({
         "id": spec.id, "formula": spec.text, "source": spec.source,
-        "stages": spec.kind.stages(), "inputs": spec.inputs, "outputs": spec.outputs, "aliases": aliases,
+        "stages": spec.stages(), "inputs": spec.inputs, "outputs": spec.outputs, "aliases": aliases,
     })
 }
 

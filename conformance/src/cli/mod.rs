@@ -5,6 +5,7 @@ mod eval;
 mod list;
 mod options;
 mod run;
+mod selftest;
 mod show;
 
 use clap::{Parser, Subcommand};
@@ -35,6 +36,8 @@ enum Command {
     Show(show::Show),
     /// List what can be run on
     Adapters(adapters::Adapters),
+    /// Show that the suite catches the mistakes that it knows
+    Selftest(selftest::Selftest),
     /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out
     Eval(eval::Eval),
 }
@@ -46,6 +49,7 @@ impl Cli {
             Command::List(list) => list.run(),
             Command::Show(show) => show.run(),
             Command::Adapters(adapters) => adapters.run(),
+            Command::Selftest(selftest) => selftest.run(),
             Command::Eval(eval) => eval.run(),
         }
     }

@@ -5,14 +5,32 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::PROFILES;
+use lightmeter::cases::blend::Samples;
 use lightmeter::filter::Filter;
 use lightmeter::run::Options;
 use lightmeter::select::Shard;
 use lightmeter::subject::Subject;
 use lightmeter_gpu::{Adapter, Shaders};
+use lightmeter_scene::target::TargetFormat;
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::str::FromStr;
+
+/// One format of floats and one of 8 bits.
+const DEFAULT_TARGETS: [TargetFormat; 2] = [TargetFormat::Rgba32Float, TargetFormat::Rgba8Unorm];
+
+/// What `--target` names: one format, or all.
+#[derive(Clone, Debug)]
+pub(crate) struct Targets(Vec<TargetFormat>);
+
+impl Targets {
+    /// The formats that were asked for, each once, in the order of reports; `None` where none was.
+    pub(crate) fn asked(asked: &[Self]) -> Option<Vec<TargetFormat>> {
+        let asked: Vec<TargetFormat> = asked.iter().flat_map(|targets| targets.0.iter().copied()).collect();
+        let each = TargetFormat::ALL.into_iter().filter(|target| asked.contains(target)).collect();
+        (!asked.is_empty()).then_some(each)
+    }
+}
 
 /// How output is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -32,6 +50,10 @@ pub(crate) struct Choice {
     /// Accuracy rules: wgsl or vulkan
     #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
     pub(crate) profile: &'static Profile,
+    /// Format to blend on: rgba32float, rgba16float, rgba8unorm, rgba8unorm-srgb or bgra8unorm; again for several; `all`.
+    /// Without it: rgba32float and rgba8unorm
+    #[arg(long, value_name = "NAME", value_parser = Choice::target)]
+    pub(crate) target: Vec<Targets>,
     /// Seed of the random cases
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
@@ -43,7 +65,7 @@ pub(crate) struct Choice {
 /// How many cases.
 #[derive(Debug, Args)]
 pub(crate) struct Amount {
-    /// Random cases for each formula; a sixteenth of that for each blend state
+    /// Random cases for each formula, and pairs for each blend state; a sixteenth of them for a state in a shader
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     pub(crate) cases: u64,
     /// Only a part of the cases: the I-th of N
@@ -82,6 +104,21 @@ impl Choice {
         Profile::by_name(name).ok_or_else(|| format!("no such profile; expected one of {}", names.join(", ")))
     }
 
+    /// The format of that name, or all.
+    pub(crate) fn target(name: &str) -> Result<Targets, String> {
+        let names: Vec<&str> = TargetFormat::ALL.iter().map(|target| target.name()).collect();
+        if name == "all" {
+            return Ok(Targets(TargetFormat::ALL.to_vec()));
+        }
+        let found = TargetFormat::by_name(name).map(|target| Targets(vec![target]));
+        found.ok_or_else(|| format!("no such format; expected one of {} and all", names.join(", ")))
+    }
+
+    /// The formats to blend on, each once, in the order of reports.
+    pub(crate) fn targets(&self) -> Vec<TargetFormat> {
+        Targets::asked(&self.target).unwrap_or_else(|| DEFAULT_TARGETS.to_vec())
+    }
+
     /// The shaders to judge.
     pub(crate) fn shaders(&self) -> anyhow::Result<Shaders> {
         Ok(match &self.shaders {
@@ -103,7 +140,18 @@ impl Choice {
             let dir = dir.display().to_string().replace('\'', r"'\''");
             rerun += &format!(" --shaders '{dir}'");
         }
-        Ok(Options { filter, cases, seed: self.seed, shard, profile: self.profile, shaders: self.shaders()?, rerun })
+        Ok(Options {
+            filter,
+            cases,
+            seed: self.seed,
+            shard,
+            targets: self.targets(),
+            samples: Samples { seed: self.seed, ..Samples::default() },
+            again: false,
+            profile: self.profile,
+            shaders: self.shaders()?,
+            rerun,
+        })
     }
 
     /// The subjects that were asked for, opened.

@@ -4,10 +4,11 @@ use super::options::{Amount, Choice, Format};
 use super::{NothingToRun, Status, emit};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::filter::Filter;
-use lightmeter::report::{Report, junit, text};
+use lightmeter::report::{Interrupted, Report, junit, text};
 use lightmeter::run::{Progress, run};
-use lightmeter::select::{catalogue, select};
+use lightmeter::select::{catalogue_of, select};
 use std::path::PathBuf;
 
 /// Judge the wgpu implementation on an adapter.
@@ -22,9 +23,12 @@ pub(crate) struct Run {
     /// A row for each formula rather than for each family
     #[arg(long)]
     groups: bool,
-    /// Say where the time went
+    /// Say where the time went; the blend unit draws everything twice, to tell what its first drawing costs
     #[arg(long)]
     timing: bool,
+    /// States with another one for alpha, drawn from all 1,265,625 and judged besides those that cover every pair
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u64).range(0..=1_265_625))]
+    separate: u64,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -36,7 +40,12 @@ pub(crate) struct Run {
 impl Run {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let shard = self.amount.shard.0;
-        let options = self.choice.options(matching(&self.filter, self.amount.cases)?, self.amount.cases, shard)?;
+        let named = self.filter.iter().filter_map(|glob| separate_of(glob)).collect();
+        let samples = Samples { seed: self.choice.seed, count: self.separate, named };
+        let filter = matching(&self.filter, self.amount.cases, &samples)?;
+        let mut options = self.choice.options(filter, self.amount.cases, shard)?;
+        options.again = self.timing;
+        options.samples = samples;
         if let Some(path) = &self.out {
             // Not after hours of work.
             emit("", Some(path))?;
@@ -54,6 +63,11 @@ impl Run {
             report => report?,
         };
         emit(&self.write(&report)?, self.out.as_deref())?;
+        if let Some(Interrupted { under_way, message }) = &report.interrupted {
+            std::mem::forget(subjects);
+            eprintln!("error: {message}\n  {under_way} was under way; what was judged before stands in the result");
+            return Ok(Status::Device);
+        }
         Ok(status(&report))
     }
 
@@ -85,8 +99,8 @@ fn status(report: &Report) -> Status {
 }
 
 /// The filter, each of whose globs must match something.
-pub(crate) fn matching(globs: &[String], cases: u64) -> anyhow::Result<Filter> {
-    let catalogue = catalogue();
+pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples) -> anyhow::Result<Filter> {
+    let catalogue = catalogue_of(samples);
     for glob in globs {
         let filter = Filter::new(std::slice::from_ref(glob))?;
         if select(&catalogue, &filter, cases, lightmeter::select::Shard::WHOLE).is_empty() {

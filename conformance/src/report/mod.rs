@@ -66,6 +66,106 @@ impl Totals {
     }
 }
 
+/// Values on a target of 8 bits by how near they come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Tiers {
+    /// The formula gives a whole step, and it came out.
+    pub exact: u64,
+    /// The nearest step.
+    pub nearest: u64,
+    /// The other neighbour.
+    pub neighbour: u64,
+    /// Farther, but within the format's bound.
+    pub bound: u64,
+    /// Outside.
+    pub outside: u64,
+}
+
+impl Tiers {
+    /// The sum.
+    pub fn add(&mut self, other: &Self) {
+        self.exact += other.exact;
+        self.nearest += other.nearest;
+        self.neighbour += other.neighbour;
+        self.bound += other.bound;
+        self.outside += other.outside;
+    }
+
+    /// Each with its name.
+    #[must_use]
+    pub const fn named(&self) -> [(&'static str, u64); 5] {
+        [
+            ("exact", self.exact),
+            ("nearest", self.nearest),
+            ("neighbour", self.neighbour),
+            ("bound", self.bound),
+            ("outside", self.outside),
+        ]
+    }
+}
+
+/// How a target's values are stored, told from many of them together.
+#[derive(Clone, Debug, Serialize)]
+pub struct StoreUse {
+    /// The store that most values speak for, or the model that all of them follow.
+    pub identified: &'static str,
+    /// The share of the values that are as it would have them.
+    pub share: f64,
+    /// Values that tell stores apart.
+    pub of: u64,
+    /// Their mean error with its sign, in steps.
+    pub bias: f64,
+}
+
+/// A blend state by one route on a target.
+#[derive(Clone, Debug, Serialize)]
+pub struct BlendState {
+    /// The state's id.
+    pub id: String,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The target's format.
+    pub target: &'static str,
+    /// How the state reached the unit.
+    pub route: &'static str,
+    /// Pixels.
+    pub cases: u64,
+    /// Components outside what is legal.
+    pub failed: u64,
+    /// The greatest error: ULP on float targets, steps on those of 8 bits.
+    pub error_max: Number,
+    /// On targets of 8 bits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tiers: Option<Tiers>,
+    /// Why it was not drawn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skip_reason: Option<&'static str>,
+}
+
+/// NaN or infinity in a blend unit.
+#[derive(Clone, Debug, Serialize)]
+pub struct SpecialUse {
+    /// The case.
+    pub id: String,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The target's format.
+    pub target: &'static str,
+    /// What was left in red.
+    pub seen: String,
+    /// What is on record for the driver.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<&'static str>,
+}
+
+impl SpecialUse {
+    /// Whether it is what is on record, if anything is.
+    #[must_use]
+    pub fn is_as_recorded(&self) -> bool {
+        self.recorded.is_none_or(|recorded| recorded == self.seen)
+    }
+}
+
 /// A group on an adapter in a stage.
 #[derive(Clone, Debug, Serialize)]
 pub struct Group {
@@ -78,21 +178,33 @@ pub struct Group {
     /// The format that the blend unit worked on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<&'static str>,
+    /// Values by how near they come, on a target of 8 bits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tiers: Option<Tiers>,
+    /// How values are stored, on a target of 8 bits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub store: Option<StoreUse>,
     /// The counts.
     #[serde(flatten)]
     pub totals: Totals,
-    /// The greatest error of a verdict that is not indeterminate, in ULP of the output's format.
+    /// The greatest error of a verdict that is not indeterminate, in ULP of the output's format or in its steps.
     pub error_ulp_max: Number,
     /// The greatest margin.
     pub margin_max: Number,
     /// Time spent on the group on this adapter in this stage.
     pub seconds: f64,
+    /// Time that drawing it takes once every pipeline is compiled, where that was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds_warm: Option<f64>,
     /// The case of the greatest margin.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub worst: Option<String>,
     /// Why the group is skipped.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub skip_reason: Option<&'static str>,
+    /// The mistake that explains what failed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explanation: Option<String>,
     /// Why the group fails as a whole.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
@@ -107,6 +219,12 @@ pub struct Failure {
     pub adapter: String,
     /// The stage's name.
     pub stage: &'static str,
+    /// The format that the blend unit worked on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<&'static str>,
+    /// How the state reached the blend unit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub route: Option<&'static str>,
     /// The scalar output's name.
     pub output: String,
     /// The inputs by name.
@@ -123,7 +241,7 @@ pub struct Failure {
     pub value_hex: String,
     /// Whether it was never written.
     pub unwritten: bool,
-    /// The error in ULP of binary32.
+    /// The error in ULP of the output's format, or in its steps.
     pub error_ulp: Number,
     /// The command that runs the case alone.
     pub rerun: String,
@@ -159,6 +277,15 @@ pub struct Timing {
     pub judge: f64,
 }
 
+/// A run that ended before its time.
+#[derive(Clone, Debug, Serialize)]
+pub struct Interrupted {
+    /// What was under way.
+    pub under_way: String,
+    /// What the device said.
+    pub message: String,
+}
+
 /// The JSON of `run`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
@@ -185,6 +312,15 @@ pub struct Report {
     pub deviations: Vec<DeviationUse>,
     /// The groups.
     pub groups: Vec<Group>,
+    /// Each blend state on each target.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub blend_states: Vec<BlendState>,
+    /// What blend units left of NaN and infinity, of which nothing is promised.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub special: Vec<SpecialUse>,
+    /// What was under way when a device failed, which ended the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interrupted: Option<Interrupted>,
     /// Failures, the first of each group.
     pub failures: Vec<Failure>,
 }
@@ -193,6 +329,9 @@ impl Report {
     /// Whether all went as expected.
     #[must_use]
     pub fn is_success(&self) -> bool {
-        self.totals.failed == 0 && self.totals.unexpected_passes == 0 && self.totals.failed_groups == 0
+        self.interrupted.is_none()
+            && self.totals.failed == 0
+            && self.totals.unexpected_passes == 0
+            && self.totals.failed_groups == 0
     }
 }

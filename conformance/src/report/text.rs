@@ -1,6 +1,8 @@
 //! A run's result for people to read.
 
-use super::{Failure, Group, Number, Report, Totals};
+use super::{Failure, Group, Number, Report, Tiers, Totals};
+use lightmeter_gpu::Route;
+use lightmeter_scene::target::TargetFormat;
 use std::fmt::{Result, Write};
 
 /// How much is told.
@@ -28,7 +30,10 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
     table(&rows, out)?;
     for group in report.groups.iter().filter(|group| group.totals.failed > 0 || group.problem.is_some()) {
         let (failed, verdicts) = (thousands(group.totals.failed), thousands(group.totals.verdicts));
-        write!(out, "\n✗ {} on {}, {}: {failed} of {verdicts} failed", group.id, group.adapter, group.stage)?;
+        write!(out, "\n✗ {} on {}, {}: {failed} of {verdicts} failed", group.id, group.adapter, stage(group))?;
+        if let Some(explanation) = &group.explanation {
+            write!(out, "; {explanation}")?;
+        }
         if let Some(problem) = &group.problem {
             write!(out, "; {problem}")?;
         }
@@ -50,6 +55,7 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
     notes(report, out)?;
     if timing {
         let t = report.timing;
+        blend_timing(report, out)?;
         writeln!(
             out,
             "time: devices {:.2} s (their compilers included), pipelines {:.2} s, reference {:.2} s, inputs {:.2} s, \
@@ -57,7 +63,39 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
             t.devices, t.compile, t.reference, t.generate, t.judge
         )?;
     }
+    if let Some(interrupted) = &report.interrupted {
+        writeln!(out, "interrupted: {} was under way: {}", interrupted.under_way, interrupted.message)?;
+    }
     verdict(report, out)
+}
+
+/// The stage, and for a blend unit the target.
+fn stage(group: &Group) -> String {
+    group.target.map_or(group.stage.into(), |target| format!("{} on {target}", group.stage))
+}
+
+/// What the first drawing of the blend states costs, and the second, by adapter: the product of factors and equations, and
+/// apart from it the states with another one for alpha.
+fn blend_timing(report: &Report, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        let groups = || report.groups.iter().filter(|group| group.adapter == adapter.name);
+        for (what, separate) in [("blend unit", false), ("states separate for alpha", true)] {
+            let of =
+                || groups().filter(|group| (group.id == "blend/separate") == separate && group.seconds_warm.is_some());
+            let (cold, warm) = of().fold((0.0, 0.0), |(cold, warm), group| {
+                (cold + group.seconds, warm + group.seconds_warm.unwrap_or_default())
+            });
+            if of().next().is_some() {
+                writeln!(
+                    out,
+                    "{what} of {}: {cold:.2} s at first, {warm:.2} s again, so {:.2} s are the driver's compilation",
+                    adapter.name,
+                    (cold - warm).max(0.0)
+                )?;
+            }
+        }
+    }
+    Ok(())
 }
 
 fn notes(report: &Report, out: &mut impl Write) -> Result {
@@ -77,25 +115,70 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
     }
     for group in report.groups.iter().filter(|group| group.skip_reason.is_some()) {
         let reason = group.skip_reason.unwrap_or_default();
-        writeln!(out, "skipped {} on {}, {}: {reason}", group.id, group.adapter, group.stage)?;
+        writeln!(out, "skipped {} on {}, {}: {reason}", group.id, group.adapter, stage(group))?;
     }
-    let mut told = vec![];
-    for group in &report.groups {
-        if let Some(target) = group.target.filter(|target| !told.contains(&(group.adapter.as_str(), *target))) {
-            told.push((&group.adapter, target));
-            writeln!(out, "blend unit of {}: on {target}, errors in its ULP", group.adapter)?;
+    let mut routes = std::collections::BTreeMap::<_, u64>::new();
+    let on_targets = |state: &&super::BlendState| {
+        let group =
+            report.groups.iter().find(|group| group.adapter == state.adapter && group.target == Some(state.target));
+        group.is_some_and(|group| group.skip_reason.is_none())
+    };
+    for state in report.blend_states.iter().filter(on_targets) {
+        if let Some(reason) = state.skip_reason {
+            *routes.entry((&state.adapter, state.target, state.route, reason)).or_default() += 1;
         }
+    }
+    for ((adapter, target, route, reason), states) in routes {
+        writeln!(out, "skipped {states} states by {route} on {adapter}, {target}: {reason}")?;
+    }
+    stores(report, out)?;
+    for special in report.special.iter().filter(|special| !special.is_as_recorded()) {
+        let (seen, recorded) = (&special.seen, special.recorded.unwrap_or_default());
+        writeln!(
+            out,
+            "{} on {}, {}: {seen}, where {recorded} is on record",
+            special.id, special.adapter, special.target
+        )?;
     }
     if !report.routes.is_empty() {
         let states: u64 = report.routes.values().filter_map(serde_json::Value::as_u64).sum();
+        // They went another way before.
+        let dual = report.routes.get(Route::DualSource.name()).and_then(serde_json::Value::as_u64).unwrap_or(0);
         let routes: Vec<String> = report.routes.iter().map(|(route, states)| format!("{states} {route}")).collect();
         writeln!(
             out,
             "blend states: {} judged ({}), {} more are aliases of those",
-            thousands(states),
+            thousands(states - dual),
             routes.join(", "),
             thousands(report.aliases)
         )?;
+    }
+    Ok(())
+}
+
+/// On targets of 8 bits: how near values come, and how they are stored.
+fn stores(report: &Report, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        for target in TargetFormat::ALL {
+            let groups = || {
+                let of = |group: &&Group| group.adapter == adapter.name && group.target == Some(target.name());
+                report.groups.iter().filter(of)
+            };
+            let mut tiers = Tiers::default();
+            groups().filter_map(|group| group.tiers).for_each(|of| tiers.add(&of));
+            let all: u64 = tiers.named().into_iter().map(|(_, count)| count).sum();
+            if all == 0 {
+                continue;
+            }
+            #[expect(clippy::cast_precision_loss, reason = "a share")]
+            let share = |count: u64| 100.0 * count as f64 / all as f64;
+            let shares = tiers.named().map(|(name, count)| format!("{name} {:.2} %", share(count)));
+            let mut stores: Vec<&str> = groups().filter_map(|group| Some(group.store.as_ref()?.identified)).collect();
+            stores.sort_unstable();
+            stores.dedup();
+            let stores = if stores.is_empty() { "too few values to tell".into() } else { stores.join(", ") };
+            writeln!(out, "{} of {}: {}; stored: {stores}", target.name(), adapter.name, shares.join(", "))?;
+        }
     }
     Ok(())
 }
@@ -139,7 +222,8 @@ impl Row {
         Self {
             id: group.id.clone(),
             adapter: group.adapter.clone(),
-            stage: group.stage,
+            // A blend unit is told by its target.
+            stage: group.target.unwrap_or(group.stage),
             groups: 1,
             totals: group.totals,
             error_ulp_max: group.error_ulp_max.0,
@@ -179,13 +263,13 @@ fn table(rows: &[Row], out: &mut impl Write) -> Result {
     let adapter = rows.iter().map(|row| row.adapter.len()).max().unwrap_or(0).max(8);
     writeln!(
         out,
-        "{:<id$}  {:<adapter$}  {:<14} {:>8} {:>11} {:>7} {:>7} {:>9} {:>7}  nearest to its limit",
+        "{:<id$}  {:<adapter$}  {:<15} {:>8} {:>11} {:>7} {:>7} {:>9} {:>7}  nearest to its limit",
         "", "adapter", "stage", "formulas", "verdicts", "failed", "indet.", "max ULP", "margin"
     )?;
     for row in rows {
         writeln!(
             out,
-            "{:<id$}  {:<adapter$}  {:<14} {:>8} {:>11} {:>7} {:>7} {:>9} {:>7.3}  {}",
+            "{:<id$}  {:<adapter$}  {:<15} {:>8} {:>11} {:>7} {:>7} {:>9} {:>7.3}  {}",
             row.id,
             row.adapter,
             row.stage,
@@ -207,7 +291,10 @@ fn table(rows: &[Row], out: &mut impl Write) -> Result {
 /// Where the writer fails.
 pub fn failure(failure: &Failure, out: &mut impl Write) -> Result {
     let Failure { id, adapter, stage, output, .. } = failure;
-    writeln!(out, "FAIL {id} on {adapter}, {stage}: {output}")?;
+    let is_unorm = failure.target.and_then(TargetFormat::by_name).is_some_and(TargetFormat::is_unorm);
+    let unit = if is_unorm { "steps" } else { "ULP" };
+    let target = failure.target.map(|target| format!(" on {target}")).unwrap_or_default();
+    writeln!(out, "FAIL {id} on {adapter}, {stage}{target}: {output}")?;
     for ((name, value), bits) in failure.inputs.iter().zip(failure.inputs_hex.values()) {
         writeln!(out, "  {name:<14} {}  {}", plain(value), plain(bits))?;
     }
@@ -217,7 +304,7 @@ pub fn failure(failure: &Failure, out: &mut impl Write) -> Result {
         writeln!(out, "  {:<14} never written", "value")?;
     } else {
         let (value, bits, error) = (failure.value, &failure.value_hex, short(failure.error_ulp.0));
-        writeln!(out, "  {:<14} {value}  {bits}, {error} ULP from the reference", "value")?;
+        writeln!(out, "  {:<14} {value}  {bits}, {error} {unit} from the reference", "value")?;
     }
     writeln!(out, "  {:<14} {}", "again", failure.rerun)
 }

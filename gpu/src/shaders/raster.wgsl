@@ -178,3 +178,17 @@ fn raster_flat_last_vertex(@builtin(vertex_index) drawn: u32, @builtin(instance_
 fn raster_flat_fragment(in: Flat) -> @location(0) vec4u {
     return vec4u(bitcast<u32>(in.value), 0u, 0u, 0u);
 }
+
+// Results on float and depth targets are read as bits.
+
+@group(0) @binding(2) var drawn: texture_2d<f32>;
+
+@vertex
+fn raster_screen(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
+    return vec4f(select(-1.0, 3.0, corner == 1u), select(-1.0, 3.0, corner == 2u), 0.5, 1.0);
+}
+
+@fragment
+fn raster_result(@builtin(position) position: vec4f) -> @location(0) vec4u {
+    return bitcast<vec4u>(textureLoad(drawn, vec2i(position.xy), 0));
+}

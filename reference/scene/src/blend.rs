@@ -1,6 +1,7 @@
 //! Blend factors, equations and states, as OpenGL, Vulkan and WebGPU name them.
 //!
-//! A state here has one pair of factors and one equation for colour and alpha alike, which gives 15 × 15 × 5 states.
+//! A [`State`] is a pair of factors and an equation, of which there are 15 × 15 × 5. Colour and alpha have one each: alike, or
+//! [`Separate`].
 
 use std::fmt;
 
@@ -192,6 +193,94 @@ impl fmt::Display for State {
     }
 }
 
+impl State {
+    /// The same in one segment of an id: `add.src-alpha.zero`, `min`.
+    #[must_use]
+    pub fn segment(self) -> String {
+        if self.equation.ignores_factors() {
+            self.equation.name().into()
+        } else {
+            format!("{}.{}.{}", self.equation.name(), self.src.name(), self.dst.name())
+        }
+    }
+
+    /// The state of such a segment.
+    #[must_use]
+    pub fn from_segment(segment: &str) -> Option<Self> {
+        let mut parts = segment.split('.');
+        let name = parts.next()?;
+        let equation = Equation::ALL.into_iter().find(|equation| equation.name() == name)?;
+        let mut factor = || {
+            let name = parts.next()?;
+            Factor::ALL.into_iter().find(|factor| factor.name() == name)
+        };
+        let state = if equation.ignores_factors() {
+            Self { equation, src: Factor::One, dst: Factor::One }
+        } else {
+            Self { equation, src: factor()?, dst: factor()? }
+        };
+        parts.next().is_none().then_some(state)
+    }
+}
+
+/// A state for the colour and one for the alpha.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Separate {
+    /// Of red, green and blue.
+    pub color: State,
+    /// Of alpha.
+    pub alpha: State,
+}
+
+impl Separate {
+    /// The same where factors are ignored: see [`State::canonical`].
+    #[must_use]
+    pub const fn canonical(self) -> Self {
+        Self { color: self.color.canonical(), alpha: self.alpha.canonical() }
+    }
+
+    /// Whether the blend constant matters.
+    #[must_use]
+    pub const fn reads_constant(self) -> bool {
+        self.color.reads_constant() || self.alpha.reads_constant()
+    }
+}
+
+impl From<State> for Separate {
+    fn from(state: State) -> Self {
+        Self { color: state, alpha: state }
+    }
+}
+
+impl fmt::Display for Separate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.color.segment(), self.alpha.segment())
+    }
+}
+
+/// Which components a draw writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct WriteMask(pub [bool; 4]);
+
+impl WriteMask {
+    /// Red, green, blue and alpha.
+    pub const ALL: Self = Self([true; 4]);
+    /// Red, green and blue: what a buffer without alpha has.
+    pub const COLOR: Self = Self([true, true, true, false]);
+
+    /// Each of the 16.
+    pub fn each() -> impl Iterator<Item = Self> {
+        (0..16_u8).map(|bits| Self([0, 1, 2, 3].map(|component| bits >> component & 1 == 1)))
+    }
+}
+
+impl fmt::Display for WriteMask {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let letters: String = "rgba".chars().zip(self.0).filter(|(_, on)| *on).map(|(letter, _)| letter).collect();
+        f.write_str(if letters.is_empty() { "none" } else { &letters })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -212,5 +301,21 @@ mod tests {
         for (place, equation) in Equation::ALL.into_iter().enumerate() {
             assert_eq!(usize::try_from(equation.code()).ok(), Some(place));
         }
+    }
+
+    #[test]
+    fn segments_read_back() {
+        for state in State::all().map(State::canonical) {
+            assert_eq!(State::from_segment(&state.segment()), Some(state));
+        }
+        for wrong in ["", "add", "add.zero", "add.zero.two", "add.zero.one.one", "min.one.one", "mul.one.one"] {
+            assert_eq!(State::from_segment(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn masks_are_named_by_their_letters() {
+        let names: Vec<String> = WriteMask::each().map(|mask| mask.to_string()).collect();
+        assert_eq!((names.len(), names[0].as_str(), names[5].as_str(), names[15].as_str()), (16, "none", "rb", "rgba"));
     }
 }

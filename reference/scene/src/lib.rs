@@ -5,3 +5,4 @@
 
 pub mod blend;
 pub mod raster;
+pub mod target;

@@ -16,14 +16,13 @@
 
 use super::target as viewport;
 use crate::arithmetic::{Accept, F32};
-use crate::cases::Target;
 use lightmeter_gpu::Raster;
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::{Real, Vec2, Vec4, Vector};
 
 /// The interval of each output of a raster case.
-pub(in crate::cases) fn interval(kind: Raster, inputs: &[f32], target: Target, out: &mut [Accept]) {
-    let snap = f64::from(2.0_f32).powi(-i32::try_from(target.subpixel_bits).unwrap_or(0));
+pub(in crate::cases) fn interval(kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]) {
+    let snap = f64::from(2.0_f32).powi(-i32::try_from(subpixel_bits).unwrap_or(0));
     match kind {
         Raster::TriangleAttributes => {
             let [perspective, linear, ..] = Drawn::new(inputs, snap).map_or([Accept::ANY; 4], |drawn| drawn.fragment());

@@ -1,18 +1,23 @@
 //! `lightmeter show`.
 
+mod unit;
+
 use super::options::{Choice, Format};
 use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
+use lightmeter::cases::Kind;
+use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::evaluate::Evaluator;
 use lightmeter::judge::{Outcome, judge};
 use lightmeter::report::Number;
-use lightmeter::select::{CaseRef, Member, canonical_id, catalogue};
+use lightmeter::select::{CaseRef, Member, canonical_id, catalogue_of};
 use lightmeter::tally::{by_name, intervals};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use unit::{UnitAnswer, drawn, unit_json, unit_text};
 
 /// Show one case: formula, inputs, each step, the interval, and what the adapter gives.
 #[derive(Debug, Args)]
@@ -46,7 +51,8 @@ struct Known {
 
 impl Show {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let catalogue = catalogue();
+        let named = separate_of(&self.id).into_iter().collect();
+        let catalogue = catalogue_of(&Samples { seed: self.choice.seed, named, ..Samples::default() });
         let (member, case) = find(&catalogue, &self.id)?;
         let mut inputs = vec![];
         member.inputs(case, self.choice.seed, &mut inputs);
@@ -55,18 +61,18 @@ impl Show {
         legal_outputs(member, &inputs, self.choice.profile, &mut outputs);
         let condition = member.formula.condition(&inputs);
         let known = Known { inputs, outputs, steps, condition };
-        let answers = self.answers(member, &known.inputs)?;
+        let (answers, unit) = self.answers(member, &known.inputs)?;
         let text = match self.format {
             Format::Junit => bail!("a case is written as text or json"),
-            Format::Json => serde_json::to_string_pretty(&as_json(member, case, &known, &answers))? + "\n",
-            Format::Text => as_text(member, case, &known, &answers)?,
+            Format::Json => serde_json::to_string_pretty(&as_json(member, case, &known, &answers, &unit))? + "\n",
+            Format::Text => as_text(member, case, &known, &answers)? + &unit_text(&unit)?,
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
     }
 
     /// Without an adapter that was asked for, a machine without a driver still shows the case.
-    fn answers(&self, member: &Member, inputs: &[f32]) -> anyhow::Result<Vec<Answer>> {
+    fn answers(&self, member: &Member, inputs: &[f32]) -> anyhow::Result<(Vec<Answer>, Vec<UnitAnswer>)> {
         let shaders = self.choice.shaders()?;
         let subjects = match self.choice.subjects() {
             Ok(subjects) => subjects,
@@ -76,8 +82,14 @@ impl Show {
             }
             Err(error) => return Err(error),
         };
-        let (mut answers, members) = (vec![], [member]);
+        let (mut answers, mut unit, members) = (vec![], vec![], [member]);
         for mut subject in subjects {
+            if let Kind::Blend(program) = member.spec.kind {
+                unit.extend(drawn(&self.choice.targets(), &mut subject, &shaders, member, program, inputs)?);
+            }
+            if member.spec.row_stages().is_empty() {
+                continue;
+            }
             let evaluator = Evaluator::new(&mut subject, &members, &shaders)?;
             for (stage, words) in evaluator.run(&mut subject, &[0], inputs)? {
                 let mut legal = vec![Accept::ANY; member.spec.output_len()];
@@ -87,7 +99,7 @@ impl Show {
                 answers.push(Answer { adapter: subject.identity.name.clone(), stage: stage.name(), values });
             }
         }
-        Ok(answers)
+        Ok((answers, unit))
     }
 }
 
@@ -204,7 +216,7 @@ fn range(interval: &Accept) -> String {
     }
 }
 
-fn as_json(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) -> Value {
+fn as_json(member: &Member, case: CaseRef, known: &Known, answers: &[Answer], unit: &[UnitAnswer]) -> Value {
     let bounds = |interval: &Accept| json!([Number(interval.low()), Number(interval.high())]);
     let steps: Vec<Value> = known
         .steps
@@ -240,6 +252,7 @@ fn as_json(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
                 json!({ "adapter": answer.adapter, "stage": answer.stage, "values": values })
             }
         })
+        .chain(unit.iter().map(unit_json))
         .collect();
     json!({
         "schema": "lightmeter.show/1", "id": member.case_id(case), "formula": member.spec.text,

@@ -1,0 +1,210 @@
+//! Intervals of fixed-point numbers: what a blend unit may hold on the way to a target of 8 bits.
+//!
+//! Blending happens at the target's precision or a better one, and either neighbour of the result may be stored. Two kinds of
+//! unit are told apart, since their bounds are derived differently; what either may give is legal:
+//!
+//! * [`Wide`]: computes as binary32 does or better and rounds once, when it stores.
+//! * [`Narrow`]: holds every operand, factor and product in 8 bits, rounded to nearest. A product of two such numbers is
+//!   usually divided by 255 with shifts, which errs by up to 1/128 of a step more than half a step. A sum of such numbers is
+//!   one of them. In all that is 1½ steps for the source's term, 1 for the destination's, less where a factor is 0 or 1.
+
+#![expect(clippy::float_cmp, reason = "0 and 1 are exact")]
+
+use lightmeter_reference::{Components, Real};
+use std::fmt::Debug;
+use std::marker::PhantomData;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A step of a component of 8 bits.
+pub const STEP: f64 = 1.0 / 255.0;
+
+/// How much each operation may err by.
+pub trait Unit: Copy + Debug + PartialEq + 'static {
+    /// An operand brought to the unit's numbers.
+    const OPERAND: f64;
+    /// A product.
+    const PRODUCT: f64;
+    /// A sum, or a complement.
+    const SUM: f64;
+}
+
+/// Computes as binary32 or better.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wide;
+
+impl Unit for Wide {
+    const OPERAND: f64 = 0.0;
+    // One ULP at 1, and at 2 for a sum.
+    const PRODUCT: f64 = 1.0 / 8_388_608.0;
+    const SUM: f64 = 1.0 / 4_194_304.0;
+}
+
+/// Computes in 8 bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Narrow;
+
+impl Unit for Narrow {
+    const OPERAND: f64 = 0.5 * STEP;
+    const PRODUCT: f64 = (0.5 + 1.0 / 128.0) * STEP;
+    const SUM: f64 = 0.0;
+}
+
+/// An interval of what a unit may hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fixed<U> {
+    low: f64,
+    high: f64,
+    unit: PhantomData<U>,
+}
+
+impl<U: Unit> Fixed<U> {
+    /// Every number between.
+    #[must_use]
+    pub const fn between(low: f64, high: f64) -> Self {
+        Self { low, high, unit: PhantomData }
+    }
+
+    /// An operand of [0, 1], brought to the unit's numbers.
+    #[must_use]
+    pub fn operand(x: f64) -> Self {
+        Self::between(x, x).widened(U::OPERAND).within_unit()
+    }
+
+    /// The least.
+    #[must_use]
+    pub const fn low(self) -> f64 {
+        self.low
+    }
+
+    /// The greatest.
+    #[must_use]
+    pub const fn high(self) -> f64 {
+        self.high
+    }
+
+    /// The part in [0, 1].
+    #[must_use]
+    pub fn within_unit(self) -> Self {
+        Self::between(self.low.clamp(0.0, 1.0), self.high.clamp(0.0, 1.0))
+    }
+
+    fn widened(self, error: f64) -> Self {
+        // 0 and 1 are numbers of either unit, and stay what they are.
+        if self.is(0.0) || self.is(1.0) { self } else { Self::between(self.low - error, self.high + error) }
+    }
+
+    fn is(self, x: f64) -> bool {
+        self.low == x && self.high == x
+    }
+
+    /// Operations that blending has no use for: anything may come out.
+    const fn anything() -> Self {
+        Self::between(f64::NEG_INFINITY, f64::INFINITY)
+    }
+}
+
+impl<U: Unit> Add for Fixed<U> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        if self.is(0.0) || other.is(0.0) {
+            return Self::between(self.low + other.low, self.high + other.high);
+        }
+        Self::between(self.low + other.low, self.high + other.high).widened(U::SUM)
+    }
+}
+
+impl<U: Unit> Neg for Fixed<U> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::between(-self.high, -self.low)
+    }
+}
+
+impl<U: Unit> Sub for Fixed<U> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<U: Unit> Mul for Fixed<U> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        if self.is(1.0) || other.is(0.0) {
+            return other;
+        }
+        if other.is(1.0) || self.is(0.0) {
+            return self;
+        }
+        let (p, q) = (self.low * other.low, self.low * other.high);
+        let (r, s) = (self.high * other.low, self.high * other.high);
+        Self::between(p.min(q).min(r.min(s)), p.max(q).max(r.max(s))).widened(U::PRODUCT)
+    }
+}
+
+impl<U: Unit> Div for Fixed<U> {
+    type Output = Self;
+    fn div(self, _divisor: Self) -> Self {
+        Self::anything()
+    }
+}
+
+impl<U: Unit> Real for Fixed<U> {
+    fn input(x: f32) -> Self {
+        Self::operand(x.into())
+    }
+
+    fn literal(x: f64) -> Self {
+        Self::between(x, x)
+    }
+
+    fn max(self, other: Self) -> Self {
+        Self::between(self.low.max(other.low), self.high.max(other.high))
+    }
+
+    fn min(self, other: Self) -> Self {
+        Self::between(self.low.min(other.low), self.high.min(other.high))
+    }
+
+    fn abs(self) -> Self {
+        self.max(-self)
+    }
+
+    fn round(self) -> Self {
+        Self::between(self.low.floor(), self.high.ceil())
+    }
+
+    fn sqrt(self) -> Self {
+        Self::anything()
+    }
+
+    fn inverse_sqrt(self) -> Self {
+        Self::anything()
+    }
+
+    fn exp(self) -> Self {
+        Self::anything()
+    }
+
+    fn exp2(self) -> Self {
+        Self::anything()
+    }
+
+    fn log2(self) -> Self {
+        Self::anything()
+    }
+
+    fn pow(self, _exponent: Self) -> Self {
+        Self::anything()
+    }
+
+    fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {
+        if a.low >= b.high {
+            then()
+        } else if a.high < b.low {
+            otherwise()
+        } else {
+            then().zip(otherwise(), |x, y| Self::between(x.low.min(y.low), x.high.max(y.high)))
+        }
+    }
+}

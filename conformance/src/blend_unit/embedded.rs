@@ -1,0 +1,49 @@
+//! A blend unit in f32 on this processor: judged like any other, needs no driver, and takes the faults.
+//!
+//! It shares the formulas with the reference, so it proves nothing about them.
+
+use super::pixel::{self, Units};
+use super::rules::{Clamp, Rules};
+use crate::cases::blend::{Program, UnitCase};
+use half::f16;
+use lightmeter_reference::blend::{Operands, masked};
+use lightmeter_reference::color::{srgb_decode, srgb_encode};
+use lightmeter_reference::{Rgba, Vector};
+use lightmeter_scene::target::{Encoding, TargetFormat};
+
+/// What a case leaves on a target.
+#[must_use]
+pub fn blend(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules) -> Units {
+    let clamps = rules.clamps(target);
+    let operand =
+        |color: [f32; 4]| Vector(color.map(|c| if clamps == Clamp::Operands { c.clamp(0.0, 1.0) } else { c }));
+    let mut below = pixel::stored(target, case.dst);
+    for number in 0..case.layers {
+        let (state, mask) = program.layer(number);
+        let dst: Rgba<f32> = Vector(std::array::from_fn(|k| decoded(target, k, below[k])));
+        let of = Operands { src: operand(case.sources[number]), dst, constant: operand(case.constant) };
+        let blended = rules.blend(state, &of);
+        let result = if clamps == Clamp::Nothing { blended } else { blended.map(|c| c.clamp(0.0, 1.0)) };
+        let written: Units = std::array::from_fn(|k| store(target, k, result[k], rules));
+        below = masked(mask, Vector(written), Vector(below)).0;
+    }
+    below
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "this unit computes in f32")]
+fn decoded(target: TargetFormat, component: usize, units: f64) -> f32 {
+    match target.encoding() {
+        Encoding::Float32 | Encoding::Float16 => units as f32,
+        Encoding::Srgb8 if component < 3 => srgb_decode(units as f32 / 255.0),
+        Encoding::Unorm8 | Encoding::Srgb8 => units as f32 / 255.0,
+    }
+}
+
+fn store(target: TargetFormat, component: usize, c: f32, rules: &Rules) -> f64 {
+    match target.encoding() {
+        Encoding::Float32 => c.into(),
+        Encoding::Float16 => f16::from_f32(c).into(),
+        Encoding::Srgb8 if component < 3 => rules.store.step((255.0 * srgb_encode(c)).into()),
+        Encoding::Unorm8 | Encoding::Srgb8 => rules.store.step((255.0 * c).into()),
+    }
+}

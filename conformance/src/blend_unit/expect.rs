@@ -1,0 +1,145 @@
+//! What a blend unit should leave in a pixel, and what it may.
+//!
+//! *Float targets.* One ULP of the format for each conversion, factor, product and sum, in acceptance intervals of
+//! [`Hardware`]. *Targets of 8 bits.* Source, constant and result are clamped to [0, 1]; what a unit that computes wide and
+//! what one that computes narrow may give ([`crate::arithmetic::fixed`]), rounded to either neighbour. *sRGB.* The
+//! destination is decoded to half an encoded step, blended wide, and either neighbour stored; alpha is linear.
+//!
+//! Layers chain: what may be left by one is what the next is blended over, so the bound grows as it must.
+
+use super::pixel::{self, Units};
+use super::policy::promises_nothing;
+use super::rules::{Clamp, Rules};
+use crate::arithmetic::fixed::{Narrow, Unit, Wide};
+use crate::arithmetic::{Accept, F16, F32, Fixed, Format, Hardware};
+use crate::cases::blend::{Program, UnitCase};
+use lightmeter_reference::blend::{Operands, masked};
+use lightmeter_reference::{Real, Rgba, Vector};
+use lightmeter_scene::target::{Encoding, TargetFormat};
+
+/// The reference and the legal values of a pixel, in its target's units. From −∞ to ∞ anything is legal, NaN included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// What the formula gives, not rounded.
+    pub reference: Units,
+    /// The least legal value.
+    pub low: Units,
+    /// The greatest.
+    pub high: Units,
+}
+
+/// Steps this near to a whole number are that number: f64 cannot tell 255·(k/255) from k.
+const SNAP: f64 = 1e-9;
+/// How far the decoding of a stored sRGB component may err, in encoded steps.
+const DECODING: f64 = 0.5;
+
+/// What a case should give on a target, by rules that may be faulty.
+#[must_use]
+pub fn expect(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules) -> Expected {
+    let start = pixel::stored(target, case.dst);
+    let reference = reference(program, target, case, rules, start);
+    let (low, high) = match target.encoding() {
+        Encoding::Float32 => legal_on_floats::<F32>(program, case, rules, start),
+        Encoding::Float16 => legal_on_floats::<F16>(program, case, rules, start),
+        Encoding::Unorm8 | Encoding::Srgb8 => legal_in_steps(program, target, case, rules, start),
+    };
+    let mut expected = Expected { reference, low, high };
+    if program.is_special() {
+        for k in (0..4).filter(|&k| promises_nothing(case, k)) {
+            (expected.low[k], expected.high[k]) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
+    }
+    expected
+}
+
+/// The reference alone.
+#[must_use]
+pub fn reference(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules, start: Units) -> Units {
+    let mut below = by_component(|k| pixel::linear(target, k, start[k]));
+    let clamps = rules.clamps(target);
+    let operand = |color: [f32; 4]| {
+        Vector(color.map(|c| if clamps == Clamp::Operands { f64::from(c).clamp(0.0, 1.0) } else { c.into() }))
+    };
+    for number in 0..case.layers {
+        let (state, mask) = program.layer(number);
+        let of = Operands { src: operand(case.sources[number]), dst: below, constant: operand(case.constant) };
+        let blended = rules.blend(state, &of);
+        let result = if clamps == Clamp::Nothing { blended } else { blended.map(|c| c.clamp(0.0, 1.0)) };
+        below = masked(mask, result, below);
+    }
+    by_component(|k| pixel::units(target, k, below[k])).0
+}
+
+fn legal_on_floats<F: Format>(program: Program, case: &UnitCase, rules: &Rules, start: Units) -> (Units, Units) {
+    let input = |color: [f32; 4]| Vector(color.map(Accept::<Hardware<F>>::input));
+    let mut below = Vector(start.map(|c| if c.is_nan() { Accept::ANY } else { Accept::exactly(c) }));
+    for number in 0..case.layers {
+        let (state, mask) = program.layer(number);
+        let of = Operands { src: input(case.sources[number]), dst: below, constant: input(case.constant) };
+        let mut blended = rules.blend(state, &of);
+        if rules.clamp == Clamp::Result {
+            blended = blended.map(|c| c.clamp(Accept::exactly(0.0), Accept::exactly(1.0)));
+        }
+        below = masked(mask, blended, below);
+    }
+    (below.0.map(|c| c.low()), below.0.map(|c| c.high()))
+}
+
+fn legal_in_steps(
+    program: Program,
+    target: TargetFormat,
+    case: &UnitCase,
+    rules: &Rules,
+    start: Units,
+) -> (Units, Units) {
+    let (mut low, mut high) = (start, start);
+    let encoded = |k: usize| target.encoding() == Encoding::Srgb8 && k < 3;
+    for number in 0..case.layers {
+        let (state, mask) = program.layer(number);
+        let source = case.sources[number];
+        // What is stored is read exactly, but for the decoding of sRGB.
+        let before = by_component(|k| {
+            let slack = if encoded(k) { DECODING } else { 0.0 };
+            let at = |steps: f64| pixel::linear(target, k, steps.clamp(0.0, 255.0));
+            (at(low[k] - slack), at(high[k] + slack))
+        });
+        let wide = blended::<Wide>(rules, state, source, case.constant, before);
+        let narrow = blended::<Narrow>(rules, state, source, case.constant, before);
+        for k in (0..4).filter(|&k| mask.0[k]) {
+            let at = |linear: f64| pixel::units(target, k, linear);
+            low[k] = (at(wide[k].low()) + SNAP).floor();
+            high[k] = (at(wide[k].high()) - SNAP).ceil();
+            if !encoded(k) {
+                let (least, most) = ((at(narrow[k].low()) - SNAP).ceil(), (at(narrow[k].high()) + SNAP).floor());
+                if least <= most {
+                    low[k] = low[k].min(least);
+                    high[k] = high[k].max(most);
+                }
+            }
+        }
+    }
+    (low, high)
+}
+
+fn blended<U: Unit>(
+    rules: &Rules,
+    state: lightmeter_scene::blend::Separate,
+    source: [f32; 4],
+    constant: [f32; 4],
+    before: Rgba<(f64, f64)>,
+) -> Rgba<Fixed<U>> {
+    let clamps = rules.clamp == Clamp::Operands;
+    let operand = |color: [f32; 4]| {
+        Vector(color.map(|c| {
+            let c = f64::from(c);
+            if clamps { Fixed::operand(c.clamp(0.0, 1.0)) } else { Fixed::literal(c) }
+        }))
+    };
+    let dst = Vector(before.0.map(|(low, high)| Fixed::between(low, high)));
+    let of = Operands { src: operand(source), dst, constant: operand(constant) };
+    rules.blend(state, &of).map(Fixed::within_unit)
+}
+
+fn by_component<T>(f: impl Fn(usize) -> T) -> Rgba<T> {
+    Vector(std::array::from_fn(f))
+}

@@ -1,0 +1,254 @@
+//! The rules that a blend unit follows, and the faulty ones that tell which mistake was made.
+
+use lightmeter_reference::blend::{Operands, Saturate, blend_separate, factor};
+use lightmeter_reference::{Real, Rgba};
+use lightmeter_scene::blend::{Equation, Factor, Separate, State};
+use lightmeter_scene::target::{Encoding, TargetFormat};
+
+/// What is clamped to [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clamp {
+    /// Nothing, as on float targets.
+    Nothing,
+    /// The operands and the result, as on unorm targets.
+    Operands,
+    /// The result alone.
+    Result,
+}
+
+/// How a blend unit computes.
+#[derive(Clone, Copy, Debug)]
+pub struct Rules {
+    factor: fn(Factor) -> Factor,
+    equation: fn(Equation) -> Equation,
+    saturate: Saturate,
+    alpha_state_for_color: bool,
+    factors_in_min_and_max: bool,
+    /// What is clamped on unorm targets; [`Clamp::Result`] stands for float targets too.
+    pub(super) clamp: Clamp,
+    /// How a result becomes one of the target's steps.
+    pub(super) store: Store,
+}
+
+/// How a real number of steps from 0 to 255 becomes a whole one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Store {
+    /// The nearest.
+    Nearest,
+    /// The one below.
+    Truncated,
+    /// Multiplied by 256 rather than 255, and truncated.
+    Times256,
+    /// One above the nearest.
+    StepUp,
+    /// One below the nearest.
+    StepDown,
+}
+
+impl Store {
+    /// Each, the right one first.
+    pub const ALL: [Self; 5] = [Self::Nearest, Self::Truncated, Self::Times256, Self::StepUp, Self::StepDown];
+
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Nearest => "nearest",
+            Self::Truncated => "truncated",
+            Self::Times256 => "×256 for ×255",
+            Self::StepUp => "one step up",
+            Self::StepDown => "one step down",
+        }
+    }
+
+    /// The step that it stores.
+    #[must_use]
+    pub fn step(self, steps: f64) -> f64 {
+        let step = match self {
+            Self::Nearest => steps.round_ties_even(),
+            Self::Truncated => steps.floor(),
+            Self::Times256 => (steps * (256.0 / 255.0)).floor(),
+            Self::StepUp => steps.round_ties_even() + 1.0,
+            Self::StepDown => steps.round_ties_even() - 1.0,
+        };
+        step.clamp(0.0, 255.0)
+    }
+}
+
+impl Rules {
+    /// What OpenGL, Vulkan and WebGPU define.
+    pub const RIGHT: Self = Self {
+        factor: |factor| factor,
+        equation: |equation| equation,
+        saturate: Saturate::SourceAndDestination,
+        alpha_state_for_color: false,
+        factors_in_min_and_max: false,
+        clamp: Clamp::Operands,
+        store: Store::Nearest,
+    };
+
+    /// What is clamped on a target.
+    #[must_use]
+    pub(super) fn clamps(&self, target: TargetFormat) -> Clamp {
+        if target.is_unorm() || self.clamp == Clamp::Result { self.clamp } else { Clamp::Nothing }
+    }
+
+    /// A draw by these rules, not yet clamped.
+    pub(super) fn blend<R: Real>(&self, state: Separate, of: &Operands<R>) -> Rgba<R> {
+        let color = self.of(if self.alpha_state_for_color { state.alpha } else { state.color });
+        let alpha = self.of(state.alpha);
+        if self.factors_in_min_and_max && (color.equation.ignores_factors() || alpha.equation.ignores_factors()) {
+            let (color, alpha) = (self.scaled(color, of), self.scaled(alpha, of));
+            return color.xyz().extend(alpha.w());
+        }
+        blend_separate(Separate { color, alpha }, of, self.saturate)
+    }
+
+    fn of(&self, state: State) -> State {
+        State {
+            equation: (self.equation)(state.equation),
+            src: (self.factor)(state.src),
+            dst: (self.factor)(state.dst),
+        }
+    }
+
+    /// MIN and MAX of the products.
+    fn scaled<R: Real>(&self, state: State, of: &Operands<R>) -> Rgba<R> {
+        let one = State { src: Factor::One, dst: Factor::One, ..state };
+        if !state.equation.ignores_factors() {
+            return blend_separate(state.into(), of, self.saturate);
+        }
+        let src = of.src * factor(state.src, of, self.saturate);
+        let dst = of.dst * factor(state.dst, of, self.saturate);
+        blend_separate(one.into(), &Operands { src, dst, constant: of.constant }, self.saturate)
+    }
+}
+
+/// A mistake that a blend unit, or who sets it up, may make.
+#[derive(Clone, Copy, Debug)]
+pub struct Fault {
+    /// Its name.
+    pub name: &'static str,
+    /// It is as if …
+    pub says: &'static str,
+    /// The rules that it follows.
+    pub rules: Rules,
+}
+
+impl Fault {
+    const fn new(name: &'static str, says: &'static str, rules: Rules) -> Self {
+        Self { name, says, rules }
+    }
+
+    /// Whether it can be made on a target at all: steps are of unorm targets, and only they clamp operands.
+    #[must_use]
+    pub fn concerns(&self, target: TargetFormat) -> bool {
+        match self.name {
+            "clamp-after" => target.is_unorm(),
+            "clamp-on-float" => !target.is_unorm(),
+            _ => self.rules.store == Store::Nearest || target.is_unorm(),
+        }
+    }
+}
+
+/// The mistakes that are told by name.
+pub const FAULTS: &[Fault] = &[
+    Fault::new("truncate", "results were truncated", Rules { store: Store::Truncated, ..Rules::RIGHT }),
+    Fault::new("times-256", "results were multiplied by 256 for 255", Rules { store: Store::Times256, ..Rules::RIGHT }),
+    Fault::new("step-up", "a step were added", Rules { store: Store::StepUp, ..Rules::RIGHT }),
+    Fault::new("step-down", "a step were taken off", Rules { store: Store::StepDown, ..Rules::RIGHT }),
+    Fault::new(
+        "clamp-after",
+        "the result alone were clamped, and not the operands",
+        Rules { clamp: Clamp::Result, ..Rules::RIGHT },
+    ),
+    Fault::new("clamp-on-float", "a float target clamped its result", Rules { clamp: Clamp::Result, ..Rules::RIGHT }),
+    Fault::new(
+        "src-alpha-for-one",
+        "SRC_ALPHA and ONE were exchanged",
+        Rules {
+            factor: |factor| match factor {
+                Factor::SrcAlpha => Factor::One,
+                Factor::One => Factor::SrcAlpha,
+                other => other,
+            },
+            ..Rules::RIGHT
+        },
+    ),
+    Fault::new(
+        "one-minus-src-alpha-for-zero",
+        "ONE_MINUS_SRC_ALPHA and ZERO were exchanged",
+        Rules {
+            factor: |factor| match factor {
+                Factor::OneMinusSrcAlpha => Factor::Zero,
+                Factor::Zero => Factor::OneMinusSrcAlpha,
+                other => other,
+            },
+            ..Rules::RIGHT
+        },
+    ),
+    Fault::new(
+        "saturate-by-source",
+        "SRC_ALPHA_SATURATE were min(As, 1 − As)",
+        Rules { saturate: Saturate::SourceOnly, ..Rules::RIGHT },
+    ),
+    Fault::new(
+        "subtract-reversed",
+        "the two subtractions were exchanged",
+        Rules {
+            equation: |equation| match equation {
+                Equation::Subtract => Equation::ReverseSubtract,
+                Equation::ReverseSubtract => Equation::Subtract,
+                other => other,
+            },
+            ..Rules::RIGHT
+        },
+    ),
+    Fault::new(
+        "constant-color-for-alpha",
+        "the constant's colour were read for its alpha",
+        Rules {
+            factor: |factor| match factor {
+                Factor::ConstantAlpha => Factor::ConstantColor,
+                Factor::OneMinusConstantAlpha => Factor::OneMinusConstantColor,
+                other => other,
+            },
+            ..Rules::RIGHT
+        },
+    ),
+    Fault::new(
+        "alpha-factor-for-color",
+        "colour factors gave their alpha to every component",
+        Rules {
+            factor: |factor| match factor {
+                Factor::SrcColor => Factor::SrcAlpha,
+                Factor::OneMinusSrcColor => Factor::OneMinusSrcAlpha,
+                Factor::DstColor => Factor::DstAlpha,
+                Factor::OneMinusDstColor => Factor::OneMinusDstAlpha,
+                Factor::ConstantColor => Factor::ConstantAlpha,
+                Factor::OneMinusConstantColor => Factor::OneMinusConstantAlpha,
+                other => other,
+            },
+            ..Rules::RIGHT
+        },
+    ),
+    Fault::new(
+        "alpha-state-for-color",
+        "the alpha's factors and equation were used for the colour",
+        Rules { alpha_state_for_color: true, ..Rules::RIGHT },
+    ),
+    Fault::new(
+        "factors-in-min",
+        "MIN and MAX were of colours multiplied by their factors",
+        Rules { factors_in_min_and_max: true, ..Rules::RIGHT },
+    ),
+];
+
+/// The encoding's name where errors are told in it.
+#[must_use]
+pub const fn unit_name(target: TargetFormat) -> &'static str {
+    match target.encoding() {
+        Encoding::Float32 | Encoding::Float16 => "ULP",
+        Encoding::Unorm8 | Encoding::Srgb8 => "steps",
+    }
+}

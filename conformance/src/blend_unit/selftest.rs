@@ -1,0 +1,158 @@
+//! Whether the suite catches what it should: every fault on every target, made by the embedded blend unit and judged like any
+//! other, must be found and told by its name; without a fault nothing may be found.
+
+use super::rules::{FAULTS, Fault, Rules, Store};
+use super::run::run_group;
+use crate::arithmetic::profile::WGSL;
+use crate::cases::blend::{Samples, covering_array, every_state};
+use crate::cases::{AnyFormula, blend};
+use crate::filter::Filter;
+use crate::report::{Group, Report};
+use crate::run::{Options, Silent, empty};
+use crate::select::{Member, Random, Selected, Shard};
+use crate::subject::Subject;
+use lightmeter_gpu::{Error, Shaders};
+use lightmeter_scene::target::TargetFormat;
+use serde::Serialize;
+
+/// What became of a fault on a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Finding {
+    /// Found, and told by its name.
+    Named,
+    /// Found, and told by another name or none.
+    Caught,
+    /// Not found.
+    Survived,
+    /// It cannot be made on the target.
+    NotApplicable,
+    /// Nothing was found where nothing was wrong.
+    Clean,
+    /// Something was found where nothing was wrong.
+    FalseAlarm,
+}
+
+/// A fault on a target.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The fault's name, or `none`.
+    pub fault: &'static str,
+    /// The target's format.
+    pub target: &'static str,
+    /// What became of it.
+    pub finding: Finding,
+    /// Verdicts.
+    pub verdicts: u64,
+    /// Those that failed by themselves.
+    pub failed: u64,
+    /// What was said of it.
+    pub said: Vec<String>,
+}
+
+impl Finding {
+    /// Whether it is as it should be.
+    #[must_use]
+    pub const fn is_good(self) -> bool {
+        matches!(self, Self::Named | Self::NotApplicable | Self::Clean)
+    }
+}
+
+/// Tries every fault, and none, on every target, with so many pairs a state.
+///
+/// # Errors
+/// Where a built-in shader is invalid, which a test rules out.
+pub fn selftest(targets: &[TargetFormat], cases: u64, progress: &mut impl FnMut(&str)) -> Result<Vec<Row>, Error> {
+    let members: Vec<Vec<Member>> = [every_state(), blend::separate_formulas(&covering_array())]
+        .into_iter()
+        .map(|formulas| formulas.into_iter().map(member).collect())
+        .collect();
+    let mut rows = vec![];
+    for &target in targets {
+        progress(target.name());
+        let judged = judge(&members, target, Rules::RIGHT, cases)?;
+        rows.push(row("none", target, &judged, |groups| {
+            let found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
+            if groups.iter().any(found) { Finding::FalseAlarm } else { Finding::Clean }
+        }));
+        for fault in FAULTS {
+            if !fault.concerns(target) {
+                rows.push(row(fault.name, target, &empty_report(target)?, |_| Finding::NotApplicable));
+                continue;
+            }
+            let judged = judge(&members, target, fault.rules, cases)?;
+            rows.push(row(fault.name, target, &judged, |groups| finding(fault, groups)));
+        }
+    }
+    Ok(rows)
+}
+
+fn member(formula: Box<dyn AnyFormula>) -> Member {
+    Member { spec: formula.spec(), formula }
+}
+
+fn options(target: TargetFormat, cases: u64) -> Result<Options, Error> {
+    Ok(Options {
+        filter: Filter::new::<&str>(&[]).unwrap_or_else(|_| unreachable!("no glob is no wrong glob")),
+        cases,
+        seed: 1,
+        shard: Shard::WHOLE,
+        targets: vec![target],
+        samples: Samples::default(),
+        again: false,
+        profile: &WGSL,
+        shaders: Shaders::built_in()?,
+        rerun: String::new(),
+    })
+}
+
+fn empty_report(target: TargetFormat) -> Result<Report, Error> {
+    Ok(empty(&[], &options(target, 0)?))
+}
+
+fn judge(members: &[Vec<Member>], target: TargetFormat, rules: Rules, cases: u64) -> Result<Report, Error> {
+    let options = options(target, cases)?;
+    let mut subjects = [Subject::faulty(rules)];
+    let mut report = empty(&subjects, &options);
+    for group in members.iter().flat_map(|members| members.chunk_by(|a, b| a.spec.group() == b.spec.group())) {
+        let members: Vec<&Member> = group.iter().collect();
+        let selected: Vec<Selected> =
+            (0..members.len()).map(|place| Selected::whole(place, Random::First(cases))).collect();
+        run_group(&members, &selected, &mut subjects, &options, &mut report, &mut Silent)?;
+    }
+    Ok(report)
+}
+
+fn row(fault: &'static str, target: TargetFormat, report: &Report, finding: impl FnOnce(&[Group]) -> Finding) -> Row {
+    let mut said: Vec<String> = vec![];
+    for group in &report.groups {
+        said.extend(group.problem.iter().chain(&group.explanation).map(|text| format!("{}: {text}", group.id)));
+    }
+    Row {
+        fault,
+        target: target.name(),
+        finding: finding(&report.groups),
+        verdicts: report.groups.iter().map(|group| group.totals.verdicts).sum(),
+        failed: report.groups.iter().map(|group| group.totals.failed).sum(),
+        said,
+    }
+}
+
+/// A wrong store must be named by the verdict on each group that computes; another fault by each group that it shows in.
+fn finding(fault: &Fault, groups: &[Group]) -> Finding {
+    let is_found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
+    let says = |text: &Option<String>, what: &str| text.as_ref().is_some_and(|text| text.contains(what));
+    let is_named = |group: &Group| match fault.rules.store {
+        Store::Nearest => group.totals.failed > 0 && says(&group.explanation, fault.says),
+        store => says(&group.problem, store.name()),
+    };
+    let is_store = fault.rules.store != Store::Nearest;
+    let must_show = |group: &&Group| is_store || is_found(group);
+    if !groups.iter().any(is_found) {
+        Finding::Survived
+    } else if groups.iter().filter(must_show).all(is_named) {
+        Finding::Named
+    } else {
+        Finding::Caught
+    }
+}

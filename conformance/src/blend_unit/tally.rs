@@ -1,0 +1,285 @@
+//! Verdicts on the pixels of a state, the tiers that they fall in, and what they say together of how results are stored.
+
+use super::expect::{Expected, expect};
+use super::pixel::Units;
+use super::rules::{FAULTS, Rules, Store};
+use crate::arithmetic::{F16, F32, Format as _};
+use crate::cases::blend::{Program, UnitCase};
+use crate::devices::{BlendDeviation, Known};
+use crate::judge::margin;
+use crate::report::Tiers;
+use lightmeter_gpu::Route;
+use lightmeter_scene::target::{Encoding, TargetFormat};
+
+/// A state by one of its routes on a target.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawn {
+    /// What is drawn.
+    pub program: Program,
+    /// How it reaches the unit.
+    pub route: Route,
+    /// On what.
+    pub target: TargetFormat,
+}
+
+/// What became of one component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Legal.
+    Pass,
+    /// Not.
+    Fail,
+    /// Anything is.
+    Indeterminate,
+}
+
+impl Outcome {
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+            Self::Indeterminate => "indeterminate",
+        }
+    }
+}
+
+/// A verdict on one component of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdict {
+    /// Legal or not.
+    pub outcome: Outcome,
+    /// The error in ULP of a float format, in steps of one of 8 bits.
+    pub error: f64,
+    /// The distance from the reference over the distance to the end of what is legal on that side.
+    pub margin: f64,
+}
+
+impl Expected {
+    /// Judges a component.
+    #[must_use]
+    pub fn judge(&self, target: TargetFormat, k: usize, value: f64) -> Verdict {
+        let (reference, low, high) = (self.reference[k], self.low[k], self.high[k]);
+        let error = match target.encoding() {
+            _ if value.to_bits() == reference.to_bits() || (value.is_nan() && reference.is_nan()) => 0.0,
+            Encoding::Float32 => distance(value, reference, F32::MAX) / F32::ulp(reference),
+            Encoding::Float16 => distance(value, reference, F16::MAX) / F16::ulp(reference),
+            Encoding::Unorm8 | Encoding::Srgb8 => (value - reference).abs(),
+        };
+        if low == f64::NEG_INFINITY && high == f64::INFINITY {
+            return Verdict { outcome: Outcome::Indeterminate, error, margin: 0.0 };
+        }
+        // A NaN is in no interval.
+        let outcome = if low <= value && value <= high { Outcome::Pass } else { Outcome::Fail };
+        Verdict { outcome, error, margin: margin(value, reference, low, high) }
+    }
+}
+
+fn deviates(known: &Known, target: TargetFormat, reference: f64) -> Option<&'static BlendDeviation> {
+    known.blend_deviations.iter().copied().find(|deviation| deviation.concerns(target, reference))
+}
+
+/// Beyond the greatest finite number infinity is as near as that number.
+fn distance(value: f64, reference: f64, most: f64) -> f64 {
+    let finite = |x: f64| x.clamp(-most, most);
+    if value.is_nan() || reference.is_nan() { f64::INFINITY } else { (finite(value) - finite(reference)).abs() }
+}
+
+/// References this near to a whole step are that step; those this near to the middle between two have no nearest.
+const NEAR: f64 = 1e-3;
+
+/// The pixels of a state, or of a group of them.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    /// Pixels.
+    pub cases: u64,
+    /// Components judged.
+    pub verdicts: u64,
+    /// Legal ones.
+    pub passed: u64,
+    /// Others.
+    pub failed: u64,
+    /// Where anything is legal.
+    pub indeterminate: u64,
+    /// Not legal, as a named deviation says.
+    pub expected_failures: u64,
+    /// Legal, where a named deviation says otherwise.
+    pub not_deviating: u64,
+    /// On targets of 8 bits.
+    pub tiers: Tiers,
+    /// Values that tell stores apart, and how many are as each of [`Store::ALL`] would have them.
+    pub stores: (u64, [u64; 5]),
+    /// The sum of errors with their sign, of the same values.
+    pub bias: f64,
+    /// Values that a declared model predicts, and how many are another.
+    pub model: (u64, u64),
+    /// The greatest error.
+    pub error_max: f64,
+    /// The greatest margin, and the place of its case.
+    pub worst: Option<(f64, usize)>,
+    /// The first pixels with a component that fails, by the place of their cases.
+    pub failures: Vec<usize>,
+    /// The first pixel that departs from the model.
+    pub departure: Option<usize>,
+}
+
+/// Failing pixels of a state that are kept.
+const KEPT: usize = 16;
+
+impl Tally {
+    /// Judges a pixel, the `place`-th.
+    pub fn pixel(&mut self, drawn: Drawn, known: &Known, place: usize, case: &UnitCase, pixel: Units) {
+        let Drawn { program, route, target } = drawn;
+        let expected = expect(program, target, case, &Rules::RIGHT);
+        self.cases += 1;
+        let (_, mask) = program.layer(0);
+        let mut fails = false;
+        for (k, value) in pixel.into_iter().enumerate() {
+            let verdict = expected.judge(target, k, value);
+            self.verdicts += 1;
+            match verdict.outcome {
+                Outcome::Indeterminate => {
+                    self.indeterminate += 1;
+                    continue;
+                }
+                _ if let Some(deviates) = deviates(known, target, expected.reference[k]) => {
+                    if verdict.outcome == Outcome::Fail && deviates.grants(value) {
+                        self.expected_failures += 1;
+                        continue;
+                    }
+                    self.not_deviating += 1;
+                }
+                _ => {}
+            }
+            match verdict.outcome {
+                Outcome::Fail => {
+                    self.failed += 1;
+                    fails = true;
+                }
+                _ => self.passed += 1,
+            }
+            self.error_max = self.error_max.max(verdict.error);
+            if self.worst.is_none_or(|(most, _)| verdict.margin > most) {
+                self.worst = Some((verdict.margin, place));
+            }
+            if target.is_unorm() {
+                self.tier(expected.reference[k], value, verdict.outcome);
+                if case.layers == 1 && mask.0[k] {
+                    self.store(expected.reference[k], value);
+                }
+            }
+        }
+        if fails && self.failures.len() < KEPT {
+            self.failures.push(place);
+        }
+        if let Some(model) = known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8) {
+            let predicted = model.predict(program, route, case, super::pixel::stored(target, case.dst));
+            let others = (0..4).filter(|&k| predicted[k].to_bits() != pixel[k].to_bits()).count() as u64;
+            self.model.0 += 4;
+            self.model.1 += others;
+            if others > 0 && self.departure.is_none() {
+                self.departure = Some(place);
+            }
+        }
+    }
+
+    fn tier(&mut self, reference: f64, value: f64, outcome: Outcome) {
+        let error = (value - reference).abs();
+        let is_step = (reference - reference.round()).abs() < NEAR;
+        let tier = match outcome {
+            Outcome::Fail => &mut self.tiers.outside,
+            _ if is_step && error < NEAR => &mut self.tiers.exact,
+            _ if error <= 0.5 + NEAR => &mut self.tiers.nearest,
+            _ if error < 1.0 + NEAR => &mut self.tiers.neighbour,
+            _ => &mut self.tiers.bound,
+        };
+        *tier += 1;
+    }
+
+    /// Which stores a value speaks for. At whole steps and halfway between two they cannot be told apart, and at the ends
+    /// they all clamp.
+    fn store(&mut self, reference: f64, value: f64) {
+        let fraction = reference - reference.floor();
+        if !(NEAR..=1.0 - NEAR).contains(&fraction) || (fraction - 0.5).abs() < NEAR {
+            return;
+        }
+        self.stores.0 += 1;
+        self.bias += value - reference;
+        for (count, store) in self.stores.1.iter_mut().zip(Store::ALL) {
+            *count += u64::from(store.step(reference).to_bits() == value.to_bits());
+        }
+    }
+
+    /// Adds another's counts; places of cases stay its own.
+    pub fn add_counts(&mut self, other: &Self) {
+        self.cases += other.cases;
+        self.verdicts += other.verdicts;
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.indeterminate += other.indeterminate;
+        self.expected_failures += other.expected_failures;
+        self.not_deviating += other.not_deviating;
+        self.tiers.add(&other.tiers);
+        self.stores.0 += other.stores.0;
+        for (sum, count) in self.stores.1.iter_mut().zip(other.stores.1) {
+            *sum += count;
+        }
+        self.bias += other.bias;
+        self.model.0 += other.model.0;
+        self.model.1 += other.model.1;
+        self.error_max = self.error_max.max(other.error_max);
+    }
+
+    /// The store that most values speak for, once there are enough of them.
+    #[must_use]
+    pub fn identified(&self) -> Option<(Store, f64)> {
+        let (of, counts) = self.stores;
+        if of < super::ENOUGH {
+            return None;
+        }
+        // The first of equals is the right one.
+        let (place, count) = counts.into_iter().enumerate().rev().max_by_key(|(_, count)| *count)?;
+        #[expect(clippy::cast_precision_loss, reason = "a share")]
+        Some((Store::ALL[place], count as f64 / of as f64))
+    }
+
+    /// The mean error with its sign, in steps.
+    #[must_use]
+    pub fn mean_error(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a mean")]
+        let of = self.stores.0.max(1) as f64;
+        self.bias / of
+    }
+}
+
+/// A failing pixel, kept so that faults can be tried as its explanation.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// What was drawn.
+    pub drawn: Drawn,
+    /// The case.
+    pub case: UnitCase,
+    /// What was left.
+    pub pixel: Units,
+}
+
+/// The fault that explains the most of the failing pixels, if one explains nine in ten: what it is as if, how many, and of
+/// how many.
+#[must_use]
+pub fn explain(samples: &[Sample]) -> Option<(&'static str, usize, usize)> {
+    let explained = |rules: &Rules| {
+        samples
+            .iter()
+            .filter(|sample| {
+                let Drawn { program, target, .. } = sample.drawn;
+                let expected = expect(program, target, &sample.case, rules);
+                (0..4).all(|k| expected.judge(target, k, sample.pixel[k]).outcome == Outcome::Pass)
+            })
+            .count()
+    };
+    let target = samples.first()?.drawn.target;
+    let tried = FAULTS.iter().filter(|fault| fault.concerns(target) && fault.rules.store == Store::Nearest);
+    let (fault, count) = tried.map(|fault| (fault, explained(&fault.rules))).rev().max_by_key(|(_, count)| *count)?;
+    (10 * count >= 9 * samples.len()).then_some((fault.says, count, samples.len()))
+}
