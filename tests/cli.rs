@@ -293,6 +293,30 @@ fn a_state_separate_for_alpha_is_run_by_its_name() {
 }
 
 #[test]
+fn a_page_is_made_of_a_run() {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let (run, page) = (dir.join("page.json"), dir.join("page.md"));
+    let [run, page] = [&run, &page].map(|path| path.to_str().expect("UTF-8"));
+    let args = ["blend/{add,special}", "--adapter", "cpu", "--target", "all", "--cases", "16", "--format", "json"];
+    assert_eq!(code(&lightmeter(&[&["run"], &args[..], &["--out", run]].concat())), 0);
+    assert_eq!(code(&lightmeter(&["page", "blend", run, "--out", page])), 0);
+    let text = std::fs::read_to_string(page).expect("the page was written");
+    // A row for each source factor in the matrix of the one equation that ran, and one for each case of NaN and infinity.
+    let state = "| src-alpha-saturate | N ";
+    assert!(text.contains(state) && text.contains("| min-of-nan-source |") && text.contains("(page.svg)"), "{text}");
+    assert!(text.contains("FD "), "a mixed state has two routes: {text}");
+    let picture = std::fs::read_to_string(dir.join("page.svg")).expect("the picture was written");
+    assert_eq!(picture.matches("stroke=\"#ffffff\"").count(), 3 * 225);
+    std::fs::write(run, "{\"schema\": \"lightmeter.list/1\"}").expect("a file can be written");
+    for (file, message) in
+        [(run, "schema `lightmeter.list/1`; expected lightmeter.run/1"), ("/nowhere", "cannot read /nowhere")]
+    {
+        let output = lightmeter(&["page", "blend", file]);
+        assert!(code(&output) == 2 && stderr(&output).contains(message), "{}", stderr(&output));
+    }
+}
+
+#[test]
 fn the_self_test_names_every_fault() {
     let output = lightmeter(&["selftest", "--cases", "64"]);
     let text = stdout(&output);

@@ -4,6 +4,7 @@ mod adapters;
 mod eval;
 mod list;
 mod options;
+mod page;
 mod run;
 mod selftest;
 mod show;
@@ -38,6 +39,8 @@ enum Command {
     Adapters(adapters::Adapters),
     /// Show that the suite catches the mistakes that it knows
     Selftest(selftest::Selftest),
+    /// Write a page of the docs from a run's JSON
+    Page(page::Page),
     /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out
     Eval(eval::Eval),
 }
@@ -50,6 +53,7 @@ impl Cli {
             Command::Show(show) => show.run(),
             Command::Adapters(adapters) => adapters.run(),
             Command::Selftest(selftest) => selftest.run(),
+            Command::Page(page) => page.run(),
             Command::Eval(eval) => eval.run(),
         }
     }

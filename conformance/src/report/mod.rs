@@ -1,6 +1,7 @@
 //! The result of a run as data: what the JSON of `run` holds.
 
 pub mod junit;
+pub mod page;
 pub mod text;
 
 use crate::subject::Identity;
