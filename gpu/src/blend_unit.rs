@@ -169,6 +169,13 @@ impl BlendUnit {
         self.lanes.iter().zip(pending).map(|(lane, pending)| pending.wait_bytes(&lane.gpu)).collect()
     }
 
+    /// Lets go of the pipelines, of which a software driver keeps some hundred kilobytes each.
+    pub fn forget_pipelines(&mut self) {
+        for lane in &mut self.lanes {
+            lane.pipelines.clear();
+        }
+    }
+
     /// What destroys its devices, as if they were lost: for tests of what then happens.
     pub fn breaker(&self) -> impl Fn() + use<> {
         let devices: Vec<wgpu::Device> = self.lanes.iter().map(|lane| lane.gpu.device.clone()).collect();

@@ -92,7 +92,12 @@ pub(crate) fn run_group(
             }
         }
     }
-    for (subject, standings) in subjects.iter().zip(standings) {
+    for (subject, standings) in subjects.iter_mut().zip(standings) {
+        if result.is_ok()
+            && let Some(unit) = subject.blend_unit(&options.shaders)?
+        {
+            unit.forget_pipelines();
+        }
         for standing in standings {
             standing.finish(members[0], subject, report);
         }
