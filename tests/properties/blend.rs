@@ -346,3 +346,25 @@ fn half_overflow_has_two_outcomes() {
     let single = expect(add, TargetFormat::Rgba32Float, &case, &Rules::RIGHT);
     assert_eq!(single.judge(TargetFormat::Rgba32Float, 0, f64::INFINITY).outcome, Outcome::Fail);
 }
+
+/// On 8 linear bits the bound is a neighbour, or what a unit of 8 bits comes to: 1½ steps of the source's term and 1 of the
+/// destination's, each product up to 1/510 worse.
+#[test]
+fn the_bound_on_8_bits_is_no_wider_than_it_must() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let rows = proptest::collection::vec(unit_row(), 24).new_tree(&mut runner).expect("rows").current();
+    let (mut widest, mut values, mut wider) = (0.0_f64, 0_u32, 0_u32);
+    for piece in pieces(&rows) {
+        for place in 0..piece.count() {
+            let expected = expect(piece.program, TargetFormat::Rgba8Unorm, &piece.case(place), &Rules::RIGHT);
+            for k in 0..4 {
+                let most = (expected.high[k] - expected.reference[k]).max(expected.reference[k] - expected.low[k]);
+                assert!(most <= 2.5 + 2.0 / 510.0 + 1e-6, "{piece:?} {place}: {expected:?}");
+                widest = widest.max(most);
+                values += 1;
+                wider += u32::from(expected.high[k] - expected.low[k] > 1.5);
+            }
+        }
+    }
+    assert!(widest > 2.0 && wider * 2 < values, "{widest}, {wider} of {values} wider than a neighbour to each side");
+}

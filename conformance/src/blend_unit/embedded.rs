@@ -14,6 +14,7 @@ use lightmeter_scene::target::{Encoding, TargetFormat};
 /// What a case leaves on a target.
 #[must_use]
 pub fn blend(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules) -> Units {
+    let (case, target) = (&rules.case(case), rules.target(target));
     let clamps = rules.clamps(target);
     let operand =
         |color: [f32; 4]| Vector(color.map(|c| if clamps == Clamp::Operands { c.clamp(0.0, 1.0) } else { c }));
@@ -25,7 +26,7 @@ pub fn blend(program: Program, target: TargetFormat, case: &UnitCase, rules: &Ru
         let blended = rules.blend(state, &of);
         let result = if clamps == Clamp::Nothing { blended } else { blended.map(|c| c.clamp(0.0, 1.0)) };
         let written: Units = std::array::from_fn(|k| store(target, k, result[k], rules));
-        below = masked(mask, Vector(written), Vector(below)).0;
+        below = masked(rules.mask(mask), Vector(written), Vector(below)).0;
     }
     below
 }

@@ -36,6 +36,7 @@ const DECODING: f64 = 0.5;
 /// What a case should give on a target, by rules that may be faulty.
 #[must_use]
 pub fn expect(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules) -> Expected {
+    let (case, target) = (&rules.case(case), rules.target(target));
     let start = pixel::stored(target, case.dst);
     let reference = reference(program, target, case, rules, start);
     let (low, high) = match target.encoding() {
@@ -52,9 +53,7 @@ pub fn expect(program: Program, target: TargetFormat, case: &UnitCase, rules: &R
     expected
 }
 
-/// The reference alone.
-#[must_use]
-pub fn reference(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules, start: Units) -> Units {
+fn reference(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules, start: Units) -> Units {
     let mut below = by_component(|k| pixel::linear(target, k, start[k]));
     let clamps = rules.clamps(target);
     let operand = |color: [f32; 4]| {
@@ -65,7 +64,7 @@ pub fn reference(program: Program, target: TargetFormat, case: &UnitCase, rules:
         let of = Operands { src: operand(case.sources[number]), dst: below, constant: operand(case.constant) };
         let blended = rules.blend(state, &of);
         let result = if clamps == Clamp::Nothing { blended } else { blended.map(|c| c.clamp(0.0, 1.0)) };
-        below = masked(mask, result, below);
+        below = masked(rules.mask(mask), result, below);
     }
     by_component(|k| pixel::units(target, k, below[k])).0
 }
@@ -80,7 +79,7 @@ fn legal_on_floats<F: Format>(program: Program, case: &UnitCase, rules: &Rules, 
         if rules.clamp == Clamp::Result {
             blended = blended.map(|c| c.clamp(Accept::exactly(0.0), Accept::exactly(1.0)));
         }
-        below = masked(mask, blended, below);
+        below = masked(rules.mask(mask), blended, below);
     }
     (below.0.map(|c| c.low()), below.0.map(|c| c.high()))
 }
@@ -105,7 +104,7 @@ fn legal_in_steps(
         });
         let wide = blended::<Wide>(rules, state, source, case.constant, before);
         let narrow = blended::<Narrow>(rules, state, source, case.constant, before);
-        for k in (0..4).filter(|&k| mask.0[k]) {
+        for k in (0..4).filter(|&k| rules.mask(mask).0[k]) {
             let at = |linear: f64| pixel::units(target, k, linear);
             low[k] = (at(wide[k].low()) + SNAP).floor();
             high[k] = (at(wide[k].high()) - SNAP).ceil();

@@ -1,8 +1,9 @@
 //! The rules that a blend unit follows, and the faulty ones that tell which mistake was made.
 
+use crate::cases::blend::UnitCase;
 use lightmeter_reference::blend::{Operands, Saturate, blend_separate, factor};
 use lightmeter_reference::{Real, Rgba};
-use lightmeter_scene::blend::{Equation, Factor, Separate, State};
+use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
 use lightmeter_scene::target::{Encoding, TargetFormat};
 
 /// What is clamped to [0, 1].
@@ -24,6 +25,10 @@ pub struct Rules {
     saturate: Saturate,
     alpha_state_for_color: bool,
     factors_in_min_and_max: bool,
+    red_and_blue_exchanged: bool,
+    layers_reversed: bool,
+    mask_ignored: bool,
+    srgb_ignored: bool,
     /// What is clamped on unorm targets; [`Clamp::Result`] stands for float targets too.
     pub(super) clamp: Clamp,
     /// How a result becomes one of the target's steps.
@@ -83,6 +88,10 @@ impl Rules {
         saturate: Saturate::SourceAndDestination,
         alpha_state_for_color: false,
         factors_in_min_and_max: false,
+        red_and_blue_exchanged: false,
+        layers_reversed: false,
+        mask_ignored: false,
+        srgb_ignored: false,
         clamp: Clamp::Operands,
         store: Store::Nearest,
     };
@@ -91,6 +100,28 @@ impl Rules {
     #[must_use]
     pub(super) fn clamps(&self, target: TargetFormat) -> Clamp {
         if target.is_unorm() || self.clamp == Clamp::Result { self.clamp } else { Clamp::Nothing }
+    }
+
+    /// The case as it is drawn.
+    pub(super) fn case(&self, case: &UnitCase) -> UnitCase {
+        let mut drawn = *case;
+        if self.layers_reversed {
+            drawn.sources[..case.layers].reverse();
+        }
+        if self.red_and_blue_exchanged {
+            drawn.sources.iter_mut().for_each(|source| source.swap(0, 2));
+        }
+        drawn
+    }
+
+    /// The target as it is blended on.
+    pub(super) fn target(&self, target: TargetFormat) -> TargetFormat {
+        if self.srgb_ignored && target == TargetFormat::Rgba8UnormSrgb { TargetFormat::Rgba8Unorm } else { target }
+    }
+
+    /// The components that are written.
+    pub(super) const fn mask(&self, mask: WriteMask) -> WriteMask {
+        if self.mask_ignored { WriteMask::ALL } else { mask }
     }
 
     /// A draw by these rules, not yet clamped.
@@ -146,6 +177,7 @@ impl Fault {
         match self.name {
             "clamp-after" => target.is_unorm(),
             "clamp-on-float" => !target.is_unorm(),
+            "srgb-ignored" => target.encoding() == Encoding::Srgb8,
             _ => self.rules.store == Store::Nearest || target.is_unorm(),
         }
     }
@@ -242,6 +274,14 @@ pub const FAULTS: &[Fault] = &[
         "MIN and MAX were of colours multiplied by their factors",
         Rules { factors_in_min_and_max: true, ..Rules::RIGHT },
     ),
+    Fault::new(
+        "red-and-blue-exchanged",
+        "red and blue of the source were exchanged",
+        Rules { red_and_blue_exchanged: true, ..Rules::RIGHT },
+    ),
+    Fault::new("layers-reversed", "layers were drawn last one first", Rules { layers_reversed: true, ..Rules::RIGHT }),
+    Fault::new("mask-ignored", "every component were written", Rules { mask_ignored: true, ..Rules::RIGHT }),
+    Fault::new("srgb-ignored", "the target were not encoded", Rules { srgb_ignored: true, ..Rules::RIGHT }),
 ];
 
 /// The encoding's name where errors are told in it.

@@ -4,7 +4,7 @@
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::run::run_group;
 use crate::arithmetic::profile::WGSL;
-use crate::cases::blend::{Samples, covering_array, every_state};
+use crate::cases::blend::{Samples, covering_array, every_state, masks_and_layers};
 use crate::cases::{AnyFormula, blend};
 use crate::filter::Filter;
 use crate::report::{Group, Report};
@@ -63,7 +63,7 @@ impl Finding {
 /// # Errors
 /// Where a built-in shader is invalid, which a test rules out.
 pub fn selftest(targets: &[TargetFormat], cases: u64, progress: &mut impl FnMut(&str)) -> Result<Vec<Row>, Error> {
-    let members: Vec<Vec<Member>> = [every_state(), blend::separate_formulas(&covering_array())]
+    let members: Vec<Vec<Member>> = [every_state(), blend::separate_formulas(&covering_array()), masks_and_layers()]
         .into_iter()
         .map(|formulas| formulas.into_iter().map(member).collect())
         .collect();
@@ -138,16 +138,17 @@ fn row(fault: &'static str, target: TargetFormat, report: &Report, finding: impl
     }
 }
 
-/// A wrong store must be named by the verdict on each group that computes; another fault by each group that it shows in.
+/// A wrong store must be named by the verdict on each group that has enough values to tell; any fault by each group that it
+/// fails values in.
 fn finding(fault: &Fault, groups: &[Group]) -> Finding {
     let is_found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
     let says = |text: &Option<String>, what: &str| text.as_ref().is_some_and(|text| text.contains(what));
-    let is_named = |group: &Group| match fault.rules.store {
-        Store::Nearest => group.totals.failed > 0 && says(&group.explanation, fault.says),
-        store => says(&group.problem, store.name()),
-    };
     let is_store = fault.rules.store != Store::Nearest;
-    let must_show = |group: &&Group| is_store || is_found(group);
+    let is_named = |group: &Group| {
+        let by_store = says(&group.problem, fault.rules.store.name());
+        if is_store && group.store.is_some() { by_store } else { says(&group.explanation, fault.says) }
+    };
+    let must_show = |group: &&Group| is_found(group) || (is_store && group.store.is_some());
     if !groups.iter().any(is_found) {
         Finding::Survived
     } else if groups.iter().filter(must_show).all(is_named) {

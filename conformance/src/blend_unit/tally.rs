@@ -1,8 +1,9 @@
 //! Verdicts on the pixels of a state, the tiers that they fall in, and what they say together of how results are stored.
 
+use super::embedded;
 use super::expect::{Expected, expect};
 use super::pixel::Units;
-use super::rules::{FAULTS, Rules, Store};
+use super::rules::{FAULTS, Fault, Rules, Store};
 use crate::arithmetic::{F16, F32, Format as _};
 use crate::cases::blend::{Program, UnitCase};
 use crate::devices::{BlendDeviation, Known};
@@ -264,22 +265,26 @@ pub struct Sample {
     pub pixel: Units,
 }
 
+impl Sample {
+    /// Whether a fault would have left what was left: a value that its rules allow, or the very step that a store gives.
+    fn is_as_by(&self, fault: &Fault) -> bool {
+        let Drawn { program, target, .. } = self.drawn;
+        if fault.rules.store != Store::Nearest {
+            let stored = embedded::blend(program, target, &self.case, &fault.rules);
+            return (0..4).all(|k| stored[k].to_bits() == self.pixel[k].to_bits());
+        }
+        let expected = expect(program, target, &self.case, &fault.rules);
+        (0..4).all(|k| expected.judge(target, k, self.pixel[k]).outcome == Outcome::Pass)
+    }
+}
+
 /// The fault that explains the most of the failing pixels, if one explains nine in ten: what it is as if, how many, and of
 /// how many.
 #[must_use]
 pub fn explain(samples: &[Sample]) -> Option<(&'static str, usize, usize)> {
-    let explained = |rules: &Rules| {
-        samples
-            .iter()
-            .filter(|sample| {
-                let Drawn { program, target, .. } = sample.drawn;
-                let expected = expect(program, target, &sample.case, rules);
-                (0..4).all(|k| expected.judge(target, k, sample.pixel[k]).outcome == Outcome::Pass)
-            })
-            .count()
-    };
+    let explained = |fault: &Fault| samples.iter().filter(|sample| sample.is_as_by(fault)).count();
     let target = samples.first()?.drawn.target;
-    let tried = FAULTS.iter().filter(|fault| fault.concerns(target) && fault.rules.store == Store::Nearest);
-    let (fault, count) = tried.map(|fault| (fault, explained(&fault.rules))).rev().max_by_key(|(_, count)| *count)?;
+    let tried = FAULTS.iter().filter(|fault| fault.concerns(target));
+    let (fault, count) = tried.map(|fault| (fault, explained(fault))).rev().max_by_key(|(_, count)| *count)?;
     (10 * count >= 9 * samples.len()).then_some((fault.says, count, samples.len()))
 }

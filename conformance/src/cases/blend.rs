@@ -308,6 +308,9 @@ impl Formula for Layered {
     }
 }
 
+/// One mode, whose layers overlap within a draw, and several, which overlap from draw to draw.
+const LAYERS: [Layered; 2] = [Layered("alpha", &[Mode::Alpha]), Layered("mixed", &[Mode::Alpha, Mode::Mul, Mode::Add])];
+
 /// What formulas that only the unit evaluates have in common.
 fn unit_spec() -> Spec {
     Spec {
@@ -462,8 +465,9 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
         visitor.formula(AlphaReadsAsOne(state(factor, Factor::One)));
         visitor.formula(AlphaReadsAsOne(state(Factor::One, factor)));
     }
-    visitor.formula(Layered("alpha", &[Mode::Alpha]));
-    visitor.formula(Layered("mixed", &[Mode::Alpha, Mode::Mul, Mode::Add]));
+    for layers in LAYERS {
+        visitor.formula(layers);
+    }
     for (state, hard) in SPECIAL {
         visitor.formula(SpecialValues(*state, hard));
     }
@@ -499,6 +503,13 @@ pub fn separate_of(id: &str) -> Option<Separate> {
 #[must_use]
 pub fn every_state() -> Vec<Box<dyn AnyFormula>> {
     State::all().map(|state| Box::new(BlendState(state)) as Box<dyn AnyFormula>).collect()
+}
+
+/// Write masks and overlapping layers as formulas.
+#[must_use]
+pub fn masks_and_layers() -> Vec<Box<dyn AnyFormula>> {
+    let masks = WriteMask::each().map(|mask| Box::new(Masked(mask)) as Box<dyn AnyFormula>);
+    masks.chain(LAYERS.map(|layers| Box::new(layers) as Box<dyn AnyFormula>)).collect()
 }
 
 /// States with another one for alpha as formulas.
