@@ -288,6 +288,9 @@ fn a_state_separate_for_alpha_is_run_by_its_name() {
             !ids.is_empty() && ids.iter().all(|id| *id == "blend/separate/subtract.constant-color.constant-alpha/max")
         );
     }
+    let line = r#"{"id":1,"formula":"blend/separate/subtract.constant-color.constant-alpha/max","inputs":{"src":[1,1,1,0.25],"dst":[0.5,0.5,0.5,0.75],"constant":[1,0.5,0.25,0.5]}}"#;
+    let answer: Value = serde_json::from_str(&stdout(&eval(line))).expect("JSON");
+    assert_eq!(answer["value"], serde_json::json!([0.75, 0.25, 0.0, 0.75]));
     let shown = stdout(&lightmeter(&["show", id, "--target", "rgba8unorm"]));
     assert!(shown.contains("folded-into-source") && shown.contains("steps from"), "{shown}");
 }

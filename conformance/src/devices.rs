@@ -134,7 +134,7 @@ impl BlendModel {
 }
 
 /// A known departure of a blend unit, of any version until it is no longer seen.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct BlendDeviation {
     /// Its name in reports.
     pub name: &'static str,
@@ -143,6 +143,7 @@ pub struct BlendDeviation {
     /// Why, with the evidence.
     pub reason: &'static str,
     /// On which target.
+    #[serde(skip)]
     pub target: TargetFormat,
     /// Results of at least this magnitude …
     pub from: f64,

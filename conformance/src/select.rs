@@ -3,6 +3,7 @@
 use crate::cases::blend::{Program, Samples};
 use crate::cases::{self, AnyFormula, Kind, Spec};
 use crate::filter::Filter;
+use lightmeter_scene::blend::Separate;
 use std::num::NonZeroU64;
 
 /// A case of a formula.
@@ -171,6 +172,13 @@ pub fn catalogue() -> Vec<Member> {
 #[must_use]
 pub fn catalogue_of(samples: &Samples) -> Vec<Member> {
     cases::all(samples).into_iter().map(|formula| Member { spec: formula.spec(), formula }).collect()
+}
+
+/// A state with another one for alpha, whether the catalogue has it or not.
+#[must_use]
+pub fn separate_member(state: Separate) -> Member {
+    let formula = cases::blend::separate_formula(state);
+    Member { spec: formula.spec(), formula }
 }
 
 /// The cases of a catalogue that a filter and a shard select, of `cases` random ones for each formula.

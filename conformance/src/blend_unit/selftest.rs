@@ -4,8 +4,8 @@
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::run::run_group;
 use crate::arithmetic::profile::WGSL;
-use crate::cases::blend::{Samples, covering_array, every_state, masks_and_layers};
-use crate::cases::{AnyFormula, blend};
+use crate::cases::AnyFormula;
+use crate::cases::blend::{Samples, covering_array, every_state, masks_and_layers, separate_formula};
 use crate::filter::Filter;
 use crate::report::{Group, Report};
 use crate::run::{Options, Silent, empty};
@@ -63,7 +63,8 @@ impl Finding {
 /// # Errors
 /// Where a built-in shader is invalid, which a test rules out.
 pub fn selftest(targets: &[TargetFormat], cases: u64, progress: &mut impl FnMut(&str)) -> Result<Vec<Row>, Error> {
-    let members: Vec<Vec<Member>> = [every_state(), blend::separate_formulas(&covering_array()), masks_and_layers()]
+    let separate = covering_array().into_iter().map(separate_formula).collect();
+    let members: Vec<Vec<Member>> = [every_state(), separate, masks_and_layers()]
         .into_iter()
         .map(|formulas| formulas.into_iter().map(member).collect())
         .collect();

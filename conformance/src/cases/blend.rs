@@ -512,10 +512,10 @@ pub fn masks_and_layers() -> Vec<Box<dyn AnyFormula>> {
     masks.chain(LAYERS.map(|layers| Box::new(layers) as Box<dyn AnyFormula>)).collect()
 }
 
-/// States with another one for alpha as formulas.
+/// A state with another one for alpha as a formula.
 #[must_use]
-pub fn separate_formulas(states: &[Separate]) -> Vec<Box<dyn AnyFormula>> {
-    states.iter().map(|state| Box::new(SeparateState(*state)) as Box<dyn AnyFormula>).collect()
+pub fn separate_formula(state: Separate) -> Box<dyn AnyFormula> {
+    Box::new(SeparateState(state.canonical()))
 }
 
 pub(super) fn visit_separate(samples: &Samples, visitor: &mut impl Visitor) {

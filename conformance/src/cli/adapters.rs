@@ -4,6 +4,7 @@ use super::options::Format;
 use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
+use lightmeter::blend_unit::model::Model;
 use lightmeter::devices::known;
 use std::fmt::Write as _;
 
@@ -28,6 +29,8 @@ impl Adapters {
                         serde_json::json!({
                             "name": a.name, "device": a.device, "backend": a.backend, "driver": a.driver,
                             "is_cpu": a.is_cpu, "subpixel_bits": known.subpixel_bits, "deviations": known.deviations,
+                            "blend_model": known.blend_model.map(Model::name),
+                            "blend_deviations": known.blend_deviations,
                         })
                     })
                     .collect();
@@ -39,8 +42,14 @@ impl Adapters {
                 let mut text = String::new();
                 for a in &found {
                     writeln!(text, "{:<14} {:<7} {}  {}", a.name, a.backend, a.device, a.driver)?;
-                    for deviation in known(a).deviations {
-                        writeln!(text, "  deviates: {}: {}", deviation.name, deviation.reason)?;
+                    let known = known(a);
+                    let deviations = known.deviations.iter().map(|deviation| (deviation.name, deviation.reason));
+                    let blending = known.blend_deviations.iter().map(|deviation| (deviation.name, deviation.reason));
+                    for (name, reason) in deviations.chain(blending) {
+                        writeln!(text, "  deviates: {name}: {reason}")?;
+                    }
+                    if let Some(model) = known.blend_model {
+                        writeln!(text, "  blends on 8 linear bits as {} has it, bit for bit", model.name())?;
                     }
                 }
                 writeln!(text, "{:<14} {:<7} the reference's own formulas in f32: needs no driver", "cpu", "—")?;

@@ -6,9 +6,9 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile};
 use lightmeter::cases::Input;
-use lightmeter::cases::blend::aliases;
+use lightmeter::cases::blend::{aliases, separate_of};
 use lightmeter::report::Number;
-use lightmeter::select::{Member, catalogue};
+use lightmeter::select::{Member, catalogue, separate_member};
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::io::{BufRead as _, Write as _};
@@ -64,7 +64,9 @@ impl Eval {
         let formula = request.get("formula").and_then(Value::as_str);
         let formula =
             formula.context("field `formula` is missing or not a string; expected one such as \"fog/linear\"")?;
-        let member = by_id.get(formula);
+        // Of the states separate for alpha the catalogue has some; any can be named.
+        let separate = separate_formula(formula);
+        let member = by_id.get(formula).copied().or(separate.as_ref());
         let member =
             member.with_context(|| format!("field `formula`: no formula `{formula}`; see `lightmeter list`"))?;
         let inputs = request.get("inputs").and_then(Value::as_object);
@@ -89,6 +91,13 @@ impl Eval {
             "condition": Number(condition),
         }))
     }
+}
+
+/// The formula of an id such as `blend/separate/add.src-alpha.one/min`.
+fn separate_formula(id: &str) -> Option<Member> {
+    let state = separate_of(id)?;
+    let member = separate_member(state);
+    (member.spec.id == id).then_some(member)
 }
 
 /// The row of a formula's inputs.
