@@ -7,6 +7,7 @@ use lightmeter::blend_unit::expect::expect;
 use lightmeter::blend_unit::model::Model;
 use lightmeter::blend_unit::pixel::{Units, stored};
 use lightmeter::blend_unit::rules::{FAULTS, Rules, Store};
+use lightmeter::blend_unit::store::StoreCounts;
 use lightmeter::blend_unit::tally::{Drawn, Outcome, Tally};
 use lightmeter::cases::blend::Program;
 use lightmeter::devices::Known;
@@ -282,13 +283,22 @@ fn tally(rules: &Rules, known: &Known, target: TargetFormat) -> Tally {
 #[test]
 fn a_store_is_identified_and_a_declared_model_holds_to_the_bit() {
     let known = Known { blend_model: Some(Model::Llvmpipe), ..Known::default() };
-    for (store, name) in Store::ALL.into_iter().zip(["", "truncate", "times-256", "step-up", "step-down"]) {
+    for (store, name) in Store::ALL.into_iter().zip(["", "truncate", "times-256", "round-up", "step-up", "step-down"]) {
         let rules = FAULTS.iter().find(|fault| fault.name == name).map_or(Rules::RIGHT, |fault| fault.rules);
+        assert_eq!(rules.stores_as(), store, "{name}");
         for target in TargetFormat::ALL.into_iter().filter(|target| target.is_unorm()) {
             let tally = tally(&rules, &known, target);
-            let (identified, share) = tally.identified().expect("there are enough values");
-            assert_eq!(identified, store, "{}", target.name());
-            assert!(share > 0.99, "{} {}: {share}", store.name(), target.name());
+            for counts in &tally.stores {
+                let (likeliest, share) = counts.likeliest();
+                assert!(
+                    counts.of > 10_000 && likeliest == store && share > 0.99,
+                    "{name} {}: {counts:?}",
+                    target.name()
+                );
+                let problem = counts.problem(State::all().count());
+                assert_eq!(problem.is_some(), store != Store::Nearest, "{problem:?}");
+                assert!(problem.is_none_or(|problem| problem.contains(store.name())));
+            }
             // Even the best of units is not the declared one, which rounds every product.
             let (of, others) = tally.model;
             assert!(if target.encoding() == Encoding::Unorm8 { others > 0 } else { of == 0 }, "{others} of {of}");
@@ -367,4 +377,21 @@ fn the_bound_on_8_bits_is_no_wider_than_it_must() {
         }
     }
     assert!(widest > 2.0 && wider * 2 < values, "{widest}, {wider} of {values} wider than a neighbour to each side");
+}
+
+/// A store of a fault that is no store of the catalogue: it is told, though by no name.
+#[test]
+fn an_unknown_store_is_told_by_its_mean_error() {
+    let mut counts = StoreCounts::default();
+    let mut right = StoreCounts::default();
+    for k in 0..4000_u32 {
+        let reference = f64::from(k) * 0.0637 + 0.01;
+        counts.count(reference, (reference + 0.25).floor());
+        right.count(reference, reference.round());
+    }
+    let problem = counts.problem(225).expect("a quarter of a step is told");
+    assert!(problem.contains("no known way") && problem.contains("-0.25"), "{problem}");
+    assert_eq!(right.problem(225), None);
+    // In a single state legal units err as much.
+    assert_eq!(counts.problem(1), None);
 }

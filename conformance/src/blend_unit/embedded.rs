@@ -3,7 +3,7 @@
 //! It shares the formulas with the reference, so it proves nothing about them.
 
 use super::pixel::{self, Units};
-use super::rules::{Clamp, Rules};
+use super::rules::{Clamp, Rules, Store};
 use crate::cases::blend::{Program, UnitCase};
 use half::f16;
 use lightmeter_reference::blend::{Operands, masked};
@@ -21,11 +21,12 @@ pub fn blend(program: Program, target: TargetFormat, case: &UnitCase, rules: &Ru
     let mut below = pixel::stored(target, case.dst);
     for number in 0..case.layers {
         let (state, mask) = program.layer(number);
-        let dst: Rgba<f32> = Vector(std::array::from_fn(|k| decoded(target, k, below[k])));
+        let dst: Rgba<f32> = Vector(std::array::from_fn(|k| decoded(target, rules.stored_as(k), below[k])));
         let of = Operands { src: operand(case.sources[number]), dst, constant: operand(case.constant) };
         let blended = rules.blend(state, &of);
         let result = if clamps == Clamp::Nothing { blended } else { blended.map(|c| c.clamp(0.0, 1.0)) };
-        let written: Units = std::array::from_fn(|k| store(target, k, result[k], rules));
+        let written: Units =
+            std::array::from_fn(|k| store(target, rules.stored_as(k), result[k], rules.store_in(state, k)));
         below = masked(rules.mask(mask), Vector(written), Vector(below)).0;
     }
     below
@@ -40,11 +41,11 @@ fn decoded(target: TargetFormat, component: usize, units: f64) -> f32 {
     }
 }
 
-fn store(target: TargetFormat, component: usize, c: f32, rules: &Rules) -> f64 {
+fn store(target: TargetFormat, component: usize, c: f32, store: Store) -> f64 {
     match target.encoding() {
         Encoding::Float32 => c.into(),
         Encoding::Float16 => f16::from_f32(c).into(),
-        Encoding::Srgb8 if component < 3 => rules.store.step((255.0 * srgb_encode(c)).into()),
-        Encoding::Unorm8 | Encoding::Srgb8 => rules.store.step((255.0 * c).into()),
+        Encoding::Srgb8 if component < 3 => store.step((255.0 * srgb_encode(c)).into()),
+        Encoding::Unorm8 | Encoding::Srgb8 => store.step((255.0 * c).into()),
     }
 }

@@ -1,7 +1,7 @@
 //! The fixed-function blend unit under judgement: every state on every target format.
 //!
-//! `pixel` is a target's own bits and units, `expect` what a case should leave and what it may, `tally` the verdicts and what
-//! they say together, `model` what a driver is known to compute bit for bit, `rules` the right ones and the faulty, `embedded`
+//! `pixel` is a target's own bits and units, `expect` what a case should leave and what it may, `tally` the verdicts, `store`
+//! what many values say together of how they are stored, `model` what a driver is known to compute bit for bit, `rules` the right ones and the faulty, `embedded`
 //! a unit in f32 that takes the faults, `draw` and `run` the way of the data, and `selftest` whether faults are found.
 
 pub mod draw;
@@ -13,7 +13,5 @@ pub mod policy;
 pub mod rules;
 pub mod run;
 pub mod selftest;
+pub mod store;
 pub mod tally;
-
-/// Values that a group must have before they are judged together.
-pub const ENOUGH: u64 = 4096;

@@ -7,7 +7,7 @@ use super::pixel::Units;
 use crate::cases::blend::UnitCase;
 use lightmeter_scene::target::TargetFormat;
 
-/// What a driver was seen to leave in the red component.
+/// What a driver was seen to leave of a colour.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
     /// The named case.
@@ -26,10 +26,12 @@ pub fn promises_nothing(case: &UnitCase, component: usize) -> bool {
     !case.sources[0][component].is_finite() || !case.dst[component].is_finite()
 }
 
-/// What a pixel holds, in a word: `NaN`, `Inf`, `-Inf` or a number.
+/// What a pixel's colour holds, in a word where its components are alike: `NaN`, `Inf`, `-Inf` or a number.
 #[must_use]
-pub fn observed(pixel: Units) -> String {
-    crate::report::Number(pixel[0]).to_string()
+pub fn observed([r, g, b, _]: Units) -> String {
+    let words = [r, g, b].map(|c| crate::report::Number(c).to_string());
+    let [first, rest @ ..] = &words;
+    if rest.iter().all(|word| word == first) { first.clone() } else { words.join(" ") }
 }
 
 /// What is recorded of a driver in a case on a target.

@@ -29,10 +29,16 @@ pub struct Rules {
     layers_reversed: bool,
     mask_ignored: bool,
     srgb_ignored: bool,
+    alpha_encoded: bool,
+    factors_exchanged: bool,
     /// What is clamped on unorm targets; [`Clamp::Result`] stands for float targets too.
     pub(super) clamp: Clamp,
-    /// How a result becomes one of the target's steps.
+    /// How a result becomes one of the target's steps …
     pub(super) store: Store,
+    /// … where a wrong one is used: of alpha alone, …
+    only_alpha: bool,
+    /// … in one state alone.
+    only_in: Option<State>,
 }
 
 /// How a real number of steps from 0 to 255 becomes a whole one.
@@ -44,6 +50,8 @@ pub enum Store {
     Truncated,
     /// Multiplied by 256 rather than 255, and truncated.
     Times256,
+    /// The one above.
+    RoundedUp,
     /// One above the nearest.
     StepUp,
     /// One below the nearest.
@@ -52,7 +60,8 @@ pub enum Store {
 
 impl Store {
     /// Each, the right one first.
-    pub const ALL: [Self; 5] = [Self::Nearest, Self::Truncated, Self::Times256, Self::StepUp, Self::StepDown];
+    pub const ALL: [Self; 6] =
+        [Self::Nearest, Self::Truncated, Self::Times256, Self::RoundedUp, Self::StepUp, Self::StepDown];
 
     /// The name in reports.
     #[must_use]
@@ -61,6 +70,7 @@ impl Store {
             Self::Nearest => "nearest",
             Self::Truncated => "truncated",
             Self::Times256 => "×256 for ×255",
+            Self::RoundedUp => "rounded up",
             Self::StepUp => "one step up",
             Self::StepDown => "one step down",
         }
@@ -73,6 +83,7 @@ impl Store {
             Self::Nearest => steps.round_ties_even(),
             Self::Truncated => steps.floor(),
             Self::Times256 => (steps * (256.0 / 255.0)).floor(),
+            Self::RoundedUp => steps.ceil(),
             Self::StepUp => steps.round_ties_even() + 1.0,
             Self::StepDown => steps.round_ties_even() - 1.0,
         };
@@ -92,9 +103,19 @@ impl Rules {
         layers_reversed: false,
         mask_ignored: false,
         srgb_ignored: false,
+        alpha_encoded: false,
+        factors_exchanged: false,
         clamp: Clamp::Operands,
         store: Store::Nearest,
+        only_alpha: false,
+        only_in: None,
     };
+
+    /// How a result becomes one of the target's steps.
+    #[must_use]
+    pub const fn stores_as(&self) -> Store {
+        self.store
+    }
 
     /// What is clamped on a target.
     #[must_use]
@@ -110,6 +131,7 @@ impl Rules {
         }
         if self.red_and_blue_exchanged {
             drawn.sources.iter_mut().for_each(|source| source.swap(0, 2));
+            drawn.constant.swap(0, 2);
         }
         drawn
     }
@@ -117,6 +139,29 @@ impl Rules {
     /// The target as it is blended on.
     pub(super) fn target(&self, target: TargetFormat) -> TargetFormat {
         if self.srgb_ignored && target == TargetFormat::Rgba8UnormSrgb { TargetFormat::Rgba8Unorm } else { target }
+    }
+
+    /// The component of an encoded target as which one is stored: of alpha, which is linear, itself.
+    pub(super) const fn stored_as(&self, component: usize) -> usize {
+        if self.alpha_encoded { 0 } else { component }
+    }
+
+    /// How a component is stored in a state.
+    pub(super) fn store_in(&self, state: Separate, component: usize) -> Store {
+        let spared = (self.only_alpha && component != 3) || self.only_in.is_some_and(|only| only != state.color);
+        if spared { Store::Nearest } else { self.store }
+    }
+
+    /// The one state that a wrong store is used in.
+    #[must_use]
+    pub const fn only_state(&self) -> Option<State> {
+        self.only_in
+    }
+
+    /// Whether a wrong store is used throughout.
+    #[must_use]
+    pub fn stores_wrong_throughout(&self) -> bool {
+        self.store != Store::Nearest && !self.only_alpha && self.only_in.is_none()
     }
 
     /// The components that are written.
@@ -136,6 +181,7 @@ impl Rules {
     }
 
     fn of(&self, state: State) -> State {
+        let state = if self.factors_exchanged { State { src: state.dst, dst: state.src, ..state } } else { state };
         State {
             equation: (self.equation)(state.equation),
             src: (self.factor)(state.src),
@@ -177,7 +223,7 @@ impl Fault {
         match self.name {
             "clamp-after" => target.is_unorm(),
             "clamp-on-float" => !target.is_unorm(),
-            "srgb-ignored" => target.encoding() == Encoding::Srgb8,
+            "srgb-ignored" | "alpha-encoded" => target.encoding() == Encoding::Srgb8,
             _ => self.rules.store == Store::Nearest || target.is_unorm(),
         }
     }
@@ -186,7 +232,22 @@ impl Fault {
 /// The mistakes that are told by name.
 pub const FAULTS: &[Fault] = &[
     Fault::new("truncate", "results were truncated", Rules { store: Store::Truncated, ..Rules::RIGHT }),
+    Fault::new(
+        "truncate-alpha",
+        "alpha were truncated",
+        Rules { store: Store::Truncated, only_alpha: true, ..Rules::RIGHT },
+    ),
+    Fault::new(
+        "truncate-one-state",
+        "results of DST_COLOR, SRC_COLOR were truncated",
+        Rules {
+            store: Store::Truncated,
+            only_in: Some(State { equation: Equation::Add, src: Factor::DstColor, dst: Factor::SrcColor }),
+            ..Rules::RIGHT
+        },
+    ),
     Fault::new("times-256", "results were multiplied by 256 for 255", Rules { store: Store::Times256, ..Rules::RIGHT }),
+    Fault::new("round-up", "results were rounded up", Rules { store: Store::RoundedUp, ..Rules::RIGHT }),
     Fault::new("step-up", "a step were added", Rules { store: Store::StepUp, ..Rules::RIGHT }),
     Fault::new("step-down", "a step were taken off", Rules { store: Store::StepDown, ..Rules::RIGHT }),
     Fault::new(
@@ -276,11 +337,17 @@ pub const FAULTS: &[Fault] = &[
     ),
     Fault::new(
         "red-and-blue-exchanged",
-        "red and blue of the source were exchanged",
+        "red and blue were exchanged",
         Rules { red_and_blue_exchanged: true, ..Rules::RIGHT },
     ),
     Fault::new("layers-reversed", "layers were drawn last one first", Rules { layers_reversed: true, ..Rules::RIGHT }),
     Fault::new("mask-ignored", "every component were written", Rules { mask_ignored: true, ..Rules::RIGHT }),
+    Fault::new("alpha-encoded", "alpha were encoded too", Rules { alpha_encoded: true, ..Rules::RIGHT }),
+    Fault::new(
+        "factors-exchanged",
+        "each side were multiplied by the other's factor",
+        Rules { factors_exchanged: true, ..Rules::RIGHT },
+    ),
     Fault::new("srgb-ignored", "the target were not encoded", Rules { srgb_ignored: true, ..Rules::RIGHT }),
 ];
 

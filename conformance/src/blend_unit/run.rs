@@ -4,7 +4,8 @@ use super::draw::{Piece, Pixels, draw};
 use super::model::Model;
 use super::pixel::{self, Units};
 use super::policy;
-use super::rules::{Rules, Store};
+use super::rules::Rules;
+use super::store::{ENOUGH, StoreCounts};
 use super::tally::{Drawn, Outcome, Sample, Tally, explain};
 use crate::cases::{Kind, Stage};
 use crate::report::{
@@ -43,6 +44,8 @@ struct Standing {
     failures: Vec<Failure>,
     samples: Vec<Sample>,
     rows: Vec<BlendState>,
+    /// For each row, what its values say of how they are stored.
+    stores: Vec<[StoreCounts; 4]>,
     special: Vec<SpecialUse>,
     skipped: u64,
     seconds: f64,
@@ -183,6 +186,7 @@ impl Standing {
             failures: vec![],
             samples: vec![],
             rows: vec![],
+            stores: vec![],
             special: vec![],
             skipped: 0,
             seconds: 0.0,
@@ -231,7 +235,8 @@ impl Standing {
             .collect();
         let mut judged = live.iter().zip(tallies.iter().zip(&drawn.pieces)).peekable();
         for (k, reason) in reasons.iter().enumerate() {
-            let row = self.row(subject, chunk, k, *reason);
+            let place = self.row(subject, chunk, k, *reason);
+            let row = &mut self.rows[place];
             let Some((_, (tally, pixels))) = judged.next_if(|(live, _)| **live == k) else {
                 self.skipped += chunk.cases[k].len() as u64;
                 continue;
@@ -239,6 +244,7 @@ impl Standing {
             row.cases += tally.cases;
             row.failed += tally.failed;
             row.error_max = Number(row.error_max.0.max(tally.error_max));
+            self.stores[place].iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
             if target.is_unorm() {
                 row.tiers.get_or_insert_default().add(&tally.tiers);
             }
@@ -248,32 +254,27 @@ impl Standing {
         Ok(())
     }
 
-    /// The row of a piece's state, which may have begun in the chunk before.
-    fn row(
-        &mut self,
-        subject: &Subject,
-        chunk: &Chunk<'_>,
-        k: usize,
-        skip_reason: Option<&'static str>,
-    ) -> &mut BlendState {
+    /// The place of the row of a piece's state, which may have begun in the chunk before.
+    fn row(&mut self, subject: &Subject, chunk: &Chunk<'_>, k: usize, skip_reason: Option<&'static str>) -> usize {
         let (id, route) = (&chunk.members[k].spec.id, chunk.pieces[k].route.name());
         // A state's routes take turns block by block.
         let known = self.rows.iter().rev().take(2).position(|row| row.id == *id && row.route == route);
-        let place = known.map_or(self.rows.len(), |back| self.rows.len() - 1 - back);
-        if known.is_none() {
-            self.rows.push(BlendState {
-                id: id.clone(),
-                adapter: subject.identity.name.clone(),
-                target: self.target.name(),
-                route,
-                cases: 0,
-                failed: 0,
-                error_max: Number(0.0),
-                tiers: None,
-                skip_reason,
-            });
+        if let Some(back) = known {
+            return self.rows.len() - 1 - back;
         }
-        &mut self.rows[place]
+        self.rows.push(BlendState {
+            id: id.clone(),
+            adapter: subject.identity.name.clone(),
+            target: self.target.name(),
+            route,
+            cases: 0,
+            failed: 0,
+            error_max: Number(0.0),
+            tiers: None,
+            skip_reason,
+        });
+        self.stores.push(<[StoreCounts; 4]>::default());
+        self.rows.len() - 1
     }
 
     fn add(
@@ -380,15 +381,40 @@ impl Standing {
     /// How values are stored: as the declared model has them, if all are, or as most values say.
     fn store(&self, subject: &Subject) -> Option<StoreUse> {
         let tally = &self.tally;
-        let bias = tally.mean_error();
+        let mut all = StoreCounts::default();
+        tally.stores.iter().for_each(|counts| all.add(counts));
         if let Some(model) = declared_model(subject, self.target)
             && tally.model.0 > 0
             && tally.model.1 == 0
         {
-            return Some(StoreUse { identified: model.name(), share: 1.0, of: tally.model.0, bias });
+            return Some(StoreUse { identified: model.name(), share: 1.0, of: tally.model.0, bias: all.bias() });
         }
-        let (store, share) = tally.identified()?;
-        Some(StoreUse { identified: store.name(), share, of: tally.stores.0, bias })
+        let (store, share) = all.likeliest();
+        (all.of >= ENOUGH).then(|| StoreUse { identified: store.name(), share, of: all.of, bias: all.bias() })
+    }
+
+    /// What is wrong with how values are stored: of a component in all states, or of one in some.
+    fn store_problem(&self) -> Option<String> {
+        let names = ["color.r", "color.g", "color.b", "color.a"];
+        let wrong = |counts: &[StoreCounts; 4], states: usize| {
+            let found: Vec<(&str, String)> = names
+                .into_iter()
+                .zip(counts)
+                .filter_map(|(name, counts)| Some((name, counts.problem(states)?)))
+                .collect();
+            let (_, first) = found.first()?;
+            let components: Vec<&str> = found.iter().map(|(name, _)| *name).collect();
+            Some(format!("{} {} {first}", components.join(", "), if found.len() > 1 { "are" } else { "is" }))
+        };
+        if let Some(problem) = wrong(&self.tally.stores, self.rows.len()) {
+            return Some(problem);
+        }
+        let mut states =
+            self.rows.iter().zip(&self.stores).filter_map(|(row, counts)| Some((&row.id, wrong(counts, 1)?)));
+        let (id, problem) = states.next()?;
+        let others = states.count();
+        let others = if others > 0 { format!(", and so in {others} other states") } else { String::new() };
+        Some(format!("in {id} {problem}{others}"))
     }
 
     /// The group verdict: each value may be legal and the whole still wrong.
@@ -400,22 +426,15 @@ impl Standing {
             let recorded = other.recorded.unwrap_or_default();
             return Some(format!("{} gives {}, where {recorded} is on record for this driver", other.id, other.seen));
         }
-        let stored = tally.identified().filter(|(store, _)| *store != Store::Nearest).map(|(store, share)| {
-            let (of, counts) = tally.stores;
-            #[expect(clippy::cast_precision_loss, reason = "a share")]
-            let nearest = counts[0] as f64 / of as f64;
-            let (share, nearest) = (100.0 * share, 100.0 * nearest);
-            format!("values are stored {}: {share:.1} % of {of} are so, {nearest:.1} % are the nearest", store.name())
-        });
         let (of, others) = tally.model;
         if let Some(model) = declared_model(subject, self.target)
             && others > 0
         {
             let first = self.departure.as_deref().unwrap_or_default();
             let departs = format!("{others} of {of} values are not as {} has them, the first in {first}", model.name());
-            return Some(stored.map_or(departs.clone(), |stored| format!("{stored}; {departs}")));
+            return Some(self.store_problem().map_or(departs.clone(), |stored| format!("{stored}; {departs}")));
         }
-        stored
+        if of > 0 { None } else { self.store_problem() }
     }
 }
 

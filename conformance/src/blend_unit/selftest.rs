@@ -4,14 +4,15 @@
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::run::run_group;
 use crate::arithmetic::profile::WGSL;
-use crate::cases::AnyFormula;
-use crate::cases::blend::{Samples, covering_array, every_state, masks_and_layers, separate_formula};
+use crate::cases::Kind;
+use crate::cases::blend::{Program, Samples, every_state};
 use crate::filter::Filter;
 use crate::report::{Group, Report};
 use crate::run::{Options, Silent, empty};
-use crate::select::{Member, Random, Selected, Shard};
+use crate::select::{Member, Random, Selected, Shard, catalogue_of};
 use crate::subject::Subject;
 use lightmeter_gpu::{Error, Shaders};
+use lightmeter_scene::blend::{Separate, State};
 use lightmeter_scene::target::TargetFormat;
 use serde::Serialize;
 
@@ -63,15 +64,11 @@ impl Finding {
 /// # Errors
 /// Where a built-in shader is invalid, which a test rules out.
 pub fn selftest(targets: &[TargetFormat], cases: u64, progress: &mut impl FnMut(&str)) -> Result<Vec<Row>, Error> {
-    let separate = covering_array().into_iter().map(separate_formula).collect();
-    let members: Vec<Vec<Member>> = [every_state(), separate, masks_and_layers()]
-        .into_iter()
-        .map(|formulas| formulas.into_iter().map(member).collect())
-        .collect();
+    let groups = groups();
     let mut rows = vec![];
     for &target in targets {
         progress(target.name());
-        let judged = judge(&members, target, Rules::RIGHT, cases)?;
+        let judged = judge(&groups, target, Rules::RIGHT, cases)?;
         rows.push(row("none", target, &judged, |groups| {
             let found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
             if groups.iter().any(found) { Finding::FalseAlarm } else { Finding::Clean }
@@ -81,15 +78,36 @@ pub fn selftest(targets: &[TargetFormat], cases: u64, progress: &mut impl FnMut(
                 rows.push(row(fault.name, target, &empty_report(target)?, |_| Finding::NotApplicable));
                 continue;
             }
-            let judged = judge(&members, target, fault.rules, cases)?;
+            // A fault of one state has that state's values alone to show in.
+            let judged = match fault.rules.only_state() {
+                Some(state) => judge(&[beside(state)], target, fault.rules, 4096)?,
+                None => judge(&groups, target, fault.rules, cases)?,
+            };
             rows.push(row(fault.name, target, &judged, |groups| finding(fault, groups)));
         }
     }
     Ok(rows)
 }
 
-fn member(formula: Box<dyn AnyFormula>) -> Member {
-    Member { spec: formula.spec(), formula }
+/// What a run draws with its unit, apart from sampled states; and the states that MIN and MAX make aliases of one, since a
+/// renderer may not ignore their factors.
+fn groups() -> Vec<Vec<Member>> {
+    let catalogue = catalogue_of(&Samples { count: 0, ..Samples::default() });
+    let drawn = catalogue
+        .into_iter()
+        .filter(|member| matches!(member.spec.kind, Kind::Blend(program) if !program.is_special()));
+    let aliases = every_state().into_iter().map(|formula| Member { spec: formula.spec(), formula });
+    let aliases = aliases.filter(
+        |member| matches!(member.spec.kind, Kind::Blend(Program::Draw(state, _)) if state != state.canonical()),
+    );
+    let mut groups: Vec<Vec<Member>> = vec![];
+    for member in drawn.chain(aliases) {
+        match groups.last_mut() {
+            Some(group) if group[0].spec.group() == member.spec.group() => group.push(member),
+            _ => groups.push(vec![member]),
+        }
+    }
+    groups
 }
 
 fn options(target: TargetFormat, cases: u64) -> Result<Options, Error> {
@@ -111,12 +129,24 @@ fn empty_report(target: TargetFormat) -> Result<Report, Error> {
     Ok(empty(&[], &options(target, 0)?))
 }
 
-fn judge(members: &[Vec<Member>], target: TargetFormat, rules: Rules, cases: u64) -> Result<Report, Error> {
+/// The states that share a state's equation and source factor.
+fn beside(state: State) -> Vec<Member> {
+    let formulas = every_state().into_iter().map(|formula| Member { spec: formula.spec(), formula });
+    let shares = |program: Program| {
+        let (Separate { color, .. }, _) = program.layer(0);
+        (color.equation, color.src) == (state.equation, state.src)
+    };
+    formulas.filter(|member| matches!(member.spec.kind, Kind::Blend(program) if shares(program))).collect()
+}
+
+fn judge(groups: &[Vec<Member>], target: TargetFormat, rules: Rules, cases: u64) -> Result<Report, Error> {
     let options = options(target, cases)?;
     let mut subjects = [Subject::faulty(rules)];
     let mut report = empty(&subjects, &options);
-    for group in members.iter().flat_map(|members| members.chunk_by(|a, b| a.spec.group() == b.spec.group())) {
+    for group in groups {
         let members: Vec<&Member> = group.iter().collect();
+        // As many values as a run has where a group has few states.
+        let cases = cases.max(4096 / members.len() as u64);
         let selected: Vec<Selected> =
             (0..members.len()).map(|place| Selected::whole(place, Random::First(cases))).collect();
         run_group(&members, &selected, &mut subjects, &options, &mut report, &mut Silent)?;
@@ -146,10 +176,13 @@ fn finding(fault: &Fault, groups: &[Group]) -> Finding {
     let says = |text: &Option<String>, what: &str| text.as_ref().is_some_and(|text| text.contains(what));
     let is_store = fault.rules.store != Store::Nearest;
     let is_named = |group: &Group| {
-        let by_store = says(&group.problem, fault.rules.store.name());
-        if is_store && group.store.is_some() { by_store } else { says(&group.explanation, fault.says) }
+        let by_store = is_store && says(&group.problem, fault.rules.store.name());
+        by_store || says(&group.explanation, fault.says)
     };
-    let must_show = |group: &&Group| is_found(group) || (is_store && group.store.is_some());
+    let throughout = fault.rules.stores_wrong_throughout();
+    // What wrong stores come to over several layers has no name.
+    let is_chain = |group: &Group| is_store && group.id == "blend/layers";
+    let must_show = |group: &&Group| !is_chain(group) && (is_found(group) || (throughout && group.store.is_some()));
     if !groups.iter().any(is_found) {
         Finding::Survived
     } else if groups.iter().filter(must_show).all(is_named) {

@@ -4,12 +4,14 @@ use super::embedded;
 use super::expect::{Expected, expect};
 use super::pixel::Units;
 use super::rules::{FAULTS, Fault, Rules, Store};
+use super::store::{NEAR, StoreCounts};
 use crate::arithmetic::{F16, F32, Format as _};
 use crate::cases::blend::{Program, UnitCase};
 use crate::devices::{BlendDeviation, Known};
 use crate::judge::margin;
 use crate::report::Tiers;
 use lightmeter_gpu::Route;
+use lightmeter_scene::blend::Separate;
 use lightmeter_scene::target::{Encoding, TargetFormat};
 
 /// A state by one of its routes on a target.
@@ -87,9 +89,6 @@ fn distance(value: f64, reference: f64, most: f64) -> f64 {
     if value.is_nan() || reference.is_nan() { f64::INFINITY } else { (finite(value) - finite(reference)).abs() }
 }
 
-/// References this near to a whole step are that step; those this near to the middle between two have no nearest.
-const NEAR: f64 = 1e-3;
-
 /// The pixels of a state, or of a group of them.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
@@ -109,10 +108,8 @@ pub struct Tally {
     pub not_deviating: u64,
     /// On targets of 8 bits.
     pub tiers: Tiers,
-    /// Values that tell stores apart, and how many are as each of [`Store::ALL`] would have them.
-    pub stores: (u64, [u64; 5]),
-    /// The sum of errors with their sign, of the same values.
-    pub bias: f64,
+    /// What the values of each component say of how they are stored.
+    pub stores: [StoreCounts; 4],
     /// Values that a declared model predicts, and how many are another.
     pub model: (u64, u64),
     /// The greatest error.
@@ -125,6 +122,12 @@ pub struct Tally {
     pub departure: Option<usize>,
 }
 
+/// Whether a constant leaves the errors of a state's values to chance: a unit that holds its constant in 8 bits errs by it in
+/// every value alike.
+fn tells_stores(state: Separate, case: &UnitCase) -> bool {
+    !state.reads_constant() || case.constant.iter().all(|c| !(0.0 < *c && *c < 1.0))
+}
+
 /// Failing pixels of a state that are kept.
 const KEPT: usize = 16;
 
@@ -134,7 +137,8 @@ impl Tally {
         let Drawn { program, route, target } = drawn;
         let expected = expect(program, target, case, &Rules::RIGHT);
         self.cases += 1;
-        let (_, mask) = program.layer(0);
+        let (state, mask) = program.layer(0);
+        let tells = tells_stores(state, case);
         let mut fails = false;
         for (k, value) in pixel.into_iter().enumerate() {
             let verdict = expected.judge(target, k, value);
@@ -166,8 +170,8 @@ impl Tally {
             }
             if target.is_unorm() {
                 self.tier(expected.reference[k], value, verdict.outcome);
-                if case.layers == 1 && mask.0[k] {
-                    self.store(expected.reference[k], value);
+                if mask.0[k] && tells {
+                    self.stores[k].count(expected.reference[k], value);
                 }
             }
         }
@@ -198,20 +202,6 @@ impl Tally {
         *tier += 1;
     }
 
-    /// Which stores a value speaks for. At whole steps and halfway between two they cannot be told apart, and at the ends
-    /// they all clamp.
-    fn store(&mut self, reference: f64, value: f64) {
-        let fraction = reference - reference.floor();
-        if !(NEAR..=1.0 - NEAR).contains(&fraction) || (fraction - 0.5).abs() < NEAR {
-            return;
-        }
-        self.stores.0 += 1;
-        self.bias += value - reference;
-        for (count, store) in self.stores.1.iter_mut().zip(Store::ALL) {
-            *count += u64::from(store.step(reference).to_bits() == value.to_bits());
-        }
-    }
-
     /// Adds another's counts; places of cases stay its own.
     pub fn add_counts(&mut self, other: &Self) {
         self.cases += other.cases;
@@ -222,35 +212,12 @@ impl Tally {
         self.expected_failures += other.expected_failures;
         self.not_deviating += other.not_deviating;
         self.tiers.add(&other.tiers);
-        self.stores.0 += other.stores.0;
-        for (sum, count) in self.stores.1.iter_mut().zip(other.stores.1) {
-            *sum += count;
+        for (counts, other) in self.stores.iter_mut().zip(&other.stores) {
+            counts.add(other);
         }
-        self.bias += other.bias;
         self.model.0 += other.model.0;
         self.model.1 += other.model.1;
         self.error_max = self.error_max.max(other.error_max);
-    }
-
-    /// The store that most values speak for, once there are enough of them.
-    #[must_use]
-    pub fn identified(&self) -> Option<(Store, f64)> {
-        let (of, counts) = self.stores;
-        if of < super::ENOUGH {
-            return None;
-        }
-        // The first of equals is the right one.
-        let (place, count) = counts.into_iter().enumerate().rev().max_by_key(|(_, count)| *count)?;
-        #[expect(clippy::cast_precision_loss, reason = "a share")]
-        Some((Store::ALL[place], count as f64 / of as f64))
-    }
-
-    /// The mean error with its sign, in steps.
-    #[must_use]
-    pub fn mean_error(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "a mean")]
-        let of = self.stores.0.max(1) as f64;
-        self.bias / of
     }
 }
 
@@ -278,13 +245,15 @@ impl Sample {
     }
 }
 
-/// The fault that explains the most of the failing pixels, if one explains nine in ten: what it is as if, how many, and of
-/// how many.
+/// The faults that explain the most of the failing pixels, if nine in ten are explained: what it is as if, how many, and of
+/// how many. In some states two faults come to the same.
 #[must_use]
-pub fn explain(samples: &[Sample]) -> Option<(&'static str, usize, usize)> {
-    let explained = |fault: &Fault| samples.iter().filter(|sample| sample.is_as_by(fault)).count();
+pub fn explain(samples: &[Sample]) -> Option<(String, usize, usize)> {
     let target = samples.first()?.drawn.target;
     let tried = FAULTS.iter().filter(|fault| fault.concerns(target));
-    let (fault, count) = tried.map(|fault| (fault, explained(fault))).rev().max_by_key(|(_, count)| *count)?;
-    (10 * count >= 9 * samples.len()).then_some((fault.says, count, samples.len()))
+    let explained: Vec<(&Fault, usize)> =
+        tried.map(|fault| (fault, samples.iter().filter(|sample| sample.is_as_by(fault)).count())).collect();
+    let most = explained.iter().map(|(_, count)| *count).max()?;
+    let alike: Vec<&str> = explained.iter().filter(|(_, count)| *count == most).map(|(fault, _)| fault.says).collect();
+    (10 * most >= 9 * samples.len()).then(|| (alike.join(", or as if "), most, samples.len()))
 }

@@ -505,13 +505,6 @@ pub fn every_state() -> Vec<Box<dyn AnyFormula>> {
     State::all().map(|state| Box::new(BlendState(state)) as Box<dyn AnyFormula>).collect()
 }
 
-/// Write masks and overlapping layers as formulas.
-#[must_use]
-pub fn masks_and_layers() -> Vec<Box<dyn AnyFormula>> {
-    let masks = WriteMask::each().map(|mask| Box::new(Masked(mask)) as Box<dyn AnyFormula>);
-    masks.chain(LAYERS.map(|layers| Box::new(layers) as Box<dyn AnyFormula>)).collect()
-}
-
 /// A state with another one for alpha as a formula.
 #[must_use]
 pub fn separate_formula(state: Separate) -> Box<dyn AnyFormula> {

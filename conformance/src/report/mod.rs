@@ -152,7 +152,7 @@ pub struct SpecialUse {
     pub adapter: String,
     /// The target's format.
     pub target: &'static str,
-    /// What was left in red.
+    /// What was left of the colour.
     pub seen: String,
     /// What is on record for the driver.
     #[serde(skip_serializing_if = "Option::is_none")]
