@@ -340,6 +340,17 @@ fn junit_is_written_to_a_file() {
     assert_eq!((code(&output), stdout(&output).as_str()), (0, ""));
     let text = std::fs::read_to_string(file).expect("the file was written");
     assert!(text.contains("<testsuite name=\"cpu\"") && text.contains("vector/reflect (compute)"), "{text}");
+    // A blend unit has a test for each target, with its own failures.
+    let dir =
+        edited("junit", "blend_unit.wgsl", |text| text.replace("colored.color;", "vec4f(colored.color.rgb, 0.25);"));
+    let args = ["run", "blend/max", "--target", "all", "--cases", "64", "--format", "junit", "--shaders"];
+    let text = stdout(&lightmeter(&[&args[..], &[dir.to_str().expect("UTF-8")]].concat()));
+    for target in ["rgba32float", "rgba8unorm-srgb", "bgra8unorm"] {
+        let name = format!("name=\"blend/max (fixed-function on {target})\"");
+        let test = text.split("<testcase").find(|test| test.contains(&name)).expect("a test for the target");
+        assert!(test.contains("verdicts failed; ") && test.matches("FAIL ").count() == 5, "{test}");
+        assert_eq!(test.matches(&format!("fixed-function on {target}: color")).count(), 5, "{test}");
+    }
 }
 
 #[test]

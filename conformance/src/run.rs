@@ -89,9 +89,9 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
         progress.group(members[0].spec.group());
         let judged = judge_group(&members, group, subjects, options, &mut report, progress);
         match judged {
-            Err(Error::Device(message)) => {
+            Err(error @ (Error::Device(_) | Error::Timeout(_))) => {
                 let under_way = members[0].spec.group().into();
-                report.interrupted.get_or_insert(Interrupted { under_way, message });
+                report.interrupted.get_or_insert(Interrupted { under_way, message: error.to_string() });
                 break;
             }
             judged => judged?,
@@ -100,6 +100,8 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
     for group in &report.groups {
         report.totals.add(&group.totals);
     }
+    report.totals.unexpected_passes +=
+        report.deviations.iter().filter(|deviation| !deviation.still_needed).count() as u64;
     report.aliases = blend::aliases()
         .filter(|(alias, canonical)| options.filter.selects(alias) || options.filter.selects(canonical))
         .count() as u64;
@@ -186,7 +188,6 @@ fn probe_deviations(subjects: &[Subject], options: &Options, report: &mut Report
             let outcome = |legal| judge(bits, exact, legal).outcome;
             // Wronger than what is granted is another mistake, which the cases will show.
             let still_needed = outcome(&interval) == Outcome::Fail && outcome(&granted) == Outcome::Pass;
-            report.totals.unexpected_passes += u64::from(!still_needed);
             report.deviations.push(DeviationUse {
                 name: deviation.name,
                 adapter: subject.identity.name.clone(),

@@ -85,9 +85,7 @@ impl Gpu {
         let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
         match self.device.poll(wait) {
             Ok(_) => self.check(),
-            Err(wgpu::PollError::Timeout) => {
-                Err(Error::Device(format!("no answer within {} s; does a shader loop?", PATIENCE.as_secs())))
-            }
+            Err(wgpu::PollError::Timeout) => Err(Error::Timeout(PATIENCE.as_secs())),
             Err(error) => Err(Error::Device(error.to_string())),
         }
     }

@@ -49,6 +49,9 @@ pub enum Error {
         /// wgpu's message.
         message: String,
     },
+    /// The device does not answer.
+    #[error("the device failed: no answer within {0} s; does a shader loop?")]
+    Timeout(u64),
     /// The device was lost or reported an error.
     #[error("the device failed: {0}")]
     Device(String),

@@ -241,8 +241,8 @@ fn every_legal_unit_lies_inside() {
             }
         }
     }
-    // Truncation is legal value by value, but where f32 falls short of a whole step that should have been kept.
-    assert!(outside * 10 < truncated, "{outside} of {truncated}");
+    // Truncation is legal value by value, which is why values are judged together.
+    assert_eq!((outside, truncated), (0, 3 * 24 * 1125));
 }
 
 /// The controls: what lies just outside fails, and a NaN wherever it stands.
@@ -291,7 +291,7 @@ fn a_store_is_identified_and_a_declared_model_holds_to_the_bit() {
             for counts in &tally.stores {
                 let (likeliest, share) = counts.likeliest();
                 assert!(
-                    counts.of > 10_000 && likeliest == store && share > 0.99,
+                    counts.of > 1_000 && likeliest == store && share > 0.99,
                     "{name} {}: {counts:?}",
                     target.name()
                 );

@@ -6,7 +6,9 @@
 //! * [`Wide`]: computes as binary32 does or better and rounds once, when it stores.
 //! * [`Narrow`]: holds every operand, factor and product in 8 bits, rounded to nearest. A product of two such numbers is
 //!   usually divided by 255 with shifts: `(ab + (ab >> 8) + 128) >> 8` errs by up to 1/510 of a step more than half a
-//!   step, over all a and b. A sum of such numbers is one of them. In all that is 1½ steps for the source's term, 1 for the destination's, less where a factor is 0 or 1.
+//!   step, over all a and b. A sum of such numbers is one of them, so nothing is rounded when it stores. In all that is 1½
+//!   steps for the source's term and 1 for the destination's, less where a factor is 0 or 1. (A unit of 8 bits that computes
+//!   a product wider and then truncates is neither kind.)
 
 #![expect(clippy::float_cmp, reason = "0 and 1 are exact")]
 

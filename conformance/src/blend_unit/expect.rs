@@ -111,8 +111,9 @@ fn legal_in_steps(
             let at = |linear: f64| pixel::units(target, rules.stored_as(k), linear);
             // A step that is met but for f64's own rounding is that step; in sRGB's powers a device errs by more.
             let near = if encoded(k) { -ENCODING } else { SNAP };
-            low[k] = (at(wide[k].low()) + near).floor().clamp(0.0, 255.0);
-            high[k] = (at(wide[k].high()) - near).ceil().clamp(0.0, 255.0);
+            // A sum with 0 has no −0.
+            low[k] = (at(wide[k].low()) + near).floor().clamp(0.0, 255.0) + 0.0;
+            high[k] = (at(wide[k].high()) - near).ceil().clamp(0.0, 255.0) + 0.0;
             if !encoded(k) {
                 let (least, most) = ((at(narrow[k].low()) - SNAP).ceil(), (at(narrow[k].high()) + SNAP).floor());
                 if least <= most {

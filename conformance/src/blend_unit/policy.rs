@@ -7,6 +7,36 @@ use super::pixel::Units;
 use crate::cases::blend::UnitCase;
 use lightmeter_scene::target::TargetFormat;
 
+/// What an interface promises.
+#[derive(Clone, Copy, Debug)]
+pub struct Promise {
+    /// Which.
+    pub interface: &'static str,
+    /// What it says.
+    pub says: &'static str,
+    /// Whether a value follows from it where there is NaN or infinity.
+    pub promises_a_value: bool,
+}
+
+/// What the interfaces promise of NaN and infinity in blending.
+pub const PROMISES: &[Promise] = &[
+    Promise {
+        interface: "WGSL",
+        says: "an implementation may assume that there is neither NaN nor infinity in a shader",
+        promises_a_value: false,
+    },
+    Promise {
+        interface: "Vulkan",
+        says: "blending has at least the precision and the range of the target's components; of NaN it says nothing",
+        promises_a_value: false,
+    },
+    Promise {
+        interface: "WebGPU and OpenGL",
+        says: "blending is as the formulas say; of NaN they say nothing",
+        promises_a_value: false,
+    },
+];
+
 /// What a driver was seen to leave of a colour.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
@@ -23,7 +53,8 @@ pub struct Seen {
 /// Whether a component was given NaN or infinity, so that anything may be left.
 #[must_use]
 pub fn promises_nothing(case: &UnitCase, component: usize) -> bool {
-    !case.sources[0][component].is_finite() || !case.dst[component].is_finite()
+    let is_special = !case.sources[0][component].is_finite() || !case.dst[component].is_finite();
+    is_special && PROMISES.iter().all(|promise| !promise.promises_a_value)
 }
 
 /// What a pixel's colour holds, in a word where its components are alike: `NaN`, `Inf`, `-Inf` or a number.

@@ -158,7 +158,7 @@ impl<'a> Chunk<'a> {
         let target = standing.target;
         let place = format!("on {} of {}", target.name(), subject.identity.name);
         // What hangs would hang again for minutes.
-        let hangs = error.to_string().contains("no answer");
+        let hangs = matches!(error, Error::Timeout(_));
         for (member, piece) in self.members.iter().zip(&self.pieces).filter(|_| !hangs) {
             subject.drop_blend_unit();
             let is_drawn = matches!(subject.lacks_route(shaders, piece.route), Ok(None));
@@ -438,27 +438,24 @@ impl Standing {
     }
 }
 
-/// Notes which named deviations a target's values needed; one that nothing needed any more is an unexpected pass.
+/// Notes which named deviations a target's values needed. One that nothing in a run needs is an unexpected pass.
 fn use_deviations(subject: &Subject, target: TargetFormat, tally: &Tally, report: &mut Report) {
     if tally.expected_failures + tally.not_deviating == 0 {
         return;
     }
     for deviation in subject.known.blend_deviations.iter().filter(|deviation| deviation.target == target) {
-        let still_needed = tally.expected_failures > 0;
-        let known = report
-            .deviations
-            .iter_mut()
-            .find(|known| known.name == deviation.name && known.adapter == subject.identity.name);
-        if let Some(known) = known {
+        let adapter = &subject.identity.name;
+        let same = |known: &&mut DeviationUse| known.name == deviation.name && known.adapter == *adapter;
+        if let Some(known) = report.deviations.iter_mut().find(same) {
             known.excused += tally.expected_failures;
+            known.still_needed |= tally.expected_failures > 0;
             continue;
         }
-        report.totals.unexpected_passes += u64::from(!still_needed);
         report.deviations.push(DeviationUse {
             name: deviation.name,
-            adapter: subject.identity.name.clone(),
+            adapter: adapter.clone(),
             reason: deviation.reason,
-            still_needed,
+            still_needed: tally.expected_failures > 0,
             excused: tally.expected_failures,
         });
     }

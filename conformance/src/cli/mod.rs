@@ -92,7 +92,7 @@ impl Status {
             return Self::Nothing;
         }
         match error.downcast_ref::<lightmeter_gpu::Error>() {
-            Some(lightmeter_gpu::Error::Device(_)) => Self::Device,
+            Some(lightmeter_gpu::Error::Device(_) | lightmeter_gpu::Error::Timeout(_)) => Self::Device,
             Some(lightmeter_gpu::Error::Open { .. }) => Self::Nothing,
             _ => Self::BadInput,
         }

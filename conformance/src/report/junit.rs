@@ -13,7 +13,7 @@ pub fn to_string(report: &Report) -> Result<String, SerializeError> {
     for adapter in &report.adapters {
         let mut suite = TestSuite::new(adapter.name.as_str());
         for group in report.groups.iter().filter(|group| group.adapter == adapter.name) {
-            let mut case = TestCase::new(format!("{} ({})", group.id, group.stage), status(group, report));
+            let mut case = TestCase::new(format!("{} ({})", group.id, group.place()), status(group, report));
             case.set_classname(group.id.replace('/', ".")).set_time(Duration::from_secs_f64(group.seconds));
             suite.add_test_case(case);
         }
@@ -40,12 +40,17 @@ fn status(group: &Group, report: &Report) -> TestCaseStatus {
         return TestCaseStatus::success();
     }
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-    let problem = group.problem.as_deref().unwrap_or_default();
-    status.set_message(format!("{} of {} verdicts failed {problem}", group.totals.failed, group.totals.verdicts));
+    let mut message = format!("{} of {} verdicts failed", group.totals.failed, group.totals.verdicts);
+    for more in group.explanation.iter().chain(&group.problem) {
+        message += &format!("; {more}");
+    }
+    status.set_message(message);
     let mut description = String::new();
     let of_group = |id: &str| id.strip_prefix(&group.id).is_some_and(|rest| rest.starts_with('/'));
-    for failure in
-        report.failures.iter().filter(|f| f.adapter == group.adapter && f.stage == group.stage && of_group(&f.id))
+    for failure in report
+        .failures
+        .iter()
+        .filter(|f| f.adapter == group.adapter && f.stage == group.stage && f.target == group.target && of_group(&f.id))
     {
         // Writing to a string does not fail.
         let _ = text::failure(failure, &mut description);

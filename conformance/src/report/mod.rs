@@ -211,6 +211,14 @@ pub struct Group {
     pub problem: Option<String>,
 }
 
+impl Group {
+    /// The stage, and for a blend unit the target.
+    #[must_use]
+    pub fn place(&self) -> String {
+        self.target.map_or(self.stage.into(), |target| format!("{} on {target}", self.stage))
+    }
+}
+
 /// A value outside its interval.
 #[derive(Clone, Debug, Serialize)]
 pub struct Failure {

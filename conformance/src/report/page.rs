@@ -1,5 +1,6 @@
 //! The page on blending, made from a run's JSON: states against routes and drivers, in Markdown and as a picture.
 
+use crate::blend_unit::policy::PROMISES;
 use lightmeter_gpu::{Route, routes};
 use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::target::TargetFormat;
@@ -364,10 +365,10 @@ fn special(run: &Run, out: &mut impl Write) -> Result {
         return Ok(());
     }
     writeln!(out, "## NaN and infinity\n")?;
-    writeln!(
-        out,
-        "Nothing is promised: a shading language may assume that there is neither. This is what drivers leave.\n"
-    )?;
+    for promise in PROMISES {
+        writeln!(out, "* {}: {}.", promise.interface, promise.says)?;
+    }
+    writeln!(out, "\nSo nothing is promised. This is what drivers leave.\n")?;
     let mut columns: Vec<(&str, &str)> = vec![];
     let mut cases: Vec<&str> = vec![];
     for special in &run.special {

@@ -30,7 +30,7 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
     table(&rows, out)?;
     for group in report.groups.iter().filter(|group| group.totals.failed > 0 || group.problem.is_some()) {
         let (failed, verdicts) = (thousands(group.totals.failed), thousands(group.totals.verdicts));
-        write!(out, "\n✗ {} on {}, {}: {failed} of {verdicts} failed", group.id, group.adapter, stage(group))?;
+        write!(out, "\n✗ {} on {}, {}: {failed} of {verdicts} failed", group.id, group.adapter, group.place())?;
         if let Some(explanation) = &group.explanation {
             write!(out, "; {explanation}")?;
         }
@@ -67,11 +67,6 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
         writeln!(out, "interrupted: {} was under way: {}", interrupted.under_way, interrupted.message)?;
     }
     verdict(report, out)
-}
-
-/// The stage, and for a blend unit the target.
-fn stage(group: &Group) -> String {
-    group.target.map_or(group.stage.into(), |target| format!("{} on {target}", group.stage))
 }
 
 /// What the first drawing of the blend states costs, and the second, by adapter: the product of factors and equations, and
@@ -115,7 +110,7 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
     }
     for group in report.groups.iter().filter(|group| group.skip_reason.is_some()) {
         let reason = group.skip_reason.unwrap_or_default();
-        writeln!(out, "skipped {} on {}, {}: {reason}", group.id, group.adapter, stage(group))?;
+        writeln!(out, "skipped {} on {}, {}: {reason}", group.id, group.adapter, group.place())?;
     }
     let mut routes = std::collections::BTreeMap::<_, u64>::new();
     let on_targets = |state: &&super::BlendState| {
