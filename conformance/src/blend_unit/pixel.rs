@@ -94,6 +94,17 @@ mod tests {
     }
 
     #[test]
+    fn blue_stands_first_where_the_format_says_so() {
+        let first = |target| {
+            let mut bytes = vec![];
+            write(target, [1.0, 2.0, 3.0, 4.0], &mut bytes);
+            bytes
+        };
+        assert_eq!(first(TargetFormat::Rgba8Unorm), [1, 2, 3, 4]);
+        assert_eq!(first(TargetFormat::Bgra8Unorm), [3, 2, 1, 4]);
+    }
+
+    #[test]
     fn units_undo_linear() {
         for target in TargetFormat::ALL {
             for step in 0..=255 {
