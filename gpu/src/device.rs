@@ -144,20 +144,21 @@ impl Gpu {
         } else {
             wgpu::TextureUsages::COPY_SRC
         };
-        self.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | sampled_or_copied,
-            view_formats: &[],
-        })
+        self.texture(width, height, format, sampled_or_copied)
     }
 
     /// A texture that can be written, drawn to and copied from.
     pub(crate) fn blend_target(&self, width: u32, height: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
+        self.texture(width, height, format, wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST)
+    }
+
+    fn texture(
+        &self,
+        width: u32,
+        height: u32,
+        format: wgpu::TextureFormat,
+        also: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -165,9 +166,7 @@ impl Gpu {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::COPY_SRC
-                | wgpu::TextureUsages::COPY_DST,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | also,
             view_formats: &[],
         })
     }

@@ -1,6 +1,13 @@
 //! Cases of blending: every distinct state of the 15 × 15 × 5, states with another one for alpha, the named modes, write
 //! masks, buffers without alpha and overlapping layers. Formulas: `lightmeter_reference::blend`.
 
+mod program;
+mod separate;
+mod special;
+
+pub use program::{MOST_LAYERS, Program, UnitCase};
+pub use separate::{Samples, covering_array, separate_of};
+
 use super::Visitor;
 use super::formula::{AnyFormula, Formula, formula};
 use super::rows::{Reader, Writer};
@@ -10,90 +17,8 @@ use lightmeter_reference::blend::{
 };
 use lightmeter_reference::{Real, Vector};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
+use special::SPECIAL;
 use std::collections::BTreeSet;
-
-/// The most draws that overlap in a case.
-pub const MOST_LAYERS: usize = 16;
-
-/// What the blend unit draws for a case.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Program {
-    /// One draw. Inputs: source, destination, constant.
-    Draw(Separate, WriteMask),
-    /// One draw of NaN or infinity, which float targets alone can hold. Inputs: source, destination, constant.
-    Special(State),
-    /// One draw on a back buffer without alpha, which reads as 1: alpha begins as 1 and is not written. Inputs: source,
-    /// destination's colour.
-    WithoutAlpha(State),
-    /// Up to 16 draws that overlap, in order, the modes in turn. Inputs: destination, count, 16 sources.
-    Layers(&'static [Mode]),
-}
-
-/// A case as the blend unit is given it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnitCase {
-    /// The source of each draw.
-    pub sources: [[f32; 4]; MOST_LAYERS],
-    /// How many draws.
-    pub layers: usize,
-    /// What is there before.
-    pub dst: [f32; 4],
-    /// The blend constant.
-    pub constant: [f32; 4],
-}
-
-impl Program {
-    /// The state and the write mask of a layer.
-    #[must_use]
-    pub fn layer(self, number: usize) -> (Separate, WriteMask) {
-        match self {
-            Self::Draw(state, mask) => (state, mask),
-            Self::Special(state) => (state.into(), WriteMask::ALL),
-            Self::WithoutAlpha(state) => (state.into(), WriteMask::COLOR),
-            Self::Layers(modes) => (modes[number % modes.len()].state().into(), WriteMask::ALL),
-        }
-    }
-
-    /// Whether only float targets are drawn on.
-    #[must_use]
-    pub const fn is_special(self) -> bool {
-        matches!(self, Self::Special(_))
-    }
-
-    /// A row of inputs as the unit is given it.
-    ///
-    /// # Panics
-    /// Where the row has fewer numbers than the program's inputs.
-    #[must_use]
-    pub fn case(self, row: &[f32]) -> UnitCase {
-        let color = |at: usize| [row[at], row[at + 1], row[at + 2], row[at + 3]];
-        let mut case = UnitCase { sources: [[0.0; 4]; MOST_LAYERS], layers: 1, dst: [0.0; 4], constant: [0.0; 4] };
-        match self {
-            Self::Draw(..) | Self::Special(_) => {
-                case.sources[0] = color(0);
-                case.dst = color(4);
-                case.constant = color(8);
-            }
-            Self::WithoutAlpha(_) => {
-                case.sources[0] = color(0);
-                case.dst = [row[4], row[5], row[6], 1.0];
-            }
-            Self::Layers(_) => {
-                case.dst = color(0);
-                case.layers = (1..=MOST_LAYERS).rev().find(|&n| row[4] >= layer_count(n)).unwrap_or(1);
-                for (number, source) in case.sources.iter_mut().enumerate() {
-                    *source = color(5 + 4 * number);
-                }
-            }
-        }
-        case
-    }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "at most 16")]
-const fn layer_count(n: usize) -> f32 {
-    n as f32
-}
 
 const INPUTS: &[Input] = &[Input::rgba("src"), Input::rgba("dst"), Input::rgba("constant")];
 const COLOR: &[Output] = &[Output::new("color", Shape::Vec4, "color")];
@@ -327,70 +252,6 @@ fn unit_spec() -> Spec {
     }
 }
 
-const INF: f32 = f32::INFINITY;
-const NAN: f32 = f32::NAN;
-
-macro_rules! special {
-    ($name:literal, $pins:literal, $src:expr, $dst:expr) => {
-        Hard { name: $name, pins: $pins, inputs: &[("src", &$src), ("dst", &$dst)] }
-    };
-}
-
-/// NaN and infinity by state. Red, green and blue are alike where nothing else is said.
-const SPECIAL: &[(State, &[Hard])] = &[
-    (
-        State { equation: Equation::Add, src: Factor::Zero, dst: Factor::One },
-        &[
-            special!("nan-source-times-zero", "0·NaN", [NAN, NAN, NAN, 0.5], [0.25; 4]),
-            special!("infinite-source-times-zero", "0·∞", [INF, INF, INF, 0.5], [0.25; 4]),
-        ],
-    ),
-    (
-        State { equation: Equation::Add, src: Factor::One, dst: Factor::Zero },
-        &[
-            special!("nan-destination-times-zero", "NaN·0", [0.25; 4], [NAN, NAN, NAN, 0.5]),
-            special!("infinite-destination-times-zero", "∞·0", [0.25; 4], [INF, INF, INF, 0.5]),
-            special!("nan-source", "NaN is stored", [NAN, NAN, NAN, 0.5], [0.25; 4]),
-            special!("infinite-source", "∞ is stored", [INF, INF, INF, 0.5], [0.25; 4]),
-            special!("negative-infinite-source", "−∞ is stored", [-INF, -INF, -INF, 0.5], [0.25; 4]),
-        ],
-    ),
-    (
-        State { equation: Equation::Add, src: Factor::One, dst: Factor::One },
-        &[
-            special!("infinities-of-both-signs", "∞ + −∞", [INF, INF, INF, 0.5], [-INF, -INF, -INF, 0.5]),
-            special!("nan-plus-number", "NaN + 0.25", [NAN, NAN, NAN, 0.5], [0.25; 4]),
-        ],
-    ),
-    (
-        State { equation: Equation::Subtract, src: Factor::One, dst: Factor::One },
-        &[special!("infinity-minus-infinity", "∞ − ∞", [INF, INF, INF, 0.5], [INF, INF, INF, 0.5])],
-    ),
-    (
-        State { equation: Equation::Add, src: Factor::SrcAlpha, dst: Factor::OneMinusSrcAlpha },
-        &[
-            special!("opaque-over-infinity", "∞·(1 − 1)", [0.25, 0.25, 0.25, 1.0], [INF, INF, INF, 0.5]),
-            special!("transparent-nan", "NaN·0 by a factor that is not constant", [NAN, NAN, NAN, 0.0], [0.25; 4]),
-        ],
-    ),
-    (
-        State { equation: Equation::Min, src: Factor::One, dst: Factor::One },
-        &[
-            special!("min-of-nan-source", "min(NaN, 0.25)", [NAN, NAN, NAN, 0.5], [0.25; 4]),
-            special!("min-of-nan-destination", "min(0.25, NaN)", [0.25; 4], [NAN, NAN, NAN, 0.5]),
-            special!("min-of-infinity", "min(∞, 0.25)", [INF, INF, INF, 0.5], [0.25; 4]),
-        ],
-    ),
-    (
-        State { equation: Equation::Max, src: Factor::One, dst: Factor::One },
-        &[
-            special!("max-of-nan-source", "max(NaN, 0.25)", [NAN, NAN, NAN, 0.5], [0.25; 4]),
-            special!("max-of-nan-destination", "max(0.25, NaN)", [0.25; 4], [NAN, NAN, NAN, 0.5]),
-            special!("max-of-infinity", "max(∞, 0.25)", [INF, INF, INF, 0.5], [0.25; 4]),
-        ],
-    ),
-];
-
 formula!(
     /// SRC_ALPHA_SATURATE as document 000 writes it.
     SaturateSourceOnly: "blend/saturate-source-only" by "blend_saturate_source_only",
@@ -473,32 +334,6 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     }
 }
 
-/// Which states with another one for alpha are judged, besides the covering array.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Samples {
-    /// The seed that they are drawn by.
-    pub seed: u64,
-    /// How many of the (15 × 15 × 5)².
-    pub count: u64,
-    /// Some by name.
-    pub named: Vec<Separate>,
-}
-
-impl Default for Samples {
-    fn default() -> Self {
-        Self { seed: 1, count: 256, named: vec![] }
-    }
-}
-
-/// The states that an id below `blend/separate` names.
-#[must_use]
-pub fn separate_of(id: &str) -> Option<Separate> {
-    let mut segments = id.strip_prefix("blend/separate/")?.split('/');
-    let color = State::from_segment(segments.next()?)?;
-    let alpha = State::from_segment(segments.next()?)?;
-    Some(Separate { color, alpha })
-}
-
 /// Each of the 1,125 states as a formula, those that ignore their factors too.
 #[must_use]
 pub fn every_state() -> Vec<Box<dyn AnyFormula>> {
@@ -521,69 +356,9 @@ pub(super) fn visit_separate(samples: &Samples, visitor: &mut impl Visitor) {
     }
 }
 
-/// States of which every pair of values of two of the six parameters (two factors and an equation for the colour, the same
-/// for the alpha) stands in some row *where neither is ignored*.
-///
-/// 225 rows hold the factors as an orthogonal array of strength 2: over i, j in ℤ/15 the columns i, j, i + j and i + 2j, of
-/// which any two determine i and j, so that every pair of factors stands in exactly one row. Their equations read the
-/// factors. 60 rows put MIN and MAX on one side and every factor on the other, 4 on both sides.
-#[must_use]
-pub fn covering_array() -> Vec<Separate> {
-    let factor = |n: usize| Factor::ALL[n % 15];
-    let (reading, ignoring) =
-        ([Equation::Add, Equation::Subtract, Equation::ReverseSubtract], [Equation::Min, Equation::Max]);
-    let state = |equation, src, dst| State { equation, src, dst };
-    let mut rows = vec![];
-    for (i, j) in (0..15).flat_map(|i| (0..15).map(move |j| (i, j))) {
-        rows.push(Separate {
-            color: state(reading[(i + j / 3) % 3], factor(i), factor(j)),
-            alpha: state(reading[(i / 3 + j) % 3], factor(i + j), factor(i + 2 * j)),
-        });
-    }
-    for equation in ignoring {
-        let ignores = state(equation, Factor::One, Factor::One);
-        for i in 0..15 {
-            let reads = state(reading[i % 3], factor(i), factor(i + 1));
-            rows.push(Separate { color: ignores, alpha: reads });
-            rows.push(Separate { color: reads, alpha: ignores });
-        }
-        rows.extend(ignoring.map(|other| Separate { color: ignores, alpha: state(other, Factor::One, Factor::One) }));
-    }
-    rows
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The six parameters, and which of them are ignored.
-    fn parameters(state: Separate) -> [(u32, bool); 6] {
-        let of = |state: State| {
-            let ignored = state.equation.ignores_factors();
-            [(state.equation.code(), false), (state.src.code(), ignored), (state.dst.code(), ignored)]
-        };
-        let ([a, b, c], [d, e, f]) = (of(state.color), of(state.alpha));
-        [a, b, c, d, e, f]
-    }
-
-    #[test]
-    fn every_pair_of_parameters_takes_effect_in_some_row() {
-        let rows: Vec<_> = covering_array().into_iter().map(parameters).collect();
-        assert_eq!(rows.len(), 225 + 60 + 4);
-        let levels = [5, 15, 15, 5, 15, 15];
-        for (p, q) in (0..6).flat_map(|p| (p + 1..6).map(move |q| (p, q))) {
-            let mut seen = BTreeSet::new();
-            for row in &rows {
-                if !row[p].1 && !row[q].1 {
-                    seen.insert((row[p].0, row[q].0));
-                }
-            }
-            // A factor beside its own side's MIN or MAX is ignored, so those pairs have no effect to cover.
-            let same_side = p / 3 == q / 3 && p % 3 == 0;
-            let wanted = if same_side { 3 * 15 } else { levels[p] * levels[q] };
-            assert_eq!(seen.len(), wanted, "parameters {p} and {q}");
-        }
-    }
 
     #[test]
     fn corners_are_all_there_in_4096_pairs() {
