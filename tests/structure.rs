@@ -54,7 +54,7 @@ fn every_formula_has_its_shader_function_with_its_signature() {
             }
             // The blend unit alone: no shader function.
             Kind::Blend(_) if spec.row_stages().is_empty() => assert_eq!(spec.function, "", "{}", spec.id),
-            Kind::Arithmetic | Kind::Blend(_) => {
+            Kind::Arithmetic | Kind::Blend(_) | Kind::Depth(_) => {
                 let kernel = Kernel::new(&shaders, &format!("{}.wgsl", spec.family()), spec.function);
                 let kernel = kernel.unwrap_or_else(|error| panic!("{}: {error}", spec.id));
                 assert_eq!(kernel.inputs, spec.selectors.len() + spec.input_len(), "{}", spec.id);

@@ -5,8 +5,9 @@ use crate::cases::{Kind, Spec, Stage};
 use crate::devices::{Known, known};
 use crate::select::Member;
 use lightmeter_gpu::{
-    Adapter, ArithmeticPipeline, BlendUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Route, Shaders,
+    Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Route, Shaders,
 };
+use lightmeter_scene::depth::DepthTest;
 use lightmeter_scene::target::TargetFormat;
 use serde::Serialize;
 
@@ -38,6 +39,8 @@ struct Device {
     gpu: Gpu,
     /// The blend unit with its pipelines, kept from group to group.
     blend: Option<BlendUnit>,
+    /// The depth test with its pipelines.
+    depth: Option<DepthUnit>,
 }
 
 /// The stages of a subject, compiled for one group of formulas.
@@ -50,6 +53,8 @@ pub struct Compiled {
 pub enum Work {
     /// A shader over rows.
     Arithmetic(ArithmeticPipeline),
+    /// The depth test, which the subject holds.
+    Depth,
     /// The rasteriser.
     Raster(RasterPipeline),
     /// The formulas in f32, on this processor.
@@ -71,6 +76,13 @@ pub struct Rows<'a> {
 }
 
 impl Rows<'_> {
+    fn depth_test(&self, member: usize) -> DepthTest {
+        let Kind::Depth(test) = self.members[member].spec.kind else {
+            unreachable!("only depth tests reach the depth test")
+        };
+        test
+    }
+
     fn stride(&self) -> usize {
         self.inputs.len() / self.of.len()
     }
@@ -80,6 +92,8 @@ impl Rows<'_> {
 pub enum Job {
     /// A pending batch.
     Arithmetic(Pending),
+    /// A pending batch of the depth test.
+    Depth(Pending),
     /// Pending batches of the rasteriser, each with its number of cases.
     Raster(Vec<(usize, Pending)>),
     /// Done.
@@ -98,7 +112,7 @@ impl Subject {
             backend: adapter.backend,
             driver: adapter.driver.clone(),
         };
-        let gpu = Some(Device { gpu: adapter.open()?, blend: None });
+        let gpu = Some(Device { gpu: adapter.open()?, blend: None, depth: None });
         Ok(Self { identity, known: known(adapter), gpu, rules: Rules::RIGHT })
     }
 
@@ -199,6 +213,11 @@ impl Subject {
         let device = self.gpu.as_mut().expect("only a device compiles work for a device");
         match work {
             Work::Arithmetic(pipeline) => Ok(Job::Arithmetic(pipeline.submit(&device.gpu, rows.selected))),
+            Work::Depth => {
+                let unit = device.depth.as_mut().expect("the depth test is made before its work");
+                let tests: Vec<DepthTest> = rows.of.iter().map(|&member| rows.depth_test(member)).collect();
+                Ok(Job::Depth(unit.submit(&device.gpu, &tests, rows.inputs)?))
+            }
             Work::Raster(pipeline) => {
                 let (mut jobs, mut rest) = (vec![], rows.inputs);
                 while !rest.is_empty() {
@@ -226,6 +245,7 @@ impl Subject {
             (Work::Arithmetic(pipeline), Job::Arithmetic(pending)) => {
                 Ok(pipeline.outputs(pending.wait(gpu())?, rows.of.len()))
             }
+            (Work::Depth, Job::Depth(pending)) => Ok(DepthUnit::outputs(&pending.wait(gpu())?, rows.of.len())),
             (Work::Raster(pipeline), Job::Raster(jobs)) => {
                 let (mut words, mut rest) = (vec![], rows.inputs);
                 for (count, pending) in jobs {
@@ -263,7 +283,12 @@ impl Device {
         let programmable = match stage {
             Stage::Compute => lightmeter_gpu::Stage::Compute,
             Stage::Fragment => lightmeter_gpu::Stage::Fragment,
-            Stage::FixedFunction => unreachable!("the blend unit is no evaluation of rows"),
+            Stage::FixedFunction => {
+                if self.depth.is_none() {
+                    self.depth = Some(DepthUnit::new(&self.gpu, shaders)?);
+                }
+                return Ok(Ok(Work::Depth));
+            }
             Stage::Raster => {
                 let Kind::Raster(raster) = kind else { return Ok(Err("not a formula of the rasteriser")) };
                 return Ok(RasterPipeline::new(&self.gpu, shaders, raster)?.map(Work::Raster));

@@ -4,7 +4,7 @@
 //! one pixel are layers that overlap in order. Destinations are uploaded and results read back in the target's own bits, so
 //! that nothing but the unit itself converts them.
 
-use crate::device::Gpu;
+use crate::device::{Gpu, middle};
 use crate::error::Error;
 use crate::readback::{Pending, staging};
 use crate::shaders::Shaders;
@@ -211,7 +211,7 @@ impl Lane {
         gpu.upload(&drawn, &batch.destinations, pixel_bytes);
         let vertex = wgpu::BufferUsages::VERTEX;
         let sources = gpu.buffer(bytemuck::cast_slice(&batch.sources), vertex);
-        let places: Vec<[f32; 2]> = batch.pixels.iter().map(|&pixel| place(pixel, height)).collect();
+        let places: Vec<[f32; 2]> = batch.pixels.iter().map(|&pixel| middle(pixel, WIDTH, height)).collect();
         let places = gpu.buffer(bytemuck::cast_slice(&places), vertex);
         let instances: Vec<u8> = batch.draws.iter().flat_map(|draw| instance(target, draw)).collect();
         let instances = gpu.buffer(&instances, vertex);
@@ -315,14 +315,6 @@ fn instance(target: TargetFormat, draw: &Draw) -> [u8; INSTANCE_BYTES] {
     let [r, g, b, a] = draw.constant.map(f32::to_bits);
     let words = [r, g, b, a, draw.state.color.src.code(), u32::from(target.is_unorm())];
     bytemuck::cast(words)
-}
-
-/// The middle of a pixel in clip coordinates.
-fn place(pixel: u32, height: u32) -> [f32; 2] {
-    let middle = |pixel: u32, size: u32| f64::from(2 * pixel + 1) / f64::from(size);
-    #[expect(clippy::cast_possible_truncation, reason = "exact: sizes are powers of two")]
-    let place = [(middle(pixel % WIDTH, WIDTH) - 1.0) as f32, (1.0 - middle(pixel / WIDTH, height)) as f32];
-    place
 }
 
 const fn operation(equation: Equation) -> wgpu::BlendOperation {

@@ -197,6 +197,14 @@ impl Gpu {
     }
 }
 
+/// The middle of a pixel of a packed target in clip coordinates: exact where width and height are powers of two.
+pub(crate) fn middle(pixel: u32, width: u32, height: u32) -> [f32; 2] {
+    let middle = |pixel: u32, size: u32| f64::from(2 * pixel + 1) / f64::from(size);
+    #[expect(clippy::cast_possible_truncation, reason = "exact: sizes are powers of two")]
+    let middle = [(middle(pixel % width, width) - 1.0) as f32, (1.0 - middle(pixel / width, height)) as f32];
+    middle
+}
+
 fn note(failure: &Mutex<Option<String>>, message: String) {
     failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
 }

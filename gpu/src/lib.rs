@@ -7,6 +7,7 @@
 mod adapters;
 mod arithmetic;
 mod blend_unit;
+mod depth_unit;
 mod device;
 mod error;
 mod kernel;
@@ -17,6 +18,7 @@ mod shaders;
 pub use adapters::{Adapter, adapters, vulkan_adapters};
 pub use arithmetic::{ArithmeticPipeline, Stage};
 pub use blend_unit::{Batch, BlendUnit, Draw, Route, routes};
+pub use depth_unit::{DEPTH_OUTPUTS, DepthUnit};
 pub use device::Gpu;
 pub use error::Error;
 pub use kernel::Kernel;

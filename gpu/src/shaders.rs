@@ -5,13 +5,15 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The files that are built in: a formula family each, three that drive fixed hardware, and the probes.
-pub const FILES: [(&str, &str); 11] = [
+/// The files that are built in: a formula family each, four that drive fixed hardware, and the probes.
+pub const FILES: [(&str, &str); 13] = [
     ("attenuation.wgsl", include_str!("shaders/attenuation.wgsl")),
     ("blend.wgsl", include_str!("shaders/blend.wgsl")),
     ("blend_unit.wgsl", include_str!("shaders/blend_unit.wgsl")),
     ("blend_unit_dual.wgsl", include_str!("shaders/blend_unit_dual.wgsl")),
     ("color.wgsl", include_str!("shaders/color.wgsl")),
+    ("depth.wgsl", include_str!("shaders/depth.wgsl")),
+    ("depth_unit.wgsl", include_str!("shaders/depth_unit.wgsl")),
     ("fog.wgsl", include_str!("shaders/fog.wgsl")),
     ("interpolation.wgsl", include_str!("shaders/interpolation.wgsl")),
     ("lighting.wgsl", include_str!("shaders/lighting.wgsl")),
@@ -123,8 +125,9 @@ impl Shaders {
 }
 
 /// The entry points that fixed hardware is driven by.
-const ENTRY_POINTS: [(&str, &[&str]); 3] = [
+const ENTRY_POINTS: [(&str, &[&str]); 4] = [
     ("blend_unit.wgsl", &["unit_source", "unit_folded_source", "unit_color"]),
+    ("depth_unit.wgsl", &["unit_old", "unit_new", "unit_first", "unit_second", "unit_screen", "unit_left"]),
     ("blend_unit_dual.wgsl", &["unit_dual_source", "unit_color"]),
     (
         "raster.wgsl",

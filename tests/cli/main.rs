@@ -106,6 +106,16 @@ const MISTAKES: &[(&str, &str, &str, &str, &str)] = &[
         "discard; return colored.color;",
         "blend/mode-*",
     ),
+    ("equal taken for greater", "depth.wgsl", "if drawn == stored {", "if false {", "depth"),
+    ("less taken for equal", "depth.wgsl", "drawn == stored", "drawn <= stored", "depth"),
+    ("a depth compared unclamped", "depth.wgsl", "saturate(new_depth)", "new_depth", "depth"),
+    (
+        "another depth than was asked for",
+        "depth_unit.wgsl",
+        "Written(2u, in.depth)",
+        "Written(2u, 0.5 * in.depth)",
+        "depth",
+    ),
     (
         "a source folded unclamped",
         "blend_unit.wgsl",

@@ -6,6 +6,7 @@ mod attenuation;
 mod blend;
 mod color;
 mod condition;
+mod depth;
 mod fog;
 mod interpolation;
 mod lighting;

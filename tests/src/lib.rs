@@ -214,7 +214,7 @@ fn control_row(member: &Member, row: &[f32]) {
     let mut legal = vec![Accept::ANY; outputs];
     match member.spec.kind {
         Kind::Raster(kind) => formula.raster_interval(kind, row, WGSL.subpixel_bits, &mut legal),
-        Kind::Arithmetic | Kind::Blend(_) => formula.interval(row, &mut legal),
+        Kind::Arithmetic | Kind::Blend(_) | Kind::Depth(_) => formula.interval(row, &mut legal),
     }
     for (reference, legal) in reference.iter().zip(&legal).filter(|(_, legal)| !legal.is_any()) {
         control_value(&member.spec.id, *reference, legal);

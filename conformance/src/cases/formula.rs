@@ -43,7 +43,7 @@ pub trait AnyFormula: Send + Sync {
     fn promised_interval(&self, kind: Kind, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
         match kind {
             Kind::Raster(raster) => self.raster_interval(raster, inputs, profile.subpixel_bits, out),
-            Kind::Arithmetic | Kind::Blend(_) => self.interval(inputs, out),
+            Kind::Arithmetic | Kind::Blend(_) | Kind::Depth(_) => self.interval(inputs, out),
         }
     }
 

@@ -5,6 +5,7 @@
 pub mod attenuation;
 pub mod blend;
 pub mod color;
+pub mod depth;
 pub mod fog;
 pub mod interpolation;
 pub mod lighting;
@@ -22,7 +23,8 @@ pub use rows::{Reader, Writer};
 pub use spec::{Domain, Hard, Input, Kind, Output, Shape, Spec, Stage};
 
 /// The families, in the order of reports.
-pub const FAMILIES: [&str; 7] = ["interpolation", "color", "vector", "lighting", "attenuation", "fog", "blend"];
+pub const FAMILIES: [&str; 8] =
+    ["interpolation", "color", "vector", "lighting", "attenuation", "fog", "depth", "blend"];
 
 /// Shows every formula of every family to a visitor, which may then evaluate it in an arithmetic of its own.
 pub fn visit(visitor: &mut impl Visitor) {
@@ -32,6 +34,7 @@ pub fn visit(visitor: &mut impl Visitor) {
     lighting::visit(visitor);
     attenuation::visit(visitor);
     fog::visit(visitor);
+    depth::visit(visitor);
     blend::visit(visitor);
 }
 

@@ -2,6 +2,7 @@
 
 use super::blend::Program;
 use lightmeter_gpu::Raster;
+use lightmeter_scene::depth::DepthTest;
 use serde::Serialize;
 
 /// Where a formula is evaluated on a renderer.
@@ -12,7 +13,7 @@ pub enum Stage {
     Compute,
     /// Arithmetic in a fragment shader.
     Fragment,
-    /// The blend unit.
+    /// The blend unit, or the depth test.
     FixedFunction,
     /// The rasteriser.
     Raster,
@@ -38,6 +39,8 @@ pub enum Kind {
     Arithmetic,
     /// By the blend unit, and as arithmetic where there is a function for it.
     Blend(Program),
+    /// As arithmetic and by the depth test.
+    Depth(DepthTest),
     /// By the rasteriser alone.
     Raster(Raster),
 }
@@ -223,7 +226,7 @@ impl Spec {
         match self.kind {
             Kind::Arithmetic => &[Stage::Compute, Stage::Fragment],
             Kind::Blend(_) if self.function.is_empty() => &[Stage::FixedFunction],
-            Kind::Blend(_) => &[Stage::FixedFunction, Stage::Compute, Stage::Fragment],
+            Kind::Blend(_) | Kind::Depth(_) => &[Stage::FixedFunction, Stage::Compute, Stage::Fragment],
             Kind::Raster(_) => &[Stage::Raster],
         }
     }
@@ -232,7 +235,7 @@ impl Spec {
     #[must_use]
     pub fn row_stages(&self) -> &'static [Stage] {
         let stages = self.stages();
-        if stages[0] == Stage::FixedFunction { &stages[1..] } else { stages }
+        if matches!(self.kind, Kind::Blend(_)) { &stages[1..] } else { stages }
     }
 
     /// The family: the first segment of the id.

@@ -4,5 +4,6 @@
 //! therefore depend on this crate without sharing any arithmetic.
 
 pub mod blend;
+pub mod depth;
 pub mod raster;
 pub mod target;
