@@ -126,7 +126,7 @@ fn draws(tests: &[DepthTest]) -> Vec<(DepthTest, Range<u32>)> {
     draws
 }
 
-const fn compare(compare: Compare) -> wgpu::CompareFunction {
+pub(crate) const fn compare_function(compare: Compare) -> wgpu::CompareFunction {
     match compare {
         Compare::Never => wgpu::CompareFunction::Never,
         Compare::Less => wgpu::CompareFunction::Less,
@@ -163,7 +163,7 @@ fn pipeline(
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(test.write),
-            depth_compare: Some(compare(test.compare)),
+            depth_compare: Some(compare_function(test.compare)),
             stencil: Default::default(),
             bias: Default::default(),
         }),

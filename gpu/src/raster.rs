@@ -1,10 +1,12 @@
 //! Cases that only a rasteriser can answer: each draws its primitive and looks at one pixel of a target.
 
 use crate::arithmetic::{bind, cleared, read_target};
+use crate::depth_unit::compare_function;
 use crate::device::Gpu;
 use crate::error::Error;
 use crate::readback::Pending;
 use crate::shaders::Shaders;
+use lightmeter_scene::depth::Compare;
 use lightmeter_scene::raster::{Provoking, Topology};
 
 /// Width and height of the target in pixels; the viewport is all of it.
@@ -39,6 +41,8 @@ pub enum Raster {
         /// Whether counter-clockwise triangles are front faces.
         front_is_ccw: bool,
     },
+    /// Which of two fragments is seen, 1 or 2, where the same triangle is drawn twice, the second time by a depth test.
+    SameDepth(Compare),
     /// A flat attribute.
     Flat {
         /// The topology that is drawn.
@@ -53,9 +57,12 @@ impl Raster {
     #[must_use]
     pub const fn inputs(self) -> usize {
         match self {
-            Self::TriangleAttributes | Self::TrianglePosition | Self::Facing | Self::Clipped | Self::Culled { .. } => {
-                17
-            }
+            Self::TriangleAttributes
+            | Self::TrianglePosition
+            | Self::Facing
+            | Self::Clipped
+            | Self::Culled { .. }
+            | Self::SameDepth(_) => 17,
             Self::LineAttributes => 12,
             Self::Quad => 10,
             Self::OwnDepth => 3,
@@ -81,7 +88,7 @@ impl Raster {
             Self::Quad => ("raster_quad_vertex", "raster_count"),
             Self::OwnDepth => ("raster_depth_vertex", "raster_own_depth"),
             Self::Facing => ("raster_triangle_vertex", "raster_facing"),
-            Self::Clipped | Self::Culled { .. } => ("raster_triangle_vertex", "raster_covered"),
+            Self::Clipped | Self::Culled { .. } | Self::SameDepth(_) => ("raster_triangle_vertex", "raster_covered"),
             Self::Flat { provoking: Provoking::First, .. } => ("raster_flat_first_vertex", "raster_flat_fragment"),
             Self::Flat { provoking: Provoking::Last, .. } => ("raster_flat_last_vertex", "raster_flat_fragment"),
         }
@@ -120,6 +127,8 @@ impl Raster {
 pub struct RasterPipeline {
     kind: Raster,
     pipeline: wgpu::RenderPipeline,
+    /// Draws every case once more.
+    again: Option<wgpu::RenderPipeline>,
     /// Turns what was drawn into bits, where it was not drawn as bits.
     reader: Option<wgpu::RenderPipeline>,
     vertices: u32,
@@ -151,12 +160,18 @@ impl RasterPipeline {
         }
         let module = gpu.module(FILE, source);
         let (topology, vertices) = kind.drawn(gpu.is_gl);
-        let pipeline = pipeline(gpu, &module, kind, entries, topology);
+        let once = pipeline(gpu, &module, kind, entries, topology, Compare::Always);
+        let again = match kind {
+            Raster::SameDepth(compare) => {
+                Some(pipeline(gpu, &module, kind, (entries.0, "raster_covered_again"), topology, compare))
+            }
+            _ => None,
+        };
         let reader = matches!(kind, Raster::OwnDepth | Raster::Quad)
             .then(|| screen_pipeline(gpu, &module, "raster_screen", "raster_result"));
         gpu.check_shader(FILE)?;
         let selector = if let Raster::Flat { topology, .. } = kind { topology.code() } else { 0 };
-        Ok(Ok(Self { kind, pipeline, reader, vertices, selector }))
+        Ok(Ok(Self { kind, pipeline: once, again, reader, vertices, selector }))
     }
 
     /// Draws every case that can share a target: as many of the rows, from the first on, as look at pixels of their own.
@@ -172,20 +187,25 @@ impl RasterPipeline {
         let drawn = gpu.target(TARGET_SIZE, TARGET_SIZE, self.format());
         let view = drawn.create_view(&Default::default());
         let is_depth = self.kind == Raster::OwnDepth;
+        let tested =
+            self.again.as_ref().map(|_| gpu.target(TARGET_SIZE, TARGET_SIZE, DEPTH).create_view(&Default::default()));
+        let depth = if is_depth { Some(&view) } else { tested.as_ref() };
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 color_attachments: &if is_depth { vec![] } else { vec![Some(self.attachment(&view))] },
-                depth_stencil_attachment: is_depth.then(|| clear_depth(&view)),
+                depth_stencil_attachment: depth.map(clear_depth),
                 ..Default::default()
             });
-            pass.set_pipeline(&self.pipeline);
-            let layout = self.pipeline.get_bind_group_layout(0);
-            pass.set_bind_group(0, &bind(gpu, &layout, &[&buffer, &stride]), &[]);
-            for (case, row) in (0..).zip(rows.chunks_exact(inputs)) {
-                let [x, y] = pixel(row);
-                pass.set_scissor_rect(x, y, 1, 1);
-                pass.draw(0..self.vertices, case..case + 1);
+            for pipeline in [Some(&self.pipeline), self.again.as_ref()].into_iter().flatten() {
+                pass.set_pipeline(pipeline);
+                let layout = pipeline.get_bind_group_layout(0);
+                pass.set_bind_group(0, &bind(gpu, &layout, &[&buffer, &stride]), &[]);
+                for (case, row) in (0..).zip(rows.chunks_exact(inputs)) {
+                    let [x, y] = pixel(row);
+                    pass.set_scissor_rect(x, y, 1, 1);
+                    pass.draw(0..self.vertices, case..case + 1);
+                }
             }
         }
         let pending = match &self.reader {
@@ -264,8 +284,10 @@ fn pipeline(
     kind: Raster,
     (vertex, fragment): (&str, &str),
     topology: wgpu::PrimitiveTopology,
+    compare: Compare,
 ) -> wgpu::RenderPipeline {
     let is_depth = kind == Raster::OwnDepth;
+    let tests_depth = is_depth || matches!(kind, Raster::SameDepth(_));
     let add = wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::One,
         dst_factor: wgpu::BlendFactor::One,
@@ -315,10 +337,10 @@ fn pipeline(
             buffers: &[],
         },
         primitive,
-        depth_stencil: is_depth.then(|| wgpu::DepthStencilState {
+        depth_stencil: tests_depth.then(|| wgpu::DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Always),
+            depth_compare: Some(compare_function(compare)),
             stencil: Default::default(),
             bias: Default::default(),
         }),

@@ -142,6 +142,7 @@ const ENTRY_POINTS: [(&str, &[&str]); 4] = [
             "raster_position",
             "raster_facing",
             "raster_covered",
+            "raster_covered_again",
             "raster_count",
             "raster_own_depth",
             "raster_flat_fragment",

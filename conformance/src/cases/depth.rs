@@ -1,11 +1,12 @@
 //! Cases of the depth test: every compare function, with and without writing. Formulas: `lightmeter_reference::depth`.
 
-use super::Visitor;
 use super::formula::Formula;
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
+use super::{Visitor, raster};
+use lightmeter_gpu::Raster;
 use lightmeter_reference::Real;
-use lightmeter_reference::depth::test;
+use lightmeter_reference::depth::{passes, test};
 use lightmeter_scene::depth::{Compare, DepthTest};
 
 /// A fragment over another.
@@ -85,8 +86,38 @@ const fn hard(by: DepthTest) -> &'static [Hard] {
     }
 }
 
+/// A triangle over itself: its depths, whatever the rasteriser makes of them, meet themselves.
+#[derive(Clone, Copy, Debug)]
+struct OverItself(Compare);
+
+impl Formula for OverItself {
+    fn spec(&self) -> Spec {
+        const OUTPUTS: &[Output] = &[Output::new("seen", Shape::Scalar, "1")];
+        Spec {
+            id: format!("depth/same-geometry-{}", self.0.name()),
+            text: "seen = 2 if a triangle that is drawn again passes against itself, else 1",
+            source: "000 §6.6",
+            function: "",
+            kind: Kind::Raster(Raster::SameDepth(self.0)),
+            selectors: vec![],
+            inputs: raster::TRIANGLE,
+            outputs: OUTPUTS,
+            fit: Some(raster::triangle_around_the_pixel),
+            hard: &[],
+        }
+    }
+
+    fn evaluate<R: Real>(&self, _x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
+        let depth = R::literal(0.5);
+        out.scalar(passes(self.0, depth, depth) + R::literal(1.0));
+    }
+}
+
 pub(super) fn visit(visitor: &mut impl Visitor) {
     for by in DepthTest::all() {
         visitor.formula(OverAnother(by));
+    }
+    for compare in Compare::ALL {
+        visitor.formula(OverItself(compare));
     }
 }

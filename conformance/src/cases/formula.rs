@@ -84,7 +84,7 @@ impl<F: Formula> AnyFormula for F {
 
     fn raster_interval(&self, kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]) {
         match kind {
-            Raster::Flat { .. } => run(self, inputs, out),
+            Raster::Flat { .. } | Raster::SameDepth(_) => run(self, inputs, out),
             _ => raster::interval(kind, inputs, subpixel_bits, out),
         }
     }

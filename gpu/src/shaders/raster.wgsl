@@ -25,7 +25,8 @@ fn raster_clip(window: vec2f) -> vec4f {
 }
 
 struct Attributes {
-    @builtin(position) position: vec4f,
+    // The same in every pipeline, so that a triangle drawn again has the depths that it had.
+    @builtin(position) @invariant position: vec4f,
     @location(0) @interpolate(perspective) perspective: f32,
     @location(1) @interpolate(linear) linear: f32,
 }
@@ -61,6 +62,11 @@ fn raster_facing(in: Attributes, @builtin(front_facing) front: bool) -> @locatio
 @fragment
 fn raster_covered(in: Attributes) -> @location(0) vec4u {
     return vec4u(bitcast<u32>(1.0), 0u, 0u, 0u);
+}
+
+@fragment
+fn raster_covered_again(in: Attributes) -> @location(0) vec4u {
+    return vec4u(bitcast<u32>(2.0), 0u, 0u, 0u);
 }
 
 // Row: four corners of a quadrilateral in window coordinates, drawn as the triangles 0 1 2 and 0 2 3 and counted.

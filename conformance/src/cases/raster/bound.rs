@@ -42,7 +42,9 @@ pub(in crate::cases) fn interval(kind: Raster, inputs: &[f32], subpixel_bits: u3
         }
         Raster::Clipped => out[0] = clipped(inputs, snap),
         Raster::OwnDepth => out[0] = interpolation::frag_depth(Accept::input(inputs[0])),
-        Raster::Flat { .. } => unreachable!("a flat attribute has no tolerance: its interval is the formula's own"),
+        Raster::Flat { .. } | Raster::SameDepth(_) => {
+            unreachable!("a flat attribute and a depth met again have no tolerance: the interval is the formula's own")
+        }
     }
 }
 

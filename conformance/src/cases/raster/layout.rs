@@ -20,7 +20,7 @@ fn center(row: &[f32]) -> [f64; 2] {
     [f64::from(row[row.len() - 2]) + 0.5, f64::from(row[row.len() - 1]) + 0.5]
 }
 
-pub(super) fn triangle_around_the_pixel(row: &mut [f32]) {
+pub(in crate::cases) fn triangle_around_the_pixel(row: &mut [f32]) {
     for k in 0..3 {
         row[4 * k + 2] = 0.05 + 0.9 * row[4 * k + 2];
     }

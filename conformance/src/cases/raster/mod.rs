@@ -10,10 +10,8 @@ use super::interpolation::{ATTR, ATTRIBUTE, attr, half_pixels, window};
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Input, Kind, Output, Shape, Spec};
 pub(super) use bound::interval;
-use layout::{
-    line_through_the_pixel, quad_around_the_pixel, quad_on_the_grid, triangle_across_the_volume,
-    triangle_around_the_pixel,
-};
+pub(super) use layout::triangle_around_the_pixel;
+use layout::{line_through_the_pixel, quad_around_the_pixel, quad_on_the_grid, triangle_across_the_volume};
 use lightmeter_gpu::{Raster, TARGET_SIZE};
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::{Real, Vec2, Vector};
@@ -38,6 +36,10 @@ const fn around(name: &'static str) -> Input {
 const PIXEL: Input = Input::new("pixel", Shape::Vec2, "pixel", Domain::Pixel);
 const COVERED: Output = Output::new("covered", Shape::Scalar, "1");
 const BOTH: [Output; 2] = [Output::new("perspective", Shape::Scalar, "1"), Output::new("linear", Shape::Scalar, "1")];
+
+/// A triangle around a pixel, with an attribute at each vertex.
+pub(super) const TRIANGLE: &[Input] =
+    &[around("a"), around("b"), around("c"), Input::new("attr", Shape::Vec3, "1", ATTRIBUTE), PIXEL];
 
 macro_rules! raster_triangle {
     ($name:ident, $id:literal, $kind:expr, $fit:expr, $text:literal, [$($output:expr),*], |$x:ident, $out:ident| $body:block) => {
