@@ -3,7 +3,8 @@
 //! *Float targets.* One ULP of the format for each conversion, factor, product and sum, in acceptance intervals of
 //! [`Hardware`]. *Targets of 8 bits.* Source, constant and result are clamped to [0, 1]; what a unit that computes wide and
 //! what one that computes narrow may give ([`crate::arithmetic::fixed`]), rounded to either neighbour. *sRGB.* The
-//! destination is decoded to half an encoded step, blended wide, and either neighbour stored; alpha is linear.
+//! destination is decoded to half an encoded step, blended wide, and either neighbour stored; what passes through stays what it
+//! was; alpha is linear.
 //!
 //! Layers chain: what may be left by one is what the next is blended over, so the bound grows as it must.
 
@@ -108,6 +109,10 @@ fn legal_in_steps(
         let wide = blended::<Wide>(rules, state, source, case.constant, before);
         let narrow = blended::<Narrow>(rules, state, source, case.constant, before);
         for k in (0..4).filter(|&k| rules.mask(mask).0[k]) {
+            // What passes through, times 1 or taken by MIN or MAX, is what it was.
+            if encoded(k) && (wide[k].low(), wide[k].high()).eq(&before[k]) {
+                continue;
+            }
             let at = |linear: f64| pixel::units(target, rules.stored_as(k), linear);
             // A step that is met but for f64's own rounding is that step; in sRGB's powers a device errs by more.
             let near = if encoded(k) { -ENCODING } else { SNAP };
