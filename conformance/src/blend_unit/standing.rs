@@ -1,0 +1,391 @@
+//! What a group of blend states has come to on one subject and target: rows, verdicts, stores, failures.
+
+use super::draw::{Piece, Pixels, draw};
+use super::model::Model;
+use super::pixel::{self, Units};
+use super::policy;
+use super::rules::Rules;
+use super::run::Chunk;
+use super::store::{ENOUGH, StoreCounts};
+use super::tally::{Drawn, Outcome, Sample, Tally, explain};
+use crate::cases::Stage;
+use crate::report::{BlendState, DeviationUse, Failure, Group, Number, Report, SpecialUse, StoreUse, Tiers, Totals};
+use crate::run::Options;
+use crate::select::{CaseRef, Member};
+use crate::subject::Subject;
+use crate::tally::{KEPT_FAILURES, by_name};
+use lightmeter_gpu::Error;
+use lightmeter_scene::target::{Encoding, TargetFormat};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Failing pixels of a group that faults are tried on.
+const SAMPLES: usize = 1024;
+
+/// What a group has come to on one subject and target.
+pub(super) struct Standing {
+    pub(super) target: TargetFormat,
+    /// Why nothing is drawn.
+    lacks: Option<&'static str>,
+    tally: Tally,
+    worst: Option<(f64, String)>,
+    departure: Option<String>,
+    failures: Vec<Failure>,
+    samples: Vec<Sample>,
+    rows: Vec<BlendState>,
+    /// For each row, what its values say of how they are stored.
+    stores: Vec<[StoreCounts; 4]>,
+    special: Vec<SpecialUse>,
+    skipped: u64,
+    seconds: f64,
+    seconds_warm: Option<f64>,
+    /// Verdicts of drawn cases and of those the indeterminate ones.
+    random: (u64, u64),
+}
+
+/// The model that a subject is known to follow bit for bit on a target.
+fn declared_model(subject: &Subject, target: TargetFormat) -> Option<Model> {
+    subject.known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8)
+}
+
+impl Standing {
+    pub(super) fn new(target: TargetFormat, lacks: Option<&'static str>) -> Self {
+        Self {
+            target,
+            lacks,
+            tally: Tally::default(),
+            worst: None,
+            departure: None,
+            failures: vec![],
+            samples: vec![],
+            rows: vec![],
+            stores: vec![],
+            special: vec![],
+            skipped: 0,
+            seconds: 0.0,
+            seconds_warm: None,
+            random: (0, 0),
+        }
+    }
+
+    pub(super) fn judge(
+        &mut self,
+        subject: &mut Subject,
+        chunk: &Chunk<'_>,
+        options: &Options,
+        report: &mut Report,
+    ) -> Result<(), Error> {
+        let reasons: Vec<Option<&'static str>> = chunk
+            .pieces
+            .iter()
+            .map(|piece| Ok(self.lacks.or(subject.lacks_route(&options.shaders, piece.route)?)))
+            .collect::<Result<_, Error>>()?;
+        let live: Vec<usize> = (0..chunk.pieces.len()).filter(|&k| reasons[k].is_none()).collect();
+        let pieces: Vec<&Piece> = live.iter().map(|&k| &chunk.pieces[k]).collect();
+        let drawn = if pieces.is_empty() {
+            Pixels { pieces: vec![], seconds: 0.0, seconds_warm: None }
+        } else {
+            draw(subject, &options.shaders, self.target, &pieces, options.again)?
+        };
+        self.seconds += drawn.seconds;
+        report.timing.devices += drawn.seconds + drawn.seconds_warm.unwrap_or(0.0);
+        if let Some(warm) = drawn.seconds_warm {
+            *self.seconds_warm.get_or_insert(0.0) += warm;
+        }
+        let clock = Instant::now();
+        let (target, known) = (self.target, &subject.known);
+        let tallies: Vec<Tally> = pieces
+            .par_iter()
+            .zip(&drawn.pieces)
+            .map(|(piece, pixels)| {
+                let drawn = Drawn { program: piece.program, route: piece.route, target };
+                let mut tally = Tally::default();
+                for (place, pixel) in pixels.iter().enumerate() {
+                    tally.pixel(drawn, known, place, &piece.case(place), *pixel);
+                }
+                tally
+            })
+            .collect();
+        let mut judged = live.iter().zip(tallies.iter().zip(&drawn.pieces)).peekable();
+        for (k, reason) in reasons.iter().enumerate() {
+            let place = self.row(subject, chunk, k, *reason);
+            let row = &mut self.rows[place];
+            let Some((_, (tally, pixels))) = judged.next_if(|(live, _)| **live == k) else {
+                self.skipped += chunk.cases[k].len() as u64;
+                continue;
+            };
+            row.cases += tally.cases;
+            row.failed += tally.failed;
+            row.error_max = Number(row.error_max.0.max(tally.error_max));
+            self.stores[place].iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
+            if target.is_unorm() {
+                row.tiers.get_or_insert_default().add(&tally.tiers);
+            }
+            self.add(subject, chunk, k, tally, pixels, options);
+        }
+        report.timing.judge += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// The place of the row of a piece's state, which may have begun in the chunk before.
+    fn row(&mut self, subject: &Subject, chunk: &Chunk<'_>, k: usize, skip_reason: Option<&'static str>) -> usize {
+        let (id, route) = (&chunk.members[k].spec.id, chunk.pieces[k].route.name());
+        // A state's routes take turns block by block.
+        let known = self.rows.iter().rev().take(2).position(|row| row.id == *id && row.route == route);
+        if let Some(back) = known {
+            return self.rows.len() - 1 - back;
+        }
+        self.rows.push(BlendState {
+            id: id.clone(),
+            adapter: subject.identity.name.clone(),
+            target: self.target.name(),
+            route,
+            cases: 0,
+            failed: 0,
+            error_max: Number(0.0),
+            tiers: None,
+            skip_reason,
+        });
+        self.stores.push(<[StoreCounts; 4]>::default());
+        self.rows.len() - 1
+    }
+
+    fn add(
+        &mut self,
+        subject: &Subject,
+        chunk: &Chunk<'_>,
+        k: usize,
+        tally: &Tally,
+        pixels: &[Units],
+        options: &Options,
+    ) {
+        let (member, piece, cases) = (chunk.members[k], &chunk.pieces[k], &chunk.cases[k]);
+        self.tally.add_counts(tally);
+        let hard = cases.iter().filter(|case| matches!(case, CaseRef::Hard(_))).count() as u64;
+        self.random.0 += tally.verdicts - 4 * hard;
+        self.random.1 += tally.indeterminate.saturating_sub(4 * hard);
+        let id = |place: usize| member.case_id(cases[place]);
+        if let Some((margin, place)) = tally.worst
+            && self.worst.as_ref().is_none_or(|(most, _)| margin > *most)
+        {
+            self.worst = Some((margin, id(place)));
+        }
+        if self.departure.is_none() {
+            self.departure = tally.departure.map(id);
+        }
+        if piece.program.is_special() {
+            let on_record = |name: &str| policy::recorded(subject.known.special_record?.0, name, self.target);
+            self.special.extend(cases.iter().zip(pixels).map(|(case, pixel)| {
+                let id = member.case_id(*case);
+                let name = id.rsplit('/').next().unwrap_or_default();
+                SpecialUse {
+                    recorded: on_record(name),
+                    id,
+                    adapter: subject.identity.name.clone(),
+                    target: self.target.name(),
+                    seen: policy::observed(*pixel),
+                }
+            }));
+        }
+        let drawn = Drawn { program: piece.program, route: piece.route, target: self.target };
+        for &place in &tally.failures {
+            if self.failures.len() < KEPT_FAILURES {
+                self.failures.push(failure(
+                    member,
+                    &id(place),
+                    piece,
+                    place,
+                    pixels[place],
+                    self.target,
+                    subject,
+                    options,
+                ));
+            }
+            if self.samples.len() < SAMPLES {
+                self.samples.push(Sample { drawn, case: piece.case(place), pixel: pixels[place] });
+            }
+        }
+    }
+
+    pub(super) fn finish(self, member: &Member, subject: &Subject, report: &mut Report) {
+        if self.rows.is_empty() {
+            return;
+        }
+        let tally = &self.tally;
+        let explanation = explain(&self.samples)
+            .map(|(says, count, of)| format!("{count} of {of} failing pixels are as if {says}"))
+            .or_else(|| (!self.samples.is_empty()).then(|| "no mistake in the catalogue explains what failed".into()));
+        use_deviations(subject, self.target, tally, report);
+        let problem =
+            self.problem(subject).or_else(|| crate::run::problem(self.random, tally.verdicts, tally.indeterminate));
+        let is_unorm = self.target.is_unorm() && tally.cases > 0;
+        report.groups.push(Group {
+            id: member.spec.group().into(),
+            adapter: subject.identity.name.clone(),
+            stage: Stage::FixedFunction.name(),
+            target: Some(self.target.name()),
+            tiers: is_unorm.then_some(tally.tiers),
+            store: self.store(subject).filter(|_| is_unorm),
+            totals: Totals {
+                cases: tally.cases + self.skipped,
+                verdicts: tally.verdicts,
+                passed: tally.passed,
+                failed: tally.failed,
+                skipped: self.skipped,
+                indeterminate: tally.indeterminate,
+                expected_failures: tally.expected_failures,
+                failed_groups: u64::from(problem.is_some()),
+                ..Totals::default()
+            },
+            error_ulp_max: Number(tally.error_max),
+            margin_max: Number(self.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
+            seconds: self.seconds,
+            seconds_warm: self.seconds_warm,
+            worst: self.worst.map(|(_, id)| id),
+            skip_reason: self.lacks,
+            explanation,
+            problem,
+        });
+        report.special.extend(self.special);
+        report.failures.extend(self.failures);
+        report.blend_states.extend(self.rows);
+    }
+
+    /// How values are stored: as the declared model has them, if all are, or as most values say.
+    fn store(&self, subject: &Subject) -> Option<StoreUse> {
+        let tally = &self.tally;
+        let mut all = StoreCounts::default();
+        tally.stores.iter().for_each(|counts| all.add(counts));
+        if let Some(model) = declared_model(subject, self.target)
+            && tally.model.0 > 0
+            && tally.model.1 == 0
+        {
+            return Some(StoreUse { identified: model.name(), share: 1.0, of: tally.model.0, bias: all.bias() });
+        }
+        let (store, share) = all.likeliest();
+        (all.of >= ENOUGH).then(|| StoreUse { identified: store.name(), share, of: all.of, bias: all.bias() })
+    }
+
+    /// What is wrong with how values are stored: of a component in all states, or of one in some.
+    fn store_problem(&self) -> Option<String> {
+        let names = ["color.r", "color.g", "color.b", "color.a"];
+        let wrong = |counts: &[StoreCounts; 4], states: usize| {
+            let found: Vec<(&str, String)> = names
+                .into_iter()
+                .zip(counts)
+                .filter_map(|(name, counts)| Some((name, counts.problem(states)?)))
+                .collect();
+            let (_, first) = found.first()?;
+            let components: Vec<&str> = found.iter().map(|(name, _)| *name).collect();
+            Some(format!("{} {} {first}", components.join(", "), if found.len() > 1 { "are" } else { "is" }))
+        };
+        if let Some(problem) = wrong(&self.tally.stores, self.rows.len()) {
+            return Some(problem);
+        }
+        let mut states =
+            self.rows.iter().zip(&self.stores).filter_map(|(row, counts)| Some((&row.id, wrong(counts, 1)?)));
+        let (id, problem) = states.next()?;
+        let others = states.count();
+        let others = if others > 0 { format!(", and so in {others} other states") } else { String::new() };
+        Some(format!("in {id} {problem}{others}"))
+    }
+
+    /// The group verdict: each value may be legal and the whole still wrong.
+    fn problem(&self, subject: &Subject) -> Option<String> {
+        let tally = &self.tally;
+        if subject.known.special_record.is_some_and(|(_, this_version)| this_version)
+            && let Some(other) = self.special.iter().find(|special| !special.is_as_recorded())
+        {
+            let recorded = other.recorded.unwrap_or_default();
+            return Some(format!("{} gives {}, where {recorded} is on record for this driver", other.id, other.seen));
+        }
+        let (of, others) = tally.model;
+        if let Some(model) = declared_model(subject, self.target)
+            && others > 0
+        {
+            let first = self.departure.as_deref().unwrap_or_default();
+            let departs = format!("{others} of {of} values are not as {} has them, the first in {first}", model.name());
+            return Some(self.store_problem().map_or(departs.clone(), |stored| format!("{stored}; {departs}")));
+        }
+        if of > 0 { None } else { self.store_problem() }
+    }
+}
+
+/// Notes which named deviations a target's values needed. One that nothing in a run needs is an unexpected pass.
+fn use_deviations(subject: &Subject, target: TargetFormat, tally: &Tally, report: &mut Report) {
+    if tally.expected_failures + tally.not_deviating == 0 {
+        return;
+    }
+    for deviation in subject.known.blend_deviations.iter().filter(|deviation| deviation.target == target) {
+        let adapter = &subject.identity.name;
+        let same = |known: &&mut DeviationUse| known.name == deviation.name && known.adapter == *adapter;
+        if let Some(known) = report.deviations.iter_mut().find(same) {
+            known.excused += tally.expected_failures;
+            known.still_needed |= tally.expected_failures > 0;
+            continue;
+        }
+        report.deviations.push(DeviationUse {
+            name: deviation.name,
+            adapter: adapter.clone(),
+            reason: deviation.reason,
+            still_needed: tally.expected_failures > 0,
+            excused: tally.expected_failures,
+        });
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "a failure tells everything about its verdict")]
+fn failure(
+    member: &Member,
+    id: &str,
+    piece: &Piece,
+    place: usize,
+    pixel: Units,
+    target: TargetFormat,
+    subject: &Subject,
+    options: &Options,
+) -> Failure {
+    let expected = super::expect::expect(piece.program, target, &piece.case(place), &Rules::RIGHT);
+    let verdict = |k: usize| expected.judge(target, k, pixel[k]);
+    let k = (0..4).find(|&k| verdict(k).outcome == Outcome::Fail).unwrap_or_default();
+    let inputs = &piece.inputs[place * piece.stride..(place + 1) * piece.stride];
+    let mut bytes = vec![];
+    pixel::write(target, pixel, &mut bytes);
+    let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    Failure {
+        rerun: format!(
+            "lightmeter run '{id}' --adapter {} --target {}{}",
+            subject.identity.name,
+            target.name(),
+            options.rerun
+        ),
+        id: id.into(),
+        adapter: subject.identity.name.clone(),
+        stage: Stage::FixedFunction.name(),
+        target: Some(target.name()),
+        route: Some(piece.route.name()),
+        output: format!("color.{}", ["r", "g", "b", "a"][k]),
+        inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
+        inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
+        reference: Number(expected.reference[k]),
+        interval: [Number(expected.low[k]), Number(expected.high[k])],
+        value: Number(pixel[k]),
+        value_hex: format!("pixel bytes {hex}"),
+        unwritten: false,
+        error_ulp: Number(verdict(k).error),
+    }
+}
+
+impl BlendState {
+    /// Whether it was drawn.
+    #[must_use]
+    pub const fn is_drawn(&self) -> bool {
+        self.skip_reason.is_none()
+    }
+
+    /// Its tiers, none where it was not drawn on a target of 8 bits.
+    #[must_use]
+    pub fn tiers(&self) -> Tiers {
+        self.tiers.unwrap_or_default()
+    }
+}
