@@ -6,15 +6,7 @@
 
 use crate::algebra::{Rgb, Vec3};
 use crate::real::Real;
-
-/// Which length the fog's factor is taken of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Distance {
-    /// |z|: the depth of the point. The document's.
-    Planar,
-    /// |p|: the distance from the eye. A dialect.
-    Radial,
-}
+pub use lightmeter_scene::shading::Distance;
 
 /// The distance of a point in eye space.
 pub fn distance<R: Real>(p: Vec3<R>, kind: Distance) -> R {

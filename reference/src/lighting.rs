@@ -8,6 +8,7 @@ use crate::algebra::{Rgb, Rgba, Vec3, Vector};
 use crate::attenuation;
 use crate::real::Real;
 use crate::vector::{face_normal, halfway, halfway_unnormalised, reflect, toward};
+pub use lightmeter_scene::shading::{Gate, Specular};
 
 /// The colours of a light.
 #[derive(Clone, Copy, Debug)]
@@ -42,26 +43,6 @@ pub struct Falloff<R> {
     pub kl: R,
     /// Quadratic, 1/unit².
     pub kq: R,
-}
-
-/// Which cosine the highlight is a power of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Specular {
-    /// r·v.
-    Phong,
-    /// n·h.
-    Blinn,
-    /// n·(v + l), the halfway vector left unnormalised: a dialect of document 000.
-    BlinnUnnormalised,
-}
-
-/// Whether a surface that faces away from the light can have a highlight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Gate {
-    /// It can: what the documents write.
-    Documents,
-    /// It cannot: the highlight is 0 where n·l ≤ 0, as OpenGL's fixed function has it.
-    OpenGl,
 }
 
 /// The terms of one light at one point.

@@ -5,5 +5,8 @@
 
 pub mod blend;
 pub mod depth;
+pub mod effects;
+pub mod frame;
 pub mod raster;
+pub mod shading;
 pub mod target;
