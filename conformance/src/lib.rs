@@ -6,6 +6,7 @@ pub mod cases;
 pub mod devices;
 pub mod evaluate;
 pub mod filter;
+pub mod image;
 pub mod judge;
 pub mod report;
 pub mod run;

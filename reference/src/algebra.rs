@@ -44,6 +44,14 @@ impl<R: Copy, const N: usize> Vector<R, N> {
     }
 }
 
+impl<R: Copy, const N: usize> Vector<R, N> {
+    /// Brings each component to another arithmetic.
+    #[must_use]
+    pub fn map_to<S>(self, f: impl FnMut(R) -> S) -> Vector<S, N> {
+        Vector(self.0.map(f))
+    }
+}
+
 impl<R: Copy> Vector<R, 4> {
     /// The first three components.
     #[must_use]

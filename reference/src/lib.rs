@@ -28,6 +28,8 @@ pub mod fog;
 pub mod interpolation;
 pub mod lighting;
 pub mod real;
+pub mod render;
+pub mod texture;
 pub mod vector;
 
 pub use algebra::{Mat3, Mat4, Rgb, Rgba, Vec2, Vec3, Vec4, Vector};

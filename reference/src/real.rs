@@ -56,6 +56,12 @@ pub trait Real:
         terms.into_iter().reduce(Add::add).unwrap_or_else(|| Self::literal(0.0))
     }
 
+    /// The same of as many terms as there are.
+    #[must_use]
+    fn sum_slice(terms: &[Self]) -> Self {
+        terms.iter().copied().reduce(Add::add).unwrap_or_else(|| Self::literal(0.0))
+    }
+
     /// x₀ · x₁ · … in any order.
     #[must_use]
     fn product<const N: usize>(factors: [Self; N]) -> Self {
@@ -95,6 +101,15 @@ pub trait Real:
     fn lobe(self, exponent: Self) -> Self {
         let zero = Self::literal(0.0);
         Self::if_ge(zero, self, || zero, || self.pow(exponent))
+    }
+
+    /// `then` of the greatest whole number that is ≤ self; the hull of several where an interval holds more than one.
+    fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T;
+
+    /// Whether self ≤ bound without doubt, so that what is 0 there need not be computed.
+    #[must_use]
+    fn is_at_most(self, _bound: f64) -> bool {
+        false
     }
 
     /// Names an intermediate value for an arithmetic that records them; the value is unchanged.
@@ -163,6 +178,12 @@ macro_rules! plain_real {
                 otherwise: impl FnOnce() -> T,
             ) -> T {
                 if a >= b { then() } else { otherwise() }
+            }
+            fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T {
+                then(self.floor().into())
+            }
+            fn is_at_most(self, bound: f64) -> bool {
+                f64::from(self) <= bound
             }
         }
     };

@@ -10,6 +10,7 @@ mod depth;
 mod fog;
 mod interpolation;
 mod lighting;
+mod scene;
 mod soundness;
 mod vector;
 

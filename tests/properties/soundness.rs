@@ -134,7 +134,7 @@ impl Div for Draw {
 }
 
 /// Any order of a chain: two of what is left are combined until one is.
-fn chain<const N: usize>(items: [Draw; N], combine: impl Fn(Draw, Draw) -> Draw) -> Draw {
+fn chain(items: &[Draw], combine: impl Fn(Draw, Draw) -> Draw) -> Draw {
     let mut left = items.to_vec();
     while left.len() > 1 {
         let a = left.swap_remove(below(left.len()));
@@ -193,11 +193,17 @@ impl Real for Draw {
     fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {
         if a.value >= b.value { then() } else { otherwise() }
     }
+    fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T {
+        then(self.value.floor())
+    }
     fn sum<const N: usize>(terms: [Self; N]) -> Self {
-        chain(terms, Add::add)
+        chain(&terms, Add::add)
+    }
+    fn sum_slice(terms: &[Self]) -> Self {
+        if terms.is_empty() { Self::of(0.0) } else { chain(terms, Add::add) }
     }
     fn product<const N: usize>(factors: [Self; N]) -> Self {
-        chain(factors, Mul::mul)
+        chain(&factors, Mul::mul)
     }
     fn mix(a: Self, b: Self, t: Self) -> Self {
         if coin() { a + t * (b - a) } else { a * (Self::of(1.0) - t) + b * t }

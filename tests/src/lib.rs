@@ -1,5 +1,7 @@
 //! What the property tests share: inputs as proptest strategies, and their evaluation in one dispatch.
 
+pub mod frames;
+
 use lightmeter::arithmetic::Accept;
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::cases::{AnyFormula, Domain, Kind, Spec, Stage};

@@ -15,6 +15,7 @@
 #![expect(clippy::float_cmp, reason = "ends of intervals are compared exactly: a point is a point to the last bit")]
 
 use super::format::{F32, Format};
+use super::paths;
 use super::profile::{Excess, GrowingUlp, current};
 use lightmeter_reference::{Components, Real};
 use std::marker::PhantomData;
@@ -200,6 +201,16 @@ impl<F: Format> Accept<F> {
 }
 
 impl<F: Format> Accept<F> {
+    /// [`Accept::sum_by_terms`] without the terms that are exactly 0, which round nothing.
+    fn sum_of_hardware(terms: &[Self]) -> Self {
+        let rest: Vec<Self> = terms.iter().copied().filter(|term| !term.is_exactly(0.0)).collect();
+        match rest[..] {
+            [] => Self::exactly(0.0),
+            [x] => x,
+            _ => Self::sum_by_terms(&rest),
+        }
+    }
+
     /// A sum that errs by one ULP of its terms' magnitudes for each addition: fixed hardware's bound does not follow from
     /// roundings. v − ε|v| grows with v, so the ends of the terms give the ends of the sum.
     fn sum_by_terms(terms: &[Self]) -> Self {
@@ -387,34 +398,52 @@ impl<F: Format> Real for Accept<F> {
         } else if a.high < b.low {
             otherwise()
         } else {
-            then().zip(otherwise(), Self::hull)
+            paths::choose(then, otherwise, |a, b| a.zip(b, Self::hull))
         }
     }
 
+    fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T {
+        // More texels than this lie within no interval that is of use.
+        const MOST: f64 = 64.0;
+        let (first, last) = (self.low.floor(), self.high.floor());
+        if last - first <= MOST {
+            return paths::whole(first, last, then, |a, b| a.zip(b, Self::hull));
+        }
+        then(0.0).zip(then(0.0), |_, _| Self::ANY)
+    }
+
+    fn is_at_most(self, bound: f64) -> bool {
+        self.high <= bound && !self.is_any()
+    }
+
+    #[inline]
     fn sum<const N: usize>(terms: [Self; N]) -> Self {
-        // Adding an exact 0 rounds nothing; what remains of two terms is one addition.
-        let mut rest = [Self::exactly(0.0); N];
-        let mut count = 0;
-        for term in terms {
-            if !term.is_exactly(0.0) {
-                rest[count] = term;
-                count += 1;
-            }
-        }
-        match rest[..count] {
-            [] => return Self::exactly(0.0),
-            [x] => return x,
-            [x, y] if !F::IS_HARDWARE => return x + y,
-            _ => {}
-        }
+        Self::sum_slice(&terms)
+    }
+
+    #[inline]
+    fn sum_slice(terms: &[Self]) -> Self {
         if F::IS_HARDWARE {
-            return Self::sum_by_terms(&rest[..count]);
+            return Self::sum_of_hardware(terms);
         }
-        let (mut low, mut high, mut magnitude) = (0.0, 0.0, 0.0);
-        for term in &rest[..count] {
+        // Adding an exact 0 rounds nothing; what remains of two terms is one addition.
+        let (mut low, mut high, mut magnitude, mut count) = (0.0, 0.0, 0.0, 0);
+        let mut last_two = [Self::exactly(0.0); 2];
+        for term in terms {
+            if term.is_exactly(0.0) {
+                continue;
+            }
+            count += 1;
+            last_two = [last_two[1], *term];
             low += term.low;
             high += term.high;
             magnitude += term.magnitude();
+        }
+        match count {
+            0 => return Self::exactly(0.0),
+            1 => return last_two[1],
+            2 => return last_two[0] + last_two[1],
+            _ => {}
         }
         // A partial sum may overflow in another order than this one.
         if magnitude.is_nan() || magnitude > F::MAX {
@@ -423,7 +452,7 @@ impl<F: Format> Real for Accept<F> {
         let mut error = chain_error::<F>(count) * magnitude;
         // Partial sums that cancel to a subnormal may be flushed; above this magnitude the rounding term covers that.
         if magnitude < F::MIN_NORMAL / F::EPSILON * 16.0 {
-            error += rest[..count].iter().fold(0.0, |e, _| e + F::MIN_NORMAL);
+            error += (0..count).fold(0.0, |e, _| e + F::MIN_NORMAL);
         }
         // The last addition's result is one of the format's values. (A product may stay unrounded in a fused operation.)
         Self::of_results(low - error, high + error)

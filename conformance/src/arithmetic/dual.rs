@@ -112,6 +112,9 @@ impl Real for Dual {
         let by_exponent = exponent.chain(value, value * core_math::log(self.value)).slope;
         Self { value, slope: by_base + by_exponent }
     }
+    fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T {
+        then(self.value.floor())
+    }
     fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {
         if a.value >= b.value { then() } else { otherwise() }
     }

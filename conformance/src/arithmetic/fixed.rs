@@ -69,7 +69,13 @@ impl<U: Unit> Fixed<U> {
     /// An operand of [0, 1], brought to the unit's numbers.
     #[must_use]
     pub fn operand(x: f64) -> Self {
-        Self::between(x, x).widened(U::OPERAND).within_unit()
+        Self::operand_between(x, x)
+    }
+
+    /// The same of one that is known to lie between two.
+    #[must_use]
+    pub fn operand_between(low: f64, high: f64) -> Self {
+        Self::between(low, high).widened(U::OPERAND).within_unit()
     }
 
     /// The least.
@@ -198,6 +204,10 @@ impl<U: Unit> Real for Fixed<U> {
 
     fn pow(self, _exponent: Self) -> Self {
         Self::anything()
+    }
+
+    fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T {
+        then(self.low.floor()).zip(then(self.high.floor()), |_, _| Self::anything())
     }
 
     fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {

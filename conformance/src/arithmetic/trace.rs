@@ -89,6 +89,18 @@ impl Real for Trace {
             then().zip(otherwise(), hull(a.value >= b.value))
         }
     }
+    fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T {
+        // The value is of its own whole number; the interval is of each.
+        let own = then(self.value.floor());
+        let (first, last) = (self.interval.low().floor(), self.interval.high().floor());
+        let beyond = |x: Self, y: Self| Self { value: x.value, interval: x.interval.hull(y.interval) };
+        own.zip(then(first), beyond).zip(then(last), beyond)
+    }
+    fn sum_slice(terms: &[Self]) -> Self {
+        let values: Vec<f64> = terms.iter().map(|x| x.value).collect();
+        let intervals: Vec<Accept> = terms.iter().map(|x| x.interval).collect();
+        Self { value: Real::sum_slice(&values), interval: Real::sum_slice(&intervals) }
+    }
     fn sum<const N: usize>(terms: [Self; N]) -> Self {
         Self { value: Real::sum(terms.map(|x| x.value)), interval: Real::sum(terms.map(|x| x.interval)) }
     }

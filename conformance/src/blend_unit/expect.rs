@@ -16,6 +16,7 @@ use crate::arithmetic::{Accept, F16, F32, Fixed, Format, Hardware};
 use crate::cases::blend::{Program, UnitCase};
 use lightmeter_reference::blend::{Operands, masked};
 use lightmeter_reference::{Real, Rgba, Vector};
+use lightmeter_scene::blend::{Separate, WriteMask};
 use lightmeter_scene::target::{Encoding, TargetFormat};
 
 /// The reference and the legal values of a pixel, in its target's units. From −∞ to ∞ anything is legal, NaN included.
@@ -73,6 +74,59 @@ fn reference(program: Program, target: TargetFormat, case: &UnitCase, rules: &Ru
     by_component(|k| pixel::units(target, rules.stored_as(k), below[k])).0
 }
 
+/// What a pixel of the target may hold after a draw, in the target's units: from the source's and from what was there.
+///
+/// `None` for no blending: the source is stored, which is a conversion alone.
+#[must_use]
+pub fn over(
+    target: TargetFormat,
+    state: Option<Separate>,
+    source: Between,
+    constant: [f32; 4],
+    (low, high): (Units, Units),
+) -> (Units, Units) {
+    let constant = constant.map(|c| (c.into(), c.into()));
+    match target.encoding() {
+        Encoding::Float32 => on_floats::<F32>(state, source, constant, (low, high)),
+        Encoding::Float16 => on_floats::<F16>(state, source, constant, (low, high)),
+        Encoding::Unorm8 | Encoding::Srgb8 => {
+            let mut pixel = (low, high);
+            match state {
+                Some(state) => {
+                    layer_in_steps(target, &Rules::RIGHT, (state, WriteMask::ALL), source, constant, &mut pixel);
+                }
+                None => {
+                    for (k, (low, high)) in source.into_iter().enumerate() {
+                        (pixel.0[k], pixel.1[k]) = steps(target, k, low.clamp(0.0, 1.0), high.clamp(0.0, 1.0));
+                    }
+                }
+            }
+            pixel
+        }
+    }
+}
+
+/// A colour that is known to lie between two.
+pub type Between = [(f64, f64); 4];
+
+fn on_floats<F: Format>(
+    state: Option<Separate>,
+    source: Between,
+    constant: Between,
+    (low, high): (Units, Units),
+) -> (Units, Units) {
+    let number = |(low, high): (f64, f64)| Accept::<Hardware<F>>::from_bounds(low, high);
+    let src = Vector(source.map(number));
+    let left = match state {
+        Some(state) => {
+            let dst = by_component(|k| number((low[k], high[k])));
+            Rules::RIGHT.blend(state, &Operands { src, dst, constant: Vector(constant.map(number)) })
+        }
+        None => src,
+    };
+    (left.0.map(|c| c.low()), left.0.map(|c| c.high()))
+}
+
 fn legal_on_floats<F: Format>(program: Program, case: &UnitCase, rules: &Rules, start: Units) -> (Units, Units) {
     let input = |color: [f32; 4]| Vector(color.map(Accept::<Hardware<F>>::input));
     let mut below = Vector(start.map(|c| if c.is_nan() { Accept::ANY } else { Accept::exactly(c) }));
@@ -95,54 +149,78 @@ fn legal_in_steps(
     rules: &Rules,
     start: Units,
 ) -> (Units, Units) {
-    let (mut low, mut high) = (start, start);
-    let encoded = |k: usize| target.encoding() == Encoding::Srgb8 && rules.stored_as(k) < 3;
+    let mut pixel = (start, start);
+    let exactly = |color: [f32; 4]| color.map(|c| (c.into(), c.into()));
     for number in 0..case.layers {
-        let (state, mask) = program.layer(number);
-        let source = case.sources[number];
-        // What is stored is read exactly, but for the decoding of sRGB.
-        let before = by_component(|k| {
-            let slack = if encoded(k) { DECODING } else { 0.0 };
-            let at = |steps: f64| pixel::linear(target, rules.stored_as(k), steps.clamp(0.0, 255.0));
-            (at(low[k] - slack), at(high[k] + slack))
-        });
-        let wide = blended::<Wide>(rules, state, source, case.constant, before);
-        let narrow = blended::<Narrow>(rules, state, source, case.constant, before);
-        for k in (0..4).filter(|&k| rules.mask(mask).0[k]) {
-            // What passes through, times 1 or taken by MIN or MAX, is what it was.
-            if encoded(k) && (wide[k].low(), wide[k].high()).eq(&before[k]) {
-                continue;
-            }
+        let (source, constant) = (exactly(case.sources[number]), exactly(case.constant));
+        layer_in_steps(target, rules, program.layer(number), source, constant, &mut pixel);
+    }
+    pixel
+}
+
+/// One layer on a target of 8 bits.
+fn layer_in_steps(
+    target: TargetFormat,
+    rules: &Rules,
+    (state, mask): (Separate, WriteMask),
+    source: Between,
+    constant: Between,
+    (low, high): &mut (Units, Units),
+) {
+    let encoded = |k: usize| is_encoded(target, rules.stored_as(k));
+    // What is stored is read exactly, but for the decoding of sRGB.
+    let before = by_component(|k| {
+        let slack = if encoded(k) { DECODING } else { 0.0 };
+        let at = |steps: f64| pixel::linear(target, rules.stored_as(k), steps.clamp(0.0, 255.0));
+        (at(low[k] - slack), at(high[k] + slack))
+    });
+    let wide = blended::<Wide>(rules, state, source, constant, before);
+    let narrow = blended::<Narrow>(rules, state, source, constant, before);
+    for k in (0..4).filter(|&k| rules.mask(mask).0[k]) {
+        // What passes through, times 1 or taken by MIN or MAX, is what it was.
+        if encoded(k) && (wide[k].low(), wide[k].high()).eq(&before[k]) {
+            continue;
+        }
+        (low[k], high[k]) = steps(target, rules.stored_as(k), wide[k].low(), wide[k].high());
+        if !encoded(k) {
             let at = |linear: f64| pixel::units(target, rules.stored_as(k), linear);
-            // A step that is met but for f64's own rounding is that step; in sRGB's powers a device errs by more.
-            let near = if encoded(k) { -ENCODING } else { SNAP };
-            // A sum with 0 has no −0.
-            low[k] = (at(wide[k].low()) + near).floor().clamp(0.0, 255.0) + 0.0;
-            high[k] = (at(wide[k].high()) - near).ceil().clamp(0.0, 255.0) + 0.0;
-            if !encoded(k) {
-                let (least, most) = ((at(narrow[k].low()) - SNAP).ceil(), (at(narrow[k].high()) + SNAP).floor());
-                if least <= most {
-                    low[k] = low[k].min(least);
-                    high[k] = high[k].max(most);
-                }
+            let (least, most) = ((at(narrow[k].low()) - SNAP).ceil(), (at(narrow[k].high()) + SNAP).floor());
+            if least <= most {
+                low[k] = low[k].min(least);
+                high[k] = high[k].max(most);
             }
         }
     }
-    (low, high)
+}
+
+const fn is_encoded(target: TargetFormat, stored_as: usize) -> bool {
+    matches!(target.encoding(), Encoding::Srgb8) && stored_as < 3
+}
+
+/// Either neighbour among the steps, of every value between two.
+fn steps(target: TargetFormat, stored_as: usize, low: f64, high: f64) -> (f64, f64) {
+    let at = |linear: f64| pixel::units(target, stored_as, linear);
+    // A step that is met but for f64's own rounding is that step; in sRGB's powers a device errs by more.
+    let near = if is_encoded(target, stored_as) { -ENCODING } else { SNAP };
+    // A sum with 0 has no −0.
+    ((at(low) + near).floor().clamp(0.0, 255.0) + 0.0, (at(high) - near).ceil().clamp(0.0, 255.0) + 0.0)
 }
 
 fn blended<U: Unit>(
     rules: &Rules,
-    state: lightmeter_scene::blend::Separate,
-    source: [f32; 4],
-    constant: [f32; 4],
+    state: Separate,
+    source: Between,
+    constant: Between,
     before: Rgba<(f64, f64)>,
 ) -> Rgba<Fixed<U>> {
     let clamps = rules.clamp == Clamp::Operands;
-    let operand = |color: [f32; 4]| {
-        Vector(color.map(|c| {
-            let c = f64::from(c);
-            if clamps { Fixed::operand(c.clamp(0.0, 1.0)) } else { Fixed::literal(c) }
+    let operand = |color: Between| {
+        Vector(color.map(|(low, high)| {
+            if clamps {
+                Fixed::operand_between(low.clamp(0.0, 1.0), high.clamp(0.0, 1.0))
+            } else {
+                Fixed::between(low, high)
+            }
         }))
     };
     let dst = Vector(before.0.map(|(low, high)| Fixed::between(low, high)));

@@ -6,7 +6,7 @@
 
 #![expect(clippy::float_cmp, reason = "what is exactly 0 or 1 changes nothing; anything else may")]
 
-use crate::frame::{Draw, Filter, FogForm, Frame, Light, Place};
+use crate::frame::{Draw, Filter, FogForm, Frame, Light, Place, Sampled};
 use crate::shading::{Ambient, Distance, Frequency, Gate, LightAmbient, Normals, Specular, Viewer};
 use std::fmt;
 
@@ -380,11 +380,11 @@ impl Analysis<'_> {
     fn surface(&mut self) {
         let (frame, draw) = (self.frame, self.draw);
         if draw.vertex_colors {
-            let colors = &frame.meshes[draw.mesh].colors;
-            self.worth(Effect::VertexColor, colors.iter().any(|c| *c != [1.0; 4]), "colours of the vertices");
+            // Ones that are interpolated are rounded, which leaving them out would change.
+            self.choice(Effect::VertexColor, true, "colours of the vertices");
         }
         if let Some(textured) = draw.texture {
-            let changes = textured.replaces || !is_white(frame, textured.sampled.texture);
+            let changes = textured.replaces || !is_white(frame, textured.sampled);
             let effect = match textured.sampled.filter {
                 Filter::Nearest => Effect::TextureNearest,
                 Filter::Bilinear => Effect::TextureBilinear,
@@ -393,7 +393,7 @@ impl Analysis<'_> {
             self.choice(Effect::TextureReplace, textured.replaces, "whether it stands in the colour's place");
         }
         if let Some(sampled) = draw.lightmap {
-            let changes = !is_white(frame, sampled.texture);
+            let changes = !is_white(frame, sampled);
             let effect = match sampled.filter {
                 Filter::Nearest => Effect::LightmapNearest,
                 Filter::Bilinear => Effect::LightmapBilinear,
@@ -488,8 +488,9 @@ const fn falloff(place: &Place) -> Option<[f32; 3]> {
     }
 }
 
-fn is_white(frame: &Frame, texture: usize) -> bool {
-    frame.textures[texture].texels.iter().all(|texel| *texel == [1.0; 4])
+/// Whether a texture multiplies by 1 exactly. A mix of ones is rounded.
+fn is_white(frame: &Frame, sampled: Sampled) -> bool {
+    sampled.filter == Filter::Nearest && frame.textures[sampled.texture].texels.iter().all(|texel| *texel == [1.0; 4])
 }
 
 /// Why a spotlight's cone misses the mesh; `None` where it may not.

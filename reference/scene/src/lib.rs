@@ -9,4 +9,5 @@ pub mod effects;
 pub mod frame;
 pub mod raster;
 pub mod shading;
+pub mod stage;
 pub mod target;

@@ -1,0 +1,229 @@
+//! What a rasteriser may make of a triangle.
+//!
+//! The derivation is that of `cases::raster`, made fit for whole images:
+//!
+//! * *Place.* A vertex may be off by δ in x and in y: the step of the subpixel grid, and what its clip coordinates and the
+//!   viewport lose in binary32. A pixel whose middle lies within δ of an edge may be covered or not. A covered one holds
+//!   attributes of a point at most δ away *within the triangle*, since its weights among the moved vertices are those of
+//!   that point among the given ones.
+//! * *Attributes.* With `a = Σgᵢaᵢ/wᵢ / Σgᵢ/wᵢ`, g linear in x and y, the value δ away differs from a by exactly
+//!   `((Nx − aDx)dx + (Ny − aDy)dy)/D′`, N and D the numerator and the denominator, D′ the denominator there.
+//! * *The plane equation in binary32*, `q₀ + gx(x − x₀) + gy(y − y₀)` however it is arranged, of q = a/w and of 1/w. With
+//!   ε = 2⁻²³, W and H the triangle's extent, Q the range of q, A twice the area: each coordinate and value difference errs
+//!   by ε, a determinant by 4ε of its products' magnitudes, the quotient by 3ε, so `Δgx ≤ (8εQH + 8ε|gx|WH)/A + 3ε|gx|`;
+//!   its effect over the extent is Δgx·W, besides 4ε of the magnitudes that are summed up, measured from the target's corner.
+//! * *What came before.* The interval of each vertex's attributes; a convex combination errs by no more than the worst.
+//!   Vertices made by clipping err by 8ε of the coordinates and attributes they are made from.
+
+use crate::arithmetic::Accept;
+use lightmeter_reference::render::{Attributes, Geometry, Triangle};
+
+const EPSILON: f64 = 1.0 / 8_388_608.0;
+
+/// What each vertex of a draw may be off by.
+#[derive(Clone, Debug, Default)]
+pub(super) struct VertexErrors {
+    /// Numbers of a vertex.
+    pub(super) stride: usize,
+    /// x and y in pixels, the subpixel step not counted; depth; 1/w, relatively.
+    pub(super) places: Vec<[f64; 4]>,
+    /// The attributes.
+    pub(super) attributes: Vec<f64>,
+}
+
+impl VertexErrors {
+    pub(super) fn of(&self, vertex: usize) -> &[f64] {
+        &self.attributes[vertex * self.stride..(vertex + 1) * self.stride]
+    }
+
+    /// Vertices that clipping made: what both ends may be off by, and the rounding of the making.
+    pub(super) fn extend(&mut self, geometry: &Geometry, size: [f64; 2]) {
+        for (made, &[from, to]) in geometry.made_between.iter().enumerate() {
+            let vertex = geometry.clip.len() - geometry.made_between.len() + made;
+            let magnitude = geometry.clip[from].iter().chain(&geometry.clip[to]).fold(0.0_f64, |m, x| m.max(x.abs()));
+            let rounding = 8.0 * EPSILON * magnitude / geometry.clip[vertex][3].abs();
+            let worse = |axis: usize| self.places[from][axis].max(self.places[to][axis]);
+            self.places.push([
+                worse(0) + rounding * size[0],
+                worse(1) + rounding * size[1],
+                worse(2) + rounding,
+                worse(3) + rounding,
+            ]);
+            for k in 0..self.stride {
+                let (a, b) = (geometry.attributes(from)[k], geometry.attributes(to)[k]);
+                let error = self.of(from)[k].max(self.of(to)[k]) + 8.0 * EPSILON * a.abs().max(b.abs());
+                self.attributes.push(error);
+            }
+        }
+    }
+}
+
+/// A triangle, and what may become of it.
+#[derive(Clone, Debug)]
+pub(super) struct Bound {
+    /// Below this magnitude the sign of an edge's [`Triangle::edges`] is open.
+    pub(super) margins: [f64; 3],
+    /// How far the point that is shown may lie from the pixel's middle.
+    pub(super) reach: [f64; 2],
+    /// Whether it may have no area, or be turned the other way.
+    pub(super) may_vanish: bool,
+    /// Where its attributes' errors begin among all of the draw's.
+    slack: usize,
+    depth_slack: f64,
+    /// ∂/∂x and ∂/∂y of each vertex's edge over its w.
+    gradients: [[f64; 2]; 3],
+    depth_gradient: [f64; 2],
+}
+
+impl Bound {
+    /// Errors of the attributes are appended to `slacks`.
+    pub(super) fn new(
+        triangle: &Triangle,
+        geometry: &Geometry,
+        errors: &VertexErrors,
+        attributes: &Attributes,
+        step: f64,
+        slacks: &mut Vec<f64>,
+    ) -> Self {
+        let window = triangle.window;
+        let off = triangle.vertices.map(|vertex| {
+            let [x, y, ..] = errors.places[vertex];
+            [x + step, y + step]
+        });
+        let worst = |axis: usize| off.iter().map(|off| off[axis]).fold(0.0, f64::max);
+        let reach = [worst(0), worst(1)];
+        let edge = |k: usize| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            let [dx, dy]: [f64; 2] = std::array::from_fn(|axis| off[i][axis].max(off[j][axis]));
+            (window[j][1] - window[i][1]).abs() * dx + (window[j][0] - window[i][0]).abs() * dy
+        };
+        let margins = std::array::from_fn(edge);
+        // ∂/∂x and ∂/∂y of the edge opposite each vertex.
+        let slopes: [[f64; 2]; 3] = std::array::from_fn(|k| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            [-(window[j][1] - window[i][1]), window[j][0] - window[i][0]]
+        });
+        // Moving each vertex of an edge by δ changes twice the area by at most the two margins beside it and 4δ² more.
+        let may_vanish = triangle.area <= margins[0] + margins[1] + margins[2] + 4.0 * reach[0] * reach[1];
+        let plane = Plane::new(triangle, slopes);
+        let start = slacks.len();
+        let inverse_w = triangle.inverse_w;
+        let least_w = inverse_w.iter().fold(f64::INFINITY, |least, &x| least.min(x));
+        let w_error = triangle.vertices.iter().map(|&vertex| errors.places[vertex][3]).fold(3.0 * EPSILON, f64::max);
+        let denominator = plane.error(inverse_w);
+        for k in 0..errors.stride {
+            let at = triangle.vertices.map(|vertex| geometry.attributes(vertex)[k]);
+            let given = triangle.vertices.iter().map(|&vertex| errors.of(vertex)[k]).fold(0.0, f64::max);
+            if attributes.is_flat_at(k) {
+                slacks.push(errors.of(triangle.provoking)[k]);
+                continue;
+            }
+            let (low, high) = range(at);
+            let most = low.abs().max(high.abs());
+            let numerator = plane.error(std::array::from_fn(|i| at[i] * inverse_w[i]));
+            let quotient = (numerator + most * denominator) / (least_w - denominator).max(0.0) + 3.0 * EPSILON * most;
+            slacks.push(given + quotient + 2.0 * w_error * (high - low));
+        }
+        let given = triangle.vertices.iter().map(|&vertex| errors.places[vertex][2]).fold(0.0, f64::max);
+        let gradients = std::array::from_fn(|i| slopes[i].map(|slope| slope * inverse_w[i]));
+        Self {
+            margins,
+            reach,
+            may_vanish,
+            slack: start,
+            depth_slack: given + plane.error(triangle.depth) + EPSILON,
+            gradients,
+            depth_gradient: plane.gradient(triangle.depth),
+        }
+    }
+
+    /// The depths that a fragment may have.
+    pub(super) fn depth(&self, triangle: &Triangle, edges: [f64; 3]) -> (f64, f64) {
+        let depth = triangle.depth_at(edges);
+        let [gx, gy] = self.depth_gradient;
+        let off = gx.abs() * self.reach[0] + gy.abs() * self.reach[1];
+        let (low, high) = range(triangle.depth);
+        let (least, most) = ((depth - off).max(low), (depth + off).min(high));
+        let clamp = |x: f64| x.clamp(0.0, 1.0);
+        (clamp(least.min(high) - self.depth_slack), clamp(most.max(low) + self.depth_slack))
+    }
+
+    /// The attributes that a fragment may have.
+    pub(super) fn attributes(
+        &self,
+        (triangle, geometry): (&Triangle, &Geometry),
+        (flat, slacks): (&Attributes, &[f64]),
+        edges: [f64; 3],
+        out: &mut Vec<Accept>,
+    ) {
+        out.clear();
+        let over_w: [f64; 3] = std::array::from_fn(|i| edges[i] * triangle.inverse_w[i]);
+        let sum = over_w[0] + over_w[1] + over_w[2];
+        let [dx, dy] = self.reach;
+        let total = |axis: usize| self.gradients.iter().map(|g| g[axis]).sum::<f64>();
+        let least = sum - total(0).abs() * dx - total(1).abs() * dy;
+        let [a, b, c] = triangle.vertices.map(|vertex| geometry.attributes(vertex));
+        let provoking = geometry.attributes(triangle.provoking);
+        for k in 0..geometry.stride {
+            let slack = slacks[self.slack + k];
+            if flat.is_flat_at(k) {
+                out.push(between(provoking[k] - slack, provoking[k] + slack));
+                continue;
+            }
+            let at = [a[k], b[k], c[k]];
+            let (low, high) = range(at);
+            let value = (over_w[0] * at[0] + over_w[1] * at[1] + over_w[2] * at[2]) / sum;
+            let along = |axis: usize| (0..3).map(|i| self.gradients[i][axis] * (at[i] - value)).sum::<f64>().abs();
+            let off = if least > 0.0 { (along(0) * dx + along(1) * dy) / least } else { high - low };
+            // The point that is shown lies within the triangle.
+            let (least, most) = ((value - off).max(low).min(high), (value + off).min(high).max(low));
+            out.push(between(least - slack, most + slack));
+        }
+    }
+}
+
+fn between(low: f64, high: f64) -> Accept {
+    if low.is_finite() && high.is_finite() { Accept::from_bounds(low, high) } else { Accept::ANY }
+}
+
+fn range(at: [f64; 3]) -> (f64, f64) {
+    (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]))
+}
+
+/// What a plane equation through three vertices loses in binary32.
+struct Plane {
+    slopes: [[f64; 2]; 3],
+    area: f64,
+    extent: [f64; 2],
+    /// The farthest coordinate of each axis.
+    farthest: [f64; 2],
+}
+
+impl Plane {
+    fn new(triangle: &Triangle, slopes: [[f64; 2]; 3]) -> Self {
+        let along = |axis: usize| range(triangle.window.map(|v| v[axis]));
+        let extent = [0, 1].map(|axis| along(axis).1 - along(axis).0);
+        let farthest = [0, 1].map(|axis| along(axis).0.abs().max(along(axis).1.abs()));
+        Self { slopes, area: triangle.area, extent, farthest }
+    }
+
+    fn gradient(&self, q: [f64; 3]) -> [f64; 2] {
+        [0, 1].map(|axis| (0..3).map(|i| self.slopes[i][axis] * (q[i] - q[0])).sum::<f64>() / self.area)
+    }
+
+    fn error(&self, q: [f64; 3]) -> f64 {
+        let (low, high) = range(q);
+        if low.abs().max(high.abs()) <= 0.0 {
+            return 0.0;
+        }
+        let gradient = self.gradient(q);
+        let [width, height] = self.extent;
+        let of_axis = |axis: usize| {
+            let g = gradient[axis].abs();
+            let across = self.extent[1 - axis];
+            let slope = 8.0 * EPSILON * ((high - low) * across + g * width * height) / self.area + 3.0 * EPSILON * g;
+            slope * self.extent[axis] + 4.0 * EPSILON * 2.0 * g * self.farthest[axis]
+        };
+        of_axis(0) + of_axis(1) + 4.0 * EPSILON * low.abs().max(high.abs())
+    }
+}

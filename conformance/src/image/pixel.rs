@@ -1,0 +1,321 @@
+//! The ways in which one pixel may come about.
+//!
+//! Where coverage is open, one triangle of those that meet at the pixel covers it, if their shared edges leave no other way;
+//! elsewhere each may or may not. Where the winner of a depth test is open, or a condition of the shading is, both outcomes
+//! are followed. Each way gives an interval of its own; what is legal is the hull of all.
+
+use super::expect::{Expected, Prepared};
+use crate::arithmetic::{Accept, paths};
+use crate::blend_unit::expect::over;
+use crate::blend_unit::pixel::Units;
+use lightmeter_reference::Rgba;
+use lightmeter_reference::render::Scratch;
+use lightmeter_scene::depth::Compare;
+use lightmeter_scene::frame::Frame;
+use lightmeter_scene::stage::Stage;
+use lightmeter_scene::target::TargetFormat;
+
+/// Ways that are followed for one pixel; beyond, anything is legal there.
+const MOST: usize = 64;
+
+/// A triangle that may cover a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    /// Its draw.
+    pub(super) draw: u32,
+    /// Its place in the draw.
+    pub(super) triangle: u32,
+    /// Twice the area that the pixel's middle spans with each edge.
+    pub(super) edges: [f64; 3],
+    /// Which of these may have the other sign.
+    pub(super) open: [bool; 3],
+    /// Whether it covers the pixel where nothing is moved.
+    pub(super) covers: bool,
+}
+
+/// A fragment that a pixel shows, by its candidate and its outcome among that one's, or [`EACH`].
+type Layer = (usize, usize);
+
+/// Any of a candidate's outcomes.
+const EACH: usize = usize::MAX;
+
+/// The outcomes of a candidate: the colour, and whether a cutout keeps it (1) or not (0).
+type Outcomes = Vec<(Rgba<Accept>, Accept)>;
+
+/// What one way through a pixel's depth tests leaves.
+#[derive(Clone, Debug)]
+struct Way {
+    depth: (f64, f64),
+    /// The draw's place and the triangle whose depth that is.
+    owner: Option<(usize, usize)>,
+    layers: Vec<Layer>,
+}
+
+/// Works out pixels one after the other.
+pub(super) struct Painter<'a> {
+    frame: &'a Frame,
+    draws: &'a [Prepared<'a>],
+    stage: Option<Stage>,
+    target: TargetFormat,
+    background: (Units, Units),
+    scratch: Scratch<Accept>,
+    attributes: Vec<Accept>,
+    /// Of each candidate, once they are known.
+    outcomes: Vec<Option<Outcomes>>,
+}
+
+impl<'a> Painter<'a> {
+    pub(super) fn new(frame: &'a Frame, draws: &'a [Prepared<'a>], stage: Option<Stage>) -> Self {
+        let target = if stage.is_some() { TargetFormat::Rgba32Float } else { frame.target.format };
+        // Converting the colour that a target is cleared to is a store as any other.
+        let color = if stage.is_some() { [0.0; 4] } else { frame.background.map(f64::from) };
+        let background = over(target, None, color.map(|c| (c, c)), [0.0; 4], ([0.0; 4], [0.0; 4]));
+        Self {
+            frame,
+            draws,
+            stage,
+            target,
+            background,
+            scratch: Scratch::default(),
+            attributes: vec![],
+            outcomes: vec![],
+        }
+    }
+
+    /// The legal values of a pixel, from all that may cover it, in the order of drawing.
+    pub(super) fn pixel(&mut self, candidates: &[Candidate]) -> Expected {
+        self.outcomes.clear();
+        self.outcomes.resize(candidates.len(), None);
+        let Some(presences) = self.presences(candidates) else { return ANYTHING };
+        let mut seen: Vec<Vec<Layer>> = vec![];
+        for present in presences {
+            let Some(ways) = self.ways(candidates, &present) else { return ANYTHING };
+            for way in ways {
+                if !seen.contains(&way.layers) {
+                    seen.push(way.layers);
+                }
+            }
+            if seen.len() > MOST {
+                return ANYTHING;
+            }
+        }
+        let mut all: Option<Expected> = None;
+        let mut widest = [0.0_f64; 4];
+        for (low, high) in seen.iter().flat_map(|layers| self.colors(candidates, layers)).collect::<Vec<_>>() {
+            for k in 0..4 {
+                widest[k] = widest[k].max(high[k] - low[k]);
+            }
+            all = Some(match all {
+                None => Expected { low, high, is_marked: false },
+                Some(so_far) => Expected {
+                    low: std::array::from_fn(|k| so_far.low[k].min(low[k])),
+                    high: std::array::from_fn(|k| so_far.high[k].max(high[k])),
+                    is_marked: false,
+                },
+            });
+        }
+        let mut all = all.unwrap_or(Expected { low: self.background.0, high: self.background.1, is_marked: false });
+        all.is_marked = (0..4).any(|k| all.high[k] - all.low[k] > 2.0 * widest[k]);
+        all
+    }
+
+    /// Which candidates cover the pixel, in each way that coverage may turn out; `None` where there are too many.
+    fn presences(&self, candidates: &[Candidate]) -> Option<Vec<Vec<usize>>> {
+        let is_open = |c: &Candidate| c.open.contains(&true) || self.bound_may_vanish(c);
+        let certain: Vec<usize> = (0..candidates.len()).filter(|&k| !is_open(&candidates[k])).collect();
+        let mut ways = vec![certain];
+        let mut open: Vec<usize> = (0..candidates.len()).filter(|&k| is_open(&candidates[k])).collect();
+        while let Some(&first) = open.first() {
+            let alike = |&k: &usize| self.is_alike(&candidates[first], &candidates[k]);
+            let (group, rest): (Vec<usize>, Vec<usize>) = open.into_iter().partition(alike);
+            open = rest;
+            let alternatives = self.alternatives(candidates, &group)?;
+            if ways.len() * alternatives.len() > MOST {
+                return None;
+            }
+            ways = ways
+                .iter()
+                .flat_map(|way| alternatives.iter().map(move |more| way.iter().chain(more).copied().collect()))
+                .collect();
+        }
+        for way in &mut ways {
+            way.sort_unstable();
+        }
+        Some(ways)
+    }
+
+    fn bound_may_vanish(&self, candidate: &Candidate) -> bool {
+        self.draws[candidate.draw as usize].bounds[candidate.triangle as usize].may_vanish
+    }
+
+    /// Whether two triangles are of one draw and turned the same way.
+    fn is_alike(&self, a: &Candidate, b: &Candidate) -> bool {
+        let front = |c: &Candidate| self.draws[c.draw as usize].geometry.triangles[c.triangle as usize].is_front;
+        a.draw == b.draw && front(a) == front(b)
+    }
+
+    /// The ways in which triangles of one draw, turned the same way and each open, may cover a pixel.
+    ///
+    /// Moving vertices moves both triangles at a shared edge alike. Where every edge that is open is shared by two of
+    /// them, the number of triangles that cover the pixel cannot change: where it is one, it is always one of them.
+    fn alternatives(&self, candidates: &[Candidate], group: &[usize]) -> Option<Vec<Vec<usize>>> {
+        let paired = group.iter().all(|&k| !self.bound_may_vanish(&candidates[k]))
+            && self.open_edges_are_shared(candidates, group);
+        let covering = group.iter().filter(|&&k| candidates[k].covers).count();
+        if paired && covering <= 1 {
+            return Some(if covering == 1 { group.iter().map(|&k| vec![k]).collect() } else { vec![vec![]] });
+        }
+        if group.len() > 6 {
+            return None;
+        }
+        let subsets = 0..1_u32 << group.len();
+        Some(subsets.map(|set| (0..group.len()).filter(|k| set >> k & 1 == 1).map(|k| group[k]).collect()).collect())
+    }
+
+    fn open_edges_are_shared(&self, candidates: &[Candidate], group: &[usize]) -> bool {
+        let mut edges: Vec<(u64, u64)> = vec![];
+        for &k in group {
+            let candidate = &candidates[k];
+            let geometry = &self.draws[candidate.draw as usize].geometry;
+            let vertices = geometry.triangles[candidate.triangle as usize].vertices;
+            for edge in (0..3).filter(|&edge| candidate.open[edge]) {
+                let (from, to) = (vertices[(edge + 1) % 3], vertices[(edge + 2) % 3]);
+                let (from, to) = (geometry.identities[from], geometry.identities[to]);
+                // Its other side cancels it.
+                match edges.iter().position(|&other| other == (to, from)) {
+                    Some(other) => {
+                        edges.swap_remove(other);
+                    }
+                    None => edges.push((from, to)),
+                }
+            }
+        }
+        edges.is_empty()
+    }
+
+    /// The ways through the depth tests of the fragments that are there; `None` where there are too many.
+    fn ways(&mut self, candidates: &[Candidate], present: &[usize]) -> Option<Vec<Way>> {
+        let clear = f64::from(self.frame.clear_depth);
+        let mut ways = vec![Way { depth: (clear, clear), owner: None, layers: vec![] }];
+        for &k in present {
+            let candidate = &candidates[k];
+            let prepared = &self.draws[candidate.draw as usize];
+            let triangle = &prepared.geometry.triangles[candidate.triangle as usize];
+            let depth = prepared.bounds[candidate.triangle as usize].depth(triangle, candidate.edges);
+            let owner = (prepared.place, triangle.source);
+            let (test, is_opaque) = (prepared.draw.depth, prepared.draw.blend.is_none() || self.stage.is_some());
+            let outcomes = if prepared.draw.cutout.is_some() { self.outcomes(candidates, k) } else { 1 };
+            let mut left = vec![];
+            for way in ways {
+                let passes = test
+                    .map_or((true, false), |test| may_pass(test.compare, depth, way.depth, way.owner == Some(owner)));
+                let (mut may_stay, mut drawn) = (passes.1, vec![]);
+                if passes.0 {
+                    for outcome in 0..outcomes {
+                        let (keeps, drops) = self.kept(k, outcome, prepared.draw.cutout.is_some());
+                        may_stay |= drops;
+                        if keeps {
+                            let mut next = way.clone();
+                            if is_opaque {
+                                next.layers.clear();
+                            }
+                            next.layers.push((k, if prepared.draw.cutout.is_some() { outcome } else { EACH }));
+                            if test.is_some_and(|test| test.write) {
+                                (next.depth, next.owner) = (depth, Some(owner));
+                            }
+                            drawn.push(next);
+                        }
+                    }
+                }
+                left.extend(drawn);
+                if may_stay {
+                    left.push(way);
+                }
+            }
+            if left.len() > MOST {
+                return None;
+            }
+            ways = left;
+        }
+        Some(ways)
+    }
+
+    /// Whether a cutout may keep an outcome, and whether it may drop it.
+    fn kept(&self, candidate: usize, outcome: usize, is_cutout: bool) -> (bool, bool) {
+        match &self.outcomes[candidate] {
+            Some(outcomes) if is_cutout => {
+                let kept = outcomes[outcome].1;
+                (kept.high() > 0.5, kept.low() < 0.5)
+            }
+            _ => (true, false),
+        }
+    }
+
+    /// Shades a candidate, once; how many outcomes there are.
+    fn outcomes(&mut self, candidates: &[Candidate], k: usize) -> usize {
+        if let Some(known) = &self.outcomes[k] {
+            return known.len();
+        }
+        let candidate = &candidates[k];
+        let prepared = &self.draws[candidate.draw as usize];
+        let number = candidate.triangle as usize;
+        let (triangle, bound) = (&prepared.geometry.triangles[number], &prepared.bounds[number]);
+        let given = (&prepared.shader.attributes, &prepared.slacks[..]);
+        bound.attributes((triangle, &prepared.geometry), given, candidate.edges, &mut self.attributes);
+        let (low, high) = bound.depth(triangle, candidate.edges);
+        let (stage, scratch, attributes) = (self.stage, &mut self.scratch, &self.attributes);
+        let mut found = vec![];
+        paths::each(
+            || prepared.shader.fragment(attributes, scratch),
+            |fragment| {
+                let color = match stage {
+                    Some(stage) => fragment.at(stage, Accept::from_bounds(low, high)),
+                    None => fragment.color,
+                };
+                found.push((color, fragment.kept));
+            },
+        );
+        let count = found.len();
+        self.outcomes[k] = Some(found);
+        count
+    }
+
+    /// What layers over the background may leave, by each way through their shading.
+    fn colors(&mut self, candidates: &[Candidate], layers: &[Layer]) -> Vec<(Units, Units)> {
+        let mut left = vec![self.background];
+        for &(k, outcome) in layers {
+            let count = self.outcomes(candidates, k);
+            let blend = self.draws[candidates[k].draw as usize].draw.blend.filter(|_| self.stage.is_none());
+            let state = blend.map(|blend| blend.state);
+            let constant = blend.map_or([0.0; 4], |blend| blend.constant);
+            let shaded = self.outcomes[k].as_deref().unwrap_or_default();
+            let chosen = if outcome == EACH { 0..count } else { outcome..outcome + 1 };
+            let sources: Vec<_> =
+                shaded[chosen].iter().map(|(color, _)| color.0.map(|c| (c.low(), c.high()))).collect();
+            let target = self.target;
+            left = left
+                .iter()
+                .flat_map(|&below| sources.iter().map(move |&source| over(target, state, source, constant, below)))
+                .collect();
+            if left.len() > MOST {
+                left = left.into_iter().reduce(hull).into_iter().collect();
+            }
+        }
+        left
+    }
+}
+
+const ANYTHING: Expected = Expected { low: [f64::NEG_INFINITY; 4], high: [f64::INFINITY; 4], is_marked: true };
+
+fn hull(a: (Units, Units), b: (Units, Units)) -> (Units, Units) {
+    (std::array::from_fn(|k| a.0[k].min(b.0[k])), std::array::from_fn(|k| a.1[k].max(b.1[k])))
+}
+
+/// Whether a depth may pass against another, and whether it may fail. The same triangle drawn again has the same depth.
+fn may_pass(compare: Compare, new: (f64, f64), old: (f64, f64), is_same: bool) -> (bool, bool) {
+    let (less, equal, greater) =
+        if is_same { (false, true, false) } else { (new.0 < old.1, new.0 <= old.1 && new.1 >= old.0, new.1 > old.0) };
+    let passes_when = |bit: u32| compare.code() >> bit & 1 == 1;
+    let cases = [(less, passes_when(0)), (equal, passes_when(1)), (greater, passes_when(2))];
+    (cases.iter().any(|&(may, passes)| may && passes), cases.iter().any(|&(may, passes)| may && !passes))
+}

@@ -1,0 +1,228 @@
+//! A frame drawn in a plain arithmetic: tiles side by side, within each what is drawn in its order.
+
+use super::attributes::MOST;
+use super::raster::{Geometry, Triangle, plain};
+use super::shader::{Scratch, Shader};
+use crate::algebra::{Rgba, Vector};
+use crate::blend::{Operands, Saturate, blend_separate};
+use crate::depth::passes;
+use crate::interpolation;
+use crate::real::Real;
+use lightmeter_scene::effects::Called;
+use lightmeter_scene::frame::{Draw, Frame};
+use lightmeter_scene::raster::Provoking;
+use lightmeter_scene::stage::Stage;
+use rayon::prelude::*;
+
+/// Pixels of a tile's side.
+const TILE: usize = 32;
+
+/// An image: linear colours, top row first. Nothing is rounded to the target's format yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Pixels.
+    pub width: usize,
+    /// Pixels.
+    pub height: usize,
+    /// Row after row.
+    pub pixels: Vec<[f64; 4]>,
+    /// Fragments that were lit or otherwise coloured.
+    pub fragments: u64,
+}
+
+/// Draws a frame: everything that it names, or what is called for only; its colours, or an intermediate result of the
+/// fragment that is seen.
+#[must_use]
+pub fn render<R>(frame: &Frame, only: Option<&[Called]>, stage: Option<Stage>) -> Image
+where
+    R: Real + Into<f64> + Send + Sync,
+{
+    let draws: Vec<Prepared<'_, R>> = (0..frame.draws.len())
+        .map(|draw| Prepared::new(frame, draw, only.map(|called| &called[draw]), stage.is_some()))
+        .collect();
+    let (width, height) = (frame.target.width as usize, frame.target.height as usize);
+    let columns = width.div_ceil(TILE);
+    let bins = bins(&draws, [width, height]);
+    let tiles: Vec<(Vec<[f64; 4]>, u64)> = bins
+        .par_iter()
+        .enumerate()
+        .map(|(tile, bin)| {
+            let origin = [tile % columns * TILE, tile / columns * TILE];
+            let mut tile = Tile::new(frame, stage, origin, [width, height]);
+            for &(draw, triangle) in bin {
+                tile.draw(&draws[draw], &draws[draw].geometry.triangles[triangle]);
+            }
+            (tile.colors, tile.fragments)
+        })
+        .collect();
+    let mut pixels = vec![[0.0; 4]; width * height];
+    for (number, (colors, _)) in tiles.iter().enumerate() {
+        let [left, top] = [number % columns * TILE, number / columns * TILE];
+        let span = TILE.min(width - left);
+        for (row, colors) in colors.chunks(span).enumerate() {
+            let start = (top + row) * width + left;
+            pixels[start..start + span].copy_from_slice(colors);
+        }
+    }
+    Image { width, height, pixels, fragments: tiles.iter().map(|(_, fragments)| fragments).sum() }
+}
+
+/// A draw with its triangles in the window.
+struct Prepared<'a, R> {
+    draw: &'a Draw,
+    shader: Shader<'a, R>,
+    geometry: Geometry,
+}
+
+impl<'a, R: Real + Into<f64> + Send + Sync> Prepared<'a, R> {
+    fn new(frame: &'a Frame, number: usize, only: Option<&'a Called>, stages: bool) -> Self {
+        let draw = &frame.draws[number];
+        let (mesh, shader) = (&frame.meshes[draw.mesh], Shader::<R>::new(frame, number, only, stages));
+        let vertices: Vec<([f64; 4], Vec<R>)> = (0..mesh.positions.len())
+            .into_par_iter()
+            .map_init(Scratch::default, |scratch, vertex| {
+                let mut attributes = vec![];
+                let clip = shader.vertex(vertex, scratch, &mut attributes);
+                (plain(clip), attributes)
+            })
+            .collect();
+        let mut geometry = Geometry { stride: shader.attributes.count, ..Geometry::default() };
+        for (number, (clip, attributes)) in vertices.into_iter().enumerate() {
+            geometry.clip.push(clip);
+            geometry.numbers.extend(attributes.into_iter().map(Into::<f64>::into));
+            geometry.identities.push(number as u64);
+        }
+        let provoking = draw.shading.map_or(Provoking::First, |shading| shading.provoking);
+        let size = [frame.target.width, frame.target.height];
+        geometry.assemble(&mesh.triangles, |of| interpolation::flat(of, provoking), size, draw.cull);
+        Self { draw, shader, geometry }
+    }
+}
+
+/// The triangles that each tile may hold a part of, in the order of drawing.
+fn bins<R>(draws: &[Prepared<'_, R>], size: [usize; 2]) -> Vec<Vec<(usize, usize)>> {
+    let [columns, rows] = size.map(|pixels| pixels.div_ceil(TILE));
+    let mut bins = vec![vec![]; columns * rows];
+    #[expect(clippy::cast_possible_truncation, reason = "a target's size")]
+    let size = size.map(|pixels| pixels as u32);
+    for (number, draw) in draws.iter().enumerate() {
+        for (place, triangle) in draw.geometry.triangles.iter().enumerate() {
+            let [[left, right], [top, bottom]] = triangle.pixels(0.0, size);
+            if right < left || bottom < top {
+                continue;
+            }
+            for row in top / TILE..=bottom / TILE {
+                for column in left / TILE..=right / TILE {
+                    bins[row * columns + column].push((number, place));
+                }
+            }
+        }
+    }
+    bins
+}
+
+/// A part of the image.
+struct Tile<'a, R> {
+    frame: &'a Frame,
+    stage: Option<Stage>,
+    /// First and last pixel of each axis.
+    within: [[usize; 2]; 2],
+    colors: Vec<[f64; 4]>,
+    depths: Vec<f64>,
+    fragments: u64,
+    scratch: Scratch<R>,
+}
+
+impl<'a, R: Real + Into<f64>> Tile<'a, R> {
+    fn new(frame: &'a Frame, stage: Option<Stage>, origin: [usize; 2], size: [usize; 2]) -> Self {
+        let within = std::array::from_fn(|axis| [origin[axis], (origin[axis] + TILE).min(size[axis]) - 1]);
+        let [[left, right], [top, bottom]] = within;
+        let count = (right - left + 1) * (bottom - top + 1);
+        let background = frame.background.map(f64::from);
+        Self {
+            frame,
+            stage,
+            within,
+            colors: vec![if stage.is_some() { [0.0; 4] } else { background }; count],
+            depths: vec![frame.clear_depth.into(); count],
+            fragments: 0,
+            scratch: Scratch::default(),
+        }
+    }
+
+    fn draw(&mut self, prepared: &Prepared<'_, R>, triangle: &Triangle) {
+        let size = [self.frame.target.width, self.frame.target.height];
+        let [columns, rows] = triangle.pixels(0.0, size);
+        let [[left, right], [top, bottom]] = self.within;
+        for y in rows[0].max(top)..=rows[1].min(bottom) {
+            for x in columns[0].max(left)..=columns[1].min(right) {
+                let edges = triangle.edges([middle(x), middle(y)]);
+                if triangle.covers(edges) {
+                    self.fragment(prepared, triangle, edges, (y - top) * (right - left + 1) + x - left);
+                }
+            }
+        }
+    }
+
+    fn fragment(&mut self, prepared: &Prepared<'_, R>, triangle: &Triangle, edges: [f64; 3], pixel: usize) {
+        let (draw, shader) = (prepared.draw, &prepared.shader);
+        let depth = triangle.depth_at(edges);
+        let is_seen = draw.depth.is_none_or(|test| passes(test.compare, depth, self.depths[pixel]) > 0.5);
+        if !is_seen {
+            return;
+        }
+        self.fragments += 1;
+        let attributes = interpolated::<R>(&prepared.geometry, triangle, edges, shader);
+        let fragment = shader.fragment(&attributes[..shader.attributes.count], &mut self.scratch);
+        if fragment.kept.into() < 0.5 {
+            return;
+        }
+        if draw.depth.is_some_and(|test| test.write) {
+            self.depths[pixel] = depth;
+        }
+        let below = self.colors[pixel];
+        self.colors[pixel] = match self.stage {
+            Some(stage) => fragment.at(stage, R::literal(depth)).0.map(Into::into),
+            None => stored(self.frame, draw, fragment.color, below),
+        };
+    }
+}
+
+/// The middle of a pixel.
+fn middle(pixel: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "within a target's size")]
+    let pixel = pixel as f64;
+    pixel + 0.5
+}
+
+fn interpolated<R: Real>(
+    geometry: &Geometry,
+    triangle: &Triangle,
+    edges: [f64; 3],
+    shader: &Shader<'_, R>,
+) -> [R; MOST] {
+    let weights = triangle.weights(edges);
+    let [a, b, c] = triangle.vertices.map(|vertex| geometry.attributes(vertex));
+    let flat = geometry.attributes(triangle.provoking);
+    let mut attributes = [R::literal(0.0); MOST];
+    for (k, attribute) in attributes.iter_mut().enumerate().take(shader.attributes.count) {
+        let value = if shader.attributes.is_flat_at(k) {
+            flat[k]
+        } else {
+            interpolation::triangle(weights, [a[k], b[k], c[k]])
+        };
+        *attribute = R::literal(value);
+    }
+    attributes
+}
+
+/// What a pixel holds when a colour is drawn over another: blended, clamped where the format is.
+fn stored<R: Real + Into<f64>>(frame: &Frame, draw: &Draw, color: Rgba<R>, below: [f64; 4]) -> [f64; 4] {
+    let is_unorm = frame.target.format.is_unorm();
+    let clamped = |c: [f64; 4]| if is_unorm { c.map(|x| x.clamp(0.0, 1.0)) } else { c };
+    let src = clamped(color.0.map(Into::into));
+    let Some(blend) = draw.blend else { return src };
+    let constant = clamped(blend.constant.map(f64::from));
+    let of = Operands { src: Vector(src), dst: Vector(below), constant: Vector(constant) };
+    clamped(blend_separate(blend.state, &of, Saturate::SourceAndDestination).0)
+}

@@ -1,0 +1,379 @@
+//! What happens at a vertex and at a fragment of a draw.
+//!
+//! Vertex: `p = modelview·position`, `clip = projection·p`, `n = ⟨N·normal⟩`. Lit colour:
+//! `CE + CA + Σᵢ(CAᵢ + CDᵢ + CSᵢ)`, at the vertices or at the fragment. Then vertex colours, texture, lightmap, cutout and
+//! fog, in this order. Everything that a draw names is computed, whether or not it could change a pixel, unless a set of
+//! effects says what is called for.
+
+use super::attributes::{Attributes, LIT};
+use crate::algebra::{Mat4, Rgb, Rgba, Vec3, Vec4, Vector};
+use crate::lighting::{self, Material};
+use crate::real::Real;
+use crate::{attenuation, color, fog, texture, vector};
+use lightmeter_scene::effects::{Called, Effect};
+use lightmeter_scene::frame::Shading;
+use lightmeter_scene::frame::{self, FogForm, Frame, Place};
+use lightmeter_scene::shading::{Ambient, Frequency, Gate, LightAmbient, Normals, Viewer};
+use lightmeter_scene::stage::Stage;
+
+/// A draw with its constants brought to an arithmetic.
+#[derive(Clone, Debug)]
+pub struct Shader<'a, R> {
+    frame: &'a Frame,
+    draw: &'a frame::Draw,
+    only: Option<&'a Called>,
+    /// What is handed from the vertices to the fragments.
+    pub attributes: Attributes,
+    modelview: Mat4<R>,
+    projection: Mat4<R>,
+    material: Material<R>,
+    emissive: Rgb<R>,
+    ambient: Rgb<R>,
+    lights: Vec<Light<R>>,
+    fog: Option<Rgb<R>>,
+}
+
+/// A light with everything that does not vary over the surface.
+#[derive(Clone, Debug)]
+struct Light<R> {
+    colors: lighting::Light<R>,
+    shape: Shape<R>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Shape<R> {
+    Directional { l: Vec3<R> },
+    Point { position: Vec3<R>, falloff: [R; 3] },
+    Spot { position: Vec3<R>, falloff: [R; 3], axis: Vec3<R>, cutoff: R, exponent: R },
+}
+
+impl<R: Real> Shape<R> {
+    fn new(place: Place) -> Self {
+        let vec3 = |v: [f32; 3]| Vector(v.map(R::input));
+        match place {
+            Place::Directional { toward, unit: true } => Self::Directional { l: vec3(toward) },
+            Place::Directional { toward, unit: false } => Self::Directional { l: vec3(toward).normalize() },
+            Place::Point { position, falloff } => {
+                Self::Point { position: vec3(position), falloff: falloff.map(R::input) }
+            }
+            Place::Spot { position, falloff, axis, cutoff_cosine, exponent } => Self::Spot {
+                position: vec3(position),
+                falloff: falloff.map(R::input),
+                axis: vec3(axis).normalize(),
+                cutoff: R::input(cutoff_cosine),
+                exponent: R::input(exponent),
+            },
+        }
+    }
+}
+
+/// A fragment: its colour, and what it came from.
+#[derive(Clone, Copy, Debug)]
+pub struct Fragment<R> {
+    /// Its position in eye space, where something asks for it.
+    pub p: Vec3<R>,
+    /// The unit normal, where the fragment has one.
+    pub n: Vec3<R>,
+    /// `CE + CA + Σᵢ(CAᵢ + CDᵢ)`.
+    pub diffuse: Rgb<R>,
+    /// `Σᵢ CSᵢ`.
+    pub specular: Rgb<R>,
+    /// The colour with vertex colours, texture and lightmap.
+    pub surface: Rgba<R>,
+    /// The same in the fog.
+    pub color: Rgba<R>,
+    /// 1 where the fragment is drawn, 0 where a cutout leaves it out.
+    pub kept: R,
+}
+
+/// Terms that are summed up, kept from fragment to fragment.
+#[derive(Clone, Debug)]
+pub struct Scratch<R> {
+    diffuse: [Vec<R>; 3],
+    specular: [Vec<R>; 3],
+}
+
+impl<R> Default for Scratch<R> {
+    fn default() -> Self {
+        let [diffuse, specular] = std::array::from_fn(|_| std::array::from_fn(|_| vec![]));
+        Self { diffuse, specular }
+    }
+}
+
+impl<R: Real> Fragment<R> {
+    /// An intermediate result of a fragment at a depth, as an image shows it.
+    pub fn at(&self, stage: Stage, depth: R) -> Rgba<R> {
+        let (zero, one) = (R::literal(0.0), R::literal(1.0));
+        match stage {
+            Stage::Position => self.p.extend(one),
+            Stage::Depth => Vector([depth, zero, zero, one]),
+            Stage::Normal => self.n.extend(one),
+            Stage::Diffuse => self.diffuse.extend(one),
+            Stage::Specular => self.specular.extend(one),
+            Stage::Surface => self.surface,
+            Stage::Fog => self.color,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Lit<R> {
+    color: Rgb<R>,
+    diffuse: Rgb<R>,
+    specular: Rgb<R>,
+}
+
+impl<'a, R: Real> Shader<'a, R> {
+    /// The shader of a draw: of all that it names, or of what is called for only. `stages` keeps what intermediate results
+    /// ask for.
+    #[must_use]
+    pub fn new(frame: &'a Frame, draw: usize, only: Option<&'a Called>, stages: bool) -> Self {
+        let draw = &frame.draws[draw];
+        let rgb = |c: [f32; 3]| Vector(c.map(R::input));
+        let m = &draw.material;
+        let light = |light: &frame::Light| {
+            let [ambient, diffuse, specular] = [light.ambient, light.diffuse, light.specular].map(rgb);
+            Light { colors: lighting::Light { ambient, diffuse, specular }, shape: Shape::new(light.place) }
+        };
+        let lights = match only {
+            _ if draw.shading.is_none() => vec![],
+            Some(called) => called.lights.iter().map(|&place| light(&frame.lights[place])).collect(),
+            None => frame.lights.iter().map(light).collect(),
+        };
+        let [diffuse, specular] = [m.diffuse, m.specular].map(rgb);
+        let fogged = only.is_none_or(|called| called.effects.has_fog());
+        let fog = frame.fog.as_ref().filter(|_| fogged);
+        Self {
+            frame,
+            draw,
+            only,
+            attributes: Attributes::of(draw, stages || fog.is_some(), stages),
+            modelview: matrix(&draw.modelview),
+            projection: matrix(&frame.projection),
+            material: Material { ambient: rgb(m.ambient), diffuse, specular, shininess: R::input(m.shininess) },
+            emissive: rgb(m.emissive),
+            ambient: rgb(frame.ambient),
+            lights,
+            fog: fog.map(|fog| rgb(fog.color)),
+        }
+    }
+
+    fn has(&self, effect: Effect) -> bool {
+        self.only.is_none_or(|called| called.effects.has(effect))
+    }
+
+    /// The clip coordinates of a vertex of the draw's mesh; its attributes are appended.
+    pub fn vertex(&self, vertex: usize, scratch: &mut Scratch<R>, attributes: &mut Vec<R>) -> Vec4<R> {
+        let (mesh, at) = (&self.frame.meshes[self.draw.mesh], self.attributes);
+        let position: Vec3<R> = Vector(mesh.positions[vertex].map(R::input));
+        let eye = self.modelview.transform(position.extend(R::literal(1.0)));
+        let p = eye.xyz();
+        let n = self.draw.shading.filter(|_| at.n.is_some() || at.lit.is_some()).map(|shading| {
+            let given = mesh.normals.get(vertex).copied().unwrap_or_default();
+            self.normal(shading, Vector(given.map(R::input)))
+        });
+        let n = n.unwrap_or(Vector::splat(R::literal(0.0)));
+        let start = attributes.len();
+        if at.p.is_some() {
+            attributes.extend(p.0);
+        }
+        if at.n.is_some() {
+            attributes.extend(n.0);
+        }
+        if at.lit.is_some() {
+            let lit = self.lit(p, n, scratch);
+            attributes.extend([lit.color, lit.diffuse, lit.specular].into_iter().flat_map(|c| c.0));
+        }
+        if at.uv.is_some() {
+            attributes.extend(mesh.uvs[vertex].map(R::input));
+        }
+        if at.lightmap_uv.is_some() {
+            attributes.extend(mesh.lightmap_uvs[vertex].map(R::input));
+        }
+        if at.color.is_some() {
+            attributes.extend(mesh.colors[vertex].map(R::input));
+        }
+        debug_assert_eq!(attributes.len() - start, at.count);
+        self.projection.transform(eye)
+    }
+
+    fn normal(&self, shading: Shading, given: Vec3<R>) -> Vec3<R> {
+        let modelview = self.modelview.upper3();
+        match shading.normals {
+            Normals::InverseTranspose => vector::normal_inverse_transpose(&modelview, given),
+            Normals::Modelview => vector::normal_modelview(&modelview, given),
+        }
+        .normalize()
+    }
+
+    /// `CE + CA + Σᵢ(CAᵢ + CDᵢ + CSᵢ)` at a point with a unit normal.
+    fn lit(&self, p: Vec3<R>, n: Vec3<R>, scratch: &mut Scratch<R>) -> Lit<R> {
+        let Scratch { diffuse, specular } = scratch;
+        diffuse.iter_mut().chain(specular.iter_mut()).for_each(Vec::clear);
+        if self.has(Effect::Emissive) {
+            push(diffuse, self.emissive);
+        }
+        match self.frame.ambient_form {
+            Ambient::Product if self.has(Effect::AmbientProduct) => {
+                push(diffuse, lighting::ambient(self.ambient, self.material.ambient));
+            }
+            Ambient::Constant if self.has(Effect::AmbientConstant) => push(diffuse, self.ambient),
+            _ => {}
+        }
+        if let Some(shading) = self.draw.shading
+            && !self.lights.is_empty()
+        {
+            let v = match shading.viewer {
+                Viewer::Local if self.has(Effect::LocalViewer) => (-p).normalize(),
+                _ => Vector([0.0, 0.0, 1.0].map(R::literal)),
+            };
+            for light in &self.lights {
+                self.add_light(shading, light, [p, n, v], diffuse, specular);
+            }
+        }
+        let sum = |terms: &[Vec<R>; 3]| Vector(std::array::from_fn(|k| R::sum_slice(&terms[k])));
+        let (without, highlights) = (sum(diffuse), sum(specular));
+        for (terms, more) in diffuse.iter_mut().zip(specular) {
+            terms.append(more);
+        }
+        Lit { color: sum(diffuse), diffuse: without, specular: highlights }
+    }
+
+    fn add_light(
+        &self,
+        shading: Shading,
+        light: &Light<R>,
+        [p, n, v]: [Vec3<R>; 3],
+        diffuse: &mut [Vec<R>; 3],
+        specular: &mut [Vec<R>; 3],
+    ) {
+        let one = R::literal(1.0);
+        let (colors, material) = (&light.colors, &self.material);
+        let (l, cone) = match light.shape {
+            Shape::Directional { l } => (l, one),
+            Shape::Point { position, .. } => (vector::toward(position, p), one),
+            Shape::Spot { position, axis, cutoff, exponent, .. } => {
+                let l = vector::toward(position, p);
+                let exponent = if self.has(Effect::SpotExponent) { exponent } else { R::literal(0.0) };
+                (l, attenuation::spot_exponent(l, axis, cutoff, exponent))
+            }
+        };
+        let atten = match light.shape {
+            Shape::Point { position, falloff: [kc, kl, kq] } | Shape::Spot { position, falloff: [kc, kl, kq], .. }
+                if self.has(Effect::Attenuation) =>
+            {
+                attenuation::point(kc, kl, kq, position, p)
+            }
+            _ => one,
+        };
+        if self.has(Effect::LightAmbient) {
+            let ambient = lighting::ambient(colors.ambient, material.ambient);
+            let weakened = self.frame.light_ambient == LightAmbient::OpenGl && self.has(Effect::AttenuatedAmbient);
+            push(diffuse, if weakened { ambient.map(|c| R::product([c, cone, atten])) } else { ambient });
+        }
+        let is_dark = cone.is_at_most(0.0);
+        let fi = lighting::incidence(l, n);
+        let is_turned_away = fi.is_at_most(0.0);
+        if self.has(Effect::Diffuse) && !is_dark && !is_turned_away {
+            let factors = |light: R, material: R| R::product([light, material, fi, cone, atten]);
+            push(diffuse, zip(colors.diffuse, material.diffuse, factors));
+        }
+        let gated = shading.gate == Gate::OpenGl;
+        if self.has_specular() && !is_dark && !(gated && is_turned_away) {
+            let fs = || lighting::highlight(shading.specular, n, l, v, material.shininess);
+            let fs = match shading.gate {
+                Gate::OpenGl => R::if_ge(R::literal(0.0), l.dot(n), || R::literal(0.0), fs),
+                Gate::Documents => fs(),
+            };
+            let factors = |light: R, material: R| R::product([light, material, fs, cone, atten]);
+            push(specular, zip(colors.specular, material.specular, factors));
+        }
+    }
+
+    fn has_specular(&self) -> bool {
+        self.only.is_none_or(|called| called.effects.has_specular())
+    }
+
+    /// A fragment, from its interpolated attributes.
+    pub fn fragment(&self, attributes: &[R], scratch: &mut Scratch<R>) -> Fragment<R> {
+        let (zero, one, at) = (R::literal(0.0), R::literal(1.0), self.attributes);
+        let three = |start: usize| Vector([attributes[start], attributes[start + 1], attributes[start + 2]]);
+        let p = at.p.map_or(Vector::splat(zero), three);
+        let f = self.fog.zip(self.frame.fog.as_ref()).map(|(color, fog)| (color, factor(fog, p)));
+        // Where nothing but fog is seen, what is under it need not be lit.
+        let is_hidden = f.is_some_and(|(_, f)| f.is_at_most(0.0));
+        let (mut n, dark) = (Vector::splat(zero), Vector::splat(zero));
+        let lit = match (self.draw.shading.map(|shading| shading.frequency), at.lit) {
+            (None, _) => Lit { color: self.material.diffuse, diffuse: self.material.diffuse, specular: dark },
+            (Some(Frequency::Phong), _) => {
+                n = at.n.map_or(n, three).normalize();
+                if is_hidden { Lit { color: dark, diffuse: dark, specular: dark } } else { self.lit(p, n, scratch) }
+            }
+            (Some(_), start) => {
+                n = at.n.map_or(n, three);
+                let start = start.unwrap_or_default();
+                debug_assert!(start + LIT <= attributes.len());
+                Lit { color: three(start), diffuse: three(start + 3), specular: three(start + 6) }
+            }
+        };
+        let surface = self.surface(lit.color.extend(R::input(self.draw.alpha)), attributes);
+        let kept = match self.draw.cutout.filter(|_| self.has(Effect::Cutout)) {
+            Some(threshold) => R::if_ge(surface.w(), R::input(threshold), || one, || zero),
+            None => one,
+        };
+        let color = match f {
+            Some((fog, f)) => fog::apply(fog, surface.xyz(), f).extend(surface.w()),
+            None => surface,
+        };
+        Fragment { p, n, diffuse: lit.diffuse, specular: lit.specular, surface, color, kept }
+    }
+
+    /// Vertex colours, texture and lightmap.
+    fn surface(&self, mut surface: Rgba<R>, attributes: &[R]) -> Rgba<R> {
+        let at = self.attributes;
+        let uv = |start: usize| Vector([attributes[start], attributes[start + 1]]);
+        if let Some(start) = at.color.filter(|_| self.has(Effect::VertexColor)) {
+            surface = color::modulate(Vector(std::array::from_fn(|k| attributes[start + k])), surface);
+        }
+        if let (Some(textured), Some(start)) = (self.draw.texture, at.uv)
+            && self.only.is_none_or(|called| called.effects.has_texture())
+        {
+            let sampled = textured.sampled;
+            let texture = &self.frame.textures[sampled.texture];
+            let texel = texture::sample(texture, sampled.filter, sampled.wrap, uv(start));
+            let apply = if textured.replaces { color::replace } else { color::modulate };
+            surface = apply(texel, surface);
+        }
+        if let (Some(sampled), Some(start)) = (self.draw.lightmap, at.lightmap_uv)
+            && self.only.is_none_or(|called| called.effects.has_lightmap())
+        {
+            let lightmap = &self.frame.textures[sampled.texture];
+            surface = color::modulate(texture::sample(lightmap, sampled.filter, sampled.wrap, uv(start)), surface);
+        }
+        surface
+    }
+}
+
+fn factor<R: Real>(fog: &frame::Fog, p: Vec3<R>) -> R {
+    let distance = fog::distance(p, fog.distance);
+    match fog.form {
+        FogForm::Linear { dmin, dmax } => fog::linear(distance, R::input(dmin), R::input(dmax)),
+        FogForm::Exp { density } => fog::exp(distance, R::input(density)),
+        FogForm::Exp2Document { density } => fog::exp2_document(distance, R::input(density)),
+        FogForm::Exp2OpenGl { density } => fog::exp2_opengl(distance, R::input(density)),
+    }
+}
+
+fn matrix<R: Real>(columns: &frame::Matrix) -> Mat4<R> {
+    Mat4(columns.map(|column| Vector(column.map(R::input))))
+}
+
+fn push<R: Real>(terms: &mut [Vec<R>; 3], term: Rgb<R>) {
+    for (terms, x) in terms.iter_mut().zip(term.0) {
+        terms.push(x);
+    }
+}
+
+fn zip<R: Real>(a: Rgb<R>, b: Rgb<R>, f: impl Fn(R, R) -> R) -> Rgb<R> {
+    Vector(std::array::from_fn(|k| f(a[k], b[k])))
+}

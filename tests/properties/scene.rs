@@ -1,0 +1,78 @@
+//! Laws of whole images, over random frames.
+
+use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::image::{Expected, expect};
+use lightmeter_reference::render::{Image, render};
+use lightmeter_scene::effects::{effects, named};
+use lightmeter_scene::frame::Frame;
+use lightmeter_scene::stage::Stage;
+use lightmeter_tests::frames::frame;
+use proptest::prelude::*;
+
+/// The first pixel that two images do not have in common, bit for bit.
+fn difference(a: &Image, b: &Image) -> Option<String> {
+    let pairs = a.pixels.iter().zip(&b.pixels).enumerate();
+    let mut differing = pairs.filter(|(_, (a, b))| a.map(f64::to_bits) != b.map(f64::to_bits));
+    let (number, (of_a, of_b)) = differing.next()?;
+    Some(format!("pixel {} {}: {of_a:?} and {of_b:?}", number % a.width, number / a.width))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The effects that a frame does not call for change no bit of its image.
+    #[test]
+    fn what_is_not_called_for_changes_nothing(seed: u64) {
+        let frame = frame(seed);
+        let called = effects(&frame);
+        for of in called.iter().chain(&named(&frame)) {
+            prop_assert_eq!(of.effects.contradiction(), None, "{}", of.effects);
+        }
+        let full = render::<f64>(&frame, None, None);
+        prop_assert_eq!(difference(&render::<f64>(&frame, Some(&called), None), &full), None);
+        prop_assert_eq!(difference(&render::<f64>(&frame, Some(&named(&frame)), None), &full), None);
+    }
+}
+
+/// Share of the pixels of random frames that lie outside what is legal, and of those that are marked.
+fn departures(of: impl Fn(&Frame, Option<Stage>) -> Image, stage: Option<Stage>) -> (usize, usize, usize) {
+    let (mut outside, mut marked, mut all) = (0, 0, 0);
+    for seed in 0..120 {
+        let frame = frame(seed);
+        let expected = expect(&frame, None, stage, &WGSL);
+        let image = of(&frame, stage);
+        for (number, (pixel, expected)) in image.pixels.iter().zip(&expected).enumerate() {
+            all += 1;
+            marked += usize::from(expected.is_marked);
+            if !contains(&frame, stage, expected, *pixel) {
+                outside += 1;
+                if outside < 4 {
+                    let (x, y) = (number % image.width, number / image.width);
+                    println!("seed {seed}, pixel {x} {y}: {pixel:?} is not in {expected:?}, {:?}", frame.target.format);
+                }
+            }
+        }
+    }
+    (outside, marked, all)
+}
+
+fn contains(frame: &Frame, stage: Option<Stage>, expected: &Expected, pixel: [f64; 4]) -> bool {
+    let units = if stage.is_none() && frame.target.format.is_unorm() { 255.0 } else { 1.0 };
+    (0..4).all(|k| {
+        let value = pixel[k] * units;
+        // Nothing of a plain image is rounded to the format.
+        let rounding = value.abs() * 1e-3 * f64::from(u8::from(frame.target.format.component_bytes() == 2)) + 1e-12;
+        expected.low[k] - rounding <= value && value <= expected.high[k] + rounding
+    })
+}
+
+#[test]
+fn the_reference_and_its_form_in_f32_are_legal() {
+    for stage in std::iter::once(None).chain(Stage::ALL.map(Some)) {
+        for of in [|f: &Frame, s| render::<f64>(f, None, s), |f: &Frame, s| render::<f32>(f, None, s)] {
+            let (outside, marked, all) = departures(of, stage);
+            println!("{stage:?}: {outside} outside, {marked} marked of {all}");
+            assert_eq!(outside, 0, "{stage:?}");
+        }
+    }
+}
