@@ -6,6 +6,7 @@ use lightmeter_reference::render::{Image, render};
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::stage::Stage;
+use lightmeter_scene::target::TargetFormat;
 use lightmeter_tests::frames::frame;
 use proptest::prelude::*;
 
@@ -34,9 +35,9 @@ proptest! {
     }
 }
 
-/// Share of the pixels of random frames that lie outside what is legal, and of those that are marked.
-fn departures(of: impl Fn(&Frame, Option<Stage>) -> Image, stage: Option<Stage>) -> (usize, usize, usize) {
-    let (mut outside, mut marked, mut all) = (0, 0, 0);
+/// The pixels of random frames that are outside what is legal, and how many are marked of how many.
+fn departures(of: impl Fn(&Frame, Option<Stage>) -> Image, stage: Option<Stage>) -> (Vec<String>, usize, usize) {
+    let (mut outside, mut marked, mut all) = (vec![], 0, 0);
     for seed in 0..120 {
         let frame = frame(seed);
         let expected = expect(&frame, None, stage, &WGSL);
@@ -45,11 +46,8 @@ fn departures(of: impl Fn(&Frame, Option<Stage>) -> Image, stage: Option<Stage>)
             all += 1;
             marked += usize::from(expected.is_marked);
             if !contains(&frame, stage, expected, *pixel) {
-                outside += 1;
-                if outside < 4 {
-                    let (x, y) = (number % image.width, number / image.width);
-                    println!("seed {seed}, pixel {x} {y}: {pixel:?} is not in {expected:?}, {:?}", frame.target.format);
-                }
+                let (x, y) = (number % image.width, number / image.width);
+                outside.push(format!("seed {seed}, pixel {x} {y}: {pixel:?} is not in {expected:?}"));
             }
         }
     }
@@ -60,8 +58,9 @@ fn contains(frame: &Frame, stage: Option<Stage>, expected: &Expected, pixel: [f6
     let units = if stage.is_none() && frame.target.format.is_unorm() { 255.0 } else { 1.0 };
     (0..4).all(|k| {
         let value = pixel[k] * units;
-        // Nothing of a plain image is rounded to the format.
-        let rounding = value.abs() * 1e-3 * f64::from(u8::from(frame.target.format.component_bytes() == 2)) + 1e-12;
+        // A plain image is not rounded to its format: binary16 has 11 bits.
+        let is_half = stage.is_none() && frame.target.format == TargetFormat::Rgba16Float;
+        let rounding = 1e-12 + if is_half { value.abs() / 2048.0 } else { 0.0 };
         expected.low[k] - rounding <= value && value <= expected.high[k] + rounding
     })
 }
@@ -71,8 +70,9 @@ fn the_reference_and_its_form_in_f32_are_legal() {
     for stage in std::iter::once(None).chain(Stage::ALL.map(Some)) {
         for of in [|f: &Frame, s| render::<f64>(f, None, s), |f: &Frame, s| render::<f32>(f, None, s)] {
             let (outside, marked, all) = departures(of, stage);
-            println!("{stage:?}: {outside} outside, {marked} marked of {all}");
-            assert_eq!(outside, 0, "{stage:?}");
+            assert!(outside.is_empty(), "{stage:?}: {} pixels are not legal, as {}", outside.len(), outside[0]);
+            // A third of the frames' triangles are seen on a few pixels only: the share is far above that of a real scene.
+            assert!(marked * 50 < all, "{stage:?}: {marked} of {all} pixels are marked");
         }
     }
 }
