@@ -9,6 +9,7 @@ pub mod filter;
 pub mod judge;
 pub mod report;
 pub mod run;
+pub mod scene;
 pub mod select;
 pub mod subject;
 pub mod tally;
