@@ -10,6 +10,7 @@ pub mod image;
 pub mod judge;
 pub mod report;
 pub mod run;
+pub mod scene;
 pub mod select;
 pub mod subject;
 pub mod tally;

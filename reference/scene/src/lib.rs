@@ -7,6 +7,7 @@ pub mod blend;
 pub mod depth;
 pub mod effects;
 pub mod frame;
+pub mod model;
 pub mod raster;
 pub mod shading;
 pub mod stage;

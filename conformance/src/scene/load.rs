@@ -1,0 +1,151 @@
+//! From JSON to a frame.
+
+use super::field::{At, Error};
+use super::objects::{self, Known, Parts};
+use super::{camera, library, lights, mesh, texture};
+use lightmeter_scene::frame::Frame;
+use lightmeter_scene::model::Scene;
+use std::io;
+use std::path::Path;
+
+/// Gives the bytes of a file that a scene names.
+pub type Files<'a> = dyn Fn(&str) -> io::Result<Vec<u8>> + 'a;
+
+/// Bytes of a file, at most.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// A scene that can be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded {
+    /// The name of its file, without the ending.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// What is to be seen.
+    pub shows: String,
+    /// What is drawn.
+    pub frame: Frame,
+}
+
+/// Loads the scene of that path, or the built-in one of that name.
+///
+/// # Errors
+///
+/// Where there is neither, or the scene is refused.
+pub fn scene(path_or_name: &str) -> Result<Loaded, Error> {
+    let name = path_or_name.strip_prefix("scene/").unwrap_or(path_or_name);
+    if library::SCENES.iter().any(|(own, _)| *own == name) && !Path::new(path_or_name).is_file() {
+        return builtin(name);
+    }
+    if path_or_name.contains(['/', '.', '\\']) || Path::new(path_or_name).exists() {
+        return file(Path::new(path_or_name));
+    }
+    Err(unknown(name))
+}
+
+/// Loads a scene from a file.
+///
+/// # Errors
+///
+/// Where the file cannot be read, or the scene is refused.
+pub fn file(path: &Path) -> Result<Loaded, Error> {
+    let unreadable = |source| Error::File { file: path.display().to_string(), source };
+    let json = read(path).map_err(unreadable)?;
+    let json = String::from_utf8(json).map_err(|error| unreadable(io::Error::other(error)))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    text(&name, &json, &|file| read(&folder.join(file)))
+}
+
+/// Loads a built-in scene.
+///
+/// # Errors
+///
+/// Where there is none of that name.
+pub fn builtin(name: &str) -> Result<Loaded, Error> {
+    let (name, json) = library::SCENES.iter().find(|(own, _)| *own == name).ok_or_else(|| unknown(name))?;
+    text(name, json, &library::asset)
+}
+
+fn unknown(name: &str) -> Error {
+    Error::Unknown { name: name.to_owned(), known: library::SCENES.map(|(own, _)| own).join(", ") }
+}
+
+/// Loads a scene from JSON. `files` gives the bytes of the files that it names.
+///
+/// # Errors
+///
+/// Where the text is not JSON, not of the schema, or holds what is not allowed.
+pub fn text(name: &str, json: &str, files: &Files<'_>) -> Result<Loaded, Error> {
+    let scene = parse(json)?;
+    let frame = frame(&scene, files)?;
+    Ok(Loaded { name: name.to_owned(), title: scene.title, shows: scene.shows, frame })
+}
+
+/// Reads what is authored.
+///
+/// # Errors
+///
+/// Where the text is not JSON, or not of the schema.
+pub fn parse(json: &str) -> Result<Scene, Error> {
+    let mut deserializer = serde_json::Deserializer::from_str(json);
+    let scene = serde_path_to_error::deserialize(&mut deserializer)
+        .map_err(|error| Error::Json { path: error.path().to_string(), says: error.inner().to_string() })?;
+    deserializer.end().map_err(|error| Error::Json { path: ".".into(), says: error.to_string() })?;
+    Ok(scene)
+}
+
+/// Resolves what is authored.
+///
+/// # Errors
+///
+/// Where a field holds what it may not.
+pub fn frame(scene: &Scene, files: &Files<'_>) -> Result<Frame, Error> {
+    let target = camera::target(scene.target)?;
+    let view = camera::view(&scene.camera)?;
+    let projection = camera::projection(&scene.camera, target)?;
+    objects::names(scene)?;
+
+    let at = At::Scene.field("textures");
+    let each = scene.textures.iter().map(|(name, image)| texture::texture(&at.field(name), image, files));
+    let mut textures = each.collect::<Result<Vec<_>, _>>()?;
+    let surfaces = objects::surfaces(scene)?;
+
+    let at = At::Scene.field("meshes");
+    let (mut meshes, mut parts) = (vec![], vec![]);
+    for (name, mesh) in scene.meshes.iter() {
+        let mut of_mesh = Parts::new();
+        for part in mesh::parts(&at.field(name), mesh, files, &mut textures)? {
+            of_mesh.push((meshes.len(), part.name, part.surface));
+            meshes.push(part.mesh);
+        }
+        parts.push(of_mesh);
+    }
+
+    let lights = lights::lights(&scene.lights, &|at, attached| objects::space(at, scene, view, attached))?;
+    let known = Known { scene, view, surfaces: &surfaces, parts: &parts };
+    let draws = objects::draws(&known, &mut meshes)?;
+    Ok(Frame {
+        target,
+        background: At::Scene.field("background").numbers(scene.background)?,
+        clear_depth: if scene.camera.reversed_depth { 0.0 } else { 1.0 },
+        projection,
+        ambient: At::Scene.field("ambient").field("color").numbers(scene.ambient.color)?,
+        ambient_form: scene.ambient.form.into(),
+        light_ambient: scene.light_ambient.into(),
+        lights,
+        fog: scene.fog.as_ref().map(lights::fog).transpose()?,
+        meshes,
+        textures,
+        draws,
+    })
+}
+
+/// The bytes of a file, unless it is too large.
+fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let bytes = std::fs::metadata(path)?.len();
+    if bytes > MOST_BYTES {
+        return Err(io::Error::other(format!("it has {bytes} bytes; expected {MOST_BYTES} at most")));
+    }
+    std::fs::read(path)
+}

@@ -1,0 +1,22 @@
+//! Scenes: from what is written to what is drawn.
+//!
+//! [`load`] reads JSON, files and names and gives a [`Frame`](lightmeter_scene::frame::Frame), or an [`Error`] that says which field
+//! holds what, and what is allowed. [`library`] has the scenes that are built in.
+
+mod blend;
+mod camera;
+mod field;
+pub mod library;
+mod lights;
+pub mod load;
+mod material;
+mod mesh;
+mod normals;
+mod obj;
+mod objects;
+mod shapes;
+mod teapot;
+mod texture;
+
+pub use field::Error;
+pub use load::Loaded;

@@ -1,0 +1,209 @@
+//! Shapes that the project generates, each from a grid over (u, v) of 0 to 1, with normals and texture coordinates.
+//!
+//! Points are computed in f64 and rounded once. Triangles without area, as at a sphere's poles, are left out.
+
+use super::field::{At, Error};
+use super::mesh::{MOST_TRIANGLES, MOST_VERTICES};
+use super::teapot;
+use glam::DVec3;
+use lightmeter_scene::frame::Mesh;
+use lightmeter_scene::model::Shape;
+use std::f64::consts::TAU;
+
+/// A vertex that a grid makes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex {
+    pub(super) position: DVec3,
+    pub(super) normal: DVec3,
+    pub(super) uv: [f64; 2],
+}
+
+/// The mesh of a generated shape.
+pub(super) fn shape(at: &At<'_>, shape: &Shape) -> Result<Mesh, Error> {
+    let mut mesh = Mesh::default();
+    match *shape {
+        Shape::Triangles { .. } | Shape::Obj(_) => {}
+        Shape::Quad { size, steps, repeat } => {
+            let at = at.field("quad");
+            rectangle(&at, &mut mesh, size, steps, repeat, |[x, y]| (DVec3::new(x, y, 0.0), DVec3::Z))?;
+        }
+        Shape::Plane { size, steps, repeat } => {
+            let at = at.field("plane");
+            rectangle(&at, &mut mesh, size, steps, repeat, |[x, y]| (DVec3::new(x, 0.0, -y), DVec3::Y))?;
+        }
+        Shape::Cube { size, steps } => cube(&at.field("cube"), &mut mesh, size, steps)?,
+        Shape::Sphere { radius, rings, segments } => {
+            let at = at.field("sphere");
+            at.field("radius").positive(radius)?;
+            parts(&at, "rings", rings, 2)?;
+            parts(&at, "segments", segments, 3)?;
+            grid(&at, &mut mesh, [segments, rings], |[u, v]| {
+                let (sin, cos) = turn(v / 2.0);
+                let normal = ring(u) * sin + DVec3::Y * cos;
+                Vertex { position: normal * radius, normal, uv: [u, v] }
+            })?;
+        }
+        Shape::Disc { radius, segments } => {
+            let at = at.field("disc");
+            at.field("radius").positive(radius)?;
+            parts(&at, "segments", segments, 3)?;
+            disc(&at, &mut mesh, segments, |x, y| (DVec3::new(x * radius, y * radius, 0.0), DVec3::Z))?;
+        }
+        Shape::Cylinder { radius, height, segments } => {
+            let at = at.field("cylinder");
+            at.field("radius").positive(radius)?;
+            at.field("height").positive(height)?;
+            parts(&at, "segments", segments, 3)?;
+            grid(&at, &mut mesh, [segments, 1], |[u, v]| {
+                let position = ring(u) * radius + DVec3::Y * height * (0.5 - v);
+                Vertex { position, normal: ring(u), uv: [u, v] }
+            })?;
+            for y in [DVec3::Y, DVec3::NEG_Y] {
+                let end = |x: f64, z: f64| (DVec3::new(x * radius, 0.0, -z * radius * y.y) + y * height / 2.0, y);
+                disc(&at, &mut mesh, segments, end)?;
+            }
+        }
+        Shape::Torus { radius, tube, rings, segments } => {
+            let at = at.field("torus");
+            at.field("radius").positive(radius)?;
+            at.field("tube").positive(tube)?;
+            parts(&at, "rings", rings, 3)?;
+            parts(&at, "segments", segments, 3)?;
+            grid(&at, &mut mesh, [segments, rings], |[u, v]| {
+                let (sin, cos) = turn(v);
+                let normal = ring(u) * cos - DVec3::Y * sin;
+                Vertex { position: ring(u) * radius + normal * tube, normal, uv: [u, v] }
+            })?;
+        }
+        Shape::Teapot { steps } => {
+            let at = at.field("teapot");
+            parts(&at, "steps", steps, 1)?;
+            for patch in teapot::patches() {
+                grid(&at, &mut mesh, [steps; 2], |[u, v]| patch.vertex(u, v))?;
+            }
+        }
+    }
+    Ok(mesh)
+}
+
+/// A point of the unit circle about the y axis, counter-clockwise as seen from above; exact at its quarters.
+fn ring(u: f64) -> DVec3 {
+    let (sin, cos) = turn(u);
+    DVec3::new(cos, 0.0, -sin)
+}
+
+/// Sine and cosine of a share of a turn; exact at its quarters, so that seams close.
+fn turn(u: f64) -> (f64, f64) {
+    let quarters = 4.0 * u;
+    for (quarter, exact) in
+        [(0.0, (0.0, 1.0)), (1.0, (1.0, 0.0)), (2.0, (0.0, -1.0)), (3.0, (-1.0, 0.0)), (4.0, (0.0, 1.0))]
+    {
+        if f64::total_cmp(&quarters, &quarter).is_eq() {
+            return exact;
+        }
+    }
+    (TAU * u).sin_cos()
+}
+
+fn parts(at: &At<'_>, name: &str, count: u32, least: u32) -> Result<(), Error> {
+    at.field(name).require((least..=1024).contains(&count), count, &format!("{least} to 1024 parts"))
+}
+
+/// A rectangle about the origin; `place` puts a point of the plane, y up, into space.
+fn rectangle(
+    at: &At<'_>,
+    mesh: &mut Mesh,
+    size: [f64; 2],
+    steps: [u32; 2],
+    repeat: [f64; 2],
+    place: impl Fn([f64; 2]) -> (DVec3, DVec3),
+) -> Result<(), Error> {
+    for k in 0..2 {
+        at.field("size").item(k).positive(size[k])?;
+        at.field("steps").item(k).require((1..=1024).contains(&steps[k]), steps[k], "1 to 1024 parts")?;
+        at.field("repeat").item(k).number(repeat[k])?;
+    }
+    let vertex = |[u, v]: [f64; 2], uv| {
+        let (position, normal) = place([size[0] * (u - 0.5), size[1] * (0.5 - v)]);
+        Vertex { position, normal, uv }
+    };
+    grid(at, mesh, steps, |[u, v]| vertex([u, v], [u * repeat[0], v * repeat[1]]))?;
+    // A lightmap lies on the whole once.
+    let mut once = Mesh::default();
+    grid(at, &mut once, steps, |uv| vertex(uv, uv))?;
+    mesh.lightmap_uvs = once.uvs;
+    Ok(())
+}
+
+fn cube(at: &At<'_>, mesh: &mut Mesh, size: f64, steps: u32) -> Result<(), Error> {
+    at.field("size").positive(size)?;
+    parts(at, "steps", steps, 1)?;
+    for [right, up] in [
+        [DVec3::X, DVec3::Y],
+        [DVec3::NEG_X, DVec3::Y],
+        [DVec3::NEG_Z, DVec3::Y],
+        [DVec3::Z, DVec3::Y],
+        [DVec3::X, DVec3::NEG_Z],
+        [DVec3::X, DVec3::Z],
+    ] {
+        let normal = right.cross(up);
+        grid(at, mesh, [steps; 2], |[u, v]| {
+            let position = (normal + right * (2.0 * u - 1.0) + up * (1.0 - 2.0 * v)) * (size / 2.0);
+            Vertex { position, normal, uv: [u, v] }
+        })?;
+    }
+    let channel = |x: f32| at.number(f64::from(x) / size + 0.5);
+    for &[x, y, z] in &mesh.positions {
+        mesh.colors.push([channel(x)?, channel(y)?, channel(z)?, 1.0]);
+    }
+    Ok(())
+}
+
+/// A disc of a fan of triangles; `place` puts a point of the unit disc, y up, into space.
+fn disc(at: &At<'_>, mesh: &mut Mesh, segments: u32, place: impl Fn(f64, f64) -> (DVec3, DVec3)) -> Result<(), Error> {
+    grid(at, mesh, [segments, 1], |[u, v]| {
+        let (sin, cos) = turn(u);
+        let (position, normal) = place(cos * v, sin * v);
+        Vertex { position, normal, uv: [0.5 + cos * v / 2.0, 0.5 - sin * v / 2.0] }
+    })
+}
+
+/// Adds the vertices over a grid, and two triangles a cell that are counter-clockwise as seen from where u runs right and v down.
+fn grid(
+    at: &At<'_>,
+    mesh: &mut Mesh,
+    [columns, rows]: [u32; 2],
+    vertex: impl Fn([f64; 2]) -> Vertex,
+) -> Result<(), Error> {
+    let (columns, rows) = (u64::from(columns), u64::from(rows));
+    let vertices = mesh.positions.len() as u64 + (columns + 1) * (rows + 1);
+    let triangles = mesh.triangles.len() as u64 + 2 * columns * rows;
+    if vertices > MOST_VERTICES || triangles > MOST_TRIANGLES {
+        let holds = format_args!("makes {vertices} vertices and {triangles} triangles");
+        return Err(at.refuse(holds, format_args!("{MOST_VERTICES} and {MOST_TRIANGLES} at most")));
+    }
+    let first = u32::try_from(mesh.positions.len()).map_err(|_| at.refuse("is too large", "fewer parts"))?;
+    let (columns, rows) = (u32::try_from(columns).unwrap_or(0), u32::try_from(rows).unwrap_or(0));
+    for row in 0..=rows {
+        for column in 0..=columns {
+            let Vertex { position, normal, uv } =
+                vertex([f64::from(column) / f64::from(columns), f64::from(row) / f64::from(rows)]);
+            mesh.positions.push(at.numbers(position.into())?);
+            mesh.normals.push(at.numbers(normal.into())?);
+            mesh.uvs.push(at.numbers(uv)?);
+        }
+    }
+    for row in 0..rows {
+        for column in 0..columns {
+            let upper = first + row * (columns + 1) + column;
+            let lower = upper + columns + 1;
+            for triangle in [[upper, lower, lower + 1], [upper, lower + 1, upper + 1]] {
+                let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize]);
+                if a != b && b != c && c != a {
+                    mesh.triangles.push(triangle);
+                }
+            }
+        }
+    }
+    Ok(())
+}
