@@ -5,6 +5,7 @@ mod eval;
 mod list;
 mod options;
 mod page;
+mod render;
 mod run;
 mod selftest;
 mod show;
@@ -39,6 +40,8 @@ enum Command {
     Adapters(adapters::Adapters),
     /// Show that the suite catches the mistakes that it knows
     Selftest(selftest::Selftest),
+    /// Draw a scene, by the reference or by an adapter
+    Render(render::Render),
     /// Write a page of the docs from a run's JSON
     Page(page::Page),
     /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out
@@ -53,6 +56,7 @@ impl Cli {
             Command::Show(show) => show.run(),
             Command::Adapters(adapters) => adapters.run(),
             Command::Selftest(selftest) => selftest.run(),
+            Command::Render(render) => render.run(),
             Command::Page(page) => page.run(),
             Command::Eval(eval) => eval.run(),
         }

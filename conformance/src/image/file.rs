@@ -1,0 +1,141 @@
+//! Images as files: PNG of 8 bits, or EXR of binary32.
+
+use crate::blend_unit::pixel::{self, Units};
+use image::{DynamicImage, ImageBuffer, ImageFormat, Rgba};
+use lightmeter_reference::render::Image;
+use lightmeter_scene::target::{Encoding, TargetFormat};
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+/// Why an image was not written.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The name does not end as a known format does.
+    #[error("{}: an image is written as .png or .exr", .0.display())]
+    Format(PathBuf),
+    /// The pixels could not be encoded.
+    #[error("cannot encode {}: {message}", .path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// The file could not be written.
+    #[error("cannot write {}: {message}", .path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+}
+
+/// An image in the units of a target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stored {
+    /// Pixels.
+    pub width: usize,
+    /// What the units are of.
+    pub format: TargetFormat,
+    /// Row after row from the top.
+    pub pixels: Vec<Units>,
+}
+
+impl Stored {
+    /// The reference's image, each component in its target's units, rounded to it.
+    #[must_use]
+    pub fn of(image: &Image, format: TargetFormat) -> Self {
+        let mut stored = Self::unrounded(image, format);
+        if format.is_unorm() {
+            for c in stored.pixels.iter_mut().flatten() {
+                *c = c.round_ties_even();
+            }
+        }
+        stored
+    }
+
+    /// The same, not rounded.
+    #[must_use]
+    pub fn unrounded(image: &Image, format: TargetFormat) -> Self {
+        let units = |pixel: &[f64; 4]| std::array::from_fn(|k| pixel::units(format, k, pixel[k]));
+        Self { width: image.width, format, pixels: image.pixels.iter().map(units).collect() }
+    }
+
+    /// The image that a target holds.
+    #[must_use]
+    pub fn read(width: usize, format: TargetFormat, bytes: &[u8]) -> Self {
+        let count = bytes.len() / (4 * format.component_bytes());
+        Self { width, format, pixels: (0..count).map(|number| pixel::read(format, bytes, number)).collect() }
+    }
+
+    /// Writes it whole or not at all: as PNG with what a screen is to show, or as EXR with linear values.
+    ///
+    /// # Errors
+    /// Where the name ends otherwise, or the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        let bytes = self.encode(path)?;
+        whole(path, &bytes)
+    }
+
+    /// Whether a file of this name can be written at all.
+    ///
+    /// # Errors
+    /// Where it ends otherwise than in .png or .exr.
+    pub fn check_name(path: &Path) -> Result<ImageFormat, Error> {
+        match ImageFormat::from_path(path) {
+            Ok(format @ (ImageFormat::Png | ImageFormat::OpenExr)) => Ok(format),
+            _ => Err(Error::Format(path.into())),
+        }
+    }
+
+    fn encode(&self, path: &Path) -> Result<Vec<u8>, Error> {
+        let format = Self::check_name(path)?;
+        let failed = |message: String| Error::Encode { path: path.into(), message };
+        let [width, height] = [self.width, self.pixels.len() / self.width]
+            .map(|pixels| u32::try_from(pixels).expect("a target's size fits 32 bits"));
+        let drawn = match format {
+            ImageFormat::Png => {
+                ImageBuffer::<Rgba<u8>, _>::from_vec(width, height, self.bytes()).map(DynamicImage::from)
+            }
+            _ => ImageBuffer::<Rgba<f32>, _>::from_vec(width, height, self.values()).map(DynamicImage::from),
+        };
+        let drawn = drawn.ok_or_else(|| failed("its pixels do not fill it".into()))?;
+        let mut bytes = Cursor::new(vec![]);
+        drawn.write_to(&mut bytes, format).map_err(|error| failed(error.to_string()))?;
+        Ok(bytes.into_inner())
+    }
+
+    /// Steps from 0 to 255: those of the target, or of its values clamped.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 8 bits")]
+    fn bytes(&self) -> Vec<u8> {
+        let scale = if self.format.is_unorm() { 1.0 } else { 255.0 };
+        self.pixels.iter().flatten().map(|c| (c * scale).clamp(0.0, 255.0).round_ties_even() as u8).collect()
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "the file holds binary32")]
+    fn values(&self) -> Vec<f32> {
+        let linear = |pixel: &Units| -> [f32; 4] {
+            std::array::from_fn(|k| match self.format.encoding() {
+                Encoding::Float32 | Encoding::Float16 => pixel[k] as f32,
+                _ => pixel::linear(self.format, k, pixel[k]) as f32,
+            })
+        };
+        self.pixels.iter().flat_map(linear).collect()
+    }
+}
+
+/// Writes a file beside its place and moves it there.
+///
+/// # Errors
+/// Where either fails.
+pub fn whole(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    let beside = PathBuf::from(beside);
+    let written = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, path));
+    written.map_err(|error| {
+        let _ = std::fs::remove_file(&beside);
+        Error::Write { path: path.into(), message: error.to_string() }
+    })
+}
