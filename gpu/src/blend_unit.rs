@@ -111,8 +111,8 @@ struct Lane {
 
 /// A state as the unit takes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct Lowered {
-    blend: wgpu::BlendState,
+pub(crate) struct Lowered {
+    pub(crate) blend: wgpu::BlendState,
     mask: WriteMask,
     entry: &'static str,
 }
@@ -265,7 +265,7 @@ pub(crate) const fn format(target: TargetFormat) -> wgpu::TextureFormat {
     }
 }
 
-fn lower(draw: &Draw) -> Lowered {
+pub(crate) fn lower(draw: &Draw) -> Lowered {
     let (color, alpha) = (draw.state.color, draw.state.alpha);
     let folded = draw.route == Route::FoldedIntoSource;
     let dual = draw.route == Route::DualSource;
@@ -299,7 +299,7 @@ fn lower(draw: &Draw) -> Lowered {
 }
 
 /// The constant that the unit is given.
-fn blend_constant(draw: &Draw) -> wgpu::Color {
+pub(crate) fn blend_constant(draw: &Draw) -> wgpu::Color {
     let [r, g, b, a] = draw.constant;
     let replicated = match draw.route {
         Route::ConstantReplicated => true,

@@ -106,6 +106,14 @@ impl Gpu {
         }
     }
 
+    /// Why a format cannot be drawn to here; `None` where it can.
+    #[must_use]
+    pub fn lacks_target(&self, target: TargetFormat) -> Option<&'static str> {
+        let on_adapter = self.adapter.get_texture_format_features(crate::blend_unit::format(target));
+        (!on_adapter.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT))
+            .then_some("the adapter cannot draw to the format: it lacks RENDER_ATTACHMENT there")
+    }
+
     /// Whether a fragment may have two source colours.
     pub(crate) fn has_dual_source(&self) -> bool {
         self.features.contains(wgpu::Features::DUAL_SOURCE_BLENDING)

@@ -49,6 +49,22 @@ pub enum Error {
         /// wgpu's message.
         message: String,
     },
+    /// A draw of a frame cannot be drawn.
+    #[error("draw `{draw}` cannot be drawn: {message}")]
+    Draw {
+        /// What the draw is called.
+        draw: String,
+        /// Why, and what would be right.
+        message: String,
+    },
+    /// The effects given do not belong to the frame.
+    #[error("a frame of {draws} draws needs the effects of each, and {sets} sets were given")]
+    Sets {
+        /// Draws of the frame.
+        draws: usize,
+        /// Sets that were given.
+        sets: usize,
+    },
     /// The device does not answer.
     #[error("the device failed: no answer within {0} s; does a shader loop?")]
     Timeout(u64),

@@ -7,12 +7,14 @@
 mod adapters;
 mod arithmetic;
 mod blend_unit;
+pub mod compose;
 mod depth_unit;
 mod device;
 mod error;
 mod kernel;
 mod raster;
 mod readback;
+pub mod scene;
 mod shaders;
 
 pub use adapters::{Adapter, adapters, vulkan_adapters};
@@ -24,4 +26,4 @@ pub use error::Error;
 pub use kernel::Kernel;
 pub use raster::{Raster, RasterPipeline, TARGET_SIZE};
 pub use readback::{Pending, SENTINEL};
-pub use shaders::{FILES, Shaders};
+pub use shaders::{EFFECT_FILES, FILES, SCENE_FILES, Shaders};

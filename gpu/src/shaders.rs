@@ -1,12 +1,13 @@
 //! The WGSL files: built in, or read from a folder; composed, parsed and validated.
 
+use crate::compose::Composer;
 use crate::error::Error;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The files that are built in: a formula family each, four that drive fixed hardware, and the probes.
-pub const FILES: [(&str, &str); 13] = [
+/// The built-in files that stand by themselves: a formula family each, four that drive fixed hardware, and the probes.
+pub const FILES: [(&str, &str); 14] = [
     ("attenuation.wgsl", include_str!("shaders/attenuation.wgsl")),
     ("blend.wgsl", include_str!("shaders/blend.wgsl")),
     ("blend_unit.wgsl", include_str!("shaders/blend_unit.wgsl")),
@@ -19,8 +20,32 @@ pub const FILES: [(&str, &str); 13] = [
     ("lighting.wgsl", include_str!("shaders/lighting.wgsl")),
     ("probe.wgsl", include_str!("shaders/probe.wgsl")),
     ("raster.wgsl", include_str!("shaders/raster.wgsl")),
+    ("texture.wgsl", include_str!("shaders/texture.wgsl")),
     ("vector.wgsl", include_str!("shaders/vector.wgsl")),
 ];
+
+/// The built-in files that shaders of scenes are composed of: the skeleton.
+pub const SCENE_FILES: [(&str, &str); 3] = [
+    ("scene.wgsl", include_str!("shaders/scene.wgsl")),
+    ("scene_lighting.wgsl", include_str!("shaders/scene_lighting.wgsl")),
+    ("scene_uniforms.wgsl", include_str!("shaders/scene_uniforms.wgsl")),
+];
+
+macro_rules! effect_files {
+    ($($name:literal)*) => {
+        /// The built-in files of the effects, one each.
+        pub const EFFECT_FILES: [(&str, &str); [$($name),*].len()] =
+            [$((concat!("effects/", $name, ".wgsl"), include_str!(concat!("shaders/effects/", $name, ".wgsl")))),*];
+    };
+}
+
+effect_files! {
+    "flat" "gouraud" "phong" "inverse_transpose" "emissive" "ambient_product" "ambient_constant" "light_ambient"
+    "attenuated_ambient" "diffuse" "specular_phong" "specular_blinn" "specular_unnormalised" "local_viewer" "gate"
+    "directional" "directional_unit" "point" "spot" "spot_exponent" "attenuation" "vertex_color" "texture_nearest"
+    "texture_bilinear" "texture_replace" "lightmap_nearest" "lightmap_bilinear" "cutout" "fog_linear" "fog_exp"
+    "fog_exp2_document" "fog_exp2_opengl" "fog_radial"
+}
 
 /// A set of shader files, each known to be valid with those that it requires.
 #[derive(Clone, Debug)]
@@ -34,34 +59,23 @@ impl Shaders {
     /// # Errors
     /// Where one of them is invalid, which a test rules out.
     pub fn built_in() -> Result<Self, Error> {
-        Self::validated(FILES.into_iter().map(|(name, text)| (name.into(), text.into())).collect())
+        Self::validated(every_file().map(|(name, text)| (name.into(), text.into())).collect())
     }
 
-    /// The built-in files, those of the same name in the folder put in their place.
+    /// The built-in files, those of the same name in the folder, and in its folder `effects`, put in their place.
     ///
     /// # Errors
     /// Where the folder cannot be read, holds no WGSL, holds a file of an unknown name, or one that is invalid.
     pub fn from_dir(dir: &Path) -> Result<Self, Error> {
-        let unreadable = |path: &Path, message: String| Error::Unreadable { path: path.into(), message };
         let mut files = Self::built_in()?.files;
-        let mut replaced = 0;
-        let entries = std::fs::read_dir(dir).map_err(|error| unreadable(dir, error.to_string()))?;
-        for entry in entries {
-            let path = entry.map_err(|error| unreadable(dir, error.to_string()))?.path();
-            if path.extension().is_none_or(|extension| extension != "wgsl") {
-                continue;
-            }
-            let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-            let text = std::fs::read_to_string(&path).map_err(|error| unreadable(&path, error.to_string()))?;
-            let Some(file) = files.get_mut(&name) else {
-                let known: Vec<&str> = FILES.iter().map(|(name, _)| *name).collect();
-                return Err(unreadable(&path, format!("no such shader; expected one of {}", known.join(", "))));
-            };
-            *file = text;
-            replaced += 1;
+        let effects = dir.join("effects");
+        let mut replaced = replace(&mut files, dir, "")?;
+        if effects.is_dir() {
+            replaced += replace(&mut files, &effects, "effects/")?;
         }
         if replaced == 0 {
-            return Err(unreadable(dir, "no .wgsl file there; copy gpu/src/shaders and edit the copy".into()));
+            let message = "no .wgsl file there; copy gpu/src/shaders and edit the copy";
+            return Err(Error::Unreadable { path: dir.into(), message: message.into() });
         }
         Self::validated(files)
     }
@@ -69,11 +83,12 @@ impl Shaders {
     fn validated(files: BTreeMap<String, String>) -> Result<Self, Error> {
         let shaders = Self { files };
         // A file is reported before those that require it.
-        let mut order: Vec<&String> = shaders.files.keys().collect();
+        let mut order: Vec<&str> = FILES.into_iter().map(|(name, _)| name).collect();
         order.sort_by_key(|name| shaders.required(name).len());
         for name in order {
             shaders.parse(name)?;
         }
+        Composer::new(&shaders)?.check()?;
         Ok(shaders)
     }
 
@@ -82,9 +97,11 @@ impl Shaders {
         let mut found: Vec<String> = vec![];
         let mut open = vec![file.to_owned()];
         while let Some(name) = open.pop() {
-            let text = self.files.get(&name).map(String::as_str).unwrap_or_default();
-            let names =
-                text.lines().filter_map(|line| line.strip_prefix("// requires:")).flat_map(str::split_whitespace);
+            let names = self
+                .text(&name)
+                .lines()
+                .filter_map(|line| line.strip_prefix("// requires:"))
+                .flat_map(str::split_whitespace);
             for stem in names {
                 let name = format!("{stem}.wgsl");
                 if !found.contains(&name) {
@@ -96,14 +113,18 @@ impl Shaders {
         found
     }
 
+    /// A file's text alone; empty where there is no such file.
+    pub(crate) fn text(&self, file: &str) -> &str {
+        self.files.get(file).map(String::as_str).unwrap_or_default()
+    }
+
     /// A file followed by those that it requires: its own lines come first, so that messages count from its start.
     #[must_use]
     pub fn source(&self, file: &str) -> String {
-        let text = |name: &str| self.files.get(name).map(String::as_str).unwrap_or_default();
-        let mut source = text(file).to_owned();
+        let mut source = self.text(file).to_owned();
         for name in self.required(file) {
             source.push('\n');
-            source.push_str(text(&name));
+            source.push_str(self.text(&name));
         }
         source
     }
@@ -157,10 +178,38 @@ pub(crate) fn validate(file: &str, source: &str) -> Result<naga::Module, Error> 
     let invalid = |message: String| Error::Shader { file: file.into(), message };
     let module =
         naga::front::wgsl::parse_str(source).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
-    Validator::new(ValidationFlags::all(), Capabilities::default() | Capabilities::DUAL_SOURCE_BLENDING)
-        .validate(&module)
-        .map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
+    validator().validate(&module).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
     Ok(module)
+}
+
+pub(crate) fn validator() -> Validator {
+    Validator::new(ValidationFlags::all(), Capabilities::default() | Capabilities::DUAL_SOURCE_BLENDING)
+}
+
+fn every_file() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FILES.into_iter().chain(SCENE_FILES).chain(EFFECT_FILES)
+}
+
+/// Puts a folder's files in the place of those of the same name, and says how many.
+fn replace(files: &mut BTreeMap<String, String>, dir: &Path, prefix: &str) -> Result<usize, Error> {
+    let unreadable = |path: &Path, message: String| Error::Unreadable { path: path.into(), message };
+    let mut replaced = 0;
+    let entries = std::fs::read_dir(dir).map_err(|error| unreadable(dir, error.to_string()))?;
+    for entry in entries {
+        let path = entry.map_err(|error| unreadable(dir, error.to_string()))?.path();
+        if path.extension().is_none_or(|extension| extension != "wgsl") {
+            continue;
+        }
+        let name = path.file_name().map(|name| format!("{prefix}{}", name.to_string_lossy())).unwrap_or_default();
+        let text = std::fs::read_to_string(&path).map_err(|error| unreadable(&path, error.to_string()))?;
+        let Some(file) = files.get_mut(&name) else {
+            let known: Vec<&str> = every_file().map(|(name, _)| name).collect();
+            return Err(unreadable(&path, format!("no such shader; expected one of {}", known.join(", "))));
+        };
+        *file = text;
+        replaced += 1;
+    }
+    Ok(replaced)
 }
 
 #[cfg(test)]
@@ -176,7 +225,7 @@ mod tests {
 
     #[test]
     fn an_error_is_counted_from_the_files_own_start() {
-        let mut files: BTreeMap<String, String> = FILES.into_iter().map(|(n, t)| (n.into(), t.into())).collect();
+        let mut files: BTreeMap<String, String> = every_file().map(|(n, t)| (n.into(), t.into())).collect();
         files.insert("fog.wgsl".into(), "// a\n// b\nfn f() -> f32 {\n    return nothing;\n}\n".into());
         let error = Shaders::validated(files).expect_err("the file is invalid").to_string();
         assert!(error.contains("fog.wgsl:4:12"), "{error}");

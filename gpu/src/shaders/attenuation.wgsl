@@ -22,9 +22,13 @@ fn attenuation_point(kc: f32, kl: f32, kq: f32, light: vec3f, p: vec3f) -> f32 {
     return attenuation_polynomial(kc, kl, kq, distance(light, p));
 }
 
+fn attenuation_cone(cosine: f32, cutoff_cosine: f32) -> f32 {
+    return select(1.0, 0.0, cosine < cutoff_cosine);
+}
+
 fn attenuation_spot_exponent(l: vec3f, axis: vec3f, cutoff_cosine: f32, exponent: f32) -> f32 {
     let cosine = dot(-l, axis);
-    if cosine < cutoff_cosine {
+    if attenuation_cone(cosine, cutoff_cosine) <= 0.0 {
         return 0.0;
     }
     if exponent <= 0.0 {
@@ -34,5 +38,5 @@ fn attenuation_spot_exponent(l: vec3f, axis: vec3f, cutoff_cosine: f32, exponent
 }
 
 fn attenuation_spot_cutoff(l: vec3f, axis: vec3f, cutoff_cosine: f32) -> f32 {
-    return attenuation_spot_exponent(l, axis, cutoff_cosine, 0.0);
+    return attenuation_cone(dot(-l, axis), cutoff_cosine);
 }

@@ -1,0 +1,285 @@
+//! The WGSL of a draw, composed from its effects: one file an effect, and nothing of those that are not called for.
+//!
+//! `scene.wgsl`, `scene_lighting.wgsl` and `scene_uniforms.wgsl` are the skeleton; `effects/<name>.wgsl` holds what an effect
+//! puts into it, with bindings and functions of its own. Their formulas come from the families' files. Of all that, a module
+//! holds the functions, structs and bindings that its entry points reach. Lines of these forms direct it:
+//!
+//! | line | meaning |
+//! |---|---|
+//! | `//@ let name = condition` | a name for a condition |
+//! | `//@ when condition` … `//@ end` | these lines where it holds; [`Shader::Full`] counts as having every effect |
+//! | `//@ if condition` … `//@ end` | these statements where it holds; in [`Shader::Full`] an `if` on the switches |
+//! | `//@ slot name` | the statements that the effects have for it |
+//! | `//@ members name` | the same of members of a struct: no switch surrounds them |
+//! | `//@ choose name: type from slot else expression` | a value from the one effect that has an expression for the slot |
+//! | `//@ at slot` | what follows, to the next such line, is for the slot |
+//!
+//! Conditions are of effects' names, `stage_<name>`, `has_normals`, `!`, `&`, `|` and parentheses.
+
+mod condition;
+mod items;
+mod template;
+
+use crate::error::Error;
+use crate::shaders::Shaders;
+use items::{Item, reached, split};
+use lightmeter_scene::effects::{Effect, Effects};
+use naga::valid::ModuleInfo;
+use template::{Template, Wanted};
+
+/// How much a draw's shader holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Shader {
+    /// The effects that are called for.
+    Composed,
+    /// Every effect behind a uniform switch: one shader for all draws.
+    Full,
+}
+
+impl Shader {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Composed, Self::Full];
+
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Composed => "composed",
+            Self::Full => "full",
+        }
+    }
+}
+
+/// An intermediate result that a fragment gives in place of its colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Stage {
+    /// (p, 1), in eye space.
+    Position,
+    /// (z, 0, 0, 1) of the fragment.
+    Depth,
+    /// (n, 1): the unit normal, with flat and Gouraud shading the interpolated normal of the vertices; 0 without normals.
+    Normal,
+    /// (CE + CA + Σ CA + Σ CD, 1).
+    Diffuse,
+    /// (Σ CS, 1).
+    Specular,
+    /// The colour after vertex colours, texture and lightmap.
+    Surface,
+    /// The colour after fog, before it is blended.
+    Fog,
+}
+
+impl Stage {
+    /// All, in the order of the pipeline.
+    pub const ALL: [Self; 7] =
+        [Self::Position, Self::Depth, Self::Normal, Self::Diffuse, Self::Specular, Self::Surface, Self::Fog];
+
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::Diffuse => "diffuse",
+            Self::Specular => "specular",
+            Self::Surface => "surface",
+            Self::Fog => "fog",
+        }
+    }
+
+    /// Whether no surface colour is known yet.
+    const fn is_before_surface(self) -> bool {
+        !matches!(self, Self::Surface | Self::Fog)
+    }
+}
+
+/// The effects of a draw that what it gives depends on: a texture in place of the colour leaves no use for light, and a stage
+/// none for what comes later, the alpha that a cutout reads excepted.
+#[must_use]
+pub fn live(effects: Effects, stage: Option<Stage>) -> Effects {
+    use Effect as E;
+    let ambient = [E::Emissive, E::AmbientProduct, E::AmbientConstant, E::LightAmbient, E::AttenuatedAmbient];
+    let specular = [E::SpecularPhong, E::SpecularBlinn, E::SpecularUnnormalised];
+    let surface = [
+        E::VertexColor,
+        E::TextureNearest,
+        E::TextureBilinear,
+        E::TextureReplace,
+        E::LightmapNearest,
+        E::LightmapBilinear,
+    ];
+    let fog = [E::FogLinear, E::FogExp, E::FogExp2Document, E::FogExp2OpenGl, E::FogRadial];
+    let lit = [E::Flat, E::Gouraud, E::Phong];
+    let without = |from: Effects, gone: &[Effect]| gone.iter().fold(from, |from, &effect| from.without(effect));
+
+    let mut live = effects;
+    if stage.is_some_and(|stage| stage != Stage::Fog) {
+        live = without(live, &fog);
+    }
+    if stage.is_some_and(Stage::is_before_surface) && !live.has(E::Cutout) {
+        live = without(live, &surface);
+    }
+    let replaced = live.has(E::TextureReplace);
+    if replaced {
+        live = live.without(E::VertexColor);
+    }
+    let (diffuse, highlights) = match stage {
+        Some(Stage::Position | Stage::Depth | Stage::Normal) => (false, false),
+        Some(Stage::Diffuse) => (true, false),
+        Some(Stage::Specular) => (false, true),
+        Some(Stage::Surface | Stage::Fog) | None => (!replaced, !replaced),
+    };
+    if !diffuse {
+        live = without(without(live, &ambient), &[E::Diffuse]);
+    }
+    if !highlights {
+        live = without(live, &specular);
+    }
+    if !live.has_specular() {
+        live = without(live, &[E::LocalViewer, E::Gate]);
+    }
+    let keeps_normals = stage == Some(Stage::Normal) && effects.has_normals();
+    if !live.has_normals() && !keeps_normals {
+        live = live.without(E::InverseTranspose);
+    }
+    if !live.has_normals() && !live.has(E::AttenuatedAmbient) {
+        live = without(live, &[E::Attenuation, E::SpotExponent]);
+    }
+    if !live.has_normals() && !live.has(E::LightAmbient) {
+        live = without(live, &[E::Directional, E::DirectionalUnit, E::Point, E::Spot]);
+        let constant = live.has_any(&[E::Emissive, E::AmbientProduct, E::AmbientConstant]);
+        let interpolated = constant && live.has(E::Gouraud);
+        if !interpolated && !keeps_normals {
+            live = without(live, &lit);
+        }
+    }
+    live
+}
+
+/// A shader with where each of its lines is from.
+#[derive(Clone, Debug)]
+pub struct Composition {
+    /// The WGSL.
+    pub source: String,
+    /// The effects that it computes: see [`live`]; with [`Shader::Full`] those that are switched on.
+    pub effects: Effects,
+    /// The file and the line in it of each line.
+    origins: Vec<(String, usize)>,
+}
+
+impl Composition {
+    /// The vertex shader's entry point.
+    pub const VERTEX: &str = "scene_vertex";
+    /// The fragment shader's entry point.
+    pub const FRAGMENT: &str = "scene_fragment";
+
+    /// Parses and validates it.
+    ///
+    /// # Errors
+    /// naga's message, with the file and the line that the mistake is in.
+    pub fn validate(&self) -> Result<(naga::Module, ModuleInfo), Error> {
+        let invalid = |line: Option<u32>, message: String| {
+            let origin = line.and_then(|line| self.origins.get((line as usize).checked_sub(1)?));
+            let (file, line) = origin.cloned().unwrap_or_else(|| ("scene.wgsl".into(), 1));
+            let message = format!("{file}:{line}, in the shader of: {}\n{message}", self.effects);
+            Error::Shader { file, message }
+        };
+        let module = naga::front::wgsl::parse_str(&self.source).map_err(|error| {
+            let line = error.location(&self.source).map(|at| at.line_number);
+            invalid(line, error.emit_to_string_with_path(&self.source, "composed"))
+        })?;
+        let info = crate::shaders::validator().validate(&module).map_err(|error| {
+            let line = error.location(&self.source).map(|at| at.line_number);
+            invalid(line, error.emit_to_string_with_path(&self.source, "composed"))
+        })?;
+        Ok((module, info))
+    }
+}
+
+/// The skeleton and the effects, read.
+#[derive(Debug)]
+pub struct Composer {
+    template: Template,
+    families: Vec<Item>,
+}
+
+/// The files that composed shaders take formulas from.
+const FAMILIES: [&str; 6] =
+    ["attenuation.wgsl", "color.wgsl", "fog.wgsl", "lighting.wgsl", "texture.wgsl", "vector.wgsl"];
+
+impl Composer {
+    /// Reads the files.
+    ///
+    /// # Errors
+    /// Where a directing line cannot be read, with the file and the line.
+    pub fn new(shaders: &Shaders) -> Result<Self, Error> {
+        let mut families = vec![];
+        for file in FAMILIES {
+            families.extend(split(template::lines(file, shaders.text(file))));
+        }
+        Ok(Self { template: Template::new(shaders)?, families })
+    }
+
+    /// The shader of a draw of these effects. A stage goes with [`Shader::Composed`].
+    ///
+    /// # Errors
+    /// Where the effects' files do not go together, with the file and the line.
+    ///
+    /// # Panics
+    /// Where a stage is asked of [`Shader::Full`].
+    pub fn compose(&self, effects: Effects, shader: Shader, stage: Option<Stage>) -> Result<Composition, Error> {
+        assert!(shader == Shader::Composed || stage.is_none(), "the full shader has no stages");
+        let live = live(effects, stage);
+        let wanted = Wanted { effects: live, stage, has_normals: effects.has_normals(), full: shader == Shader::Full };
+        let own = split(self.template.expand(&wanted)?);
+        let items = reached(&own, &self.families);
+        let (mut source, mut origins) = (String::new(), vec![]);
+        for (k, item) in items.into_iter().enumerate() {
+            if k > 0 {
+                source.push('\n');
+                origins.push((String::new(), 0));
+            }
+            for line in &item.lines {
+                source.push_str(&line.text);
+                source.push('\n');
+                origins.push((line.file.to_string(), line.number));
+            }
+        }
+        Ok(Composition { source, effects: live, origins })
+    }
+
+    /// Composes and validates shaders that hold every effect once at least.
+    ///
+    /// # Errors
+    /// The first mistake.
+    pub fn check(&self) -> Result<(), Error> {
+        for effects in covering() {
+            self.compose(effects, Shader::Composed, None)?.validate()?;
+        }
+        self.compose(Effects::NONE, Shader::Full, None)?.validate()?;
+        Ok(())
+    }
+}
+
+/// A small set with each effect.
+fn covering() -> impl Iterator<Item = Effects> {
+    use Effect as E;
+    let bases: [&[Effect]; 8] = [
+        &[],
+        &[E::Diffuse, E::Point],
+        &[E::Phong, E::Diffuse],
+        &[E::Phong, E::Diffuse, E::Point],
+        &[E::Phong, E::Directional],
+        &[E::Phong, E::SpecularBlinn, E::LightAmbient, E::Spot],
+        &[E::TextureNearest],
+        &[E::FogExp],
+    ];
+    Effect::ALL.into_iter().filter_map(move |effect| {
+        let sets = bases.iter().map(|base| base.iter().copied().collect::<Effects>().with(effect));
+        sets.into_iter().find(|set| set.contradiction().is_none() && live(*set, None).has(effect))
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,253 @@
+//! Frames drawn on a device: each draw by the shader that is composed from its effects.
+//!
+//! A draw's bindings, vertex inputs and varyings are those that its shader has, so what no effect calls for is neither
+//! uploaded nor bound. Draws that differ in numbers alone share a pipeline.
+
+mod geometry;
+mod pipeline;
+mod uniforms;
+
+use crate::blend_unit::{Route, format};
+use crate::compose::{Composer, Shader, Stage};
+use crate::device::Gpu;
+use crate::error::Error;
+use crate::readback::{Pending, staging};
+use crate::shaders::Shaders;
+use geometry::Geometry;
+use lightmeter_scene::effects::{Called, Effects};
+use lightmeter_scene::frame::{Frame, Texture};
+use lightmeter_scene::target::TargetFormat;
+use pipeline::{DEPTH, Key, Pipelines};
+use std::time::Instant;
+use uniforms::{Packer, Resource, resource};
+
+/// A frame on a device, ready to be drawn: pipelines, buffers and textures.
+#[derive(Debug)]
+pub struct SceneRenderer {
+    draws: Vec<Drawn>,
+    target: wgpu::Texture,
+    /// Where some draw has a depth test.
+    depth: Option<wgpu::TextureView>,
+    background: wgpu::Color,
+    clear_depth: f32,
+    pixel_bytes: u32,
+}
+
+/// A draw, ready.
+#[derive(Debug)]
+struct Drawn {
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    vertices: Vec<wgpu::Buffer>,
+    indices: wgpu::Buffer,
+    index_count: u32,
+    constant: Option<wgpu::Color>,
+}
+
+impl SceneRenderer {
+    /// Why a frame cannot be drawn on a device; `None` where it can.
+    #[must_use]
+    pub fn lacks(gpu: &Gpu, frame: &Frame) -> Option<&'static str> {
+        let target = frame.target.format;
+        let blends = frame.draws.iter().any(|draw| draw.blend.is_some());
+        gpu.lacks_target(target).or_else(|| gpu.lacks_blending(target).filter(|_| blends))
+    }
+
+    /// Uploads the frame and compiles what draws it. `sets[i]` is what `frame.draws[i]` calls for. With a stage, the target
+    /// is rgba32float, nothing is blended, and fragments give that intermediate result; the background stays.
+    ///
+    /// # Errors
+    /// Where the sets are not one a draw, a blend state has no factor on the unit, a shader is invalid, or the device refuses
+    /// a pipeline.
+    ///
+    /// # Panics
+    /// Where a stage is asked of [`Shader::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
+    pub fn new(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        frame: &Frame,
+        sets: &[Called],
+        shader: Shader,
+        stage: Option<Stage>,
+    ) -> Result<Self, Error> {
+        if sets.len() != frame.draws.len() {
+            return Err(Error::Sets { draws: frame.draws.len(), sets: sets.len() });
+        }
+        let composer = Composer::new(shaders)?;
+        let target = if stage.is_some() { TargetFormat::Rgba32Float } else { frame.target.format };
+        let tests_depth = frame.draws.iter().any(|draw| draw.depth.is_some());
+        let mut pipelines = Pipelines::new(gpu, composer, shader, stage, format(target), tests_depth);
+        let mut packer = Packer::new(gpu);
+        let mut prepared = vec![];
+        for (draw, called) in frame.draws.iter().zip(sets) {
+            let blended = draw.blend.filter(|_| stage.is_none());
+            let blend = blended.map(|blend| pipeline::native(draw, blend)).transpose()?;
+            let key = Key {
+                effects: called.effects,
+                blend: blend.map(|(state, _)| state),
+                depth: draw.depth,
+                cull: draw.cull,
+            };
+            let (pipeline, program) = pipelines.get(key)?;
+            let told = uniforms::Told { frame, draw, called, effects: program.effects(called.effects), stage };
+            let resources: Vec<(u32, Resource)> = program
+                .bindings
+                .iter()
+                .map(|(binding, name)| Ok((*binding, resource(&told, name, &mut packer)?)))
+                .collect::<Result<_, Error>>()?;
+            prepared.push((pipeline, program, resources, blend.map(|(_, constant)| constant)));
+        }
+        let uniforms = packer.finish(gpu);
+        let textures: Vec<wgpu::TextureView> = frame.textures.iter().map(|texture| upload(gpu, texture)).collect();
+        let none = upload(gpu, &Texture { width: 1, height: 1, texels: vec![[1.0; 4]] });
+        let mut geometry = Geometry::new(gpu, frame);
+        let mut draws = vec![];
+        for (draw, (pipeline, program, resources, constant)) in frame.draws.iter().zip(prepared) {
+            let group = bind(gpu, &pipeline, &resources, (&uniforms, &textures, &none));
+            let (indices, index_count) = geometry.indices(draw);
+            let vertices = program.inputs.iter().map(|input| geometry.vertices(draw.mesh, *input)).collect();
+            draws.push(Drawn { pipeline, group, vertices, indices, index_count, constant });
+        }
+        let (width, height) = (frame.target.width, frame.target.height);
+        let depth = tests_depth.then(|| gpu.target(width, height, DEPTH).create_view(&Default::default()));
+        let [r, g, b, a] = frame.background.map(f64::from);
+        let renderer = Self {
+            draws,
+            target: gpu.blend_target(width, height, format(target)),
+            depth,
+            background: wgpu::Color { r, g, b, a },
+            clear_depth: frame.clear_depth,
+            pixel_bytes: u32::try_from(4 * target.component_bytes()).unwrap_or(u32::MAX),
+        };
+        gpu.check_shader("scene.wgsl")?;
+        Ok(renderer)
+    }
+
+    /// Draws the frame and asks for its pixels.
+    #[must_use]
+    pub fn submit(&self, gpu: &Gpu) -> Pending {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.encode(&mut encoder);
+        let size = self.target.size();
+        let row_bytes = self.pixel_bytes * size.width;
+        let padded = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let staging = staging(gpu, padded as usize / 4 * size.height as usize);
+        encoder.copy_texture_to_buffer(
+            self.target.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &staging,
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+            },
+            size,
+        );
+        Pending::submit(gpu, encoder, staging, (padded as usize / 4, row_bytes as usize / 4))
+    }
+
+    /// The pixels of a submission in the target's own bits, the top row first, rows without gaps.
+    ///
+    /// # Errors
+    /// Where the device failed or was lost.
+    pub fn pixels(gpu: &Gpu, pending: Pending) -> Result<Vec<u8>, Error> {
+        Ok(bytemuck::cast_slice(&pending.wait(gpu)?).to_vec())
+    }
+
+    /// Seconds that it takes to draw the frame so many times in one submission, by the clock on the wall. A driver compiles
+    /// at the first draw: draw once before.
+    ///
+    /// # Errors
+    /// Where the device failed or was lost.
+    pub fn time(&self, gpu: &Gpu, repeats: u32) -> Result<f64, Error> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        for _ in 0..repeats {
+            self.encode(&mut encoder);
+        }
+        let commands = encoder.finish();
+        gpu.wait()?;
+        let start = Instant::now();
+        gpu.queue.submit([commands]);
+        gpu.wait()?;
+        Ok(start.elapsed().as_secs_f64())
+    }
+
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+        let view = self.target.create_view(&Default::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(self.background), store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: self.depth.as_ref().map(|view| wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(self.clear_depth),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        for draw in self.draws.iter().filter(|draw| draw.index_count > 0) {
+            pass.set_pipeline(&draw.pipeline);
+            pass.set_bind_group(0, &draw.group, &[]);
+            for (slot, buffer) in (0..).zip(&draw.vertices) {
+                pass.set_vertex_buffer(slot, buffer.slice(..));
+            }
+            pass.set_index_buffer(draw.indices.slice(..), wgpu::IndexFormat::Uint32);
+            if let Some(constant) = draw.constant {
+                pass.set_blend_constant(constant);
+            }
+            pass.draw_indexed(0..draw.index_count, 0, 0..1);
+        }
+    }
+}
+
+/// A texture of binary32 texels.
+fn upload(gpu: &Gpu, texture: &Texture) -> wgpu::TextureView {
+    let made = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    gpu.upload(&made, bytemuck::cast_slice(&texture.texels), 16);
+    made.create_view(&Default::default())
+}
+
+/// What a draw's shader has bindings for.
+fn bind(
+    gpu: &Gpu,
+    pipeline: &wgpu::RenderPipeline,
+    resources: &[(u32, Resource)],
+    (uniforms, textures, none): (&wgpu::Buffer, &[wgpu::TextureView], &wgpu::TextureView),
+) -> wgpu::BindGroup {
+    let entries: Vec<wgpu::BindGroupEntry<'_>> = resources
+        .iter()
+        .map(|(binding, resource)| wgpu::BindGroupEntry {
+            binding: *binding,
+            resource: match resource {
+                Resource::Uniform { offset, size } => wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                    buffer: uniforms,
+                    offset: *offset,
+                    size: wgpu::BufferSize::new(*size),
+                }),
+                Resource::Texture(place) => {
+                    wgpu::BindingResource::TextureView(place.map_or(none, |place| &textures[place]))
+                }
+            },
+        })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &entries,
+    })
+}
+
+#[cfg(test)]
+mod tests;

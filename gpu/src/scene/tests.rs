@@ -1,0 +1,371 @@
+//! Both shaders draw the same frame on whatever adapters are there, and structs lie where the uniforms' words do.
+
+use super::uniforms::Told;
+use super::*;
+use crate::adapters;
+use lightmeter_scene::blend::{Equation, Factor, State};
+use lightmeter_scene::depth::{Compare, DepthTest};
+use lightmeter_scene::effects::{effects, named};
+use lightmeter_scene::frame::{
+    Blend, Cull, Draw, Filter, Fog, FogForm, Light, Material, Matrix, Mesh, Place, Sampled, Shading, Target, Textured,
+    Wrap,
+};
+use lightmeter_scene::raster::Provoking;
+use lightmeter_scene::shading::{Ambient, Distance, Frequency, Gate, LightAmbient, Normals, Specular, Viewer};
+
+const IDENTITY: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+const SIZE: usize = 33;
+
+/// Two triangles that face the eye, two units away, under every kind of light, in fog, textured, with holes.
+fn frame() -> Frame {
+    let light = |place| Light {
+        name: "light".into(),
+        ambient: [0.05, 0.04, 0.03],
+        diffuse: [0.6, 0.5, 0.4],
+        specular: [0.3, 0.4, 0.5],
+        place,
+    };
+    let falloff = [1.0, 0.1, 0.05];
+    let mesh = Mesh {
+        positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.2], [1.0, 1.0, 0.0], [-1.0, 1.0, -0.3]],
+        normals: vec![[-0.2, 0.0, 1.0], [0.3, 0.1, 2.0], [0.0, 0.4, 1.0], [0.1, -0.2, 0.7]],
+        uvs: vec![[-0.3, 1.4], [1.2, 1.1], [1.3, -0.2], [0.0, 0.0]],
+        lightmap_uvs: vec![[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]],
+        colors: vec![[1.0, 0.5, 0.5, 1.0], [0.5, 1.0, 0.5, 0.9], [0.5, 0.5, 1.0, 0.8], [1.0; 4]],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    };
+    let texels = |seed: usize| {
+        (0..12).map(|k| std::array::from_fn(|c| [0.2, 0.9, 0.5, 0.7, 1.0][(k * (3 + seed) + c * 2) % 5])).collect()
+    };
+    let texture = |seed| Texture { width: 4, height: 3, texels: texels(seed) };
+    let mut projection = IDENTITY;
+    projection[2] = [0.0, 0.0, -1.1, -1.0];
+    projection[3] = [0.0, 0.0, -1.1, 0.0];
+    let shading = Shading {
+        frequency: Frequency::Phong,
+        provoking: Provoking::First,
+        specular: Specular::Blinn,
+        gate: Gate::OpenGl,
+        viewer: Viewer::Local,
+        normals: Normals::InverseTranspose,
+    };
+    let mut modelview = IDENTITY;
+    modelview[0][0] = 1.2;
+    modelview[1][0] = 0.1;
+    modelview[3] = [0.0, 0.1, -2.0, 1.0];
+    let draw = Draw {
+        name: "square".into(),
+        mesh: 0,
+        modelview,
+        material: Material {
+            emissive: [0.02, 0.0, 0.01],
+            ambient: [0.3, 0.2, 0.1],
+            diffuse: [0.8, 0.6, 0.7],
+            specular: [0.5, 0.6, 0.4],
+            shininess: 12.0,
+        },
+        shading: Some(shading),
+        alpha: 0.9,
+        vertex_colors: true,
+        texture: Some(Textured {
+            sampled: Sampled { texture: 0, filter: Filter::Bilinear, wrap: Wrap::Repeat },
+            replaces: false,
+        }),
+        lightmap: Some(Sampled { texture: 1, filter: Filter::Nearest, wrap: Wrap::Clamp }),
+        cutout: Some(0.15),
+        blend: None,
+        depth: Some(DepthTest { compare: Compare::Less, write: true }),
+        cull: Cull::Back,
+    };
+    Frame {
+        target: Target {
+            width: u32::try_from(SIZE).expect("it is small"),
+            height: u32::try_from(SIZE).expect("it is small"),
+            format: TargetFormat::Rgba32Float,
+        },
+        background: [0.1, 0.2, 0.3, 0.4],
+        clear_depth: 1.0,
+        projection,
+        ambient: [0.2, 0.3, 0.4],
+        ambient_form: Ambient::Product,
+        light_ambient: LightAmbient::OpenGl,
+        lights: vec![
+            light(Place::Directional { toward: [0.5, 0.5, 2.0], unit: false }),
+            light(Place::Directional { toward: [0.0, 0.6, 0.8], unit: true }),
+            light(Place::Point { position: [0.5, 1.0, -0.5], falloff }),
+            light(Place::Spot {
+                position: [-0.5, 0.5, 0.0],
+                falloff,
+                axis: [0.4, -0.2, -2.0],
+                cutoff_cosine: 0.95,
+                exponent: 4.0,
+            }),
+        ],
+        fog: Some(Fog {
+            color: [0.5, 0.5, 0.6],
+            form: FogForm::Linear { dmin: 1.5, dmax: 2.3 },
+            distance: Distance::Radial,
+        }),
+        meshes: vec![mesh],
+        textures: vec![texture(0), texture(1)],
+        draws: vec![draw],
+    }
+}
+
+fn drawn(gpu: &Gpu, frame: &Frame, sets: &[Called], shader: Shader, stage: Option<Stage>) -> Vec<u8> {
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    let renderer =
+        SceneRenderer::new(gpu, &shaders, frame, sets, shader, stage).unwrap_or_else(|error| panic!("{error}"));
+    let pixels = SceneRenderer::pixels(gpu, renderer.submit(gpu)).unwrap_or_else(|error| panic!("{error}"));
+    assert!(renderer.time(gpu, 2).expect("the device answers") > 0.0);
+    pixels
+}
+
+fn floats(pixels: &[u8]) -> Vec<f32> {
+    bytemuck::pod_collect_to_vec(pixels)
+}
+
+/// The pixel in the middle.
+fn middle(pixels: &[u8]) -> [f32; 4] {
+    let first = 4 * (SIZE * (SIZE / 2) + SIZE / 2);
+    floats(pixels)[first..first + 4].try_into().expect("a pixel has four components")
+}
+
+fn assert_alike(a: &[u8], b: &[u8], what: &str) {
+    let (a, b) = (floats(a), floats(b));
+    assert_eq!(a.len(), 4 * SIZE * SIZE, "{what}");
+    for (place, (a, b)) in a.iter().zip(&b).enumerate() {
+        // Compilers contract the products of the two differently.
+        assert!((a - b).abs() <= 1e-5, "{what}: {a} and {b} at {place}");
+    }
+}
+
+/// Frames that meet every effect.
+fn frames() -> Vec<(String, Frame)> {
+    let mut frames = vec![];
+    for (number, (frequency, specular)) in [
+        (Frequency::Flat, Specular::Phong),
+        (Frequency::Gouraud, Specular::Blinn),
+        (Frequency::Phong, Specular::BlinnUnnormalised),
+        (Frequency::Phong, Specular::Phong),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut frame = frame();
+        let shading = frame.draws[0].shading.as_mut().expect("it is lit");
+        (shading.frequency, shading.specular) = (frequency, specular);
+        if number == 1 {
+            (shading.viewer, shading.gate, shading.normals) = (Viewer::NonLocal, Gate::Documents, Normals::Modelview);
+            frame.fog.as_mut().expect("there is fog").form = FogForm::Exp { density: 0.4 };
+            frame.draws[0].texture.as_mut().expect("it is textured").sampled.filter = Filter::Nearest;
+            frame.ambient_form = Ambient::Constant;
+        }
+        if number == 2 {
+            frame.fog.as_mut().expect("there is fog").form = FogForm::Exp2Document { density: 0.3 };
+            frame.draws[0].lightmap.as_mut().expect("it has a lightmap").filter = Filter::Bilinear;
+            frame.light_ambient = LightAmbient::Documents;
+        }
+        if number == 3 {
+            let fog = frame.fog.as_mut().expect("there is fog");
+            (fog.form, fog.distance) = (FogForm::Exp2OpenGl { density: 0.4 }, Distance::Planar);
+            frame.draws[0].texture.as_mut().expect("it is textured").replaces = true;
+            frame.draws[0].blend = Some(Blend {
+                state: State { equation: Equation::Add, src: Factor::SrcAlpha, dst: Factor::OneMinusSrcAlpha }.into(),
+                constant: [0.0; 4],
+            });
+        }
+        frames.push((format!("{frequency:?} {specular:?}"), frame));
+    }
+    frames
+}
+
+#[test]
+fn composed_and_full_shaders_draw_alike_on_every_adapter() {
+    let mut ran = 0;
+    for adapter in adapters() {
+        let gpu = adapter.open().unwrap_or_else(|error| panic!("{error}"));
+        for (what, frame) in frames() {
+            let what = format!("{what} on {}", adapter.name);
+            if let Some(lacks) = SceneRenderer::lacks(&gpu, &frame) {
+                assert!(adapter.backend == "gl" && frame.draws[0].blend.is_some(), "{what}: {lacks}");
+                continue;
+            }
+            let composed = drawn(&gpu, &frame, &effects(&frame), Shader::Composed, None);
+            assert_alike(&composed, &drawn(&gpu, &frame, &effects(&frame), Shader::Full, None), &what);
+            assert_alike(&composed, &drawn(&gpu, &frame, &named(&frame), Shader::Composed, None), &what);
+            let inside = composed.chunks_exact(16).filter(|pixel| floats(pixel) != frame.background).count();
+            assert!((500..SIZE * SIZE).contains(&inside), "{what}: {inside} pixels were drawn");
+            ran += 1;
+        }
+    }
+    assert!(ran > 0, "no adapter");
+}
+
+#[test]
+fn stages_are_steps_towards_the_colour() {
+    let adapters = adapters();
+    let gpu = adapters.first().expect("an adapter is there").open().unwrap_or_else(|error| panic!("{error}"));
+    for (what, mut frame) in frames() {
+        frame.draws[0].blend = None;
+        let called = effects(&frame);
+        let of = |stage| drawn(&gpu, &frame, &called, Shader::Composed, Some(stage));
+        let color = drawn(&gpu, &frame, &called, Shader::Composed, None);
+        assert_alike(&of(Stage::Fog), &color, &what);
+        let [_, _, z, w] = middle(&of(Stage::Position));
+        assert!((-2.4..-1.8).contains(&z) && w == 1.0, "{what}: p.z is {z}");
+        let [depth, ..] = middle(&of(Stage::Depth));
+        assert!((depth - (1.1 * -z - 1.1) / -z).abs() < 1e-5, "{what}: {depth} at {z}");
+        let [x, y, z, _] = middle(&of(Stage::Normal));
+        let length = (x * x + y * y + z * z).sqrt();
+        let phong = frame.draws[0].shading.is_some_and(|shading| shading.frequency == Frequency::Phong);
+        assert!(if phong { (length - 1.0).abs() < 1e-6 } else { (0.8..1.0).contains(&length) }, "{what}: {length}");
+        let mut bare = frame.clone();
+        let draw = &mut bare.draws[0];
+        (draw.vertex_colors, draw.texture, draw.lightmap, draw.cutout, bare.fog) = (false, None, None, None, None);
+        let lit = middle(&drawn(&gpu, &bare, &effects(&bare), Shader::Composed, None));
+        let (diffuse, specular) = (middle(&of(Stage::Diffuse)), middle(&of(Stage::Specular)));
+        for k in 0..3 {
+            assert!((diffuse[k] + specular[k] - lit[k]).abs() < 1e-5, "{what}: {diffuse:?} {specular:?} {lit:?}");
+            assert!(specular[k] > 0.0, "{what}: {specular:?}");
+        }
+        assert_ne!(of(Stage::Surface), color, "{what}: fog is seen");
+    }
+}
+
+#[test]
+fn a_flat_face_has_the_colour_of_its_provoking_vertex() {
+    for adapter in adapters() {
+        let gpu = adapter.open().unwrap_or_else(|error| panic!("{error}"));
+        for (provoking, vertex) in [(Provoking::First, 0), (Provoking::Last, 2)] {
+            let mut frame = frame();
+            let draw = &mut frame.draws[0];
+            (draw.vertex_colors, draw.texture, draw.lightmap, draw.cutout, frame.fog) = (false, None, None, None, None);
+            draw.depth = None;
+            let shading = draw.shading.as_mut().expect("it is lit");
+            (shading.frequency, shading.provoking) = (Frequency::Flat, provoking);
+            frame.meshes[0].triangles.truncate(1);
+            frame.meshes[0].normals = vec![[0.0, 0.0, -1.0]; 4];
+            let dark = drawn(&gpu, &frame, &effects(&frame), Shader::Composed, None);
+            frame.meshes[0].normals[vertex] = [0.0, 0.0, 1.0];
+            let bright = drawn(&gpu, &frame, &effects(&frame), Shader::Composed, None);
+            assert!(middle(&bright)[0] > middle(&dark)[0] + 0.1, "{provoking:?} on {}", adapter.name);
+        }
+    }
+}
+
+#[test]
+fn what_the_unit_cannot_blend_and_sets_of_another_frame_are_errors() {
+    let adapters = adapters();
+    let gpu = adapters.first().expect("an adapter is there").open().unwrap_or_else(|error| panic!("{error}"));
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    let mut frame = frame();
+    let says = |frame: &Frame, sets: &[Called]| {
+        let made = SceneRenderer::new(&gpu, &shaders, frame, sets, Shader::Composed, None);
+        made.expect_err("it cannot be drawn").to_string()
+    };
+    assert!(says(&frame, &[]).contains("1 draws"), "{}", says(&frame, &[]));
+    let state = State { equation: Equation::Add, src: Factor::ConstantColor, dst: Factor::ConstantAlpha };
+    frame.draws[0].blend = Some(Blend { state: state.into(), constant: [0.1, 0.2, 0.3, 0.4] });
+    assert!(says(&frame, &effects(&frame)).contains("constant"), "{}", says(&frame, &effects(&frame)));
+}
+
+/// The first word of a binding's member by naga's layout: names of members and numbers of elements lead there.
+fn word(module: &naga::Module, binding: &str, path: &[&str]) -> usize {
+    let global = module.global_variables.iter().find(|(_, global)| global.name.as_deref() == Some(binding));
+    let mut ty = global.unwrap_or_else(|| panic!("there is no {binding}")).1.ty;
+    let mut offset = 0;
+    for step in path {
+        match &module.types[ty].inner {
+            naga::TypeInner::Struct { members, .. } => {
+                let member = members.iter().find(|member| member.name.as_deref() == Some(step));
+                let member = member.unwrap_or_else(|| panic!("{binding} has no {step}"));
+                (offset, ty) = (offset + member.offset, member.ty);
+            }
+            naga::TypeInner::Array { base, stride, .. } => {
+                (offset, ty) = (offset + stride * step.parse::<u32>().expect("a number of an element"), *base);
+            }
+            other => panic!("{binding} {path:?}: {other:?}"),
+        }
+    }
+    offset as usize / 4
+}
+
+#[test]
+fn numbers_lie_where_naga_reads_them() {
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    let composer = Composer::new(&shaders).expect("the files can be read");
+    let full = composer.compose(Effects::NONE, Shader::Full, None).expect("it can be composed");
+    let (module, _) = full.validate().unwrap_or_else(|error| panic!("{error}"));
+    let mut frame = frame();
+    frame.lights.push(frame.lights[2].clone());
+    frame.lights.push(frame.lights[3].clone());
+    frame.lights[4].specular = [7.0, 8.0, 9.0];
+    let Place::Spot { position, .. } = &mut frame.lights[5].place else { panic!("it is a spotlight") };
+    *position = [11.0, 12.0, 13.0];
+    let mut unlit = frame.clone();
+    unlit.draws[0].shading = None;
+    let mut dense = frame.clone();
+    dense.fog = Some(Fog { color: [0.0; 3], form: FogForm::Exp { density: 5.0 }, distance: Distance::Planar });
+    let draw = &frame.draws[0];
+    let material = draw.material;
+    let rows: [(&Frame, &str, &[&str], &[f32]); 30] = [
+        (&frame, "scene_draw", &["projection"], frame.projection.as_flattened()),
+        (&frame, "scene_draw", &["modelview"], draw.modelview.as_flattened()),
+        (&frame, "scene_draw", &["base"], &[0.0; 3]),
+        (&unlit, "scene_draw", &["base"], &material.diffuse),
+        (&frame, "scene_draw", &["alpha"], &[draw.alpha]),
+        (&frame, "scene_material", &["emissive"], &material.emissive),
+        (&frame, "scene_material", &["ambient"], &material.ambient),
+        (&frame, "scene_material", &["diffuse"], &material.diffuse),
+        (&frame, "scene_material", &["specular"], &material.specular),
+        (&frame, "scene_material", &["shininess"], &[material.shininess]),
+        (&frame, "scene_ambient", &["color"], &frame.ambient),
+        (&frame, "scene_fog", &["color"], &[0.5, 0.5, 0.6]),
+        (&frame, "scene_fog", &["dmin"], &[1.5]),
+        (&frame, "scene_fog", &["dmax"], &[2.3]),
+        (&dense, "scene_fog", &["density"], &[5.0]),
+        (&frame, "scene_cutout", &["threshold"], &[0.15]),
+        (&frame, "scene_texture_reading", &["clamps"], &[f32::from_bits(0)]),
+        (&frame, "scene_lightmap_reading", &["clamps"], &[f32::from_bits(1)]),
+        (&frame, "scene_directional", &["count"], &[f32::from_bits(1)]),
+        (&frame, "scene_directional", &["lights", "0", "toward"], &[0.5, 0.5, 2.0]),
+        (&frame, "scene_directional_unit", &["lights", "0", "toward"], &[0.0, 0.6, 0.8]),
+        (&frame, "scene_point", &["count"], &[f32::from_bits(2)]),
+        (&frame, "scene_point", &["lights", "1", "colors", "ambient"], &[0.05, 0.04, 0.03]),
+        (&frame, "scene_point", &["lights", "1", "colors", "specular"], &[7.0, 8.0, 9.0]),
+        (&frame, "scene_point", &["lights", "1", "falloff"], &[1.0, 0.1, 0.05]),
+        (&frame, "scene_spot", &["lights", "1", "position"], &[11.0, 12.0, 13.0]),
+        (&frame, "scene_spot", &["lights", "1", "falloff"], &[1.0, 0.1, 0.05]),
+        (&frame, "scene_spot", &["lights", "1", "exponent"], &[4.0]),
+        (&frame, "scene_spot", &["lights", "1", "axis"], &[0.4, -0.2, -2.0]),
+        (&frame, "scene_spot", &["lights", "1", "cutoff_cosine"], &[0.95]),
+    ];
+    for (frame, binding, path, values) in rows {
+        let called = &named(frame)[0];
+        let told = Told { frame, draw: &frame.draws[0], called, effects: called.effects, stage: None };
+        let words = uniforms::words(&told, binding).expect("it is known").expect("it is a uniform");
+        let first = word(&module, binding, path);
+        let lies: Vec<u32> = words[first..first + values.len()].to_vec();
+        assert_eq!(lies, values.iter().map(|x| x.to_bits()).collect::<Vec<_>>(), "{binding} {path:?}");
+    }
+}
+
+#[test]
+fn every_uniform_is_as_long_as_its_struct() {
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    let composer = Composer::new(&shaders).expect("the files can be read");
+    let full = composer.compose(Effects::NONE, Shader::Full, None).expect("it can be composed");
+    let (module, _) = full.validate().unwrap_or_else(|error| panic!("{error}"));
+    let frame = frame();
+    let called = &named(&frame)[0];
+    let told = Told { frame: &frame, draw: &frame.draws[0], called, effects: called.effects, stage: None };
+    for (_, global) in module.global_variables.iter() {
+        let name = global.name.as_deref().expect("bindings have names");
+        let size = module.types[global.ty].inner.size(module.to_ctx()) as usize;
+        match uniforms::words(&told, name).unwrap_or_else(|error| panic!("{error}")) {
+            Some(words) => assert_eq!(4 * words.len(), size.next_multiple_of(16), "{name}"),
+            None => assert!(name == "scene_texture" || name == "scene_lightmap", "{name}"),
+        }
+    }
+}

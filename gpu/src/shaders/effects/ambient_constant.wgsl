@@ -1,0 +1,4 @@
+// CA, a constant.
+
+//@ at constant
+sum += scene_ambient.color;

@@ -1,0 +1,4 @@
+// CE.
+
+//@ at constant
+sum += scene_material.emissive;

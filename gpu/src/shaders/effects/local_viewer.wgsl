@@ -1,0 +1,4 @@
+// v = ⟨−p⟩.
+
+//@ at viewer
+vector_normalize(-p)

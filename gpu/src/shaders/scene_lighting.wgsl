@@ -1,0 +1,112 @@
+// The lit colour of a scene's point: the constant terms, and every light's.
+// p the point, n its unit normal, v the unit vector to the viewer, l to the light, all in eye space.
+
+//@ let diffuse_sum = constant | light_ambient | diffuse
+
+// CE + CA. The base is 0 where a surface is lit; the colour itself where it is not.
+fn scene_constant() -> vec3f {
+    var sum = scene_draw.base;
+    //@ slot constant
+    return sum;
+}
+
+struct SceneSum {
+    //@ when diffuse_sum
+    diffuse: vec3f,
+    //@ end
+    //@ when specular
+    specular: vec3f,
+    //@ end
+}
+
+fn scene_lit(
+    //@ when lit_position
+    p: vec3f,
+    //@ end
+    //@ when normals
+    n: vec3f,
+    //@ end
+) -> vec3f {
+    //@ when lights
+    var sum: SceneSum;
+    //@ if constant
+    sum.diffuse = scene_constant();
+    //@ end
+    //@ when specular
+    //@ choose v: vec3f from viewer else vec3f(0.0, 0.0, 1.0)
+    //@ end
+    //@ slot lights
+    //@ when diffuse_sum & specular
+    return sum.diffuse + sum.specular;
+    //@ end
+    //@ when diffuse_sum & !specular
+    return sum.diffuse;
+    //@ end
+    //@ when !diffuse_sum
+    return sum.specular;
+    //@ end
+    //@ end
+    //@ when !lights
+    return scene_constant();
+    //@ end
+}
+
+// Adds a light's terms.
+fn scene_shine(
+    sum: ptr<function, SceneSum>,
+    colors: SceneColors,
+    //@ when normals
+    l: vec3f,
+    n: vec3f,
+    //@ end
+    //@ when specular
+    v: vec3f,
+    //@ end
+    //@ when weighted
+    weight: f32,
+    //@ end
+) {
+    //@ slot shine_ambient
+    //@ when normals
+    //@ if spot
+    if weight <= 0.0 {
+        return;
+    }
+    //@ end
+    //@ when diffuse | gate
+    let incidence = lighting_incidence(l, n);
+    //@ end
+    // Where nothing shines on a face that is turned away.
+    //@ if gate | !specular
+    if incidence <= 0.0 {
+        return;
+    }
+    //@ end
+    //@ slot shine_diffuse
+    //@ if specular
+    //@ choose highlight: f32 from highlight else 0.0
+    //@ choose gated: f32 from gated else highlight
+    (*sum).specular += colors.specular * scene_material.specular * gated
+        //@ when weighted
+        * weight
+        //@ end
+        ;
+    //@ end
+    //@ end
+}
+
+//@ at shine
+scene_shine(
+    &sum,
+    colors,
+    //@ when normals
+    l,
+    n,
+    //@ end
+    //@ when specular
+    v,
+    //@ end
+    //@ when weighted
+    weight,
+    //@ end
+);
