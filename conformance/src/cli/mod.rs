@@ -1,11 +1,13 @@
 //! The command line: what can be asked for, and the exit codes.
 
 mod adapters;
+mod effects;
 mod eval;
 mod list;
 mod options;
 mod page;
 mod run;
+mod schema;
 mod selftest;
 mod show;
 
@@ -41,6 +43,10 @@ enum Command {
     Selftest(selftest::Selftest),
     /// Write a page of the docs from a run's JSON
     Page(page::Page),
+    /// Print what a scene calls for, draw by draw and light by light, and why
+    Effects(effects::Effects),
+    /// Print the JSON Schema of a file that lightmeter reads
+    Schema(schema::Schema),
     /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out
     Eval(eval::Eval),
 }
@@ -54,6 +60,8 @@ impl Cli {
             Command::Adapters(adapters) => adapters.run(),
             Command::Selftest(selftest) => selftest.run(),
             Command::Page(page) => page.run(),
+            Command::Effects(effects) => effects.run(),
+            Command::Schema(schema) => schema.run(),
             Command::Eval(eval) => eval.run(),
         }
     }
