@@ -212,7 +212,8 @@ pub(super) fn transform(at: &At<'_>, steps: &[Step]) -> Result<DMat4, Error> {
 /// Whether the matrix maps space to a plane or less, to some nine digits.
 fn is_flat(matrix: DMat3) -> bool {
     let box_of = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
-    !(matrix.determinant().abs() > 1e-9 * box_of)
+    let volume = matrix.determinant().abs();
+    volume.is_nan() || volume <= 1e-9 * box_of
 }
 
 /// The middle of the mesh's box.
