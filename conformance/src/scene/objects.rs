@@ -1,4 +1,5 @@
-//! Objects turned into draws: transforms multiplied, names resolved, what a draw needs of its mesh made sure, and the order.
+//! Objects turned into draws: transforms multiplied, names resolved, what a draw needs of its mesh made sure, and the
+//! order.
 
 use super::blend::blend;
 use super::camera::columns;

@@ -168,7 +168,8 @@ fn disc(at: &At<'_>, mesh: &mut Mesh, segments: u32, place: impl Fn(f64, f64) ->
     })
 }
 
-/// Adds the vertices over a grid, and two triangles a cell that are counter-clockwise as seen from where u runs right and v down.
+/// Adds the vertices over a grid, and two triangles a cell that are counter-clockwise as seen from where u runs right
+/// and v down.
 fn grid(
     at: &At<'_>,
     mesh: &mut Mesh,
