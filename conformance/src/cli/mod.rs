@@ -1,12 +1,14 @@
 //! The command line: what can be asked for, and the exit codes.
 
 mod adapters;
+mod effects;
 mod eval;
 mod list;
 mod options;
 mod page;
 mod render;
 mod run;
+mod schema;
 mod selftest;
 mod show;
 
@@ -44,6 +46,10 @@ enum Command {
     Render(render::Render),
     /// Write a page of the docs from a run's JSON
     Page(page::Page),
+    /// Print what a scene calls for, draw by draw and light by light, and why
+    Effects(effects::Effects),
+    /// Print the JSON Schema of a file that lightmeter reads
+    Schema(schema::Schema),
     /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out
     Eval(eval::Eval),
 }
@@ -58,6 +64,8 @@ impl Cli {
             Command::Selftest(selftest) => selftest.run(),
             Command::Render(render) => render.run(),
             Command::Page(page) => page.run(),
+            Command::Effects(effects) => effects.run(),
+            Command::Schema(schema) => schema.run(),
             Command::Eval(eval) => eval.run(),
         }
     }

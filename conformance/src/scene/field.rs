@@ -90,8 +90,9 @@ impl At<'_> {
 
     /// The f32 nearest to a number that is to be 0 or above.
     pub(super) fn not_negative(&self, x: f64) -> Result<f32, Error> {
-        self.require(!(x < 0.0), x, "a number that is 0 or above")?;
-        self.number(x)
+        let nearest = self.number(x)?;
+        self.require(nearest >= 0.0, x, "a number that is 0 or above")?;
+        Ok(nearest)
     }
 
     /// The f32 nearest to a number that is to be above 0, as an f32 too.

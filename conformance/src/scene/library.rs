@@ -8,16 +8,47 @@ macro_rules! scenes {
     };
 }
 
-const COUNT: usize = 2;
+const COUNT: usize = 29;
 
 /// Each built-in scene's name and JSON.
 pub const SCENES: [(&str, &str); COUNT] = scenes! {
+    "attached-lights"
+    "averaged-normals"
+    "color-cube"
+    "crossing"
+    "depth-on-off"
+    "eight-lights"
+    "fixed-color"
+    "flat"
+    "fog-exp"
+    "fog-exp2-document"
+    "fog-exp2-opengl"
+    "fog-linear"
+    "fog-radial"
+    "gouraud"
+    "lightmap"
+    "missed-highlight"
+    "near-clip"
+    "obj"
+    "phong"
+    "phong-blinn"
+    "plastic-metal"
+    "reversed-depth"
+    "scaled-normals"
+    "shininess"
+    "sorted"
+    "spotlight"
     "teapot"
-    "gouraud-phong"
+    "translucent-square"
+    "viewer"
 };
 
 /// The files that they name.
-const ASSETS: [(&str, &[u8]); 0] = [];
+const ASSETS: [(&str, &[u8]); 3] = [
+    ("bricks.png", include_bytes!("../../scenes/bricks.png")),
+    ("house.mtl", include_bytes!("../../scenes/house.mtl")),
+    ("house.obj", include_bytes!("../../scenes/house.obj")),
+];
 
 /// The bytes of a file that a built-in scene names.
 ///

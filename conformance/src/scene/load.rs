@@ -149,3 +149,89 @@ fn read(path: &Path) -> io::Result<Vec<u8>> {
     }
     std::fs::read(path)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_scene::frame::{Light, Place};
+
+    fn loaded(name: &str) -> Frame {
+        builtin(name).expect("the scene is built in").frame
+    }
+
+    fn position(light: &Light) -> [f32; 3] {
+        match light.place {
+            Place::Point { position, .. } | Place::Spot { position, .. } => position,
+            Place::Directional { toward, .. } => toward,
+        }
+    }
+
+    fn close(a: [f32; 3], b: [f32; 3]) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-5)
+    }
+
+    #[test]
+    fn lights_stand_in_eye_space() {
+        // 003 takes its light's position in eye space; the camera of `missed-highlight` looks along −z from z = 6.
+        assert!(close(position(&loaded("phong").lights[0]), [0.0, 3.0, -3.0]));
+        assert!(close(position(&loaded("missed-highlight").lights[0]), [-0.9, 0.0, 0.44]));
+        assert!(close(position(&loaded("shininess").lights[0]), [4.0, 6.0, -1.0]));
+        // By the model: scaled, turned and moved with it, then seen by a camera that looks down at it.
+        let json = r#"{
+            "title": "", "shows": "",
+            "camera": { "eye": [0, 0, 5], "projection": { "perspective": { "fov_y_deg": 45, "near": 1, "far": 10 } } },
+            "lights": [{ "kind": "point", "position": [1, 0, 0], "attached": "m" }],
+            "meshes": { "m": { "shape": { "quad": {} } } },
+            "objects": [{ "mesh": "m", "transform": [
+                { "scale": [2, 2, 2] }, { "rotate": { "deg": 90, "axis": [0, 0, 3] } }, { "translate": [0, 0, 1] }
+            ] }]
+        }"#;
+        let frame = text("m", json, &|_| Err(io::ErrorKind::NotFound.into())).expect("a scene").frame;
+        assert!(close(position(&frame.lights[0]), [0.0, 2.0, -4.0]), "{:?}", frame.lights);
+    }
+
+    #[test]
+    fn objects_are_sorted() {
+        let names: Vec<String> = loaded("sorted").draws.into_iter().map(|draw| draw.name).collect();
+        assert_eq!(names, ["ball", "floor", "leaf[0]", "leaf[1]", "far pane", "middle pane", "near pane"]);
+        let written: Vec<String> = loaded("depth-on-off").draws.into_iter().map(|draw| draw.name).collect();
+        assert_eq!(written[..2], ["tested ball", "tested block"]);
+    }
+
+    #[test]
+    fn near_and_far_have_their_depths() {
+        for (name, near, far, at_near) in [("phong", 0.1, 100.0, 0.0), ("reversed-depth", 1.0, 20.0, 1.0)] {
+            let frame = loaded(name);
+            let depth = |z: f32| {
+                let row = |r: usize| frame.projection[2][r] * z + frame.projection[3][r];
+                row(2) / row(3)
+            };
+            assert!((depth(-near) - at_near).abs() < 1e-4, "{name}: {}", depth(-near));
+            assert!((depth(-far) - (1.0 - at_near)).abs() < 1e-4, "{name}: {}", depth(-far));
+            assert!((frame.clear_depth - (1.0 - at_near)).abs() < 1e-6, "{name}");
+        }
+    }
+
+    #[test]
+    fn an_obj_brings_its_materials() {
+        let frame = loaded("obj");
+        let draw = |name: &str| frame.draws.iter().find(|draw| draw.name == format!("house/{name}")).expect(name);
+        let (walls, windows) = (draw("walls"), draw("windows"));
+        assert!(walls.texture.is_some() && draw("roof").texture.is_none());
+        assert!(close(windows.material.emissive, [0.7, 0.6, 0.3]));
+        assert!((windows.material.shininess - 60.0).abs() < 1e-6);
+        // OBJ's v points up: the corner with vt 0 0 is at v = 1.
+        assert!(
+            frame.meshes[walls.mesh].uvs.contains(&[0.0, 1.0]) && frame.meshes[walls.mesh].uvs.contains(&[3.0, -1.0])
+        );
+    }
+
+    #[test]
+    fn scenes_have_moderate_meshes() {
+        for (name, _) in library::SCENES {
+            let frame = loaded(name);
+            let triangles: usize = frame.draws.iter().map(|draw| frame.meshes[draw.mesh].triangles.len()).sum();
+            assert!((1..=8000).contains(&triangles), "{name} draws {triangles} triangles");
+        }
+    }
+}

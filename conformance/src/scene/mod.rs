@@ -1,7 +1,7 @@
 //! Scenes: from what is written to what is drawn.
 //!
-//! [`load`] reads JSON, files and names and gives a [`Frame`](lightmeter_scene::frame::Frame), or an [`Error`] that says which field
-//! holds what, and what is allowed. [`library`] has the scenes that are built in.
+//! [`load`] reads JSON, files and names and gives a [`Frame`](lightmeter_scene::frame::Frame), or an [`Error`] that
+//! says which field holds what, and what is allowed. [`library`] has the scenes that are built in.
 
 mod blend;
 mod camera;

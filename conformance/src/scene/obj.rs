@@ -1,7 +1,7 @@
 //! Wavefront OBJ and MTL. Texture coordinates point up there and down here.
 //!
-//! Of an MTL, Ka Kd Ks Ke Ns d and map_Kd are the material; what it leaves out is as in a material of a scene. The files that
-//! an OBJ names lie in its own folder.
+//! Of an MTL, Ka Kd Ks Ke Ns d and map_Kd are the material; what it leaves out is as in a material of a scene. The
+//! files that an OBJ names lie in its own folder.
 
 use super::field::{At, Error};
 use super::load::Files;

@@ -1,4 +1,5 @@
-//! Objects turned into draws: transforms multiplied, names resolved, what a draw needs of its mesh made sure, and the order.
+//! Objects turned into draws: transforms multiplied, names resolved, what a draw needs of its mesh made sure, and the
+//! order.
 
 use super::blend::blend;
 use super::camera::columns;
@@ -212,7 +213,8 @@ pub(super) fn transform(at: &At<'_>, steps: &[Step]) -> Result<DMat4, Error> {
 /// Whether the matrix maps space to a plane or less, to some nine digits.
 fn is_flat(matrix: DMat3) -> bool {
     let box_of = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
-    !(matrix.determinant().abs() > 1e-9 * box_of)
+    let volume = matrix.determinant().abs();
+    volume.is_nan() || volume <= 1e-9 * box_of
 }
 
 /// The middle of the mesh's box.

@@ -168,7 +168,8 @@ fn disc(at: &At<'_>, mesh: &mut Mesh, segments: u32, place: impl Fn(f64, f64) ->
     })
 }
 
-/// Adds the vertices over a grid, and two triangles a cell that are counter-clockwise as seen from where u runs right and v down.
+/// Adds the vertices over a grid, and two triangles a cell that are counter-clockwise as seen from where u runs right
+/// and v down.
 fn grid(
     at: &At<'_>,
     mesh: &mut Mesh,
@@ -199,11 +200,75 @@ fn grid(
             let lower = upper + columns + 1;
             for triangle in [[upper, lower, lower + 1], [upper, lower + 1, upper + 1]] {
                 let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize]);
-                if a != b && b != c && c != a {
+                #[expect(clippy::float_cmp, reason = "a grid's points that meet are made equal")]
+                let has_area = a != b && b != c && c != a;
+                if has_area {
                     mesh.triangles.push(triangle);
                 }
             }
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashMap;
+
+    fn all() -> Vec<(&'static str, Mesh)> {
+        [
+            ("quad", "{}"),
+            ("plane", r#"{"steps": [3, 2], "repeat": [4, 4]}"#),
+            ("cube", r#"{"steps": 3}"#),
+            ("sphere", r#"{"rings": 7, "segments": 9}"#),
+            ("disc", r#"{"segments": 7}"#),
+            ("cylinder", r#"{"segments": 9}"#),
+            ("torus", r#"{"rings": 7, "segments": 9}"#),
+            ("teapot", r#"{"steps": 5}"#),
+        ]
+        .map(|(name, fields)| {
+            let written = format!("{{\"{name}\": {fields}}}");
+            let written: Shape = serde_json::from_str(&written).expect("a shape");
+            (name, shape(&At::Scene, &written).expect("a mesh"))
+        })
+        .into()
+    }
+
+    #[test]
+    fn fronts_are_where_normals_point() {
+        for (name, mesh) in all() {
+            let point = |vertex: u32| DVec3::from(mesh.positions[vertex as usize].map(f64::from));
+            for triangle in &mesh.triangles {
+                let [a, b, c] = triangle.map(point);
+                let face = (b - a).cross(c - a).normalize();
+                let mean: DVec3 = triangle.iter().map(|&v| DVec3::from(mesh.normals[v as usize].map(f64::from))).sum();
+                assert!(face.dot(mean) > 0.0, "{name}: {triangle:?} at {a}");
+            }
+            assert!(
+                mesh.normals.iter().all(|&n| (DVec3::from(n.map(f64::from)).length() - 1.0).abs() < 1e-6),
+                "{name}"
+            );
+            assert_eq!((mesh.normals.len(), mesh.uvs.len()), (mesh.positions.len(), mesh.positions.len()), "{name}");
+        }
+    }
+
+    #[test]
+    fn closed_shapes_have_each_edge_once_each_way() {
+        for (name, mesh) in all() {
+            if !["cube", "sphere", "cylinder", "torus"].contains(&name) {
+                continue;
+            }
+            let point = |vertex: u32| mesh.positions[vertex as usize].map(|x| (x + 0.0).to_bits());
+            let mut edges = HashMap::new();
+            for &[a, b, c] in &mesh.triangles {
+                for (from, to) in [(a, b), (b, c), (c, a)] {
+                    *edges.entry((point(from), point(to))).or_insert(0) += 1;
+                }
+            }
+            for ((from, to), count) in &edges {
+                assert_eq!((*count, edges.get(&(*to, *from))), (1, Some(&1)), "{name}");
+            }
+        }
+    }
 }

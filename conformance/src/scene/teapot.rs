@@ -1,11 +1,11 @@
 //! Martin Newell's teapot (1975): 32 bicubic patches `P(u, v) = Σᵢ Σⱼ Bᵢ(v) Bⱼ(u) Pᵢⱼ`.
 //!
-//! Rim, body, lid and bottom are turned from profiles, each quarter of a circle by the cubic arc whose tangents are 0.56 of its
-//! radius; the lid's top has 0.45 at 0.8 in the published figures. Handle and spout have one half given, and the other
-//! mirrored. The figures have z up and stand on z = 0; here y is up.
+//! Rim, body, lid and bottom are turned from profiles, each quarter of a circle by the cubic arc whose tangents are
+//! 0.56 of its radius; the lid's top has 0.45 at 0.8 in the published figures. Handle and spout have one half given,
+//! and the other mirrored. The figures have z up and stand on z = 0; here y is up.
 //!
-//! The normal is `∂P/∂v × ∂P/∂u`. At the middle of the lid and of the bottom ∂P/∂u is 0; there its limit's direction is that of
-//! the mixed derivative ∂²P/∂u∂v.
+//! The normal is `∂P/∂v × ∂P/∂u`. At the middle of the lid and of the bottom ∂P/∂u is 0; there its limit's direction is
+//! that of the mixed derivative ∂²P/∂u∂v.
 
 use super::shapes::Vertex;
 use glam::DVec3;
@@ -27,8 +27,8 @@ const PROFILES: [Profile; 6] = [
     [[1.5, 0.84, 0.15], [1.5, 0.84, 0.075], [1.425, 0.798, 0.0], [0.0, 0.0, 0.0]],
 ];
 
-/// The halves of handle and spout at y ≤ 0: each row goes around the tube, x and z at y = 0, the two off it, and y = 0 again; the
-/// row's y is that of the two in the middle.
+/// The halves of handle and spout at y ≤ 0: each row goes around the tube, x and z at y = 0, the two off it, and y = 0
+/// again; the row's y is that of the two in the middle.
 struct Section {
     y: f64,
     xz: [[f64; 2]; 4],
@@ -82,7 +82,8 @@ pub(super) fn patches() -> Vec<Patch> {
     turned.chain(halves).collect()
 }
 
-/// A quarter of a turned profile, counter-clockwise as seen from above, so that seen from outside u runs right and v down.
+/// A quarter of a turned profile, counter-clockwise as seen from above, so that seen from outside u runs right and v
+/// down.
 fn turned(profile: &Profile, quarter: u8) -> Patch {
     let points = profile.map(|[radius, tangent, z]| {
         [[radius, 0.0], [radius, tangent], [tangent, radius], [0.0, radius]].map(|[x, y]| {

@@ -246,6 +246,7 @@ choice! {
     Order default Given
     /// As they are written.
     Given "given"
-    /// Opaque ones as they are written, then those with a cutout, then blended ones, the farthest from the eye first (002).
+    /// Opaque ones as they are written, then those with a cutout, then blended ones, the farthest from the eye first
+    /// (002).
     Sorted "sorted"
 }

@@ -14,8 +14,8 @@ pub struct AmbientLight {
     pub form: AmbientForm,
 }
 
-/// A light. Which fields it needs follows from its kind: `travel` or `toward` for a directional light, `position` for the others,
-/// `axis` and `cutoff_deg` for a spotlight.
+/// A light. Which fields it needs follows from its kind: `travel` or `toward` for a directional light, `position` for
+/// the others, `axis` and `cutoff_deg` for a spotlight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Light {

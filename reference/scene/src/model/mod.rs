@@ -1,8 +1,8 @@
 //! The authored scene: what a person writes as JSON, before anything is resolved.
 //!
-//! Names refer to textures, materials, meshes and objects of the same scene; what is left out has a default. The schema that
-//! `lightmeter schema scene` prints is derived from these types, and their comments are its descriptions. Loading turns a
-//! scene into a [`Frame`](crate::frame::Frame).
+//! Names refer to textures, materials, meshes and objects of the same scene; what is left out has a default. The schema
+//! that `lightmeter schema scene` prints is derived from these types, and their comments are its descriptions. Loading
+//! turns a scene into a [`Frame`](crate::frame::Frame).
 
 mod camera;
 mod choice;

@@ -34,8 +34,8 @@ pub struct Object {
     /// How it is blended; not at all if left out.
     #[serde(default)]
     pub blend: Option<Blend>,
-    /// The depth test. If left out, `less` with writing; blended objects `less-equal` without. With reversed depth `greater` and
-    /// `greater-equal`.
+    /// The depth test. If left out, `less` with writing; blended objects `less-equal` without. With reversed depth
+    /// `greater` and `greater-equal`.
     #[serde(default)]
     pub depth: Option<Depth>,
     /// Which faces are not drawn.
@@ -86,8 +86,8 @@ pub struct Shading {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Blend {
-    /// Of red, green and blue: `solid`, `alpha`, `mul` or `add` (002), `min`, `max`, or equation, source and destination factor,
-    /// as `add/src-alpha/one-minus-src-alpha`.
+    /// Of red, green and blue: `solid`, `alpha`, `mul` or `add` (002), `min`, `max`, or equation, source and
+    /// destination factor, as `add/src-alpha/one-minus-src-alpha`.
     pub color: String,
     /// Of alpha; as the colour's if left out.
     #[serde(default)]

@@ -64,7 +64,8 @@ pub enum Shape {
         #[serde(default = "once")]
         repeat: [f64; 2],
     },
-    /// A cube about the origin. Each corner's colour is that of the RGB cube: (0, 0, 0) at −x −y −z, (1, 1, 1) at +x +y +z.
+    /// A cube about the origin. Each corner's colour is that of the RGB cube: (0, 0, 0) at −x −y −z, (1, 1, 1) at +x +y
+    /// +z.
     Cube {
         /// The length of an edge.
         #[serde(default = "two")]

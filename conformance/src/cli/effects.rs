@@ -1,0 +1,89 @@
+//! `lightmeter effects`.
+
+use super::options::Format;
+use super::{Status, emit};
+use anyhow::bail;
+use clap::Args;
+use lightmeter::scene::{Loaded, load};
+use lightmeter_scene::effects::{Called, Reason, Subject, effects};
+use lightmeter_scene::frame::Frame;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Print what each draw of a scene calls for and why, light by light, and what it does not.
+#[derive(Debug, Args)]
+pub(crate) struct Effects {
+    /// A scene's file, or the name of a built-in scene
+    scene: String,
+    /// How it is written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write it to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Effects {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let loaded = load::scene(&self.scene)?;
+        let called = effects(&loaded.frame);
+        let text = match self.format {
+            Format::Text => in_words(&loaded, &called)?,
+            Format::Json => serde_json::to_string_pretty(&in_json(&loaded, &called))? + "\n",
+            Format::Junit => bail!("effects are written as text or json"),
+        };
+        emit(&text, self.out.as_deref())?;
+        Ok(Status::Success)
+    }
+}
+
+fn in_words(loaded: &Loaded, called: &[Called]) -> anyhow::Result<String> {
+    let mut text = format!("{}: {}\n{}\n", loaded.name, loaded.title, loaded.shows);
+    for (draw, called) in loaded.frame.draws.iter().zip(called) {
+        writeln!(text, "\n{}: {}", draw.name, called.effects)?;
+        for (heading, is) in [("called for", true), ("not called for", false)] {
+            let reasons: Vec<&Reason> = called.reasons.iter().filter(|reason| reason.called == is).collect();
+            if !reasons.is_empty() {
+                writeln!(text, "  {heading}")?;
+            }
+            for reason in reasons {
+                writeln!(text, "    {:<24} {}", subject(&loaded.frame, reason.subject), reason.why)?;
+            }
+        }
+    }
+    Ok(text)
+}
+
+fn in_json(loaded: &Loaded, called: &[Called]) -> Value {
+    let frame = &loaded.frame;
+    let draws = frame.draws.iter().zip(called).map(|(draw, called)| {
+        let reasons = called.reasons.iter().map(|reason| {
+            let key = if matches!(reason.subject, Subject::Light(_)) { "light" } else { "effect" };
+            let name = match reason.subject {
+                Subject::Effect(effect) => effect.name(),
+                Subject::Light(place) => &frame.lights[place].name,
+            };
+            json!({ key: name, "called": reason.called, "why": reason.why })
+        });
+        json!({
+            "draw": draw.name,
+            "effects": called.effects.iter().map(|effect| effect.name()).collect::<Vec<_>>(),
+            "lights": called.lights.iter().map(|&light| frame.lights[light].name.as_str()).collect::<Vec<_>>(),
+            "reasons": reasons.collect::<Vec<_>>(),
+        })
+    });
+    json!({
+        "schema": "lightmeter.effects/1",
+        "scene": loaded.name,
+        "title": loaded.title,
+        "draws": draws.collect::<Vec<_>>(),
+    })
+}
+
+fn subject(frame: &Frame, subject: Subject) -> String {
+    match subject {
+        Subject::Effect(effect) => effect.name().to_owned(),
+        Subject::Light(place) => format!("light `{}`", frame.lights[place].name),
+    }
+}
