@@ -9,8 +9,11 @@ use crate::cases::Kind;
 use crate::cases::blend::{self, Samples};
 use crate::evaluate::kernel;
 use crate::filter::Filter;
+use crate::image;
 use crate::judge::{Outcome, judge};
 use crate::report::{DeviationUse, Group, Interrupted, Number, Report, Timing, Totals};
+use crate::scene::library::SCENES;
+use crate::scene::load;
 use crate::select::{CaseRef, Member, Selected, Shard, catalogue_of, select};
 use crate::subject::{Compiled, Rows, Subject};
 use crate::tally::{Tally, judge_chunk};
@@ -18,6 +21,7 @@ use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::Equation;
 use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Cases of a chunk.
@@ -41,6 +45,8 @@ pub struct Options {
     pub targets: Vec<TargetFormat>,
     /// Which states with another one for alpha are judged.
     pub samples: Samples,
+    /// Where the images of scenes that fail are written; `None` for nowhere.
+    pub images: Option<PathBuf>,
     /// Whether the blend unit draws everything once more with its pipelines compiled, to tell how long that takes.
     pub again: bool,
     /// The accuracy rules.
@@ -79,9 +85,11 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
     let started = Instant::now();
     let catalogue = catalogue_of(&options.samples);
     let selected = select(&catalogue, &options.filter, options.cases, options.shard);
-    progress.start(selected.iter().map(|chosen| work(&catalogue[chosen.member], chosen, subjects, options)).sum());
+    let scenes = image::run::select(&options.filter, options.shard);
+    let rows: u64 = selected.iter().map(|chosen| work(&catalogue[chosen.member], chosen, subjects, options)).sum();
+    progress.start(rows + scenes.iter().map(|chosen| chosen.work() * subjects.len() as u64).sum::<u64>());
     let mut report = empty(subjects, options);
-    if !selected.is_empty() {
+    if !selected.is_empty() || !scenes.is_empty() {
         probe_deviations(subjects, options, &mut report)?;
     }
     for group in selected.chunk_by(|a, b| catalogue[a.member].spec.group() == catalogue[b.member].spec.group()) {
@@ -93,6 +101,20 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
                 let under_way = members[0].spec.group().into();
                 report.interrupted.get_or_insert(Interrupted { under_way, message: error.to_string() });
                 break;
+            }
+            judged => judged?,
+        }
+    }
+    for chosen in scenes {
+        if report.interrupted.is_some() {
+            break;
+        }
+        let id = image::run::scene_id(chosen.place);
+        progress.group(&id);
+        let loaded = load::builtin(SCENES[chosen.place].0).expect("a test loads every scene that is built in");
+        match image::run::run_scene(&loaded, &chosen, subjects, options, &mut report, progress) {
+            Err(error @ (Error::Device(_) | Error::Timeout(_))) => {
+                report.interrupted = Some(Interrupted { under_way: id, message: error.to_string() });
             }
             judged => judged?,
         }
@@ -321,6 +343,7 @@ fn run_rows(
                 seconds: tally.seconds,
                 seconds_warm: None,
                 explanation: None,
+                image: None,
                 worst: tally.worst.map(|(_, id)| id),
                 skip_reason: work.err(),
                 problem,

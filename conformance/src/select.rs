@@ -96,7 +96,9 @@ impl Shard {
     /// The whole.
     pub const WHOLE: Self = Self { index: 0, count: NonZeroU64::MIN };
 
-    const fn has(self, number: u64) -> bool {
+    /// Whether it has the case of this number.
+    #[must_use]
+    pub const fn has(self, number: u64) -> bool {
         number % self.count.get() == self.index
     }
 }

@@ -134,6 +134,12 @@ impl Subject {
         Self { rules, ..Self::embedded() }
     }
 
+    /// The device; `None` of the embedded implementation.
+    #[must_use]
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.gpu.as_ref().map(|device| &device.gpu)
+    }
+
     /// What the embedded blend unit follows.
     #[must_use]
     pub const fn rules(&self) -> &Rules {

@@ -24,6 +24,7 @@ use crate::error::Error;
 use crate::shaders::Shaders;
 use items::{Item, reached, split};
 use lightmeter_scene::effects::{Effect, Effects};
+pub use lightmeter_scene::stage::Stage;
 use naga::valid::ModuleInfo;
 use template::{Template, Wanted};
 
@@ -50,48 +51,9 @@ impl Shader {
     }
 }
 
-/// An intermediate result that a fragment gives in place of its colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Stage {
-    /// (p, 1), in eye space.
-    Position,
-    /// (z, 0, 0, 1) of the fragment.
-    Depth,
-    /// (n, 1): the unit normal, with flat and Gouraud shading the interpolated normal of the vertices; 0 without normals.
-    Normal,
-    /// (CE + CA + Σ CA + Σ CD, 1).
-    Diffuse,
-    /// (Σ CS, 1).
-    Specular,
-    /// The colour after vertex colours, texture and lightmap.
-    Surface,
-    /// The colour after fog, before it is blended.
-    Fog,
-}
-
-impl Stage {
-    /// All, in the order of the pipeline.
-    pub const ALL: [Self; 7] =
-        [Self::Position, Self::Depth, Self::Normal, Self::Diffuse, Self::Specular, Self::Surface, Self::Fog];
-
-    /// The name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Position => "position",
-            Self::Depth => "depth",
-            Self::Normal => "normal",
-            Self::Diffuse => "diffuse",
-            Self::Specular => "specular",
-            Self::Surface => "surface",
-            Self::Fog => "fog",
-        }
-    }
-
-    /// Whether no surface colour is known yet.
-    const fn is_before_surface(self) -> bool {
-        !matches!(self, Self::Surface | Self::Fog)
-    }
+/// Whether no surface colour is known yet.
+const fn is_before_surface(stage: Stage) -> bool {
+    !matches!(stage, Stage::Surface | Stage::Fog)
 }
 
 /// The effects of a draw that what it gives depends on: a texture in place of the colour leaves no use for light, and a stage
@@ -117,7 +79,7 @@ pub fn live(effects: Effects, stage: Option<Stage>) -> Effects {
     if stage.is_some_and(|stage| stage != Stage::Fog) {
         live = without(live, &fog);
     }
-    if stage.is_some_and(Stage::is_before_surface) && !live.has(E::Cutout) {
+    if stage.is_some_and(is_before_surface) && !live.has(E::Cutout) {
         live = without(live, &surface);
     }
     let replaced = live.has(E::TextureReplace);

@@ -1,7 +1,13 @@
 //! Laws of whole images, over random frames.
 
 use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::image::file::Stored;
+use lightmeter::image::run::profile_of;
 use lightmeter::image::{Expected, expect};
+use lightmeter::subject::Subject;
+use lightmeter_gpu::Shaders;
+use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_reference::render::{Image, render};
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
@@ -75,4 +81,35 @@ fn the_reference_and_its_form_in_f32_are_legal() {
             assert!(marked * 50 < all, "{stage:?}: {marked} of {all} pixels are marked");
         }
     }
+}
+
+/// Frames that a device draws: its compiler takes most of the time.
+const FRAMES: u64 = 24;
+
+/// Random frames on a device: the composed shaders and the one with all effects, each pixel legal by the full reference.
+#[test]
+fn devices_draw_random_frames_within_what_is_legal() {
+    let adapters = lightmeter_gpu::vulkan_adapters();
+    let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
+    let subject = Subject::open(adapter).expect("the adapter gives a device");
+    let gpu = subject.gpu().expect("an adapter has a device");
+    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+    let profile = profile_of(&subject, &WGSL);
+    let mut judged = 0;
+    for seed in 0..FRAMES {
+        let frame = frame(seed);
+        let expected = expect(&frame, None, None, &profile);
+        for (shader, sets) in [(Shader::Composed, effects(&frame)), (Shader::Full, named(&frame))] {
+            let renderer = SceneRenderer::new(gpu, &shaders, &frame, &sets, shader, None).expect("it compiles");
+            let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu)).expect("it draws");
+            let image = Stored::read(48, frame.target.format, &bytes);
+            for (number, (pixel, legal)) in image.pixels.iter().zip(&expected).enumerate() {
+                let outside = (0..4).find(|&k| !(legal.low[k] <= pixel[k] && pixel[k] <= legal.high[k]));
+                let place = [number % 48, number / 48];
+                assert_eq!(outside, None, "seed {seed}, {shader:?}, pixel {place:?}: {pixel:?} is not in {legal:?}");
+                judged += 1;
+            }
+        }
+    }
+    assert_eq!(judged, 2 * 48 * 40 * usize::try_from(FRAMES).expect("few"));
 }

@@ -244,6 +244,7 @@ impl Standing {
             worst: self.worst.map(|(_, id)| id),
             skip_reason: self.lacks,
             explanation,
+            image: None,
             problem,
         });
         report.special.extend(self.special);

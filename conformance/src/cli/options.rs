@@ -147,6 +147,7 @@ impl Choice {
             shard,
             targets: self.targets(),
             samples: Samples { seed: self.seed, ..Samples::default() },
+            images: None,
             again: false,
             profile: self.profile,
             shaders: self.shaders()?,

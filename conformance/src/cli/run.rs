@@ -29,6 +29,9 @@ pub(crate) struct Run {
     /// States with another one for alpha, drawn from all 1,265,625 and judged besides those that cover every pair
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u64).range(0..=1_265_625))]
     separate: u64,
+    /// Where reference, result and error map of a scene that fails are written
+    #[arg(long, value_name = "DIR", default_value = "lightmeter-failures")]
+    images: PathBuf,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -44,6 +47,7 @@ impl Run {
         let samples = Samples { seed: self.choice.seed, count: self.separate, named };
         let filter = matching(&self.filter, self.amount.cases, &samples)?;
         let mut options = self.choice.options(filter, self.amount.cases, shard)?;
+        options.images = Some(self.images.clone());
         options.again = self.timing;
         options.samples = samples;
         if let Some(path) = &self.out {
@@ -105,7 +109,9 @@ pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples) -> anyho
     let catalogue = catalogue_of(samples);
     for glob in globs {
         let filter = Filter::new(std::slice::from_ref(glob))?;
-        if select(&catalogue, &filter, cases, lightmeter::select::Shard::WHOLE).is_empty() {
+        let whole = lightmeter::select::Shard::WHOLE;
+        let scenes = lightmeter::image::run::select(&filter, whole);
+        if scenes.is_empty() && select(&catalogue, &filter, cases, whole).is_empty() {
             let families = lightmeter::cases::FAMILIES.join(", ");
             return Err(NothingToRun(format!(
                 "no case matches `{glob}`; ids begin with a family ({families}), as `fog/linear/random/000017`: see \
@@ -177,6 +183,7 @@ mod tests {
             shard: Shard::WHOLE,
             targets: vec![TargetFormat::Rgba8Unorm],
             samples: Samples::default(),
+            images: None,
             again: false,
             profile: &WGSL,
             shaders,

@@ -1,11 +1,15 @@
 //! Images under judgement: what each pixel of a frame may hold, and how an implementation's image compares.
 //!
 //! `bound` is what a rasteriser may make of a triangle's place and attributes, `pixel` the ways in which one pixel may come
-//! about, `expect` the legal values of all of them; `file` writes PNG and EXR.
+//! about, `expect` the legal values of all of them; `judge` compares an image with them,
+//! `diagnose` says where a wrong one first departs, `run` takes every scene through both, and `file` writes PNG and EXR.
 
 mod bound;
+pub mod diagnose;
 pub mod expect;
 pub mod file;
+pub mod judge;
 mod pixel;
+pub mod run;
 
 pub use expect::{Expected, expect};

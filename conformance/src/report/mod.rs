@@ -209,6 +209,29 @@ pub struct Group {
     /// Why the group fails as a whole.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
+    /// Of a scene's image.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub image: Option<ImageUse>,
+}
+
+/// An image of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct ImageUse {
+    /// Pixels.
+    pub width: usize,
+    /// Pixels.
+    pub height: usize,
+    /// Judged pixels of which several outcomes are legal that differ by more than twice the widest of them.
+    pub marked: u64,
+    /// Of the shader with all effects: pixels that are not, bit for bit, those of the composed shaders.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub differs_from_composed: Option<u64>,
+    /// The first intermediate result in which a wrong image departs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub departs_in: Option<&'static str>,
+    /// Reference, result and error map of a wrong image.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<String>,
 }
 
 impl Group {

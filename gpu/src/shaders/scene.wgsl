@@ -90,7 +90,7 @@ fn scene_shaded(
     //@ when varying
     in: SceneVaryings,
     //@ end
-    //@ when fog & phong
+    //@ when fog_linear & phong
     f: f32,
     //@ end
 ) -> vec3f {
@@ -122,7 +122,7 @@ fn scene_fragment(in: SceneVaryings) -> @location(0) vec4f {
             //@ when varying
             in,
             //@ end
-            //@ when fog & phong
+            //@ when fog_linear & phong
             f,
             //@ end
         ),

@@ -1,0 +1,85 @@
+//! Where a wrong image first departs: its intermediate results, drawn by the same shaders, against their own legal values.
+
+use super::expect::Expectation;
+use super::file::Stored;
+use crate::arithmetic::Profile;
+use crate::subject::Subject;
+use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::scene::SceneRenderer;
+use lightmeter_gpu::{Error, Shaders};
+use lightmeter_reference::render::render;
+use lightmeter_scene::effects::Called;
+use lightmeter_scene::frame::Frame;
+use lightmeter_scene::stage::Stage;
+use lightmeter_scene::target::TargetFormat;
+use std::fmt;
+
+/// Pixels that are looked at: the first of those that fail.
+const LOOKED_AT: usize = 4096;
+
+/// The first intermediate result that is not legal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Departure {
+    /// Its name, or `blend` or `store` where all of them are legal.
+    pub stage: &'static str,
+    /// Pixels that depart there.
+    pub pixels: usize,
+    /// Of so many that were looked at.
+    pub of: usize,
+}
+
+impl fmt::Display for Departure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "first departs in: {} ({} of {} pixels looked at)", self.stage, self.pixels, self.of)
+    }
+}
+
+/// Compares the intermediate results of failing pixels, in the order in which they come about.
+///
+/// # Errors
+/// Where a shader is invalid or the device fails.
+pub fn departure(
+    subject: &Subject,
+    shaders: &Shaders,
+    frame: &Frame,
+    sets: &[Called],
+    profile: &Profile,
+    pixels: &[usize],
+) -> Result<Departure, Error> {
+    let pixels = &pixels[..pixels.len().min(LOOKED_AT)];
+    for stage in Stage::ALL {
+        let image = intermediate(subject, shaders, frame, sets, stage)?;
+        let expectation = profile.scope(|| Expectation::new(frame, None, Some(stage), profile));
+        let departs = |&&pixel: &&usize| {
+            let legal = expectation.pixel(pixel % image.width, pixel / image.width, profile);
+            let of_pixel = image.pixels[pixel];
+            (0..4).any(|k| !(legal.low[k] <= of_pixel[k] && of_pixel[k] <= legal.high[k]) && legal.low[k].is_finite())
+        };
+        let departing = pixels.iter().filter(departs).count();
+        if departing > 0 {
+            return Ok(Departure { stage: stage.name(), pixels: departing, of: pixels.len() });
+        }
+    }
+    let stage = if frame.draws.iter().any(|draw| draw.blend.is_some()) { "blend" } else { "store" };
+    Ok(Departure { stage, pixels: pixels.len(), of: pixels.len() })
+}
+
+/// An intermediate result as a subject draws it.
+///
+/// # Errors
+/// Where a shader is invalid or the device fails.
+pub fn intermediate(
+    subject: &Subject,
+    shaders: &Shaders,
+    frame: &Frame,
+    sets: &[Called],
+    stage: Stage,
+) -> Result<Stored, Error> {
+    let format = TargetFormat::Rgba32Float;
+    let Some(gpu) = subject.gpu() else {
+        return Ok(Stored::unrounded(&render::<f32>(frame, None, Some(stage)), format));
+    };
+    let renderer = SceneRenderer::new(gpu, shaders, frame, sets, Shader::Composed, Some(stage))?;
+    let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu))?;
+    Ok(Stored::read(frame.target.width as usize, format, &bytes))
+}

@@ -1,0 +1,136 @@
+//! An image against what its pixels may hold.
+
+use super::expect::Expected;
+use super::file::Stored;
+use crate::arithmetic::format::error_ulp;
+use crate::arithmetic::{F16, F32};
+use crate::judge::margin;
+use lightmeter_scene::target::{Encoding, TargetFormat};
+use rayon::prelude::*;
+
+/// A component of a pixel that is outside what is legal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Miss {
+    /// The pixel's number, row after row.
+    pub pixel: usize,
+    /// The component.
+    pub component: usize,
+    /// By how many times its tolerance it is off.
+    pub margin: f64,
+}
+
+/// How an image compares.
+#[derive(Clone, Debug, Default)]
+pub struct Judged {
+    /// Components inside their intervals.
+    pub passed: u64,
+    /// Components where anything is legal.
+    pub indeterminate: u64,
+    /// Components outside.
+    pub misses: Vec<Miss>,
+    /// The greatest error: ULP on float targets, steps on those of 8 bits.
+    pub error_max: f64,
+    /// The greatest margin, and where.
+    pub worst: Option<Miss>,
+}
+
+impl Judged {
+    /// The pixels that fail, each once, in order.
+    #[must_use]
+    pub fn pixels(&self) -> Vec<usize> {
+        let mut pixels: Vec<usize> = self.misses.iter().map(|miss| miss.pixel).collect();
+        pixels.dedup();
+        pixels
+    }
+
+    fn merge(mut self, mut other: Self) -> Self {
+        self.passed += other.passed;
+        self.indeterminate += other.indeterminate;
+        self.misses.append(&mut other.misses);
+        self.error_max = self.error_max.max(other.error_max);
+        self.worst = match (self.worst, other.worst) {
+            (Some(a), Some(b)) if b.margin > a.margin => Some(b),
+            (a, b) => a.or(b),
+        };
+        self
+    }
+}
+
+/// Judges every component of the pixels given, by their numbers.
+///
+/// The margin is the distance from the reference, not rounded to the target, over the distance to the interval's end.
+#[must_use]
+pub fn judge(image: &Stored, reference: &Stored, expected: &[Expected], pixels: &[usize]) -> Judged {
+    let chunks = pixels.par_chunks(4096).map(|pixels| {
+        let mut judged = Judged::default();
+        for &pixel in pixels {
+            for component in 0..4 {
+                one(image, reference, expected, (pixel, component), &mut judged);
+            }
+        }
+        judged
+    });
+    let parts: Vec<Judged> = chunks.collect();
+    parts.into_iter().fold(Judged::default(), Judged::merge)
+}
+
+fn one(
+    image: &Stored,
+    reference: &Stored,
+    expected: &[Expected],
+    (pixel, component): (usize, usize),
+    judged: &mut Judged,
+) {
+    let (value, exact) = (image.pixels[pixel][component], reference.pixels[pixel][component]);
+    let (low, high) = (expected[pixel].low[component], expected[pixel].high[component]);
+    if low == f64::NEG_INFINITY && high == f64::INFINITY {
+        judged.indeterminate += 1;
+        return;
+    }
+    judged.error_max = judged.error_max.max(error(image.format, value, exact));
+    let miss = Miss { pixel, component, margin: margin(value, exact, low, high) };
+    if low <= value && value <= high {
+        judged.passed += 1;
+    } else {
+        judged.misses.push(miss);
+    }
+    if judged.worst.is_none_or(|worst| miss.margin > worst.margin) {
+        judged.worst = Some(miss);
+    }
+}
+
+/// ULP of a float format, or steps.
+#[must_use]
+pub fn error(format: TargetFormat, value: f64, exact: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, reason = "a value that was read from a target fits binary32")]
+    let narrow = value as f32;
+    match format.encoding() {
+        Encoding::Float32 => error_ulp::<F32>(narrow, exact),
+        Encoding::Float16 => error_ulp::<F16>(narrow, exact),
+        Encoding::Unorm8 | Encoding::Srgb8 => (value - exact).abs(),
+    }
+}
+
+/// An image of each pixel's distance from the reference in units of its tolerance: black for none, blue to the tolerance's
+/// end, yellow at the double of it and red at eight times; marked pixels are grey where they are legal.
+#[must_use]
+pub fn error_map(image: &Stored, reference: &Stored, expected: &[Expected]) -> Stored {
+    let pixels = (0..image.pixels.len()).map(|pixel| {
+        let of = |k: usize| {
+            let (value, exact) = (image.pixels[pixel][k], reference.pixels[pixel][k]);
+            margin(value, exact, expected[pixel].low[k], expected[pixel].high[k])
+        };
+        let outside = (0..4).any(|k| {
+            let value = image.pixels[pixel][k];
+            !(expected[pixel].low[k] <= value && value <= expected[pixel].high[k])
+        });
+        let most = (0..4).map(of).fold(0.0, f64::max);
+        let color = match most {
+            _ if !outside && expected[pixel].is_marked => [60.0, 60.0, 60.0],
+            margin if !outside => [0.0, 0.0, 40.0 + 140.0 * margin.min(1.0)],
+            margin => [255.0, 220.0 * (1.0 - ((margin - 1.0) / 7.0).clamp(0.0, 1.0)), 0.0],
+        };
+        [color[0], color[1], color[2], 255.0]
+    });
+    Stored { width: image.width, format: TargetFormat::Rgba8Unorm, pixels: pixels.collect() }
+}

@@ -1,0 +1,439 @@
+//! Scenes judged on every subject: each drawn by the shaders composed from the effects that it calls for, and by the one
+//! with all effects behind switches; every pixel of both must be legal by the full reference.
+
+use super::diagnose::{self, Departure};
+use super::expect::{Expectation, Expected};
+use super::file::{self, Stored};
+use super::judge::{Judged, Miss, error, judge};
+use crate::arithmetic::Profile;
+use crate::filter::Filter;
+use crate::report::{Failure, Group, ImageUse, Number, Report, Totals};
+use crate::run::{Options, Progress, problem};
+use crate::scene::library::SCENES;
+use crate::scene::load::{self, Loaded};
+use crate::select::Shard;
+use crate::subject::Subject;
+use crate::tally::KEPT_FAILURES;
+use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::scene::SceneRenderer;
+use lightmeter_gpu::{Error, Pending};
+use lightmeter_reference::render::render;
+use lightmeter_scene::effects::{Called, effects, named};
+use lightmeter_scene::frame::Frame;
+use serde_json::json;
+use std::time::Instant;
+
+/// A scene that is selected, by its place among the built-in ones, and its pixels; `None` for all.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// Its place.
+    pub place: usize,
+    /// Some of its pixels.
+    pub pixels: Option<Vec<usize>>,
+}
+
+impl Chosen {
+    /// About how many pixels that are.
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.pixels.as_ref().map_or(1 << 18, |pixels| pixels.len() as u64)
+    }
+}
+
+/// The id of a scene.
+#[must_use]
+pub fn scene_id(place: usize) -> String {
+    format!("scene/{}", SCENES[place].0)
+}
+
+/// The id of a pixel.
+#[must_use]
+pub fn pixel_id(scene: &str, width: usize, pixel: usize) -> String {
+    format!("{scene}/{}-{}", pixel % width, pixel / width)
+}
+
+/// The pixel of an id such as `scene/teapot/12-340`, if the scene has it.
+#[must_use]
+pub fn pixel_of(id: &str, scene: &str, frame: &Frame) -> Option<usize> {
+    let (x, y) = id.strip_prefix(scene)?.strip_prefix('/')?.split_once('-')?;
+    let (x, y): (usize, usize) = (x.parse().ok()?, y.parse().ok()?);
+    let (width, height) = (frame.target.width as usize, frame.target.height as usize);
+    (x < width && y < height).then_some(y * width + x)
+}
+
+/// The scenes that a filter and a shard select, or the pixels of them that it names.
+#[must_use]
+pub fn select(filter: &Filter, shard: Shard) -> Vec<Chosen> {
+    let mut chosen = vec![];
+    for place in (0..SCENES.len()).filter(|&place| shard.has(place as u64)) {
+        let id = scene_id(place);
+        if filter.selects(&id) {
+            chosen.push(Chosen { place, pixels: None });
+            continue;
+        }
+        let below = format!("{id}/");
+        if !filter.reaches_below(&id) && !filter.literals().any(|literal| literal.starts_with(&below)) {
+            continue;
+        }
+        let Ok(loaded) = load::builtin(SCENES[place].0) else { continue };
+        let (width, height) = (loaded.frame.target.width as usize, loaded.frame.target.height as usize);
+        let pixels: Vec<usize> =
+            (0..width * height).filter(|&pixel| filter.selects(&pixel_id(&id, width, pixel))).collect();
+        if !pixels.is_empty() {
+            chosen.push(Chosen { place, pixels: Some(pixels) });
+        }
+    }
+    chosen
+}
+
+/// Which shader drew an image, as reports name it.
+const fn stage(shader: Shader) -> &'static str {
+    match shader {
+        Shader::Composed => "image",
+        Shader::Full => "image-full",
+    }
+}
+
+/// Everything about a scene that does not depend on a subject.
+struct Scene<'a> {
+    id: String,
+    frame: &'a Frame,
+    called: Vec<Called>,
+    named: Vec<Called>,
+    pixels: Vec<usize>,
+    reference: Stored,
+    /// The legal values by subpixel bits.
+    expected: Vec<(u32, Vec<Expected>)>,
+}
+
+/// Judges a scene on every subject.
+///
+/// # Errors
+/// Where a shader is invalid or a device fails.
+pub(crate) fn run_scene(
+    loaded: &Loaded,
+    chosen: &Chosen,
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut Report,
+    progress: &mut impl Progress,
+) -> Result<(), Error> {
+    let frame = &loaded.frame;
+    let (called, named) = (effects(frame), named(frame));
+    let mut work = vec![];
+    for (number, subject) in subjects.iter().enumerate() {
+        for shader in [Shader::Composed, Shader::Full] {
+            let clock = Instant::now();
+            let drawing =
+                start(subject, options, frame, if shader == Shader::Full { &named } else { &called }, shader)?;
+            let seconds = clock.elapsed().as_secs_f64();
+            report.timing.devices += seconds;
+            work.push((number, shader, drawing, seconds));
+        }
+    }
+    let clock = Instant::now();
+    let mut scene = Scene::new(loaded, chosen, called, named);
+    for subject in subjects.iter() {
+        scene.expect(&profile_of(subject, options.profile));
+    }
+    report.timing.reference += clock.elapsed().as_secs_f64();
+    let mut composed: Vec<Option<Stored>> = vec![None; subjects.len()];
+    for (number, shader, drawing, seconds) in work {
+        let subject = &subjects[number];
+        let clock = Instant::now();
+        let image = match drawing {
+            Drawing::Skipped(reason) => {
+                report.groups.push(scene.skipped(subject, shader, reason));
+                continue;
+            }
+            Drawing::Embedded => embedded(frame, shader),
+            Drawing::Pending(pending) => {
+                let gpu = subject.gpu().expect("only a device has pending work");
+                let bytes = SceneRenderer::pixels(gpu, *pending)?;
+                Some(Stored::read(frame.target.width as usize, frame.target.format, &bytes))
+            }
+        };
+        let Some(image) = image else { continue };
+        report.timing.devices += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        let mut group = scene.judge(&image, subject, shader, options, report)?;
+        match shader {
+            Shader::Composed => composed[number] = Some(image),
+            Shader::Full => {
+                let same = composed[number].as_ref().map(|composed| differing(composed, &image));
+                if let Some(use_) = &mut group.image {
+                    use_.differs_from_composed = same;
+                }
+            }
+        }
+        report.timing.judge += clock.elapsed().as_secs_f64();
+        group.seconds = seconds + clock.elapsed().as_secs_f64();
+        report.groups.push(group);
+    }
+    progress.advance((scene.pixels.len() * subjects.len()) as u64);
+    Ok(())
+}
+
+/// Pixels that two images do not have in common, bit for bit.
+fn differing(a: &Stored, b: &Stored) -> u64 {
+    a.pixels.iter().zip(&b.pixels).filter(|(a, b)| a.map(f64::to_bits) != b.map(f64::to_bits)).count() as u64
+}
+
+enum Drawing {
+    Skipped(&'static str),
+    Embedded,
+    Pending(Box<Pending>),
+}
+
+fn start(
+    subject: &Subject,
+    options: &Options,
+    frame: &Frame,
+    sets: &[Called],
+    shader: Shader,
+) -> Result<Drawing, Error> {
+    let Some(gpu) = subject.gpu() else { return Ok(Drawing::Embedded) };
+    if let Some(reason) = SceneRenderer::lacks(gpu, frame) {
+        return Ok(Drawing::Skipped(reason));
+    }
+    let renderer = SceneRenderer::new(gpu, &options.shaders, frame, sets, shader, None)?;
+    Ok(Drawing::Pending(Box::new(renderer.submit(gpu))))
+}
+
+/// The formulas in f32, which have no shader with switches.
+fn embedded(frame: &Frame, shader: Shader) -> Option<Stored> {
+    (shader == Shader::Composed).then(|| Stored::of(&render::<f32>(frame, None, None), frame.target.format))
+}
+
+/// The accuracy rules for a subject: the profile's, with the subpixel bits that its rasteriser is known to have.
+#[must_use]
+pub fn profile_of(subject: &Subject, profile: &Profile) -> Profile {
+    // The embedded implementation snaps nothing, but is held to no less than the promise.
+    Profile { subpixel_bits: subject.known.subpixel_bits.unwrap_or(profile.subpixel_bits), ..*profile }
+}
+
+impl<'a> Scene<'a> {
+    fn new(loaded: &'a Loaded, chosen: &Chosen, called: Vec<Called>, named: Vec<Called>) -> Self {
+        let frame = &loaded.frame;
+        let reference = Stored::unrounded(&render::<f64>(frame, None, None), frame.target.format);
+        let pixels = chosen.pixels.clone().unwrap_or_else(|| (0..reference.pixels.len()).collect());
+        Self { id: scene_id(chosen.place), frame, called, named, pixels, reference, expected: vec![] }
+    }
+
+    fn expect(&mut self, profile: &Profile) {
+        if !self.expected.iter().any(|(bits, _)| *bits == profile.subpixel_bits) {
+            let expected = super::expect(self.frame, None, None, profile);
+            self.expected.push((profile.subpixel_bits, expected));
+        }
+    }
+
+    fn expected(&self, profile: &Profile) -> &[Expected] {
+        let found = self.expected.iter().find(|(bits, _)| *bits == profile.subpixel_bits);
+        &found.expect("what is legal was worked out for every subject").1
+    }
+
+    fn skipped(&self, subject: &Subject, shader: Shader, reason: &'static str) -> Group {
+        let cases = self.pixels.len() as u64;
+        Group {
+            skip_reason: Some(reason),
+            ..self.group(subject, shader, Totals { cases, skipped: cases, ..Totals::default() })
+        }
+    }
+
+    fn group(&self, subject: &Subject, shader: Shader, totals: Totals) -> Group {
+        Group {
+            id: self.id.clone(),
+            adapter: subject.identity.name.clone(),
+            stage: stage(shader),
+            target: Some(self.frame.target.format.name()),
+            tiers: None,
+            store: None,
+            totals,
+            error_ulp_max: Number(0.0),
+            margin_max: Number(0.0),
+            seconds: 0.0,
+            seconds_warm: None,
+            worst: None,
+            skip_reason: None,
+            explanation: None,
+            problem: None,
+            image: None,
+        }
+    }
+
+    fn judge(
+        &self,
+        image: &Stored,
+        subject: &Subject,
+        shader: Shader,
+        options: &Options,
+        report: &mut Report,
+    ) -> Result<Group, Error> {
+        let profile = profile_of(subject, options.profile);
+        let expected = self.expected(&profile);
+        let mut judged = judge(image, &self.reference, expected, &self.pixels);
+        let excused = self.excuse(&mut judged, image, subject, &profile, report);
+        let verdicts = 4 * self.pixels.len() as u64;
+        let mut totals = Totals {
+            cases: self.pixels.len() as u64,
+            verdicts,
+            passed: judged.passed,
+            failed: judged.misses.len() as u64,
+            expected_failures: excused,
+            indeterminate: judged.indeterminate,
+            ..Totals::default()
+        };
+        let problem = problem((verdicts, judged.indeterminate), verdicts, judged.indeterminate);
+        totals.failed_groups = u64::from(problem.is_some());
+        let width = image.width;
+        let mut used = ImageUse {
+            width,
+            height: image.pixels.len() / width,
+            marked: self.pixels.iter().filter(|&&pixel| expected[pixel].is_marked).count() as u64,
+            differs_from_composed: None,
+            departs_in: None,
+            files: vec![],
+        };
+        let mut explanation = None;
+        if let Some(worst) = judged.misses.iter().copied().reduce(|a, b| if b.margin > a.margin { b } else { a }) {
+            let departure = self.departure(subject, shader, options, &profile, &judged)?;
+            used.departs_in = Some(departure.stage);
+            used.files = self.write(image, expected, subject, shader, options);
+            let pixels = judged.pixels().len();
+            let command = self.rerun("show", subject, options, worst.pixel);
+            explanation =
+                Some(format!("{pixels} pixels; {departure}; the worst: {command}{}", files_told(&used.files)));
+            let kept = judged.misses.iter().filter(|miss| miss.component == 0 || **miss != worst).take(KEPT_FAILURES);
+            let failures: Vec<Miss> = std::iter::once(worst).chain(kept.copied()).take(KEPT_FAILURES).collect();
+            for miss in failures {
+                report.failures.push(self.failure(miss, image, expected, subject, shader, options));
+            }
+        }
+        Ok(Group {
+            error_ulp_max: Number(judged.error_max),
+            margin_max: Number(judged.worst.map_or(0.0, |worst| worst.margin)),
+            worst: judged.worst.map(|worst| pixel_id(&self.id, width, worst.pixel)),
+            explanation,
+            problem,
+            image: Some(used),
+            ..self.group(subject, shader, totals)
+        })
+    }
+
+    /// Takes the misses out that a named deviation of the subject makes legal; how many there are.
+    fn excuse(
+        &self,
+        judged: &mut Judged,
+        image: &Stored,
+        subject: &Subject,
+        profile: &Profile,
+        report: &mut Report,
+    ) -> u64 {
+        let mut excused = 0;
+        for deviation in &subject.known.deviations {
+            if judged.misses.is_empty() {
+                break;
+            }
+            let granted = deviation.grant(*profile);
+            let expectation = granted.scope(|| Expectation::new(self.frame, None, None, &granted));
+            let before = judged.misses.len();
+            judged.misses.retain(|miss| {
+                let (x, y) = (miss.pixel % image.width, miss.pixel / image.width);
+                let legal = expectation.pixel(x, y, &granted);
+                let value = image.pixels[miss.pixel][miss.component];
+                !(legal.low[miss.component] <= value && value <= legal.high[miss.component])
+            });
+            let count = (before - judged.misses.len()) as u64;
+            excused += count;
+            let adapter = &subject.identity.name;
+            if let Some(uses) = report.deviations.iter_mut().find(|d| d.name == deviation.name && d.adapter == *adapter)
+            {
+                uses.excused += count;
+            }
+        }
+        excused
+    }
+
+    fn departure(
+        &self,
+        subject: &Subject,
+        shader: Shader,
+        options: &Options,
+        profile: &Profile,
+        judged: &Judged,
+    ) -> Result<Departure, Error> {
+        let sets = if shader == Shader::Full { &self.named } else { &self.called };
+        diagnose::departure(subject, &options.shaders, self.frame, sets, profile, &judged.pixels())
+    }
+
+    /// Reference, result and error map; nothing where files are not asked for or cannot be written.
+    fn write(
+        &self,
+        image: &Stored,
+        expected: &[Expected],
+        subject: &Subject,
+        shader: Shader,
+        options: &Options,
+    ) -> Vec<String> {
+        let Some(folder) = &options.images else { return vec![] };
+        let rounded = Stored::of(&render::<f64>(self.frame, None, None), self.frame.target.format);
+        let map = super::judge::error_map(image, &self.reference, expected);
+        let name = self.id.replace('/', "-");
+        let place = format!("{name}-{}-{}", subject.identity.name, stage(shader));
+        let _ = std::fs::create_dir_all(folder);
+        let mut files = vec![];
+        for (what, image) in [("reference", &rounded), ("result", image), ("error", &map)] {
+            let path = folder.join(format!("{place}-{what}.png"));
+            match image.write(&path) {
+                Ok(()) => files.push(path.display().to_string()),
+                Err(error) => {
+                    let _: file::Error = error;
+                }
+            }
+        }
+        files
+    }
+
+    fn rerun(&self, command: &str, subject: &Subject, options: &Options, pixel: usize) -> String {
+        let id = pixel_id(&self.id, self.reference.width, pixel);
+        format!("lightmeter {command} '{id}' --adapter {}{}", subject.identity.name, options.rerun)
+    }
+
+    fn failure(
+        &self,
+        miss: Miss,
+        image: &Stored,
+        expected: &[Expected],
+        subject: &Subject,
+        shader: Shader,
+        options: &Options,
+    ) -> Failure {
+        let (pixel, k) = (miss.pixel, miss.component);
+        let (value, exact) = (image.pixels[pixel][k], self.reference.pixels[pixel][k]);
+        let place = json!({ "x": pixel % image.width, "y": pixel / image.width });
+        let inputs = place.as_object().cloned().unwrap_or_default();
+        #[expect(clippy::cast_possible_truncation, reason = "a value that was read from a target fits binary32")]
+        let bits = (value as f32).to_bits();
+        Failure {
+            rerun: self.rerun("run", subject, options, pixel),
+            id: pixel_id(&self.id, image.width, pixel),
+            adapter: subject.identity.name.clone(),
+            stage: stage(shader),
+            target: Some(self.frame.target.format.name()),
+            route: None,
+            output: ["r", "g", "b", "a"][k].into(),
+            inputs,
+            inputs_hex: serde_json::Map::new(),
+            reference: Number(exact),
+            interval: [Number(expected[pixel].low[k]), Number(expected[pixel].high[k])],
+            value: Number(value),
+            value_hex: format!("0x{bits:08x}"),
+            unwritten: false,
+            error_ulp: Number(error(image.format, value, exact)),
+        }
+    }
+}
+
+fn files_told(files: &[String]) -> String {
+    if files.is_empty() { String::new() } else { format!("; see {}", files.join(", ")) }
+}
