@@ -116,10 +116,10 @@ fn scene_fragment(
     let f = scene_fog_factor(in.p);
     //@ end
     //@ when surface
-    //@ when before_surface | texture_replace
+    //@ when before_surface
     var color = vec4f(0.0, 0.0, 0.0, scene_draw.alpha);
     //@ end
-    //@ when !(before_surface | texture_replace)
+    //@ when !before_surface
     var color: vec4f;
     //@ end
     //@ if !before_surface & !texture_replace
