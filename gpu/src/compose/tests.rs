@@ -103,7 +103,7 @@ fn surfaces() -> Vec<Effects> {
 }
 
 /// The sets that are looked at.
-fn sets() -> Vec<Effects> {
+pub(crate) fn sets() -> Vec<Effects> {
     let (lights, surfaces) = (lights(), surfaces());
     let few = lights.iter().step_by(lights.len() / 7).flat_map(|light| surfaces.iter().map(|s| union(*s, *light)));
     // A step that shares no factor with the surfaces' number meets all of them.
@@ -344,7 +344,7 @@ fn instructions(composer: &Composer, effects: Effects) -> usize {
 
 /// Effects that another form of the same stands in for, and how many instructions that form may have more.
 const FORMS: [(Effect, usize, &str); 2] = [
-    (E::FogRadial, 3, "|z| takes a component and an absolute value, the length of p one instruction"),
+    (E::FogRadial, 1, "|z| takes a component and an absolute value, the length of p one instruction"),
     (E::TextureReplace, usize::MAX, "what the texture stands in place of is lit again"),
 ];
 

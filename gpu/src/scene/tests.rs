@@ -226,6 +226,24 @@ fn composed_and_full_shaders_draw_alike_on_every_adapter() {
 }
 
 #[test]
+fn composed_and_full_shaders_draw_alike_for_sets_of_all_sorts() {
+    let _alone = alone();
+    let (name, gpu, _) = devices().next().expect("there is one");
+    let (_, frame) = frames().pop().expect("there are some");
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    for set in crate::compose::tests::sets().into_iter().step_by(431) {
+        let mut called = named(&frame);
+        called[0].effects = set;
+        let [composed, full] = Shader::ALL.map(|shader| {
+            let renderer = SceneRenderer::new(&gpu, &shaders, &frame, &called, shader, None);
+            let renderer = renderer.unwrap_or_else(|error| panic!("{set}: {error}"));
+            SceneRenderer::pixels(&gpu, renderer.submit(&gpu)).unwrap_or_else(|error| panic!("{set}: {error}"))
+        });
+        assert_alike(&composed, &full, &format!("{set} on {name}"));
+    }
+}
+
+#[test]
 fn stages_are_steps_towards_the_colour() {
     let _alone = alone();
     let (_, gpu, _) = devices().next().expect("there is one");
