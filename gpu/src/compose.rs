@@ -244,4 +244,4 @@ fn covering() -> impl Iterator<Item = Effects> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

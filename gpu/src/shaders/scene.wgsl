@@ -8,12 +8,14 @@
 //@ let texture = texture_nearest | texture_bilinear
 //@ let lightmap = lightmap_nearest | lightmap_bilinear
 //@ let fog = fog_linear | fog_exp | fog_exp2_document | fog_exp2_opengl
-//@ let varying = flat | gouraud | phong
 //@ let weight_used = diffuse | specular | attenuated_ambient
 //@ let weighted = weight_used & (attenuation | spot)
 //@ let lit_position = local_viewer | weight_used & spot | (diffuse | specular | attenuation) & point
 //@ let fragment_position = fog | stage_position | phong & lit_position
 //@ let fragment_normal = stage_normal & has_normals | phong & normals
+//@ let lit_in = flat | gouraud | phong & (lit_position | normals | fog)
+//@ let colored_in = surface & (texture | lightmap | vertex_color) | fog | stage_normal & has_normals
+//@ let fragment_in = lit_in | colored_in | stage_position | stage_depth
 //@ let before_surface = stage_position | stage_depth | stage_normal | stage_diffuse | stage_specular
 //@ let surface = cutout | !before_surface
 
@@ -87,10 +89,10 @@ fn scene_vertex(in: SceneVertex) -> SceneVaryings {
 
 // The lit colour of a fragment.
 fn scene_shaded(
-    //@ when varying
+    //@ when lit_in
     in: SceneVaryings,
     //@ end
-    //@ when fog_linear & phong
+    //@ when fog & phong
     f: f32,
     //@ end
 ) -> vec3f {
@@ -105,24 +107,28 @@ fn scene_fog_factor(p: vec3f) -> f32 {
 }
 
 @fragment
-fn scene_fragment(in: SceneVaryings) -> @location(0) vec4f {
+fn scene_fragment(
+    //@ when fragment_in
+    in: SceneVaryings,
+    //@ end
+) -> @location(0) vec4f {
     //@ when fog
     let f = scene_fog_factor(in.p);
     //@ end
     //@ when surface
-    //@ when before_surface | texture_replace
+    //@ when before_surface
     var color = vec4f(0.0, 0.0, 0.0, scene_draw.alpha);
     //@ end
-    //@ when !(before_surface | texture_replace)
+    //@ when !before_surface
     var color: vec4f;
     //@ end
     //@ if !before_surface & !texture_replace
     color = vec4f(
         scene_shaded(
-            //@ when varying
+            //@ when lit_in
             in,
             //@ end
-            //@ when fog_linear & phong
+            //@ when fog & phong
             f,
             //@ end
         ),
@@ -159,7 +165,7 @@ fn scene_fragment(in: SceneVaryings) -> @location(0) vec4f {
     //@ end
     //@ when stage_diffuse | stage_specular
     let rgb = scene_shaded(
-        //@ when varying
+        //@ when lit_in
         in,
         //@ end
     );

@@ -1,25 +1,30 @@
-// Lit at the fragments, with the interpolated normal normalised again. What linear fog hides is not lit; exponential fog
-// hides nothing before its factor underflows, at density times distance of 104, and Mesa 22.3.6 crashes over a branch on it.
+// Lit at the fragments, with the interpolated normal normalised again. What fog hides is not lit.
 
 fn scene_lit_at_fragment(
+    //@ when lit_in
     in: SceneVaryings,
-    //@ when fog_linear
+    //@ end
+    //@ when fog
     f: f32,
     //@ end
 ) -> vec3f {
-    //@ if fog_linear
-    if f <= 0.0 {
-        return vec3f(0.0);
-    }
+    var rgb = vec3f(0.0);
+    //@ when fog
+    // Every fragment's x is positive. Mesa 22.3's lavapipe crashes where a condition begins with a uniform, which f does, and
+    // loops on uniforms follow: it takes the condition for one that it can decide before it draws.
+    if (in.clip.x >= 0.0) & (f > 0.0)
     //@ end
-    return scene_lit(
-        //@ when lit_position
-        in.p,
-        //@ end
-        //@ when normals
-        vector_normalize(in.normal),
-        //@ end
-    );
+    {
+        rgb = scene_lit(
+            //@ when lit_position
+            in.p,
+            //@ end
+            //@ when normals
+            vector_normalize(in.normal),
+            //@ end
+        );
+    }
+    return rgb;
 }
 
 //@ at fragment_normal
@@ -27,8 +32,10 @@ vector_normalize(in.normal)
 
 //@ at lit
 scene_lit_at_fragment(
+    //@ when lit_in
     in,
-    //@ when fog_linear
+    //@ end
+    //@ when fog
     f,
     //@ end
 )
