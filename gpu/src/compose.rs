@@ -1,8 +1,9 @@
 //! The WGSL of a draw, composed from its effects: one file an effect, and nothing of those that are not called for.
 //!
-//! `scene.wgsl`, `scene_lighting.wgsl` and `scene_uniforms.wgsl` are the skeleton; `effects/<name>.wgsl` holds what an effect
-//! puts into it, with bindings and functions of its own. Their formulas come from the families' files. Of all that, a module
-//! holds the functions, structs and bindings that its entry points reach. Lines of these forms direct it:
+//! `scene.wgsl`, `scene_lighting.wgsl` and `scene_uniforms.wgsl` are the skeleton; `effects/<name>.wgsl` holds what an
+//! effect puts into it, with bindings and functions of its own. Their formulas come from the families' files. Of all
+//! that, a module holds the functions, structs and bindings that its entry points reach. Lines of these forms direct
+//! it:
 //!
 //! | line | meaning |
 //! |---|---|
@@ -11,7 +12,7 @@
 //! | `//@ if condition` … `//@ end` | these statements where it holds; in [`Shader::Full`] an `if` on the switches |
 //! | `//@ slot name` | the statements that the effects have for it |
 //! | `//@ members name` | the same of members of a struct: no switch surrounds them |
-//! | `//@ choose name: type from slot else expression` | a value from the one effect that has an expression for the slot |
+//! | `//@ choose name: type from slot else expression` | a value by the one effect's expression, or by this |
 //! | `//@ at slot` | what follows, to the next such line, is for the slot |
 //!
 //! Conditions are of effects' names, `stage_<name>`, `has_normals`, `!`, `&`, `|` and parentheses.
@@ -56,7 +57,7 @@ const fn is_before_surface(stage: Stage) -> bool {
     !matches!(stage, Stage::Surface | Stage::Fog)
 }
 
-/// The effects of a draw that what it gives depends on: a texture in place of the colour leaves no use for light, and a stage
+/// The effects that a draw's result depends on: a texture in place of the colour leaves no use for light, and a stage
 /// none for what comes later, the alpha that a cutout reads excepted.
 #[must_use]
 pub fn live(effects: Effects, stage: Option<Stage>) -> Effects {

@@ -53,12 +53,12 @@ impl SceneRenderer {
         gpu.lacks_target(target).or_else(|| gpu.lacks_blending(target).filter(|_| blends))
     }
 
-    /// Uploads the frame and compiles what draws it. `sets[i]` is what `frame.draws[i]` calls for. With a stage, the target
-    /// is rgba32float, nothing is blended, and fragments give that intermediate result; the background stays.
+    /// Uploads the frame and compiles what draws it. `sets[i]` is what `frame.draws[i]` calls for. With a stage, the
+    /// target is rgba32float, nothing is blended, and fragments give that intermediate result; the background stays.
     ///
     /// # Errors
-    /// Where the sets are not one a draw, a blend state has no factor on the unit, a shader is invalid, or the device refuses
-    /// a pipeline.
+    /// Where the sets are not one a draw, a blend state has no factor on the unit, a shader is invalid, or the device
+    /// refuses a pipeline.
     ///
     /// # Panics
     /// Where a stage is asked of [`Shader::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
@@ -151,8 +151,8 @@ impl SceneRenderer {
         Ok(bytemuck::cast_slice(&pending.wait(gpu)?).to_vec())
     }
 
-    /// Seconds that it takes to draw the frame so many times in one submission, by the clock on the wall. A driver compiles
-    /// at the first draw: draw once before.
+    /// Seconds that it takes to draw the frame so many times in one submission, by the clock on the wall. A driver
+    /// compiles at the first draw: draw once before.
     ///
     /// # Errors
     /// Where the device failed or was lost.

@@ -98,7 +98,6 @@ const fn stage(shader: Shader) -> &'static str {
 struct Scene<'a> {
     id: String,
     frame: &'a Frame,
-    called: Vec<Called>,
     named: Vec<Called>,
     pixels: Vec<usize>,
     reference: Stored,
@@ -132,7 +131,7 @@ pub(crate) fn run_scene(
         }
     }
     let clock = Instant::now();
-    let mut scene = Scene::new(loaded, chosen, called, named);
+    let mut scene = Scene::new(loaded, chosen, named);
     for subject in subjects.iter() {
         scene.expect(&profile_of(subject, options.profile));
     }
@@ -213,11 +212,11 @@ pub fn profile_of(subject: &Subject, profile: &Profile) -> Profile {
 }
 
 impl<'a> Scene<'a> {
-    fn new(loaded: &'a Loaded, chosen: &Chosen, called: Vec<Called>, named: Vec<Called>) -> Self {
+    fn new(loaded: &'a Loaded, chosen: &Chosen, named: Vec<Called>) -> Self {
         let frame = &loaded.frame;
         let reference = Stored::unrounded(&render::<f64>(frame, None, None), frame.target.format);
         let pixels = chosen.pixels.clone().unwrap_or_else(|| (0..reference.pixels.len()).collect());
-        Self { id: scene_id(chosen.place), frame, called, named, pixels, reference, expected: vec![] }
+        Self { id: scene_id(chosen.place), frame, named, pixels, reference, expected: vec![] }
     }
 
     fn expect(&mut self, profile: &Profile) {
@@ -296,7 +295,7 @@ impl<'a> Scene<'a> {
         };
         let mut explanation = None;
         if let Some(worst) = judged.misses.iter().copied().reduce(|a, b| if b.margin > a.margin { b } else { a }) {
-            let departure = self.departure(subject, shader, options, &profile, &judged)?;
+            let departure = self.departure(subject, options, &profile, &judged)?;
             used.departs_in = Some(departure.stage);
             used.files = self.write(image, expected, subject, shader, options);
             let pixels = judged.pixels().len();
@@ -357,13 +356,12 @@ impl<'a> Scene<'a> {
     fn departure(
         &self,
         subject: &Subject,
-        shader: Shader,
         options: &Options,
         profile: &Profile,
         judged: &Judged,
     ) -> Result<Departure, Error> {
-        let sets = if shader == Shader::Full { &self.named } else { &self.called };
-        diagnose::departure(subject, &options.shaders, self.frame, sets, profile, &judged.pixels())
+        // What a texture replaces is an intermediate result all the same.
+        diagnose::departure(subject, &options.shaders, self.frame, &self.named, profile, &judged.pixels())
     }
 
     /// Reference, result and error map; nothing where files are not asked for or cannot be written.

@@ -1,9 +1,10 @@
 //! What composed shaders hold, over the effects' subsets by sections.
 //!
-//! There are 9,107 subsets of the kinds of light and 540 surfaces in fogs, the product of which would take hours. Light, surface
-//! and fog share nothing but the fog's factor, below which Phong shading is passed over. So every subset of the kinds of light
-//! is taken once, the exclusive variants turned by a counter, with a surface and a fog that another counter turns through all
-//! of theirs; and every surface and fog with a few lights. Each pair of effects that may stand together is met.
+//! There are 9,107 subsets of the kinds of light and 540 surfaces in fogs, the product of which would take hours.
+//! Light, surface and fog share nothing but the fog's factor, below which Phong shading is passed over. So every subset
+//! of the kinds of light is taken once, the exclusive variants turned by a counter, with a surface and a fog that
+//! another counter turns through all of theirs; and every surface and fog with a few lights. Each pair of effects that
+//! may stand together is met.
 
 use super::*;
 use naga::{Expression, Function, Module, Statement, TypeInner};

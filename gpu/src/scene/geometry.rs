@@ -74,8 +74,8 @@ impl<'a> Geometry<'a> {
             .clone()
     }
 
-    /// The indices of a draw and their number. Flat attributes are the first vertex's, on OpenGL the last's: triangles are
-    /// turned until that is the vertex that is wanted.
+    /// The indices of a draw and their number. Flat attributes are the first vertex's, on OpenGL the last's: triangles
+    /// are turned until that is the vertex that is wanted.
     pub(super) fn indices(&mut self, draw: &Draw) -> (wgpu::Buffer, u32) {
         let flat = draw.shading.filter(|shading| shading.frequency == Frequency::Flat);
         let turn = flat.map_or(0, |shading| turn(shading.provoking, self.gpu.is_gl));

@@ -190,8 +190,8 @@ pub(super) fn native(draw: &Draw, blend: Blend) -> Result<(wgpu::BlendState, wgp
     let route = routes(blend.state)[0];
     if !matches!(route, Route::Native | Route::ConstantReplicated) {
         let message = format!(
-            "its blend state {} reads the constant's colour by one factor and its alpha by the other, and the unit has one \
-             constant for both; use factors of one kind",
+            "its blend state {} reads the constant's colour by one factor and its alpha by the other, and the unit has \
+             one constant for both; use factors of one kind",
             blend.state
         );
         return Err(Error::Draw { draw: draw.name.clone(), message });

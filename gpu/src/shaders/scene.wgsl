@@ -1,5 +1,5 @@
-// A draw of a scene, vertex to fragment: where effects put their text. `compose.rs` says how lines with an at sign are read.
-// p is the point in eye space, n its normal, f the fog's factor.
+// A draw of a scene, vertex to fragment: where effects put their text. `compose.rs` says how lines with an at sign are
+// read. p is the point in eye space, n its normal, f the fog's factor.
 
 //@ let specular = specular_phong | specular_blinn | specular_unnormalised
 //@ let constant = emissive | ambient_product | ambient_constant

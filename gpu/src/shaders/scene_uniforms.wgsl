@@ -1,4 +1,5 @@
-// What a scene's shader is told, where more than one effect reads it; the others' bindings stand in the effects' own files.
+// What a scene's shader is told, where more than one effect reads it; the others' bindings stand in the effects' own
+// files.
 
 struct SceneDraw {
     projection: mat4x4f,

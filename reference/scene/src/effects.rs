@@ -278,9 +278,26 @@ impl Analysis<'_> {
         self.called.reasons.push(Reason { subject: Subject::Effect(effect), called: chosen, why: why.into() });
     }
 
+    /// Whether nothing of the colour is left, so that what it is made from changes nothing.
+    fn is_replaced(&self) -> bool {
+        !self.everything && self.draw.texture.is_some_and(|textured| textured.replaces)
+    }
+
     fn lighting(&mut self) {
         let (frame, draw) = (self.frame, self.draw);
         let (Some(shading), material) = (draw.shading, &draw.material) else { return };
+        if self.is_replaced() {
+            let why = "a texture stands in its place";
+            let light = |place| Reason { subject: Subject::Light(place), called: false, why: why.into() };
+            self.called.reasons.extend((0..frame.lights.len()).map(light));
+            let effect = match shading.frequency {
+                Frequency::Flat => Effect::Flat,
+                Frequency::Gouraud => Effect::Gouraud,
+                Frequency::Phong => Effect::Phong,
+            };
+            self.choice(effect, false, why);
+            return;
+        }
         self.worth(Effect::Emissive, any(material.emissive), format!("CE is {}", triple(material.emissive)));
         match frame.ambient_form {
             Ambient::Product => self.worth(
@@ -381,7 +398,9 @@ impl Analysis<'_> {
         let (frame, draw) = (self.frame, self.draw);
         if draw.vertex_colors {
             // Ones that are interpolated are rounded, which leaving them out would change.
-            self.choice(Effect::VertexColor, true, "colours of the vertices");
+            let replaced = self.is_replaced();
+            let why = if replaced { "a texture stands in their place" } else { "colours of the vertices" };
+            self.choice(Effect::VertexColor, !replaced, why);
         }
         if let Some(textured) = draw.texture {
             let changes = textured.replaces || !is_white(frame, textured.sampled);

@@ -10,8 +10,8 @@ fn scene_lit_at_fragment(
 ) -> vec3f {
     var rgb = vec3f(0.0);
     //@ when fog
-    // Every fragment's x is positive. Mesa 22.3's lavapipe crashes where a condition begins with a uniform, which f does, and
-    // loops on uniforms follow: it takes the condition for one that it can decide before it draws.
+    // Every fragment's x is positive. Mesa 22.3's lavapipe crashes where a condition begins with a uniform, which f
+    // does, and loops on uniforms follow: it takes the condition for one that it can decide before it draws.
     if (in.clip.x >= 0.0) & (f > 0.0)
     //@ end
     {
