@@ -81,6 +81,9 @@ impl Progress for Silent {
 ///
 /// # Errors
 /// Where a shader is invalid, or a device fails before anything ran.
+///
+/// # Panics
+/// Where a built-in scene is refused, which a test rules out.
 pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Progress) -> Result<Report, Error> {
     let started = Instant::now();
     let catalogue = catalogue_of(&options.samples);

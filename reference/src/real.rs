@@ -58,8 +58,8 @@ pub trait Real:
 
     /// The same of as many terms as there are.
     #[must_use]
-    fn sum_slice(terms: &[Self]) -> Self {
-        terms.iter().copied().reduce(Add::add).unwrap_or_else(|| Self::literal(0.0))
+    fn sum_over(terms: impl Iterator<Item = Self>) -> Self {
+        terms.reduce(Add::add).unwrap_or_else(|| Self::literal(0.0))
     }
 
     /// x₀ · x₁ · … in any order.

@@ -199,8 +199,9 @@ impl Real for Draw {
     fn sum<const N: usize>(terms: [Self; N]) -> Self {
         chain(&terms, Add::add)
     }
-    fn sum_slice(terms: &[Self]) -> Self {
-        if terms.is_empty() { Self::of(0.0) } else { chain(terms, Add::add) }
+    fn sum_over(terms: impl Iterator<Item = Self>) -> Self {
+        let terms: Vec<Self> = terms.collect();
+        if terms.is_empty() { Self::of(0.0) } else { chain(&terms, Add::add) }
     }
     fn product<const N: usize>(factors: [Self; N]) -> Self {
         chain(&factors, Mul::mul)

@@ -202,8 +202,8 @@ impl<F: Format> Accept<F> {
 
 impl<F: Format> Accept<F> {
     /// [`Accept::sum_by_terms`] without the terms that are exactly 0, which round nothing.
-    fn sum_of_hardware(terms: &[Self]) -> Self {
-        let rest: Vec<Self> = terms.iter().copied().filter(|term| !term.is_exactly(0.0)).collect();
+    fn sum_of_hardware(terms: impl Iterator<Item = Self>) -> Self {
+        let rest: Vec<Self> = terms.filter(|term| !term.is_exactly(0.0)).collect();
         match rest[..] {
             [] => Self::exactly(0.0),
             [x] => x,
@@ -418,11 +418,11 @@ impl<F: Format> Real for Accept<F> {
 
     #[inline]
     fn sum<const N: usize>(terms: [Self; N]) -> Self {
-        Self::sum_slice(&terms)
+        Self::sum_over(terms.into_iter())
     }
 
     #[inline]
-    fn sum_slice(terms: &[Self]) -> Self {
+    fn sum_over(terms: impl Iterator<Item = Self>) -> Self {
         if F::IS_HARDWARE {
             return Self::sum_of_hardware(terms);
         }
@@ -434,7 +434,7 @@ impl<F: Format> Real for Accept<F> {
                 continue;
             }
             count += 1;
-            last_two = [last_two[1], *term];
+            last_two = [last_two[1], term];
             low += term.low;
             high += term.high;
             magnitude += term.magnitude();

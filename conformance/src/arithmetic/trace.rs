@@ -96,10 +96,9 @@ impl Real for Trace {
         let beyond = |x: Self, y: Self| Self { value: x.value, interval: x.interval.hull(y.interval) };
         own.zip(then(first), beyond).zip(then(last), beyond)
     }
-    fn sum_slice(terms: &[Self]) -> Self {
-        let values: Vec<f64> = terms.iter().map(|x| x.value).collect();
-        let intervals: Vec<Accept> = terms.iter().map(|x| x.interval).collect();
-        Self { value: Real::sum_slice(&values), interval: Real::sum_slice(&intervals) }
+    fn sum_over(terms: impl Iterator<Item = Self>) -> Self {
+        let (values, intervals): (Vec<f64>, Vec<Accept>) = terms.map(|x| (x.value, x.interval)).unzip();
+        Self { value: Real::sum_over(values.into_iter()), interval: Real::sum_over(intervals.into_iter()) }
     }
     fn sum<const N: usize>(terms: [Self; N]) -> Self {
         Self { value: Real::sum(terms.map(|x| x.value)), interval: Real::sum(terms.map(|x| x.interval)) }

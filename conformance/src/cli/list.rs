@@ -6,7 +6,11 @@ use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
 use lightmeter::cases::blend::{Samples, aliases, separate_of};
+use lightmeter::image;
+use lightmeter::image::run::Chosen;
 use lightmeter::report::text::thousands;
+use lightmeter::scene::library::SCENES;
+use lightmeter::scene::load::{self, Loaded};
 use lightmeter::select::{CaseRef, Member, Random, Selected, catalogue_of, select};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -38,6 +42,7 @@ impl List {
         let filter = matching(&self.filter, self.amount.cases, &samples)?;
         let catalogue = catalogue_of(&samples);
         let selected = select(&catalogue, &filter, self.amount.cases, self.amount.shard.0);
+        let scenes = if self.formulas { vec![] } else { image::run::select(&filter, self.amount.shard.0) };
         let text = match (self.format, self.formulas) {
             (Format::Junit, _) => bail!("a list is written as text or json"),
             (Format::Json, _) => {
@@ -46,7 +51,7 @@ impl List {
                     by_canonical.entry(canonical).or_default().push(alias);
                 }
                 let key = if self.formulas { "formulas" } else { "cases" };
-                let entries: Vec<Value> = selected
+                let mut entries: Vec<Value> = selected
                     .iter()
                     .map(|chosen| {
                         let member = &catalogue[chosen.member];
@@ -54,10 +59,17 @@ impl List {
                         if self.formulas { formula(member, aliases) } else { cases(member, chosen, aliases) }
                     })
                     .collect();
+                for chosen in &scenes {
+                    let loaded = load::builtin(SCENES[chosen.place].0)?;
+                    let pixels = chosen.pixels.as_ref().map_or_else(|| pixels(&loaded), |some| some.len() as u64);
+                    let id = image::run::scene_id(chosen.place);
+                    entries
+                        .push(json!({ "scene": id, "title": loaded.title, "shows": loaded.shows, "pixels": pixels }));
+                }
                 serde_json::to_string_pretty(&json!({ "schema": format!("lightmeter.{key}/1"), key: entries }))? + "\n"
             }
             (Format::Text, true) => signatures(&catalogue, &selected)?,
-            (Format::Text, false) => tree(&catalogue, &selected)?,
+            (Format::Text, false) => tree(&catalogue, &selected, &scenes)?,
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
@@ -109,7 +121,12 @@ fn signatures(catalogue: &[Member], selected: &[Selected]) -> anyhow::Result<Str
     Ok(text)
 }
 
-fn tree(catalogue: &[Member], selected: &[Selected]) -> anyhow::Result<String> {
+/// Pixels of a scene, each of which is a case.
+fn pixels(loaded: &Loaded) -> u64 {
+    u64::from(loaded.frame.target.width) * u64::from(loaded.frame.target.height)
+}
+
+fn tree(catalogue: &[Member], selected: &[Selected], scenes: &[Chosen]) -> anyhow::Result<String> {
     let mut text = String::new();
     let mut family = "";
     let mut total = 0;
@@ -130,6 +147,15 @@ fn tree(catalogue: &[Member], selected: &[Selected]) -> anyhow::Result<String> {
                 writeln!(text, "    hard/{:<28} {}", member.spec.hard[place].name, member.spec.hard[place].pins)?;
             }
         }
+    }
+    if !scenes.is_empty() {
+        writeln!(text, "scene")?;
+    }
+    for chosen in scenes {
+        let loaded = load::builtin(SCENES[chosen.place].0)?;
+        let count = chosen.pixels.as_ref().map_or_else(|| pixels(&loaded), |some| some.len() as u64);
+        total += count;
+        writeln!(text, "  {:<32} {:>9}  {}", loaded.name, thousands(count), loaded.title)?;
     }
     writeln!(text, "{} cases", thousands(total))?;
     Ok(text)

@@ -1,13 +1,23 @@
-//! `lightmeter render`: a scene's image, by the reference or by a renderer.
+//! `lightmeter render`: a scene's image, by the reference or by an adapter.
 
 use super::Status;
+use super::options::Choice;
+use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
+use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::image::diagnose::intermediate;
 use lightmeter::image::file::Stored;
 use lightmeter::scene::load;
+use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_reference::render::render;
+use lightmeter_scene::effects::{effects, named};
+use lightmeter_scene::frame::Frame;
+use lightmeter_scene::stage::Stage;
+use lightmeter_scene::target::TargetFormat;
 use std::path::PathBuf;
 
-/// Draw a scene.
+/// Draw a scene, by the reference or by an adapter.
 #[derive(Debug, Args)]
 pub(crate) struct Render {
     /// A scene's file, or the name of one that is built in
@@ -15,6 +25,18 @@ pub(crate) struct Render {
     /// Who draws it
     #[arg(long, value_enum, default_value_t = With::Reference)]
     with: With,
+    /// Adapter to draw on, by its short name in `lightmeter adapters`; without it: lavapipe, or the first there is
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Draw by the shader that has all effects behind switches, rather than by those composed for each object
+    #[arg(long)]
+    full: bool,
+    /// An intermediate result in place of the colour: position, depth, normal, diffuse, specular, surface or fog
+    #[arg(long, value_name = "NAME", value_parser = stage)]
+    stage: Option<Stage>,
+    /// Draw by the WGSL in this folder in place of the built-in files of the same names
+    #[arg(long, value_name = "DIR")]
+    shaders: Option<PathBuf>,
     /// The image: .png of 8 bits, or .exr of binary32
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -24,22 +46,62 @@ pub(crate) struct Render {
 enum With {
     /// The f64 reference
     Reference,
+    /// An adapter
+    Gpu,
+}
+
+fn stage(name: &str) -> Result<Stage, String> {
+    let names: Vec<&str> = Stage::ALL.iter().map(|stage| stage.name()).collect();
+    let found = Stage::ALL.into_iter().find(|stage| stage.name() == name);
+    found.ok_or_else(|| format!("no such intermediate result; expected one of {}", names.join(", ")))
 }
 
 impl Render {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        // Not after minutes of work.
         Stored::check_name(&self.out)?;
-        let loaded = load::scene(&self.scene)?;
-        let started = std::time::Instant::now();
-        let drawn = render::<f64>(&loaded.frame, None, None);
-        let image = Stored::of(&drawn, loaded.frame.target.format);
-        eprintln!("{} fragments in {:.3} s", drawn.fragments, started.elapsed().as_secs_f64());
-        let started = std::time::Instant::now();
-        let profile = &lightmeter::arithmetic::profile::WGSL;
-        let expected = lightmeter::image::expect(&loaded.frame, None, None, profile);
-        let marked = expected.iter().filter(|e| e.is_marked).count();
-        eprintln!("{marked} marked of {}, {:.3} s", expected.len(), started.elapsed().as_secs_f64());
+        let of_adapters = self.adapter.is_some() || self.full || self.shaders.is_some();
+        if self.with == With::Reference && of_adapters {
+            bail!("`--adapter`, `--full` and `--shaders` are of adapters; ask for one with `--with gpu`");
+        }
+        if self.full && self.stage.is_some() {
+            bail!("intermediate results are drawn by composed shaders; leave out `--full` or `--stage`");
+        }
+        let frame = load::scene(&self.scene)?.frame;
+        let image = match self.with {
+            With::Reference => {
+                let format = self.stage.map_or(frame.target.format, |_| TargetFormat::Rgba32Float);
+                Stored::of(&render::<f64>(&frame, None, self.stage), format)
+            }
+            With::Gpu => self.drawn(&frame)?,
+        };
         image.write(&self.out)?;
         Ok(Status::Success)
+    }
+
+    fn drawn(&self, frame: &Frame) -> anyhow::Result<Stored> {
+        let choice = Choice {
+            adapter: self.adapter.iter().cloned().collect(),
+            profile: &WGSL,
+            target: vec![],
+            seed: 1,
+            shaders: self.shaders.clone(),
+        };
+        let shaders = choice.shaders()?;
+        let subjects = choice.subjects()?;
+        let [subject] = subjects.as_slice() else { bail!("an image is drawn by one adapter") };
+        let (sets, shader) = if self.full { (named(frame), Shader::Full) } else { (effects(frame), Shader::Composed) };
+        if let Some(stage) = self.stage {
+            return Ok(intermediate(subject, &shaders, frame, &named(frame), stage)?);
+        }
+        let Some(gpu) = subject.gpu() else {
+            return Ok(Stored::of(&render::<f32>(frame, None, None), frame.target.format));
+        };
+        if let Some(reason) = SceneRenderer::lacks(gpu, frame) {
+            return Err(anyhow::anyhow!(reason)).context(format!("{} cannot draw this scene", subject.identity.name));
+        }
+        let renderer = SceneRenderer::new(gpu, &shaders, frame, &sets, shader, None)?;
+        let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu))?;
+        Ok(Stored::read(frame.target.width as usize, frame.target.format, &bytes))
     }
 }

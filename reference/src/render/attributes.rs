@@ -4,7 +4,7 @@ use lightmeter_scene::frame::Draw;
 use lightmeter_scene::shading::Frequency;
 
 /// Where each attribute begins; `None` for those that the draw has no use for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Attributes {
     /// Position in eye space, 3 numbers.
     pub p: Option<usize>,
@@ -20,8 +20,8 @@ pub struct Attributes {
     pub color: Option<usize>,
     /// Numbers in all.
     pub count: usize,
-    /// Whether the lit colour is the provoking vertex's and not interpolated.
-    pub is_flat: bool,
+    /// Those that are the provoking vertex's and not interpolated.
+    pub flat: std::ops::Range<usize>,
 }
 
 /// Numbers of a lit vertex.
@@ -42,7 +42,9 @@ impl Attributes {
         attributes.uv = attributes.place(draw.texture.is_some(), 2);
         attributes.lightmap_uv = attributes.place(draw.lightmap.is_some(), 2);
         attributes.color = attributes.place(draw.vertex_colors, 4);
-        attributes.is_flat = frequency == Some(Frequency::Flat);
+        if let Some(start) = attributes.lit.filter(|_| frequency == Some(Frequency::Flat)) {
+            attributes.flat = start..start + LIT;
+        }
         attributes
     }
 
@@ -55,6 +57,6 @@ impl Attributes {
     /// Whether the number at this place is the provoking vertex's.
     #[must_use]
     pub fn is_flat_at(&self, number: usize) -> bool {
-        self.is_flat && self.lit.is_some_and(|start| (start..start + LIT).contains(&number))
+        self.flat.contains(&number)
     }
 }

@@ -155,8 +155,9 @@ impl<'a, R: Real + Into<f64>> Tile<'a, R> {
         let [columns, rows] = triangle.pixels(0.0, size);
         let [[left, right], [top, bottom]] = self.within;
         for y in rows[0].max(top)..=rows[1].min(bottom) {
+            let row = triangle.row(middle(y));
             for x in columns[0].max(left)..=columns[1].min(right) {
-                let edges = triangle.edges([middle(x), middle(y)]);
+                let edges = triangle.edges_in(row, middle(x));
                 if triangle.covers(edges) {
                     self.fragment(prepared, triangle, edges, (y - top) * (right - left + 1) + x - left);
                 }
@@ -205,13 +206,12 @@ fn interpolated<R: Real>(
     let [a, b, c] = triangle.vertices.map(|vertex| geometry.attributes(vertex));
     let flat = geometry.attributes(triangle.provoking);
     let mut attributes = [R::literal(0.0); MOST];
-    for (k, attribute) in attributes.iter_mut().enumerate().take(shader.attributes.count) {
-        let value = if shader.attributes.is_flat_at(k) {
-            flat[k]
-        } else {
-            interpolation::triangle(weights, [a[k], b[k], c[k]])
-        };
-        *attribute = R::literal(value);
+    let at = a.iter().zip(b).zip(c);
+    for (attribute, ((&a, &b), &c)) in attributes.iter_mut().zip(at) {
+        *attribute = R::literal(interpolation::triangle(weights, [a, b, c]));
+    }
+    for number in shader.attributes.flat.clone() {
+        attributes[number] = R::literal(flat[number]);
     }
     attributes
 }

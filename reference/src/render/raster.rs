@@ -42,6 +42,23 @@ pub struct Triangle {
     pub inverse_w: [f64; 3],
     /// Twice the area.
     pub area: f64,
+    edges: [Edge; 3],
+}
+
+/// A line through two vertices, from the lesser to the greater, so that both triangles at an edge compute the same.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    from: [f64; 2],
+    along: [f64; 2],
+    /// −1 where the triangle goes round it the other way.
+    sign: f64,
+}
+
+impl Edge {
+    fn new(a: [f64; 2], b: [f64; 2]) -> Self {
+        let (from, to, sign) = if a <= b { (a, b, 1.0) } else { (b, a, -1.0) };
+        Self { from, along: [to[0] - from[0], to[1] - from[1]], sign }
+    }
 }
 
 impl Geometry {
@@ -96,12 +113,15 @@ impl Geometry {
             vertices.swap(1, 2);
         }
         let corners = vertices.map(corner);
+        let window = corners.map(|v| [v.x(), v.y()]);
+        let [a, b, c] = window;
         (area != 0.0 && area.is_finite()).then(|| Triangle {
             vertices,
             provoking,
             source,
             is_front,
-            window: corners.map(|v| [v.x(), v.y()]),
+            window,
+            edges: [Edge::new(b, c), Edge::new(c, a), Edge::new(a, b)],
             depth: corners.map(|v| v.z()),
             inverse_w: vertices.map(|vertex| 1.0 / self.clip[vertex][3]),
             area: area.abs(),
@@ -158,9 +178,23 @@ impl Triangle {
     /// Twice the area that p spans with each edge, the edge opposite each vertex: positive inside. Edges that two triangles
     /// share give the same numbers with the other sign.
     #[must_use]
-    pub fn edges(&self, p: [f64; 2]) -> [f64; 3] {
-        let [a, b, c] = self.window;
-        [spanned(b, c, p), spanned(c, a, p), spanned(a, b, p)]
+    pub fn edges(&self, [x, y]: [f64; 2]) -> [f64; 3] {
+        self.edges_in(self.row(y), x)
+    }
+
+    /// What [`Triangle::edges`] has in common along a row.
+    #[must_use]
+    pub fn row(&self, y: f64) -> [f64; 3] {
+        self.edges.map(|edge| edge.along[0] * (y - edge.from[1]))
+    }
+
+    /// [`Triangle::edges`] at a place in a row.
+    #[must_use]
+    pub fn edges_in(&self, row: [f64; 3], x: f64) -> [f64; 3] {
+        std::array::from_fn(|k| {
+            let edge = &self.edges[k];
+            edge.sign * (row[k] - edge.along[1] * (x - edge.from[0]))
+        })
     }
 
     /// Whether the pixel whose edges are given belongs to the triangle: inside, or on a top or a left edge.
@@ -208,12 +242,6 @@ impl Triangle {
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within a target's size")]
 const fn whole(x: f64) -> usize {
     x as usize
-}
-
-/// [`edge`] from the lesser point to the greater, so that both triangles at an edge compute the same.
-fn spanned(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
-    let of = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-    if a <= b { of(a, b) } else { -of(b, a) }
 }
 
 /// A homogeneous position as plain numbers.

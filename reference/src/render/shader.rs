@@ -31,6 +31,8 @@ pub struct Shader<'a, R> {
     ambient: Rgb<R>,
     lights: Vec<Light<R>>,
     fog: Option<Rgb<R>>,
+    /// Whether the parts of a lit colour are asked for.
+    stages: bool,
 }
 
 /// A light with everything that does not vary over the surface.
@@ -89,14 +91,13 @@ pub struct Fragment<R> {
 /// Terms that are summed up, kept from fragment to fragment.
 #[derive(Clone, Debug)]
 pub struct Scratch<R> {
-    diffuse: [Vec<R>; 3],
-    specular: [Vec<R>; 3],
+    diffuse: Vec<Rgb<R>>,
+    specular: Vec<Rgb<R>>,
 }
 
 impl<R> Default for Scratch<R> {
     fn default() -> Self {
-        let [diffuse, specular] = std::array::from_fn(|_| std::array::from_fn(|_| vec![]));
-        Self { diffuse, specular }
+        Self { diffuse: vec![], specular: vec![] }
     }
 }
 
@@ -155,6 +156,7 @@ impl<'a, R: Real> Shader<'a, R> {
             ambient: rgb(frame.ambient),
             lights,
             fog: fog.map(|fog| rgb(fog.color)),
+            stages,
         }
     }
 
@@ -164,7 +166,7 @@ impl<'a, R: Real> Shader<'a, R> {
 
     /// The clip coordinates of a vertex of the draw's mesh; its attributes are appended.
     pub fn vertex(&self, vertex: usize, scratch: &mut Scratch<R>, attributes: &mut Vec<R>) -> Vec4<R> {
-        let (mesh, at) = (&self.frame.meshes[self.draw.mesh], self.attributes);
+        let (mesh, at) = (&self.frame.meshes[self.draw.mesh], &self.attributes);
         let position: Vec3<R> = Vector(mesh.positions[vertex].map(R::input));
         let eye = self.modelview.transform(position.extend(R::literal(1.0)));
         let p = eye.xyz();
@@ -209,15 +211,16 @@ impl<'a, R: Real> Shader<'a, R> {
     /// `CE + CA + Σᵢ(CAᵢ + CDᵢ + CSᵢ)` at a point with a unit normal.
     fn lit(&self, p: Vec3<R>, n: Vec3<R>, scratch: &mut Scratch<R>) -> Lit<R> {
         let Scratch { diffuse, specular } = scratch;
-        diffuse.iter_mut().chain(specular.iter_mut()).for_each(Vec::clear);
+        diffuse.clear();
+        specular.clear();
         if self.has(Effect::Emissive) {
-            push(diffuse, self.emissive);
+            diffuse.push(self.emissive);
         }
         match self.frame.ambient_form {
             Ambient::Product if self.has(Effect::AmbientProduct) => {
-                push(diffuse, lighting::ambient(self.ambient, self.material.ambient));
+                diffuse.push(lighting::ambient(self.ambient, self.material.ambient));
             }
-            Ambient::Constant if self.has(Effect::AmbientConstant) => push(diffuse, self.ambient),
+            Ambient::Constant if self.has(Effect::AmbientConstant) => diffuse.push(self.ambient),
             _ => {}
         }
         if let Some(shading) = self.draw.shading
@@ -231,12 +234,11 @@ impl<'a, R: Real> Shader<'a, R> {
                 self.add_light(shading, light, [p, n, v], diffuse, specular);
             }
         }
-        let sum = |terms: &[Vec<R>; 3]| Vector(std::array::from_fn(|k| R::sum_slice(&terms[k])));
-        let (without, highlights) = (sum(diffuse), sum(specular));
-        for (terms, more) in diffuse.iter_mut().zip(specular) {
-            terms.append(more);
-        }
-        Lit { color: sum(diffuse), diffuse: without, specular: highlights }
+        let none = Vector::splat(R::literal(0.0));
+        let of = |terms: &[Rgb<R>]| Vector(std::array::from_fn(|k| R::sum_over(terms.iter().map(|term| term[k]))));
+        let (without, highlights) = if self.stages { (of(diffuse), of(specular)) } else { (none, none) };
+        diffuse.append(specular);
+        Lit { color: of(diffuse), diffuse: without, specular: highlights }
     }
 
     fn add_light(
@@ -244,8 +246,8 @@ impl<'a, R: Real> Shader<'a, R> {
         shading: Shading,
         light: &Light<R>,
         [p, n, v]: [Vec3<R>; 3],
-        diffuse: &mut [Vec<R>; 3],
-        specular: &mut [Vec<R>; 3],
+        diffuse: &mut Vec<Rgb<R>>,
+        specular: &mut Vec<Rgb<R>>,
     ) {
         let one = R::literal(1.0);
         let (colors, material) = (&light.colors, &self.material);
@@ -269,14 +271,14 @@ impl<'a, R: Real> Shader<'a, R> {
         if self.has(Effect::LightAmbient) {
             let ambient = lighting::ambient(colors.ambient, material.ambient);
             let weakened = self.frame.light_ambient == LightAmbient::OpenGl && self.has(Effect::AttenuatedAmbient);
-            push(diffuse, if weakened { ambient.map(|c| R::product([c, cone, atten])) } else { ambient });
+            diffuse.push(if weakened { ambient.map(|c| R::product([c, cone, atten])) } else { ambient });
         }
         let is_dark = cone.is_at_most(0.0);
         let fi = lighting::incidence(l, n);
         let is_turned_away = fi.is_at_most(0.0);
         if self.has(Effect::Diffuse) && !is_dark && !is_turned_away {
             let factors = |light: R, material: R| R::product([light, material, fi, cone, atten]);
-            push(diffuse, zip(colors.diffuse, material.diffuse, factors));
+            diffuse.push(zip(colors.diffuse, material.diffuse, factors));
         }
         let gated = shading.gate == Gate::OpenGl;
         if self.has_specular() && !is_dark && !(gated && is_turned_away) {
@@ -286,7 +288,7 @@ impl<'a, R: Real> Shader<'a, R> {
                 Gate::Documents => fs(),
             };
             let factors = |light: R, material: R| R::product([light, material, fs, cone, atten]);
-            push(specular, zip(colors.specular, material.specular, factors));
+            specular.push(zip(colors.specular, material.specular, factors));
         }
     }
 
@@ -296,7 +298,7 @@ impl<'a, R: Real> Shader<'a, R> {
 
     /// A fragment, from its interpolated attributes.
     pub fn fragment(&self, attributes: &[R], scratch: &mut Scratch<R>) -> Fragment<R> {
-        let (zero, one, at) = (R::literal(0.0), R::literal(1.0), self.attributes);
+        let (zero, one, at) = (R::literal(0.0), R::literal(1.0), &self.attributes);
         let three = |start: usize| Vector([attributes[start], attributes[start + 1], attributes[start + 2]]);
         let p = at.p.map_or(Vector::splat(zero), three);
         let f = self.fog.zip(self.frame.fog.as_ref()).map(|(color, fog)| (color, factor(fog, p)));
@@ -330,7 +332,7 @@ impl<'a, R: Real> Shader<'a, R> {
 
     /// Vertex colours, texture and lightmap.
     fn surface(&self, mut surface: Rgba<R>, attributes: &[R]) -> Rgba<R> {
-        let at = self.attributes;
+        let at = &self.attributes;
         let uv = |start: usize| Vector([attributes[start], attributes[start + 1]]);
         if let Some(start) = at.color.filter(|_| self.has(Effect::VertexColor)) {
             surface = color::modulate(Vector(std::array::from_fn(|k| attributes[start + k])), surface);
@@ -366,12 +368,6 @@ fn factor<R: Real>(fog: &frame::Fog, p: Vec3<R>) -> R {
 
 fn matrix<R: Real>(columns: &frame::Matrix) -> Mat4<R> {
     Mat4(columns.map(|column| Vector(column.map(R::input))))
-}
-
-fn push<R: Real>(terms: &mut [Vec<R>; 3], term: Rgb<R>) {
-    for (terms, x) in terms.iter_mut().zip(term.0) {
-        terms.push(x);
-    }
 }
 
 fn zip<R: Real>(a: Rgb<R>, b: Rgb<R>, f: impl Fn(R, R) -> R) -> Rgb<R> {

@@ -1,5 +1,6 @@
 //! `lightmeter show`.
 
+mod pixel;
 mod unit;
 
 use super::options::{Choice, Format};
@@ -13,6 +14,7 @@ use lightmeter::evaluate::Evaluator;
 use lightmeter::judge::{Outcome, judge};
 use lightmeter::report::Number;
 use lightmeter::select::{CaseRef, Member, canonical_id, catalogue_of};
+use lightmeter::subject::Subject;
 use lightmeter::tally::{by_name, intervals};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -51,6 +53,15 @@ struct Known {
 
 impl Show {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        if let Some(found) = pixel::find(&self.id)? {
+            let as_json = match self.format {
+                Format::Junit => bail!("a case is written as text or json"),
+                format => format == Format::Json,
+            };
+            let text = pixel::show(&self.id, &found, &self.choice, &self.subjects()?, as_json)?;
+            emit(&text, self.out.as_deref())?;
+            return Ok(Status::Success);
+        }
         let named = separate_of(&self.id).into_iter().collect();
         let catalogue = catalogue_of(&Samples { seed: self.choice.seed, named, ..Samples::default() });
         let (member, case) = find(&catalogue, &self.id)?;
@@ -71,17 +82,19 @@ impl Show {
         Ok(Status::Success)
     }
 
-    /// Without an adapter that was asked for, a machine without a driver still shows the case.
-    fn answers(&self, member: &Member, inputs: &[f32]) -> anyhow::Result<(Vec<Answer>, Vec<UnitAnswer>)> {
-        let shaders = self.choice.shaders()?;
-        let subjects = match self.choice.subjects() {
-            Ok(subjects) => subjects,
+    fn subjects(&self) -> anyhow::Result<Vec<Subject>> {
+        match self.choice.subjects() {
             Err(error) if self.choice.adapter.is_empty() => {
                 eprintln!("note: {error:#}");
-                vec![]
+                Ok(vec![])
             }
-            Err(error) => return Err(error),
-        };
+            subjects => subjects,
+        }
+    }
+
+    /// Without an adapter that was asked for, a machine without a driver still shows the case.
+    fn answers(&self, member: &Member, inputs: &[f32]) -> anyhow::Result<(Vec<Answer>, Vec<UnitAnswer>)> {
+        let (shaders, subjects) = (self.choice.shaders()?, self.subjects()?);
         let (mut answers, mut unit, members) = (vec![], vec![], [member]);
         for mut subject in subjects {
             if let Kind::Blend(program) = member.spec.kind {

@@ -1,0 +1,156 @@
+//! A pixel of a scene: each intermediate result by the reference, what is legal, and what adapters give.
+
+use super::super::options::Choice;
+use lightmeter::arithmetic::Profile;
+use lightmeter::blend_unit::pixel::Units;
+use lightmeter::image::Expected;
+use lightmeter::image::diagnose::intermediate;
+use lightmeter::image::expect::Expectation;
+use lightmeter::image::file::Stored;
+use lightmeter::image::run::{pixel_of, profile_of, scene_id};
+use lightmeter::report::Number;
+use lightmeter::scene::library::SCENES;
+use lightmeter::scene::load::{self, Loaded};
+use lightmeter::subject::Subject;
+use lightmeter_gpu::Shaders;
+use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::scene::SceneRenderer;
+use lightmeter_reference::render::render;
+use lightmeter_scene::effects::{effects, named};
+use lightmeter_scene::frame::Frame;
+use lightmeter_scene::stage::Stage;
+use lightmeter_scene::target::TargetFormat;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+
+/// One row: an intermediate result, or the colour.
+struct Row {
+    what: &'static str,
+    reference: Units,
+    /// By adapter, or by the profile's promise where there is none: what is legal, and what came out.
+    seen: Vec<(String, Expected, Option<Units>)>,
+}
+
+/// The scene and the pixel of an id such as `scene/teapot/12-340`.
+pub(super) fn find(id: &str) -> anyhow::Result<Option<(Loaded, usize)>> {
+    for (place, (name, _)) in SCENES.iter().enumerate() {
+        let scene = scene_id(place);
+        if id != scene && !id.starts_with(&format!("{scene}/")) {
+            continue;
+        }
+        let loaded = load::builtin(name)?;
+        let target = loaded.frame.target;
+        let Some(pixel) = pixel_of(id, &scene, &loaded.frame) else {
+            anyhow::bail!(
+                "`{id}` is no pixel of {scene}, which has {} × {}: a pixel is {scene}/X-Y, as {scene}/0-0",
+                target.width,
+                target.height
+            );
+        };
+        return Ok(Some((loaded, pixel)));
+    }
+    Ok(None)
+}
+
+fn rows(
+    frame: &Frame,
+    pixel: usize,
+    profile: &Profile,
+    subjects: &[Subject],
+    shaders: &Shaders,
+) -> anyhow::Result<Vec<Row>> {
+    let width = frame.target.width as usize;
+    let stages = Stage::ALL.map(Some).into_iter().chain([None]);
+    stages
+        .map(|stage| {
+            let format = stage.map_or(frame.target.format, |_| TargetFormat::Rgba32Float);
+            let reference = Stored::unrounded(&render::<f64>(frame, None, stage), format).pixels[pixel];
+            let legal = |profile: &Profile| {
+                let expectation = profile.scope(|| Expectation::new(frame, None, stage, profile));
+                expectation.pixel(pixel % width, pixel / width, profile)
+            };
+            let mut seen = vec![];
+            for subject in subjects {
+                let image = drawn(subject, shaders, frame, stage)?;
+                let legal = legal(&profile_of(subject, profile));
+                seen.push((subject.identity.name.clone(), legal, image.map(|image| image.pixels[pixel])));
+            }
+            if seen.is_empty() {
+                seen.push((profile.name.to_owned(), legal(profile), None));
+            }
+            Ok(Row { what: stage.map_or("color", Stage::name), reference, seen })
+        })
+        .collect()
+}
+
+fn drawn(subject: &Subject, shaders: &Shaders, frame: &Frame, stage: Option<Stage>) -> anyhow::Result<Option<Stored>> {
+    if let Some(stage) = stage {
+        return Ok(Some(intermediate(subject, shaders, frame, &named(frame), stage)?));
+    }
+    let Some(gpu) = subject.gpu() else {
+        return Ok(Some(Stored::of(&render::<f32>(frame, None, None), frame.target.format)));
+    };
+    if SceneRenderer::lacks(gpu, frame).is_some() {
+        return Ok(None);
+    }
+    let renderer = SceneRenderer::new(gpu, shaders, frame, &effects(frame), Shader::Composed, None)?;
+    let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu))?;
+    Ok(Some(Stored::read(frame.target.width as usize, frame.target.format, &bytes)))
+}
+
+/// Everything about a pixel, as text or JSON.
+pub(super) fn show(
+    id: &str,
+    (loaded, pixel): &(Loaded, usize),
+    choice: &Choice,
+    subjects: &[Subject],
+    as_json: bool,
+) -> anyhow::Result<String> {
+    let frame = &loaded.frame;
+    let rows = rows(frame, *pixel, choice.profile, subjects, &choice.shaders()?)?;
+    let width = frame.target.width as usize;
+    if as_json {
+        let stages: Vec<Value> = rows.iter().map(row_json).collect();
+        let place = json!({ "x": pixel % width, "y": pixel / width });
+        let shown = json!({
+            "id": id, "title": loaded.title, "target": frame.target.format.name(), "pixel": place, "stages": stages,
+        });
+        return Ok(serde_json::to_string_pretty(&shown)? + "\n");
+    }
+    let mut text = format!("{id}\n  {}\n  {}\n", loaded.title, loaded.shows);
+    let units = if frame.target.format.is_unorm() { "steps from 0 to 255" } else { "values" };
+    writeln!(text, "  colors in {units} of {}, the rest as numbers in eye space\n", frame.target.format.name())?;
+    for row in &rows {
+        writeln!(text, "{:<10} {}", row.what, four(row.reference))?;
+        for (name, legal, value) in &row.seen {
+            let marked = if legal.is_marked { "  several outcomes are legal" } else { "" };
+            writeln!(text, "  {name:<12} from {}{marked}", four(legal.low))?;
+            writeln!(text, "  {:<12} to   {}", "", four(legal.high))?;
+            if let Some(value) = value {
+                let inside = (0..4).all(|k| legal.low[k] <= value[k] && value[k] <= legal.high[k]);
+                writeln!(text, "  {:<12} {} gives {}", "", if inside { "✓" } else { "✗" }, four(*value))?;
+            }
+        }
+    }
+    Ok(text)
+}
+
+fn row_json(row: &Row) -> Value {
+    let numbers = |units: Units| units.map(Number);
+    let seen: Vec<Value> = row
+        .seen
+        .iter()
+        .map(|(name, legal, value)| {
+            json!({
+                "adapter": name, "low": numbers(legal.low), "high": numbers(legal.high), "marked": legal.is_marked,
+                "value": value.map(numbers),
+            })
+        })
+        .collect();
+    json!({ "stage": row.what, "reference": numbers(row.reference), "seen": seen })
+}
+
+fn four(units: Units) -> String {
+    let number = |x: f64| if x.is_finite() { format!("{x:>12.7}") } else { format!("{:>12}", Number(x).to_string()) };
+    units.map(number).join(" ")
+}
