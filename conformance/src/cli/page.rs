@@ -1,9 +1,9 @@
 //! `lightmeter page`.
 
 use super::{Status, emit};
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use clap::{Args, ValueEnum};
-use lightmeter::report::page::{Run, markdown, svg};
+use lightmeter::report::page::{Run, markdown, scenes, svg};
 use std::path::PathBuf;
 
 /// What a page is about.
@@ -11,6 +11,8 @@ use std::path::PathBuf;
 enum Subject {
     /// Blend states against routes and drivers.
     Blend,
+    /// The built-in scenes, with a contact sheet.
+    Scenes,
 }
 
 /// Write a page of the docs from a run's JSON, with a picture beside it.
@@ -21,27 +23,52 @@ pub(crate) struct Page {
     subject: Subject,
     /// The JSON of `lightmeter run --format json`
     run: PathBuf,
-    /// Write the page to a file, and its picture to one of the same name that ends in .svg
+    /// Write the page to a file, and its picture to one of the same name that ends in .svg or .png
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
 impl Page {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let Subject::Blend = self.subject;
         let name = self.run.display();
         let json = std::fs::read_to_string(&self.run).with_context(|| format!("cannot read {name}"))?;
-        let run = Run::read(&json).with_context(|| format!("{name} makes no page"))?;
-        let picture = self.out.as_ref().map(|out| out.with_extension("svg"));
-        if let Some(path) = &picture {
+        let text = match self.subject {
+            Subject::Blend => self.blend(&json),
+            Subject::Scenes => self.scenes(&json),
+        };
+        emit(&text.with_context(|| format!("{name} makes no page"))?, self.out.as_deref())?;
+        Ok(Status::Success)
+    }
+
+    fn blend(&self, json: &str) -> anyhow::Result<String> {
+        let run = Run::read(json)?;
+        let picture = self.picture("svg");
+        if let Some((path, _)) = &picture {
             let mut text = String::new();
             svg(&run, &mut text)?;
             emit(&text, Some(path))?;
         }
-        let picture = picture.as_ref().and_then(|path| path.file_name()).map(|name| name.to_string_lossy());
         let mut text = String::new();
-        markdown(&run, picture.as_deref(), &mut text)?;
-        emit(&text, self.out.as_deref())?;
-        Ok(Status::Success)
+        markdown(&run, picture.as_ref().map(|(_, name)| name.as_str()), &mut text)?;
+        Ok(text)
+    }
+
+    fn scenes(&self, json: &str) -> anyhow::Result<String> {
+        let run = scenes::Run::read(json).map_err(|message| anyhow!(message))?;
+        let loaded = scenes::scenes()?;
+        let picture = self.picture("png");
+        if let Some((path, _)) = &picture {
+            scenes::contact_sheet(&loaded).write(path)?;
+        }
+        let mut text = String::new();
+        scenes::markdown(&run, &loaded, picture.as_ref().map(|(_, name)| name.as_str()), &mut text)?;
+        Ok(text)
+    }
+
+    /// The picture beside the page, and its name there.
+    fn picture(&self, extension: &str) -> Option<(PathBuf, String)> {
+        let path = self.out.as_ref()?.with_extension(extension);
+        let name = path.file_name()?.to_string_lossy().into_owned();
+        Some((path, name))
     }
 }

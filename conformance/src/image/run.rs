@@ -7,7 +7,7 @@ use super::file::{self, Stored};
 use super::judge::{Judged, Miss, error, judge};
 use crate::arithmetic::Profile;
 use crate::filter::Filter;
-use crate::report::{Failure, Group, ImageUse, Number, Report, Totals};
+use crate::report::{EffectsCost, Failure, Group, ImageUse, Number, Report, Totals};
 use crate::run::{Options, Progress, problem};
 use crate::scene::library::SCENES;
 use crate::scene::load::{self, Loaded};
@@ -155,22 +155,71 @@ pub(crate) fn run_scene(
         let Some(image) = image else { continue };
         report.timing.devices += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
+        let mut measuring = 0.0;
         let mut group = scene.judge(&image, subject, shader, options, report)?;
         match shader {
             Shader::Composed => composed[number] = Some(image),
             Shader::Full => {
                 let same = composed[number].as_ref().map(|composed| differing(composed, &image));
-                if let Some(use_) = &mut group.image {
-                    use_.differs_from_composed = same;
+                if let Some(used) = &mut group.image {
+                    used.differs_from_composed = same;
+                    if options.again {
+                        let clock = Instant::now();
+                        used.cost = cost(subject, options, frame, &called)?;
+                        measuring = clock.elapsed().as_secs_f64();
+                    }
                 }
             }
         }
-        report.timing.judge += clock.elapsed().as_secs_f64();
-        group.seconds = seconds + clock.elapsed().as_secs_f64();
+        let judging = clock.elapsed().as_secs_f64() - measuring;
+        report.timing.judge += judging;
+        report.timing.devices += measuring;
+        group.seconds = seconds + judging;
         report.groups.push(group);
     }
     progress.advance((scene.pixels.len() * subjects.len()) as u64);
     Ok(())
+}
+
+/// Turns that a cost is the median of.
+const TURNS: usize = 9;
+/// Drawings of a turn.
+const REPEATS: u32 = 4;
+
+/// Draws a frame by composed shaders, and by the one with all effects with the switches of the same effects on, in turns,
+/// once both are compiled.
+fn cost(subject: &Subject, options: &Options, frame: &Frame, called: &[Called]) -> Result<Option<EffectsCost>, Error> {
+    let Some(gpu) = subject.gpu() else { return Ok(None) };
+    let shaders = &options.shaders;
+    let composed = SceneRenderer::new(gpu, shaders, frame, called, Shader::Composed, None)?;
+    let full = SceneRenderer::new(gpu, shaders, frame, called, Shader::Full, None)?;
+    composed.time(gpu, 1)?;
+    full.time(gpu, 1)?;
+    let mut turns = vec![];
+    for turn in 0..TURNS {
+        // Each goes first every other time.
+        let (a, b) = if turn % 2 == 0 {
+            let a = composed.time(gpu, REPEATS)?;
+            (a, full.time(gpu, REPEATS)?)
+        } else {
+            let b = full.time(gpu, REPEATS)?;
+            (composed.time(gpu, REPEATS)?, b)
+        };
+        turns.push((a, b));
+    }
+    let sorted = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        let mut all: Vec<f64> = turns.iter().map(of).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    };
+    let milliseconds = |seconds: &[f64]| seconds[TURNS / 2] * 1e3 / f64::from(REPEATS);
+    let ratios = sorted(&|(a, b)| b / a);
+    Ok(Some(EffectsCost {
+        composed_ms: milliseconds(&sorted(&|(a, _)| *a)),
+        full_ms: milliseconds(&sorted(&|(_, b)| *b)),
+        ratio: ratios[TURNS / 2],
+        quartiles: [ratios[TURNS / 4], ratios[TURNS - 1 - TURNS / 4]],
+    }))
 }
 
 /// Pixels that two images do not have in common, bit for bit.
@@ -290,6 +339,7 @@ impl<'a> Scene<'a> {
             height: image.pixels.len() / width,
             marked: self.pixels.iter().filter(|&&pixel| expected[pixel].is_marked).count() as u64,
             differs_from_composed: None,
+            cost: None,
             departs_in: None,
             files: vec![],
         };

@@ -226,6 +226,9 @@ pub struct ImageUse {
     /// Of the shader with all effects: pixels that are not, bit for bit, those of the composed shaders.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub differs_from_composed: Option<u64>,
+    /// Of the shader with all effects: what they cost, where that was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cost: Option<EffectsCost>,
     /// The first intermediate result in which a wrong image departs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub departs_in: Option<&'static str>,
@@ -240,6 +243,19 @@ impl Group {
     pub fn place(&self) -> String {
         self.target.map_or(self.stage.into(), |target| format!("{} on {target}", self.stage))
     }
+}
+
+/// What drawing a scene takes by composed shaders, and by the one with all effects, in turns.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EffectsCost {
+    /// Median of one drawing by composed shaders.
+    pub composed_ms: f64,
+    /// The same by the shader with all effects.
+    pub full_ms: f64,
+    /// Median of the second over the first, turn by turn.
+    pub ratio: f64,
+    /// Its lower and upper quartile.
+    pub quartiles: [f64; 2],
 }
 
 /// A value outside its interval.

@@ -127,6 +127,7 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
         writeln!(out, "skipped {states} states by {route} on {adapter}, {target}: {reason}")?;
     }
     stores(report, out)?;
+    images(report, out)?;
     for special in report.special.iter().filter(|special| !special.is_as_recorded()) {
         let (seen, recorded) = (&special.seen, special.recorded.unwrap_or_default());
         writeln!(
@@ -147,6 +148,41 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
             routes.join(", "),
             thousands(report.aliases)
         )?;
+    }
+    Ok(())
+}
+
+/// Of scenes, by adapter: how many pixels are marked, whether both kinds of shader draw alike, and what all effects cost.
+fn images(report: &Report, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        let of_adapter = report.groups.iter().filter(|group| group.adapter == adapter.name);
+        let images: Vec<_> = of_adapter.filter_map(|group| Some((group, group.image.as_ref()?))).collect();
+        #[expect(clippy::cast_precision_loss, reason = "a share")]
+        let share = |(group, image): &(&Group, &super::ImageUse)| {
+            100.0 * image.marked as f64 / group.totals.cases.max(1) as f64
+        };
+        let Some(most) = images.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else { continue };
+        write!(out, "images of {}: at most {:.3} % of the pixels marked ({})", adapter.name, share(most), most.0.id)?;
+        let differing: Vec<u64> = images.iter().filter_map(|(_, image)| image.differs_from_composed).collect();
+        if !differing.is_empty() {
+            let alike = differing.iter().filter(|&&pixels| pixels == 0).count();
+            let pixels: u64 = differing.iter().sum();
+            let of = differing.len();
+            write!(out, "; {alike} of {of} are the same bit for bit by the shader with all effects")?;
+            if pixels > 0 {
+                write!(out, ", {} pixels of the others differ", thousands(pixels))?;
+            }
+        }
+        writeln!(out)?;
+        for (group, image) in &images {
+            if let Some(cost) = image.cost {
+                writeln!(
+                    out,
+                    "  {:<26} {:>8.2} ms composed, {:>8.2} ms with all effects: {:.2} times (quartiles {:.2} to {:.2})",
+                    group.id, cost.composed_ms, cost.full_ms, cost.ratio, cost.quartiles[0], cost.quartiles[1]
+                )?;
+            }
+        }
     }
     Ok(())
 }
@@ -218,7 +254,7 @@ impl Row {
             id: group.id.clone(),
             adapter: group.adapter.clone(),
             // A blend unit is told by its target.
-            stage: group.target.unwrap_or(group.stage),
+            stage: if group.image.is_some() { group.stage } else { group.target.unwrap_or(group.stage) },
             groups: 1,
             totals: group.totals,
             error_ulp_max: group.error_ulp_max.0,
