@@ -2,6 +2,7 @@
 
 mod effects;
 mod laws;
+mod mistakes;
 mod split;
 
 use lightmeter::arithmetic::profile::WGSL;
