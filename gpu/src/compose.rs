@@ -89,8 +89,9 @@ pub fn live(effects: Effects, stage: Option<Stage>) -> Effects {
     }
     let (diffuse, highlights) = match stage {
         Some(Stage::Position | Stage::Depth | Stage::Normal) => (false, false),
-        Some(Stage::Diffuse) => (true, false),
-        Some(Stage::Specular) => (false, true),
+        // Which lights are passed over depends on both, so that both are kept.
+        Some(Stage::Diffuse) => (true, effects.has_lights()),
+        Some(Stage::Specular) => (effects.has_lights(), true),
         Some(Stage::Surface | Stage::Fog) | None => (!replaced, !replaced),
     };
     if !diffuse {

@@ -54,7 +54,7 @@ impl SceneRenderer {
     }
 
     /// Uploads the frame and compiles what draws it. `sets[i]` is what `frame.draws[i]` calls for. With a stage, the
-    /// target is rgba32float, nothing is blended, and fragments give that intermediate result; the background stays.
+    /// target is rgba32float and 0 where nothing is drawn, nothing is blended, and fragments give that intermediate result.
     ///
     /// # Errors
     /// Where the sets are not one a draw, a blend state has no factor on the unit, a shader is invalid, or the device
@@ -110,7 +110,7 @@ impl SceneRenderer {
         }
         let (width, height) = (frame.target.width, frame.target.height);
         let depth = tests_depth.then(|| gpu.target(width, height, DEPTH).create_view(&Default::default()));
-        let [r, g, b, a] = frame.background.map(f64::from);
+        let [r, g, b, a] = if stage.is_some() { [0.0; 4] } else { frame.background.map(f64::from) };
         let renderer = Self {
             draws,
             target: gpu.blend_target(width, height, format(target)),

@@ -12,13 +12,15 @@
 //!   ε = 2⁻²³, W and H the triangle's extent, Q the range of q, A twice the area: each coordinate and value difference errs
 //!   by ε, a determinant by 4ε of its products' magnitudes, the quotient by 3ε, so `Δgx ≤ (8εQH + 8ε|gx|WH)/A + 3ε|gx|`;
 //!   its effect over the extent is Δgx·W, besides 4ε of the magnitudes that are summed up, measured from the target's corner.
+//!   A gradient, a product or a value below 2⁻¹²⁶ may be flushed to 0.
 //! * *What came before.* The interval of each vertex's attributes; a convex combination errs by no more than the worst.
 //!   Vertices made by clipping err by 8ε of the coordinates and attributes they are made from.
 
-use crate::arithmetic::Accept;
+use crate::arithmetic::{Accept, F32, Format};
 use lightmeter_reference::render::{Attributes, Geometry, Triangle};
 
-const EPSILON: f64 = 1.0 / 8_388_608.0;
+const EPSILON: f64 = F32::EPSILON;
+const MIN_NORMAL: f64 = F32::MIN_NORMAL;
 
 /// What each vertex of a draw may be off by.
 #[derive(Clone, Debug, Default)]
@@ -222,7 +224,8 @@ impl Plane {
             let g = gradient[axis].abs();
             let across = self.extent[1 - axis];
             let slope = 8.0 * EPSILON * ((high - low) * across + g * width * height) / self.area + 3.0 * EPSILON * g;
-            slope * self.extent[axis] + 4.0 * EPSILON * 2.0 * g * self.farthest[axis]
+            let flushed = MIN_NORMAL * (self.extent[axis] + self.farthest[axis] + 2.0);
+            slope * self.extent[axis] + 4.0 * EPSILON * 2.0 * g * self.farthest[axis] + flushed
         };
         of_axis(0) + of_axis(1) + 4.0 * EPSILON * low.abs().max(high.abs())
     }

@@ -36,14 +36,17 @@ fn scene_lit(
     //@ choose v: vec3f from viewer else vec3f(0.0, 0.0, 1.0)
     //@ end
     //@ slot lights
-    //@ when diffuse_sum & specular
+    //@ when diffuse_sum & specular & !stage_diffuse & !stage_specular
     return sum.diffuse + sum.specular;
     //@ end
-    //@ when diffuse_sum & !specular
+    //@ when diffuse_sum & (stage_diffuse | !specular & !stage_specular)
     return sum.diffuse;
     //@ end
-    //@ when !diffuse_sum
+    //@ when specular & (stage_specular | !diffuse_sum & !stage_diffuse)
     return sum.specular;
+    //@ end
+    //@ when stage_diffuse & !diffuse_sum | stage_specular & !specular
+    return vec3f(0.0);
     //@ end
     //@ end
     //@ when !lights

@@ -33,6 +33,8 @@ pub struct Shader<'a, R> {
     fog: Option<Rgb<R>>,
     /// Whether the parts of a lit colour are asked for.
     stages: bool,
+    /// Whether some light has use for normals.
+    has_normals: bool,
 }
 
 /// A light with everything that does not vary over the surface.
@@ -142,13 +144,14 @@ impl<'a, R: Real> Shader<'a, R> {
             None => frame.lights.iter().map(light).collect(),
         };
         let [diffuse, specular] = [m.diffuse, m.specular].map(rgb);
+        let has_normals = only.map_or(!frame.lights.is_empty(), |called| called.effects.has_normals());
         let fogged = only.is_none_or(|called| called.effects.has_fog());
         let fog = frame.fog.as_ref().filter(|_| fogged);
         Self {
             frame,
             draw,
             only,
-            attributes: Attributes::of(draw, stages || fog.is_some(), stages),
+            attributes: Attributes::of(draw, stages || fog.is_some(), stages && has_normals),
             modelview: matrix(&draw.modelview),
             projection: matrix(&frame.projection),
             material: Material { ambient: rgb(m.ambient), diffuse, specular, shininess: R::input(m.shininess) },
@@ -157,6 +160,7 @@ impl<'a, R: Real> Shader<'a, R> {
             lights,
             fog: fog.map(|fog| rgb(fog.color)),
             stages,
+            has_normals,
         }
     }
 
@@ -303,13 +307,18 @@ impl<'a, R: Real> Shader<'a, R> {
         let p = at.p.map_or(Vector::splat(zero), three);
         let f = self.fog.zip(self.frame.fog.as_ref()).map(|(color, fog)| (color, factor(fog, p)));
         // Where nothing but fog is seen, what is under it need not be lit.
-        let is_hidden = f.is_some_and(|(_, f)| f.is_at_most(0.0));
+        let is_hidden = !self.stages && f.is_some_and(|(_, f)| f.is_at_most(0.0));
         let (mut n, dark) = (Vector::splat(zero), Vector::splat(zero));
         let lit = match (self.draw.shading.map(|shading| shading.frequency), at.lit) {
             (None, _) => Lit { color: self.material.diffuse, diffuse: self.material.diffuse, specular: dark },
             (Some(Frequency::Phong), _) => {
-                n = at.n.map_or(n, three).normalize();
-                if is_hidden { Lit { color: dark, diffuse: dark, specular: dark } } else { self.lit(p, n, scratch) }
+                let of_point = at.n.map_or(n, three).normalize();
+                n = if self.has_normals { of_point } else { n };
+                if is_hidden {
+                    Lit { color: dark, diffuse: dark, specular: dark }
+                } else {
+                    self.lit(p, of_point, scratch)
+                }
             }
             (Some(_), start) => {
                 n = at.n.map_or(n, three);

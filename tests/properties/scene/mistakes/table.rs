@@ -67,9 +67,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "phong",
         "diffuse",
     ),
-    // Known to be wrong: the shader of the intermediate result has no highlights, and so passes lights behind the
-    // surface over, which hides the mistake. It is one of `diffuse`.
-    ("incidence not clamped", "lighting.wgsl", "return max(dot(l, n), 0.0);", "return dot(l, n);", "phong", "surface"),
+    ("incidence not clamped", "lighting.wgsl", "return max(dot(l, n), 0.0);", "return dot(l, n);", "phong", "diffuse"),
     ("kl and kq swapped", "attenuation.wgsl", "d * (kl + d * kq)", "d * (kq + d * kl)", "eight-lights", "diffuse"),
     (
         "a light too few",
@@ -213,15 +211,13 @@ pub(super) const MISTAKES: &[Mistake] = &[
     ),
     // Fog.
     ("alpha lost in the fog", "scene.wgsl", "color.rgb).color, color.a)", "color.rgb).color, 0.5)", "fog-exp", "fog"),
-    // Known to be wrong: what fog hides is black in the reference's intermediate results, and lit in the device's. The
-    // mistake is one of `fog`.
     (
         "planar for radial",
         "effects/fog_radial.wgsl",
         "fog_radial_distance(p)",
         "fog_planar_distance(p)",
         "fog-radial",
-        "diffuse",
+        "fog",
     ),
     ("radial for planar", "fog.wgsl", "return abs(p.z);", "return length(p);", "fog-linear", "fog"),
     (
@@ -298,9 +294,7 @@ pub(super) const RIGHT: &[(&str, &str)] = &[
     ("teapot", "store"),
     ("translucent-square", "blend"),
     ("viewer", "store"),
-    // Known to be wrong: what fog hides is black in the reference's intermediate results, and lit in the device's.
-    ("fog-linear", "diffuse"),
-    ("fog-radial", "diffuse"),
-    // Known to be wrong: highlights of 1e-36, whose gradients a rasteriser flushes, which the bound does not count.
-    ("gouraud", "specular"),
+    ("fog-linear", "store"),
+    ("fog-radial", "store"),
+    ("gouraud", "store"),
 ];
