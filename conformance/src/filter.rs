@@ -80,6 +80,12 @@ impl Filter {
         self.globs.iter().any(|glob| glob.reaches_below(path))
     }
 
+    /// Whether some glob is long enough to match an id of so many segments other than by an ancestor of it.
+    #[must_use]
+    pub fn is_as_deep_as(&self, segments: usize) -> bool {
+        self.globs.iter().any(|glob| glob.text.contains("**") || glob.text.matches('/').count() + 1 >= segments)
+    }
+
     /// The globs that may name one case: those without wildcards.
     pub fn literals(&self) -> impl Iterator<Item = &str> {
         self.globs.iter().map(|glob| glob.text.as_str()).filter(|text| !text.contains(['*', '?', '[', '{']))

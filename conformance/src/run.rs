@@ -12,8 +12,6 @@ use crate::filter::Filter;
 use crate::image;
 use crate::judge::{Outcome, judge};
 use crate::report::{DeviationUse, Group, Interrupted, Number, Report, Timing, Totals};
-use crate::scene::library::SCENES;
-use crate::scene::load;
 use crate::select::{CaseRef, Member, Selected, Shard, catalogue_of, select};
 use crate::subject::{Compiled, Rows, Subject};
 use crate::tally::{Tally, judge_chunk};
@@ -45,6 +43,8 @@ pub struct Options {
     pub targets: Vec<TargetFormat>,
     /// Which states with another one for alpha are judged.
     pub samples: Samples,
+    /// Pixels of the longer side of every scene; `None` for the scenes' own, or for a quarter of the pixels in a run of all.
+    pub size: Option<u32>,
     /// Where the images of scenes that fail are written; `None` for nowhere.
     pub images: Option<PathBuf>,
     /// Whether the blend unit draws everything once more with its pipelines compiled, to tell how long that takes.
@@ -88,7 +88,8 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
     let started = Instant::now();
     let catalogue = catalogue_of(&options.samples);
     let selected = select(&catalogue, &options.filter, options.cases, options.shard);
-    let scenes = image::run::select(&options.filter, options.shard);
+    let size = image::run::size(&options.filter, options.size);
+    let scenes = image::run::select(&options.filter, options.shard, size);
     let rows: u64 = selected.iter().map(|chosen| work(&catalogue[chosen.member], chosen, subjects, options)).sum();
     progress.start(rows + scenes.iter().map(|chosen| chosen.work() * subjects.len() as u64).sum::<u64>());
     let mut report = empty(subjects, options);
@@ -114,7 +115,7 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
         }
         let id = image::run::scene_id(chosen.place);
         progress.group(&id);
-        let loaded = load::builtin(SCENES[chosen.place].0).expect("a test loads every scene that is built in");
+        let loaded = image::run::builtin(chosen.place, size).expect("a test loads every scene that is built in");
         match image::run::run_scene(&loaded, &chosen, subjects, options, &mut report, progress) {
             Err(error @ (Error::Device(_) | Error::Timeout(_))) => {
                 report.interrupted = Some(Interrupted { under_way: id, message: error.to_string() });

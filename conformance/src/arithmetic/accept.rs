@@ -464,6 +464,9 @@ impl<F: Format> Real for Accept<F> {
         let (mut greatest, mut least) = (1.0_f64, 1.0_f64);
         let mut any_zero = false;
         for x in factors {
+            if x.is_exactly(1.0) {
+                continue;
+            }
             range = Self::product_range(range, (x.low, x.high));
             greatest *= x.magnitude().max(1.0);
             let smallest = if x.contains_zero() { 0.0 } else { x.low.abs().min(x.high.abs()) };

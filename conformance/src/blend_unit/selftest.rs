@@ -118,6 +118,7 @@ fn options(target: TargetFormat, cases: u64) -> Result<Options, Error> {
         shard: Shard::WHOLE,
         targets: vec![target],
         samples: Samples::default(),
+        size: None,
         images: None,
         again: false,
         profile: &WGSL,

@@ -42,7 +42,7 @@ impl List {
         let filter = matching(&self.filter, self.amount.cases, &samples)?;
         let catalogue = catalogue_of(&samples);
         let selected = select(&catalogue, &filter, self.amount.cases, self.amount.shard.0);
-        let scenes = if self.formulas { vec![] } else { image::run::select(&filter, self.amount.shard.0) };
+        let scenes = if self.formulas { vec![] } else { image::run::select(&filter, self.amount.shard.0, None) };
         let text = match (self.format, self.formulas) {
             (Format::Junit, _) => bail!("a list is written as text or json"),
             (Format::Json, _) => {

@@ -54,6 +54,9 @@ pub(crate) struct Choice {
     /// Without it: rgba32float and rgba8unorm
     #[arg(long, value_name = "NAME", value_parser = Choice::target)]
     pub(crate) target: Vec<Targets>,
+    /// Pixels of the longer side of every scene; without it: the scenes' own, and 256 in a run of everything
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8192))]
+    pub(crate) size: Option<u32>,
     /// Seed of the random cases
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
@@ -147,6 +150,7 @@ impl Choice {
             shard,
             targets: self.targets(),
             samples: Samples { seed: self.seed, ..Samples::default() },
+            size: self.size,
             images: None,
             again: false,
             profile: self.profile,

@@ -84,6 +84,7 @@ impl Render {
             adapter: self.adapter.iter().cloned().collect(),
             profile: &WGSL,
             target: vec![],
+            size: None,
             seed: 1,
             shaders: self.shaders.clone(),
         };

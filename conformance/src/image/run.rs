@@ -1,5 +1,6 @@
 //! Scenes judged on every subject: each drawn by the shaders composed from the effects that it calls for, and by the one
-//! with all effects behind switches; every pixel of both must be legal by the full reference.
+//! with all effects behind switches; every pixel of both must be legal by the full reference. A run of everything, which is
+//! to end within a minute, draws them smaller and by the composed shaders alone.
 
 use super::diagnose::{self, Departure};
 use super::expect::{Expectation, Expected};
@@ -61,9 +62,35 @@ pub fn pixel_of(id: &str, scene: &str, frame: &Frame) -> Option<usize> {
     (x < width && y < height).then_some(y * width + x)
 }
 
+/// A built-in scene, drawn with its longer side of so many pixels rather than its own.
+///
+/// # Errors
+/// Where it is refused, which a test rules out.
+pub fn builtin(place: usize, size: Option<u32>) -> Result<Loaded, crate::scene::Error> {
+    let mut loaded = load::builtin(SCENES[place].0)?;
+    if let Some(size) = size {
+        let target = &mut loaded.frame.target;
+        let longer = target.width.max(target.height);
+        let scaled = |side: u32| (u64::from(side) * u64::from(size)).div_ceil(u64::from(longer));
+        let [width, height] = [target.width, target.height].map(|side| u32::try_from(scaled(side)).unwrap_or(side));
+        (target.width, target.height) = (width, height);
+    }
+    Ok(loaded)
+}
+
+/// Pixels of the longer side of every scene in a run of everything, which is to end within a minute. Scenes that are asked
+/// for have their own size.
+pub const SIZE_AMONG_ALL: u32 = 256;
+
+/// The longer side that scenes are drawn with; `None` for their own.
+#[must_use]
+pub fn size(filter: &Filter, asked: Option<u32>) -> Option<u32> {
+    asked.or(filter.is_empty().then_some(SIZE_AMONG_ALL))
+}
+
 /// The scenes that a filter and a shard select, or the pixels of them that it names.
 #[must_use]
-pub fn select(filter: &Filter, shard: Shard) -> Vec<Chosen> {
+pub fn select(filter: &Filter, shard: Shard, size: Option<u32>) -> Vec<Chosen> {
     let mut chosen = vec![];
     for place in (0..SCENES.len()).filter(|&place| shard.has(place as u64)) {
         let id = scene_id(place);
@@ -72,10 +99,13 @@ pub fn select(filter: &Filter, shard: Shard) -> Vec<Chosen> {
             continue;
         }
         let below = format!("{id}/");
+        if !filter.is_as_deep_as(3) {
+            continue;
+        }
         if !filter.reaches_below(&id) && !filter.literals().any(|literal| literal.starts_with(&below)) {
             continue;
         }
-        let Ok(loaded) = load::builtin(SCENES[place].0) else { continue };
+        let Ok(loaded) = builtin(place, size) else { continue };
         let (width, height) = (loaded.frame.target.width as usize, loaded.frame.target.height as usize);
         let pixels: Vec<usize> =
             (0..width * height).filter(|&pixel| filter.selects(&pixel_id(&id, width, pixel))).collect();
@@ -121,7 +151,10 @@ pub(crate) fn run_scene(
     let (called, named) = (effects(frame), named(frame));
     let mut work = vec![];
     for (number, subject) in subjects.iter().enumerate() {
-        for shader in [Shader::Composed, Shader::Full] {
+        // The shader with all effects takes a compiler as long as everything else of a scene.
+        let shaders =
+            if options.filter.is_empty() { &[Shader::Composed][..] } else { &[Shader::Composed, Shader::Full] };
+        for &shader in shaders {
             let clock = Instant::now();
             let drawing =
                 start(subject, options, frame, if shader == Shader::Full { &named } else { &called }, shader)?;
@@ -444,7 +477,8 @@ impl<'a> Scene<'a> {
 
     fn rerun(&self, command: &str, subject: &Subject, options: &Options, pixel: usize) -> String {
         let id = pixel_id(&self.id, self.reference.width, pixel);
-        format!("lightmeter {command} '{id}' --adapter {}{}", subject.identity.name, options.rerun)
+        let size = size(&options.filter, options.size).map(|size| format!(" --size {size}")).unwrap_or_default();
+        format!("lightmeter {command} '{id}' --adapter {}{size}{}", subject.identity.name, options.rerun)
     }
 
     fn failure(

@@ -53,7 +53,7 @@ struct Known {
 
 impl Show {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        if let Some(found) = pixel::find(&self.id)? {
+        if let Some(found) = pixel::find(&self.id, self.choice.size)? {
             let as_json = match self.format {
                 Format::Junit => bail!("a case is written as text or json"),
                 format => format == Format::Json,

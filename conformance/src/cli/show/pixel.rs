@@ -7,10 +7,10 @@ use lightmeter::image::Expected;
 use lightmeter::image::diagnose::intermediate;
 use lightmeter::image::expect::Expectation;
 use lightmeter::image::file::Stored;
-use lightmeter::image::run::{pixel_of, profile_of, scene_id};
+use lightmeter::image::run::{builtin, pixel_of, profile_of, scene_id};
 use lightmeter::report::Number;
+use lightmeter::scene::Loaded;
 use lightmeter::scene::library::SCENES;
-use lightmeter::scene::load::{self, Loaded};
 use lightmeter::subject::Subject;
 use lightmeter_gpu::Shaders;
 use lightmeter_gpu::compose::Shader;
@@ -32,13 +32,13 @@ struct Row {
 }
 
 /// The scene and the pixel of an id such as `scene/teapot/12-340`.
-pub(super) fn find(id: &str) -> anyhow::Result<Option<(Loaded, usize)>> {
-    for (place, (name, _)) in SCENES.iter().enumerate() {
+pub(super) fn find(id: &str, size: Option<u32>) -> anyhow::Result<Option<(Loaded, usize)>> {
+    for place in 0..SCENES.len() {
         let scene = scene_id(place);
         if id != scene && !id.starts_with(&format!("{scene}/")) {
             continue;
         }
-        let loaded = load::builtin(name)?;
+        let loaded = builtin(place, size)?;
         let target = loaded.frame.target;
         let Some(pixel) = pixel_of(id, &scene, &loaded.frame) else {
             anyhow::bail!(
