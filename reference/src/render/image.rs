@@ -131,6 +131,7 @@ struct Tile<'a, R> {
     depths: Vec<f64>,
     fragments: u64,
     scratch: Scratch<R>,
+    attributes: [R; MOST],
 }
 
 impl<'a, R: Real + Into<f64>> Tile<'a, R> {
@@ -147,6 +148,7 @@ impl<'a, R: Real + Into<f64>> Tile<'a, R> {
             depths: vec![frame.clear_depth.into(); count],
             fragments: 0,
             scratch: Scratch::default(),
+            attributes: [R::literal(0.0); MOST],
         }
     }
 
@@ -173,8 +175,8 @@ impl<'a, R: Real + Into<f64>> Tile<'a, R> {
             return;
         }
         self.fragments += 1;
-        let attributes = interpolated::<R>(&prepared.geometry, triangle, edges, shader);
-        let fragment = shader.fragment(&attributes[..shader.attributes.count], &mut self.scratch);
+        interpolate(&prepared.geometry, triangle, edges, shader, &mut self.attributes);
+        let fragment = shader.fragment(&self.attributes[..shader.attributes.count], &mut self.scratch);
         if fragment.kept.into() < 0.5 {
             return;
         }
@@ -196,24 +198,23 @@ fn middle(pixel: usize) -> f64 {
     pixel + 0.5
 }
 
-fn interpolated<R: Real>(
+fn interpolate<R: Real>(
     geometry: &Geometry,
     triangle: &Triangle,
     edges: [f64; 3],
     shader: &Shader<'_, R>,
-) -> [R; MOST] {
+    attributes: &mut [R; MOST],
+) {
     let weights = triangle.weights(edges);
     let [a, b, c] = triangle.vertices.map(|vertex| geometry.attributes(vertex));
-    let flat = geometry.attributes(triangle.provoking);
-    let mut attributes = [R::literal(0.0); MOST];
     let at = a.iter().zip(b).zip(c);
     for (attribute, ((&a, &b), &c)) in attributes.iter_mut().zip(at) {
         *attribute = R::literal(interpolation::triangle(weights, [a, b, c]));
     }
+    let flat = geometry.attributes(triangle.provoking);
     for number in shader.attributes.flat.clone() {
         attributes[number] = R::literal(flat[number]);
     }
-    attributes
 }
 
 /// What a pixel holds when a colour is drawn over another: blended, clamped where the format is.

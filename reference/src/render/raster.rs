@@ -190,6 +190,7 @@ impl Triangle {
 
     /// [`Triangle::edges`] at a place in a row.
     #[must_use]
+    #[inline]
     pub fn edges_in(&self, row: [f64; 3], x: f64) -> [f64; 3] {
         std::array::from_fn(|k| {
             let edge = &self.edges[k];
@@ -199,6 +200,7 @@ impl Triangle {
 
     /// Whether the pixel whose edges are given belongs to the triangle: inside, or on a top or a left edge.
     #[must_use]
+    #[inline]
     pub fn covers(&self, edges: [f64; 3]) -> bool {
         (0..3).all(|k| edges[k] > 0.0 || (edges[k] == 0.0 && self.is_top_or_left(k)))
     }
@@ -212,16 +214,18 @@ impl Triangle {
 
     /// Depth, which is linear in the window.
     #[must_use]
+    #[inline]
     pub fn depth_at(&self, edges: [f64; 3]) -> f64 {
-        interpolation::triangle(edges.map(|e| e / self.area), self.depth)
+        interpolation::triangle(edges, self.depth) / self.area
     }
 
     /// `λᵢ/wᵢ / Σλ/w`: what each vertex's attribute is multiplied by, perspective-correct.
     #[must_use]
+    #[inline]
     pub fn weights(&self, edges: [f64; 3]) -> [f64; 3] {
         let over_w: [f64; 3] = std::array::from_fn(|k| edges[k] * self.inverse_w[k]);
-        let sum = over_w[0] + over_w[1] + over_w[2];
-        over_w.map(|q| q / sum)
+        let share = 1.0 / (over_w[0] + over_w[1] + over_w[2]);
+        over_w.map(|q| q * share)
     }
 
     /// The pixels whose middles may lie within: first and last column, first and last row, `by` more on each side.

@@ -164,6 +164,7 @@ impl<'a, R: Real> Shader<'a, R> {
         }
     }
 
+    #[inline]
     fn has(&self, effect: Effect) -> bool {
         self.only.is_none_or(|called| called.effects.has(effect))
     }
@@ -213,6 +214,7 @@ impl<'a, R: Real> Shader<'a, R> {
     }
 
     /// `CE + CA + Σᵢ(CAᵢ + CDᵢ + CSᵢ)` at a point with a unit normal.
+    #[inline]
     fn lit(&self, p: Vec3<R>, n: Vec3<R>, scratch: &mut Scratch<R>) -> Lit<R> {
         let Scratch { diffuse, specular } = scratch;
         diffuse.clear();
@@ -245,6 +247,7 @@ impl<'a, R: Real> Shader<'a, R> {
         Lit { color: of(diffuse), diffuse: without, specular: highlights }
     }
 
+    #[inline]
     fn add_light(
         &self,
         shading: Shading,
