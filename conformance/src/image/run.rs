@@ -218,6 +218,8 @@ pub(crate) fn run_scene(
 const TURNS: usize = 9;
 /// Drawings of a turn.
 const REPEATS: u32 = 4;
+/// Seconds of a drawing that is long enough by itself.
+const SLOW: f64 = 0.05;
 
 /// Draws a frame by composed shaders, and by the one with all effects with the switches of the same effects on, in turns,
 /// once both are compiled.
@@ -228,15 +230,16 @@ fn cost(subject: &Subject, options: &Options, frame: &Frame, called: &[Called]) 
     let full = SceneRenderer::new(gpu, shaders, frame, called, Shader::Full, None)?;
     composed.time(gpu, 1)?;
     full.time(gpu, 1)?;
+    let repeats = if full.time(gpu, 1)? > SLOW { 1 } else { REPEATS };
     let mut turns = vec![];
     for turn in 0..TURNS {
         // Each goes first every other time.
         let (a, b) = if turn % 2 == 0 {
-            let a = composed.time(gpu, REPEATS)?;
-            (a, full.time(gpu, REPEATS)?)
+            let a = composed.time(gpu, repeats)?;
+            (a, full.time(gpu, repeats)?)
         } else {
-            let b = full.time(gpu, REPEATS)?;
-            (composed.time(gpu, REPEATS)?, b)
+            let b = full.time(gpu, repeats)?;
+            (composed.time(gpu, repeats)?, b)
         };
         turns.push((a, b));
     }
@@ -245,7 +248,7 @@ fn cost(subject: &Subject, options: &Options, frame: &Frame, called: &[Called]) 
         all.sort_by(f64::total_cmp);
         all
     };
-    let milliseconds = |seconds: &[f64]| seconds[TURNS / 2] * 1e3 / f64::from(REPEATS);
+    let milliseconds = |seconds: &[f64]| seconds[TURNS / 2] * 1e3 / f64::from(repeats);
     let ratios = sorted(&|(a, b)| b / a);
     Ok(Some(EffectsCost {
         composed_ms: milliseconds(&sorted(&|(a, _)| *a)),

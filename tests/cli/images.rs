@@ -1,0 +1,139 @@
+//! Images on the command line: scenes judged, shown and drawn, and what is refused.
+
+use crate::{code, edited, json, lightmeter, stderr, stdout};
+use std::path::{Path, PathBuf};
+
+/// A folder of a test's own, empty.
+fn folder(test: &str) -> PathBuf {
+    let dir = std::env::temp_dir().join(format!("lightmeter-{test}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).expect("a temporary folder can be made");
+    dir
+}
+
+fn path(dir: &Path, name: &str) -> String {
+    dir.join(name).to_str().expect("UTF-8").to_owned()
+}
+
+#[test]
+fn a_scene_is_judged_by_both_kinds_of_shader() {
+    let report = json(&["run", "scene/viewer", "--size", "64", "--format", "json"]);
+    let groups = report["groups"].as_array().expect("there are groups");
+    let stages: Vec<&str> = groups.iter().filter_map(|group| group["stage"].as_str()).collect();
+    assert_eq!(stages, ["image", "image-full"]);
+    for group in groups {
+        assert_eq!((&group["cases"], &group["verdicts"], &group["failed"]), (&4096.into(), &16384.into(), &0.into()));
+        assert_eq!((&group["image"]["width"], &group["image"]["height"]), (&64.into(), &64.into()));
+        assert!(group["image"]["marked"].as_u64().is_some_and(|marked| marked < 100), "{group}");
+    }
+    assert!(groups[1]["image"]["differs_from_composed"].is_u64());
+}
+
+#[test]
+fn shards_of_scenes_make_the_whole() {
+    let ids = |shard: &str| -> Vec<String> {
+        let listed = json(&["list", "scene/*", "--shard", shard, "--format", "json"]);
+        let cases = listed["cases"].as_array().expect("there are cases");
+        cases.iter().filter_map(|case| Some(case["scene"].as_str()?.to_owned())).collect()
+    };
+    let (whole, mut parts) = (ids("1/1"), [ids("1/3"), ids("2/3"), ids("3/3")].concat());
+    parts.sort();
+    assert_eq!(parts, whole);
+    assert!(whole.len() > 20 && whole.contains(&"scene/teapot".to_owned()));
+}
+
+#[test]
+fn one_pixel_is_judged_and_shown_by_its_name() {
+    let report = json(&["run", "scene/teapot/24-30", "--size", "64", "--format", "json"]);
+    assert_eq!((&report["totals"]["cases"], &report["totals"]["failed"]), (&2.into(), &0.into()));
+    let shown = json(&["show", "scene/teapot/24-30", "--size", "64", "--format", "json"]);
+    let stages = shown["stages"].as_array().expect("there are stages");
+    let names: Vec<&str> = stages.iter().filter_map(|row| row["stage"].as_str()).collect();
+    assert_eq!(names, ["position", "depth", "normal", "diffuse", "specular", "surface", "fog", "color"]);
+    let color = &stages[7]["seen"][0];
+    for k in 0..4 {
+        let of = |what: &str| color[what][k].as_f64().expect("a number");
+        assert!(of("low") <= of("value") && of("value") <= of("high"), "{color}");
+    }
+    let text = stdout(&lightmeter(&["show", "scene/teapot/24-30", "--size", "64"]));
+    assert!(text.contains("✓ gives") && !text.contains('✗'), "{text}");
+}
+
+#[test]
+fn a_wrong_image_names_its_stage_and_leaves_pictures() {
+    let dir = edited("images", "vector.wgsl", |text| {
+        let right = "return i - 2.0 * dot(i, n) * n;";
+        assert!(text.contains(right));
+        text.replace(right, "return i + 2.0 * dot(i, n) * n;")
+    });
+    let out = folder("images-of-failures");
+    let (shaders, images) = (dir.to_str().expect("UTF-8"), out.to_str().expect("UTF-8"));
+    let output = lightmeter(&["run", "scene/phong", "--size", "96", "--shaders", shaders, "--images", images]);
+    assert_eq!(code(&output), 1, "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(text.contains("first departs in: specular"), "{text}");
+    assert!(text.contains("the worst: lightmeter show 'scene/phong/"), "{text}");
+    for what in ["reference", "result", "error"] {
+        let end = format!("-image-{what}.png");
+        let files = std::fs::read_dir(&out).expect("the folder is there").flatten();
+        let of_scene = files.filter(|file| file.file_name().to_string_lossy().ends_with(&end));
+        let sizes: Vec<u64> = of_scene.map(|file| file.metadata().expect("it is there").len()).collect();
+        assert!(matches!(sizes[..], [size] if size > 500), "{what}: {sizes:?}");
+    }
+    let junit = lightmeter(&[
+        "run",
+        "scene/phong",
+        "--size",
+        "32",
+        "--shaders",
+        shaders,
+        "--images",
+        images,
+        "--format",
+        "junit",
+    ]);
+    assert!(code(&junit) == 1 && stdout(&junit).contains("scene/phong"), "{}", stdout(&junit));
+}
+
+#[test]
+fn images_are_drawn_to_png_and_exr() {
+    let dir = folder("render");
+    for (name, start) in [("a.png", &b"\x89PNG"[..]), ("a.exr", b"\x76\x2f\x31\x01")] {
+        for with in ["reference", "gpu"] {
+            let file = path(&dir, &format!("{with}-{name}"));
+            let output = lightmeter(&["render", "fixed-color", "--with", with, "--out", &file]);
+            assert_eq!(code(&output), 0, "{}", stderr(&output));
+            assert!(std::fs::read(&file).expect("it was written").starts_with(start), "{file}");
+        }
+    }
+    let read = |with: &str| std::fs::read(path(&dir, &format!("{with}-a.exr"))).expect("it was written");
+    assert_eq!(read("reference"), read("gpu"), "whole steps are stored exactly");
+    let left = std::fs::read_dir(&dir).expect("the folder is there").count();
+    assert_eq!(left, 4, "nothing else is left there");
+}
+
+/// Arguments, and what standard error says.
+const REFUSED: &[(&[&str], &str)] = &[
+    (&["render", "teapot", "--out", "a.jpg"], "written as .png or .exr"),
+    (&["render", "teapots", "--out", "a.png"], "teapot"),
+    (&["render", "teapot", "--out", "no/such/folder/a.png"], "cannot write"),
+    (&["render", "teapot", "--adapter", "lavapipe", "--out", "a.png"], "--with gpu"),
+    (&["render", "teapot", "--with", "gpu", "--adapter", "none", "--out", "a.png"], "no adapter `none`"),
+    (&["render", "teapot", "--with", "gpu", "--full", "--stage", "fog", "--out", "a.png"], "leave out"),
+    (&["render", "teapot", "--stage", "colour", "--out", "a.png"], "expected one of position, depth"),
+    (&["run", "scene/*", "--size", "0"], "0 is not in 1..=8192"),
+    (&["show", "scene/teapot/512-0"], "512 × 512"),
+    (&["show", "scene/teapot"], "scene/teapot/X-Y"),
+    (&["page", "scenes", "Cargo.toml"], "makes no page"),
+];
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    for (args, says) in REFUSED {
+        let output = lightmeter(args);
+        assert_eq!(code(&output), 2, "{args:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(says), "{args:?}: {}", stderr(&output));
+    }
+    let nothing = lightmeter(&["run", "scene/teapots"]);
+    assert_eq!(code(&nothing), 3, "{}", stderr(&nothing));
+}
