@@ -2,7 +2,7 @@
 //!
 //! Where an interval leaves a condition open, the hull of both sides is legal, yet no value between them need be. Within
 //! [`each`] such conditions are followed instead: the evaluation is repeated for each way through it, so that its distinct
-//! outcomes come out apart. Beyond [`MOST`] conditions in a row the hull is taken after all.
+//! outcomes come out apart. Beyond four conditions in a row the hull is taken after all.
 
 use std::cell::Cell;
 
