@@ -137,3 +137,18 @@ fn what_cannot_be_drawn_is_refused() {
     let nothing = lightmeter(&["run", "scene/teapots"]);
     assert_eq!(code(&nothing), 3, "{}", stderr(&nothing));
 }
+
+#[test]
+fn a_run_makes_the_page_and_its_contact_sheet() {
+    let dir = folder("scenes-page");
+    let (run, page) = (path(&dir, "run.json"), path(&dir, "scenes.md"));
+    let output =
+        lightmeter(&["run", "scene/fixed-color", "--size", "32", "--timing", "--format", "json", "--out", &run]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert_eq!(code(&lightmeter(&["page", "scenes", &run, "--out", &page])), 0);
+    let text = std::fs::read_to_string(&page).expect("the page was written");
+    assert!(text.contains("(scenes.png)") && text.contains("| fixed-color | 0 failed, "), "{text}");
+    assert!(text.contains("| teapot | skipped |") && text.contains(" ms: "), "{text}");
+    let sheet = std::fs::metadata(dir.join("scenes.png")).expect("the sheet was written").len();
+    assert!(sheet > 50_000, "{sheet} bytes");
+}
