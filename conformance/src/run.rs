@@ -88,8 +88,8 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
     let started = Instant::now();
     let catalogue = catalogue_of(&options.samples);
     let selected = select(&catalogue, &options.filter, options.cases, options.shard);
-    let size = image::run::size(&options.filter, options.size);
-    let scenes = image::run::select(&options.filter, options.shard, size);
+    let size = image::select::size(&options.filter, options.size);
+    let scenes = image::select::select(&options.filter, options.shard, size);
     let rows: u64 = selected.iter().map(|chosen| work(&catalogue[chosen.member], chosen, subjects, options)).sum();
     progress.start(rows + scenes.iter().map(|chosen| chosen.work() * subjects.len() as u64).sum::<u64>());
     let mut report = empty(subjects, options);
@@ -113,9 +113,9 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
         if report.interrupted.is_some() {
             break;
         }
-        let id = image::run::scene_id(chosen.place);
+        let id = image::select::scene_id(chosen.place);
         progress.group(&id);
-        let loaded = image::run::builtin(chosen.place, size).expect("a test loads every scene that is built in");
+        let loaded = image::select::builtin(chosen.place, size).expect("a test loads every scene that is built in");
         match image::run::run_scene(&loaded, &chosen, subjects, options, &mut report, progress) {
             Err(error @ (Error::Device(_) | Error::Timeout(_))) => {
                 report.interrupted = Some(Interrupted { under_way: id, message: error.to_string() });

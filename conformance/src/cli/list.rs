@@ -7,7 +7,7 @@ use anyhow::bail;
 use clap::Args;
 use lightmeter::cases::blend::{Samples, aliases, separate_of};
 use lightmeter::image;
-use lightmeter::image::run::Chosen;
+use lightmeter::image::select::Chosen;
 use lightmeter::report::text::thousands;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load::{self, Loaded};
@@ -42,7 +42,7 @@ impl List {
         let filter = matching(&self.filter, self.amount.cases, &samples)?;
         let catalogue = catalogue_of(&samples);
         let selected = select(&catalogue, &filter, self.amount.cases, self.amount.shard.0);
-        let scenes = if self.formulas { vec![] } else { image::run::select(&filter, self.amount.shard.0, None) };
+        let scenes = if self.formulas { vec![] } else { image::select::select(&filter, self.amount.shard.0, None) };
         let text = match (self.format, self.formulas) {
             (Format::Junit, _) => bail!("a list is written as text or json"),
             (Format::Json, _) => {
@@ -62,7 +62,7 @@ impl List {
                 for chosen in &scenes {
                     let loaded = load::builtin(SCENES[chosen.place].0)?;
                     let pixels = chosen.pixels.as_ref().map_or_else(|| pixels(&loaded), |some| some.len() as u64);
-                    let id = image::run::scene_id(chosen.place);
+                    let id = image::select::scene_id(chosen.place);
                     entries
                         .push(json!({ "scene": id, "title": loaded.title, "shows": loaded.shows, "pixels": pixels }));
                 }

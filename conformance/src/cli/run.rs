@@ -110,7 +110,7 @@ pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples) -> anyho
     for glob in globs {
         let filter = Filter::new(std::slice::from_ref(glob))?;
         let whole = lightmeter::select::Shard::WHOLE;
-        let scenes = lightmeter::image::run::select(&filter, whole, None);
+        let scenes = lightmeter::image::select::select(&filter, whole, None);
         if scenes.is_empty() && select(&catalogue, &filter, cases, whole).is_empty() {
             let families = lightmeter::cases::FAMILIES.join(", ");
             return Err(NothingToRun(format!(

@@ -2,14 +2,17 @@
 //!
 //! `bound` is what a rasteriser may make of a triangle's place and attributes, `pixel` the ways in which one pixel may come
 //! about, `expect` the legal values of all of them; `judge` compares an image with them,
-//! `diagnose` says where a wrong one first departs, `run` takes every scene through both, and `file` writes PNG and EXR.
+//! `diagnose` says where a wrong one first departs, `select` chooses scenes and pixels, `run` takes them through
+//! both, `cost` measures what effects cost that are not called for, and `file` writes PNG and EXR.
 
 mod bound;
+mod cost;
 pub mod diagnose;
 pub mod expect;
 pub mod file;
 pub mod judge;
 mod pixel;
 pub mod run;
+pub mod select;
 
 pub use expect::{Expected, expect};

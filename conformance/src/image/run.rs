@@ -2,17 +2,16 @@
 //! with all effects behind switches; every pixel of both must be legal by the full reference. A run of everything, which is
 //! to end within a minute, draws them smaller and by the composed shaders alone.
 
+use super::cost::cost;
 use super::diagnose::{self, Departure};
 use super::expect::{Expectation, Expected};
 use super::file::{self, Stored};
 use super::judge::{Judged, Miss, error, judge};
+use super::select::{Chosen, pixel_id, scene_id, size};
 use crate::arithmetic::Profile;
-use crate::filter::Filter;
-use crate::report::{EffectsCost, Failure, Group, ImageUse, Number, Report, Totals};
+use crate::report::{Failure, Group, ImageUse, Number, Report, Totals};
 use crate::run::{Options, Progress, problem};
-use crate::scene::library::SCENES;
-use crate::scene::load::{self, Loaded};
-use crate::select::Shard;
+use crate::scene::Loaded;
 use crate::subject::Subject;
 use crate::tally::KEPT_FAILURES;
 use lightmeter_gpu::compose::Shader;
@@ -23,98 +22,6 @@ use lightmeter_scene::effects::{Called, effects, named};
 use lightmeter_scene::frame::Frame;
 use serde_json::json;
 use std::time::Instant;
-
-/// A scene that is selected, by its place among the built-in ones, and its pixels; `None` for all.
-#[derive(Clone, Debug)]
-pub struct Chosen {
-    /// Its place.
-    pub place: usize,
-    /// Some of its pixels.
-    pub pixels: Option<Vec<usize>>,
-}
-
-impl Chosen {
-    /// About how many pixels that are.
-    #[must_use]
-    pub fn work(&self) -> u64 {
-        self.pixels.as_ref().map_or(1 << 18, |pixels| pixels.len() as u64)
-    }
-}
-
-/// The id of a scene.
-#[must_use]
-pub fn scene_id(place: usize) -> String {
-    format!("scene/{}", SCENES[place].0)
-}
-
-/// The id of a pixel.
-#[must_use]
-pub fn pixel_id(scene: &str, width: usize, pixel: usize) -> String {
-    format!("{scene}/{}-{}", pixel % width, pixel / width)
-}
-
-/// The pixel of an id such as `scene/teapot/12-340`, if the scene has it.
-#[must_use]
-pub fn pixel_of(id: &str, scene: &str, frame: &Frame) -> Option<usize> {
-    let (x, y) = id.strip_prefix(scene)?.strip_prefix('/')?.split_once('-')?;
-    let (x, y): (usize, usize) = (x.parse().ok()?, y.parse().ok()?);
-    let (width, height) = (frame.target.width as usize, frame.target.height as usize);
-    (x < width && y < height).then_some(y * width + x)
-}
-
-/// A built-in scene, drawn with its longer side of so many pixels rather than its own.
-///
-/// # Errors
-/// Where it is refused, which a test rules out.
-pub fn builtin(place: usize, size: Option<u32>) -> Result<Loaded, crate::scene::Error> {
-    let mut loaded = load::builtin(SCENES[place].0)?;
-    if let Some(size) = size {
-        let target = &mut loaded.frame.target;
-        let longer = target.width.max(target.height);
-        let scaled = |side: u32| (u64::from(side) * u64::from(size)).div_ceil(u64::from(longer));
-        let [width, height] = [target.width, target.height].map(|side| u32::try_from(scaled(side)).unwrap_or(side));
-        (target.width, target.height) = (width, height);
-    }
-    Ok(loaded)
-}
-
-/// Pixels of the longer side of every scene in a run of everything, which is to end within a minute. Scenes that are asked
-/// for have their own size.
-pub const SIZE_AMONG_ALL: u32 = 256;
-
-/// The longer side that scenes are drawn with; `None` for their own.
-#[must_use]
-pub fn size(filter: &Filter, asked: Option<u32>) -> Option<u32> {
-    asked.or(filter.is_empty().then_some(SIZE_AMONG_ALL))
-}
-
-/// The scenes that a filter and a shard select, or the pixels of them that it names.
-#[must_use]
-pub fn select(filter: &Filter, shard: Shard, size: Option<u32>) -> Vec<Chosen> {
-    let mut chosen = vec![];
-    for place in (0..SCENES.len()).filter(|&place| shard.has(place as u64)) {
-        let id = scene_id(place);
-        if filter.selects(&id) {
-            chosen.push(Chosen { place, pixels: None });
-            continue;
-        }
-        let below = format!("{id}/");
-        if !filter.is_as_deep_as(3) {
-            continue;
-        }
-        if !filter.reaches_below(&id) && !filter.literals().any(|literal| literal.starts_with(&below)) {
-            continue;
-        }
-        let Ok(loaded) = builtin(place, size) else { continue };
-        let (width, height) = (loaded.frame.target.width as usize, loaded.frame.target.height as usize);
-        let pixels: Vec<usize> =
-            (0..width * height).filter(|&pixel| filter.selects(&pixel_id(&id, width, pixel))).collect();
-        if !pixels.is_empty() {
-            chosen.push(Chosen { place, pixels: Some(pixels) });
-        }
-    }
-    chosen
-}
 
 /// Which shader drew an image, as reports name it.
 const fn stage(shader: Shader) -> &'static str {
@@ -198,7 +105,7 @@ pub(crate) fn run_scene(
                     used.differs_from_composed = same;
                     if options.again {
                         let clock = Instant::now();
-                        used.cost = cost(subject, options, frame, &called)?;
+                        used.cost = cost(subject, &options.shaders, frame, &called)?;
                         measuring = clock.elapsed().as_secs_f64();
                     }
                 }
@@ -212,50 +119,6 @@ pub(crate) fn run_scene(
     }
     progress.advance((scene.pixels.len() * subjects.len()) as u64);
     Ok(())
-}
-
-/// Turns that a cost is the median of.
-const TURNS: usize = 9;
-/// Drawings of a turn.
-const REPEATS: u32 = 4;
-/// Seconds of a drawing that is long enough by itself.
-const SLOW: f64 = 0.05;
-
-/// Draws a frame by composed shaders, and by the one with all effects with the switches of the same effects on, in turns,
-/// once both are compiled.
-fn cost(subject: &Subject, options: &Options, frame: &Frame, called: &[Called]) -> Result<Option<EffectsCost>, Error> {
-    let Some(gpu) = subject.gpu() else { return Ok(None) };
-    let shaders = &options.shaders;
-    let composed = SceneRenderer::new(gpu, shaders, frame, called, Shader::Composed, None)?;
-    let full = SceneRenderer::new(gpu, shaders, frame, called, Shader::Full, None)?;
-    composed.time(gpu, 1)?;
-    full.time(gpu, 1)?;
-    let repeats = if full.time(gpu, 1)? > SLOW { 1 } else { REPEATS };
-    let mut turns = vec![];
-    for turn in 0..TURNS {
-        // Each goes first every other time.
-        let (a, b) = if turn % 2 == 0 {
-            let a = composed.time(gpu, repeats)?;
-            (a, full.time(gpu, repeats)?)
-        } else {
-            let b = full.time(gpu, repeats)?;
-            (composed.time(gpu, repeats)?, b)
-        };
-        turns.push((a, b));
-    }
-    let sorted = |of: &dyn Fn(&(f64, f64)) -> f64| {
-        let mut all: Vec<f64> = turns.iter().map(of).collect();
-        all.sort_by(f64::total_cmp);
-        all
-    };
-    let milliseconds = |seconds: &[f64]| seconds[TURNS / 2] * 1e3 / f64::from(repeats);
-    let ratios = sorted(&|(a, b)| b / a);
-    Ok(Some(EffectsCost {
-        composed_ms: milliseconds(&sorted(&|(a, _)| *a)),
-        full_ms: milliseconds(&sorted(&|(_, b)| *b)),
-        ratio: ratios[TURNS / 2],
-        quartiles: [ratios[TURNS / 4], ratios[TURNS - 1 - TURNS / 4]],
-    }))
 }
 
 /// Pixels that two images do not have in common, bit for bit.

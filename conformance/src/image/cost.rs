@@ -1,0 +1,60 @@
+//! What effects cost that a scene does not call for: composed shaders against the one with all effects.
+
+use crate::report::EffectsCost;
+use crate::subject::Subject;
+use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::scene::SceneRenderer;
+use lightmeter_gpu::{Error, Shaders};
+use lightmeter_scene::effects::Called;
+use lightmeter_scene::frame::Frame;
+
+/// Turns that a cost is the median of.
+const TURNS: usize = 9;
+/// Drawings of a turn.
+const REPEATS: u32 = 4;
+/// Seconds of a drawing that is long enough by itself.
+const SLOW: f64 = 0.05;
+
+/// Draws a frame by composed shaders, and by the one with all effects with the switches of the same effects on, in turns,
+/// once both are compiled.
+///
+/// # Errors
+/// Where a shader is invalid or the device fails.
+pub(super) fn cost(
+    subject: &Subject,
+    shaders: &Shaders,
+    frame: &Frame,
+    called: &[Called],
+) -> Result<Option<EffectsCost>, Error> {
+    let Some(gpu) = subject.gpu() else { return Ok(None) };
+    let composed = SceneRenderer::new(gpu, shaders, frame, called, Shader::Composed, None)?;
+    let full = SceneRenderer::new(gpu, shaders, frame, called, Shader::Full, None)?;
+    composed.time(gpu, 1)?;
+    full.time(gpu, 1)?;
+    let repeats = if full.time(gpu, 1)? > SLOW { 1 } else { REPEATS };
+    let mut turns = vec![];
+    for turn in 0..TURNS {
+        // Each goes first every other time.
+        let (a, b) = if turn % 2 == 0 {
+            let a = composed.time(gpu, repeats)?;
+            (a, full.time(gpu, repeats)?)
+        } else {
+            let b = full.time(gpu, repeats)?;
+            (composed.time(gpu, repeats)?, b)
+        };
+        turns.push((a, b));
+    }
+    let sorted = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        let mut all: Vec<f64> = turns.iter().map(of).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    };
+    let milliseconds = |seconds: &[f64]| seconds[TURNS / 2] * 1e3 / f64::from(repeats);
+    let ratios = sorted(&|(a, b)| b / a);
+    Ok(Some(EffectsCost {
+        composed_ms: milliseconds(&sorted(&|(a, _)| *a)),
+        full_ms: milliseconds(&sorted(&|(_, b)| *b)),
+        ratio: ratios[TURNS / 2],
+        quartiles: [ratios[TURNS / 4], ratios[TURNS - 1 - TURNS / 4]],
+    }))
+}
