@@ -134,8 +134,12 @@ fn what_cannot_be_drawn_is_refused() {
         assert_eq!(code(&output), 2, "{args:?}: {}", stderr(&output));
         assert!(stderr(&output).contains(says), "{args:?}: {}", stderr(&output));
     }
-    let nothing = lightmeter(&["run", "scene/teapots"]);
-    assert_eq!(code(&nothing), 3, "{}", stderr(&nothing));
+    // A pixel that the size in force does not have is a filter that selects nothing.
+    for args in [&["run", "scene/teapots"][..], &["run", "scene/viewer/3-3", "scene/teapot/300-300", "--size", "16"]] {
+        let nothing = lightmeter(args);
+        assert_eq!(code(&nothing), 3, "{args:?}: {}", stderr(&nothing));
+        assert!(stderr(&nothing).contains("no case matches `scene/teapot") && stderr(&nothing).contains(", scene)"));
+    }
 }
 
 #[test]

@@ -210,6 +210,33 @@ fn what_is_not_a_scene_is_refused() {
     }
 }
 
+/// Each may be drawn; together they would fill a machine's memory.
+#[test]
+fn too_much_in_all_is_refused() {
+    let mut many = base();
+    many["meshes"]["ball"] = json!({ "shape": { "sphere": { "rings": 600, "segments": 700 } } });
+    let places: Vec<Value> = (0..40).map(|x| json!([{ "translate": [x, 0, 0] }])).collect();
+    many["objects"][0]["instances"] = places.into();
+    let said = refused(&many.to_string());
+    assert!(said.contains("field `objects`") && said.contains("4000000 triangles at most"), "{said}");
+
+    let mut large = base();
+    for number in 0..9 {
+        let colors = [[1, 1, 1, 1], [0, 0, 0, 1]];
+        large["textures"][format!("large {number}")] = json!({ "checker": { "size": [2048, 2048], "colors": colors } });
+    }
+    let said = refused(&large.to_string());
+    assert!(said.contains("field `textures`") && said.contains("16777216 at most"), "{said}");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_never_ends_is_not_read() {
+    let output = lightmeter(&["effects", "/dev/zero"]);
+    assert_eq!(code(&output), 2, "{}", stderr(&output));
+    assert!(stderr(&output).contains("it is no file"), "{}", stderr(&output));
+}
+
 #[test]
 fn every_file_among_the_scenes_is_built_in_and_loads() {
     let folder = root().join("conformance/scenes");

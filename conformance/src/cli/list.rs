@@ -39,7 +39,7 @@ impl List {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let named = self.filter.iter().filter_map(|glob| separate_of(glob)).collect();
         let samples = Samples { named, ..Samples::default() };
-        let filter = matching(&self.filter, self.amount.cases, &samples)?;
+        let filter = matching(&self.filter, self.amount.cases, &samples, None)?;
         let catalogue = catalogue_of(&samples);
         let selected = select(&catalogue, &filter, self.amount.cases, self.amount.shard.0);
         let scenes = if self.formulas { vec![] } else { image::select::select(&filter, self.amount.shard.0, None) };

@@ -45,7 +45,7 @@ impl Run {
         let shard = self.amount.shard.0;
         let named = self.filter.iter().filter_map(|glob| separate_of(glob)).collect();
         let samples = Samples { seed: self.choice.seed, count: self.separate, named };
-        let filter = matching(&self.filter, self.amount.cases, &samples)?;
+        let filter = matching(&self.filter, self.amount.cases, &samples, self.choice.size)?;
         let mut options = self.choice.options(filter, self.amount.cases, shard)?;
         options.images = Some(self.images.clone());
         options.again = self.timing;
@@ -105,14 +105,14 @@ fn status(report: &Report) -> Status {
 }
 
 /// The filter, each of whose globs must match something.
-pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples) -> anyhow::Result<Filter> {
+pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples, size: Option<u32>) -> anyhow::Result<Filter> {
     let catalogue = catalogue_of(samples);
     for glob in globs {
         let filter = Filter::new(std::slice::from_ref(glob))?;
         let whole = lightmeter::select::Shard::WHOLE;
-        let scenes = lightmeter::image::select::select(&filter, whole, None);
+        let scenes = lightmeter::image::select::select(&filter, whole, size);
         if scenes.is_empty() && select(&catalogue, &filter, cases, whole).is_empty() {
-            let families = lightmeter::cases::FAMILIES.join(", ");
+            let families = lightmeter::cases::FAMILIES.join(", ") + ", scene";
             return Err(NothingToRun(format!(
                 "no case matches `{glob}`; ids begin with a family ({families}), as `fog/linear/random/000017`: see \
                  `lightmeter list`"

@@ -14,7 +14,9 @@
 //!   its effect over the extent is Δgx·W, besides 4ε of the magnitudes that are summed up, measured from the target's corner.
 //!   A gradient, a product or a value below 2⁻¹²⁶ may be flushed to 0.
 //! * *What came before.* The interval of each vertex's attributes; a convex combination errs by no more than the worst.
-//!   Vertices made by clipping err by 8ε of the coordinates and attributes they are made from.
+//! * *Clipping.* A vertex is made at `a + t(b − a)` with `t = dₐ/(dₐ − d_b)`, d the distances from the plane. With errors Δ of
+//!   these, t is off by `Δt = (Δₐ + Δ_b)/(|dₐ − d_b| − Δₐ − Δ_b)`, which moves everything by Δt of the whole edge. A vertex
+//!   that lies on the plane within its error leaves open whether its triangle is seen at all.
 
 use crate::arithmetic::{Accept, F32, Format};
 use lightmeter_reference::render::{Attributes, Geometry, Triangle};
@@ -31,33 +33,72 @@ pub(super) struct VertexErrors {
     pub(super) places: Vec<[f64; 4]>,
     /// The attributes.
     pub(super) attributes: Vec<f64>,
+    /// Clip coordinates, of those behind the eye too.
+    pub(super) clips: Vec<[f64; 4]>,
 }
+
+/// More than any target: where nothing is known of a place.
+const ANYWHERE: f64 = 1e9;
 
 impl VertexErrors {
     pub(super) fn of(&self, vertex: usize) -> &[f64] {
         &self.attributes[vertex * self.stride..(vertex + 1) * self.stride]
     }
 
-    /// Vertices that clipping made: what both ends may be off by, and the rounding of the making.
+    /// Vertices that clipping made: what both ends may be off by, and how far that moves the point between them.
     pub(super) fn extend(&mut self, geometry: &Geometry, size: [f64; 2]) {
         for (made, &[from, to]) in geometry.made_between.iter().enumerate() {
             let vertex = geometry.clip.len() - geometry.made_between.len() + made;
-            let magnitude = geometry.clip[from].iter().chain(&geometry.clip[to]).fold(0.0_f64, |m, x| m.max(x.abs()));
-            let rounding = 8.0 * EPSILON * magnitude / geometry.clip[vertex][3].abs();
-            let worse = |axis: usize| self.places[from][axis].max(self.places[to][axis]);
-            self.places.push([
-                worse(0) + rounding * size[0],
-                worse(1) + rounding * size[1],
-                worse(2) + rounding,
-                worse(3) + rounding,
-            ]);
+            let clip = geometry.clip[vertex];
+            let along = self.off_along(geometry, vertex, [from, to]);
+            let moved = |a: f64, b: f64, error: f64| {
+                (error + 4.0 * EPSILON * a.abs().max(b.abs()) + along * (b - a).abs()).min(ANYWHERE)
+            };
+            let (a, b) = (geometry.clip[from], geometry.clip[to]);
+            let off: [f64; 4] = std::array::from_fn(|k| moved(a[k], b[k], self.clips[from][k].max(self.clips[to][k])));
+            self.clips.push(off);
+            let [x, y, z, w] = clip;
+            let least = (w - off[3]).max(0.0);
+            let ratio = |x: f64, off_x: f64| ((off_x + (x / w).abs() * off[3]) / least + 8.0 * EPSILON).min(ANYWHERE);
+            let inverse_w = (off[3] / least).min(ANYWHERE);
+            self.places.push([ratio(x, off[0]) * size[0], ratio(y, off[1]) * size[1], ratio(z, off[2]), inverse_w]);
             for k in 0..self.stride {
                 let (a, b) = (geometry.attributes(from)[k], geometry.attributes(to)[k]);
-                let error = self.of(from)[k].max(self.of(to)[k]) + 8.0 * EPSILON * a.abs().max(b.abs());
-                self.attributes.push(error);
+                let error = self.of(from)[k].max(self.of(to)[k]);
+                self.attributes.push(moved(a, b, error));
             }
         }
     }
+
+    /// The share of an edge by which the point where it meets the plane may be off.
+    fn off_along(&self, geometry: &Geometry, vertex: usize, [from, to]: [usize; 2]) -> f64 {
+        let distances = |vertex: usize| planes(geometry.clip[vertex]);
+        // The plane that it lies on.
+        let plane = usize::from(distances(vertex)[0].abs() > distances(vertex)[1].abs());
+        let (at_from, at_to) = (distances(from)[plane], distances(to)[plane]);
+        let error =
+            self.off_planes(from)[plane] + self.off_planes(to)[plane] + 4.0 * EPSILON * (at_from.abs() + at_to.abs());
+        let least = (at_from - at_to).abs() - error;
+        if least > 0.0 { (error / least).min(1.0) } else { 1.0 }
+    }
+
+    /// What a vertex's distances from the near and the far plane may be off by.
+    fn off_planes(&self, vertex: usize) -> [f64; 2] {
+        let [_, _, z, w] = self.clips[vertex];
+        [z, z + w]
+    }
+
+    /// Whether a vertex may lie on either side of the near or the far plane.
+    fn is_on_a_plane(&self, geometry: &Geometry, vertex: usize) -> bool {
+        let given = geometry.clip.len() - geometry.made_between.len();
+        let (distances, off) = (planes(geometry.clip[vertex]), self.off_planes(vertex));
+        vertex < given && (0..2).any(|k| distances[k].abs() <= off[k])
+    }
+}
+
+/// The distances from the near and the far plane, in clip coordinates.
+fn planes([_, _, z, w]: [f64; 4]) -> [f64; 2] {
+    [z, w - z]
 }
 
 /// A triangle, and what may become of it.
@@ -106,7 +147,8 @@ impl Bound {
             [-(window[j][1] - window[i][1]), window[j][0] - window[i][0]]
         });
         // Moving each vertex of an edge by δ changes twice the area by at most the two margins beside it and 4δ² more.
-        let may_vanish = triangle.area <= margins[0] + margins[1] + margins[2] + 4.0 * reach[0] * reach[1];
+        let may_vanish = triangle.area <= margins[0] + margins[1] + margins[2] + 4.0 * reach[0] * reach[1]
+            || triangle.vertices.iter().any(|&vertex| errors.is_on_a_plane(geometry, vertex));
         let plane = Plane::new(triangle, slopes);
         let start = slacks.len();
         let inverse_w = triangle.inverse_w;

@@ -163,8 +163,14 @@ fn middle(pixel: usize) -> f64 {
     pixel + 0.5
 }
 
-/// A vertex: clip coordinates, what its place may be off by, its attributes and what they may be off by.
-type Shaded = ([f64; 4], [f64; 4], Vec<f64>, Vec<f64>);
+/// A vertex: clip coordinates and attributes, and what they and its place in the window may be off by.
+struct Shaded {
+    clip: [f64; 4],
+    off_clip: [f64; 4],
+    place: [f64; 4],
+    attributes: Vec<f64>,
+    off: Vec<f64>,
+}
 
 impl<'a> Prepared<'a> {
     fn new(
@@ -188,13 +194,14 @@ impl<'a> Prepared<'a> {
         let mut geometry = Geometry { stride, ..Geometry::default() };
         let mut errors = VertexErrors { stride, ..VertexErrors::default() };
         let mut identities = HashMap::new();
-        for ((clip, place, attributes, off), position) in vertices.into_iter().zip(&mesh.positions) {
-            geometry.clip.push(clip);
-            geometry.numbers.extend(attributes);
+        for (vertex, position) in vertices.into_iter().zip(&mesh.positions) {
+            geometry.clip.push(vertex.clip);
+            errors.clips.push(vertex.off_clip);
+            geometry.numbers.extend(vertex.attributes);
             let next = identities.len() as u64;
             geometry.identities.push(*identities.entry(position.map(f32::to_bits)).or_insert(next));
-            errors.places.push(place);
-            errors.attributes.extend(off);
+            errors.places.push(vertex.place);
+            errors.attributes.extend(vertex.off);
         }
         let provoking = draw.shading.map_or(Provoking::First, |shading| shading.provoking);
         let size = [frame.target.width, frame.target.height];
@@ -216,7 +223,8 @@ fn shaded(exact: &Shader<'_, f64>, legal: &Shader<'_, Accept>, vertex: usize, si
     let legal_clip = legal.vertex(vertex, &mut Scratch::default(), &mut intervals);
     let off = |value: f64, legal: &Accept| (legal.high() - value).max(value - legal.low());
     let slack = attributes.iter().zip(&intervals).map(|(&value, legal)| off(value, legal)).collect();
-    (clip.0, place(clip, legal_clip, size), attributes, slack)
+    let off_clip = std::array::from_fn(|k| off(clip[k], &legal_clip[k]));
+    Shaded { clip: clip.0, off_clip, place: place(clip, legal_clip, size), attributes, off: slack }
 }
 
 /// What a vertex's place in the window may be off by: x, y, depth, and 1/w relatively.

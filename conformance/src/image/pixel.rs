@@ -115,7 +115,8 @@ impl<'a> Painter<'a> {
             });
         }
         let mut all = all.unwrap_or(Expected { low: self.background.0, high: self.background.1, is_marked: false });
-        all.is_marked = (0..4).any(|k| all.high[k] - all.low[k] > 2.0 * widest[k]);
+        // Where anything is legal, other outcomes are too.
+        all.is_marked = (0..4).any(|k| all.high[k] - all.low[k] > 2.0 * widest[k] || widest[k] == f64::INFINITY);
         all
     }
 

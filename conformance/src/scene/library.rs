@@ -8,7 +8,7 @@ macro_rules! scenes {
     };
 }
 
-const COUNT: usize = 29;
+const COUNT: usize = 32;
 
 /// Each built-in scene's name and JSON.
 pub const SCENES: [(&str, &str); COUNT] = scenes! {
@@ -26,6 +26,8 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "fog-linear"
     "fog-radial"
     "gouraud"
+    "light-ambient"
+    "light-ambient-opengl"
     "lightmap"
     "missed-highlight"
     "near-clip"
@@ -40,6 +42,7 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "spotlight"
     "teapot"
     "translucent-square"
+    "unit-light"
     "viewer"
 };
 

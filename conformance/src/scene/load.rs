@@ -5,7 +5,7 @@ use super::objects::{self, Known, Parts};
 use super::{camera, library, lights, mesh, texture};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::model::Scene;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 /// Gives the bytes of a file that a scene names.
@@ -13,6 +13,11 @@ pub type Files<'a> = dyn Fn(&str) -> io::Result<Vec<u8>> + 'a;
 
 /// Bytes of a file, at most.
 const MOST_BYTES: u64 = 64 << 20;
+/// Texels of all textures.
+const MOST_TEXELS: usize = 1 << 24;
+/// Triangles of all meshes, and of all that is drawn.
+const MOST_IN_ALL: usize = 4_000_000;
+const IN_ALL: &str = "4000000 triangles at most in all";
 
 /// A scene that can be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,16 +112,27 @@ pub fn frame(scene: &Scene, files: &Files<'_>) -> Result<Frame, Error> {
     objects::names(scene)?;
 
     let at = At::Scene.field("textures");
-    let each = scene.textures.iter().map(|(name, image)| texture::texture(&at.field(name), image, files));
-    let mut textures = each.collect::<Result<Vec<_>, _>>()?;
+    let mut textures = vec![];
+    let mut texels = 0;
+    for (name, image) in scene.textures.iter() {
+        textures.push(texture::texture(&at.field(name), image, files)?);
+        texels += textures[textures.len() - 1].texels.len();
+        at.require(
+            texels <= MOST_TEXELS,
+            format_args!("a list of {texels} texels or more"),
+            "16777216 at most in all",
+        )?;
+    }
     let surfaces = objects::surfaces(scene)?;
 
     let at = At::Scene.field("meshes");
-    let (mut meshes, mut parts) = (vec![], vec![]);
+    let (mut meshes, mut parts, mut triangles) = (vec![], vec![], 0);
     for (name, mesh) in scene.meshes.iter() {
         let mut of_mesh = Parts::new();
         for part in mesh::parts(&at.field(name), mesh, files, &mut textures)? {
             of_mesh.push((meshes.len(), part.name, part.surface));
+            triangles += part.mesh.triangles.len();
+            at.require(triangles <= MOST_IN_ALL, format_args!("a list of {triangles} triangles or more"), IN_ALL)?;
             meshes.push(part.mesh);
         }
         parts.push(of_mesh);
@@ -125,6 +141,9 @@ pub fn frame(scene: &Scene, files: &Files<'_>) -> Result<Frame, Error> {
     let lights = lights::lights(&scene.lights, &|at, attached| objects::space(at, scene, view, attached))?;
     let known = Known { scene, view, surfaces: &surfaces, parts: &parts };
     let draws = objects::draws(&known, &mut meshes)?;
+    let drawn: usize = draws.iter().map(|draw| meshes[draw.mesh].triangles.len()).sum();
+    let at = At::Scene.field("objects");
+    at.require(drawn <= MOST_IN_ALL, format_args!("a list that draws {drawn} triangles, with instances"), IN_ALL)?;
     Ok(Frame {
         target,
         background: At::Scene.field("background").numbers(scene.background)?,
@@ -143,11 +162,17 @@ pub fn frame(scene: &Scene, files: &Files<'_>) -> Result<Frame, Error> {
 
 /// The bytes of a file, unless it is too large.
 fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let bytes = std::fs::metadata(path)?.len();
-    if bytes > MOST_BYTES {
-        return Err(io::Error::other(format!("it has {bytes} bytes; expected {MOST_BYTES} at most")));
+    let about = std::fs::metadata(path)?;
+    // A pipe may wait for ever, and a device never end.
+    if !about.is_file() {
+        return Err(io::Error::other("it is no file"));
     }
-    std::fs::read(path)
+    let mut bytes = vec![];
+    std::fs::File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(io::Error::other(format!("it has more than {MOST_BYTES} bytes")));
+    }
+    Ok(bytes)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Laws of whole images, over random frames.
 
+mod builtin;
 mod effects;
 mod laws;
 mod mistakes;

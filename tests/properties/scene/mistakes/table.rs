@@ -209,6 +209,31 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "teapot",
         "surface",
     ),
+    ("u for v", "effects/texture_nearest.wgsl", "in.uv", "in.uv.yx", "lightmap", "surface"),
+    (
+        "u for v, bilinear",
+        "effects/lightmap_bilinear.wgsl",
+        "in.lightmap_uv",
+        "in.lightmap_uv.yx",
+        "lightmap",
+        "surface",
+    ),
+    (
+        "u for v in a lightmap",
+        "effects/lightmap_nearest.wgsl",
+        "in.lightmap_uv",
+        "in.lightmap_uv.yx",
+        "lightmap",
+        "surface",
+    ),
+    (
+        "a light's ambient term not weakened",
+        "effects/attenuated_ambient.wgsl",
+        "ambient * weight",
+        "ambient",
+        "light-ambient-opengl",
+        "diffuse",
+    ),
     // Fog.
     ("alpha lost in the fog", "scene.wgsl", "color.rgb).color, color.a)", "color.rgb).color, 0.5)", "fog-exp", "fog"),
     (
