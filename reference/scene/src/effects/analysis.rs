@@ -69,17 +69,25 @@ impl Analysis<'_> {
             }
         }
         let terms = self.lights();
-        self.choice(Effect::LightAmbient, terms.ambient, "LA * MA of a light");
-        self.choice(Effect::Diffuse, terms.diffuse, "LD * MD of a light");
+        self.choice(Effect::LightAmbient, terms.ambient, of_a_light(terms.ambient, "LA * MA"));
+        self.choice(Effect::Diffuse, terms.diffuse, of_a_light(terms.diffuse, "LD * MD"));
         let specular = match shading.specular {
             Specular::Phong => Effect::SpecularPhong,
             Specular::Blinn => Effect::SpecularBlinn,
             Specular::BlinnUnnormalised => Effect::SpecularUnnormalised,
         };
-        self.choice(specular, terms.specular, "LS * MS of a light");
+        self.choice(specular, terms.specular, of_a_light(terms.specular, "LS * MS"));
         if terms.specular {
-            self.choice(Effect::LocalViewer, shading.viewer == Viewer::Local, "the viewer of the highlight");
-            self.choice(Effect::Gate, shading.gate == Gate::OpenGl, "highlights on faces that are turned away");
+            let local = shading.viewer == Viewer::Local;
+            let why = if local { "the viewer is at the eye" } else { "the viewer is infinitely far away" };
+            self.choice(Effect::LocalViewer, local, why);
+            let gated = shading.gate == Gate::OpenGl;
+            let why = if gated {
+                "a face that is turned away has no highlight"
+            } else {
+                "one that is turned away may have one"
+            };
+            self.choice(Effect::Gate, gated, why);
         }
         self.kinds(&terms);
         let lit = !self.called.lights.is_empty();
@@ -95,7 +103,8 @@ impl Analysis<'_> {
         }
         if terms.diffuse || terms.specular {
             let by = shading.normals == Normals::InverseTranspose;
-            self.choice(Effect::InverseTranspose, by, "how normals are brought to eye space");
+            let why = if by { "the dialect of normals" } else { "normals are brought to eye space by the modelview" };
+            self.choice(Effect::InverseTranspose, by, why);
         }
     }
 
@@ -167,7 +176,8 @@ impl Analysis<'_> {
                 Filter::Bilinear => Effect::TextureBilinear,
             };
             self.worth(effect, changes, if changes { "its texels" } else { "every texel is 1" });
-            self.choice(Effect::TextureReplace, textured.replaces, "whether it stands in the colour's place");
+            let why = if textured.replaces { "it stands in the colour's place" } else { "it multiplies the colour" };
+            self.choice(Effect::TextureReplace, textured.replaces, why);
         }
         if let Some(sampled) = draw.lightmap {
             let changes = !is_white(frame, sampled);
@@ -193,7 +203,9 @@ impl Analysis<'_> {
         };
         self.worth(effect, changes, why);
         if self.called.effects.has(effect) {
-            self.choice(Effect::FogRadial, fog.distance == Distance::Radial, "which distance the fog is of");
+            let radial = fog.distance == Distance::Radial;
+            let why = if radial { "it is of the distance from the eye" } else { "it is of the depth" };
+            self.choice(Effect::FogRadial, radial, why);
         }
     }
 
@@ -243,6 +255,10 @@ impl fmt::Display for Terms {
         let names: Vec<&str> = named.into_iter().filter(|(has, _)| *has).map(|(_, name)| name).collect();
         write!(f, "it gives {} light", names.join(" and "))
     }
+}
+
+fn of_a_light(called: bool, product: &str) -> String {
+    if called { format!("{product} of a light is not 0") } else { format!("{product} of every light is 0") }
 }
 
 fn any(color: [f32; 3]) -> bool {
