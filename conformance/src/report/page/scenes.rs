@@ -157,6 +157,23 @@ fn judged(run: &Run, scenes: &[Loaded], out: &mut impl Write) -> Result {
         "differ by more than twice the widest of them. Positions are snapped to 1/256 pixel by llvmpipe, and to no"
     )?;
     writeln!(out, "coarser than 1/16 by any other.\n")?;
+    table(run, scenes, "image", "skipped", out, |group| {
+        let image = group.image.as_ref()?;
+        #[expect(clippy::cast_precision_loss, reason = "a share")]
+        let share = 100.0 * image.marked as f64 / group.cases.max(1) as f64;
+        Some(format!("{} failed, {share:.3} % marked", group.failed))
+    })
+}
+
+/// A row for each scene, a column for each adapter; `lacking` where there is nothing to say.
+fn table(
+    run: &Run,
+    scenes: &[Loaded],
+    stage: &str,
+    lacking: &str,
+    out: &mut impl Write,
+    cell: impl Fn(&Group) -> Option<String>,
+) -> Result {
     write!(out, "| scene |")?;
     for adapter in &run.adapters {
         write!(out, " {} |", adapter.name)?;
@@ -165,15 +182,8 @@ fn judged(run: &Run, scenes: &[Loaded], out: &mut impl Write) -> Result {
     for loaded in scenes {
         write!(out, "| {} |", loaded.name)?;
         for adapter in &run.adapters {
-            let found = run.group(&format!("scene/{}", loaded.name), &adapter.name, "image");
-            match found.and_then(|group| Some((group, group.image.as_ref()?))) {
-                Some((group, image)) => {
-                    #[expect(clippy::cast_precision_loss, reason = "a share")]
-                    let share = 100.0 * image.marked as f64 / group.cases.max(1) as f64;
-                    write!(out, " {} failed, {share:.3} % marked |", group.failed)?;
-                }
-                None => write!(out, " skipped |")?,
-            }
+            let found = run.group(&format!("scene/{}", loaded.name), &adapter.name, stage);
+            write!(out, " {} |", found.and_then(&cell).as_deref().unwrap_or(lacking))?;
         }
         writeln!(out)?;
     }
@@ -195,23 +205,8 @@ fn costs(run: &Run, scenes: &[Loaded], out: &mut impl Write) -> Result {
         "all of them behind uniform switches with the same ones on: medians of turns in one run, and the median of"
     )?;
     writeln!(out, "their ratio.\n")?;
-    write!(out, "| scene |")?;
-    for adapter in &run.adapters {
-        write!(out, " {} |", adapter.name)?;
-    }
-    writeln!(out, "\n|---|{}", "---:|".repeat(run.adapters.len()))?;
-    for loaded in scenes {
-        write!(out, "| {} |", loaded.name)?;
-        for adapter in &run.adapters {
-            let found = run.group(&format!("scene/{}", loaded.name), &adapter.name, "image-full");
-            match found.and_then(|group| group.image.as_ref()?.cost) {
-                Some(Cost { composed_ms, full_ms, ratio }) => {
-                    write!(out, " {composed_ms:.2} ms, {full_ms:.2} ms: {ratio:.2} × |")?;
-                }
-                None => write!(out, " — |")?,
-            }
-        }
-        writeln!(out)?;
-    }
-    Ok(())
+    table(run, scenes, "image-full", "—", out, |group| {
+        let Cost { composed_ms, full_ms, ratio } = group.image.as_ref()?.cost?;
+        Some(format!("{composed_ms:.2} ms, {full_ms:.2} ms: {ratio:.2} ×"))
+    })
 }
