@@ -2,14 +2,13 @@
 
 use super::Status;
 use super::options::Choice;
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::image::diagnose::intermediate;
+use lightmeter::image::drawn::{drawn, intermediate};
 use lightmeter::image::file::Stored;
 use lightmeter::scene::load;
 use lightmeter_gpu::compose::Shader;
-use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
@@ -95,14 +94,8 @@ impl Render {
         if let Some(stage) = self.stage {
             return Ok(intermediate(subject, &shaders, frame, &named(frame), stage)?);
         }
-        let Some(gpu) = subject.gpu() else {
-            return Ok(Stored::of(&render::<f32>(frame, None, None), frame.target.format));
-        };
-        if let Some(reason) = SceneRenderer::lacks(gpu, frame) {
-            return Err(anyhow::anyhow!(reason)).context(format!("{} cannot draw this scene", subject.identity.name));
-        }
-        let renderer = SceneRenderer::new(gpu, &shaders, frame, &sets, shader, None)?;
-        let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu))?;
-        Ok(Stored::read(frame.target.width as usize, frame.target.format, &bytes))
+        drawn(subject, &shaders, frame, &sets, shader)?.map_err(|reason| {
+            anyhow::anyhow!(reason).context(format!("{} cannot draw this scene", subject.identity.name))
+        })
     }
 }

@@ -1,17 +1,13 @@
 //! Where a wrong image first departs: its intermediate results, drawn by the same shaders, against their own legal values.
 
+use super::drawn::intermediate;
 use super::expect::Expectation;
-use super::file::Stored;
 use crate::arithmetic::Profile;
 use crate::subject::Subject;
-use lightmeter_gpu::compose::Shader;
-use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Error, Shaders};
-use lightmeter_reference::render::render;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::stage::Stage;
-use lightmeter_scene::target::TargetFormat;
 use std::fmt;
 
 /// Pixels that are looked at: the first of those that fail.
@@ -62,24 +58,4 @@ pub fn departure(
     }
     let stage = if frame.draws.iter().any(|draw| draw.blend.is_some()) { "blend" } else { "store" };
     Ok(Departure { stage, pixels: pixels.len(), of: pixels.len() })
-}
-
-/// An intermediate result as a subject draws it.
-///
-/// # Errors
-/// Where a shader is invalid or the device fails.
-pub fn intermediate(
-    subject: &Subject,
-    shaders: &Shaders,
-    frame: &Frame,
-    sets: &[Called],
-    stage: Stage,
-) -> Result<Stored, Error> {
-    let format = TargetFormat::Rgba32Float;
-    let Some(gpu) = subject.gpu() else {
-        return Ok(Stored::unrounded(&render::<f32>(frame, None, Some(stage)), format));
-    };
-    let renderer = SceneRenderer::new(gpu, shaders, frame, sets, Shader::Composed, Some(stage))?;
-    let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu))?;
-    Ok(Stored::read(frame.target.width as usize, format, &bytes))
 }

@@ -7,7 +7,7 @@ mod mistakes;
 mod split;
 
 use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::image::diagnose::intermediate;
+use lightmeter::image::drawn::intermediate;
 use lightmeter::image::file::Stored;
 use lightmeter::image::run::profile_of;
 use lightmeter::image::{Expected, expect};

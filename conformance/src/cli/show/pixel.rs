@@ -3,19 +3,18 @@
 use super::super::options::Choice;
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::pixel::Units;
-use lightmeter::image::Expected;
-use lightmeter::image::diagnose::intermediate;
+use lightmeter::image::drawn::intermediate;
 use lightmeter::image::expect::Expectation;
 use lightmeter::image::file::Stored;
 use lightmeter::image::run::profile_of;
 use lightmeter::image::select::{builtin, pixel_of, scene_id};
+use lightmeter::image::{self, Expected};
 use lightmeter::report::Number;
 use lightmeter::scene::Loaded;
 use lightmeter::scene::library::SCENES;
 use lightmeter::subject::Subject;
 use lightmeter_gpu::Shaders;
 use lightmeter_gpu::compose::Shader;
-use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
@@ -88,15 +87,7 @@ fn drawn(subject: &Subject, shaders: &Shaders, frame: &Frame, stage: Option<Stag
     if let Some(stage) = stage {
         return Ok(Some(intermediate(subject, shaders, frame, &named(frame), stage)?));
     }
-    let Some(gpu) = subject.gpu() else {
-        return Ok(Some(Stored::of(&render::<f32>(frame, None, None), frame.target.format)));
-    };
-    if SceneRenderer::lacks(gpu, frame).is_some() {
-        return Ok(None);
-    }
-    let renderer = SceneRenderer::new(gpu, shaders, frame, &effects(frame), Shader::Composed, None)?;
-    let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu))?;
-    Ok(Some(Stored::read(frame.target.width as usize, frame.target.format, &bytes)))
+    Ok(image::drawn::drawn(subject, shaders, frame, &effects(frame), Shader::Composed)?.ok())
 }
 
 /// Everything about a pixel, as text or JSON.
