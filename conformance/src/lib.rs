@@ -12,5 +12,6 @@ pub mod report;
 pub mod run;
 pub mod scene;
 pub mod select;
+pub mod stability;
 pub mod subject;
 pub mod tally;

@@ -13,6 +13,7 @@ use crate::image;
 use crate::judge::{Outcome, judge};
 use crate::report::{DeviationUse, Group, Interrupted, Number, Report, Timing, Totals};
 use crate::select::{CaseRef, Member, Selected, Shard, catalogue_of, select};
+use crate::stability;
 use crate::subject::{Compiled, Rows, Subject};
 use crate::tally::{Tally, judge_chunk};
 use lightmeter_gpu::{Error, Shaders};
@@ -161,7 +162,19 @@ fn judge_group(
     if members[0].spec.row_stages().is_empty() {
         return Ok(());
     }
-    run_rows(members, group, subjects, options, report, progress)
+    let first = report.groups.len();
+    run_rows(members, group, subjects, options, report, progress)?;
+    for (member, chosen) in members.iter().zip(group) {
+        stability::examine(member, chosen, subjects, options, report)?;
+    }
+    for group in &mut report.groups[first..] {
+        if let Some(unstable) = stability::problem(&report.stability, &group.id, &group.adapter, group.stage) {
+            group.problem =
+                Some(group.problem.take().map_or(unstable.clone(), |problem| format!("{problem}; {unstable}")));
+            group.totals.failed_groups = 1;
+        }
+    }
+    Ok(())
 }
 
 pub(crate) fn empty(subjects: &[Subject], options: &Options) -> Report {
@@ -179,6 +192,7 @@ pub(crate) fn empty(subjects: &[Subject], options: &Options) -> Report {
         groups: vec![],
         blend_states: vec![],
         special: vec![],
+        stability: vec![],
         interrupted: None,
         failures: vec![],
     }

@@ -13,7 +13,12 @@ pub enum CaseRef {
     Random(u64),
     /// A named hard case, by its place in the description.
     Hard(usize),
+    /// The k-th case within a few ULP of a named one.
+    Near(usize, u64),
 }
+
+/// Cases near each hard one.
+const NEAR: u64 = 32;
 
 /// A formula with its description.
 pub struct Member {
@@ -41,6 +46,7 @@ impl Member {
             CaseRef::Random(k) if self.is_state() => format!("{}/{k:04}", self.random_path()),
             CaseRef::Random(k) => format!("{}/{k:06}", self.random_path()),
             CaseRef::Hard(place) => format!("{}/hard/{}", self.spec.group(), self.spec.hard[place].name),
+            CaseRef::Near(place, k) => format!("{}/near/{k:02}", self.case_id(CaseRef::Hard(place))),
         }
     }
 
@@ -48,10 +54,22 @@ impl Member {
     #[must_use]
     pub fn case(&self, id: &str) -> Option<CaseRef> {
         if let Some(name) = id.strip_prefix(self.spec.group()).and_then(|rest| rest.strip_prefix("/hard/")) {
-            return self.spec.hard.iter().position(|hard| hard.name == name).map(CaseRef::Hard);
+            let place = |name: &str| self.spec.hard.iter().position(|hard| hard.name == name);
+            return match name.split_once("/near/") {
+                None => place(name).map(CaseRef::Hard),
+                Some((name, k)) => {
+                    k.parse().ok().filter(|&k| k < self.near()).and_then(|k| Some(CaseRef::Near(place(name)?, k)))
+                }
+            };
         }
         let number = id.strip_prefix(&self.random_path())?.strip_prefix('/')?;
         number.parse().ok().map(CaseRef::Random)
+    }
+
+    /// Cases near each hard one: of arithmetic, whose inputs may be anything.
+    #[must_use]
+    pub fn near(&self) -> u64 {
+        if matches!(self.spec.kind, Kind::Arithmetic) { NEAR } else { 0 }
     }
 
     /// The case's inputs, appended to a row.
@@ -67,6 +85,11 @@ impl Member {
                     let range = self.spec.place(name).unwrap_or_default();
                     row[start..][range].copy_from_slice(values);
                 }
+            }
+            CaseRef::Near(place, k) => {
+                let start = row.len();
+                self.inputs(CaseRef::Hard(place), seed, row);
+                cases::move_by_ulps(&self.spec, &self.spec.hard[place], k, &mut row[start..]);
             }
         }
     }
@@ -121,6 +144,8 @@ pub struct Selected {
     pub random: Random,
     /// Its hard cases.
     pub hard: Vec<usize>,
+    /// Those near a hard case: its place, and which.
+    pub near: Vec<(usize, u64)>,
     shard: Shard,
 }
 
@@ -128,7 +153,7 @@ impl Selected {
     /// Random cases of the formula at a place.
     #[must_use]
     pub const fn whole(member: usize, random: Random) -> Self {
-        Self { member, random, hard: vec![], shard: Shard::WHOLE }
+        Self { member, random, hard: vec![], near: vec![], shard: Shard::WHOLE }
     }
 
     /// The cases, hard ones first.
@@ -139,7 +164,8 @@ impl Selected {
             }
             Random::Some(some) => Box::new(some.iter().copied()),
         };
-        self.hard.iter().copied().map(CaseRef::Hard).chain(random.map(CaseRef::Random))
+        let near = self.near.iter().map(|&(place, k)| CaseRef::Near(place, k));
+        self.hard.iter().copied().map(CaseRef::Hard).chain(near).chain(random.map(CaseRef::Random))
     }
 
     /// What of them is evaluated in stages that take rows of numbers: a sixteenth of the many blend states' cases, since it
@@ -155,12 +181,17 @@ impl Selected {
     /// How many cases there are.
     #[must_use]
     pub fn count(&self) -> u64 {
-        let random = match &self.random {
+        self.random_count() + (self.hard.len() + self.near.len()) as u64
+    }
+
+    /// How many of them are random.
+    #[must_use]
+    pub fn random_count(&self) -> u64 {
+        match &self.random {
             Random::First(n) if *n > self.shard.index => (n - self.shard.index).div_ceil(self.shard.count.get()),
             Random::First(_) => 0,
             Random::Some(some) => some.len() as u64,
-        };
-        random + self.hard.len() as u64
+        }
     }
 }
 
@@ -218,7 +249,11 @@ pub fn select(catalogue: &[Member], filter: &Filter, cases: u64, shard: Shard) -
         let hard = (0..member.spec.hard.len())
             .filter(|&k| shard.has(k as u64) && filter.selects(&member.case_id(CaseRef::Hard(k))))
             .collect();
-        let chosen = Selected { member: place, random, hard, shard };
+        let near = (0..member.spec.hard.len())
+            .flat_map(|k| (0..member.near()).map(move |near| (k, near)))
+            .filter(|&(k, near)| shard.has(near) && filter.selects(&member.case_id(CaseRef::Near(k, near))))
+            .collect();
+        let chosen = Selected { member: place, random, hard, near, shard };
         if chosen.count() > 0 {
             selected.push(chosen);
         }

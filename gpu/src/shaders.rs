@@ -6,8 +6,9 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The built-in files that stand by themselves: a formula family each, four that drive fixed hardware, and the probes.
-pub const FILES: [(&str, &str); 14] = [
+/// The built-in files that stand by themselves: a formula family each, the elementary functions that WGSL lacks, four
+/// that drive fixed hardware, and the probes.
+pub const FILES: [(&str, &str); 15] = [
     ("attenuation.wgsl", include_str!("shaders/attenuation.wgsl")),
     ("blend.wgsl", include_str!("shaders/blend.wgsl")),
     ("blend_unit.wgsl", include_str!("shaders/blend_unit.wgsl")),
@@ -15,6 +16,7 @@ pub const FILES: [(&str, &str); 14] = [
     ("color.wgsl", include_str!("shaders/color.wgsl")),
     ("depth.wgsl", include_str!("shaders/depth.wgsl")),
     ("depth_unit.wgsl", include_str!("shaders/depth_unit.wgsl")),
+    ("elementary.wgsl", include_str!("shaders/elementary.wgsl")),
     ("fog.wgsl", include_str!("shaders/fog.wgsl")),
     ("interpolation.wgsl", include_str!("shaders/interpolation.wgsl")),
     ("lighting.wgsl", include_str!("shaders/lighting.wgsl")),

@@ -100,6 +100,32 @@ impl<R: Real, const N: usize> Vector<R, N> {
         R::if_ge(zero, self.dot(self), || Self::splat(zero), || Self(R::normalize(self.0)))
     }
 
+    /// The largest |component|.
+    #[must_use]
+    pub fn largest(self) -> R {
+        self.0.into_iter().map(R::abs).reduce(R::max).unwrap_or_else(|| R::literal(0.0))
+    }
+
+    /// ⟨v⟩ with v brought near 1 by a power of two first, so that v·v neither overflows nor underflows in binary32; 0 for
+    /// the zero vector.
+    #[must_use]
+    pub fn normalize_scaled(self) -> Self {
+        let (zero, largest) = (R::literal(0.0), self.largest());
+        let normalized = || Self(R::normalize(self.scale(binary_scale(largest).0).0));
+        R::if_ge(zero, largest, || Self::splat(zero), normalized)
+    }
+
+    /// |v| by the same scaling, undone afterwards.
+    #[must_use]
+    pub fn length_scaled(self) -> R {
+        let (zero, largest) = (R::literal(0.0), self.largest());
+        let length = || {
+            let Vector([scale, inverse]) = scales(largest);
+            self.scale(scale).length() * inverse
+        };
+        R::if_ge(zero, largest, || zero, length)
+    }
+
     /// a(1 − t) + b·t, component by component.
     #[must_use]
     pub fn mix(self, other: Self, t: R) -> Self {
@@ -131,7 +157,38 @@ impl<R: Real, const N: usize> Vector<R, N> {
     }
 }
 
+/// A power of two that brings a magnitude of [2⁻¹²⁶, 2¹²⁸) into [2⁻²⁰, 2²⁰), and its inverse.
+pub fn binary_scale<R: Real>(magnitude: R) -> (R, R) {
+    let Vector([scale, inverse]) = scales(magnitude);
+    (scale, inverse)
+}
+
+fn scales<R: Real>(magnitude: R) -> Vec2<R> {
+    // Steps of 2⁴⁰: from 2⁻²⁰ on nothing is scaled, below 2⁻²⁰ by 2⁴⁰, and so on.
+    const STEP: f64 = 1_099_511_627_776.0;
+    const FIRST: f64 = 1_048_576.0;
+    let of = |scale: f64| move || Vector([R::literal(scale), R::literal(1.0 / scale)]);
+    let at_least =
+        |bound: f64, then: Vec2<R>, otherwise: Vec2<R>| R::if_ge(magnitude, R::literal(bound), || then, || otherwise);
+    let small = [(STEP * STEP * STEP, STEP * STEP), (STEP * STEP, STEP), (STEP, 1.0)];
+    let start = of(STEP * STEP * STEP)();
+    let up = small.into_iter().fold(start, |found, (below, scale)| at_least(1.0 / (below / FIRST), of(scale)(), found));
+    let great = [1.0, STEP, STEP * STEP];
+    great.into_iter().fold(up, |found, scale| at_least(FIRST * scale, of(1.0 / (scale * STEP))(), found))
+}
+
 impl<R: Real> Vec3<R> {
+    /// a × b, each component a difference of products that keeps its relative error small.
+    #[must_use]
+    pub fn cross_compensated(self, other: Self) -> Self {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
+        Self([
+            R::difference_of_products([ay, bz], [az, by]),
+            R::difference_of_products([az, bx], [ax, bz]),
+            R::difference_of_products([ax, by], [ay, bx]),
+        ])
+    }
+
     /// a × b.
     #[must_use]
     pub fn cross(self, other: Self) -> Self {

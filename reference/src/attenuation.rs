@@ -4,6 +4,7 @@
 //! 1/unit²; `l` the unit vector surface → light; `axis` the unit direction in which the spotlight points.
 
 use crate::algebra::Vec3;
+use crate::lighting::cosine_power_by_chord;
 use crate::real::Real;
 
 /// `atten = 1 / (kc + kl·d + kq·d²)`.
@@ -50,4 +51,30 @@ pub fn spot_exponent<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R, expon
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
     let cosine = (-l).dot(axis).named("−l·axis");
     R::if_ge(cosine, cutoff_cosine, || R::if_ge(zero, exponent, || one, || cosine.lobe(exponent)), || zero)
+}
+
+/// `1 / (kc + kl·d + kq·(d·d))`: d² before its coefficient, and too great or too small before it.
+pub fn polynomial_expanded<R: Real>(kc: R, kl: R, kq: R, d: R) -> R {
+    R::literal(1.0) / R::sum([kc, kl * d, kq * (d * d)])
+}
+
+/// `1 / clamp(kc + d(kl + d·kq), 2⁻¹²⁶, 2¹²⁶)`: Horner's scheme, and a denominator by which a shader may divide. Without any
+/// coefficient it is 2¹²⁶.
+pub fn polynomial_bounded<R: Real>(kc: R, kl: R, kq: R, d: R) -> R {
+    // 2¹²⁶.
+    const MOST: f64 = 85_070_591_730_234_615_865_843_651_857_942_052_864.0;
+    let denominator = (kc + d * (kl + d * kq)).named("kc + d(kl + d·kq)");
+    R::literal(1.0) / denominator.clamp(R::literal(1.0 / MOST), R::literal(MOST))
+}
+
+/// [`point`] with a distance that neither overflows nor underflows.
+pub fn point_scaled<R: Real>(kc: R, kl: R, kq: R, light: Vec3<R>, p: Vec3<R>) -> R {
+    polynomial_bounded(kc, kl, kq, (light - p).length_scaled().named("d"))
+}
+
+/// [`spot_exponent`] with the power of the cosine by the chord between −l and the axis.
+pub fn spot_exponent_by_chord<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R, exponent: R) -> R {
+    let (zero, one) = (R::literal(0.0), R::literal(1.0));
+    let lit = || R::if_ge(zero, exponent, || one, || cosine_power_by_chord(-l, axis, exponent));
+    R::if_ge((-l).dot(axis).named("−l·axis"), cutoff_cosine, lit, || zero)
 }

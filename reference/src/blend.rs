@@ -139,3 +139,46 @@ pub fn alpha_clamped<R: Real>(src: Rgba<R>, dst: Rgba<R>) -> Rgba<R> {
     let of = Operands { src: unit(src), dst: unit(dst), constant: Vector::splat(R::literal(0.0)) };
     unit(blend(Mode::Alpha.state(), &of, Saturate::SourceAndDestination))
 }
+
+/// `src·As + dst(1 − As)`: all of the source, to the last bit, where it is opaque. Straight alpha; no alpha in the destination.
+pub fn over<R: Real>(src: Rgba<R>, dst: Rgb<R>) -> Rgb<R> {
+    let one = R::literal(1.0);
+    src.xyz().zip(dst, |s, d| s * src.w() + d * (one - src.w()))
+}
+
+/// `dst + As(src − dst)`: one multiplication less; over a bright destination it misses an opaque source.
+pub fn over_incremental<R: Real>(src: Rgba<R>, dst: Rgb<R>) -> Rgb<R> {
+    src.xyz().zip(dst, |s, d| d + src.w() * (s - d))
+}
+
+/// `1 − (1 − α)ⁿ`: how much n layers of one alpha hide, by a subtraction that cancels for thin ones.
+pub fn opacity_of_layers<R: Real>(alpha: R, layers: R) -> R {
+    let one = R::literal(1.0);
+    one - (one - alpha).pow(layers)
+}
+
+/// The same as `−expm1(n·ln(1 − α))`. For α < 1.
+pub fn opacity_of_layers_expm1<R: Real>(alpha: R, layers: R) -> R {
+    -(layers * (-alpha).ln_1p()).exp_m1()
+}
+
+/// `color/α`: straight from premultiplied alpha; no value where nothing is there.
+pub fn unpremultiply<R: Real>(color: Rgb<R>, alpha: R) -> Rgb<R> {
+    color.map(|c| c / alpha)
+}
+
+/// The same, and 0 where α is 0 or too small to divide by, below 2⁻¹²⁶.
+pub fn unpremultiply_guarded<R: Real>(color: Rgb<R>, alpha: R) -> Rgb<R> {
+    let least = R::literal(f64::from(f32::MIN_POSITIVE));
+    R::if_ge(alpha, least, || unpremultiply(color, alpha), || Vector::splat(R::literal(0.0)))
+}
+
+/// `src·S − dst·D`: what FUNC_SUBTRACT computes, each product rounded.
+pub fn subtract<R: Real>(src: R, s: R, dst: R, d: R) -> R {
+    src * s - dst * d
+}
+
+/// The same with a small relative error however nearly the products cancel.
+pub fn subtract_compensated<R: Real>(src: R, s: R, dst: R, d: R) -> R {
+    R::difference_of_products([src, s], [dst, d])
+}

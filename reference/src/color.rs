@@ -35,6 +35,16 @@ pub fn srgb_decode<R: Real>(e: R) -> R {
     )
 }
 
+/// [`srgb_encode`] without its straight piece: wrong below c = 0.0031308, and without a value below 0.
+pub fn srgb_encode_power<R: Real>(c: R) -> R {
+    R::literal(1.055) * c.pow(R::literal(1.0 / 2.4)) - R::literal(0.055)
+}
+
+/// `e = c^(1/2.2)`: the power that stands in for sRGB's two pieces. For c > 0.
+pub fn gamma_encode<R: Real>(c: R) -> R {
+    c.pow(R::literal(1.0 / 2.2))
+}
+
 /// An sRGB target's encoding of a colour: each of R, G, B by [`srgb_encode`], alpha as it is.
 pub fn srgb_encode_rgba<R: Real>(c: Rgba<R>) -> Rgba<R> {
     c.xyz().map(srgb_encode).extend(c.w())

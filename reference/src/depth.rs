@@ -41,3 +41,18 @@ pub fn passes<R: Real>(compare: Compare, new: R, old: R) -> R {
         Compare::Always => yes,
     }
 }
+
+/// An eye-space distance z written as depth `f(z − n)/(z(f − n))`, 0 at the near plane n and 1 at the far plane f, and read
+/// back as `n·f/(f − depth(f − n))`: z again, but for what the depth has lost near 1. For n ≤ z ≤ f.
+pub fn recovered<R: Real>(near: R, far: R, z: R) -> R {
+    let range = far - near;
+    let depth = (far * (z - near) / (z * range)).named("depth");
+    near * far / (far - depth * range)
+}
+
+/// The same with depth reversed, `n(f − z)/(z(f − n))`: 0 at the far plane, where binary32 has its finest steps.
+pub fn recovered_reversed<R: Real>(near: R, far: R, z: R) -> R {
+    let range = far - near;
+    let depth = (near * (far - z) / (z * range)).named("depth");
+    near * far / (near + depth * range)
+}

@@ -43,6 +43,39 @@ pub fn exp2_opengl<R: Real>(distance: R, density: R) -> R {
     factor((-R::product([density, distance, density, distance])).named("−(density·distance)²").exp())
 }
 
+/// [`linear`] as a multiplication and an addition, `f = distance·scale + offset` with both made beforehand: for a narrow band
+/// far away both are great and nearly cancel, and for none there is no value.
+pub fn linear_multiply_add<R: Real>(distance: R, dmin: R, dmax: R) -> R {
+    let width = dmax - dmin;
+    let (scale, offset) = ((R::literal(-1.0) / width).named("scale"), (dmax / width).named("offset"));
+    factor(distance * scale + offset)
+}
+
+/// [`exp2_document`] with the distance squared before the density: too great or too small before it.
+pub fn exp2_document_square<R: Real>(distance: R, density: R) -> R {
+    factor((-(density * (distance * distance))).exp())
+}
+
+/// [`exp2_opengl`] with density and distance each squared alone.
+pub fn exp2_opengl_squares<R: Real>(distance: R, density: R) -> R {
+    factor((-((density * density) * (distance * distance))).exp())
+}
+
+/// `1 − exp(−density·distance)`: how much of the fog is seen, by a subtraction that cancels in thin fog.
+pub fn opacity<R: Real>(distance: R, density: R) -> R {
+    R::literal(1.0) - (-(density * distance)).exp()
+}
+
+/// The same as `−expm1(−density·distance)`, which keeps its relative error small in the thinnest fog.
+pub fn opacity_expm1<R: Real>(distance: R, density: R) -> R {
+    -(-(density * distance)).exp_m1()
+}
+
+/// |p| that neither overflows nor underflows.
+pub fn radial_distance_scaled<R: Real>(p: Vec3<R>) -> R {
+    p.length_scaled().named("distance")
+}
+
 fn factor<R: Real>(f: R) -> R {
     f.clamp(R::literal(0.0), R::literal(1.0)).named("f")
 }

@@ -26,6 +26,38 @@ pub fn edge<R: Real>(a: Vec2<R>, b: Vec2<R>, p: Vec2<R>) -> R {
     ab.x() * ap.y() - ab.y() * ap.x()
 }
 
+/// The same without a vertex subtracted: `a × b + b × p + p × a`, six products as great as the vertices are far.
+pub fn edge_from_origin<R: Real>(a: Vec2<R>, b: Vec2<R>, p: Vec2<R>) -> R {
+    R::sum([a.x() * b.y(), -(a.y() * b.x()), b.x() * p.y(), -(b.y() * p.x()), p.x() * a.y(), -(p.y() * a.x())])
+}
+
+/// The same by a difference of products that keeps its relative error small for slivers too.
+pub fn edge_compensated<R: Real>(a: Vec2<R>, b: Vec2<R>, p: Vec2<R>) -> R {
+    let (ab, ap) = (b - a, p - a);
+    R::difference_of_products([ab.x(), ap.y()], [ab.y(), ap.x()])
+}
+
+/// The weight of c at p: the area of `a b p` over that of `a b c`.
+pub fn last_weight<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> R {
+    edge(a, b, p) / edge(a, b, c)
+}
+
+/// The same as what the other two leave of 1: near the edge from a to b it is a small difference of great numbers.
+pub fn last_weight_by_difference<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> R {
+    let [alpha, beta, _] = weights([a, b, c], p);
+    R::literal(1.0) - alpha - beta
+}
+
+/// `a(1 − t) + b·t`: b to the last bit at t = 1.
+pub fn mix<R: Real>(a: R, b: R, t: R) -> R {
+    a * (R::literal(1.0) - t) + b * t
+}
+
+/// `a + t(b − a)`: one multiplication less; at t = 1 it misses b by the rounding of b − a.
+pub fn mix_incremental<R: Real>(a: R, b: R, t: R) -> R {
+    a + t * (b - a)
+}
+
 /// The barycentric weights of p: each the area opposite its vertex over the whole. No value for a triangle without area.
 pub fn weights<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> [R; 3] {
     let area = edge(a, b, c).named("2·area");
@@ -57,6 +89,15 @@ pub fn forward_differences<R: Real, const N: usize>(a: R, b: R) -> R {
 pub fn perspective<R: Real>(lambda: [R; 3], w: [R; 3], attr: [R; 3]) -> R {
     let q: [R; 3] = std::array::from_fn(|k| lambda[k] / w[k]);
     triangle(q, attr).named("Σλa/w") / R::sum(q).named("Σλ/w")
+}
+
+/// [`perspective`] with weights `λᵢ·(w_min/wᵢ)`, which are at most λᵢ: nothing overflows as a w goes to 0, and where it is 0
+/// the vertex of that w is all that is seen. For w ≥ 0.
+pub fn perspective_scaled<R: Real>(lambda: [R; 3], w: [R; 3], attr: [R; 3]) -> R {
+    let least = w[0].min(w[1]).min(w[2]);
+    let q: [R; 3] =
+        std::array::from_fn(|k| R::if_ge(least, w[k], || lambda[k], || lambda[k] * (least / w[k])).named("λ·w_min/w"));
+    triangle(q, attr) / R::sum(q)
 }
 
 /// `((1 − t)·a/wa + t·b/wb) / ((1 − t)/wa + t/wb)`: the same along a line.

@@ -327,3 +327,43 @@ pub fn flat<R: Real>(face: [Vec3<R>; 3], position: Vec3<R>, material: [R; 3]) ->
     let [a, b, c] = face;
     intensity([face_normal(a, b, c), toward(position, a), to_eye(a)], material)
 }
+
+/// `max(a·b, 0)^exponent` of two unit vectors: a highlight's power as published, the cosine by a dot product.
+pub fn cosine_power<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
+    a.dot(b).named("a·b").lobe(exponent)
+}
+
+/// The same without the `max`: no value where the cosine is negative.
+pub fn cosine_power_unguarded<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
+    a.dot(b).named("a·b").pow(exponent)
+}
+
+/// The power of the cosine between two vectors that are unit but for rounding: `(1 − q)^exponent` with `q = ½|a − b|²`,
+/// which is as exact as a and b are, where 1 − q has lost all of q below 2⁻²⁴.
+///
+/// From an exponent of 64 and for angles below 60° by `exp(exponent·ln(1 − q))`; as published elsewhere.
+pub fn cosine_power_by_chord<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
+    let between = a - b;
+    let half = R::literal(0.5);
+    let q = (half * between.dot(between)).named("q");
+    let published = || cosine_power(a, b, exponent);
+    let chord = || (exponent * (-q).ln_1p().named("ln(1 − q)")).exp();
+    R::if_ge(R::literal(64.0), exponent, published, || R::if_ge(q, half, published, chord))
+}
+
+/// A directional light with Blinn's highlight, stable throughout: every vector normalised at any length, no highlight where
+/// n·l ≤ 0, and its power by the chord. With OpenGL's gate it is [`directional`]'s Blinn.
+pub fn blinn_stable<R: Real>(light: &Light<R>, material: &Material<R>, [p, n, direction]: [Vec3<R>; 3]) -> Rgba<R> {
+    let zero = R::literal(0.0);
+    let [n, l, v] = [n, -direction, -p].map(Vector::normalize_scaled);
+    let h = (v + l).normalize_scaled().named("h");
+    let lit = || cosine_power_by_chord(n, h, material.shininess).named("FS");
+    let fs = R::if_ge(zero, l.dot(n), || zero, lit);
+    Terms {
+        ambient: ambient(light.ambient, material.ambient),
+        diffuse: diffuse_toward(light.diffuse, material.diffuse, l, n),
+        specular: specular(light.specular, material.specular, fs),
+    }
+    .sum()
+    .extend(R::literal(1.0))
+}

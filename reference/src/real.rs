@@ -93,6 +93,25 @@ pub trait Real:
         Self::sum([c0, c1 * x, Self::product([c2, x, x])])
     }
 
+    /// ln(1 + self), for self > −1, with a small relative error however small self is. Shading languages have no such
+    /// function; shaders evaluate a short series.
+    #[must_use]
+    fn ln_1p(self) -> Self {
+        (Self::literal(1.0) + self).log2() * Self::literal(std::f64::consts::LN_2)
+    }
+
+    /// e^self − 1, likewise.
+    #[must_use]
+    fn exp_m1(self) -> Self {
+        self.exp() - Self::literal(1.0)
+    }
+
+    /// a·b − c·d, with a small relative error however nearly the products cancel. (Kahan; Jeannerod, Louvet & Muller 2013.)
+    #[must_use]
+    fn difference_of_products([a, b]: [Self; 2], [c, d]: [Self; 2]) -> Self {
+        a * b - c * d
+    }
+
     /// max(self, 0)^exponent, the power of a cosine, for exponent ≥ 0.
     ///
     /// At self ≤ 0 it is 0 for exponent > 0. With exponent 0 it is 1 for self > 0; at self ≤ 0 both 0 and 1 are legal, and
@@ -133,7 +152,7 @@ impl<R: Real> Components<R> for R {
 }
 
 macro_rules! plain_real {
-    ($float:ident, from $literal:expr, $exp:ident, $exp2:ident, $log2:ident, $pow:ident) => {
+    ($float:ident, from $literal:expr, $exp:ident, $exp2:ident, $log2:ident, $pow:ident, $ln_1p:ident, $exp_m1:ident) => {
         impl Real for $float {
             fn input(x: f32) -> Self {
                 Self::from(x)
@@ -171,6 +190,16 @@ macro_rules! plain_real {
             fn pow(self, exponent: Self) -> Self {
                 core_math::$pow(self, exponent)
             }
+            fn ln_1p(self) -> Self {
+                core_math::$ln_1p(self)
+            }
+            fn exp_m1(self) -> Self {
+                core_math::$exp_m1(self)
+            }
+            fn difference_of_products([a, b]: [Self; 2], [c, d]: [Self; 2]) -> Self {
+                let cd = c * d;
+                a.mul_add(b, -cd) + c.mul_add(-d, cd)
+            }
             fn if_ge<T: Components<Self>>(
                 a: Self,
                 b: Self,
@@ -189,8 +218,8 @@ macro_rules! plain_real {
     };
 }
 
-plain_real!(f64, from std::convert::identity, exp, exp2, log2, pow);
-plain_real!(f32, from narrow, expf, exp2f, log2f, powf);
+plain_real!(f64, from std::convert::identity, exp, exp2, log2, pow, log1p, expm1);
+plain_real!(f32, from narrow, expf, exp2f, log2f, powf, log1pf, expm1f);
 
 #[expect(clippy::cast_possible_truncation, reason = "a literal in a shader is the nearest f32")]
 const fn narrow(x: f64) -> f32 {

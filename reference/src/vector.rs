@@ -1,6 +1,6 @@
 //! Vectors and transforms (000 §6.3, 003, 004). Symbols as in the crate's conventions.
 
-use crate::algebra::{Mat3, Mat4, Vec3, Vec4, Vector};
+use crate::algebra::{Mat3, Mat4, Vec3, Vec4, Vector, binary_scale};
 use crate::real::Real;
 
 /// `r = i − 2(i·n)n`: the light's direction of travel mirrored about the unit normal.
@@ -84,4 +84,71 @@ pub fn average_normal<R: Real>(faces: [Vec3<R>; 3]) -> Vec3<R> {
 /// `⟨(b − a) × (c − a)⟩`: the normal of a face wound counter-clockwise.
 pub fn face_normal<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>) -> Vec3<R> {
     (b - a).cross(c - a).named("(b − a)×(c − a)").normalize().named("n")
+}
+
+/// `v/|v|` of a vector that is not zero, which nothing checks.
+pub fn normalize_unguarded<R: Real>(v: Vec3<R>) -> Vec3<R> {
+    Vector(R::normalize(v.0))
+}
+
+/// `⟨v⟩` of any vector whose largest component is a normal number: [`Vector::normalize_scaled`].
+pub fn normalize_scaled<R: Real>(v: Vec3<R>) -> Vec3<R> {
+    v.normalize_scaled()
+}
+
+/// `|v| = √(v·v)`.
+pub fn length<R: Real>(v: Vec3<R>) -> R {
+    v.length()
+}
+
+/// `|v|` of any vector whose length is a normal number: [`Vector::length_scaled`].
+pub fn length_scaled<R: Real>(v: Vec3<R>) -> R {
+    v.length_scaled()
+}
+
+/// `h = (v + l)/|v + l|`, which has no value where v = −l.
+pub fn halfway_unguarded<R: Real>(v: Vec3<R>, l: Vec3<R>) -> Vec3<R> {
+    normalize_unguarded(v + l)
+}
+
+/// `r = i − 2(i·⟨n⟩)⟨n⟩`: the mirror about a normal of any length, so that |r| = |i|.
+pub fn reflect_any_normal<R: Real>(i: Vec3<R>, n: Vec3<R>) -> Vec3<R> {
+    reflect(i, n.normalize_scaled().named("⟨n⟩"))
+}
+
+/// `⟨modelview⁻ᵀ·n⟩` by cofactors over the determinant.
+pub fn normal_by_determinant<R: Real>(modelview: &Mat3<R>, n: Vec3<R>) -> Vec3<R> {
+    normal_inverse_transpose(modelview, n).normalize()
+}
+
+/// The same without the division: the cofactors' direction, turned round where the determinant is negative, of a matrix that
+/// is brought near 1 by a power of two first. Source: Lengyel.
+pub fn normal_by_cofactors<R: Real>(modelview: &Mat3<R>, n: Vec3<R>) -> Vec3<R> {
+    let [a, b, c] = modelview.0;
+    let largest = a.largest().max(b.largest()).max(c.largest());
+    let (scale, _) = binary_scale(largest);
+    let scaled = Mat3([a.scale(scale), b.scale(scale), c.scale(scale)]);
+    let cofactors = scaled.cofactors();
+    let normal = cofactors.transform(n).normalize_scaled().named("⟨cofactors·n⟩");
+    let determinant = scaled.0[0].dot(cofactors.0[0]).named("determinant of the scaled");
+    R::if_ge(determinant, R::literal(0.0), || normal, || -normal)
+}
+
+/// [`face_normal`] with the edges brought near 1 and a cross product that keeps its relative error small: right for faces of
+/// any size, and for slivers whose corners' differences are exact.
+pub fn face_normal_compensated<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>) -> Vec3<R> {
+    let near_one = |v: Vec3<R>| v.scale(binary_scale(v.largest()).0);
+    near_one(b - a).cross_compensated(near_one(c - a)).normalize_scaled().named("n")
+}
+
+/// `⟨n0(1 − t) + n1·t⟩`: the normal between two vertices.
+pub fn interpolated_normal<R: Real>(n0: Vec3<R>, n1: Vec3<R>, t: R) -> Vec3<R> {
+    n0.mix(n1, t).named("n").normalize()
+}
+
+/// The same, and the face's own normal where less than 2⁻¹⁰ is left of the interpolated one: what remains of opposite normals
+/// is their rounding.
+pub fn interpolated_normal_guarded<R: Real>(n0: Vec3<R>, n1: Vec3<R>, face: Vec3<R>, t: R) -> Vec3<R> {
+    let n = n0.mix(n1, t).named("n");
+    R::if_ge(n.dot(n), R::literal(1.0 / 1_048_576.0), || n.normalize(), || face.normalize())
 }

@@ -88,6 +88,12 @@ impl Draw {
         Self { value, unrounded: value }
     }
 
+    /// c₀ + x(c₁ + x(c₂ + …)).
+    fn polynomial(self, coefficients: &[f64]) -> Self {
+        let constants = coefficients.iter().rev().map(|&c| Self::literal(c));
+        constants.reduce(|sum, c| c + self * sum).expect("a coefficient at least")
+    }
+
     /// The term of a sum: as rounded, or, fused, as the exact product.
     fn term(self) -> f64 {
         if coin() { self.unrounded } else { self.value }
@@ -189,6 +195,36 @@ impl Real for Draw {
     }
     fn pow(self, exponent: Self) -> Self {
         (exponent * self.log2()).exp2()
+    }
+    fn ln_1p(self) -> Self {
+        if self.value.abs() > 0.0625 {
+            let sum = (Self::literal(1.0) + self).value;
+            let (exact, profile) = (core_math::log(sum), PROFILE.get());
+            let in_middle = (0.5..=2.0).contains(&sum);
+            let error = if in_middle { profile.log2_absolute } else { profile.log2_ulp * F32::ulp(exact) };
+            return Self::within(exact, error);
+        }
+        let coefficients = [1.0, -1.0 / 2.0, 1.0 / 3.0, -1.0 / 4.0, 1.0 / 5.0, -1.0 / 6.0];
+        self * self.polynomial(&coefficients)
+    }
+    fn exp_m1(self) -> Self {
+        if self.value.abs() > 0.5 {
+            return self.exp() - Self::literal(1.0);
+        }
+        let factorials = [1.0, 2.0, 6.0, 24.0, 120.0, 720.0, 5040.0, 40320.0];
+        self * self.polynomial(&factorials.map(|factorial| 1.0 / factorial))
+    }
+    fn difference_of_products([a, b]: [Self; 2], [c, d]: [Self; 2]) -> Self {
+        // The upper 12 bits of a significand, as the shader masks them.
+        #[expect(clippy::cast_possible_truncation, reason = "the value is an f32 already")]
+        let upper = |x: Self| Self::of(f64::from(f32::from_bits((x.value as f32).to_bits() & 0xffff_f000)));
+        let product = |a: Self, b: Self| {
+            let (p, a1, b1) = (a * b, upper(a), upper(b));
+            let (a2, b2) = (a - a1, b - b1);
+            [p, a1 * b1, -p, a1 * b2, a2 * b1, a2 * b2]
+        };
+        let terms: Vec<Self> = product(a, b).into_iter().chain(product(c, d).map(Neg::neg)).collect();
+        chain(&terms, Add::add)
     }
     fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {
         if a.value >= b.value { then() } else { otherwise() }

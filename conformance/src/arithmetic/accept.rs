@@ -142,6 +142,11 @@ impl<F: Format> Accept<F> {
         self.low.abs().max(self.high.abs())
     }
 
+    /// Whether it holds a value of at most that magnitude.
+    fn reaches_within(&self, magnitude: f64) -> bool {
+        self.low <= magnitude && self.high >= -magnitude
+    }
+
     fn contains_zero(&self) -> bool {
         self.low <= 0.0 && self.high >= 0.0
     }
@@ -390,6 +395,60 @@ impl<F: Format> Real for Accept<F> {
 
     fn pow(self, exponent: Self) -> Self {
         (exponent * self.log2()).exp2()
+    }
+
+    fn ln_1p(self) -> Self {
+        // Shaders evaluate a series of 6 terms for |x| ≤ 1/16, and log(1 + x) beyond (`elementary.wgsl`).
+        const SERIES: f64 = 0.0625;
+        if self.is_any() || self.low <= -1.0 {
+            return Self::ANY;
+        }
+        let (may_be_series, may_be_log) = (self.reaches_within(SERIES), self.magnitude() > SERIES);
+        let error = |y: f64| {
+            // A term has at most 6 products, a rounded coefficient and 6 sums; against the sum of their magnitudes, at most
+            // 1.07 times the result; the next term of the series is below ε/8.
+            let series = 16.0 * F::EPSILON * 1.07 + F::EPSILON / 8.0;
+            // 1 + x is rounded; log errs by 2⁻²¹ near 1 and by 3 ULP elsewhere.
+            let log = current(|p| p.log2_absolute) + 1.02 * F::EPSILON + current(|p| p.log2_ulp) * F::EPSILON * y.abs();
+            (if may_be_series { series * y.abs() } else { 0.0 }).max(if may_be_log { log } else { 0.0 })
+        };
+        let (low, high) = (core_math::log1p(self.low), core_math::log1p(self.high));
+        Self::of_results((low - error(low)).next_down(), (high + error(high)).next_up())
+    }
+
+    fn exp_m1(self) -> Self {
+        // A series of 8 terms for |x| ≤ 1/2, and exp(x) − 1 beyond (`elementary.wgsl`).
+        const SERIES: f64 = 0.5;
+        if self.is_any() {
+            return Self::ANY;
+        }
+        let beyond = (self.magnitude() > SERIES).then(|| self.exp() - Self::exactly(1.0));
+        if !self.reaches_within(SERIES) {
+            return beyond.unwrap_or(Self::ANY);
+        }
+        // At most 8 products, a rounded coefficient and 8 sums a term; the magnitudes' sum is at most 1.65 times the result;
+        // the next term is below ε/8.
+        let error = 20.0 * F::EPSILON * 1.65 + F::EPSILON / 8.0;
+        let (low, high) = (core_math::expm1(self.low.max(-SERIES)), core_math::expm1(self.high.min(SERIES)));
+        let low = (low - error * low.abs()).next_down();
+        let high = (high + error * high.abs()).next_up();
+        let series = Self::of_results(low, high);
+        beyond.map_or(series, |beyond| beyond.hull(series))
+    }
+
+    fn difference_of_products([a, b]: [Self; 2], [c, d]: [Self; 2]) -> Self {
+        // The compensated form has 12 terms, whose magnitudes' sum is at most 4(|ab| + |cd|). The language lets a compiler sum
+        // them in any order, so little more is promised than of a·b − c·d; the claim of a stable form is tighter.
+        let (ab, cd) = (
+            Self::product_range((a.low, a.high), (b.low, b.high)),
+            Self::product_range((c.low, c.high), (d.low, d.high)),
+        );
+        let magnitude = ab.0.abs().max(ab.1.abs()) + cd.0.abs().max(cd.1.abs());
+        let mut error = chain_error::<F>(12) * 4.0 * magnitude;
+        if magnitude < F::MIN_NORMAL / (F::EPSILON * F::EPSILON) * 16.0 {
+            error += 12.0 * F::MIN_NORMAL;
+        }
+        Self::seal(ab.0 - cd.1 - error, ab.1 - cd.0 + error)
     }
 
     fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {

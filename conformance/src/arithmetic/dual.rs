@@ -112,6 +112,12 @@ impl Real for Dual {
         let by_exponent = exponent.chain(value, value * core_math::log(self.value)).slope;
         Self { value, slope: by_base + by_exponent }
     }
+    fn ln_1p(self) -> Self {
+        self.chain(core_math::log1p(self.value), 1.0 / (1.0 + self.value))
+    }
+    fn exp_m1(self) -> Self {
+        self.chain(core_math::expm1(self.value), core_math::exp(self.value))
+    }
     fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T {
         then(self.value.floor())
     }

@@ -72,7 +72,27 @@ impl Real for Trace {
     fn literal(x: f64) -> Self {
         Self { value: x, interval: Real::literal(x) }
     }
-    both!(max(other), min(other), abs(), round(), sqrt(), inverse_sqrt(), exp(), exp2(), log2(), pow(e), lobe(e));
+    both!(
+        max(other),
+        min(other),
+        abs(),
+        round(),
+        sqrt(),
+        inverse_sqrt(),
+        exp(),
+        exp2(),
+        log2(),
+        pow(e),
+        lobe(e),
+        ln_1p(),
+        exp_m1()
+    );
+    fn difference_of_products([a, b]: [Self; 2], [c, d]: [Self; 2]) -> Self {
+        Self {
+            value: Real::difference_of_products([a.value, b.value], [c.value, d.value]),
+            interval: Real::difference_of_products([a.interval, b.interval], [c.interval, d.interval]),
+        }
+    }
     fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {
         // The value follows its own branch; the interval takes the hull where it cannot decide.
         let hull = |value_first: bool| {

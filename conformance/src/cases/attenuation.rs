@@ -21,10 +21,10 @@ formula!(
     [KC, KL, KQ, DISTANCE] -> [ATTEN],
     |x, out| { out.scalar(attenuation::polynomial(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
     hard [
-        Hard { name: "all-zero", pins: "no value: nothing is promised", inputs: &[("kc", &[0.0]), ("kl", &[0.0]), ("kq", &[0.0])] },
-        Hard { name: "at-the-light", pins: "1/kc", inputs: &[("kc", &[0.5]), ("d", &[0.0])] },
-        Hard { name: "far", pins: "d² overflows: nothing is promised", inputs: &[("d", &[2e19]), ("kq", &[1.0])] },
-        Hard { name: "no-falloff", pins: "kc = 1 alone gives 1", inputs: &[("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[0.0])] },
+        Hard::new("all-zero", "no value: nothing is promised", &[("kc", &[0.0]), ("kl", &[0.0]), ("kq", &[0.0])]),
+        Hard::new("at-the-light", "1/kc", &[("kc", &[0.5]), ("d", &[0.0])]),
+        Hard::new("far", "d² overflows: nothing is promised", &[("d", &[2e19]), ("kq", &[1.0])]),
+        Hard::new("no-falloff", "kc = 1 alone gives 1", &[("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[0.0])]),
     ],
 );
 formula!(
@@ -62,8 +62,8 @@ formula!(
     [Input::direction("l"), Input::direction("axis"), CUTOFF] -> [SPOT],
     |x, out| { out.scalar(attenuation::spot_cutoff(x.vector(), x.vector(), x.scalar())); },
     hard [
-        Hard { name: "on-the-edge", pins: "the edge belongs to the cone", inputs: &[("l", &[0.0, 0.0, -1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[1.0])] },
-        Hard { name: "all-round", pins: "a cutoff of 180 degrees lights what lies behind too", inputs: &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[-1.0])] },
+        Hard::new("on-the-edge", "the edge belongs to the cone", &[("l", &[0.0, 0.0, -1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[1.0])]),
+        Hard::new("all-round", "a cutoff of 180 degrees lights what lies behind too", &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[-1.0])]),
     ],
 );
 formula!(
@@ -74,8 +74,8 @@ formula!(
     fit toward_the_cone,
     |x, out| { out.scalar(attenuation::spot_exponent(x.vector(), x.vector(), x.scalar(), x.scalar())); },
     hard [
-        Hard { name: "no-exponent", pins: "an evenly lit cone", inputs: &[("l", &[0.0, 0.6, -0.8]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[0.0])] },
-        Hard { name: "behind", pins: "0 behind the light with the widest cone", inputs: &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[2.0])] },
+        Hard::new("no-exponent", "an evenly lit cone", &[("l", &[0.0, 0.6, -0.8]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[0.0])]),
+        Hard::new("behind", "0 behind the light with the widest cone", &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[2.0])]),
     ],
 );
 
@@ -87,6 +87,63 @@ fn toward_the_cone(row: &mut [f32]) {
     }
 }
 
+formula!(
+    /// The polynomial with d² first.
+    PolynomialExpanded: "attenuation/polynomial-expanded" by "attenuation_polynomial_expanded",
+    "atten = 1 / (kc + kl·d + kq·(d·d))", "004, taken literally",
+    [KC, KL, KQ, DISTANCE] -> [ATTEN],
+    |x, out| { out.scalar(attenuation::polynomial_expanded(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
+);
+formula!(
+    /// The polynomial by Horner's scheme with bounds.
+    PolynomialBounded: "attenuation/polynomial-bounded" by "attenuation_polynomial_bounded",
+    "atten = 1 / clamp(kc + d(kl + d·kq), 2⁻¹²⁶, 2¹²⁶)", "004, with a denominator that can be divided by",
+    [KC, KL, KQ, DISTANCE] -> [ATTEN],
+    stable 12.0 Own "two products and two sums of one sign, and a division of at most 2½ ULP",
+    |x, out| { out.scalar(attenuation::polynomial_bounded(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
+    hard [
+        Hard::new("no-quadratic-term-far", "a tube light at 1e20", &[("kc", &[0.0]), ("kl", &[1e-20]), ("kq", &[0.0]), ("d", &[1e20])])
+            .naive("attenuation/polynomial-expanded", "0·∞ is NaN", f64::INFINITY),
+        Hard::new("slight-quadratic-term-far", "kq·d² is 1e10 though d² overflows", &[("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[1e-30]), ("d", &[1e20])])
+            .naive("attenuation/polynomial-expanded", "d² is ∞", 1e6),
+        Hard::new("steep-quadratic-term-near", "kq·d² is 1e-10 though d² underflows", &[("kc", &[0.0]), ("kl", &[0.0]), ("kq", &[1e38]), ("d", &[1e-24])])
+            .naive("attenuation/polynomial-expanded", "d² is 0", f64::INFINITY),
+        Hard::new("all-zero", "the greatest value there is, not ∞", &[("kc", &[0.0]), ("kl", &[0.0]), ("kq", &[0.0])])
+            .naive("attenuation/polynomial-expanded", "1/0", f64::INFINITY),
+        Hard::new("at-a-tube-light", "the greatest value there is, not ∞", &[("kc", &[0.0]), ("kl", &[1000.0]), ("kq", &[0.0]), ("d", &[0.0])])
+            .naive("attenuation/polynomial-expanded", "1/0", f64::INFINITY),
+    ],
+);
+formula!(
+    /// From positions at any distance.
+    PointScaled: "attenuation/point-scaled" by "attenuation_point_scaled",
+    "atten of attenuation/polynomial-bounded at d = |(light − p)·2ᵏ|·2⁻ᵏ", "004, at any distance",
+    [KC, KL, KQ, Input::position("light"), Input::position("p")] -> [ATTEN],
+    stable 40.0 Own "a distance of 16 roundings, which its square doubles",
+    |x, out| { out.scalar(attenuation::point_scaled(x.scalar(), x.scalar(), x.scalar(), x.vector(), x.vector())); },
+    hard [
+        Hard::new("far", "5e19 away", &[("kc", &[1.0]), ("kl", &[1e-20]), ("kq", &[0.0]), ("light", &[3e19, 4e19, 0.0]), ("p", &[0.0, 0.0, 0.0])])
+            .naive("attenuation/point", "the distance is ∞", 1e6),
+        Hard::new("near", "5e-24 away", &[("kc", &[0.0]), ("kl", &[1e20]), ("kq", &[0.0]), ("light", &[3e-24, 4e-24, 0.0]), ("p", &[0.0, 0.0, 0.0])])
+            .naive("attenuation/point", "the distance is 0", f64::INFINITY),
+    ],
+);
+formula!(
+    /// A spotlight's exponent by the chord.
+    SpotExponentByChord: "attenuation/spot-exponent-by-chord" by "attenuation_spot_exponent_by_chord",
+    "spot = exp(e·ln(1 − q)), q = ½|l + axis|², within the cone, else 0", "OpenGL 2.1 §2.14.1, for narrow beams",
+    [Input::direction("l"), Input::direction("axis"), CUTOFF, EXPONENT] -> [SPOT],
+    fit toward_the_cone,
+    stable 32.0 Unit "as lighting/cosine-power-by-chord",
+    |x, out| { out.scalar(attenuation::spot_exponent_by_chord(x.vector(), x.vector(), x.scalar(), x.scalar())); },
+    hard [
+        Hard::new("beam-1e4", "half as bright at 0.67°", &[("l", &[-0.011_773_7, 0.0, -0.999_930_7]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e4])])
+            .naive("attenuation/spot-exponent", "1 − cosine has lost a bit in 1,000", 1e3),
+        Hard::new("beam-1e6", "half as bright at 0.07°", &[("l", &[-0.001_177_4, 0.0, -0.999_999_3]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e6])])
+            .naive("attenuation/spot-exponent", "1 − cosine has lost a bit in 10", 1e5),
+    ],
+);
+
 pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(Polynomial);
     visitor.formula(Constant);
@@ -95,4 +152,8 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(Point);
     visitor.formula(SpotCutoff);
     visitor.formula(SpotExponent);
+    visitor.formula(PolynomialExpanded);
+    visitor.formula(PolynomialBounded);
+    visitor.formula(PointScaled);
+    visitor.formula(SpotExponentByChord);
 }

@@ -13,7 +13,9 @@ use super::formula::{AnyFormula, Formula, formula};
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
 use lightmeter_reference::blend::{
-    Mode, Operands, Saturate, alpha_clamped, blend, blend_separate, layers, masked, without_alpha,
+    Mode, Operands, Saturate, alpha_clamped, blend, blend_separate, layers, masked, opacity_of_layers,
+    opacity_of_layers_expm1, over, over_incremental, subtract, subtract_compensated, unpremultiply,
+    unpremultiply_guarded, without_alpha,
 };
 use lightmeter_reference::{Real, Vector};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
@@ -47,6 +49,7 @@ impl Formula for BlendState {
             outputs: COLOR,
             fit: None,
             hard: hard(state),
+            stable: None,
         }
     }
 
@@ -58,45 +61,65 @@ impl Formula for BlendState {
 
 fn hard(state: State) -> &'static [Hard] {
     match (state.equation, state.src, state.dst) {
-        (Equation::Add, Factor::SrcAlpha, Factor::OneMinusSrcAlpha) => &[
-            Hard {
-                name: "blue-over-red",
-                pins: "document 000's figure",
-                inputs: &[("src", &[0.0, 0.0, 1.0, 0.6]), ("dst", &[1.0, 0.0, 0.0, 1.0])],
-            },
-            Hard {
-                name: "red-over-blue",
-                pins: "document 002's figure",
-                inputs: &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0, 1.0])],
-            },
-        ],
-        (Equation::Add, Factor::SrcAlphaSaturate, Factor::One) => &[
-            Hard {
-                name: "no-room-left",
-                pins: "an opaque destination takes nothing",
-                inputs: &[("src", &[1.0, 1.0, 1.0, 0.5]), ("dst", &[0.25, 0.25, 0.25, 1.0])],
-            },
-            Hard {
-                name: "alpha-above-one",
-                pins: "a float target does not clamp: min(As, 1 − Ad) is negative",
-                inputs: &[("src", &[1.0, 1.0, 1.0, 0.5]), ("dst", &[0.25, 0.25, 0.25, 1.5])],
-            },
-        ],
-        (Equation::Add, Factor::One, Factor::One) => &[Hard {
-            name: "half-overflow",
-            pins: "on binary16 65504 and infinity are both legal",
-            inputs: &[("src", &[60_000.0, 60_000.0, -60_000.0, 1.0]), ("dst", &[60_000.0, 1.0, -60_000.0, 1.0])],
-        }],
-        (Equation::Add, Factor::One, Factor::Zero) => &[Hard {
-            name: "beyond-half",
-            pins: "a source that binary16 cannot hold",
-            inputs: &[("src", &[1e6, -1e6, 65_519.0, 65_504.0]), ("dst", &[0.0, 0.0, 0.0, 0.0])],
-        }],
-        (Equation::Subtract, Factor::One, Factor::One) => &[Hard {
-            name: "below-zero",
-            pins: "a float target does not clamp",
-            inputs: &[("src", &[0.25, 0.0, 0.5, 0.0]), ("dst", &[0.75, 1.0, 0.5, 1.0])],
-        }],
+        (Equation::Add, Factor::SrcAlpha, Factor::OneMinusSrcAlpha) => {
+            const {
+                &[
+                    Hard::new(
+                        "blue-over-red",
+                        "document 000's figure",
+                        &[("src", &[0.0, 0.0, 1.0, 0.6]), ("dst", &[1.0, 0.0, 0.0, 1.0])],
+                    ),
+                    Hard::new(
+                        "red-over-blue",
+                        "document 002's figure",
+                        &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0, 1.0])],
+                    ),
+                ]
+            }
+        }
+        (Equation::Add, Factor::SrcAlphaSaturate, Factor::One) => {
+            const {
+                &[
+                    Hard::new(
+                        "no-room-left",
+                        "an opaque destination takes nothing",
+                        &[("src", &[1.0, 1.0, 1.0, 0.5]), ("dst", &[0.25, 0.25, 0.25, 1.0])],
+                    ),
+                    Hard::new(
+                        "alpha-above-one",
+                        "a float target does not clamp: min(As, 1 − Ad) is negative",
+                        &[("src", &[1.0, 1.0, 1.0, 0.5]), ("dst", &[0.25, 0.25, 0.25, 1.5])],
+                    ),
+                ]
+            }
+        }
+        (Equation::Add, Factor::One, Factor::One) => {
+            const {
+                &[Hard::new(
+                    "half-overflow",
+                    "on binary16 65504 and infinity are both legal",
+                    &[("src", &[60_000.0, 60_000.0, -60_000.0, 1.0]), ("dst", &[60_000.0, 1.0, -60_000.0, 1.0])],
+                )]
+            }
+        }
+        (Equation::Add, Factor::One, Factor::Zero) => {
+            const {
+                &[Hard::new(
+                    "beyond-half",
+                    "a source that binary16 cannot hold",
+                    &[("src", &[1e6, -1e6, 65_519.0, 65_504.0]), ("dst", &[0.0, 0.0, 0.0, 0.0])],
+                )]
+            }
+        }
+        (Equation::Subtract, Factor::One, Factor::One) => {
+            const {
+                &[Hard::new(
+                    "below-zero",
+                    "a float target does not clamp",
+                    &[("src", &[0.25, 0.0, 0.5, 0.0]), ("dst", &[0.75, 1.0, 0.5, 1.0])],
+                )]
+            }
+        }
         _ => &[],
     }
 }
@@ -249,6 +272,7 @@ fn unit_spec() -> Spec {
         outputs: COLOR,
         fit: None,
         hard: &[],
+        stable: None,
     }
 }
 
@@ -282,7 +306,7 @@ mode!(Solid, "blend/mode-solid", "blend_solid", Mode::Solid, "color = src");
 mode!(
     Alpha, "blend/mode-alpha", "blend_alpha", Mode::Alpha, "color = src·As + dst·(1 − As)",
     hard [
-        Hard { name: "half-red-over-blue", pins: "document 002's figure", inputs: &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0])] },
+        Hard::new("half-red-over-blue", "document 002's figure", &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0])]),
     ]
 );
 mode!(Mul, "blend/mode-mul", "blend_mul", Mode::Mul, "color = src * dst");
@@ -297,7 +321,7 @@ formula!(
     ] -> [Output::new("color", Shape::Vec4, "color")],
     |x, out| { out.vector(alpha_clamped(x.vector(), x.vector())); },
     hard [
-        Hard { name: "alpha-above-one", pins: "1 − As would be negative: clamped before, not after", inputs: &[("src", &[0.5, 0.5, 0.5, 1.5]), ("dst", &[1.0, 1.0, 1.0, 1.0])] },
+        Hard::new("alpha-above-one", "1 − As would be negative: clamped before, not after", &[("src", &[0.5, 0.5, 0.5, 1.5]), ("dst", &[1.0, 1.0, 1.0, 1.0])]),
     ],
 );
 
@@ -307,6 +331,101 @@ pub fn aliases() -> impl Iterator<Item = (String, String)> {
         .filter(|state| *state != state.canonical())
         .map(|state| (format!("blend/{state}"), format!("blend/{}", state.canonical())))
 }
+
+const BRIGHT: Input = Input::rgb("dst");
+const RGB: Output = Output::new("color", Shape::Vec3, "color");
+const SHOWN: Output = Output::new("opacity", Shape::Scalar, "1");
+const LAYER_ALPHA: Input = Input::scalar("alpha", "color", Domain::Uniform(0.01, 0.9));
+const LAYER_COUNT: Input = Input::scalar("layers", "1", Domain::Whole(1, 16));
+
+formula!(
+    /// Source-over as arithmetic.
+    Over: "blend/over" by "blend_over",
+    "color = src·As + dst(1 − As)", "000 §6.6, 002",
+    [Input::rgba("src"), BRIGHT] -> [RGB],
+    stable 4.0 Own "two products and a sum of one sign",
+    |x, out| { out.vector(over(x.vector(), x.vector())); },
+    hard [
+        Hard::new("opaque-over-1e8", "all of an opaque source, over the brightest light", &[("src", &[0.3, 0.5, 0.7, 1.0]), ("dst", &[1e8, 1e8, 1e8])])
+            .naive("blend/over-incremental", "src − dst has lost src", 1e6),
+        Hard::new("opaque-over-1e4", "all of an opaque source, over the sun", &[("src", &[0.3, 0.5, 0.7, 1.0]), ("dst", &[1e4, 2e4, 3e4])])
+            .naive("blend/over-incremental", "src − dst has lost 14 bits of src", 100.0),
+    ],
+);
+formula!(
+    /// Source-over by a difference.
+    OverIncremental: "blend/over-incremental" by "blend_over_incremental",
+    "color = dst + As(src − dst)", "a shortcut",
+    [Input::rgba("src"), BRIGHT] -> [RGB],
+    |x, out| { out.vector(over_incremental(x.vector(), x.vector())); },
+);
+formula!(
+    /// What many layers hide.
+    OpacityOfLayers: "blend/opacity-of-layers" by "blend_opacity_of_layers",
+    "opacity = 1 − (1 − α)ⁿ", "002, of n layers",
+    [LAYER_ALPHA, LAYER_COUNT] -> [SHOWN],
+    |x, out| { out.scalar(opacity_of_layers(x.scalar(), x.scalar())); },
+);
+formula!(
+    /// What many layers hide, however thin.
+    OpacityOfLayersExpm1: "blend/opacity-of-layers-expm1" by "blend_opacity_of_layers_expm1",
+    "opacity = −expm1(n·ln(1 − α)), short series for small ones", "002, of n layers",
+    [LAYER_ALPHA, LAYER_COUNT] -> [SHOWN],
+    stable 64.0 Own "two series of a few roundings; beyond 1/16, log's 2⁻²¹ of at least 0.06",
+    |x, out| { out.scalar(opacity_of_layers_expm1(x.scalar(), x.scalar())); },
+    hard [
+        Hard::new("one-of-1e-8", "a layer thinner than a rounding of 1", &[("alpha", &[1e-8]), ("layers", &[1.0])])
+            .naive("blend/opacity-of-layers", "1 − α is 1", 1e6),
+        Hard::new("a-hundred-of-1e-7", "thin layers add up", &[("alpha", &[1.3e-7]), ("layers", &[100.0])])
+            .naive("blend/opacity-of-layers", "1 − α has one bit of α", 1e5),
+        Hard::new("ten-of-1e-4", "thin layers add up", &[("alpha", &[1.1e-4]), ("layers", &[10.0])])
+            .naive("blend/opacity-of-layers", "1 − α has lost 13 bits of α", 300.0),
+        Hard::new("a-million-of-1e-6", "thin layers add up to most of it", &[("alpha", &[1.1e-6]), ("layers", &[1e6])])
+            .naive("blend/opacity-of-layers", "what 1 − α has lost, a million times", 1e4),
+    ],
+);
+formula!(
+    /// Straight alpha from premultiplied.
+    Unpremultiply: "blend/unpremultiply" by "blend_unpremultiply",
+    "color/α", "a shortcut",
+    [Input::rgb("color"), Input::scalar("alpha", "color", Domain::Uniform(0.01, 1.0))] -> [RGB],
+    |x, out| { out.vector(unpremultiply(x.vector(), x.scalar())); },
+);
+formula!(
+    /// Straight alpha from premultiplied, where nothing is there too.
+    UnpremultiplyGuarded: "blend/unpremultiply-guarded" by "blend_unpremultiply_guarded",
+    "color/α, and 0 for α < 2⁻¹²⁶", "000 §6.6 undone",
+    [Input::rgb("color"), Input::scalar("alpha", "color", Domain::Uniform(0.01, 1.0))] -> [RGB],
+    stable 6.0 Own "a division of at most 2½ ULP",
+    |x, out| { out.vector(unpremultiply_guarded(x.vector(), x.scalar())); },
+    hard [
+        Hard::new("nothing", "0/0 is no colour", &[("color", &[0.0, 0.0, 0.0]), ("alpha", &[0.0])])
+            .naive("blend/unpremultiply", "NaN, which spreads through every blur", f64::INFINITY),
+        Hard::new("glow", "light without cover: nothing straight alpha could hold", &[("color", &[0.5, 0.25, 0.125]), ("alpha", &[0.0])])
+            .naive("blend/unpremultiply", "∞", f64::INFINITY),
+    ],
+);
+formula!(
+    /// The subtraction of two products.
+    SubtractProducts: "blend/subtract-products" by "blend_subtract",
+    "src·S − dst·D", "000 §6.6, FUNC_SUBTRACT",
+    [Input::scalar("src", "color", Domain::Unit), Input::scalar("s", "1", Domain::Unit), Input::scalar("dst", "color", Domain::Unit), Input::scalar("d", "1", Domain::Unit)] -> [Output::new("color", Shape::Scalar, "color")],
+    |x, out| { out.scalar(subtract(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
+);
+formula!(
+    /// The subtraction of two products that nearly cancel.
+    SubtractCompensated: "blend/subtract-compensated" by "blend_subtract_compensated",
+    "src·S − dst·D, a difference of products (Kahan)", "Jeannerod, Louvet & Muller 2013",
+    [Input::scalar("src", "color", Domain::Unit), Input::scalar("s", "1", Domain::Unit), Input::scalar("dst", "color", Domain::Unit), Input::scalar("d", "1", Domain::Unit)] -> [Output::new("color", Shape::Scalar, "color")],
+    stable 2.0 Own "2 roundings (Kahan)",
+    |x, out| { out.scalar(subtract_compensated(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
+    hard [
+        Hard::new("the-same-but-a-bit", "products that agree to the last bits", &[("src", &[0.3]), ("s", &[0.7]), ("dst", &[0.6]), ("d", &[0.350_000_03])])
+            .naive("blend/subtract-products", "not one digit is right", 1e5),
+        Hard::new("the-same-to-5-digits", "products that agree to 5 digits", &[("src", &[0.3]), ("s", &[0.7]), ("dst", &[0.6]), ("d", &[0.350_003])])
+            .naive("blend/subtract-products", "the rounding of the products is what is left", 1e3),
+    ],
+);
 
 pub(super) fn visit(visitor: &mut impl Visitor) {
     for state in State::all().filter(|state| *state == state.canonical()) {
@@ -332,6 +451,14 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     for (state, hard) in SPECIAL {
         visitor.formula(SpecialValues(*state, hard));
     }
+    visitor.formula(Over);
+    visitor.formula(OverIncremental);
+    visitor.formula(OpacityOfLayers);
+    visitor.formula(OpacityOfLayersExpm1);
+    visitor.formula(Unpremultiply);
+    visitor.formula(UnpremultiplyGuarded);
+    visitor.formula(SubtractProducts);
+    visitor.formula(SubtractCompensated);
 }
 
 /// Each of the 1,125 states as a formula, those that ignore their factors too.

@@ -15,11 +15,11 @@ formula!(
     [Input::scalar("c", "color", BEYOND)] -> [Output::new("byte", Shape::Scalar, "1/255")],
     |x, out| { out.scalar(color::to_unorm8(x.scalar())); },
     hard [
-        Hard { name: "half-a-step", pins: "a tie: both neighbours are legal", inputs: &[("c", &[0.5 / 255.0])] },
-        Hard { name: "half-grey", pins: "127.5 may go either way, 128 by ties to even", inputs: &[("c", &[0.5])] },
-        Hard { name: "just-below-a-step", pins: "truncation would give 0", inputs: &[("c", &[0.003_921_568])] },
-        Hard { name: "below-zero", pins: "clamped", inputs: &[("c", &[-1e30])] },
-        Hard { name: "above-one", pins: "clamped", inputs: &[("c", &[1e30])] },
+        Hard::new("half-a-step", "a tie: both neighbours are legal", &[("c", &[0.5 / 255.0])]),
+        Hard::new("half-grey", "127.5 may go either way, 128 by ties to even", &[("c", &[0.5])]),
+        Hard::new("just-below-a-step", "truncation would give 0", &[("c", &[0.003_921_568])]),
+        Hard::new("below-zero", "clamped", &[("c", &[-1e30])]),
+        Hard::new("above-one", "clamped", &[("c", &[1e30])]),
     ],
 );
 formula!(
@@ -36,8 +36,8 @@ formula!(
     [Input::rgba("c")] -> [COLOR],
     |x, out| { out.vector(color::srgb_encode_rgba(x.vector())); },
     hard [
-        Hard { name: "threshold", pins: "both pieces are legal where they meet", inputs: &[("c", &[0.003_130_8, 0.003_130_7, 0.003_131, 1.0])] },
-        Hard { name: "ends", pins: "0 and 1 are kept", inputs: &[("c", &[0.0, 1.0, 1e-30, 0.0])] },
+        Hard::new("threshold", "both pieces are legal where they meet", &[("c", &[0.003_130_8, 0.003_130_7, 0.003_131, 1.0])]),
+        Hard::new("ends", "0 and 1 are kept", &[("c", &[0.0, 1.0, 1e-30, 0.0])]),
     ],
 );
 formula!(
@@ -47,7 +47,7 @@ formula!(
     [Input::rgba("e")] -> [COLOR],
     |x, out| { out.vector(color::srgb_decode_rgba(x.vector())); },
     hard [
-        Hard { name: "threshold", pins: "both pieces are legal where they meet", inputs: &[("e", &[0.040_45, 0.040_449, 0.040_451, 1.0])] },
+        Hard::new("threshold", "both pieces are legal where they meet", &[("e", &[0.040_45, 0.040_449, 0.040_451, 1.0])]),
     ],
 );
 formula!(
@@ -71,11 +71,11 @@ formula!(
     [Input::rgb("a"), Input::rgb("b")] -> [Output::new("color", Shape::Vec3, "color")],
     |x, out| { out.vector(color::sum(x.vector(), x.vector())); },
     hard [
-        Hard { name: "red-and-green", pins: "yellow", inputs: &[("a", &[1.0, 0.0, 0.0]), ("b", &[0.0, 1.0, 0.0])] },
-        Hard { name: "green-and-blue", pins: "cyan", inputs: &[("a", &[0.0, 1.0, 0.0]), ("b", &[0.0, 0.0, 1.0])] },
-        Hard { name: "blue-and-red", pins: "magenta", inputs: &[("a", &[0.0, 0.0, 1.0]), ("b", &[1.0, 0.0, 0.0])] },
-        Hard { name: "yellow-and-blue", pins: "white", inputs: &[("a", &[1.0, 1.0, 0.0]), ("b", &[0.0, 0.0, 1.0])] },
-        Hard { name: "white-and-white", pins: "clamped", inputs: &[("a", &[1.0, 1.0, 1.0]), ("b", &[1.0, 1.0, 1.0])] },
+        Hard::new("red-and-green", "yellow", &[("a", &[1.0, 0.0, 0.0]), ("b", &[0.0, 1.0, 0.0])]),
+        Hard::new("green-and-blue", "cyan", &[("a", &[0.0, 1.0, 0.0]), ("b", &[0.0, 0.0, 1.0])]),
+        Hard::new("blue-and-red", "magenta", &[("a", &[0.0, 0.0, 1.0]), ("b", &[1.0, 0.0, 0.0])]),
+        Hard::new("yellow-and-blue", "white", &[("a", &[1.0, 1.0, 0.0]), ("b", &[0.0, 0.0, 1.0])]),
+        Hard::new("white-and-white", "clamped", &[("a", &[1.0, 1.0, 1.0]), ("b", &[1.0, 1.0, 1.0])]),
     ],
 );
 formula!(
@@ -95,8 +95,46 @@ formula!(
     ] -> [COLOR],
     |x, out| { out.vector(color::per_vertex(x.array(), x.vectors())); },
     hard [
-        Hard { name: "outside", pins: "alpha is 1, not the weights' sum", inputs: &[("weights", &[0.5, 0.25, 0.0])] },
+        Hard::new("outside", "alpha is 1, not the weights' sum", &[("weights", &[0.5, 0.25, 0.0])]),
     ],
+);
+
+const ENCODED: Output = Output::new("e", Shape::Scalar, "color");
+const COMPONENT: Input = Input::scalar("c", "color", Domain::Uniform(0.01, 1.0));
+
+formula!(
+    /// sRGB encoding of one component.
+    SrgbEncodeComponent: "color/srgb-encode-component" by "color_srgb_encode_component",
+    "e = 12.92·c for c ≤ 0.0031308, else 1.055·c^(1/2.4) − 0.055", "IEC 61966-2-1",
+    [COMPONENT] -> [ENCODED],
+    stable 128.0 Own "pow errs by up to 2⁻²¹/2.4 of itself, which the subtraction of 0.055 magnifies by up to 2½",
+    |x, out| { out.scalar(color::srgb_encode(x.scalar())); },
+    hard [
+        Hard::new("below-zero", "a colour out of gamut stays a number", &[("c", &[-0.001])])
+            .naive("color/srgb-encode-power", "the power of a negative base: NaN, or a colour", 1e6),
+        Hard::new("far-below-zero", "likewise", &[("c", &[-0.5])])
+            .naive("color/srgb-encode-power", "the power of a negative base: NaN, or a colour", 1e6),
+        Hard::new("near-black", "the straight piece", &[("c", &[1e-4])])
+            .naive("color/gamma-encode", "12 times too bright", 1e8),
+        Hard::new("black-of-half-a-step", "the straight piece", &[("c", &[1.5e-4])])
+            .naive("color/gamma-encode", "9 times too bright", 1e8),
+        Hard::new("just-above-the-threshold", "the two pieces meet", &[("c", &[0.0032])])
+            .naive("color/gamma-encode", "1.8 times too bright", 1e7),
+    ],
+);
+formula!(
+    /// sRGB encoding of one component without its straight piece.
+    SrgbEncodePower: "color/srgb-encode-power" by "color_srgb_encode_power",
+    "e = 1.055·c^(1/2.4) − 0.055", "a shortcut: sRGB without its straight piece",
+    [COMPONENT] -> [ENCODED],
+    |x, out| { out.scalar(color::srgb_encode_power(x.scalar())); },
+);
+formula!(
+    /// One power for sRGB.
+    GammaEncode: "color/gamma-encode" by "color_gamma_encode",
+    "e = c^(1/2.2)", "a shortcut",
+    [COMPONENT] -> [ENCODED],
+    |x, out| { out.scalar(color::gamma_encode(x.scalar())); },
 );
 
 pub(super) fn visit(visitor: &mut impl Visitor) {
@@ -109,4 +147,7 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(Sum);
     visitor.formula(Uniform);
     visitor.formula(PerVertex);
+    visitor.formula(SrgbEncodeComponent);
+    visitor.formula(SrgbEncodePower);
+    visitor.formula(GammaEncode);
 }

@@ -1,12 +1,12 @@
 //! Cases of the depth test: every compare function, with and without writing. Formulas: `lightmeter_reference::depth`.
 
-use super::formula::Formula;
+use super::formula::{Formula, formula};
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
 use super::{Visitor, raster};
 use lightmeter_gpu::Raster;
 use lightmeter_reference::Real;
-use lightmeter_reference::depth::{passes, test};
+use lightmeter_reference::depth::{passes, recovered, recovered_reversed, test};
 use lightmeter_scene::depth::{Compare, DepthTest};
 
 /// A fragment over another.
@@ -30,6 +30,7 @@ impl Formula for OverAnother {
             outputs: OUTPUTS,
             fit: Some(bring_together),
             hard: hard(self.0),
+            stable: None,
         }
     }
 
@@ -57,31 +58,51 @@ const NEXT_TO_HALF: f32 = f32::from_bits(0x3f00_0001);
 
 const fn hard(by: DepthTest) -> &'static [Hard] {
     match (by.compare, by.write) {
-        (Compare::Less, true) => &[Hard {
-            name: "nearer-before-the-near-plane",
-            pins: "both are 0 once clamped, so neither is nearer",
-            inputs: &[("new", &[-0.5]), ("old", &[-0.25])],
-        }],
-        (Compare::Equal, true) => &[Hard {
-            name: "equal-beyond-the-far-plane",
-            pins: "both are 1 once clamped",
-            inputs: &[("new", &[1.25]), ("old", &[1.5])],
-        }],
-        (Compare::NotEqual, true) => &[Hard {
-            name: "the-next-float",
-            pins: "one unit in the last place is a difference",
-            inputs: &[("new", &[NEXT_TO_HALF]), ("old", &[0.5])],
-        }],
-        (Compare::Always, false) => &[Hard {
-            name: "drawn-last",
-            pins: "without a test what is drawn last is seen, however far",
-            inputs: &[("new", &[1.0]), ("old", &[0.0])],
-        }],
-        (Compare::GreaterEqual, true) => &[Hard {
-            name: "reversed",
-            pins: "with depth reversed, 1 at the near plane, the greater is nearer",
-            inputs: &[("new", &[0.75]), ("old", &[0.25])],
-        }],
+        (Compare::Less, true) => {
+            const {
+                &[Hard::new(
+                    "nearer-before-the-near-plane",
+                    "both are 0 once clamped, so neither is nearer",
+                    &[("new", &[-0.5]), ("old", &[-0.25])],
+                )]
+            }
+        }
+        (Compare::Equal, true) => {
+            const {
+                &[Hard::new(
+                    "equal-beyond-the-far-plane",
+                    "both are 1 once clamped",
+                    &[("new", &[1.25]), ("old", &[1.5])],
+                )]
+            }
+        }
+        (Compare::NotEqual, true) => {
+            const {
+                &[Hard::new(
+                    "the-next-float",
+                    "one unit in the last place is a difference",
+                    &[("new", &[NEXT_TO_HALF]), ("old", &[0.5])],
+                )]
+            }
+        }
+        (Compare::Always, false) => {
+            const {
+                &[Hard::new(
+                    "drawn-last",
+                    "without a test what is drawn last is seen, however far",
+                    &[("new", &[1.0]), ("old", &[0.0])],
+                )]
+            }
+        }
+        (Compare::GreaterEqual, true) => {
+            const {
+                &[Hard::new(
+                    "reversed",
+                    "with depth reversed, 1 at the near plane, the greater is nearer",
+                    &[("new", &[0.75]), ("old", &[0.25])],
+                )]
+            }
+        }
         _ => &[],
     }
 }
@@ -104,6 +125,7 @@ impl Formula for OverItself {
             outputs: OUTPUTS,
             fit: Some(raster::triangle_around_the_pixel),
             hard: &[],
+            stable: None,
         }
     }
 
@@ -113,6 +135,37 @@ impl Formula for OverItself {
     }
 }
 
+const NEAR: Input = Input::scalar("near", "unit", Domain::LogUniform(0.5, 1.0));
+const FAR: Input = Input::scalar("far", "unit", Domain::LogUniform(50.0, 100.0));
+const EYE_DISTANCE: Input = Input::scalar("z", "unit", Domain::LogUniform(1.0, 50.0));
+const READ_BACK: Output = Output::new("z", Shape::Scalar, "unit");
+
+formula!(
+    /// A distance read back from depth.
+    Recovered: "depth/recovered" by "depth_recovered",
+    "z = n·f/(f − depth(f − n)), depth = f(z − n)/(z(f − n))", "000 §6.6; ruling 15",
+    [NEAR, FAR, EYE_DISTANCE] -> [READ_BACK],
+    |x, out| { out.scalar(recovered(x.scalar(), x.scalar(), x.scalar())); },
+);
+formula!(
+    /// A distance read back from depth reversed.
+    RecoveredReversed: "depth/recovered-reversed" by "depth_recovered_reversed",
+    "z = n·f/(n + depth(f − n)), depth = n(f − z)/(z(f − n))", "000 §6.6, with depth reversed",
+    [NEAR, FAR, EYE_DISTANCE] -> [READ_BACK],
+    stable 32.0 Own "five products, two differences that cancel by little and two divisions of at most 2½ ULP",
+    |x, out| { out.scalar(recovered_reversed(x.scalar(), x.scalar(), x.scalar())); },
+    hard [
+        Hard::new("at-900-of-1000", "near 0.1, far 1000: no nearer than half a unit", &[("near", &[0.1]), ("far", &[1000.0]), ("z", &[900.3])])
+            .naive("depth/recovered", "a step of depth is 0.48 units", 500.0),
+        Hard::new("near-1e-3-far-1e6", "near and far 1e9 apart", &[("near", &[1e-3]), ("far", &[1e6]), ("z", &[1234.5])])
+            .naive("depth/recovered", "1 − depth has lost 20 bits", 1e5),
+        Hard::new("a-room", "near 0.01, far 1e5, at 10", &[("near", &[0.01]), ("far", &[1e5]), ("z", &[10.7])])
+            .naive("depth/recovered", "1 − depth has lost 10 bits", 100.0),
+        Hard::new("the-horizon", "near 0.1, far 1e7, at 1e5", &[("near", &[0.1]), ("far", &[1e7]), ("z", &[123_456.0])])
+            .naive("depth/recovered", "1 − depth has lost 20 bits", 1e5),
+    ],
+);
+
 pub(super) fn visit(visitor: &mut impl Visitor) {
     for by in DepthTest::all() {
         visitor.formula(OverAnother(by));
@@ -120,4 +173,6 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     for compare in Compare::ALL {
         visitor.formula(OverItself(compare));
     }
+    visitor.formula(Recovered);
+    visitor.formula(RecoveredReversed);
 }

@@ -2,7 +2,7 @@
 //! so that shards, baselines and a case shown by itself agree.
 
 use super::blend::Program;
-use super::spec::{Domain, Input, Kind, Shape, Spec};
+use super::spec::{Domain, Hard, Input, Kind, Shape, Spec};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State};
 
 /// Raised whenever the same seed would give other inputs.
@@ -25,6 +25,20 @@ pub fn inputs(spec: &Spec, seed: u64, k: u64, row: &mut Vec<f32>) {
 }
 
 impl Input {
+    /// Whether any number between two others will do.
+    const fn is_continuous(&self) -> bool {
+        !matches!(self.domain, Domain::Whole(..) | Domain::Halves(..) | Domain::Pixel)
+    }
+
+    /// Whether a negative number has no meaning.
+    fn is_never_negative(&self) -> bool {
+        match self.domain {
+            Domain::Uniform(low, _) => low >= 0.0,
+            Domain::LogUniform(..) | Domain::Unit | Domain::Weights => true,
+            _ => false,
+        }
+    }
+
     /// A value in the middle of the domain, for the inputs that a hard case leaves open.
     pub(crate) fn middle(&self, row: &mut Vec<f32>) {
         let middle = match self.domain {
@@ -45,6 +59,35 @@ impl Input {
             }
         };
         row.extend(std::iter::repeat_n(middle, self.shape.components()));
+    }
+}
+
+/// Moves the numbers that a hard case gives by a few ULP, up or down, the k-th way.
+///
+/// Whole numbers stay, and so does a 0 among other components. A 0 by itself becomes one of the least normal numbers, of
+/// either sign where the input may be negative.
+pub fn move_by_ulps(spec: &Spec, hard: &Hard, k: u64, row: &mut [f32]) {
+    const FARTHEST: u64 = 3;
+    let mut numbers = Numbers::new(&format!("{}/hard/{}", spec.id, hard.name), 0, k);
+    for input in spec.inputs {
+        let is_given = hard.inputs.iter().any(|(name, _)| *name == input.name);
+        let Some(range) = spec.place(input.name).filter(|_| is_given && input.is_continuous()) else { continue };
+        let is_zero = row[range.clone()].iter().all(|&x| x == 0.0);
+        for x in &mut row[range] {
+            let steps = numbers.next() >> 7;
+            let (count, up) = (1 + steps % FARTHEST, steps >> 32 & 1 == 1);
+            // A third stays where it is, so that one input is moved alone too.
+            if numbers.next().is_multiple_of(3) || (*x == 0.0 && !is_zero) {
+                continue;
+            }
+            if *x == 0.0 {
+                *x = if up || input.is_never_negative() { f32::MIN_POSITIVE } else { -f32::MIN_POSITIVE };
+                continue;
+            }
+            for _ in 0..count {
+                *x = if up { x.next_up() } else { x.next_down() };
+            }
+        }
     }
 }
 

@@ -38,13 +38,15 @@ fn in_order(row: &mut [f32]) {
 }
 
 macro_rules! linear {
-    ($name:ident, $id:literal, $function:literal, $distance:expr, $text:literal $(, hard [$($hard:expr),* $(,)?])?) => {
+    ($name:ident, $id:literal, $function:literal, $distance:expr, $text:literal
+        $(, stable $bound:literal $size:ident $because:literal)? $(, hard [$($hard:expr),* $(,)?])?) => {
         formula!(
             /// Linear fog.
             $name: $id by $function,
             $text, "000 §6.5; ruling 10",
             [P, DMIN, DMAX, FOG, SHADED] -> [F, COLOR],
             fit in_order,
+            $(stable $bound $size $because,)?
             |x, out| { fogged(x, out, $distance, |d, [dmin, dmax]| fog::linear(d, dmin, dmax)); }
             $(, hard [$($hard),*])?
         );
@@ -54,15 +56,23 @@ macro_rules! linear {
 linear!(
     Linear, "fog/linear", "fog_linear", Distance::Planar,
     "f = clamp((dmax − |z|)/(dmax − dmin), 0, 1); color = mix(fog, shaded, f)",
+    stable 24.0 Unit "two exact differences and a division of at most 2½ ULP, then a mix of it in three components",
     hard [
-        Hard { name: "dmin-equals-dmax", pins: "a step, clear before it", inputs: &[("p", &[0.0, 0.0, -9.0]), ("dmin", &[10.0]), ("dmax", &[10.0])] },
-        Hard { name: "dmin-equals-dmax-at-the-step", pins: "fog from dmax on", inputs: &[("p", &[0.0, 0.0, -10.0]), ("dmin", &[10.0]), ("dmax", &[10.0])] },
-        Hard { name: "dmax-below-dmin", pins: "the fog turned round", inputs: &[("p", &[0.0, 0.0, -12.0]), ("dmin", &[20.0]), ("dmax", &[10.0])] },
-        Hard { name: "at-dmin", pins: "clear", inputs: &[("p", &[0.0, 0.0, -5.0]), ("dmin", &[5.0]), ("dmax", &[10.0])] },
-        Hard { name: "at-dmax", pins: "only fog", inputs: &[("p", &[0.0, 0.0, -10.0]), ("dmin", &[5.0]), ("dmax", &[10.0])] },
-        Hard { name: "nearly-a-step", pins: "one ULP between dmin and dmax", inputs: &[("p", &[0.0, 0.0, -10.0]), ("dmin", &[10.0]), ("dmax", &[10.000_001])] },
-        Hard { name: "a-few-ulp-wide", pins: "a ramp, however steep, is no step", inputs: &[("p", &[0.0, 0.0, -10.000_001]), ("dmin", &[10.0]), ("dmax", &[10.000_004])] },
-        Hard { name: "in-front-and-behind", pins: "|z|, not z", inputs: &[("p", &[3.0, 4.0, 7.0]), ("dmin", &[5.0]), ("dmax", &[10.0])] },
+        Hard::new("dmin-equals-dmax", "a step, clear before it", &[("p", &[0.0, 0.0, -9.0]), ("dmin", &[10.0]), ("dmax", &[10.0])])
+            .naive("fog/linear-multiply-add", "∞ − ∞", 1e6),
+        Hard::new("band-of-1-at-1e4", "a narrow band far away", &[("p", &[0.0, 0.0, -9999.7]), ("dmin", &[9999.0]), ("dmax", &[10000.0])])
+            .naive("fog/linear-multiply-add", "10000 − 9999.7 from two rounded numbers", 1e3),
+        Hard::new("band-of-1-at-1e5", "a narrow band farther away", &[("p", &[0.0, 0.0, -99_999.7]), ("dmin", &[99_999.0]), ("dmax", &[1e5])])
+            .naive("fog/linear-multiply-add", "100000 − 99999.7 from two rounded numbers", 1e4),
+        Hard::new("band-of-a-half-at-1e6", "a few steps wide", &[("p", &[0.0, 0.0, -999_999.7]), ("dmin", &[999_999.5]), ("dmax", &[1e6])])
+            .naive("fog/linear-multiply-add", "1e6 − 999999.7 from two rounded numbers", 1e5),
+        Hard::new("dmin-equals-dmax-at-the-step", "fog from dmax on", &[("p", &[0.0, 0.0, -10.0]), ("dmin", &[10.0]), ("dmax", &[10.0])]),
+        Hard::new("dmax-below-dmin", "the fog turned round", &[("p", &[0.0, 0.0, -12.0]), ("dmin", &[20.0]), ("dmax", &[10.0])]),
+        Hard::new("at-dmin", "clear", &[("p", &[0.0, 0.0, -5.0]), ("dmin", &[5.0]), ("dmax", &[10.0])]),
+        Hard::new("at-dmax", "only fog", &[("p", &[0.0, 0.0, -10.0]), ("dmin", &[5.0]), ("dmax", &[10.0])]),
+        Hard::new("nearly-a-step", "one ULP between dmin and dmax", &[("p", &[0.0, 0.0, -10.0]), ("dmin", &[10.0]), ("dmax", &[10.000_001])]),
+        Hard::new("a-few-ulp-wide", "a ramp, however steep, is no step", &[("p", &[0.0, 0.0, -10.000_001]), ("dmin", &[10.0]), ("dmax", &[10.000_004])]),
+        Hard::new("in-front-and-behind", "|z|, not z", &[("p", &[3.0, 4.0, 7.0]), ("dmin", &[5.0]), ("dmax", &[10.0])]),
     ]
 );
 linear!(
@@ -72,21 +82,22 @@ linear!(
     Distance::Radial,
     "f = clamp((dmax − |p|)/(dmax − dmin), 0, 1); color = mix(fog, shaded, f)",
     hard [
-        Hard { name: "dmin-equals-dmax", pins: "a step, clear before it", inputs: &[("p", &[0.0, 0.0, -9.0]), ("dmin", &[10.0]), ("dmax", &[10.0])] },
-        Hard { name: "sideways", pins: "|p|, not |z|", inputs: &[("p", &[10.0, 0.0, 0.0]), ("dmin", &[5.0]), ("dmax", &[10.0])] },
+        Hard::new("dmin-equals-dmax", "a step, clear before it", &[("p", &[0.0, 0.0, -9.0]), ("dmin", &[10.0]), ("dmax", &[10.0])]),
+        Hard::new("sideways", "|p|, not |z|", &[("p", &[10.0, 0.0, 0.0]), ("dmin", &[5.0]), ("dmax", &[10.0])]),
     ]
 );
 
 macro_rules! exponential {
     (
         $name:ident, $id:literal, $function:literal, $distance:expr, $factor:path, $density:expr, $text:literal,
-        $source:literal $(, hard [$($hard:expr),* $(,)?])?
+        $source:literal $(, stable $bound:literal $size:ident $because:literal)? $(, hard [$($hard:expr),* $(,)?])?
     ) => {
         formula!(
             /// Exponential fog.
             $name: $id by $function,
             $text, $source,
             [P, $density, FOG, SHADED] -> [F, COLOR],
+            $(stable $bound $size $because,)?
             |x, out| { fogged(x, out, $distance, |d, [density]| $factor(d, density)); }
             $(, hard [$($hard),*])?
         );
@@ -97,10 +108,10 @@ exponential!(
     Exp, "fog/exp", "fog_exp", Distance::Planar, fog::exp, DENSITY,
     "f = clamp(exp(−density·|z|), 0, 1); color = mix(fog, shaded, f)", "000 §6.5",
     hard [
-        Hard { name: "no-density", pins: "density 0 is no fog", inputs: &[("p", &[0.0, 0.0, -50.0]), ("density", &[0.0])] },
-        Hard { name: "at-the-eye", pins: "clear", inputs: &[("p", &[0.0, 0.0, 0.0]), ("density", &[1.0])] },
-        Hard { name: "negative-density", pins: "clamped: never clearer than clear", inputs: &[("p", &[0.0, 0.0, -10.0]), ("density", &[-0.1])] },
-        Hard { name: "far", pins: "only fog, the factor underflows", inputs: &[("p", &[0.0, 0.0, -1e6]), ("density", &[1.0])] },
+        Hard::new("no-density", "density 0 is no fog", &[("p", &[0.0, 0.0, -50.0]), ("density", &[0.0])]),
+        Hard::new("at-the-eye", "clear", &[("p", &[0.0, 0.0, 0.0]), ("density", &[1.0])]),
+        Hard::new("negative-density", "clamped: never clearer than clear", &[("p", &[0.0, 0.0, -10.0]), ("density", &[-0.1])]),
+        Hard::new("far", "only fog, the factor underflows", &[("p", &[0.0, 0.0, -1e6]), ("density", &[1.0])]),
     ]
 );
 exponential!(
@@ -116,8 +127,11 @@ exponential!(
 exponential!(
     Exp2Document, "fog/exp2-document", "fog_exp2_document", Distance::Planar, fog::exp2_document, DENSITY_SQUARED,
     "f = clamp(exp(−density·z²), 0, 1); color = mix(fog, shaded, f)", "000 §6.5; ruling 4",
+    stable 32.0 Unit "(density·z)·z: two products, of which f·ln f takes at most 0.37, exp's 3 ULP and more, and a mix",
     hard [
-        Hard { name: "no-density", pins: "density 0 is no fog", inputs: &[("density", &[0.0])] },
+        Hard::new("far-in-the-thinnest-fog", "density·z² is 4.8 though z² overflows", &[("p", &[0.0, 0.0, -2e19]), ("density", &[1.2e-38])])
+            .naive("fog/exp2-document-square", "z² is ∞", 1e4),
+        Hard::new("no-density", "density 0 is no fog", &[("density", &[0.0])]),
     ]
 );
 exponential!(
@@ -133,9 +147,13 @@ exponential!(
 exponential!(
     Exp2OpenGl, "fog/exp2-opengl", "fog_exp2_opengl", Distance::Planar, fog::exp2_opengl, DENSITY,
     "f = clamp(exp(−(density·z)²), 0, 1); color = mix(fog, shaded, f)", "OpenGL 2.1 §3.10; ruling 4",
+    stable 32.0 Unit "t = density·z, then t·t: two products, of which f·ln f takes at most 0.74, exp's 3 ULP and more, and a mix",
     hard [
-        Hard { name: "no-density", pins: "density 0 is no fog", inputs: &[("density", &[0.0])] },
-        Hard { name: "tiny-density-far-away", pins: "a product that may over- or underflow in some order", inputs: &[("p", &[0.0, 0.0, -1e30]), ("density", &[1e-30])] },
+        Hard::new("no-density", "density 0 is no fog", &[("density", &[0.0])]),
+        Hard::new("tiny-density-far-away", "a product that may over- or underflow in some order", &[("p", &[0.0, 0.0, -1e30]), ("density", &[1e-30])])
+            .naive("fog/exp2-opengl-squares", "0·∞ is NaN", 1e6),
+        Hard::new("dense-fog-at-1e-23", "the distance's square underflows", &[("p", &[0.0, 0.0, -1e-23]), ("density", &[9e22])])
+            .naive("fog/exp2-opengl-squares", "∞·0 is NaN", 1e6),
     ]
 );
 exponential!(
@@ -149,6 +167,76 @@ exponential!(
     "OpenGL 2.1 §3.10, a dialect"
 );
 
+formula!(
+    /// Linear fog as a multiply-add.
+    LinearMultiplyAdd: "fog/linear-multiply-add" by "fog_linear_multiply_add",
+    "f = clamp(|z|·scale + offset, 0, 1), scale = −1/(dmax − dmin), offset = dmax/(dmax − dmin)", "a shortcut",
+    [P, DMIN, DMAX, FOG, SHADED] -> [F, COLOR],
+    fit in_order,
+    |x, out| { fogged(x, out, Distance::Planar, |d, [dmin, dmax]| fog::linear_multiply_add(d, dmin, dmax)); },
+);
+formula!(
+    /// Document 000's exponential-squared fog, the distance squared first.
+    Exp2DocumentSquare: "fog/exp2-document-square" by "fog_exp2_document_square",
+    "f = clamp(exp(−density·(z·z)), 0, 1)", "000 §6.5, taken literally",
+    [P, DENSITY_SQUARED, FOG, SHADED] -> [F, COLOR],
+    |x, out| { fogged(x, out, Distance::Planar, |d, [density]| fog::exp2_document_square(d, density)); },
+);
+formula!(
+    /// OpenGL's exponential-squared fog, density and distance squared alone.
+    Exp2OpenGlSquares: "fog/exp2-opengl-squares" by "fog_exp2_opengl_squares",
+    "f = clamp(exp(−(density·density)·(z·z)), 0, 1)", "a shortcut",
+    [P, DENSITY, FOG, SHADED] -> [F, COLOR],
+    |x, out| { fogged(x, out, Distance::Planar, |d, [density]| fog::exp2_opengl_squares(d, density)); },
+);
+formula!(
+    /// Exponential fog by a distance of any length.
+    ExpRadialScaled: "fog/exp-radial-scaled" by "fog_exp_radial_scaled",
+    "f = clamp(exp(−density·|p·2ᵏ|·2⁻ᵏ), 0, 1); color = mix(fog, shaded, f)", "000 §6.5, a dialect, at any distance",
+    [P, DENSITY, FOG, SHADED] -> [F, COLOR],
+    stable 48.0 Unit "a distance of 16 roundings, which f·ln f takes at most 0.37 of, and exp's 3 ULP and more",
+    |x, out| {
+        let f = fog::exp(fog::radial_distance_scaled(x.vector()), x.scalar());
+        out.scalar(f);
+        out.vector(fog::apply(x.vector(), x.vector(), f));
+    },
+    hard [
+        Hard::new("far", "5e19 away in thin fog", &[("p", &[3e19, 0.0, -4e19]), ("density", &[1e-20])])
+            .naive("fog/exp-radial", "the distance is ∞", 1e6),
+        Hard::new("near", "5e-24 away in dense fog", &[("p", &[3e-24, 0.0, -4e-24]), ("density", &[1e23])])
+            .naive("fog/exp-radial", "the distance is 0", 1e6),
+    ],
+);
+
+const THICKNESS: Input = Input::scalar("distance", "unit", Domain::LogUniform(0.1, 100.0));
+const OPACITY: Output = Output::new("opacity", Shape::Scalar, "1");
+
+formula!(
+    /// How much of the fog is seen.
+    Opacity: "fog/opacity" by "fog_opacity",
+    "opacity = 1 − exp(−density·distance)", "000 §6.5, 1 − f",
+    [THICKNESS, DENSITY] -> [OPACITY],
+    |x, out| { out.scalar(fog::opacity(x.scalar(), x.scalar())); },
+);
+formula!(
+    /// How much of the fog is seen, however thin.
+    OpacityExpm1: "fog/opacity-expm1" by "fog_opacity_expm1",
+    "opacity = −expm1(−density·distance), a short series below ½", "000 §6.5, 1 − f",
+    [THICKNESS, DENSITY] -> [OPACITY],
+    stable 16.0 Own "a product and a series whose terms fall by half or more; beyond ½, exp's bound on at most 0.61",
+    |x, out| { out.scalar(fog::opacity_expm1(x.scalar(), x.scalar())); },
+    hard [
+        Hard::new("one-in-1e3", "a thousandth of fog", &[("distance", &[1.0]), ("density", &[1.1e-3])])
+            .naive("fog/opacity", "1 − 0.999 has lost 10 bits", 100.0),
+        Hard::new("one-in-1e5", "thin fog", &[("distance", &[1.0]), ("density", &[1.1e-5])])
+            .naive("fog/opacity", "1 − 0.99999 has lost 16 bits", 1e4),
+        Hard::new("one-in-1e7", "thinner than a rounding of 1", &[("distance", &[1.0]), ("density", &[1e-7])])
+            .naive("fog/opacity", "one bit is left", 1e6),
+        Hard::new("one-in-1e12", "the thinnest fog", &[("distance", &[1e-6]), ("density", &[1e-6])])
+            .naive("fog/opacity", "none", 1e7),
+    ],
+);
+
 pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(Linear);
     visitor.formula(LinearRadial);
@@ -158,4 +246,10 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(Exp2DocumentRadial);
     visitor.formula(Exp2OpenGl);
     visitor.formula(Exp2OpenGlRadial);
+    visitor.formula(LinearMultiplyAdd);
+    visitor.formula(Exp2DocumentSquare);
+    visitor.formula(Exp2OpenGlSquares);
+    visitor.formula(ExpRadialScaled);
+    visitor.formula(Opacity);
+    visitor.formula(OpacityExpm1);
 }

@@ -50,8 +50,15 @@ pub trait AnyFormula: Send + Sync {
     /// The reference and the interval of each output, with the steps that lead to them.
     fn trace(&self, inputs: &[f32], out: &mut [Trace]);
 
+    /// The outputs with their derivatives with respect to each input in turn.
+    fn derivatives(&self, inputs: &[f32]) -> Vec<Vec<Dual>>;
+
     /// The condition number of each output.
-    fn condition(&self, inputs: &[f32]) -> Vec<f64>;
+    fn condition(&self, inputs: &[f32]) -> Vec<f64> {
+        let by_input = self.derivatives(inputs);
+        let outputs = by_input.first().map_or(0, Vec::len);
+        (0..outputs).map(|output| dual::condition(inputs, &by_input, output)).collect()
+    }
 }
 
 /// Room for the inputs of any formula, so that a row is widened without an allocation.
@@ -93,9 +100,9 @@ impl<F: Formula> AnyFormula for F {
         run(self, inputs, out);
     }
 
-    fn condition(&self, inputs: &[f32]) -> Vec<f64> {
+    fn derivatives(&self, inputs: &[f32]) -> Vec<Vec<Dual>> {
         let outputs = Formula::spec(self).output_len();
-        let by_input: Vec<Vec<Dual>> = (0..inputs.len())
+        (0..inputs.len())
             .map(|moved| {
                 let row: Vec<Dual> = inputs
                     .iter()
@@ -106,8 +113,7 @@ impl<F: Formula> AnyFormula for F {
                 self.evaluate(&mut Reader::new(&row), &mut Writer::new(&mut out));
                 out
             })
-            .collect();
-        (0..outputs).map(|output| dual::condition(inputs, &by_input, output)).collect()
+            .collect()
     }
 }
 
@@ -119,6 +125,7 @@ macro_rules! formula {
         [$($input:expr),* $(,)?] -> [$($output:expr),* $(,)?],
         $(fit $fit:expr,)?
         $(kind $kind:expr,)?
+        $(stable $bound:literal $size:ident $because:literal,)?
         |$x:ident, $out:ident| $body:block
         $(, hard [$($hard:expr),* $(,)?])? $(,)?
     ) => {
@@ -133,6 +140,9 @@ macro_rules! formula {
                 const INPUTS: &[$crate::cases::Input] = &[$($input),*];
                 const OUTPUTS: &[$crate::cases::Output] = &[$($output),*];
                 const HARD: &[$crate::cases::Hard] = &[$($($hard),*)?];
+                const STABLE: &[$crate::cases::Stable] = &[
+                    $($crate::cases::Stable { bound: $bound, size: $crate::cases::Size::$size, because: $because })?
+                ];
                 $crate::cases::Spec {
                     id: $id.into(),
                     text: $text,
@@ -144,6 +154,7 @@ macro_rules! formula {
                     outputs: OUTPUTS,
                     fit: FIT.first().copied(),
                     hard: HARD,
+                    stable: STABLE.first().copied(),
                 }
             }
 

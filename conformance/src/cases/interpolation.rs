@@ -38,7 +38,7 @@ formula!(
     [WEIGHTS, attr("a"), attr("b"), attr("c")] -> [ATTR],
     |x, out| { out.scalar(interpolation::triangle(x.array(), x.array())); },
     hard [
-        Hard { name: "at-a-vertex", pins: "the vertex's own value", inputs: &[("weights", &[0.0, 1.0, 0.0]), ("a", &[1e8]), ("b", &[1.0]), ("c", &[-1e8])] },
+        Hard::new("at-a-vertex", "the vertex's own value", &[("weights", &[0.0, 1.0, 0.0]), ("a", &[1e8]), ("b", &[1.0]), ("c", &[-1e8])]),
     ],
 );
 formula!(
@@ -48,8 +48,8 @@ formula!(
     [window("a"), window("b"), window("c"), window("p")] -> [Output::new("lambda", Shape::Vec3, "1")],
     |x, out| { out.vector(Vector(interpolation::weights(x.vectors(), x.vector()))); },
     hard [
-        Hard { name: "far-from-the-origin", pins: "a unit triangle at 1e4: subtract a vertex first", inputs: &[("a", &[1e4, 1e4]), ("b", &[10001.0, 1e4]), ("c", &[1e4, 10001.0]), ("p", &[10000.25, 10000.25])] },
-        Hard { name: "no-area", pins: "no value: nothing is promised", inputs: &[("a", &[0.0, 0.0]), ("b", &[1.0, 1.0]), ("c", &[2.0, 2.0]), ("p", &[1.0, 1.0])] },
+        Hard::new("far-from-the-origin", "a unit triangle at 1e4: subtract a vertex first", &[("a", &[1e4, 1e4]), ("b", &[10001.0, 1e4]), ("c", &[1e4, 10001.0]), ("p", &[10000.25, 10000.25])]),
+        Hard::new("no-area", "no value: nothing is promised", &[("a", &[0.0, 0.0]), ("b", &[1.0, 1.0]), ("c", &[2.0, 2.0]), ("p", &[1.0, 1.0])]),
     ],
 );
 formula!(
@@ -80,8 +80,8 @@ formula!(
     ] -> [ATTR],
     |x, out| { out.scalar(interpolation::perspective(x.array(), x.array(), x.array())); },
     hard [
-        Hard { name: "near-zero-w", pins: "1/w overflows: nothing is promised of the published form", inputs: &[("w", &[1e-39, 1.0, 1.0])] },
-        Hard { name: "equal-w", pins: "the same as linear", inputs: &[("w", &[4.0, 4.0, 4.0])] },
+        Hard::new("near-zero-w", "1/w overflows: nothing is promised of the published form", &[("w", &[1e-39, 1.0, 1.0])]),
+        Hard::new("equal-w", "the same as linear", &[("w", &[4.0, 4.0, 4.0])]),
     ],
 );
 formula!(
@@ -117,11 +117,11 @@ formula!(
     fit near_the_triangle,
     |x, out| { out.scalar(interpolation::coverage(x.vectors(), x.vector())); },
     hard [
-        Hard { name: "top-edge", pins: "belongs to the triangle", inputs: &[("a", &[0.0, 0.0]), ("b", &[8.0, 0.0]), ("c", &[4.0, 8.0]), ("p", &[4.0, 0.0])] },
-        Hard { name: "bottom-edge", pins: "does not", inputs: &[("a", &[0.0, 8.0]), ("b", &[8.0, 8.0]), ("c", &[4.0, 0.0]), ("p", &[4.0, 8.0])] },
-        Hard { name: "left-edge", pins: "belongs to the triangle", inputs: &[("a", &[0.0, 0.0]), ("b", &[8.0, 4.0]), ("c", &[0.0, 8.0]), ("p", &[0.0, 4.0])] },
-        Hard { name: "right-edge", pins: "does not", inputs: &[("a", &[8.0, 0.0]), ("b", &[8.0, 8.0]), ("c", &[0.0, 4.0]), ("p", &[8.0, 4.0])] },
-        Hard { name: "no-area", pins: "covers nothing", inputs: &[("a", &[0.0, 0.0]), ("b", &[4.0, 4.0]), ("c", &[8.0, 8.0]), ("p", &[4.0, 4.0])] },
+        Hard::new("top-edge", "belongs to the triangle", &[("a", &[0.0, 0.0]), ("b", &[8.0, 0.0]), ("c", &[4.0, 8.0]), ("p", &[4.0, 0.0])]),
+        Hard::new("bottom-edge", "does not", &[("a", &[0.0, 8.0]), ("b", &[8.0, 8.0]), ("c", &[4.0, 0.0]), ("p", &[4.0, 8.0])]),
+        Hard::new("left-edge", "belongs to the triangle", &[("a", &[0.0, 0.0]), ("b", &[8.0, 4.0]), ("c", &[0.0, 8.0]), ("p", &[0.0, 4.0])]),
+        Hard::new("right-edge", "does not", &[("a", &[8.0, 0.0]), ("b", &[8.0, 8.0]), ("c", &[0.0, 4.0]), ("p", &[8.0, 4.0])]),
+        Hard::new("no-area", "covers nothing", &[("a", &[0.0, 0.0]), ("b", &[4.0, 4.0]), ("c", &[8.0, 8.0]), ("p", &[4.0, 4.0])]),
     ],
 );
 
@@ -170,10 +170,10 @@ macro_rules! clip_volume {
             [Input::new("clip", Shape::Vec4, "1", Domain::Uniform(-2.0, 4.0))] -> [Output::new("inside", Shape::Scalar, "1")],
             |x, out| { out.scalar($formula(x.vector())); },
             hard [
-                Hard { name: "on-a-plane", pins: "the planes belong to the volume", inputs: &[("clip", &[2.0, -2.0, 2.0, 2.0])] },
-                Hard { name: "on-the-near-plane", pins: "z = 0 lies within WebGPU's volume and OpenGL's", inputs: &[("clip", &[0.0, 0.0, 0.0, 1.0])] },
-                Hard { name: "on-opengls-near-plane", pins: "z = −w lies within OpenGL's volume alone", inputs: &[("clip", &[0.0, 0.0, -1.0, 1.0])] },
-                Hard { name: "behind-the-eye", pins: "outside", inputs: &[("clip", &[0.0, 0.0, 0.0, -1.0])] },
+                Hard::new("on-a-plane", "the planes belong to the volume", &[("clip", &[2.0, -2.0, 2.0, 2.0])]),
+                Hard::new("on-the-near-plane", "z = 0 lies within WebGPU's volume and OpenGL's", &[("clip", &[0.0, 0.0, 0.0, 1.0])]),
+                Hard::new("on-opengls-near-plane", "z = −w lies within OpenGL's volume alone", &[("clip", &[0.0, 0.0, -1.0, 1.0])]),
+                Hard::new("behind-the-eye", "outside", &[("clip", &[0.0, 0.0, 0.0, -1.0])]),
             ],
         );
     };
@@ -199,7 +199,7 @@ formula!(
     "1 where the triangle is counter-clockwise as seen", "000 §6.1",
     [window("a"), window("b"), window("c")] -> [Output::new("front", Shape::Scalar, "1")],
     |x, out| { out.scalar(interpolation::front_facing(x.vectors())); },
-    hard [Hard { name: "no-area", pins: "not front", inputs: &[("a", &[0.0, 0.0]), ("b", &[1.0, 1.0]), ("c", &[2.0, 2.0])] }],
+    hard [Hard::new("no-area", "not front", &[("a", &[0.0, 0.0]), ("b", &[1.0, 1.0]), ("c", &[2.0, 2.0])])],
 );
 formula!(
     /// A fragment's own depth.
@@ -230,6 +230,117 @@ fn near_the_triangle(row: &mut [f32]) {
     }
 }
 
+const TWICE_AREA: Output = Output::new("edge", Shape::Scalar, "pixel²");
+const LAST_WEIGHT: Output = Output::new("gamma", Shape::Scalar, "1");
+
+formula!(
+    /// The edge function.
+    Edge: "interpolation/edge" by "interpolation_edge",
+    "e = (b − a) × (p − a)", "000 §6.1; a vertex subtracted first",
+    [window("a"), window("b"), window("p")] -> [TWICE_AREA],
+    stable 8.0 Own "two exact differences, two products and a difference that does not cancel by more than 4",
+    |x, out| { out.scalar(interpolation::edge(x.vector(), x.vector(), x.vector())); },
+    hard [
+        Hard::new("far-1e3", "a unit triangle at 1e3", &[("a", &[1000.0, 1000.0]), ("b", &[1001.0, 1000.25]), ("p", &[1000.25, 1000.75])])
+            .naive("interpolation/edge-from-origin", "six products of 1e6 cancel to 1", 1e3),
+        Hard::new("far-1e4", "a unit triangle at 1e4: its sign is left to chance", &[("a", &[1e4, 1e4]), ("b", &[10001.0, 10000.25]), ("p", &[10000.25, 10000.75])])
+            .naive("interpolation/edge-from-origin", "six products of 1e8 cancel to 1", 1e6),
+        Hard::new("far-1e6", "a unit triangle at 1e6, where a step is 1/16", &[("a", &[1e6, 1e6]), ("b", &[1_000_001.0, 1_000_000.25]), ("p", &[1_000_000.25, 1_000_000.75])])
+            .naive("interpolation/edge-from-origin", "six products of 1e12 cancel to 1", 1e8),
+    ],
+);
+formula!(
+    /// The edge function from the origin.
+    EdgeFromOrigin: "interpolation/edge-from-origin" by "interpolation_edge_from_origin",
+    "e = a × b + b × p + p × a", "000 §6.1; no vertex subtracted",
+    [window("a"), window("b"), window("p")] -> [TWICE_AREA],
+    |x, out| { out.scalar(interpolation::edge_from_origin(x.vector(), x.vector(), x.vector())); },
+);
+formula!(
+    /// The edge function of slivers.
+    EdgeCompensated: "interpolation/edge-compensated" by "interpolation_edge_compensated",
+    "e = (b − a) × (p − a), a difference of products (Kahan)", "Jeannerod, Louvet & Muller 2013",
+    [window("a"), window("b"), window("p")] -> [TWICE_AREA],
+    stable 2.0 Own "2 roundings (Kahan), for corners whose differences are exact: within a factor of 2 of each other, or from the origin",
+    |x, out| { out.scalar(interpolation::edge_compensated(x.vector(), x.vector(), x.vector())); },
+    hard [
+        Hard::new("sliver-1e-5", "the products agree to 5 digits", &[("a", &[0.0, 0.0]), ("b", &[0.7, 0.3]), ("p", &[1.4, 0.600_01])])
+            .naive("interpolation/edge", "the rounding of the products is what is left", 1e3),
+        Hard::new("sliver-1e-6", "the products agree to 6 digits", &[("a", &[0.0, 0.0]), ("b", &[0.7, 0.3]), ("p", &[1.4, 0.600_000_6])])
+            .naive("interpolation/edge", "the rounding of the products is what is left", 1e4),
+        Hard::new("sliver-of-a-few-ulp", "the products agree to the last bits", &[("a", &[0.0, 0.0]), ("b", &[0.1, 0.3]), ("p", &[0.7, 2.1])])
+            .naive("interpolation/edge", "not one digit is right", 1e6),
+        Hard::new("sliver-across-the-screen", "a sliver of 4,000 pixels", &[("a", &[0.0, 0.0]), ("b", &[1371.3, 2903.7]), ("p", &[2742.65, 5807.4])])
+            .naive("interpolation/edge", "products of 1e7 cancel", 1e4),
+    ],
+);
+formula!(
+    /// The weight of the last vertex.
+    LastWeight: "interpolation/last-weight" by "interpolation_last_weight",
+    "γ = (a b p)/(a b c), an area of its own", "000 §6.1",
+    [window("a"), window("b"), window("c"), window("p")] -> [LAST_WEIGHT],
+    stable 16.0 Own "two areas that do not cancel, and a division of at most 2½ ULP",
+    |x, out| { out.scalar(interpolation::last_weight(x.vectors(), x.vector())); },
+    hard [
+        Hard::new("near-the-edge", "a weight of 1e-4", &[("a", &[0.0, 0.0]), ("b", &[100.0, 0.0]), ("c", &[30.0, 70.0]), ("p", &[41.3, 0.007])])
+            .naive("interpolation/last-weight-by-difference", "1 − α − β cancels", 500.0),
+        Hard::new("at-the-edge", "a weight of 1e-6", &[("a", &[0.0, 0.0]), ("b", &[100.0, 0.0]), ("c", &[30.0, 70.0]), ("p", &[41.3, 7e-5])])
+            .naive("interpolation/last-weight-by-difference", "1 − α − β cancels", 5e4),
+    ],
+);
+formula!(
+    /// The weight of the last vertex by difference.
+    LastWeightByDifference: "interpolation/last-weight-by-difference" by "interpolation_last_weight_by_difference",
+    "γ = 1 − α − β", "a shortcut",
+    [window("a"), window("b"), window("c"), window("p")] -> [LAST_WEIGHT],
+    |x, out| { out.scalar(interpolation::last_weight_by_difference(x.vectors(), x.vector())); },
+);
+formula!(
+    /// Linear interpolation.
+    Mix: "interpolation/mix" by "interpolation_mix",
+    "attr = a(1 − t) + b·t", "WGSL, mix",
+    [attr("a"), attr("b"), Input::scalar("t", "1", Domain::Unit)] -> [ATTR],
+    stable 4.0 Own "two products and a sum of one sign, or of which one is 0",
+    |x, out| { out.scalar(interpolation::mix(x.scalar(), x.scalar(), x.scalar())); },
+    hard [
+        Hard::new("the-end", "b itself at t = 1", &[("a", &[0.9]), ("b", &[1e-5]), ("t", &[1.0])])
+            .naive("interpolation/mix-incremental", "misses b by the rounding of b − a", 1e3),
+        Hard::new("the-end-of-a-great-step", "1 at the end, from 1e8", &[("a", &[1e8]), ("b", &[1.0]), ("t", &[1.0])])
+            .naive("interpolation/mix-incremental", "b − a has lost b", 1e7),
+        Hard::new("from-end-to-end", "from −3e38 to 3e38", &[("a", &[-3e38]), ("b", &[3e38]), ("t", &[1.0])])
+            .naive("interpolation/mix-incremental", "b − a overflows", f64::INFINITY),
+    ],
+);
+formula!(
+    /// Linear interpolation by a difference.
+    MixIncremental: "interpolation/mix-incremental" by "interpolation_mix_incremental",
+    "attr = a + t(b − a)", "WGSL, mix, in its other form",
+    [attr("a"), attr("b"), Input::scalar("t", "1", Domain::Unit)] -> [ATTR],
+    |x, out| { out.scalar(interpolation::mix_incremental(x.scalar(), x.scalar(), x.scalar())); },
+);
+formula!(
+    /// Perspective-correct by scaled weights.
+    PerspectiveScaled: "interpolation/perspective-scaled" by "interpolation_perspective_scaled",
+    "attr = Σ qᵢ·aᵢ / Σ qᵢ, qᵢ = λᵢ·(w_min/wᵢ)", "000 §6.1, with weights that are at most λ",
+    [
+        Input::new("lambda", Shape::Vec3, "1", Domain::Weights),
+        Input::new("w", Shape::Vec3, "1", Domain::LogUniform(0.1, 100.0)),
+        Input::new("attr", Shape::Vec3, "1", ATTRIBUTE),
+    ] -> [ATTR],
+    stable 24.0 Own "two divisions of at most 2½ ULP, for attributes of one sign",
+    |x, out| { out.scalar(interpolation::perspective_scaled(x.array(), x.array(), x.array())); },
+    hard [
+        Hard::new("w-zero", "a vertex in the plane of the eye: all that is seen", &[("lambda", &[0.25, 0.25, 0.5]), ("w", &[0.0, 1.0, 1.0]), ("attr", &[0.75, 2.0, 1.0])])
+            .naive("interpolation/perspective", "∞/∞ is NaN", f64::INFINITY),
+        Hard::new("w-tiny", "1/w is 8e37", &[("lambda", &[0.5, 0.25, 0.25]), ("w", &[1.2e-38, 1.0, 1.0]), ("attr", &[50.0, 1.0, 2.0])])
+            .naive("interpolation/perspective", "the numerator overflows", f64::INFINITY),
+        Hard::new("w-tiny-all", "all three close to the eye's plane", &[("lambda", &[0.5, 0.25, 0.25]), ("w", &[1.2e-38, 2e-38, 3e-38]), ("attr", &[50.0, 10.0, 20.0])])
+            .naive("interpolation/perspective", "the numerator overflows", f64::INFINITY),
+        Hard::new("w-huge", "small attributes far away", &[("lambda", &[0.3, 0.3, 0.4]), ("w", &[8e37, 7e37, 6e37]), ("attr", &[1e-6, 2e-6, 3e-6])])
+            .naive("interpolation/perspective", "λ/w and the numerator underflow", 1e4),
+    ],
+);
+
 pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(Line);
     visitor.formula(Triangle);
@@ -248,4 +359,12 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(FrontFacing);
     visitor.formula(FragDepth);
     raster::visit(visitor);
+    visitor.formula(Edge);
+    visitor.formula(EdgeFromOrigin);
+    visitor.formula(EdgeCompensated);
+    visitor.formula(LastWeight);
+    visitor.formula(LastWeightByDifference);
+    visitor.formula(Mix);
+    visitor.formula(MixIncremental);
+    visitor.formula(PerspectiveScaled);
 }

@@ -46,8 +46,8 @@ formula!(
     [LA, MA] -> [RGB],
     |x, out| { out.vector(lighting::ambient(x.vector(), x.vector())); },
     hard [
-        Hard { name: "blue-under-white", pins: "document 000's figure", inputs: &[("la", &[1.0, 1.0, 1.0]), ("ma", &[0.0, 0.0, 1.0])] },
-        Hard { name: "blue-under-red", pins: "document 000's figure", inputs: &[("la", &[1.0, 0.0, 0.0]), ("ma", &[0.0, 0.0, 1.0])] },
+        Hard::new("blue-under-white", "document 000's figure", &[("la", &[1.0, 1.0, 1.0]), ("ma", &[0.0, 0.0, 1.0])]),
+        Hard::new("blue-under-red", "document 000's figure", &[("la", &[1.0, 0.0, 0.0]), ("ma", &[0.0, 0.0, 1.0])]),
     ],
 );
 formula!(
@@ -64,8 +64,8 @@ formula!(
     [LD, MD, Input::direction("l"), Input::direction("n")] -> [RGB],
     |x, out| { out.vector(lighting::diffuse_toward(x.vector(), x.vector(), x.vector(), x.vector())); },
     hard [
-        Hard { name: "edge-on", pins: "0 at a right angle", inputs: &[("l", &[1.0, 0.0, 0.0]), ("n", &[0.0, 0.0, 1.0])] },
-        Hard { name: "from-behind", pins: "max, not abs and not the bare product", inputs: &[("l", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.0])] },
+        Hard::new("edge-on", "0 at a right angle", &[("l", &[1.0, 0.0, 0.0]), ("n", &[0.0, 0.0, 1.0])]),
+        Hard::new("from-behind", "max, not abs and not the bare product", &[("l", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.0])]),
     ],
 );
 formula!(
@@ -83,12 +83,12 @@ formula!(
     fit facing_vectors,
     |x, out| { out.vector(lighting::specular_phong(x.vector(), x.vector(), x.vector(), x.vector(), x.scalar())); },
     hard [
-        Hard { name: "mirror", pins: "1 at any shininess", inputs: &[("r", &[0.0, 0.0, 1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1e6])] },
-        Hard { name: "slightly-above-one", pins: "a cosine a few ULP above 1 under a great power", inputs: &[("r", &[0.0, 0.0, 1.000_000_2]), ("v", &[0.0, 0.0, 1.000_000_2]), ("shininess", &[1e6])] },
-        Hard { name: "edge-on", pins: "0 at a right angle", inputs: &[("r", &[1.0, 0.0, 0.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])] },
-        Hard { name: "no-shininess-edge-on", pins: "0 and 1 are both legal: 0 to the power 0", inputs: &[("r", &[1.0, 0.0, 0.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[0.0])] },
-        Hard { name: "no-shininess", pins: "1 for a cosine above 0", inputs: &[("r", &[0.0, 0.6, 0.8]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[0.0])] },
-        Hard { name: "behind", pins: "0, never the even power of a negative cosine", inputs: &[("r", &[0.0, 0.0, -1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[2.0])] },
+        Hard::new("mirror", "1 at any shininess", &[("r", &[0.0, 0.0, 1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1e6])]),
+        Hard::new("slightly-above-one", "a cosine a few ULP above 1 under a great power", &[("r", &[0.0, 0.0, 1.000_000_2]), ("v", &[0.0, 0.0, 1.000_000_2]), ("shininess", &[1e6])]),
+        Hard::new("edge-on", "0 at a right angle", &[("r", &[1.0, 0.0, 0.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
+        Hard::new("no-shininess-edge-on", "0 and 1 are both legal: 0 to the power 0", &[("r", &[1.0, 0.0, 0.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[0.0])]),
+        Hard::new("no-shininess", "1 for a cosine above 0", &[("r", &[0.0, 0.6, 0.8]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[0.0])]),
+        Hard::new("behind", "0, never the even power of a negative cosine", &[("r", &[0.0, 0.0, -1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[2.0])]),
     ],
 );
 formula!(
@@ -116,11 +116,13 @@ fn facing_vectors(row: &mut [f32]) {
 }
 
 macro_rules! directional {
-    ($name:ident, $id:literal, $function:literal, $dialect:expr, $text:literal, $source:literal $(, hard [$($hard:expr),* $(,)?])?) => {
+    ($name:ident, $id:literal, $function:literal, $dialect:expr, $text:literal, $source:literal
+        $(, stable $bound:literal $size:ident $because:literal)? $(, hard [$($hard:expr),* $(,)?])?) => {
         formula!(
             /// A directional light.
             $name: $id by $function, $text, $source,
             [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, DIRECTION] -> [RGBA],
+            $(stable $bound $size $because,)?
             |x, out| {
                 let (light, material) = (light(x), material(x));
                 out.vector(lighting::directional($dialect, &light, &material, x.vectors()));
@@ -134,16 +136,16 @@ directional!(
     Phong, "lighting/phong", "lighting_phong", (Specular::Phong, Gate::Documents),
     "CF = LA*MA + LD*MD·max(l·n, 0) + LS*MS·max(r·v, 0)^shininess, everything normalised", "000 §6.3",
     hard [
-        Hard { name: "light-behind-the-surface", pins: "the documents light the highlight; ruling 9", inputs: &[("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[-1.0, 0.0, 0.05]), ("shininess", &[1.0])] },
-        Hard { name: "eye-on-the-surface", pins: "no view vector: 0, not NaN", inputs: &[("p", &[0.0, 0.0, 0.0])] },
-        Hard { name: "no-normal", pins: "ambient alone, not NaN", inputs: &[("normal", &[0.0, 0.0, 0.0])] },
+        Hard::new("light-behind-the-surface", "the documents light the highlight; ruling 9", &[("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[-1.0, 0.0, 0.05]), ("shininess", &[1.0])]),
+        Hard::new("eye-on-the-surface", "no view vector: 0, not NaN", &[("p", &[0.0, 0.0, 0.0])]),
+        Hard::new("no-normal", "ambient alone, not NaN", &[("normal", &[0.0, 0.0, 0.0])]),
     ]
 );
 directional!(
     Blinn, "lighting/blinn", "lighting_blinn", (Specular::Blinn, Gate::Documents),
     "CF = LA*MA + LD*MD·max(l·n, 0) + LS*MS·max(n·h, 0)^shininess, everything normalised", "000 §6.4, 004",
     hard [
-        Hard { name: "half-vector-of-nothing", pins: "the light behind the eye's line: no highlight, not NaN", inputs: &[("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.0, 0.0, 1.0])] },
+        Hard::new("half-vector-of-nothing", "the light behind the eye's line: no highlight, not NaN", &[("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.0, 0.0, 1.0])]),
     ]
 );
 directional!(
@@ -153,8 +155,11 @@ directional!(
     (Specular::Phong, Gate::OpenGl),
     "CF as lighting/phong, the highlight 0 where l·n ≤ 0",
     "OpenGL 2.1 §2.14.1; ruling 9, `opengl`",
+    stable 1024.0 Unit "a shininess of 32 times the 20 roundings of the cosine of three normalised vectors, and the terms",
     hard [
-        Hard { name: "light-edge-on", pins: "l·n = 0 has no highlight, though r·v is above 0", inputs: &[("p", &[-1.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[1.0, 0.0, 0.0]), ("shininess", &[1.0])] },
+        Hard::new("light-at-95-degrees", "no highlight on the dark side, ruling 9", &[("ls", WHITE), ("ms", WHITE), ("p", &[-0.984_807_8, 0.0, -0.173_648_2]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.996_194_7, 0.0, 0.087_155_7]), ("shininess", &[32.0])])
+            .naive("lighting/phong", "a highlight of up to 0.6 from a light behind the surface", 1e6),
+        Hard::new("light-edge-on", "l·n = 0 has no highlight, though r·v is above 0", &[("p", &[-1.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[1.0, 0.0, 0.0]), ("shininess", &[1.0])]),
     ]
 );
 formula!(
@@ -309,7 +314,8 @@ const KS: Input = Input::scalar("ks", "1", Domain::Unit);
 const T: Input = Input::scalar("t", "1", Domain::Unit);
 
 macro_rules! along_an_edge {
-    ($name:ident, $id:literal, $function:literal, $shading:path, $text:literal, $source:literal $(, hard [$($hard:expr),* $(,)?])?) => {
+    ($name:ident, $id:literal, $function:literal, $shading:path, $text:literal, $source:literal
+        $(, stable $bound:literal $size:ident $because:literal)? $(, hard [$($hard:expr),* $(,)?])?) => {
         formula!(
             /// Shading between two vertices.
             $name: $id by $function, $text, $source,
@@ -317,6 +323,7 @@ macro_rules! along_an_edge {
                 Input::position("pa"), Input::vector("na"), Input::position("pb"), Input::vector("nb"), T,
                 LIGHT_POSITION, KD, KS, SHININESS,
             ] -> [INTENSITY],
+            $(stable $bound $size $because,)?
             |x, out| { out.scalar($shading(vertex(x), vertex(x), x.scalar(), x.vector(), x.array())); }
             $(, hard [$($hard),*])?
         );
@@ -330,18 +337,16 @@ along_an_edge!(
     lighting::gouraud,
     "mix(I(a), I(b), t): lit at the vertices, the intensity interpolated",
     "000 §6.3, 004",
-    hard[Hard {
-        name: "no-highlight-between",
-        pins: "document 004: both vertices dark, so is the middle",
-        inputs: BETWEEN
-    }]
+    hard[Hard::new("no-highlight-between", "document 004: both vertices dark, so is the middle", BETWEEN)]
 );
 along_an_edge!(
     PhongShading, "lighting/phong-shading", "lighting_phong_shading", lighting::phong,
     "I(mix(pa, pb, t), ⟨mix(na, nb, t)⟩): position and normal interpolated, lit at the point", "000 §6.3, 004",
+    stable 2048.0 Unit "a shininess of 100 times the 20 roundings of the cosine of three normalised vectors",
     hard [
-        Hard { name: "highlight-between", pins: "document 004: both vertices dark, the middle bright", inputs: BETWEEN },
-        Hard { name: "opposite-normals", pins: "nothing is left to normalise: the normal is 0, not NaN", inputs: &[("na", &[0.0, 0.0, 1.0]), ("nb", &[0.0, 0.0, -1.0]), ("t", &[0.5])] },
+        Hard::new("highlight-between", "document 004: both vertices dark, the middle bright", BETWEEN)
+            .naive("lighting/gouraud", "interpolates two dark vertices: no highlight", 1e6),
+        Hard::new("opposite-normals", "nothing is left to normalise: the normal is 0, not NaN", &[("na", &[0.0, 0.0, 1.0]), ("nb", &[0.0, 0.0, -1.0]), ("t", &[0.5])]),
     ]
 );
 along_an_edge!(
@@ -356,9 +361,9 @@ along_an_edge!(
 /// A cylinder's edge from one side to the other: n·v < 0 at one vertex, n·l < 0 at the other, the mirror in the middle.
 const BETWEEN: &[(&str, &[f32])] = &[
     ("pa", &[-1.0, 0.0, -5.0]),
-    ("na", &[-1.0, 0.0, 0.0]),
+    ("na", &[-1.0, 0.0, 0.1]),
     ("pb", &[1.0, 0.0, -5.0]),
-    ("nb", &[1.0, 0.0, 0.0001]),
+    ("nb", &[1.0, 0.0, 0.1]),
     ("t", &[0.5]),
     ("position", &[0.0, 0.0, 0.0]),
     ("kd", &[0.0]),
@@ -373,9 +378,107 @@ formula!(
     [Input::position("a"), Input::position("b"), Input::position("c"), LIGHT_POSITION, KD, KS, SHININESS] -> [INTENSITY],
     |x, out| { out.scalar(lighting::flat(x.vectors(), x.vector(), x.array())); },
     hard [
-        Hard { name: "no-area", pins: "0, not NaN, for three points on a line", inputs: &[("a", &[0.0, 0.0, -1.0]), ("b", &[1.0, 1.0, -1.0]), ("c", &[2.0, 2.0, -1.0])] },
+        Hard::new("no-area", "0, not NaN, for three points on a line", &[("a", &[0.0, 0.0, -1.0]), ("b", &[1.0, 1.0, -1.0]), ("c", &[2.0, 2.0, -1.0])]),
     ],
 );
+
+const POWER: Output = Output::new("fs", Shape::Scalar, "1");
+const MIRROR: &[f32] = &[0.6, 0.0, 0.8];
+
+formula!(
+    /// A highlight's power.
+    CosinePower: "lighting/cosine-power" by "lighting_cosine_power",
+    "FS = max(a·b, 0)^exponent", "000 §6.3, 004",
+    [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 256.0))] -> [POWER],
+    fit toward_each_other,
+    |x, out| { out.scalar(lighting::cosine_power(x.vector(), x.vector(), x.scalar())); },
+);
+formula!(
+    /// A highlight's power without its guard.
+    CosinePowerUnguarded: "lighting/cosine-power-unguarded" by "lighting_cosine_power_unguarded",
+    "FS = (a·b)^exponent", "000 §6.3 without its max",
+    [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 256.0))] -> [POWER],
+    fit toward_each_other_only,
+    |x, out| { out.scalar(lighting::cosine_power_unguarded(x.vector(), x.vector(), x.scalar())); },
+);
+formula!(
+    /// A highlight's power by the chord.
+    CosinePowerByChord: "lighting/cosine-power-by-chord" by "lighting_cosine_power_by_chord",
+    "FS = exp(exponent·ln(1 − q)), q = ½|a − b|²; as published for exponents below 64 and angles above 60°", "000 §6.3, 004",
+    [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 4096.0))] -> [POWER],
+    fit toward_each_other,
+    stable 32.0 Unit "q errs by 4 roundings of itself, and q·exponent·(1 − q)^exponent is at most 0.37",
+    |x, out| { out.scalar(lighting::cosine_power_by_chord(x.vector(), x.vector(), x.scalar())); },
+    hard [
+        Hard::new("mirror-1e4", "1 where a = b, however they are rounded", &[("a", MIRROR), ("b", MIRROR), ("exponent", &[1e4])])
+            .naive("lighting/cosine-power", "a·b is a few ULP from 1", 1e3),
+        Hard::new("mirror-1e6", "1 where a = b, however they are rounded", &[("a", MIRROR), ("b", MIRROR), ("exponent", &[1e6])])
+            .naive("lighting/cosine-power", "a·b is a few ULP from 1", 1e5),
+        Hard::new("above-one-1e6", "never more than 1", &[("a", &[0.6, 0.0, 0.800_000_2]), ("b", &[0.6, 0.0, 0.800_000_2]), ("exponent", &[1e6])])
+            .naive("lighting/cosine-power", "a cosine above 1 gives a highlight above 1", 1e5),
+        Hard::new("half-1e3", "half as bright at 2.1°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.037_228_2, 0.0, 0.999_306_8]), ("exponent", &[1e3])])
+            .naive("lighting/cosine-power", "1 − cosine has lost a bit in 10,000", 100.0),
+        Hard::new("half-1e4", "half as bright at 0.67°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.011_773_7, 0.0, 0.999_930_7]), ("exponent", &[1e4])])
+            .naive("lighting/cosine-power", "1 − cosine has lost a bit in 1,000", 1e3),
+        Hard::new("half-1e5", "half as bright at 0.21°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.003_723_3, 0.0, 0.999_993_1]), ("exponent", &[1e5])])
+            .naive("lighting/cosine-power", "1 − cosine has lost a bit in 100", 1e4),
+        Hard::new("half-1e6", "half as bright at 0.07°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.001_177_4, 0.0, 0.999_999_3]), ("exponent", &[1e6])])
+            .naive("lighting/cosine-power", "1 − cosine has lost a bit in 10", 1e5),
+        Hard::new("behind-even", "0, never the even power of a negative cosine", &[("a", &[0.0, 0.0, -1.0]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[2.0])])
+            .naive("lighting/cosine-power-unguarded", "NaN, or 1", 1e6),
+        Hard::new("behind", "0, not NaN", &[("a", &[0.0, -0.6, -0.8]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[32.5])])
+            .naive("lighting/cosine-power-unguarded", "NaN", 1e3),
+    ],
+);
+
+/// Half of all pairs of directions look away from each other, where the power is 0: keep a quarter of those.
+fn toward_each_other(row: &mut [f32]) {
+    let away = (0..3).map(|k| row[k] * row[3 + k]).sum::<f32>() < 0.0;
+    if away && row[0].to_bits() & 3 != 0 {
+        row[..3].iter_mut().for_each(|x| *x = -*x);
+    }
+}
+
+/// A negative base has no power: turn every such pair round, and keep off the right angle.
+fn toward_each_other_only(row: &mut [f32]) {
+    let cosine = (0..3).map(|k| row[k] * row[3 + k]).sum::<f32>();
+    if cosine < 0.0 {
+        row[..3].iter_mut().for_each(|x| *x = -*x);
+    }
+    if cosine.abs() < 1e-3 {
+        row.copy_within(3..6, 0);
+    }
+}
+
+formula!(
+    /// Blinn's model, stable throughout.
+    BlinnStable: "lighting/blinn-stable" by "lighting_blinn_stable",
+    "CF as lighting/blinn, vectors of any length, the highlight 0 where l·n ≤ 0 and its power by the chord", "000 §6.4, 004; ruling 9, `opengl`",
+    [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, DIRECTION] -> [RGBA],
+    stable 256.0 Unit "normalised vectors turn by 16 roundings each, which the power magnifies by √exponent: 1,000 at 1e6, seen where it is below 0.6",
+    |x, out| {
+        let (light, material) = (light(x), material(x));
+        out.vector(lighting::blinn_stable(&light, &material, x.vectors()));
+    },
+    hard [
+        Hard::new("eye-behind-the-light", "half a vector of nothing: no highlight", &[("ld", WHITE), ("ls", WHITE), ("md", GREY), ("ms", WHITE), ("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.001, 0.0, 1.0]), ("shininess", &[1.0])])
+            .naive("lighting/blinn", "lit from behind", 1e3),
+        Hard::new("light-at-95-degrees", "a highlight on the dark side", &[("ld", WHITE), ("ls", WHITE), ("md", GREY), ("ms", WHITE), ("p", &[-0.996, 0.0, -0.0872]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.996_194_7, 0.0, 0.087_155_7]), ("shininess", &[0.5])])
+            .naive("lighting/blinn", "lit from behind", 1e4),
+        Hard::new("light-of-1e-23", "a direction of any length", &[("ld", WHITE), ("md", GREY), ("ms", BLACK), ("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.6, 0.8]), ("direction", &[0.0, 0.0, -1e-23])])
+            .naive("lighting/blinn", "taken for no light", 1e6),
+        Hard::new("normal-of-1e-25", "a normal of any length", &[("ld", WHITE), ("md", GREY), ("ms", BLACK), ("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 6e-26, 8e-26]), ("direction", &[0.0, 0.0, -1.0])])
+            .naive("lighting/blinn", "taken for no normal", 1e6),
+        Hard::new("surface-at-1e20", "a point at any distance", &[("ld", BLACK), ("md", BLACK), ("ls", WHITE), ("ms", WHITE), ("p", &[-6e19, 0.0, -8e19]), ("normal", &[0.6, 0.0, 1.8]), ("direction", &[0.0, 0.0, -1.0]), ("shininess", &[32.0])])
+            .naive("lighting/blinn", "the view vector is 0, and the half vector the light's", 1e6),
+        Hard::new("highlight-of-1e6", "the sharpest highlight at its middle", &[("ld", BLACK), ("md", BLACK), ("ls", WHITE), ("ms", WHITE), ("p", &[-0.25, -0.2, -0.25]), ("normal", &[0.1, 0.2, 0.3]), ("direction", &[0.05, -0.2, -0.35]), ("shininess", &[1e6])])
+            .naive("lighting/blinn", "the cosine is a few ULP from 1", 1e3),
+    ],
+);
+
+const WHITE: &[f32] = &[1.0, 1.0, 1.0];
+const GREY: &[f32] = &[0.5, 0.5, 0.5];
+const BLACK: &[f32] = &[0.0, 0.0, 0.0];
 
 pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(Ambient);
@@ -404,4 +507,8 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(PhongShading);
     visitor.formula(PhongInterpolated);
     visitor.formula(Flat);
+    visitor.formula(CosinePower);
+    visitor.formula(CosinePowerUnguarded);
+    visitor.formula(CosinePowerByChord);
+    visitor.formula(BlinnStable);
 }

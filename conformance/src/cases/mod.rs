@@ -17,10 +17,10 @@ mod raster;
 mod rows;
 mod spec;
 
-pub use draw::{GENERATOR_VERSION, inputs};
+pub use draw::{GENERATOR_VERSION, inputs, move_by_ulps};
 pub use formula::{AnyFormula, Formula, Visitor};
 pub use rows::{Reader, Writer};
-pub use spec::{Domain, Hard, Input, Kind, Output, Shape, Spec, Stage};
+pub use spec::{Domain, Hard, Input, Kind, Naive, Output, Shape, Size, Spec, Stable, Stage, Values};
 
 /// The families, in the order of reports.
 pub const FAMILIES: [&str; 8] =

@@ -191,7 +191,62 @@ pub struct Hard {
     /// What it pins.
     pub pins: &'static str,
     /// The inputs that are given.
-    pub inputs: &'static [(&'static str, &'static [f32])],
+    pub inputs: Values,
+    /// A form that fails here, of a formula that does not.
+    pub naive: Option<Naive>,
+}
+
+/// Inputs by name.
+pub type Values = &'static [(&'static str, &'static [f32])];
+
+/// Another formula, which computes the same and loses what a stable form keeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Naive {
+    /// The id of the formula.
+    pub formula: &'static str,
+    /// What goes wrong with it, in words.
+    pub fails: &'static str,
+    /// By how much at least, at the case or within a few ULP of it, in roundings (see [`Stable`]); infinite where what
+    /// comes out is no number, or not one of use.
+    pub at_least: f64,
+}
+
+impl Hard {
+    /// A case.
+    #[must_use]
+    pub const fn new(name: &'static str, pins: &'static str, inputs: Values) -> Self {
+        Self { name, pins, inputs, naive: None }
+    }
+
+    /// The same, with the form that fails there.
+    #[must_use]
+    pub const fn naive(self, formula: &'static str, fails: &'static str, at_least: f64) -> Self {
+        Self { naive: Some(Naive { formula, fails, at_least }), ..self }
+    }
+}
+
+/// What a result's error is held against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Size {
+    /// Its own length: a direction, a distance, a factor that may be small.
+    Own,
+    /// Its own length, or 1 if that is greater: what is seen is a share of 1.
+    Unit,
+}
+
+/// The claim of a formula in a stable form: at its hard cases and near them it errs by no more than this.
+///
+/// Errors are counted in *roundings*: |value − exact| over 2⁻²⁴ of the result's size, all outputs taken together as one
+/// vector. A single operation that rounds to nearest errs by at most one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stable {
+    /// Roundings.
+    pub bound: f64,
+    /// What they are relative to.
+    pub size: Size,
+    /// Why that many, and where the form may be used.
+    pub because: &'static str,
 }
 
 /// A formula's description.
@@ -217,6 +272,8 @@ pub struct Spec {
     pub fit: Option<fn(&mut [f32])>,
     /// The named hard cases.
     pub hard: &'static [Hard],
+    /// What it claims, where it is a stable form.
+    pub stable: Option<Stable>,
 }
 
 impl Spec {

@@ -22,10 +22,10 @@ formula!(
     [Input::direction("i"), Input::direction("n")] -> [vec3("r")],
     |x, out| { out.vector(vector::reflect(x.vector(), x.vector())); },
     hard [
-        Hard { name: "straight-down", pins: "comes back", inputs: &[("i", &[0.0, 0.0, -1.0])] },
-        Hard { name: "grazing", pins: "goes on", inputs: &[("i", &[1.0, 0.0, 0.0])] },
-        Hard { name: "short-normal", pins: "a normal of length 0.9 gives |r| below 1", inputs: &[("i", &[0.6, 0.0, -0.8]), ("n", &[0.0, 0.0, 0.9])] },
-        Hard { name: "no-normal", pins: "i itself", inputs: &[("n", &[0.0, 0.0, 0.0])] },
+        Hard::new("straight-down", "comes back", &[("i", &[0.0, 0.0, -1.0])]),
+        Hard::new("grazing", "goes on", &[("i", &[1.0, 0.0, 0.0])]),
+        Hard::new("short-normal", "a normal of length 0.9 gives |r| below 1", &[("i", &[0.6, 0.0, -0.8]), ("n", &[0.0, 0.0, 0.9])]),
+        Hard::new("no-normal", "i itself", &[("n", &[0.0, 0.0, 0.0])]),
     ],
 );
 formula!(
@@ -40,11 +40,13 @@ formula!(
     Halfway: "vector/halfway" by "vector_halfway",
     "h = ⟨v + l⟩", "004; ruling 3",
     [Input::direction("v"), Input::direction("l")] -> [vec3("h")],
+    stable 16.0 Own "an exact sum of opposite vectors, then a normalisation of 16",
     |x, out| { out.vector(vector::halfway(x.vector(), x.vector())); },
     hard [
-        Hard { name: "half-vector-of-nothing", pins: "0 where v = −l, not NaN", inputs: &[("v", &[0.0, 0.0, 1.0]), ("l", &[0.0, 0.0, -1.0])] },
-        Hard { name: "nearly-opposite", pins: "what is left after cancellation is normalised", inputs: &[("v", &[0.0, 0.0, 1.0]), ("l", &[1e-3, 0.0, -1.0])] },
-        Hard { name: "same", pins: "v itself", inputs: &[("v", &[0.6, 0.0, 0.8]), ("l", &[0.6, 0.0, 0.8])] },
+        Hard::new("half-vector-of-nothing", "0 where v = −l, not NaN", &[("v", &[0.0, 0.0, 1.0]), ("l", &[0.0, 0.0, -1.0])])
+            .naive("vector/halfway-unguarded", "0/0", f64::INFINITY),
+        Hard::new("nearly-opposite", "what is left after cancellation is normalised", &[("v", &[0.0, 0.0, 1.0]), ("l", &[1e-3, 0.0, -1.0])]),
+        Hard::new("same", "v itself", &[("v", &[0.6, 0.0, 0.8]), ("l", &[0.6, 0.0, 0.8])]),
     ],
 );
 formula!(
@@ -61,11 +63,11 @@ formula!(
     [Input::new("v", Shape::Vec3, "1", Domain::Vector(1e-6, 1e6))] -> [vec3("v")],
     |x, out| { out.vector(vector::normalize(x.vector())); },
     hard [
-        Hard { name: "zero", pins: "0, not NaN", inputs: &[("v", &[0.0, 0.0, 0.0])] },
-        Hard { name: "tiny", pins: "the square underflows: nothing is promised of the published form", inputs: &[("v", &[1e-23, 1e-23, 1e-23])] },
-        Hard { name: "huge", pins: "the square overflows: nothing is promised of the published form", inputs: &[("v", &[1.9e19, 0.0, 0.0])] },
-        Hard { name: "smallest-promised", pins: "the square is just normal", inputs: &[("v", &[2e-19, 0.0, 0.0])] },
-        Hard { name: "axis", pins: "stays what it is", inputs: &[("v", &[0.0, -1.0, 0.0])] },
+        Hard::new("zero", "0, not NaN", &[("v", &[0.0, 0.0, 0.0])]),
+        Hard::new("tiny", "the square underflows: nothing is promised of the published form", &[("v", &[1e-23, 1e-23, 1e-23])]),
+        Hard::new("huge", "the square overflows: nothing is promised of the published form", &[("v", &[1.9e19, 0.0, 0.0])]),
+        Hard::new("smallest-promised", "the square is just normal", &[("v", &[2e-19, 0.0, 0.0])]),
+        Hard::new("axis", "stays what it is", &[("v", &[0.0, -1.0, 0.0])]),
     ],
 );
 formula!(
@@ -82,8 +84,8 @@ formula!(
     [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
     |x, out| { out.vector(vector::normal_inverse_transpose(&x.mat3(), x.vector())); },
     hard [
-        Hard { name: "reflection", pins: "a negative determinant", inputs: &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]), ("n", &[0.6, 0.0, 0.8])] },
-        Hard { name: "flat", pins: "a scale of 1e-3 along one axis", inputs: &[("modelview", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-3]), ("n", &[0.6, 0.0, 0.8])] },
+        Hard::new("reflection", "a negative determinant", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]), ("n", &[0.6, 0.0, 0.8])]),
+        Hard::new("flat", "a scale of 1e-3 along one axis", &[("modelview", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-3]), ("n", &[0.6, 0.0, 0.8])]),
     ],
 );
 formula!(
@@ -103,8 +105,8 @@ formula!(
     ] -> [EYE],
     |x, out| { out.vector(vector::light_position(&x.mat4(), x.vector())); },
     hard [
-        Hard { name: "at-infinity", pins: "w = 0: a direction, undivided", inputs: &[("position", &[0.5, 0.0, 0.0, 0.0])] },
-        Hard { name: "behind-infinity", pins: "a negative w turns it round", inputs: &[("position", &[1.0, 2.0, 3.0, -2.0])] },
+        Hard::new("at-infinity", "w = 0: a direction, undivided", &[("position", &[0.5, 0.0, 0.0, 0.0])]),
+        Hard::new("behind-infinity", "a negative w turns it round", &[("position", &[1.0, 2.0, 3.0, -2.0])]),
     ],
 );
 formula!(
@@ -121,7 +123,7 @@ formula!(
     [Input::position("light"), Input::position("p")] -> [vec3("l")],
     |x, out| { out.vector(vector::toward(x.vector(), x.vector())); },
     hard [
-        Hard { name: "light-on-the-surface", pins: "0, not NaN", inputs: &[("light", &[1.0, 2.0, -3.0]), ("p", &[1.0, 2.0, -3.0])] },
+        Hard::new("light-on-the-surface", "0, not NaN", &[("light", &[1.0, 2.0, -3.0]), ("p", &[1.0, 2.0, -3.0])]),
     ],
 );
 formula!(
@@ -138,7 +140,177 @@ formula!(
     [Input::position("a"), Input::position("b"), Input::position("c")] -> [vec3("n")],
     |x, out| { out.vector(vector::face_normal(x.vector(), x.vector(), x.vector())); },
     hard [
-        Hard { name: "no-area", pins: "0 for three points on a line", inputs: &[("a", &[0.0, 0.0, 0.0]), ("b", &[1.0, 1.0, 1.0]), ("c", &[2.0, 2.0, 2.0])] },
+        Hard::new("no-area", "0 for three points on a line", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1.0, 1.0, 1.0]), ("c", &[2.0, 2.0, 2.0])]),
+    ],
+);
+
+const V: Input = Input::new("v", Shape::Vec3, "1", Domain::Vector(1e-6, 1e6));
+const LENGTH: Output = Output::new("length", Shape::Scalar, "1");
+
+formula!(
+    /// normalize without its guard.
+    NormalizeUnguarded: "vector/normalize-unguarded" by "vector_normalize_unguarded",
+    "v/|v|", "WGSL, normalize",
+    [V] -> [vec3("v")],
+    |x, out| { out.vector(vector::normalize_unguarded(x.vector())); },
+);
+formula!(
+    /// normalize of any length.
+    NormalizeScaled: "vector/normalize-scaled" by "vector_normalize_scaled",
+    "⟨v·2ᵏ⟩ with the largest component of v·2ᵏ in [2⁻²⁰, 2²⁰); 0 for the zero vector", "000 §6.3, at any length",
+    [V] -> [vec3("v")],
+    stable 16.0 Own "an inverse root of 2 ULP or a division of 2½, and the half of three squares' errors",
+    |x, out| { out.vector(vector::normalize_scaled(x.vector())); },
+    hard [
+        Hard::new("zero", "0, not NaN", &[("v", &[0.0, 0.0, 0.0])])
+            .naive("vector/normalize-unguarded", "0/0", f64::INFINITY),
+        Hard::new("length-1e-20", "the squares are subnormal", &[("v", &[1e-20, -1e-20, 1e-20])])
+            .naive("vector/normalize", "a square of 1e-40 is flushed, or has few digits", 10.0),
+        Hard::new("length-1e-22", "the squares are subnormal", &[("v", &[1e-22, 1e-22, 1e-22])])
+            .naive("vector/normalize", "a square of 1e-44 has 3 bits, or none", 1e5),
+        Hard::new("length-1e-23", "the squares underflow", &[("v", &[1e-23, 2e-23, -1e-23])])
+            .naive("vector/normalize", "0 or ∞", 1e6),
+        Hard::new("length-1e-30", "the squares underflow", &[("v", &[3e-30, 4e-30, 0.0])])
+            .naive("vector/normalize", "taken for the zero vector", 1e7),
+        Hard::new("length-1e-37", "barely a normal number", &[("v", &[3e-37, 4e-37, 5e-37])])
+            .naive("vector/normalize", "taken for the zero vector", 1e7),
+        Hard::new("length-1.9e19", "the square overflows", &[("v", &[1.9e19, 0.0, 0.0])])
+            .naive("vector/normalize", "1/∞ is 0", 1e7),
+        Hard::new("length-1e30", "the squares overflow", &[("v", &[1e30, -1e30, 2e30])])
+            .naive("vector/normalize", "1/∞ is 0", 1e7),
+        Hard::new("length-3e38", "nearly the greatest number", &[("v", &[2e38, 3e38, 1e38])])
+            .naive("vector/normalize", "1/∞ is 0", 1e7),
+        Hard::new("uneven", "one component is all", &[("v", &[1e25, 1e-20, 1.0])])
+            .naive("vector/normalize", "1/∞ is 0", 1e7),
+    ],
+);
+formula!(
+    /// length.
+    Length: "vector/length" by "vector_length",
+    "|v| = √(v·v)", "WGSL, length",
+    [V] -> [LENGTH],
+    |x, out| { out.scalar(vector::length(x.vector())); },
+);
+formula!(
+    /// length at any length.
+    LengthScaled: "vector/length-scaled" by "vector_length_scaled",
+    "|v·2ᵏ|·2⁻ᵏ", "at any length",
+    [V] -> [LENGTH],
+    stable 16.0 Own "a root as 1/inverseSqrt: 4½ ULP, and the half of three squares' errors",
+    |x, out| { out.scalar(vector::length_scaled(x.vector())); },
+    hard [
+        Hard::new("tiny", "the squares underflow", &[("v", &[3e-25, 4e-25, 0.0])])
+            .naive("vector/length", "0", 1e7),
+        Hard::new("small", "the squares are subnormal", &[("v", &[1e-22, 1e-22, 1e-22])])
+            .naive("vector/length", "a square of 1e-44 has 3 bits, or none", 1e5),
+        Hard::new("huge", "the squares overflow", &[("v", &[3e25, 4e25, 0.0])])
+            .naive("vector/length", "∞", f64::INFINITY),
+    ],
+);
+formula!(
+    /// The halfway vector without its guard.
+    HalfwayUnguarded: "vector/halfway-unguarded" by "vector_halfway_unguarded",
+    "h = (v + l)/|v + l|", "004, taken literally",
+    [Input::direction("v"), Input::direction("l")] -> [vec3("h")],
+    |x, out| { out.vector(vector::halfway_unguarded(x.vector(), x.vector())); },
+);
+formula!(
+    /// reflect about a normal of any length.
+    ReflectAnyNormal: "vector/reflect-any-normal" by "vector_reflect_any_normal",
+    "r = i − 2(i·⟨n⟩)⟨n⟩", "000 §6.3, the normal normalised at any length",
+    [Input::direction("i"), Input::vector("n")] -> [vec3("r")],
+    stable 64.0 Own "twice the normal's 16 roundings twice over",
+    |x, out| { out.vector(vector::reflect_any_normal(x.vector(), x.vector())); },
+    hard [
+        Hard::new("normal-of-0.9", "|r| = |i|", &[("i", &[0.6, 0.0, -0.8]), ("n", &[0.0, 0.0, 0.9])])
+            .naive("vector/reflect", "|r| is 0.8", 1e6),
+        Hard::new("normal-of-1.1", "|r| = |i|", &[("i", &[0.6, 0.0, -0.8]), ("n", &[0.0, 0.0, 1.1])])
+            .naive("vector/reflect", "|r| is 1.3", 1e6),
+        Hard::new("between-two-vertices", "a normal interpolated between two at right angles", &[("i", &[0.6, 0.0, -0.8]), ("n", &[0.5, 0.0, 0.5])])
+            .naive("vector/reflect", "the mirrored vector goes half the way", 1e6),
+        Hard::new("tiny-normal", "a mirror however small its normal", &[("i", &[0.6, 0.0, -0.8]), ("n", &[0.0, 3e-24, 4e-24])])
+            .naive("vector/reflect", "nothing is mirrored", 1e7),
+    ],
+);
+formula!(
+    /// Normals by the inverse transpose, normalised.
+    NormalByDeterminant: "vector/normal-by-determinant" by "vector_normal_by_determinant",
+    "n′ = ⟨cofactors·n/determinant⟩", "004; ruling 6",
+    [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
+    |x, out| { out.vector(vector::normal_by_determinant(&x.mat3(), x.vector())); },
+);
+formula!(
+    /// Normals by the cofactors alone.
+    NormalByCofactors: "vector/normal-by-cofactors" by "vector_normal_by_cofactors",
+    "n′ = ±⟨cofactors(modelview·2ᵏ)·n⟩ by the determinant's sign", "Lengyel; ruling 6",
+    [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
+    stable 64.0 Own "nine cofactors and a product that do not cancel, then a normalisation of 16",
+    |x, out| { out.vector(vector::normal_by_cofactors(&x.mat3(), x.vector())); },
+    hard [
+        Hard::new("flattened-1e-20", "a scale of 1e-20 along one axis", &[("modelview", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-20]), ("n", &[0.6, 0.0, 0.8])])
+            .naive("vector/normal-by-determinant", "cofactors over the determinant have a square of 1e40", 1e6),
+        Hard::new("flattened-1e-30", "a scale of 1e-30 along one axis", &[("modelview", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-30]), ("n", &[0.6, 0.0, 0.8])])
+            .naive("vector/normal-by-determinant", "cofactors over the determinant have a square of 1e60", 1e6),
+        Hard::new("shrunk-1e-16", "a uniform scale of 1e-16", &[("modelview", &[1e-16, 0.0, 0.0, 0.0, 1e-16, 0.0, 0.0, 0.0, 1e-16]), ("n", &[0.6, 0.0, 0.8])])
+            .naive("vector/normal-by-determinant", "the determinant of 1e-48 underflows", 1e6),
+        Hard::new("shrunk-1e-25", "a uniform scale of 1e-25", &[("modelview", &[1e-25, 0.0, 0.0, 0.0, 1e-25, 0.0, 0.0, 0.0, 1e-25]), ("n", &[0.6, 0.0, 0.8])])
+            .naive("vector/normal-by-determinant", "the cofactors underflow", 1e6),
+        Hard::new("grown-1e13", "a uniform scale of 1e13", &[("modelview", &[1e13, 0.0, 0.0, 0.0, 1e13, 0.0, 0.0, 0.0, 1e13]), ("n", &[0.6, 0.0, 0.8])])
+            .naive("vector/normal-by-determinant", "the determinant overflows", 1e6),
+        Hard::new("mirrored-and-flattened", "a reflection turns the cofactors round", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-20]), ("n", &[0.6, 0.0, 0.8])])
+            .naive("vector/normal-by-determinant", "cofactors over the determinant have a square of 1e40", 1e6),
+    ],
+);
+formula!(
+    /// The normal of any face.
+    FaceNormalCompensated: "vector/face-normal-compensated" by "vector_face_normal_compensated",
+    "n = ⟨(b − a)·2ʲ × (c − a)·2ᵏ⟩, differences of products (Kahan)", "004, for faces of any size and slivers",
+    [Input::position("a"), Input::position("b"), Input::position("c")] -> [vec3("n")],
+    stable 24.0 Own "2 roundings a component (Kahan), then a normalisation of 16; for corners whose differences are exact",
+    |x, out| { out.vector(vector::face_normal_compensated(x.vector(), x.vector(), x.vector())); },
+    hard [
+        Hard::new("tiny", "edges of 1e-12", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1e-12, 2e-12, 0.0]), ("c", &[-1e-12, 1e-12, 3e-12])])
+            .naive("vector/face-normal", "the square of the cross product underflows", 1e6),
+        Hard::new("huge", "edges of 1e12", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1e12, 2e12, 0.0]), ("c", &[-1e12, 1e12, 3e12])])
+            .naive("vector/face-normal", "the square of the cross product overflows", 1e6),
+        Hard::new("sliver", "edges that agree to 5 digits", &[("a", &[0.0, 0.0, 0.0]), ("b", &[0.7, 0.3, 0.2]), ("c", &[1.4, 0.600_01, 0.4])])
+            .naive("vector/face-normal", "the rounding of the products is what is left", 1e3),
+        Hard::new("needle", "edges that agree to the last bits", &[("a", &[0.0, 0.0, 0.0]), ("b", &[0.1, 0.3, 0.7]), ("c", &[0.7, 2.1, 4.9])])
+            .naive("vector/face-normal", "any direction", 1e6),
+    ],
+);
+
+const FACE: Input = Input::direction("face");
+const BETWEEN: Input = Input::scalar("t", "1", Domain::Unit);
+
+formula!(
+    /// A normal between two vertices.
+    InterpolatedNormal: "vector/interpolated-normal" by "vector_interpolated_normal",
+    "n = ⟨mix(n0, n1, t)⟩", "000 §6.3, 004",
+    [Input::direction("n0"), Input::direction("n1"), FACE, BETWEEN] -> [vec3("n")],
+    |x, out| {
+        let [n0, n1, _] = x.vectors();
+        out.vector(vector::interpolated_normal(n0, n1, x.scalar()));
+    },
+    hard [
+        Hard::new("nearly-opposite", "ill-conditioned: what is left is 1e-3 of the normals", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.001, -0.6, -0.8]), ("t", &[0.5])]),
+    ],
+);
+formula!(
+    /// A normal between two vertices, or the face's.
+    InterpolatedNormalGuarded: "vector/interpolated-normal-guarded" by "vector_interpolated_normal_guarded",
+    "n = ⟨mix(n0, n1, t)⟩, the face's normal where the mix is below 2⁻¹⁰", "000 §6.3, 004, with a rule for opposite normals",
+    [Input::direction("n0"), Input::direction("n1"), FACE, BETWEEN] -> [vec3("n")],
+    stable 16.0 Own "a normalisation of 16; where the mix is used, twice its condition of at most 2¹⁰ besides",
+    |x, out| {
+        let [n0, n1, face] = x.vectors();
+        out.vector(vector::interpolated_normal_guarded(n0, n1, face, x.scalar()));
+    },
+    hard [
+        Hard::new("opposite", "nothing is left to normalise", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.0, -0.6, -0.8]), ("face", &[1.0, 0.0, 0.0]), ("t", &[0.5])])
+            .naive("vector/interpolated-normal", "0, or the direction of a rounding", 1e6),
+        Hard::new("opposite-but-1e-6", "what is left is 1e-6", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.000_001, -0.6, -0.8]), ("face", &[0.0, 0.8, -0.6]), ("t", &[0.5])])
+            .naive("vector/interpolated-normal", "2 rad off with the least change of t", 1e6),
     ],
 );
 
@@ -156,4 +328,15 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     visitor.formula(Toward);
     visitor.formula(AverageNormal);
     visitor.formula(FaceNormal);
+    visitor.formula(NormalizeUnguarded);
+    visitor.formula(NormalizeScaled);
+    visitor.formula(Length);
+    visitor.formula(LengthScaled);
+    visitor.formula(HalfwayUnguarded);
+    visitor.formula(ReflectAnyNormal);
+    visitor.formula(NormalByDeterminant);
+    visitor.formula(NormalByCofactors);
+    visitor.formula(FaceNormalCompensated);
+    visitor.formula(InterpolatedNormal);
+    visitor.formula(InterpolatedNormalGuarded);
 }

@@ -97,7 +97,7 @@ fn cases(member: &Member, chosen: &Selected, aliases: &[String]) -> Value {
         .filter(|(place, _)| matches!(chosen.random, Random::Some(_)) || *place == 0)
         .map(|(_, case)| member.case_id(case))
         .collect();
-    let count = chosen.count() - chosen.hard.len() as u64;
+    let count = chosen.random_count();
     let mut entry = json!({ "formula": member.spec.id, "random": count, "hard": hard, "aliases": aliases });
     let key = if matches!(chosen.random, Random::First(_)) { "first" } else { "ids" };
     entry[key] = json!(random);
@@ -136,7 +136,7 @@ fn tree(catalogue: &[Member], selected: &[Selected], scenes: &[Chosen]) -> anyho
             family = spec.family();
             writeln!(text, "{family}")?;
         }
-        let random: u64 = group.iter().map(|chosen| chosen.count() - chosen.hard.len() as u64).sum();
+        let random: u64 = group.iter().map(|chosen| chosen.random_count()).sum();
         total += group.iter().map(Selected::count).sum::<u64>();
         let name = spec.group().rsplit('/').next().unwrap_or_default();
         let states = if group.len() > 1 { format!(" in {} states", group.len()) } else { String::new() };

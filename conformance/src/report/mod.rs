@@ -4,6 +4,7 @@ pub mod junit;
 pub mod page;
 pub mod text;
 
+use crate::stability::Examined;
 use crate::subject::Identity;
 use serde::{Serialize, Serializer};
 
@@ -366,6 +367,9 @@ pub struct Report {
     /// What blend units left of NaN and infinity, of which nothing is promised.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub special: Vec<SpecialUse>,
+    /// Hard cases by their stable and their naive form.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub stability: Vec<Examined>,
     /// What was under way when a device failed, which ended the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interrupted: Option<Interrupted>,

@@ -93,6 +93,38 @@ fn blend_timing(report: &Report, out: &mut impl Write) -> Result {
     Ok(())
 }
 
+/// How many hard cases the stable forms keep their claims at, and where a naive form does better than it is known for.
+fn stability(report: &Report, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        let on_adapter: Vec<_> = report.stability.iter().filter(|one| one.adapter == adapter.name).collect();
+        if on_adapter.is_empty() {
+            continue;
+        }
+        let (kept, fails) = (
+            on_adapter.iter().filter(|one| one.is_stable()).count(),
+            on_adapter.iter().filter(|one| one.naive_fails()).count(),
+        );
+        writeln!(
+            out,
+            "hard cases of {}, by stage: the stable form keeps its bound at {kept} of {}, the naive form fails at {fails}",
+            adapter.name,
+            on_adapter.len()
+        )?;
+        for one in on_adapter.iter().filter(|one| !one.naive_fails()) {
+            writeln!(
+                out,
+                "  {} does not fail at {} here, {}: {} roundings, said to be {} at least",
+                one.naive_formula,
+                one.id,
+                one.stage,
+                Number(one.naive.0.round()),
+                one.naive_at_least
+            )?;
+        }
+    }
+    Ok(())
+}
+
 fn notes(report: &Report, out: &mut impl Write) -> Result {
     for deviation in &report.deviations {
         let state = if deviation.still_needed {
@@ -128,6 +160,7 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
     }
     stores(report, out)?;
     images(report, out)?;
+    stability(report, out)?;
     for special in report.special.iter().filter(|special| !special.is_as_recorded()) {
         let (seen, recorded) = (&special.seen, special.recorded.unwrap_or_default());
         writeln!(

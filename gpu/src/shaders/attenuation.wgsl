@@ -40,3 +40,27 @@ fn attenuation_spot_exponent(l: vec3f, axis: vec3f, cutoff_cosine: f32, exponent
 fn attenuation_spot_cutoff(l: vec3f, axis: vec3f, cutoff_cosine: f32) -> f32 {
     return attenuation_cone(dot(-l, axis), cutoff_cosine);
 }
+
+// Other forms of the same: some lose what others keep.
+
+fn attenuation_polynomial_expanded(kc: f32, kl: f32, kq: f32, d: f32) -> f32 {
+    return 1.0 / (kc + kl * d + kq * (d * d));
+}
+
+fn attenuation_polynomial_bounded(kc: f32, kl: f32, kq: f32, d: f32) -> f32 {
+    return 1.0 / clamp(kc + d * (kl + d * kq), 0x1p-126, 0x1p126);
+}
+
+fn attenuation_point_scaled(kc: f32, kl: f32, kq: f32, light: vec3f, p: vec3f) -> f32 {
+    return attenuation_polynomial_bounded(kc, kl, kq, vector_length_scaled(light - p));
+}
+
+fn attenuation_spot_exponent_by_chord(l: vec3f, axis: vec3f, cutoff_cosine: f32, exponent: f32) -> f32 {
+    if attenuation_cone(dot(-l, axis), cutoff_cosine) <= 0.0 {
+        return 0.0;
+    }
+    if exponent <= 0.0 {
+        return 1.0;
+    }
+    return vector_cosine_power_by_chord(-l, axis, exponent);
+}

@@ -1,5 +1,6 @@
 // Programmable blending: what the fixed-function unit computes, written out. Nothing is clamped here.
 // src and dst the colours, constant the blend constant; factors and equations by their codes in the scene's tables.
+// requires: elementary
 
 fn blend_factor(code: u32, src: vec4f, dst: vec4f, constant: vec4f, saturation: f32) -> vec4f {
     switch code {
@@ -74,4 +75,41 @@ fn blend_alpha_clamped(src: vec4f, dst: vec4f) -> vec4f {
     let s = saturate(src);
     let d = saturate(dst);
     return saturate(s * s.a + d * (1.0 - s.a));
+}
+
+// Other forms of the same: some lose what others keep.
+
+fn blend_over(src: vec4f, dst: vec3f) -> vec3f {
+    return src.rgb * src.a + dst * (1.0 - src.a);
+}
+
+fn blend_over_incremental(src: vec4f, dst: vec3f) -> vec3f {
+    return dst + src.a * (src.rgb - dst);
+}
+
+fn blend_opacity_of_layers(alpha: f32, layers: f32) -> f32 {
+    return 1.0 - pow(1.0 - alpha, layers);
+}
+
+fn blend_opacity_of_layers_expm1(alpha: f32, layers: f32) -> f32 {
+    return -elementary_exp_m1(layers * elementary_ln_1p(-alpha));
+}
+
+fn blend_unpremultiply(color: vec3f, alpha: f32) -> vec3f {
+    return color / alpha;
+}
+
+fn blend_unpremultiply_guarded(color: vec3f, alpha: f32) -> vec3f {
+    if alpha < 0x1p-126 {
+        return vec3f(0.0);
+    }
+    return color / alpha;
+}
+
+fn blend_subtract(src: f32, s: f32, dst: f32, d: f32) -> f32 {
+    return src * s - dst * d;
+}
+
+fn blend_subtract_compensated(src: f32, s: f32, dst: f32, d: f32) -> f32 {
+    return elementary_difference_of_products(src, s, dst, d);
 }

@@ -59,3 +59,13 @@ fn color_uniform(color: vec3f) -> vec4f {
 fn color_per_vertex(weights: vec3f, a: vec3f, b: vec3f, c: vec3f) -> vec4f {
     return vec4f(weights.x * a + weights.y * b + weights.z * c, 1.0);
 }
+
+// Other forms of the same: some lose what others keep.
+
+fn color_gamma_encode(c: f32) -> f32 {
+    return pow(c, 1.0 / 2.2);
+}
+
+fn color_srgb_encode_power(c: f32) -> f32 {
+    return 1.055 * pow(c, 1.0 / 2.4) - 0.055;
+}

@@ -26,3 +26,17 @@ fn depth_test(compare: u32, write: u32, new_depth: f32, old_depth: f32) -> Teste
     }
     return Tested(2.0, select(stored, drawn, write == 1u));
 }
+
+// Depth as it is stored, and the distance read back from it.
+
+fn depth_recovered(near: f32, far: f32, z: f32) -> f32 {
+    let range = far - near;
+    let stored = far * (z - near) / (z * range);
+    return near * far / (far - stored * range);
+}
+
+fn depth_recovered_reversed(near: f32, far: f32, z: f32) -> f32 {
+    let range = far - near;
+    let stored = near * (far - z) / (z * range);
+    return near * far / (near + stored * range);
+}

@@ -1,5 +1,6 @@
 // Interpolation, coverage and the viewport: first as arithmetic, then by the rasteriser itself.
 // alpha beta gamma barycentric weights, a b c the attribute at the vertices, w the homogeneous coordinate; y points down.
+// requires: elementary
 
 fn interpolation_line(weights: vec2f, a: f32, b: f32) -> f32 {
     return weights.x * a + weights.y * b;
@@ -113,4 +114,51 @@ fn interpolation_front_facing(a: vec2f, b: vec2f, c: vec2f) -> f32 {
 
 fn interpolation_frag_depth(depth: f32) -> f32 {
     return clamp(depth, 0.0, 1.0);
+}
+
+// Other forms of the same: some lose what others keep.
+
+fn interpolation_edge_from_origin(a: vec2f, b: vec2f, p: vec2f) -> f32 {
+    return a.x * b.y - a.y * b.x + b.x * p.y - b.y * p.x + p.x * a.y - p.y * a.x;
+}
+
+fn interpolation_edge_compensated(a: vec2f, b: vec2f, p: vec2f) -> f32 {
+    let ab = b - a;
+    let ap = p - a;
+    return elementary_difference_of_products(ab.x, ap.y, ab.y, ap.x);
+}
+
+fn interpolation_last_weight(a: vec2f, b: vec2f, c: vec2f, p: vec2f) -> f32 {
+    return interpolation_edge(a, b, p) / interpolation_edge(a, b, c);
+}
+
+fn interpolation_last_weight_by_difference(a: vec2f, b: vec2f, c: vec2f, p: vec2f) -> f32 {
+    let weights = interpolation_weights(a, b, c, p);
+    return 1.0 - weights.x - weights.y;
+}
+
+fn interpolation_mix(a: f32, b: f32, t: f32) -> f32 {
+    return a * (1.0 - t) + b * t;
+}
+
+fn interpolation_mix_incremental(a: f32, b: f32, t: f32) -> f32 {
+    return a + t * (b - a);
+}
+
+// The weight of a vertex as a w goes to 0: at most lambda, and lambda itself for the least w.
+fn interpolation_scaled_weight(lambda: f32, least: f32, w: f32) -> f32 {
+    if w <= least {
+        return lambda;
+    }
+    return lambda * (least / w);
+}
+
+fn interpolation_perspective_scaled(lambda: vec3f, w: vec3f, attr: vec3f) -> f32 {
+    let least = min(min(w.x, w.y), w.z);
+    let q = vec3f(
+        interpolation_scaled_weight(lambda.x, least, w.x),
+        interpolation_scaled_weight(lambda.y, least, w.y),
+        interpolation_scaled_weight(lambda.z, least, w.z),
+    );
+    return interpolation_triangle(q, attr.x, attr.y, attr.z) / (q.x + q.y + q.z);
 }

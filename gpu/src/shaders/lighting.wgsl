@@ -245,3 +245,25 @@ fn lighting_flat(a: vec3f, b: vec3f, c: vec3f, position: vec3f, kd: f32, ks: f32
     let n = vector_face_normal(a, b, c);
     return lighting_intensity(n, vector_toward(position, a), vector_normalize(-a), kd, ks, shininess);
 }
+
+// Other forms of the same: some lose what others keep.
+
+fn lighting_cosine_power(a: vec3f, b: vec3f, exponent: f32) -> f32 {
+    return vector_cosine_power(a, b, exponent);
+}
+
+fn lighting_cosine_power_unguarded(a: vec3f, b: vec3f, exponent: f32) -> f32 {
+    return pow(dot(a, b), exponent);
+}
+
+fn lighting_cosine_power_by_chord(a: vec3f, b: vec3f, exponent: f32) -> f32 {
+    return vector_cosine_power_by_chord(a, b, exponent);
+}
+
+fn lighting_blinn_stable(light: Light, material: Material, p: vec3f, normal: vec3f, direction: vec3f) -> vec4f {
+    let n = vector_normalize_scaled(normal);
+    let l = vector_normalize_scaled(-direction);
+    let h = vector_normalize_scaled(vector_normalize_scaled(-p) + l);
+    let highlight = lighting_gate(n, l, vector_cosine_power_by_chord(n, h, material.shininess));
+    return vec4f(lighting_sum_of_terms(light, material, lighting_incidence(l, n), highlight, 1.0), 1.0);
+}

@@ -1,5 +1,6 @@
 // Vectors and transforms, in eye space.
 // n normal, l surface to light, v surface to eye, i = -l, r mirrored light, h halfway vector.
+// requires: elementary
 
 // max(cosine, 0)^exponent. Drivers differ in pow(0, 0) and pow of a negative base, so neither reaches pow.
 fn vector_lobe(cosine: f32, exponent: f32) -> f32 {
@@ -73,4 +74,103 @@ fn vector_average_normal(n0: vec3f, n1: vec3f, n2: vec3f) -> vec3f {
 
 fn vector_face_normal(a: vec3f, b: vec3f, c: vec3f) -> vec3f {
     return vector_normalize(cross(b - a, c - a));
+}
+
+// Stable forms beside the published ones, and two without their guards.
+
+fn vector_normalize_unguarded(v: vec3f) -> vec3f {
+    return normalize(v);
+}
+
+fn vector_largest(v: vec3f) -> f32 {
+    return max(max(abs(v.x), abs(v.y)), abs(v.z));
+}
+
+// Brought near 1 by a power of two first, so that no square overflows or underflows.
+fn vector_normalize_scaled(v: vec3f) -> vec3f {
+    let largest = vector_largest(v);
+    if largest <= 0.0 {
+        return vec3f(0.0);
+    }
+    return normalize(v * elementary_binary_scale(largest));
+}
+
+fn vector_length(v: vec3f) -> f32 {
+    return length(v);
+}
+
+fn vector_length_scaled(v: vec3f) -> f32 {
+    let largest = vector_largest(v);
+    if largest <= 0.0 {
+        return 0.0;
+    }
+    let scale = elementary_binary_scale(largest);
+    return length(v * scale) * (1.0 / scale);
+}
+
+fn vector_halfway_unguarded(v: vec3f, l: vec3f) -> vec3f {
+    return normalize(v + l);
+}
+
+fn vector_reflect_any_normal(i: vec3f, n: vec3f) -> vec3f {
+    return vector_reflect(i, vector_normalize_scaled(n));
+}
+
+fn vector_normal_by_determinant(modelview: mat3x3f, n: vec3f) -> vec3f {
+    return vector_normalize(vector_normal_inverse_transpose(modelview, n));
+}
+
+// Without the division by the determinant: only its sign is of use, which turns the cofactors round under reflection.
+fn vector_normal_by_cofactors(modelview: mat3x3f, n: vec3f) -> vec3f {
+    let largest = max(max(vector_largest(modelview[0]), vector_largest(modelview[1])), vector_largest(modelview[2]));
+    let scaled = modelview * elementary_binary_scale(largest);
+    let bc = cross(scaled[1], scaled[2]);
+    let ca = cross(scaled[2], scaled[0]);
+    let ab = cross(scaled[0], scaled[1]);
+    let normal = vector_normalize_scaled(mat3x3f(bc, ca, ab) * n);
+    return select(-normal, normal, dot(scaled[0], bc) >= 0.0);
+}
+
+fn vector_cross_compensated(a: vec3f, b: vec3f) -> vec3f {
+    return vec3f(
+        elementary_difference_of_products(a.y, b.z, a.z, b.y),
+        elementary_difference_of_products(a.z, b.x, a.x, b.z),
+        elementary_difference_of_products(a.x, b.y, a.y, b.x),
+    );
+}
+
+fn vector_near_one(v: vec3f) -> vec3f {
+    return v * elementary_binary_scale(vector_largest(v));
+}
+
+fn vector_face_normal_compensated(a: vec3f, b: vec3f, c: vec3f) -> vec3f {
+    return vector_normalize_scaled(vector_cross_compensated(vector_near_one(b - a), vector_near_one(c - a)));
+}
+
+fn vector_interpolated_normal(n0: vec3f, n1: vec3f, face: vec3f, t: f32) -> vec3f {
+    return vector_normalize(mix(n0, n1, t));
+}
+
+// What is left of opposite normals is their rounding: the face's own normal stands in below 2^-10.
+fn vector_interpolated_normal_guarded(n0: vec3f, n1: vec3f, face: vec3f, t: f32) -> vec3f {
+    let n = mix(n0, n1, t);
+    if dot(n, n) >= 0x1p-20 {
+        return vector_normalize(n);
+    }
+    return vector_normalize(face);
+}
+
+// max(a.b, 0)^exponent.
+fn vector_cosine_power(a: vec3f, b: vec3f, exponent: f32) -> f32 {
+    return vector_lobe(dot(a, b), exponent);
+}
+
+// The same by q = 1 - cosine from the chord between a and b, of which a cosine near 1 has lost all below 2^-24.
+fn vector_cosine_power_by_chord(a: vec3f, b: vec3f, exponent: f32) -> f32 {
+    let between = a - b;
+    let q = 0.5 * dot(between, between);
+    if exponent <= 64.0 || q >= 0.5 {
+        return vector_cosine_power(a, b, exponent);
+    }
+    return exp(exponent * elementary_ln_1p(-q));
 }

@@ -8,7 +8,7 @@ const NAN: f32 = f32::NAN;
 
 macro_rules! special {
     ($name:literal, $pins:literal, $src:expr, $dst:expr) => {
-        Hard { name: $name, pins: $pins, inputs: &[("src", &$src), ("dst", &$dst)] }
+        Hard::new($name, $pins, &[("src", &$src), ("dst", &$dst)])
     };
 }
 

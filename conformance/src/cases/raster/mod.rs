@@ -274,6 +274,7 @@ impl Formula for RasterFlat {
             outputs: &[ATTR],
             fit: None,
             hard: &[],
+            stable: None,
         }
     }
 
