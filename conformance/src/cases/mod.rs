@@ -38,6 +38,12 @@ pub fn visit(visitor: &mut impl Visitor) {
     blend::visit(visitor);
 }
 
+/// Shows every formula to a visitor, with some of the many states that are separate for alpha.
+pub fn visit_all(samples: &blend::Samples, visitor: &mut impl Visitor) {
+    visit(visitor);
+    blend::visit_separate(samples, visitor);
+}
+
 /// Every formula, evaluable in the arithmetics of the suite, with some of the many states that are separate for alpha.
 #[must_use]
 pub fn all(samples: &blend::Samples) -> Vec<Box<dyn AnyFormula>> {
@@ -48,7 +54,6 @@ pub fn all(samples: &blend::Samples) -> Vec<Box<dyn AnyFormula>> {
         }
     }
     let mut collect = Collect(vec![]);
-    visit(&mut collect);
-    blend::visit_separate(samples, &mut collect);
+    visit_all(samples, &mut collect);
     collect.0
 }
