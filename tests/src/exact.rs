@@ -32,7 +32,7 @@ pub struct Course {
     pub choices: Vec<i64>,
     /// Which of them lay within the error of what was compared: taken as equal.
     pub undecided: Vec<usize>,
-    /// Whether some intermediate value lies beyond what f64 holds to its full precision.
+    /// Whether some intermediate value is too great for f64.
     pub beyond_f64: bool,
 }
 
@@ -65,6 +65,12 @@ pub fn clear() -> Course {
         arena.numbers.clear();
         std::mem::take(&mut arena.course)
     })
+}
+
+/// What was met since then.
+#[must_use]
+pub fn course() -> Course {
+    ARENA.with_borrow(|arena| arena.course.clone())
 }
 
 /// |x| < 2^magnitude, and ≥ half of that; the least there is for 0.
@@ -202,7 +208,7 @@ impl Arena {
     fn put(&mut self, number: Option<Number>) -> Exact {
         let Some(number) = number else { return Exact(None) };
         let size = magnitude(&number.value);
-        self.course.beyond_f64 |= size > 1024 || (size < -1021 && (size > i64::MIN / 4 || number.error.is_some()));
+        self.course.beyond_f64 |= size > 1024;
         self.numbers.push(number);
         Exact(Some(self.numbers.len() - 1))
     }
@@ -415,13 +421,13 @@ impl Exact {
         self.0.map(|x| ARENA.with_borrow(|arena| (arena.numbers[x].value.clone(), arena.numbers[x].error)))
     }
 
-    /// Decimal digits that are sure: as many as can be for an exact number, none for one that may be 0.
+    /// Decimal digits of it that are sure beside a number of that size; nothing where all are.
     #[must_use]
-    pub fn digits(self) -> Option<u32> {
-        let (value, error) = self.get()?;
-        let bits = error.map_or(i64::from(u32::MAX), |error| (magnitude(&value) - 1 - error).max(0));
+    pub fn digits_beside(self, size: f64) -> Option<u32> {
+        let error = self.get()?.1?;
+        let bits = magnitude(&Float::try_from(size).ok()?) - 1 - error;
         // log₁₀ 2 is above 0.301.
-        Some(u32::try_from(bits.saturating_mul(301) / 1000).unwrap_or(u32::MAX))
+        u32::try_from(bits.max(0).saturating_mul(301) / 1000).ok()
     }
 
     /// |x − self|, rounded to 53 bits, and the same over |self|, infinite where self may be 0 and x is not.
@@ -459,9 +465,10 @@ mod tests {
     /// The digits of published tables, of which 50 or more must agree.
     fn agrees(x: Exact, digits: &str) {
         let (value, _) = x.get().expect("there is a value");
+        let sure = x.digits_beside(value.to_f64().value());
         let decimal = value.with_base_and_precision::<10>(90).value().to_string();
         let (digits, count) = (digits.replace(' ', ""), digits.chars().filter(char::is_ascii_digit).count());
-        assert!(count > 50 && x.digits().expect("there is a value") >= 90, "{:?} digits of {decimal}", x.digits());
+        assert!(count > 50 && sure >= Some(90), "{sure:?} digits of {decimal}");
         assert!(decimal.starts_with(&digits), "{decimal} is not {digits}");
     }
 
@@ -517,7 +524,8 @@ mod tests {
         let third = Exact::literal(1.0) / Exact::literal(3.0);
         let close = third * Exact::literal(3.0) - Exact::literal(1.0);
         let (value, error) = close.get().expect("there is a value");
-        assert!(magnitude(&value) <= error.expect("some rounding") && close.digits() == Some(0));
+        assert!(magnitude(&value) <= error.expect("some rounding") && close.digits_beside(1.0) >= Some(95));
+        assert!(close.digits_beside(value.to_f64().value()) <= Some(1));
         Exact::if_ge(close, Exact::literal(0.0), || close, || third);
         let course = clear();
         assert_eq!((course.choices, course.undecided), (vec![1], vec![0]));

@@ -2,6 +2,7 @@
 
 pub mod exact;
 pub mod frames;
+pub mod running;
 
 use lightmeter::arithmetic::Accept;
 use lightmeter::arithmetic::profile::WGSL;
