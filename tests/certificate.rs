@@ -12,7 +12,8 @@ use std::path::Path;
 fn the_reference_and_the_intervals_are_certified_and_the_page_says_so() {
     let findings = certify(CASES);
     let problems = problems(&findings);
-    assert!(problems.is_empty(), "{} do not hold:\n{}", problems.len(), problems.join("\n"));
+    let first = &problems[..problems.len().min(20)];
+    assert!(problems.is_empty(), "{} do not hold:\n{}", problems.len(), first.join("\n"));
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/certificate.md");
     let there = std::fs::read_to_string(path).expect("docs/certificate.md is there");
     let here = page(&findings);
