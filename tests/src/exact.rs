@@ -1,7 +1,7 @@
-//! An arithmetic of 96 digits, each number with a bound of its error: what the f64 reference is certified against.
+//! An arithmetic of 115 digits, each number with a bound of its error: what the f64 reference is certified against.
 //!
 //! `+ − ×` keep 640 bits, so that sums and products of f32 inputs are exact: a product of two spans at most
-//! 2·(128 + 149) bits. Quotients, roots and functions are dashu's, correctly rounded to 320 bits (96 digits). A number
+//! 2·(128 + 149) bits. Quotients, roots and functions are dashu's, correctly rounded to 384 bits (115 digits). A number
 //! carries the binary logarithm of a bound of its error, or that it is exact; the bound grows with each operation by that
 //! operation's derivative, so cancellation is seen and never assumed away. Nothing of f64's arithmetic is shared.
 //!
@@ -21,7 +21,7 @@ pub type Float = FBig<HalfEven, 2>;
 /// Bits that sums and products keep.
 const SUM_BITS: usize = 640;
 /// Bits to which all else is correctly rounded.
-const FUNCTION_BITS: usize = 320;
+const FUNCTION_BITS: usize = 384;
 /// Arguments of exp from which the result counts as out of any range: e^(2²⁴) has 7 million digits before the point.
 const MOST_EXPONENT: i64 = 24;
 
@@ -55,7 +55,7 @@ thread_local! {
     static ARENA: RefCell<Arena> = RefCell::default();
 }
 
-/// A real number to 96 digits, or none where the formula has no value.
+/// A real number to 115 digits, or none where the formula has no value.
 #[derive(Clone, Copy, Debug)]
 pub struct Exact(Option<usize>);
 
@@ -364,6 +364,14 @@ impl Real for Exact {
         unary(self, |x, constants| x.mul(&Number::exact(Float::from(2)).ln(constants)?)?.exp(constants))
     }
 
+    fn ln_1p(self) -> Self {
+        unary(self, |x, constants| Number::exact(Float::from(1)).add(x)?.ln(constants))
+    }
+
+    fn exp_m1(self) -> Self {
+        unary(self, |x, constants| x.exp(constants)?.add(&Number::exact(Float::from(-1))))
+    }
+
     fn log2(self) -> Self {
         unary(self, |x, constants| x.ln(constants)?.div(&Number::exact(Float::from(2)).ln(constants)?))
     }
@@ -381,7 +389,7 @@ impl Real for Exact {
     fn if_ge<T: Components<Self>>(a: Self, b: Self, then: impl FnOnce() -> T, otherwise: impl FnOnce() -> T) -> T {
         let side = ARENA.with_borrow_mut(|arena| {
             let (order, is_decided) = a.0.zip(b.0).and_then(|(a, b)| arena.numbers[a].compare(&arena.numbers[b]))?;
-            // What no digit of 96 tells apart is taken as equal.
+            // What no digit of 115 tells apart is taken as equal.
             let side = order.is_ge() || !is_decided;
             arena.choose(side.into(), is_decided);
             Some(side)
@@ -433,7 +441,7 @@ impl Exact {
     /// |x − self|, rounded to 53 bits, and the same over |self|, infinite where self may be 0 and x is not.
     #[must_use]
     pub fn distance(self, x: f64) -> Option<(f64, f64)> {
-        let (value, _) = self.get()?;
+        let (value, _) = self.get().filter(|_| x.is_finite())?;
         let difference = (Float::try_from(x).ok()?.with_precision(SUM_BITS).value() - &value).abs();
         let zero = Float::ZERO;
         let relative = match (difference == zero, value == zero) {

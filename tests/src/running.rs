@@ -171,6 +171,22 @@ impl Real for Running {
         let value = Real::exp2(self.value);
         self.through(value, Real::exp2((self.value + self.error).next_up()) * OWN)
     }
+    fn ln_1p(self) -> Self {
+        let least = 1.0 + (self.value - self.error);
+        let steepest = if least > 0.0 { 1.0 / least } else { f64::INFINITY };
+        self.through(Real::ln_1p(self.value), steepest * OWN)
+    }
+    fn exp_m1(self) -> Self {
+        let value = Real::exp_m1(self.value);
+        self.through(value, Real::exp((self.value + self.error).next_up()) * OWN)
+    }
+    fn difference_of_products([a, b]: [Self; 2], [c, d]: [Self; 2]) -> Self {
+        let values = |x: Self, y: Self| [x.value, y.value];
+        let value = <f64 as Real>::difference_of_products(values(a, b), values(c, d));
+        // Kahan's difference errs by at most 2 units; a product passes on its operands' errors as everywhere.
+        let carried = |x: Self, y: Self| x.value.abs() * y.error + y.value.abs() * x.error + x.error * y.error;
+        Self::rounded(value, carried(a, b) + carried(c, d) + value.abs() * UNIT)
+    }
     fn log2(self) -> Self {
         let least = self.value - self.error;
         let steepest = if least > 0.0 { std::f64::consts::LOG2_E / least } else { f64::INFINITY };

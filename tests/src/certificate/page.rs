@@ -141,7 +141,7 @@ fn choices(all: &Finding) -> String {
     let list = |cases: &[String]| cases.iter().fold(String::new(), |list, case| list + "* " + case + "\n");
     format!(
         "\n## Choices\n\nCases in which the reference chose otherwise than is right, within the roundings of what it compared: \
-         {}.\n\n{}\nCases in which 96 digits do not tell two numbers apart, which are then taken as equal: {}.\n\n{}",
+         {}.\n\n{}\nCases in which 115 digits do not tell two numbers apart, which are then taken as equal: {}.\n\n{}",
         all.ties.len(),
         list(&all.ties),
         all.undecided.len(),

@@ -41,7 +41,8 @@ const BESIDE: [Made; 4] = [("", |x| x), ("just above ", f32::next_up), ("just be
 /// The rows of a formula with so many random cases.
 pub(super) fn rows(member: &Member, cases: u64) -> Vec<Row> {
     let spec = &member.spec;
-    let hard = (0..spec.hard.len()).map(CaseRef::Hard);
+    let near = |place| (0..member.near()).map(move |k| CaseRef::Near(place, k));
+    let hard = (0..spec.hard.len()).flat_map(|place| std::iter::once(CaseRef::Hard(place)).chain(near(place)));
     let random = (0..random_cases(spec, cases)).map(CaseRef::Random);
     let mut rows: Vec<Row> = hard
         .chain(random)
