@@ -38,19 +38,43 @@ pub fn judge(bits: u32, reference: f64, interval: &Accept) -> Verdict {
         return Verdict { outcome: Outcome::Indeterminate, error_ulp, margin: 0.0 };
     }
     let value = f64::from(value);
-    let outcome = if interval.contains(value) { Outcome::Pass } else { Outcome::Fail };
+    // Beside a reference that is no number nothing passes, whatever is legal.
+    let outcome = if interval.contains(value) && !reference.is_nan() { Outcome::Pass } else { Outcome::Fail };
     Verdict { outcome, error_ulp, margin: margin(value, reference, interval.low(), interval.high()) }
 }
 
-/// The distance from the reference over the distance to the end of the interval on the value's side.
+/// The distance from the reference over the distance to the end of the interval on the value's side. It is never NaN: beside
+/// a NaN it is infinite, and 1 where the interval's end is infinite and the value is that.
 pub(crate) fn margin(value: f64, reference: f64, low: f64, high: f64) -> f64 {
-    if value.is_nan() {
+    if value.is_nan() || reference.is_nan() {
         return f64::INFINITY;
+    }
+    if value.is_infinite() {
+        let within = (low..=high).contains(&value);
+        return if value.to_bits() == reference.to_bits() {
+            0.0
+        } else if within {
+            1.0
+        } else {
+            f64::INFINITY
+        };
     }
     let distance = (value - reference).abs();
     let room = if value >= reference { high - reference } else { reference - low };
     // 0/0 is 0: exactly right where nothing else is legal.
-    if distance == 0.0 { 0.0 } else { distance / room.max(0.0) }
+    let margin = if distance == 0.0 { 0.0 } else { distance / room.max(0.0) };
+    // From an infinite reference all that is finite is as far away as the end of the interval.
+    if margin.is_nan() { 1.0 } else { margin }
+}
+
+/// Whether a margin or an error is worse than another: a NaN is worse than every number, so that no maximum loses one.
+pub(crate) fn is_worse(a: f64, than: f64) -> bool {
+    !than.is_nan() && (a.is_nan() || a > than)
+}
+
+/// The worse of two.
+pub(crate) fn worse(a: f64, b: f64) -> f64 {
+    if is_worse(b, a) { b } else { a }
 }
 
 #[cfg(test)]
@@ -76,6 +100,57 @@ mod tests {
     fn what_was_never_written_fails() {
         for interval in [Accept::ANY, Accept::from_bounds(0.0, 1.0)] {
             assert_eq!(judge(SENTINEL, 0.0, &interval).outcome, Outcome::Fail);
+        }
+    }
+
+    #[test]
+    fn no_nan_is_legal_whatever_its_bits() {
+        for bits in [0x7fc0_0000, 0xffc0_0000, 0x7fa0_0001, 0xffff_ffff, 0x7fc1_2345] {
+            for interval in [Accept::from_bounds(0.5, 2.0), Accept::from_bounds(0.0, 0.0)] {
+                let verdict = judge(bits, 1.0, &interval);
+                assert_eq!(verdict.outcome, Outcome::Fail, "{bits:08x}");
+                assert!(verdict.margin == f64::INFINITY && verdict.error_ulp == f64::INFINITY, "{bits:08x}");
+            }
+            assert_eq!(judge(bits, 1.0, &Accept::ANY).outcome, Outcome::Indeterminate, "{bits:08x}");
+            assert_eq!(judge(bits, f64::NAN, &Accept::from_bounds(0.5, 2.0)).outcome, Outcome::Fail, "{bits:08x}");
+        }
+    }
+
+    #[test]
+    fn a_reference_that_is_no_number_passes_nothing() {
+        let verdict = judge(1.0_f32.to_bits(), f64::NAN, &Accept::from_bounds(0.5, 2.0));
+        assert_eq!(verdict.outcome, Outcome::Fail);
+        assert!(verdict.margin == f64::INFINITY && verdict.error_ulp == f64::INFINITY);
+    }
+
+    #[test]
+    fn a_margin_is_never_nan() {
+        let (inf, nan, most) = (f64::INFINITY, f64::NAN, 65_504.0);
+        let rows = [
+            // What is too great for a format is infinite or its greatest number.
+            (inf, 120_000.0, most, inf, 1.0),
+            (-inf, -120_000.0, -inf, -most, 1.0),
+            (inf, inf, most, inf, 0.0),
+            (most, inf, most, inf, 1.0),
+            (inf, 1.0, 0.0, 2.0, inf),
+            (-inf, 120_000.0, most, inf, inf),
+            (nan, 120_000.0, most, inf, inf),
+            (1.0, nan, 0.0, 2.0, inf),
+            (nan, nan, 0.0, 2.0, inf),
+        ];
+        for (value, reference, low, high, expected) in rows {
+            let found = margin(value, reference, low, high);
+            assert!(found.to_bits() == expected.to_bits(), "{value} beside {reference}: {found}");
+        }
+    }
+
+    #[test]
+    fn no_maximum_loses_a_nan() {
+        for values in [[f64::NAN, 1.0, 2.0], [1.0, f64::NAN, 2.0], [1.0, 2.0, f64::NAN]] {
+            assert!(values.into_iter().fold(0.0, worse).is_nan(), "{values:?}");
+        }
+        for (a, b, expected) in [(1.0, 2.0, 2.0_f64), (2.0, 1.0, 2.0), (f64::INFINITY, 1.0, f64::INFINITY)] {
+            assert_eq!(worse(a, b).to_bits(), expected.to_bits());
         }
     }
 

@@ -384,7 +384,7 @@ pub(crate) fn problem(random: (u64, u64), verdicts: u64, indeterminate: u64) -> 
     (random.0 > 0 && indeterminate == verdicts).then(|| "nothing but indeterminate verdicts".into())
 }
 
-fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], seed: u64) -> Chunk<'a> {
+pub(crate) fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], seed: u64) -> Chunk<'a> {
     let parts: Vec<(Vec<f32>, Vec<f32>)> = cases
         .par_chunks(TASK)
         .map(|cases| {
@@ -414,7 +414,7 @@ fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], seed: u64) ->
 }
 
 /// Reference values and intervals, on all cores.
-fn refer(chunk: &mut Chunk<'_>, profile: &Profile) {
+pub(crate) fn refer(chunk: &mut Chunk<'_>, profile: &Profile) {
     let outputs = chunk.members[0].spec.output_len();
     let mut references = vec![0.0; chunk.cases.len() * outputs];
     let mut intervals = vec![Accept::ANY; chunk.cases.len() * outputs];

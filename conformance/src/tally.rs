@@ -2,7 +2,7 @@
 
 use crate::arithmetic::{Accept, Profile};
 use crate::cases::{Kind, Stage};
-use crate::judge::{Outcome, judge};
+use crate::judge::{Outcome, is_worse, judge, worse};
 use crate::report::{Failure, Number, Totals};
 use crate::run::{Chunk, Options, TASK};
 use crate::select::{CaseRef, Member};
@@ -30,8 +30,12 @@ impl Tally {
         self.totals.add(&other.totals);
         self.random.0 += other.random.0;
         self.random.1 += other.random.1;
-        self.error_ulp_max = self.error_ulp_max.max(other.error_ulp_max);
-        if other.worst.as_ref().is_some_and(|(margin, _)| self.worst.as_ref().is_none_or(|(most, _)| margin > most)) {
+        self.error_ulp_max = worse(self.error_ulp_max, other.error_ulp_max);
+        if other
+            .worst
+            .as_ref()
+            .is_some_and(|(margin, _)| self.worst.as_ref().is_none_or(|(most, _)| is_worse(*margin, *most)))
+        {
             self.worst = other.worst;
         }
         self.failures.extend(other.failures);
@@ -145,8 +149,8 @@ fn judge_case(
                 }
             }
         }
-        tally.error_ulp_max = tally.error_ulp_max.max(verdict.error_ulp);
-        if tally.worst.as_ref().is_none_or(|(most, _)| verdict.margin > *most) {
+        tally.error_ulp_max = worse(tally.error_ulp_max, verdict.error_ulp);
+        if tally.worst.as_ref().is_none_or(|(most, _)| is_worse(verdict.margin, *most)) {
             tally.worst = Some((verdict.margin, member.case_id(chunk.cases[case])));
         }
     }
@@ -228,4 +232,119 @@ pub fn by_name(
         (input.name.to_owned(), value)
     });
     named.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arithmetic::profile::WGSL;
+    use crate::cases::blend::Samples;
+    use crate::filter::Filter;
+    use crate::run::{draw, refer};
+    use crate::select::{Shard, catalogue};
+    use lightmeter_gpu::Shaders;
+
+    /// Quiet, negative, signalling, every bit set, and with a payload.
+    const NANS: [u32; 5] = [0x7fc0_0000, 0xffc0_0000, 0x7fa0_0001, 0xffff_ffff, 0x7fc1_2345];
+    /// More than two tasks of the pool.
+    const CASES: usize = 2 * TASK + 77;
+
+    fn options() -> Options {
+        Options {
+            filter: Filter::new::<&str>(&[]).expect("nothing is a filter"),
+            cases: CASES as u64,
+            seed: 1,
+            shard: Shard::WHOLE,
+            targets: vec![],
+            samples: Samples::default(),
+            size: None,
+            images: None,
+            again: false,
+            profile: &WGSL,
+            shaders: Shaders::built_in().expect("the built-in shaders are valid"),
+            rerun: String::new(),
+        }
+    }
+
+    /// A chunk of random cases and the right words for them, handed on with the number of outputs of a case.
+    fn with_chunk(id: &str, test: impl Fn(&mut Chunk<'_>, &[u32], usize)) {
+        let catalogue = catalogue();
+        let members: Vec<&Member> = catalogue.iter().filter(|member| member.spec.id == id).collect();
+        assert_eq!(members.len(), 1, "{id}");
+        let cases: Vec<(usize, CaseRef)> = (0..CASES as u64).map(|k| (0, CaseRef::Random(k))).collect();
+        let mut chunk = draw(&members, &cases, 1);
+        refer(&mut chunk, &WGSL);
+        #[expect(clippy::cast_possible_truncation, reason = "the nearest float")]
+        let words: Vec<u32> = chunk.references.iter().map(|reference| (*reference as f32).to_bits()).collect();
+        test(&mut chunk, &words, members[0].spec.output_len());
+    }
+
+    fn judged(chunk: &Chunk<'_>, words: &[u32]) -> Tally {
+        judge_chunk(chunk, words, Stage::Compute, &Subject::embedded(), &options())
+    }
+
+    /// The first, a middle and the last of so many.
+    fn places(of: usize) -> [usize; 3] {
+        [0, of / 2, of - 1]
+    }
+
+    #[test]
+    fn a_nan_fails_wherever_it_stands() {
+        for id in ["vector/reflect", "fog/linear"] {
+            with_chunk(id, |chunk, right, outputs| {
+                let clean = judged(chunk, right);
+                assert_eq!(clean.totals.failed, 0, "{id}");
+                for (case, output, nan) in everywhere(outputs) {
+                    let mut words = right.to_vec();
+                    words[case * outputs + output] = nan;
+                    let tally = judged(chunk, &words);
+                    let what = format!("{id}, case {case}, output {output}, 0x{nan:08x}");
+                    assert_eq!((tally.totals.failed, tally.totals.passed), (1, clean.totals.passed - 1), "{what}");
+                    assert_eq!(tally.totals.indeterminate, clean.totals.indeterminate, "{what}");
+                    let name = format!("{id}/random/{case:06}");
+                    let (margin, worst) = tally.worst.expect("something was judged");
+                    assert!(margin == f64::INFINITY && worst == name, "{what}: {margin} in {worst}");
+                    assert!(tally.error_ulp_max == f64::INFINITY, "{what}");
+                    let failure = &tally.failures[0];
+                    assert!(failure.id == name && failure.value.0.is_nan(), "{what}: {failure:?}");
+                    assert_eq!(failure.value_hex, format!("0x{nan:08x}"), "{what}");
+                    assert_eq!(failure.output, chunk.members[0].spec.output_name(output), "{what}");
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn a_nan_is_indeterminate_where_anything_is_legal_and_never_a_pass() {
+        with_chunk("vector/reflect", |chunk, right, outputs| {
+            let clean = judged(chunk, right);
+            for (case, output, nan) in everywhere(outputs) {
+                let at = case * outputs + output;
+                let (mut words, legal) = (right.to_vec(), chunk.intervals[at]);
+                words[at] = nan;
+                chunk.intervals[at] = Accept::ANY;
+                let tally = judged(chunk, &words);
+                chunk.intervals[at] = legal;
+                let counts = (tally.totals.passed, tally.totals.failed, tally.totals.indeterminate);
+                let expected = (clean.totals.passed - 1, 0, clean.totals.indeterminate + 1);
+                assert_eq!(counts, expected, "case {case}, output {output}, 0x{nan:08x}");
+            }
+        });
+    }
+
+    #[test]
+    fn nothing_but_nan_passes_nothing() {
+        with_chunk("vector/reflect", |chunk, right, _| {
+            for nan in NANS {
+                let tally = judged(chunk, &vec![nan; right.len()]);
+                assert_eq!(tally.totals.passed, 0);
+                assert_eq!(tally.totals.failed + tally.totals.indeterminate, right.len() as u64);
+            }
+        });
+    }
+
+    fn everywhere(outputs: usize) -> impl Iterator<Item = (usize, usize, u32)> {
+        let places = places(CASES).into_iter().flat_map(move |case| self::places(outputs).map(|output| (case, output)));
+        places.flat_map(|(case, output)| NANS.map(|nan| (case, output, nan)))
+    }
 }

@@ -9,6 +9,7 @@ use super::run::Chunk;
 use super::store::{ENOUGH, StoreCounts};
 use super::tally::{Drawn, Outcome, Sample, Tally, explain};
 use crate::cases::Stage;
+use crate::judge::{is_worse, worse};
 use crate::report::{BlendState, DeviationUse, Failure, Group, Number, Report, SpecialUse, StoreUse, Tiers, Totals};
 use crate::run::Options;
 use crate::select::{CaseRef, Member};
@@ -116,7 +117,7 @@ impl Standing {
             };
             row.cases += tally.cases;
             row.failed += tally.failed;
-            row.error_max = Number(row.error_max.0.max(tally.error_max));
+            row.error_max = Number(worse(row.error_max.0, tally.error_max));
             self.stores[place].iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
             if target.is_unorm() {
                 row.tiers.get_or_insert_default().add(&tally.tiers);
@@ -166,7 +167,7 @@ impl Standing {
         self.random.1 += tally.indeterminate.saturating_sub(4 * hard);
         let id = |place: usize| member.case_id(cases[place]);
         if let Some((margin, place)) = tally.worst
-            && self.worst.as_ref().is_none_or(|(most, _)| margin > *most)
+            && self.worst.as_ref().is_none_or(|(most, _)| is_worse(margin, *most))
         {
             self.worst = Some((margin, id(place)));
         }

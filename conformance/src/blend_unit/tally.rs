@@ -8,7 +8,7 @@ use super::store::{NEAR, StoreCounts};
 use crate::arithmetic::{F16, F32, Format as _};
 use crate::cases::blend::{Program, UnitCase};
 use crate::devices::{BlendDeviation, Known};
-use crate::judge::margin;
+use crate::judge::{is_worse, margin, worse};
 use crate::report::Tiers;
 use lightmeter_gpu::Route;
 use lightmeter_scene::blend::Separate;
@@ -74,7 +74,8 @@ impl Expected {
             return Verdict { outcome: Outcome::Indeterminate, error, margin: 0.0 };
         }
         // A NaN is in no interval.
-        let outcome = if low <= value && value <= high { Outcome::Pass } else { Outcome::Fail };
+        let is_legal = low <= value && value <= high && !reference.is_nan();
+        let outcome = if is_legal { Outcome::Pass } else { Outcome::Fail };
         Verdict { outcome, error, margin: margin(value, reference, low, high) }
     }
 }
@@ -164,8 +165,8 @@ impl Tally {
                 }
                 _ => self.passed += 1,
             }
-            self.error_max = self.error_max.max(verdict.error);
-            if self.worst.is_none_or(|(most, _)| verdict.margin > most) {
+            self.error_max = worse(self.error_max, verdict.error);
+            if self.worst.is_none_or(|(most, _)| is_worse(verdict.margin, most)) {
                 self.worst = Some((verdict.margin, place));
             }
             if target.is_unorm() {
@@ -217,7 +218,7 @@ impl Tally {
         }
         self.model.0 += other.model.0;
         self.model.1 += other.model.1;
-        self.error_max = self.error_max.max(other.error_max);
+        self.error_max = worse(self.error_max, other.error_max);
     }
 }
 
@@ -256,4 +257,78 @@ pub fn explain(samples: &[Sample]) -> Option<(String, usize, usize)> {
     let most = explained.iter().map(|(_, count)| *count).max()?;
     let alike: Vec<&str> = explained.iter().filter(|(_, count)| *count == most).map(|(fault, _)| fault.says).collect();
     (10 * most >= 9 * samples.len()).then(|| (alike.join(", or as if "), most, samples.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cases::blend::MOST_LAYERS;
+    use lightmeter_scene::blend::{Equation, Factor, State, WriteMask};
+
+    const PIXELS: usize = 1000;
+
+    fn one_plus_one() -> Program {
+        let state = State { equation: Equation::Add, src: Factor::One, dst: Factor::One };
+        Program::Draw(state.into(), WriteMask::ALL)
+    }
+
+    fn case(src: f32, dst: f32) -> UnitCase {
+        UnitCase { sources: [[src; 4]; MOST_LAYERS], layers: 1, dst: [dst; 4], constant: [0.0; 4] }
+    }
+
+    fn tally(target: TargetFormat, case: &UnitCase, pixels: &[Units]) -> Tally {
+        let drawn = Drawn { program: one_plus_one(), route: Route::Native, target };
+        let mut tally = Tally::default();
+        for (place, pixel) in pixels.iter().enumerate() {
+            tally.pixel(drawn, &Known::default(), place, case, *pixel);
+        }
+        tally
+    }
+
+    #[test]
+    fn a_nan_fails_wherever_it_stands() {
+        for target in [TargetFormat::Rgba32Float, TargetFormat::Rgba16Float] {
+            let case = case(0.25, 0.5);
+            let right = [embedded::blend(one_plus_one(), target, &case, &Rules::RIGHT); PIXELS];
+            assert_eq!(tally(target, &case, &right).failed, 0);
+            for place in [0, PIXELS / 2, PIXELS - 1] {
+                for k in [0, 2, 3] {
+                    for bits in [0x7fc0_0000, 0xffc0_0000, 0x7fa0_0001, 0x7fc1_2345] {
+                        let mut wrong = right;
+                        wrong[place][k] = f32::from_bits(bits).into();
+                        let tally = tally(target, &case, &wrong);
+                        assert_eq!((tally.failed, tally.passed), (1, 4 * PIXELS as u64 - 1));
+                        assert_eq!(
+                            (tally.worst, tally.failures.as_slice()),
+                            (Some((f64::INFINITY, place)), &[place][..])
+                        );
+                        assert!(tally.error_max == f64::INFINITY);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_nan_is_indeterminate_where_a_nan_was_given_and_never_a_pass() {
+        for (src, dst) in [(f32::NAN, 0.5), (0.5, f32::NEG_INFINITY)] {
+            let target = TargetFormat::Rgba32Float;
+            let program = Program::Special(State { equation: Equation::Add, src: Factor::One, dst: Factor::One });
+            let drawn = Drawn { program, route: Route::Native, target };
+            let mut tally = Tally::default();
+            tally.pixel(drawn, &Known::default(), 0, &case(src, dst), [f64::NAN; 4]);
+            assert_eq!((tally.passed, tally.failed, tally.indeterminate), (0, 0, 4));
+        }
+    }
+
+    /// An infinite result, where that is legal, must not stand in the way of the margins after it.
+    #[test]
+    fn what_overflows_hides_no_later_failure() {
+        let (target, case) = (TargetFormat::Rgba16Float, case(60_000.0, 60_000.0));
+        let infinite = [f64::INFINITY; 4];
+        let tally = tally(target, &case, &[infinite, [f64::INFINITY, 1.0, f64::INFINITY, f64::NAN], infinite]);
+        assert_eq!((tally.failed, tally.passed), (2, 10));
+        assert_eq!(tally.worst.map(|(_, place)| place), Some(1));
+        assert!(tally.worst.is_some_and(|(margin, _)| margin > 1.0));
+    }
 }

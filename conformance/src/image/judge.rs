@@ -4,7 +4,7 @@ use super::expect::Expected;
 use super::file::Stored;
 use crate::arithmetic::format::error_ulp;
 use crate::arithmetic::{F16, F32};
-use crate::judge::margin;
+use crate::judge::{is_worse, margin, worse};
 use lightmeter_scene::target::{Encoding, TargetFormat};
 use rayon::prelude::*;
 
@@ -47,9 +47,9 @@ impl Judged {
         self.passed += other.passed;
         self.indeterminate += other.indeterminate;
         self.misses.append(&mut other.misses);
-        self.error_max = self.error_max.max(other.error_max);
+        self.error_max = worse(self.error_max, other.error_max);
         self.worst = match (self.worst, other.worst) {
-            (Some(a), Some(b)) if b.margin > a.margin => Some(b),
+            (Some(a), Some(b)) if is_worse(b.margin, a.margin) => Some(b),
             (a, b) => a.or(b),
         };
         self
@@ -89,15 +89,16 @@ fn one(
     }
     // Where outcomes differ by themselves, the distance from one of them says nothing.
     if !expected[pixel].is_marked {
-        judged.error_max = judged.error_max.max(error(image.format, value, exact));
+        judged.error_max = worse(judged.error_max, error(image.format, value, exact));
     }
     let miss = Miss { pixel, component, margin: margin(value, exact, low, high) };
-    if low <= value && value <= high {
+    if low <= value && value <= high && !exact.is_nan() {
         judged.passed += 1;
     } else {
         judged.misses.push(miss);
     }
-    if (miss.margin > 1.0 || !expected[pixel].is_marked) && judged.worst.is_none_or(|worst| miss.margin > worst.margin)
+    if (miss.margin > 1.0 || !expected[pixel].is_marked)
+        && judged.worst.is_none_or(|worst| is_worse(miss.margin, worst.margin))
     {
         judged.worst = Some(miss);
     }
@@ -128,7 +129,7 @@ pub fn error_map(image: &Stored, reference: &Stored, expected: &[Expected]) -> S
             let value = image.pixels[pixel][k];
             !(expected[pixel].low[k] <= value && value <= expected[pixel].high[k])
         });
-        let most = (0..4).map(of).fold(0.0, f64::max);
+        let most = (0..4).map(of).fold(0.0, worse);
         let color = match most {
             _ if !outside && expected[pixel].is_marked => [60.0, 60.0, 60.0],
             margin if !outside => [0.0, 0.0, 40.0 + 140.0 * margin.min(1.0)],
@@ -137,4 +138,77 @@ pub fn error_map(image: &Stored, reference: &Stored, expected: &[Expected]) -> S
         [color[0], color[1], color[2], 255.0]
     });
     Stored { width: image.width, format: TargetFormat::Rgba8Unorm, pixels: pixels.collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// More than two of the pool's tasks.
+    const PIXELS: usize = 10_000;
+
+    /// An image that is right, and what is legal of it.
+    fn image(format: TargetFormat) -> (Stored, Vec<Expected>) {
+        let expected = Expected { low: [0.25; 4], high: [0.75; 4], is_marked: false };
+        (Stored { width: 100, format, pixels: vec![[0.5; 4]; PIXELS] }, vec![expected; PIXELS])
+    }
+
+    fn nans() -> [f64; 4] {
+        [0x7fc0_0000, 0xffc0_0000, 0x7fa0_0001, 0x7fc1_2345].map(|bits| f32::from_bits(bits).into())
+    }
+
+    fn everywhere() -> impl Iterator<Item = (usize, usize, f64)> {
+        let places = [0, PIXELS / 2, PIXELS - 1].into_iter().flat_map(|pixel| [0, 2, 3].map(|k| (pixel, k)));
+        places.flat_map(|(pixel, k)| nans().map(|nan| (pixel, k, nan)))
+    }
+
+    #[test]
+    fn a_nan_fails_wherever_it_stands() {
+        for format in [TargetFormat::Rgba32Float, TargetFormat::Rgba16Float] {
+            let (reference, mut expected) = image(format);
+            let all: Vec<usize> = (0..PIXELS).collect();
+            for (pixel, component, nan) in everywhere() {
+                for is_marked in [false, true] {
+                    let mut wrong = reference.clone();
+                    wrong.pixels[pixel][component] = nan;
+                    expected[pixel].is_marked = is_marked;
+                    let judged = judge(&wrong, &reference, &expected, &all);
+                    let miss = Miss { pixel, component, margin: f64::INFINITY };
+                    assert_eq!((judged.misses.as_slice(), judged.worst), (&[miss][..], Some(miss)));
+                    assert_eq!(judged.passed, 4 * PIXELS as u64 - 1);
+                    assert!(is_marked || judged.error_max == f64::INFINITY);
+                    let map = error_map(&wrong, &reference, &expected);
+                    let red = [255.0_f64, 0.0, 0.0, 255.0].map(f64::to_bits);
+                    assert_eq!(map.pixels[pixel].map(f64::to_bits), red, "a NaN is as red as can be");
+                }
+                expected[pixel].is_marked = false;
+            }
+        }
+    }
+
+    #[test]
+    fn a_nan_is_indeterminate_where_anything_is_legal_and_never_a_pass() {
+        let (reference, expected) = image(TargetFormat::Rgba32Float);
+        let all: Vec<usize> = (0..PIXELS).collect();
+        for (pixel, component, nan) in everywhere() {
+            let (mut wrong, mut expected) = (reference.clone(), expected.clone());
+            wrong.pixels[pixel][component] = nan;
+            (expected[pixel].low[component], expected[pixel].high[component]) = (f64::NEG_INFINITY, f64::INFINITY);
+            let judged = judge(&wrong, &reference, &expected, &all);
+            assert_eq!((judged.indeterminate, judged.misses.len()), (1, 0));
+            assert_eq!(judged.passed, 4 * PIXELS as u64 - 1);
+        }
+    }
+
+    #[test]
+    fn a_reference_that_is_no_number_passes_nothing() {
+        let (right, expected) = image(TargetFormat::Rgba32Float);
+        for (pixel, component, nan) in everywhere() {
+            let mut reference = right.clone();
+            reference.pixels[pixel][component] = nan;
+            let judged = judge(&right, &reference, &expected, &[pixel]);
+            assert_eq!((judged.passed, judged.misses.len()), (3, 1));
+            assert!(judged.worst.is_some_and(|worst| worst.component == component && worst.margin == f64::INFINITY));
+        }
+    }
 }

@@ -9,6 +9,7 @@ use super::file::{self, Stored};
 use super::judge::{Judged, Miss, error, judge};
 use super::select::{Chosen, pixel_id, scene_id, size};
 use crate::arithmetic::Profile;
+use crate::judge::is_worse;
 use crate::report::{Failure, Group, ImageUse, Number, Report, Totals};
 use crate::run::{Options, Progress, problem};
 use crate::scene::Loaded;
@@ -243,7 +244,9 @@ impl<'a> Scene<'a> {
             files: vec![],
         };
         let mut explanation = None;
-        if let Some(worst) = judged.misses.iter().copied().reduce(|a, b| if b.margin > a.margin { b } else { a }) {
+        if let Some(worst) =
+            judged.misses.iter().copied().reduce(|a, b| if is_worse(b.margin, a.margin) { b } else { a })
+        {
             let departure = self.departure(subject, options, &profile, &judged)?;
             used.departs_in = Some(departure.stage);
             used.files = self.write(image, expected, subject, shader, options);

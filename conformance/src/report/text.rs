@@ -1,6 +1,7 @@
 //! A run's result for people to read.
 
 use super::{Failure, Group, Number, Report, Tiers, Totals};
+use crate::judge::{is_worse, worse};
 use lightmeter_gpu::Route;
 use lightmeter_scene::target::TargetFormat;
 use std::fmt::{Result, Write};
@@ -300,8 +301,8 @@ impl Row {
     fn add(&mut self, other: &Self) {
         self.groups += 1;
         self.totals.add(&other.totals);
-        self.error_ulp_max = self.error_ulp_max.max(other.error_ulp_max);
-        if other.margin_max > self.margin_max {
+        self.error_ulp_max = worse(self.error_ulp_max, other.error_ulp_max);
+        if is_worse(other.margin_max, self.margin_max) {
             self.margin_max = other.margin_max;
             self.worst.clone_from(&other.worst);
         }
