@@ -230,7 +230,7 @@ pub fn known(adapter: &Adapter) -> Known {
 }
 
 /// The version behind the word `Mesa` in a driver's description.
-fn version(driver: &str) -> Option<Version> {
+pub(crate) fn version(driver: &str) -> Option<Version> {
     let words = driver.split("Mesa ").nth(1)?.split_whitespace().next()?;
     let mut numbers = words.split(['.', '-']).map(|part| part.parse().unwrap_or(0));
     Some(std::array::from_fn(|_| numbers.next().unwrap_or(0)))

@@ -12,6 +12,7 @@ pub mod report;
 pub mod run;
 pub mod scene;
 pub mod select;
+pub mod special;
 pub mod stability;
 pub mod subject;
 pub mod tally;

@@ -76,11 +76,7 @@ const ROWS: &str = "@group(0) @binding(0) var<storage, read> lightmeter_rows: ar
 
 fn compute_entry(call: &str, inputs: usize, fields: &[String]) -> String {
     let stores = fields.iter().enumerate().fold(String::new(), |mut text, (k, field)| {
-        let _ = writeln!(
-            text,
-            "    lightmeter_results[lightmeter_case * {}u + {k}u] = bitcast<u32>({field});",
-            fields.len()
-        );
+        let _ = writeln!(text, "    lightmeter_results[lightmeter_case * {}u + {k}u] = {field};", fields.len());
         text
     });
     format!(
@@ -101,8 +97,8 @@ fn fragment_entry(call: &str, inputs: usize, fields: &[String]) -> String {
     let (mut targets, mut values) = (String::new(), vec![]);
     for (k, chunk) in fields.chunks(WORDS).enumerate() {
         let _ = writeln!(targets, "    @location({k}) target{k}: vec4u,");
-        let words = (0..WORDS).map(|w| chunk.get(w).map_or("0u".into(), |field| format!("bitcast<u32>({field})")));
-        values.push(format!("vec4u({})", words.collect::<Vec<_>>().join(", ")));
+        let words: Vec<&str> = (0..WORDS).map(|w| chunk.get(w).map_or("0u", String::as_str)).collect();
+        values.push(format!("vec4u({})", words.join(", ")));
     }
     format!(
         "{ROWS}struct LightmeterTargets {{
@@ -157,12 +153,13 @@ fn construct(module: &Module, ty: Handle<Type>, place: &mut usize) -> Result<Str
     }
 }
 
-/// The expressions of a value's numbers, in order.
+/// The expressions of the words of a value's numbers, in order.
 fn flatten(module: &Module, ty: Handle<Type>, value: &str, fields: &mut Vec<String>) -> Result<(), String> {
     match &module.types[ty].inner {
-        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => fields.push(value.into()),
+        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => fields.push(format!("bitcast<u32>({value})")),
+        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Uint => fields.push(value.into()),
         TypeInner::Vector { size, scalar } if scalar.kind == ScalarKind::Float => {
-            fields.extend((0..*size as u8).map(|k| format!("{value}[{k}]")));
+            fields.extend((0..*size as u8).map(|k| format!("bitcast<u32>({value}[{k}])")));
         }
         TypeInner::Struct { members, .. } => {
             for member in members {

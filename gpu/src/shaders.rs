@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The built-in files that stand by themselves: a formula family each, the elementary functions that WGSL lacks, four
-/// that drive fixed hardware, and the probes.
-pub const FILES: [(&str, &str); 15] = [
+/// that drive fixed hardware, and two of probes.
+pub const FILES: [(&str, &str); 16] = [
     ("attenuation.wgsl", include_str!("shaders/attenuation.wgsl")),
     ("blend.wgsl", include_str!("shaders/blend.wgsl")),
     ("blend_unit.wgsl", include_str!("shaders/blend_unit.wgsl")),
@@ -22,6 +22,7 @@ pub const FILES: [(&str, &str); 15] = [
     ("lighting.wgsl", include_str!("shaders/lighting.wgsl")),
     ("probe.wgsl", include_str!("shaders/probe.wgsl")),
     ("raster.wgsl", include_str!("shaders/raster.wgsl")),
+    ("special.wgsl", include_str!("shaders/special.wgsl")),
     ("texture.wgsl", include_str!("shaders/texture.wgsl")),
     ("vector.wgsl", include_str!("shaders/vector.wgsl")),
 ];
@@ -185,7 +186,8 @@ pub(crate) fn validate(file: &str, source: &str) -> Result<naga::Module, Error> 
 }
 
 pub(crate) fn validator() -> Validator {
-    Validator::new(ValidationFlags::all(), Capabilities::default() | Capabilities::DUAL_SOURCE_BLENDING)
+    let capabilities = Capabilities::DUAL_SOURCE_BLENDING | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    Validator::new(ValidationFlags::all(), Capabilities::default() | capabilities)
 }
 
 fn every_file() -> impl Iterator<Item = (&'static str, &'static str)> {

@@ -11,6 +11,7 @@ mod run;
 mod schema;
 mod selftest;
 mod show;
+mod special;
 
 use clap::{Parser, Subcommand};
 use std::io::Write;
@@ -42,6 +43,8 @@ enum Command {
     Adapters(adapters::Adapters),
     /// Show that the suite catches the mistakes that it knows
     Selftest(selftest::Selftest),
+    /// Show what becomes of NaN, infinity, subnormals and signed zero
+    Special(special::Special),
     /// Draw a scene, by the reference or by an adapter
     Render(render::Render),
     /// Write a page of the docs from a run's JSON
@@ -62,6 +65,7 @@ impl Cli {
             Command::Show(show) => show.run(),
             Command::Adapters(adapters) => adapters.run(),
             Command::Selftest(selftest) => selftest.run(),
+            Command::Special(special) => special.run(),
             Command::Render(render) => render.run(),
             Command::Page(page) => page.run(),
             Command::Effects(effects) => effects.run(),

@@ -13,7 +13,7 @@ use lightmeter::subject::Subject;
 use lightmeter_gpu::{Adapter, Shaders};
 use lightmeter_scene::target::TargetFormat;
 use std::num::NonZeroU64;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// One format of floats and one of 8 bits.
@@ -124,10 +124,7 @@ impl Choice {
 
     /// The shaders to judge.
     pub(crate) fn shaders(&self) -> anyhow::Result<Shaders> {
-        Ok(match &self.shaders {
-            Some(dir) => Shaders::from_dir(dir)?,
-            None => Shaders::built_in()?,
-        })
+        shaders(self.shaders.as_deref())
     }
 
     /// The library's options for a filter.
@@ -161,46 +158,59 @@ impl Choice {
 
     /// The subjects that were asked for, opened.
     pub(crate) fn subjects(&self) -> anyhow::Result<Vec<Subject>> {
-        if self.adapter.is_empty() {
-            let found = lightmeter_gpu::vulkan_adapters();
-            let found = if found.is_empty() { lightmeter_gpu::adapters() } else { found };
-            let Some(first) = found.first() else { return Err(no_adapter().into()) };
-            return Ok(vec![Subject::open(first)?]);
-        }
-        let only_cpu = self.adapter.iter().all(|name| name == "cpu");
-        let mut found = if only_cpu { vec![] } else { lightmeter_gpu::vulkan_adapters() };
-        let known = |found: &[Adapter], name: &String| name == "cpu" || found.iter().any(|a| a.name == *name);
-        if !self.adapter.iter().all(|name| known(&found, name)) {
-            found = lightmeter_gpu::adapters();
-        }
-        let mut subjects = vec![];
-        for name in &self.adapter {
-            match name.as_str() {
-                "cpu" => subjects.push(Subject::embedded()),
-                "all" => {
-                    for adapter in &found {
-                        subjects.push(Subject::open(adapter)?);
-                    }
-                    if found.is_empty() {
-                        return Err(no_adapter().into());
-                    }
-                }
-                name => {
-                    let Some(adapter) = found.iter().find(|adapter| adapter.name == name) else {
-                        if found.is_empty() {
-                            return Err(no_adapter()).context(format!("adapter `{name}` is not here"));
-                        }
-                        let names: Vec<&str> = found.iter().map(|adapter| adapter.name.as_str()).collect();
-                        bail!("no adapter `{name}`; there are {}, cpu and all", names.join(", "));
-                    };
+        subjects(&self.adapter)
+    }
+}
+
+/// The shaders of a folder, or those that are built in.
+pub(crate) fn shaders(dir: Option<&Path>) -> anyhow::Result<Shaders> {
+    Ok(match dir {
+        Some(dir) => Shaders::from_dir(dir)?,
+        None => Shaders::built_in()?,
+    })
+}
+
+/// The adapters of those names, opened; without any, lavapipe or the first there is.
+pub(crate) fn subjects(asked: &[String]) -> anyhow::Result<Vec<Subject>> {
+    if asked.is_empty() {
+        let found = lightmeter_gpu::vulkan_adapters();
+        let found = if found.is_empty() { lightmeter_gpu::adapters() } else { found };
+        let Some(first) = found.first() else { return Err(no_adapter().into()) };
+        return Ok(vec![Subject::open(first)?]);
+    }
+    let only_cpu = asked.iter().all(|name| name == "cpu");
+    let mut found = if only_cpu { vec![] } else { lightmeter_gpu::vulkan_adapters() };
+    let known = |found: &[Adapter], name: &String| name == "cpu" || found.iter().any(|a| a.name == *name);
+    if !asked.iter().all(|name| known(&found, name)) {
+        found = lightmeter_gpu::adapters();
+    }
+    let mut subjects = vec![];
+    for name in asked {
+        match name.as_str() {
+            "cpu" => subjects.push(Subject::embedded()),
+            "all" => {
+                for adapter in &found {
                     subjects.push(Subject::open(adapter)?);
                 }
+                if found.is_empty() {
+                    return Err(no_adapter().into());
+                }
+            }
+            name => {
+                let Some(adapter) = found.iter().find(|adapter| adapter.name == name) else {
+                    if found.is_empty() {
+                        return Err(no_adapter()).context(format!("adapter `{name}` is not here"));
+                    }
+                    let names: Vec<&str> = found.iter().map(|adapter| adapter.name.as_str()).collect();
+                    bail!("no adapter `{name}`; there are {}, cpu and all", names.join(", "));
+                };
+                subjects.push(Subject::open(adapter)?);
             }
         }
-        let mut seen = std::collections::HashSet::new();
-        subjects.retain(|subject| seen.insert(subject.identity.name.clone()));
-        Ok(subjects)
     }
+    let mut seen = std::collections::HashSet::new();
+    subjects.retain(|subject| seen.insert(subject.identity.name.clone()));
+    Ok(subjects)
 }
 
 fn no_adapter() -> NothingToRun {

@@ -3,7 +3,7 @@
 use super::{Status, emit};
 use anyhow::{Context as _, anyhow};
 use clap::{Args, ValueEnum};
-use lightmeter::report::page::{Run, markdown, scenes, svg};
+use lightmeter::report::page::{Run, markdown, scenes, special, svg};
 use std::path::PathBuf;
 
 /// What a page is about.
@@ -13,15 +13,17 @@ enum Subject {
     Blend,
     /// The built-in scenes, with a contact sheet.
     Scenes,
+    /// NaN, infinity, subnormals and signed zero, from the JSON of `special`.
+    Special,
 }
 
-/// Write a page of the docs from a run's JSON, with a picture beside it.
+/// Write a page of the docs from a run's JSON, most with a picture beside it.
 #[derive(Debug, Args)]
 pub(crate) struct Page {
     /// What it is about
     #[arg(value_enum)]
     subject: Subject,
-    /// The JSON of `lightmeter run --format json`
+    /// The JSON of `lightmeter run --format json`, or of `lightmeter special --format json`
     run: PathBuf,
     /// Write the page to a file, and its picture to one of the same name that ends in .svg or .png
     #[arg(long, value_name = "FILE")]
@@ -35,6 +37,7 @@ impl Page {
         let text = match self.subject {
             Subject::Blend => self.blend(&json),
             Subject::Scenes => self.scenes(&json),
+            Subject::Special => special(&json),
         };
         emit(&text.with_context(|| format!("{name} makes no page"))?, self.out.as_deref())?;
         Ok(Status::Success)
@@ -71,4 +74,11 @@ impl Page {
         let name = path.file_name()?.to_string_lossy().into_owned();
         Some((path, name))
     }
+}
+
+fn special(json: &str) -> anyhow::Result<String> {
+    let run = special::Run::read(json).map_err(|message| anyhow!(message))?;
+    let mut text = String::new();
+    special::markdown(&run, &mut text)?;
+    Ok(text)
 }

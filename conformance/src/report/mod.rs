@@ -2,6 +2,7 @@
 
 pub mod junit;
 pub mod page;
+pub mod special;
 pub mod text;
 
 use crate::stability::Examined;

@@ -2,6 +2,7 @@
 
 mod picture;
 pub mod scenes;
+pub mod special;
 
 pub use picture::svg;
 

@@ -1,0 +1,66 @@
+//! `lightmeter special`.
+
+use super::options::{Format, shaders, subjects};
+use super::{NothingToRun, Status, emit};
+use anyhow::{Context as _, bail};
+use clap::Args;
+use lightmeter::report::special;
+use lightmeter::special::run::{Report, run};
+use std::path::{Path, PathBuf};
+
+/// Show what becomes of NaN, infinity, subnormals and signed zero: what is promised, and what each adapter does.
+#[derive(Debug, Args)]
+pub(crate) struct Special {
+    /// Adapter to probe, by its short name in `lightmeter adapters`; `all`. Again for several. Without it: lavapipe, or the
+    /// first adapter there is
+    #[arg(long, value_name = "NAME")]
+    adapter: Vec<String>,
+    /// Take the WGSL in this folder in place of the built-in files of the same names
+    #[arg(long, value_name = "DIR")]
+    shaders: Option<PathBuf>,
+    /// How the result is written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write it to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Write what each adapter gave to a record of its own in this folder, as conformance/records/special holds them
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+}
+
+impl Special {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        if self.format == Format::Junit {
+            bail!("probes are written as text or json");
+        }
+        let shaders = shaders(self.shaders.as_deref())?;
+        let subjects = subjects(&self.adapter)?;
+        let report = run(&subjects, &shaders)?;
+        if report.outcomes.is_empty() {
+            let message = "nothing could be probed: the embedded implementation has no shading language";
+            return Err(NothingToRun(message.into()).into());
+        }
+        if let Some(dir) = &self.record {
+            write_records(&report, dir)?;
+        }
+        let text = if self.format == Format::Json {
+            serde_json::to_string_pretty(&report)? + "\n"
+        } else {
+            let mut text = String::new();
+            special::write(&report, &mut text)?;
+            text
+        };
+        emit(&text, self.out.as_deref())?;
+        Ok(if report.is_success() { Status::Success } else { Status::Failed })
+    }
+}
+
+fn write_records(report: &Report, dir: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
+    for adapter in &report.adapters {
+        let text = serde_json::to_string_pretty(&report.record(adapter))? + "\n";
+        emit(&text, Some(&dir.join(format!("{}.json", adapter.name))))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,193 @@
+//! What each driver was seen to make of the probes, a file a driver in `conformance/records/special/`.
+//!
+//! `lightmeter special --record DIR` writes them. A record *binds* a driver that tells its version, where device and driver
+//! are those of the record: another result than there is a failure. To others of the same name it is shown alone.
+
+use super::Probe;
+use crate::devices::version;
+use crate::subject::Identity;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// The files.
+const FILES: [(&str, &str); 3] = [
+    ("lavapipe.json", include_str!("../../records/special/lavapipe.json")),
+    ("llvmpipe-gl.json", include_str!("../../records/special/llvmpipe-gl.json")),
+    ("swiftshader.json", include_str!("../../records/special/swiftshader.json")),
+];
+
+const SCHEMA: &str = "lightmeter.special-record/1";
+
+/// A driver's results: bits as `0x…` by stage, by the probe's name.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Record {
+    schema: String,
+    /// The adapter's short name.
+    pub name: String,
+    /// The device as the driver named it.
+    pub device: String,
+    /// `vulkan` or `gl`.
+    pub backend: String,
+    /// The driver and its version.
+    pub driver: String,
+    /// Of the processor: which NaN an invalid operation gives is the processor's choice.
+    pub processor: String,
+    results: BTreeMap<String, BTreeMap<String, String>>,
+}
+
+/// A record as it concerns an adapter.
+#[derive(Clone, Copy, Debug)]
+pub struct OnRecord {
+    record: &'static Record,
+    /// Whether another result fails.
+    pub binds: bool,
+}
+
+static RECORDS: LazyLock<Vec<Record>> = LazyLock::new(|| {
+    let read = |(name, text): &(&str, &str)| {
+        serde_json::from_str(text).unwrap_or_else(|error| panic!("conformance/records/special/{name}: {error}"))
+    };
+    FILES.iter().map(read).collect()
+});
+
+impl Record {
+    /// A record without results.
+    #[must_use]
+    pub fn new(identity: &Identity) -> Self {
+        Self {
+            schema: SCHEMA.into(),
+            name: identity.name.clone(),
+            device: identity.device.clone(),
+            backend: identity.backend.into(),
+            driver: identity.driver.clone(),
+            processor: std::env::consts::ARCH.into(),
+            results: BTreeMap::new(),
+        }
+    }
+
+    /// Notes a result.
+    pub fn note(&mut self, probe: &str, stage: &str, bits: u32) {
+        self.results.entry(probe.into()).or_default().insert(stage.into(), format!("0x{bits:08x}"));
+    }
+
+    /// The bits on record.
+    #[must_use]
+    pub fn get(&self, probe: &Probe, stage: &str) -> Option<u32> {
+        let text = self.results.get(probe.name)?.get(stage)?;
+        u32::from_str_radix(text.strip_prefix("0x")?, 16).ok()
+    }
+
+    fn binds(&self, identity: &Identity, processor: &str) -> bool {
+        version(&identity.driver).is_some()
+            && self.device == identity.device
+            && self.driver == identity.driver
+            && self.processor == processor
+    }
+
+    /// For people: `llvmpipe, Mesa 22.3.6 (LLVM 15.0.6)`.
+    #[must_use]
+    pub fn whose(&self) -> String {
+        if self.driver.contains(&self.device) || version(&self.driver).is_some() {
+            self.driver.clone()
+        } else {
+            format!("{} ({})", self.driver, self.device)
+        }
+    }
+}
+
+impl OnRecord {
+    /// What is on record of an adapter: the record that binds it, or else one of the same name.
+    #[must_use]
+    pub fn of(identity: &Identity) -> Option<Self> {
+        Self::among(&RECORDS, identity, std::env::consts::ARCH)
+    }
+
+    fn among(records: &'static [Record], identity: &Identity, processor: &str) -> Option<Self> {
+        let mut same = records.iter().filter(|r| r.backend == identity.backend);
+        let found = same.clone().find(|record| record.binds(identity, processor));
+        let binds = found.is_some();
+        let record = found.or_else(|| same.find(|record| record.name == identity.name))?;
+        Some(Self { record, binds })
+    }
+
+    /// The record.
+    #[must_use]
+    pub const fn record(&self) -> &'static Record {
+        self.record
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Deviation, PROBES, Way};
+    use super::*;
+
+    fn identity(device: &str, driver: &str) -> Identity {
+        Identity { name: "lavapipe".into(), device: device.into(), backend: "vulkan", driver: driver.into() }
+    }
+
+    fn one(identity: &Identity) -> &'static [Record] {
+        let mut record = Record::new(identity);
+        record.note("nan-plus-one", "compute", 0xffc0_0000);
+        Box::leak(Box::new([record]))
+    }
+
+    #[test]
+    fn a_record_binds_the_driver_that_it_was_made_of() {
+        let mesa = identity("llvmpipe (256 bits)", "llvmpipe, Mesa 22.3.6");
+        let records = one(&mesa);
+        let binds = |identity: &Identity, processor| OnRecord::among(records, identity, processor).map(|of| of.binds);
+        let here = std::env::consts::ARCH;
+        assert_eq!(binds(&mesa, here), Some(true));
+        assert_eq!(binds(&mesa, "another"), Some(false));
+        assert_eq!(binds(&identity("llvmpipe (256 bits)", "llvmpipe, Mesa 23.0.0"), here), Some(false));
+        assert_eq!(binds(&identity("llvmpipe (128 bits)", "llvmpipe, Mesa 22.3.6"), here), Some(false));
+        let other = Identity { name: "radv".into(), ..identity("a card", "radv, Mesa 25.0.0") };
+        assert_eq!(binds(&other, here), None);
+        assert_eq!(binds(&Identity { backend: "gl", ..mesa.clone() }, here), None);
+    }
+
+    #[test]
+    fn a_driver_that_tells_no_version_is_not_bound() {
+        let swiftshader = identity("SwiftShader Device (Subzero)", "SwiftShader driver");
+        let found = OnRecord::among(one(&swiftshader), &swiftshader, std::env::consts::ARCH);
+        assert!(!found.expect("there is a record").binds);
+    }
+
+    #[test]
+    fn records_read_back_what_was_noted() {
+        let whose = identity("a", "b");
+        let record = &one(&whose)[0];
+        let text = serde_json::to_string(record).expect("a record is JSON");
+        let again: Record = serde_json::from_str(&text).expect("it reads back");
+        assert_eq!(&again, record);
+        let probe = Probe::by_name("nan-plus-one").expect("it is in the table");
+        assert_eq!((again.get(probe, "compute"), again.get(probe, "fragment")), (Some(0xffc0_0000), None));
+    }
+
+    #[test]
+    fn every_record_has_every_probe_and_no_other() {
+        for record in RECORDS.iter() {
+            assert_eq!(record.schema, SCHEMA, "{}", record.name);
+            assert!(record.results.keys().all(|name| Probe::by_name(name).is_some()), "{}", record.name);
+            for probe in PROBES {
+                let stages: &[&str] =
+                    if let Way::Function(_) = probe.way { &["compute", "fragment"] } else { &["raster"] };
+                for stage in stages {
+                    let Some(bits) = record.get(probe, stage) else {
+                        panic!("{} has no {}, {stage}", record.name, probe.name)
+                    };
+                    let is_known = Deviation::of(probe, &record.backend).is_some();
+                    assert!(
+                        is_known || probe.promise.allows(bits),
+                        "{} on {}, {stage}: 0x{bits:08x}",
+                        probe.name,
+                        record.name
+                    );
+                }
+            }
+        }
+    }
+}

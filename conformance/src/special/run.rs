@@ -1,0 +1,357 @@
+//! The probes on adapters, and their verdicts.
+
+use super::record::{OnRecord, Record};
+use super::{Deviation, PROBES, Probe, Promise, Way};
+use crate::subject::{Identity, Subject};
+use lightmeter_gpu::{ArithmeticPipeline, Error, Gpu, Kernel, Raster, RasterPipeline, SENTINEL, Shaders, Stage};
+use lightmeter_scene::raster::{Provoking, Topology};
+use serde::{Serialize, Serializer};
+
+/// The shader file of the functions.
+pub const FILE: &str = "special.wgsl";
+
+/// What became of a probe on an adapter in a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// As promised.
+    Kept,
+    /// Not as promised.
+    Broken,
+    /// Nothing is promised.
+    Indeterminate,
+    /// Not what is on record for this very driver.
+    Changed,
+    /// Not as promised, as a named deviation says.
+    Deviates,
+}
+
+impl Verdict {
+    /// The verdict on a result. `recorded` is what is on record where that binds; `deviates` says that the promise is known to
+    /// be broken.
+    #[must_use]
+    pub fn of(promise: Promise, bits: u32, recorded: Option<u32>, deviates: bool) -> Self {
+        let is_kept = promise.allows(bits);
+        match promise {
+            _ if !is_kept && (!deviates || bits == SENTINEL) => Self::Broken,
+            _ if recorded.is_some_and(|recorded| recorded != bits) => Self::Changed,
+            _ if !is_kept => Self::Deviates,
+            Promise::Indeterminate => Self::Indeterminate,
+            _ => Self::Kept,
+        }
+    }
+
+    /// Whether it fails.
+    #[must_use]
+    pub const fn is_failure(self) -> bool {
+        matches!(self, Self::Broken | Self::Changed)
+    }
+}
+
+/// A result of a probe.
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    /// The probe's name.
+    pub probe: &'static str,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The stage's name.
+    pub stage: &'static str,
+    /// What came out.
+    #[serde(serialize_with = "hex")]
+    pub bits: u32,
+    /// The same in few letters.
+    pub value: String,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// What is on record for the driver.
+    #[serde(serialize_with = "maybe_hex", skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<u32>,
+}
+
+/// A stage that an adapter lacks.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Skipped {
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The stage's name.
+    pub stage: &'static str,
+    /// Why.
+    pub reason: &'static str,
+}
+
+/// What is on record for an adapter.
+#[derive(Clone, Debug, Serialize)]
+pub struct RecordUse {
+    /// The adapter's short name.
+    pub adapter: String,
+    /// Whose record it is.
+    pub of: String,
+    /// Whether another result fails.
+    pub binds: bool,
+}
+
+/// A probe as JSON has it.
+#[derive(Clone, Debug, Serialize)]
+struct Row {
+    name: &'static str,
+    class: super::Class,
+    what: &'static str,
+    inputs: Vec<String>,
+    promise: String,
+    definite: bool,
+    source: &'static str,
+}
+
+/// The JSON of `special`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// `lightmeter.special/1`.
+    pub schema: &'static str,
+    /// What was probed.
+    pub adapters: Vec<Identity>,
+    /// What is on record for them.
+    pub records: Vec<RecordUse>,
+    probes: Vec<Row>,
+    /// Stages that an adapter lacks.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub skipped: Vec<Skipped>,
+    /// Every result.
+    pub outcomes: Vec<Outcome>,
+}
+
+impl Report {
+    /// Whether every promise was kept, and every result is as on record where a record binds.
+    #[must_use]
+    pub fn is_success(&self) -> bool {
+        !self.outcomes.iter().any(|outcome| outcome.verdict.is_failure())
+    }
+
+    /// A probe's results on an adapter, stage by stage.
+    pub fn of<'a>(&'a self, probe: &Probe, adapter: &'a Identity) -> impl Iterator<Item = &'a Outcome> {
+        let name = probe.name;
+        self.outcomes.iter().filter(move |outcome| outcome.probe == name && outcome.adapter == adapter.name)
+    }
+
+    /// What is to be put on record of an adapter.
+    #[must_use]
+    pub fn record(&self, adapter: &Identity) -> Record {
+        let mut record = Record::new(adapter);
+        for outcome in self.outcomes.iter().filter(|outcome| outcome.adapter == adapter.name) {
+            record.note(outcome.probe, outcome.stage, outcome.bits);
+        }
+        record
+    }
+}
+
+/// A failure in a line.
+#[must_use]
+pub fn failure(report: &Report, outcome: &Outcome) -> Option<String> {
+    let probe = Probe::by_name(outcome.probe)?;
+    let Outcome { adapter, stage, bits, value, .. } = outcome;
+    let is = format!("{} on {adapter}, {stage}: {} is {value} (0x{bits:08x})", probe.name, probe.what);
+    match outcome.verdict {
+        Verdict::Broken => {
+            let promised = probe.promise.words(probe.gives);
+            Some(format!("BROKEN {is}, where {} promises {promised}", probe.source.section()))
+        }
+        Verdict::Changed => {
+            let recorded = outcome.recorded.unwrap_or_default();
+            let whose = report.records.iter().find(|record| record.adapter == *adapter).map(|record| &record.of);
+            let (whose, word) = (whose.map_or("the driver", String::as_str), probe.gives.word(recorded));
+            Some(format!("CHANGED {is}, where {whose} is on record with {word} (0x{recorded:08x})"))
+        }
+        Verdict::Kept | Verdict::Indeterminate | Verdict::Deviates => None,
+    }
+}
+
+/// Evaluates every probe on every device. The embedded implementation has no shading language and is left out.
+///
+/// # Errors
+/// Where a shader is invalid, or a device fails.
+pub fn run(subjects: &[Subject], shaders: &Shaders) -> Result<Report, Error> {
+    let mut report = Report {
+        schema: "lightmeter.special/1",
+        adapters: vec![],
+        records: vec![],
+        probes: PROBES.iter().map(Row::of).collect(),
+        skipped: vec![],
+        outcomes: vec![],
+    };
+    let kernels = functions()
+        .into_iter()
+        .map(|function| Ok((function, Kernel::new(shaders, FILE, function)?)))
+        .collect::<Result<Vec<_>, Error>>()?;
+    for subject in subjects {
+        let Some(gpu) = subject.gpu() else { continue };
+        let on_record = OnRecord::of(&subject.identity);
+        let mut sink = Sink { adapter: &subject.identity, on_record, report: &mut report };
+        for (stage, name) in [(Stage::Compute, "compute"), (Stage::Fragment, "fragment")] {
+            for (function, kernel) in &kernels {
+                evaluate(gpu, kernel, function, (stage, name), &mut sink)?;
+            }
+        }
+        for flat in [false, true] {
+            carry(gpu, shaders, flat, &mut sink)?;
+        }
+        report.adapters.push(subject.identity.clone());
+        if let Some(on_record) = on_record {
+            let (adapter, of) = (subject.identity.name.clone(), on_record.record().whose());
+            report.records.push(RecordUse { adapter, of, binds: on_record.binds });
+        }
+    }
+    let place = |outcome: &Outcome| PROBES.iter().position(|probe| probe.name == outcome.probe);
+    report.outcomes.sort_by_key(place);
+    Ok(report)
+}
+
+/// Each function once.
+fn functions() -> Vec<&'static str> {
+    let mut functions = vec![];
+    for probe in PROBES {
+        if let Way::Function(function) = probe.way
+            && !functions.contains(&function)
+        {
+            functions.push(function);
+        }
+    }
+    functions
+}
+
+/// Where the results of one adapter go.
+struct Sink<'a> {
+    adapter: &'a Identity,
+    on_record: Option<OnRecord>,
+    report: &'a mut Report,
+}
+
+impl Sink<'_> {
+    fn put(&mut self, probe: &'static Probe, stage: &'static str, bits: u32) {
+        let recorded = self.on_record.and_then(|of| of.record().get(probe, stage));
+        let binding = recorded.filter(|_| self.on_record.is_some_and(|of| of.binds));
+        let deviation = Deviation::of(probe, self.adapter.backend);
+        self.report.outcomes.push(Outcome {
+            probe: probe.name,
+            adapter: self.adapter.name.clone(),
+            stage,
+            bits,
+            value: probe.gives.word(bits),
+            verdict: Verdict::of(probe.promise, bits, binding, deviation.is_some()),
+            recorded,
+        });
+    }
+
+    fn skip(&mut self, stage: &'static str, reason: &'static str) {
+        let skipped = Skipped { adapter: self.adapter.name.clone(), stage, reason };
+        if !self.report.skipped.contains(&skipped) {
+            self.report.skipped.push(skipped);
+        }
+    }
+}
+
+/// The probes of one function in one stage.
+fn evaluate(
+    gpu: &Gpu,
+    kernel: &Kernel,
+    function: &'static str,
+    (stage, name): (Stage, &'static str),
+    sink: &mut Sink<'_>,
+) -> Result<(), Error> {
+    let probes: Vec<&'static Probe> = PROBES.iter().filter(|probe| probe.way == Way::Function(function)).collect();
+    let rows: Vec<f32> = probes.iter().flat_map(|probe| probe.inputs).map(|bits| f32::from_bits(*bits)).collect();
+    let pipeline = match ArithmeticPipeline::new(gpu, kernel, stage)? {
+        Ok(pipeline) => pipeline,
+        Err(reason) => {
+            sink.skip(name, reason);
+            return Ok(());
+        }
+    };
+    let words = pipeline.submit(gpu, &rows).wait(gpu)?;
+    for (probe, bits) in probes.iter().zip(pipeline.outputs(words, probes.len())) {
+        sink.put(probe, name, bits);
+    }
+    Ok(())
+}
+
+/// The probes of an attribute: every vertex has the value, and the pixel in the primitive's middle is read.
+fn carry(gpu: &Gpu, shaders: &Shaders, flat: bool, sink: &mut Sink<'_>) -> Result<(), Error> {
+    const STAGE: &str = "raster";
+    let kind = if flat {
+        Raster::Flat { topology: Topology::TriangleList, provoking: Provoking::Last }
+    } else {
+        Raster::TriangleAttributes
+    };
+    let pipeline = match RasterPipeline::new(gpu, shaders, kind)? {
+        Ok(pipeline) => pipeline,
+        Err(reason) => {
+            sink.skip(STAGE, reason);
+            return Ok(());
+        }
+    };
+    for probe in PROBES.iter().filter(|probe| probe.way == Way::Varying { flat }) {
+        let value = f32::from_bits(probe.inputs[0]);
+        let row = if flat {
+            // Six attributes, the primitive that is looked at, the pixel.
+            vec![value, value, value, value, value, value, 0.0, 128.0, 128.0]
+        } else {
+            let corners = [-1.0, -1.0, 0.5, 1.0, 3.0, -1.0, 0.5, 1.0, -1.0, 3.0, 0.5, 1.0];
+            [&corners[..], &[value; 3], &[128.0, 128.0]].concat()
+        };
+        let (count, pending) = pipeline.submit(gpu, &row);
+        let outputs = pipeline.outputs(&pending.wait(gpu)?, &row, count);
+        sink.put(probe, STAGE, outputs[0]);
+    }
+    Ok(())
+}
+
+impl Row {
+    fn of(probe: &Probe) -> Self {
+        Self {
+            name: probe.name,
+            class: probe.class,
+            what: probe.what,
+            inputs: probe.inputs.iter().map(|bits| format!("0x{bits:08x}")).collect(),
+            promise: probe.promise.words(probe.gives),
+            definite: probe.promise.is_definite(),
+            source: probe.source.section(),
+        }
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn hex<S: Serializer>(bits: &u32, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&format!("0x{bits:08x}"))
+}
+
+fn maybe_hex<S: Serializer>(bits: &Option<u32>, serializer: S) -> Result<S::Ok, S::Error> {
+    hex(&bits.unwrap_or_default(), serializer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NAN: u32 = 0x7fc0_0000;
+
+    #[test]
+    fn a_broken_promise_is_worse_than_a_changed_record() {
+        let rows = [
+            (Promise::Exactly(1), 1, None, false, Verdict::Kept),
+            (Promise::Exactly(1), NAN, None, false, Verdict::Broken),
+            (Promise::Exactly(1), NAN, Some(NAN), false, Verdict::Broken),
+            (Promise::Exactly(1), NAN, Some(NAN), true, Verdict::Deviates),
+            (Promise::Exactly(1), NAN, None, true, Verdict::Deviates),
+            (Promise::Exactly(1), 1, Some(NAN), true, Verdict::Changed),
+            (Promise::Exactly(1), SENTINEL, None, true, Verdict::Broken),
+            (Promise::OneOf(&[1, 2]), 2, Some(1), false, Verdict::Changed),
+            (Promise::OneOf(&[1, 2]), 2, None, false, Verdict::Kept),
+            (Promise::Indeterminate, NAN, Some(NAN), false, Verdict::Indeterminate),
+            (Promise::Indeterminate, NAN, Some(NAN + 1), false, Verdict::Changed),
+            (Promise::Indeterminate, NAN, None, false, Verdict::Indeterminate),
+            (Promise::Indeterminate, SENTINEL, None, false, Verdict::Broken),
+        ];
+        for (promise, bits, recorded, deviates, verdict) in rows {
+            assert_eq!(Verdict::of(promise, bits, recorded, deviates), verdict, "{promise:?} {bits:x} {recorded:?}");
+        }
+    }
+}
