@@ -5,6 +5,7 @@
 mod blend;
 mod images;
 mod scene;
+mod special;
 
 use serde_json::Value;
 use std::io::Write as _;
