@@ -48,7 +48,8 @@ pub struct Options {
     pub size: Option<u32>,
     /// Where the images of scenes that fail are written; `None` for nowhere.
     pub images: Option<PathBuf>,
-    /// Whether the blend unit draws everything once more with its pipelines compiled, to tell how long that takes.
+    /// Whether what takes time is measured apart: the blend unit draws everything once more with its pipelines compiled, and
+    /// stable forms are timed beside naive ones.
     pub again: bool,
     /// The accuracy rules.
     pub profile: &'static Profile,
@@ -193,6 +194,7 @@ pub(crate) fn empty(subjects: &[Subject], options: &Options) -> Report {
         blend_states: vec![],
         special: vec![],
         stability: vec![],
+        stable_costs: vec![],
         interrupted: None,
         failures: vec![],
     }

@@ -20,6 +20,9 @@ pub struct Kernel {
     pub outputs: usize,
     pub(crate) compute: String,
     pub(crate) fragment: String,
+    pub(crate) repeat: String,
+    /// The same without the function: what reading the inputs and the loop take by themselves.
+    pub(crate) idle: String,
 }
 
 /// Words of a pixel of one target.
@@ -59,6 +62,8 @@ impl Kernel {
             outputs: fields.len(),
             compute: format!("{source}\n{}", compute_entry(&call, inputs, &fields)),
             fragment: format!("{source}\n{}", fragment_entry(&call, inputs, &fields)),
+            repeat: format!("{source}\n{}", repeat_entry(&call, inputs, &fields)),
+            idle: repeat_entry("", inputs, &(0..inputs).map(moved).collect::<Vec<_>>()),
         };
         // A name of the file's may stand in the way of the entry points', or an operation be out of place in a stage.
         validate(file, &kernel.compute)?;
@@ -90,6 +95,41 @@ fn lightmeter_compute(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
 {stores}}}
 ",
         fields.len()
+    )
+}
+
+/// The word of a row's number.
+fn place(number: usize) -> String {
+    format!("lightmeter_rows[lightmeter_base + {number}u]")
+}
+
+/// The word of a row's number, read beforehand, with its last three bits moved from turn to turn.
+fn moved(number: usize) -> String {
+    format!("(lightmeter_word{number} ^ (lightmeter_turn & 7u))")
+}
+
+/// Evaluates a row over and over, each number's last three bits moved from turn to turn, and folds what comes out into a word.
+fn repeat_entry(call: &str, inputs: usize, fields: &[String]) -> String {
+    let moved = (0..inputs).fold(call.to_owned(), |call, k| call.replace(&place(k), &moved(k)));
+    let words = (0..inputs).fold(String::new(), |mut text, k| {
+        let _ = writeln!(text, "    let lightmeter_word{k} = {};", place(k));
+        text
+    });
+    format!(
+        "{ROWS}@group(0) @binding(1) var<storage, read_write> lightmeter_results: array<u32>;
+override lightmeter_times: u32;
+@compute @workgroup_size(64)
+fn lightmeter_repeat(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
+    let lightmeter_base = (lightmeter_id.x % (arrayLength(&lightmeter_rows) / {inputs}u)) * {inputs}u;
+{words}    var lightmeter_folded = 0u;
+    for (var lightmeter_turn = 0u; lightmeter_turn < lightmeter_times; lightmeter_turn++) {{
+        {moved}
+        lightmeter_folded ^= {};
+    }}
+    lightmeter_results[lightmeter_id.x] = lightmeter_folded;
+}}
+",
+        fields.join(" ^ ")
     )
 }
 
@@ -129,7 +169,7 @@ fn is_selector(module: &Module, ty: Handle<Type>) -> bool {
 fn construct(module: &Module, ty: Handle<Type>, place: &mut usize) -> Result<String, String> {
     let next = |place: &mut usize| {
         *place += 1;
-        format!("lightmeter_rows[lightmeter_base + {}u]", *place - 1)
+        self::place(*place - 1)
     };
     let number = |place: &mut usize| format!("bitcast<f32>({})", next(place));
     let vector = |size: u8, place: &mut usize| {

@@ -14,6 +14,7 @@ mod error;
 mod kernel;
 mod raster;
 mod readback;
+mod repeat;
 pub mod scene;
 mod shaders;
 
@@ -26,4 +27,5 @@ pub use error::Error;
 pub use kernel::Kernel;
 pub use raster::{Raster, RasterPipeline, TARGET_SIZE};
 pub use readback::{Pending, SENTINEL};
+pub use repeat::RepeatPipeline;
 pub use shaders::{EFFECT_FILES, FILES, SCENE_FILES, Shaders};

@@ -5,7 +5,7 @@ pub mod page;
 pub mod special;
 pub mod text;
 
-use crate::stability::Examined;
+use crate::stability::{Cost, Examined};
 use crate::subject::Identity;
 use serde::{Serialize, Serializer};
 
@@ -371,6 +371,9 @@ pub struct Report {
     /// Hard cases by their stable and their naive form.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stability: Vec<Examined>,
+    /// What stable forms take beside naive ones, where that was measured.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub stable_costs: Vec<Cost>,
     /// What was under way when a device failed, which ended the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interrupted: Option<Interrupted>,

@@ -39,7 +39,7 @@ fn head(all: &Finding) -> String {
         page,
         "Every formula in f64 and every interval of legal values against exact values of at least {} digits. Made by\n\n\
          ```\n{COMMAND}\n```\n\n\
-         {} formulas, {} cases: {CASES} random ones each (fewer of states that are separate for alpha), every named hard case, \
+         {} formulas, {} cases: {CASES} random ones each (fewer of states that are separate for alpha), every named hard case with those a few ULP away, \
          and edges, in which one number or one whole vector stands at an end of its domain, at 0, ±1, 1e±30, the least \
          subnormal, or beside another, or against it.\n\n",
         all.digits.unwrap_or(0),
