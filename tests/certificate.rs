@@ -74,6 +74,7 @@ impl Formula for Wrong {
             outputs: OUTPUTS,
             fit: None,
             hard: &[],
+            stable: None,
         }
     }
 

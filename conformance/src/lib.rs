@@ -15,4 +15,5 @@ pub mod select;
 pub mod special;
 pub mod stability;
 pub mod subject;
+pub mod sweep;
 pub mod tally;

@@ -215,10 +215,7 @@ const TURNS: usize = 15;
 const COST_ROWS: u64 = 1024;
 
 /// Measures a stable form against its naive ones, in turns.
-///
-/// # Errors
-/// Where a shader is invalid or a device fails.
-pub fn cost(
+fn cost(
     member: &Member,
     rivals: &BTreeMap<&'static str, Member>,
     subject: &Subject,
@@ -232,10 +229,10 @@ pub fn cost(
     let kernel_of = |member: &Member| Ok(kernel(&options.shaders, member)?.expect("arithmetic has a shader function"));
     let own = kernel_of(member)?;
     let Ok(idle) = RepeatPipeline::idle(gpu, &own, &rows)? else { return Ok(vec![]) };
-    let Ok(stable) = RepeatPipeline::new(gpu, &own, &rows)? else { return Ok(vec![]) };
+    let Ok(stable) = RepeatPipeline::new(gpu, &options.shaders, &own, &rows)? else { return Ok(vec![]) };
     let mut costs = vec![];
     for (id, rival) in rivals {
-        let Ok(naive) = RepeatPipeline::new(gpu, &kernel_of(rival)?, &rows)? else { continue };
+        let Ok(naive) = RepeatPipeline::new(gpu, &options.shaders, &kernel_of(rival)?, &rows)? else { continue };
         for warm in [&idle, &stable, &naive] {
             warm.time(gpu)?;
         }

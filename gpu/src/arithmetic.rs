@@ -45,13 +45,14 @@ impl ArithmeticPipeline {
                 if let Some(reason) = gpu.lacks_compute() {
                     return Ok(Err(reason));
                 }
-                Pipeline::Compute(compute_pipeline(gpu, kernel))
+                Pipeline::Compute(compute_pipeline(gpu, &kernel.function, kernel.compute.clone(), "lightmeter_compute"))
             }
             Stage::Fragment => {
                 if let Some(reason) = gpu.lacks_storage(false) {
                     return Ok(Err(reason));
                 }
-                Pipeline::Fragment(render_pipeline(gpu, kernel))
+                let targets = vec![BITS; kernel.targets()];
+                Pipeline::Fragment(render_pipeline(gpu, &kernel.function, kernel.fragment.clone(), &targets))
             }
         };
         gpu.check_shader(&kernel.file)?;
@@ -152,23 +153,30 @@ impl ArithmeticPipeline {
     }
 }
 
-fn compute_pipeline(gpu: &Gpu, kernel: &Kernel) -> wgpu::ComputePipeline {
-    let module = gpu.module(&kernel.function, kernel.compute.clone());
+/// An entry point in the compute stage.
+pub(crate) fn compute_pipeline(gpu: &Gpu, label: &str, source: String, entry: &str) -> wgpu::ComputePipeline {
+    let module = gpu.module(label, source);
     gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(&kernel.function),
+        label: Some(label),
         layout: None,
         module: &module,
-        entry_point: Some("lightmeter_compute"),
+        entry_point: Some(entry),
         compilation_options: Default::default(),
         cache: None,
     })
 }
 
-fn render_pipeline(gpu: &Gpu, kernel: &Kernel) -> wgpu::RenderPipeline {
-    let module = gpu.module(&kernel.function, kernel.fragment.clone());
-    let targets = vec![Some(wgpu::ColorTargetState::from(BITS)); kernel.targets()];
+/// `lightmeter_fragment` over a triangle that covers every pixel.
+pub(crate) fn render_pipeline(
+    gpu: &Gpu,
+    label: &str,
+    source: String,
+    targets: &[wgpu::TextureFormat],
+) -> wgpu::RenderPipeline {
+    let module = gpu.module(label, source);
+    let targets: Vec<_> = targets.iter().map(|&format| Some(wgpu::ColorTargetState::from(format))).collect();
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(&kernel.function),
+        label: Some(label),
         layout: None,
         vertex: wgpu::VertexState {
             module: &module,

@@ -82,7 +82,16 @@ impl Gpu {
 
     /// Waits until everything submitted is done, but not for ever: an edited shader may loop.
     pub(crate) fn wait(&self) -> Result<(), Error> {
-        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        self.wait_until(None)
+    }
+
+    /// The same until a submission is done, whatever came after it.
+    pub(crate) fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<(), Error> {
+        self.wait_until(Some(submission))
+    }
+
+    fn wait_until(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), Error> {
+        let wait = wgpu::PollType::Wait { submission_index, timeout: Some(PATIENCE) };
         match self.device.poll(wait) {
             Ok(_) => self.check(),
             Err(wgpu::PollError::Timeout) => Err(Error::Timeout(PATIENCE.as_secs())),

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::shaders::{Shaders, validate};
+use crate::sweep::{SWEEP_GROUP, SWEEP_WIDTH};
 use naga::{Handle, Module, ScalarKind, Type, TypeInner};
 use std::fmt::Write as _;
 
@@ -20,9 +21,6 @@ pub struct Kernel {
     pub outputs: usize,
     pub(crate) compute: String,
     pub(crate) fragment: String,
-    pub(crate) repeat: String,
-    /// The same without the function: what reading the inputs and the loop take by themselves.
-    pub(crate) idle: String,
 }
 
 /// Words of a pixel of one target.
@@ -34,25 +32,7 @@ impl Kernel {
     /// # Errors
     /// Where the file is invalid, has no such function, or one whose types cannot be read from numbers.
     pub fn new(shaders: &Shaders, file: &str, function: &str) -> Result<Self, Error> {
-        let module = shaders.parse(file)?;
-        let missing = || Error::MissingFunction { file: file.into(), function: function.into() };
-        let (_, found) =
-            module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)).ok_or_else(missing)?;
-        let unsupported = |found: String| Error::Signature { file: file.into(), function: function.into(), found };
-
-        let (mut inputs, mut selectors, mut arguments) = (0, 0, vec![]);
-        for argument in &found.arguments {
-            let before = inputs;
-            arguments.push(construct(&module, argument.ty, &mut inputs).map_err(unsupported)?);
-            if is_selector(&module, argument.ty) {
-                selectors += inputs - before;
-            }
-        }
-        let result = found.result.as_ref().ok_or_else(|| unsupported("nothing is returned".into()))?;
-        let mut fields = vec![];
-        flatten(&module, result.ty, "result", &mut fields).map_err(unsupported)?;
-
-        let call = format!("let result = {function}({});", arguments.join(", "));
+        let Signature { inputs, selectors, fields, call } = Signature::read(shaders, file, function, row_word)?;
         let source = shaders.source(file);
         let kernel = Self {
             file: file.into(),
@@ -62,8 +42,6 @@ impl Kernel {
             outputs: fields.len(),
             compute: format!("{source}\n{}", compute_entry(&call, inputs, &fields)),
             fragment: format!("{source}\n{}", fragment_entry(&call, inputs, &fields)),
-            repeat: format!("{source}\n{}", repeat_entry(&call, inputs, &fields)),
-            idle: repeat_entry("", inputs, &(0..inputs).map(moved).collect::<Vec<_>>()),
         };
         // A name of the file's may stand in the way of the entry points', or an operation be out of place in a stage.
         validate(file, &kernel.compute)?;
@@ -71,10 +49,77 @@ impl Kernel {
         Ok(kernel)
     }
 
+    /// The function with entry points that evaluate one of its outputs along one of its inputs: see [`crate::Sweep`].
+    pub(crate) fn sweep(&self, shaders: &Shaders, free: usize, output: usize) -> Result<String, Error> {
+        let word = |k: usize| if k == free { "lightmeter_free".into() } else { format!("lightmeter_row[{k}u]") };
+        let signature = Signature::read(shaders, &self.file, &self.function, word)?;
+        let entries = sweep_entries(&signature.call, self.inputs, &signature.fields[output]);
+        let source = format!("{}\n{entries}", shaders.source(&self.file));
+        validate(&self.file, &source)?;
+        Ok(source)
+    }
+
+    /// The function with an entry point that evaluates it many times over: see [`crate::RepeatPipeline`].
+    pub(crate) fn repeat(&self, shaders: &Shaders) -> Result<String, Error> {
+        let signature = Signature::read(shaders, &self.file, &self.function, moved_word)?;
+        let source = format!(
+            "{}\n{}",
+            shaders.source(&self.file),
+            repeat_entry(&signature.call, self.inputs, &signature.fields)
+        );
+        validate(&self.file, &source)?;
+        Ok(source)
+    }
+
+    /// The same without the function: what reading the inputs and the loop take by themselves.
+    pub(crate) fn idle(&self) -> String {
+        let words: Vec<String> = (0..self.inputs).map(moved_word).collect();
+        repeat_entry("", self.inputs, &words)
+    }
+
     /// Targets of four words that the fragment stage writes.
     pub(crate) fn targets(&self) -> usize {
         self.outputs.div_ceil(WORDS)
     }
+}
+
+/// What a function takes and gives, and a call of it.
+struct Signature {
+    inputs: usize,
+    selectors: usize,
+    /// Expressions of the numbers of `result`.
+    fields: Vec<String>,
+    /// A statement that calls it with the words that a row has for its inputs.
+    call: String,
+}
+
+impl Signature {
+    fn read(shaders: &Shaders, file: &str, function: &str, word: impl Fn(usize) -> String) -> Result<Self, Error> {
+        let module = shaders.parse(file)?;
+        let missing = || Error::MissingFunction { file: file.into(), function: function.into() };
+        let (_, found) =
+            module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)).ok_or_else(missing)?;
+        let unsupported = |found: String| Error::Signature { file: file.into(), function: function.into(), found };
+
+        let (mut inputs, mut selectors, mut arguments) = (0, 0, vec![]);
+        for argument in &found.arguments {
+            let before = inputs;
+            arguments.push(construct(&module, argument.ty, &word, &mut inputs).map_err(unsupported)?);
+            if is_selector(&module, argument.ty) {
+                selectors += inputs - before;
+            }
+        }
+        let result = found.result.as_ref().ok_or_else(|| unsupported("nothing is returned".into()))?;
+        let mut fields = vec![];
+        flatten(&module, result.ty, "result", &mut fields).map_err(unsupported)?;
+        let call = format!("let result = {function}({});", arguments.join(", "));
+        Ok(Self { inputs, selectors, fields, call })
+    }
+}
+
+/// The k-th word of a case's row.
+fn row_word(k: usize) -> String {
+    format!("lightmeter_rows[lightmeter_base + {k}u]")
 }
 
 const ROWS: &str = "@group(0) @binding(0) var<storage, read> lightmeter_rows: array<u32>;\n";
@@ -98,21 +143,15 @@ fn lightmeter_compute(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
     )
 }
 
-/// The word of a row's number.
-fn place(number: usize) -> String {
-    format!("lightmeter_rows[lightmeter_base + {number}u]")
-}
-
-/// The word of a row's number, read beforehand, with its last three bits moved from turn to turn.
-fn moved(number: usize) -> String {
-    format!("(lightmeter_word{number} ^ (lightmeter_turn & 7u))")
+/// The k-th word of an invocation's row, read beforehand, with its last three bits moved from turn to turn.
+fn moved_word(k: usize) -> String {
+    format!("(lightmeter_word{k} ^ (lightmeter_turn & 7u))")
 }
 
 /// Evaluates a row over and over, each number's last three bits moved from turn to turn, and folds what comes out into a word.
 fn repeat_entry(call: &str, inputs: usize, fields: &[String]) -> String {
-    let moved = (0..inputs).fold(call.to_owned(), |call, k| call.replace(&place(k), &moved(k)));
     let words = (0..inputs).fold(String::new(), |mut text, k| {
-        let _ = writeln!(text, "    let lightmeter_word{k} = {};", place(k));
+        let _ = writeln!(text, "    let lightmeter_word{k} = {};", row_word(k));
         text
     });
     format!(
@@ -123,7 +162,7 @@ fn lightmeter_repeat(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
     let lightmeter_base = (lightmeter_id.x % (arrayLength(&lightmeter_rows) / {inputs}u)) * {inputs}u;
 {words}    var lightmeter_folded = 0u;
     for (var lightmeter_turn = 0u; lightmeter_turn < lightmeter_times; lightmeter_turn++) {{
-        {moved}
+        {call}
         lightmeter_folded ^= {};
     }}
     lightmeter_results[lightmeter_id.x] = lightmeter_folded;
@@ -161,15 +200,58 @@ fn lightmeter_fragment(@builtin(position) lightmeter_position: vec4f) -> Lightme
     )
 }
 
+/// Entry points that evaluate along one input: the row is fixed but for `lightmeter_free`, the bits of a float, and the floats
+/// follow each other in their order from the key `lightmeter_span.x` on, as many as `lightmeter_span.y`.
+fn sweep_entries(call: &str, inputs: usize, field: &str) -> String {
+    format!(
+        "@group(0) @binding(0) var<storage, read> lightmeter_row: array<u32, {inputs}u>;
+@group(0) @binding(1) var<uniform> lightmeter_span: vec2u;
+@group(0) @binding(2) var<storage, read_write> lightmeter_results: array<u32>;
+fn lightmeter_along(lightmeter_case: u32) -> u32 {{
+    // A function of one number reads nothing of the row, which is bound all the same.
+    _ = &lightmeter_row;
+    let lightmeter_key = lightmeter_span.x + lightmeter_case;
+    let lightmeter_free = select(~lightmeter_key, lightmeter_key & 0x7fffffffu, lightmeter_key >= 0x80000000u);
+    {call}
+    return {field};
+}}
+@compute @workgroup_size({SWEEP_GROUP})
+fn lightmeter_sweep(
+    @builtin(global_invocation_id) lightmeter_id: vec3u,
+    @builtin(num_workgroups) lightmeter_groups: vec3u,
+) {{
+    let lightmeter_case = lightmeter_id.y * lightmeter_groups.x * {SWEEP_GROUP}u + lightmeter_id.x;
+    if lightmeter_case >= lightmeter_span.y {{ return; }}
+    lightmeter_results[lightmeter_case] = lightmeter_along(lightmeter_case);
+}}
+@vertex
+fn lightmeter_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {{
+    return vec4f(select(-1.0, 3.0, corner == 1u), select(-1.0, 3.0, corner == 2u), 0.5, 1.0);
+}}
+@fragment
+fn lightmeter_fragment(@builtin(position) lightmeter_position: vec4f) -> @location(0) u32 {{
+    let lightmeter_case = u32(lightmeter_position.y) * {SWEEP_WIDTH}u + u32(lightmeter_position.x);
+    if lightmeter_case >= lightmeter_span.y {{ discard; }}
+    return lightmeter_along(lightmeter_case);
+}}
+"
+    )
+}
+
 fn is_selector(module: &Module, ty: Handle<Type>) -> bool {
     matches!(module.types[ty].inner, TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Uint)
 }
 
 /// An expression that builds a value of the type from the row's next numbers.
-fn construct(module: &Module, ty: Handle<Type>, place: &mut usize) -> Result<String, String> {
+fn construct(
+    module: &Module,
+    ty: Handle<Type>,
+    word: &impl Fn(usize) -> String,
+    place: &mut usize,
+) -> Result<String, String> {
     let next = |place: &mut usize| {
         *place += 1;
-        self::place(*place - 1)
+        word(*place - 1)
     };
     let number = |place: &mut usize| format!("bitcast<f32>({})", next(place));
     let vector = |size: u8, place: &mut usize| {
@@ -186,7 +268,8 @@ fn construct(module: &Module, ty: Handle<Type>, place: &mut usize) -> Result<Str
             Ok(format!("mat{columns}x{rows}f({})", parts.join(", ")))
         }
         TypeInner::Struct { members, .. } => {
-            let parts: Result<Vec<String>, String> = members.iter().map(|m| construct(module, m.ty, place)).collect();
+            let parts: Result<Vec<String>, String> =
+                members.iter().map(|m| construct(module, m.ty, word, place)).collect();
             Ok(format!("{}({})", type_name(module, ty), parts?.join(", ")))
         }
         _ => Err(type_name(module, ty)),

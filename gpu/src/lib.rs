@@ -17,6 +17,7 @@ mod readback;
 mod repeat;
 pub mod scene;
 mod shaders;
+mod sweep;
 
 pub use adapters::{Adapter, adapters, vulkan_adapters};
 pub use arithmetic::{ArithmeticPipeline, Stage};
@@ -29,3 +30,4 @@ pub use raster::{Raster, RasterPipeline, TARGET_SIZE};
 pub use readback::{Pending, SENTINEL};
 pub use repeat::RepeatPipeline;
 pub use shaders::{EFFECT_FILES, FILES, SCENE_FILES, Shaders};
+pub use sweep::{Along, Block, Sweep, float_of, key_of};

@@ -6,6 +6,7 @@ use crate::device::Gpu;
 use crate::error::Error;
 use crate::kernel::Kernel;
 use crate::readback::{Pending, staging};
+use crate::shaders::Shaders;
 use std::time::Instant;
 
 /// Evaluations of one invocation.
@@ -26,8 +27,13 @@ impl RepeatPipeline {
     ///
     /// # Errors
     /// Where the device refuses the pipeline.
-    pub fn new(gpu: &Gpu, kernel: &Kernel, rows: &[f32]) -> Result<Result<Self, &'static str>, Error> {
-        Self::of(gpu, kernel, &kernel.repeat, rows)
+    pub fn new(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        kernel: &Kernel,
+        rows: &[f32],
+    ) -> Result<Result<Self, &'static str>, Error> {
+        Self::of(gpu, kernel, kernel.repeat(shaders)?, rows)
     }
 
     /// The same without the function: what reading the inputs and the loop take by themselves.
@@ -35,14 +41,14 @@ impl RepeatPipeline {
     /// # Errors
     /// Where the device refuses the pipeline.
     pub fn idle(gpu: &Gpu, kernel: &Kernel, rows: &[f32]) -> Result<Result<Self, &'static str>, Error> {
-        Self::of(gpu, kernel, &kernel.idle, rows)
+        Self::of(gpu, kernel, kernel.idle(), rows)
     }
 
-    fn of(gpu: &Gpu, kernel: &Kernel, source: &str, rows: &[f32]) -> Result<Result<Self, &'static str>, Error> {
+    fn of(gpu: &Gpu, kernel: &Kernel, source: String, rows: &[f32]) -> Result<Result<Self, &'static str>, Error> {
         if let Some(reason) = gpu.lacks_compute() {
             return Ok(Err(reason));
         }
-        let module = gpu.module(&kernel.function, source.to_owned());
+        let module = gpu.module(&kernel.function, source);
         let constants = [("lightmeter_times", f64::from(TIMES))];
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(&kernel.function),

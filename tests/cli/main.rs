@@ -6,6 +6,7 @@ mod blend;
 mod images;
 mod scene;
 mod special;
+mod sweep;
 
 use serde_json::Value;
 use std::io::Write as _;

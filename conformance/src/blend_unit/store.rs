@@ -12,9 +12,11 @@
 //! and 0.09 at worst).
 
 use super::rules::Store;
+use serde::{Deserialize, Serialize};
 
 /// Values that tell stores apart, of a component.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct StoreCounts {
     /// How many.
     pub of: u64,

@@ -170,7 +170,7 @@ impl Tally {
                 self.worst = Some((verdict.margin, place));
             }
             if target.is_unorm() {
-                self.tier(expected.reference[k], value, verdict.outcome);
+                count_tier(&mut self.tiers, expected.reference[k], value, verdict.outcome);
                 if mask.0[k] && tells {
                     self.stores[k].count(expected.reference[k], value);
                 }
@@ -190,19 +190,6 @@ impl Tally {
         }
     }
 
-    fn tier(&mut self, reference: f64, value: f64, outcome: Outcome) {
-        let error = (value - reference).abs();
-        let is_step = (reference - reference.round()).abs() < NEAR;
-        let tier = match outcome {
-            Outcome::Fail => &mut self.tiers.outside,
-            _ if is_step && error < NEAR => &mut self.tiers.exact,
-            _ if error <= 0.5 + NEAR => &mut self.tiers.nearest,
-            _ if error < 1.0 + NEAR => &mut self.tiers.neighbour,
-            _ => &mut self.tiers.bound,
-        };
-        *tier += 1;
-    }
-
     /// Adds another's counts; places of cases stay its own.
     pub fn add_counts(&mut self, other: &Self) {
         self.cases += other.cases;
@@ -220,6 +207,20 @@ impl Tally {
         self.model.1 += other.model.1;
         self.error_max = worse(self.error_max, other.error_max);
     }
+}
+
+/// Counts a value on a target of 8 bits among those that come as near.
+pub fn count_tier(tiers: &mut Tiers, reference: f64, value: f64, outcome: Outcome) {
+    let error = (value - reference).abs();
+    let is_step = (reference - reference.round()).abs() < NEAR;
+    let tier = match outcome {
+        Outcome::Fail => &mut tiers.outside,
+        _ if is_step && error < NEAR => &mut tiers.exact,
+        _ if error <= 0.5 + NEAR => &mut tiers.nearest,
+        _ if error < 1.0 + NEAR => &mut tiers.neighbour,
+        _ => &mut tiers.bound,
+    };
+    *tier += 1;
 }
 
 /// A failing pixel, kept so that faults can be tried as its explanation.

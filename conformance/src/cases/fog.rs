@@ -26,7 +26,7 @@ fn fogged<R: Real, const N: usize>(
 ) {
     let f = factor(fog::distance(x.vector(), distance), x.array());
     out.scalar(f);
-    out.vector(fog::apply(x.vector(), x.vector(), f));
+    out.lazy_vector(|| fog::apply(x.vector(), x.vector(), f));
 }
 
 /// dmin and dmax in order, but for one case in sixteen, which turns the fog round.

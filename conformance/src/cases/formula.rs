@@ -4,7 +4,7 @@ use super::raster;
 use super::rows::{Reader, Writer};
 use super::spec::{Kind, Spec};
 use crate::arithmetic::{Accept, Dual, Profile, Trace, dual};
-use lightmeter_gpu::Raster;
+use lightmeter_gpu::{Along, Raster};
 use lightmeter_reference::Real;
 
 /// A formula over any arithmetic.
@@ -59,10 +59,24 @@ pub trait AnyFormula: Send + Sync {
         let outputs = by_input.first().map_or(0, Vec::len);
         (0..outputs).map(|output| dual::condition(inputs, &by_input, output)).collect()
     }
+
+    /// One output of the reference along one input: for each of `inputs` in the place of the row's free number.
+    fn reference_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f64]);
+
+    /// The same of the embedded implementation.
+    fn embedded_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f32]);
+
+    /// The values of that output that are legal in the programmable stages.
+    fn interval_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [Accept]);
+
+    /// What is legal of that output somewhere while the free number goes from `first` to `last`.
+    fn interval_between(&self, along: &Along<'_>, first: f32, last: f32) -> Accept;
 }
 
 /// Room for the inputs of any formula, so that a row is widened without an allocation.
 const MOST_INPUTS: usize = 80;
+/// Room for the outputs of any formula.
+const MOST_OUTPUTS: usize = 16;
 
 fn run<F: Formula, R: Real>(formula: &F, inputs: &[f32], out: &mut [R]) {
     let mut row = [R::literal(0.0); MOST_INPUTS];
@@ -70,6 +84,20 @@ fn run<F: Formula, R: Real>(formula: &F, inputs: &[f32], out: &mut [R]) {
         *wide = R::input(narrow);
     }
     formula.evaluate(&mut Reader::new(&row[..inputs.len()]), &mut Writer::new(out));
+}
+
+/// The same along one input, in a loop of the formula's own type.
+fn run_along<F: Formula, R: Real>(formula: &F, along: &Along<'_>, inputs: impl Iterator<Item = R>, out: &mut [R]) {
+    let mut row = [R::literal(0.0); MOST_INPUTS];
+    for (wide, &narrow) in row.iter_mut().zip(along.row) {
+        *wide = R::input(narrow);
+    }
+    let mut outputs = [R::literal(0.0); MOST_OUTPUTS];
+    for (input, out) in inputs.zip(out) {
+        row[along.free] = input;
+        formula.evaluate(&mut Reader::new(&row[..along.row.len()]), &mut Writer::only(&mut outputs, along.output));
+        *out = outputs[along.output];
+    }
 }
 
 impl<F: Formula> AnyFormula for F {
@@ -114,6 +142,23 @@ impl<F: Formula> AnyFormula for F {
                 out
             })
             .collect()
+    }
+    fn reference_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f64]) {
+        run_along(self, along, inputs.iter().map(|&x| x.into()), out);
+    }
+
+    fn embedded_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f32]) {
+        run_along(self, along, inputs.iter().copied(), out);
+    }
+
+    fn interval_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [Accept]) {
+        run_along(self, along, inputs.iter().map(|&x| Accept::input(x)), out);
+    }
+
+    fn interval_between(&self, along: &Along<'_>, first: f32, last: f32) -> Accept {
+        let mut out = [Accept::ANY];
+        run_along(self, along, std::iter::once(Accept::from_bounds(first.into(), last.into())), &mut out);
+        out[0]
     }
 }
 

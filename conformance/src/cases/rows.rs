@@ -57,13 +57,21 @@ impl<'a, R: Real> Reader<'a, R> {
 pub struct Writer<'a, R> {
     row: &'a mut [R],
     filled: usize,
+    /// The only number that is wanted, where not all are.
+    only: Option<usize>,
 }
 
 impl<'a, R: Real> Writer<'a, R> {
     /// Starts at the row's first number.
     #[must_use]
     pub const fn new(row: &'a mut [R]) -> Self {
-        Self { row, filled: 0 }
+        Self { row, filled: 0, only: None }
+    }
+
+    /// The same where one number alone is wanted.
+    #[must_use]
+    pub const fn only(row: &'a mut [R], number: usize) -> Self {
+        Self { row, filled: 0, only: Some(number) }
     }
 
     /// One number.
@@ -76,6 +84,14 @@ impl<'a, R: Real> Writer<'a, R> {
     pub fn vector<const N: usize>(&mut self, v: Vector<R, N>) {
         for x in v.0 {
             self.scalar(x);
+        }
+    }
+    /// A vector or colour that is worked out only where one of its numbers is wanted.
+    pub fn lazy_vector<const N: usize>(&mut self, v: impl FnOnce() -> Vector<R, N>) {
+        if self.only.is_none_or(|number| (self.filled..self.filled + N).contains(&number)) {
+            self.vector(v());
+        } else {
+            self.filled += N;
         }
     }
 }

@@ -336,19 +336,30 @@ impl Spec {
 
     /// The name of one number of the output, such as `color.g`.
     #[must_use]
-    pub fn output_name(&self, mut number: usize) -> String {
-        for output in self.outputs {
-            if number < output.shape.components() {
-                let component = match (output.shape, output.unit) {
-                    (Shape::Scalar, _) => return output.name.into(),
-                    (_, "color") => ["r", "g", "b", "a"][number].into(),
-                    (Shape::Vec2 | Shape::Vec3 | Shape::Vec4, _) => ["x", "y", "z", "w"][number].into(),
-                    _ => number.to_string(),
-                };
-                return format!("{}.{component}", output.name);
-            }
-            number -= output.shape.components();
-        }
-        String::new()
+    pub fn output_name(&self, number: usize) -> String {
+        number_name(self.outputs.iter().map(|output| (output.name, output.shape, output.unit)), number)
     }
+
+    /// The name of one number of the input, such as `p.z`.
+    #[must_use]
+    pub fn input_name(&self, number: usize) -> String {
+        number_name(self.inputs.iter().map(|input| (input.name, input.shape, input.unit)), number)
+    }
+}
+
+/// The name of one number among values of so many components each; empty where there are fewer.
+fn number_name(values: impl Iterator<Item = (&'static str, Shape, &'static str)>, mut number: usize) -> String {
+    for (name, shape, unit) in values {
+        if number < shape.components() {
+            let component = match (shape, unit) {
+                (Shape::Scalar, _) => return name.into(),
+                (_, "color") => ["r", "g", "b", "a"][number].into(),
+                (Shape::Vec2 | Shape::Vec3 | Shape::Vec4, _) => ["x", "y", "z", "w"][number].into(),
+                _ => number.to_string(),
+            };
+            return format!("{name}.{component}");
+        }
+        number -= shape.components();
+    }
+    String::new()
 }

@@ -4,6 +4,7 @@ mod adapters;
 mod effects;
 mod eval;
 mod list;
+mod merge;
 mod options;
 mod page;
 mod render;
@@ -12,6 +13,7 @@ mod schema;
 mod selftest;
 mod show;
 mod special;
+mod sweep;
 
 use clap::{Parser, Subcommand};
 use std::io::Write;
@@ -41,6 +43,10 @@ enum Command {
     Show(show::Show),
     /// List what can be run on
     Adapters(adapters::Adapters),
+    /// Judge a formula along one of its inputs over every float of a range, or a blend mode over every byte
+    Sweep(sweep::Sweep),
+    /// Join the results of a sweep's shards
+    Merge(merge::Merge),
     /// Show that the suite catches the mistakes that it knows
     Selftest(selftest::Selftest),
     /// Show what becomes of NaN, infinity, subnormals and signed zero
@@ -64,6 +70,8 @@ impl Cli {
             Command::List(list) => list.run(),
             Command::Show(show) => show.run(),
             Command::Adapters(adapters) => adapters.run(),
+            Command::Sweep(sweep) => sweep.run(),
+            Command::Merge(merge) => merge.run(),
             Command::Selftest(selftest) => selftest.run(),
             Command::Special(special) => special.run(),
             Command::Render(render) => render.run(),

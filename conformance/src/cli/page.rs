@@ -1,9 +1,10 @@
 //! `lightmeter page`.
 
 use super::{Status, emit};
-use anyhow::{Context as _, anyhow};
+use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
-use lightmeter::report::page::{Run, markdown, scenes, special, svg};
+use lightmeter::report::page::{Run, markdown, scenes, special, svg, sweep};
+use lightmeter::sweep::Document;
 use std::path::PathBuf;
 
 /// What a page is about.
@@ -15,6 +16,8 @@ enum Subject {
     Scenes,
     /// NaN, infinity, subnormals and signed zero, from the JSON of `special`.
     Special,
+    /// Sweeps, of as many results as are given.
+    Sweep,
 }
 
 /// Write a page of the docs from a run's JSON, most with a picture beside it.
@@ -23,8 +26,9 @@ pub(crate) struct Page {
     /// What it is about
     #[arg(value_enum)]
     subject: Subject,
-    /// The JSON of `lightmeter run --format json`, or of `lightmeter special --format json`
-    run: PathBuf,
+    /// The JSON of `lightmeter run --format json`, or of `lightmeter special --format json`; of sweeps, that of each
+    #[arg(required = true)]
+    runs: Vec<PathBuf>,
     /// Write the page to a file, and its picture to one of the same name that ends in .svg or .png
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -32,15 +36,36 @@ pub(crate) struct Page {
 
 impl Page {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let name = self.run.display();
-        let json = std::fs::read_to_string(&self.run).with_context(|| format!("cannot read {name}"))?;
+        if self.subject == Subject::Sweep {
+            emit(&self.sweeps()?, self.out.as_deref())?;
+            return Ok(Status::Success);
+        }
+        let [run] = self.runs.as_slice() else {
+            bail!("the page is of one run; expected one file");
+        };
+        let name = run.display();
+        let json = std::fs::read_to_string(run).with_context(|| format!("cannot read {name}"))?;
         let text = match self.subject {
             Subject::Blend => self.blend(&json),
-            Subject::Scenes => self.scenes(&json),
+            Subject::Scenes | Subject::Sweep => self.scenes(&json),
             Subject::Special => special(&json),
         };
         emit(&text.with_context(|| format!("{name} makes no page"))?, self.out.as_deref())?;
         Ok(Status::Success)
+    }
+
+    fn sweeps(&self) -> anyhow::Result<String> {
+        let mut results = vec![];
+        for path in &self.runs {
+            let result = Document::read(path)?;
+            if !result.is_finished() {
+                bail!("{} is not finished; give it as --checkpoint to its command again", path.display());
+            }
+            results.push(result);
+        }
+        let mut text = String::new();
+        sweep::markdown(&results, &mut text)?;
+        Ok(text)
     }
 
     fn blend(&self, json: &str) -> anyhow::Result<String> {

@@ -7,7 +7,7 @@ pub mod text;
 
 use crate::stability::{Cost, Examined};
 use crate::subject::Identity;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// A number that may be NaN or infinite, which JSON writes as a string.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +70,8 @@ impl Totals {
 }
 
 /// Values on a target of 8 bits by how near they come.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Tiers {
     /// The formula gives a whole step, and it came out.
     pub exact: u64,

@@ -1,0 +1,297 @@
+//! `lightmeter sweep`.
+
+use super::options::{Choice, Format, ShardArgument};
+use super::{NothingToRun, Status, emit};
+use anyhow::bail;
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use lightmeter::arithmetic::Profile;
+use lightmeter::cases::Stage;
+use lightmeter::report::text::thousands;
+use lightmeter::select::catalogue;
+use lightmeter::sweep::{
+    Asked, Description, Document, Free, Over, PRESETS, Plan, SCHEMA, SweepError, name_of, sweep, text,
+};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// How often the checkpoint is written.
+const SAVED_EVERY: Duration = Duration::from_secs(5);
+
+/// Judge a formula along one of its inputs over every float of a range, or a blend mode over every byte.
+///
+/// Without a formula it lists the ready-made sweeps.
+#[derive(Debug, Args)]
+pub(crate) struct Sweep {
+    /// The formula, as `fog/exp`
+    formula: Option<String>,
+    /// The free number, as `p.z`; without it: the ready-made sweep's
+    #[arg(long, value_name = "NAME")]
+    over: Option<String>,
+    /// The least float; decimal, or its bits as 0x3f800000
+    #[arg(long, value_name = "X", value_parser = float, allow_hyphen_values = true)]
+    from: Option<f32>,
+    /// The greatest
+    #[arg(long, value_name = "X", value_parser = float, allow_hyphen_values = true)]
+    to: Option<f32>,
+    /// Another input, as `density=0.01`, `p.x=1` or `fog=0.5,0.5,1`; again for several. Those not set are the ready-made
+    /// sweep's, or in the middle of their domain
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, allow_hyphen_values = true)]
+    set: Vec<(String, Vec<f32>)>,
+    /// The output, as `color.r`; without it: the ready-made sweep's, or the first
+    #[arg(long, value_name = "NAME")]
+    output: Option<String>,
+    /// The stage: compute, fragment, or fixed-function for the blend modes
+    #[arg(long, value_name = "STAGE", value_parser = stage)]
+    stage: Option<Stage>,
+    /// Adapter to run on, as for `run`; without it: lavapipe, or the first there is
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Accuracy rules: wgsl or vulkan
+    #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
+    profile: &'static Profile,
+    /// Judge the WGSL in this folder in place of the built-in files of the same names
+    #[arg(long, value_name = "DIR")]
+    shaders: Option<PathBuf>,
+    /// Only a part of the inputs: the I-th of N; `lightmeter merge` joins them
+    #[arg(long, value_name = "I/N", default_value = "1/1")]
+    shard: ShardArgument,
+    /// Where the state is kept, so that the same command goes on where an interrupted one was
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// Do so many blocks now and leave the rest for another time
+    #[arg(long, value_name = "N", requires = "checkpoint", value_parser = clap::value_parser!(u64).range(1..))]
+    blocks: Option<u64>,
+    /// How the result is written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write it to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Sweep {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let Some(formula) = &self.formula else {
+            emit(&presets(self.format)?, self.out.as_deref())?;
+            return Ok(Status::Success);
+        };
+        if self.format == Format::Junit {
+            bail!("a sweep is written as text or json");
+        }
+        let catalogue = catalogue();
+        let plan = Plan::new(&catalogue, formula, &self.asked())?;
+        let shard = self.shard.0;
+        if plan.span().blocks_of(shard) == 0 {
+            let (blocks, name) = (plan.span().blocks(), name_of(shard));
+            let many = if blocks == 1 { "one block".into() } else { format!("{blocks} blocks") };
+            bail!("shard {name} has no inputs: the range has {many}; expected at most so many shards");
+        }
+        if self.out.is_some() && self.out == self.checkpoint {
+            bail!("--out and --checkpoint name one file; expected two");
+        }
+        let choice = self.choice();
+        let shaders = choice.shaders()?;
+        let mut subjects = choice.subjects()?;
+        let [subject] = subjects.as_mut_slice() else {
+            bail!("a sweep is of one adapter; expected its name");
+        };
+        let description = Description::new(&plan, &subject.identity, self.profile, &shaders);
+        let resumed = self.checkpoint.as_deref().map(|path| Document::resume(path, &description, shard)).transpose()?;
+        let mut document = resumed.flatten().unwrap_or_else(|| Document::new(description, shard));
+        // Not after hours of work.
+        if let Some(path) = &self.checkpoint {
+            document.write(path)?;
+        }
+        if let Some(path) = &self.out {
+            emit("", Some(path))?;
+        }
+
+        let bar = bar(&document, shard);
+        let mut saved = Instant::now();
+        let mut tell = |document: &Document| {
+            bar.set_position(document.statistics.inputs);
+            if let Some(path) = &self.checkpoint
+                && saved.elapsed() >= SAVED_EVERY
+            {
+                document.write(path)?;
+                saved = Instant::now();
+            }
+            Ok(())
+        };
+        let swept = sweep(&plan, subject, &shaders, self.profile, &mut document, self.blocks, &mut tell);
+        bar.finish_and_clear();
+        if let Some(path) = &self.checkpoint {
+            document.write(path)?;
+        }
+        match swept {
+            Ok(()) => {}
+            Err(SweepError::Gpu(error)) => {
+                if let (Some(path), lightmeter_gpu::Error::Device(_) | lightmeter_gpu::Error::Timeout(_)) =
+                    (&self.checkpoint, &error)
+                {
+                    let (done, blocks) = (document.done, document.blocks);
+                    eprintln!("{done} of {blocks} blocks were done, which are in {}", path.display());
+                }
+                // Closing a device that hangs would hang as well.
+                std::mem::forget(subjects);
+                return Err(error.into());
+            }
+            Err(SweepError::Lacks { .. }) => {
+                let message = swept.err().map(|error| error.to_string()).unwrap_or_default();
+                return Err(NothingToRun(message).into());
+            }
+            Err(error) => return Err(error.into()),
+        }
+        emit(&written(&document, self.format, &self.rerun(&plan))?, self.out.as_deref())?;
+        if !document.is_finished()
+            && let Some(path) = &self.checkpoint
+        {
+            eprintln!("not finished; the same command goes on from {}", path.display());
+        }
+        Ok(status(&document))
+    }
+
+    fn asked(&self) -> Asked {
+        Asked {
+            over: self.over.clone(),
+            from: self.from,
+            to: self.to,
+            set: self.set.clone(),
+            output: self.output.clone(),
+            stage: self.stage,
+        }
+    }
+
+    fn choice(&self) -> Choice {
+        Choice {
+            adapter: self.adapter.iter().cloned().collect(),
+            profile: self.profile,
+            target: vec![],
+            size: None,
+            seed: 1,
+            shaders: self.shaders.clone(),
+        }
+    }
+
+    /// What a command that sweeps one input again is given besides the formula and the range.
+    fn rerun(&self, plan: &Plan<'_>) -> String {
+        let mut rerun = String::new();
+        if let Over::Number { .. } = plan.over {
+            let _ = write!(rerun, " --over {} --output {}", plan.over_name(), plan.output_name());
+        }
+        for (name, values) in &self.set {
+            let values: Vec<String> = values.iter().map(f32::to_string).collect();
+            let _ = write!(rerun, " --set {name}={}", values.join(","));
+        }
+        if plan.stage != Stage::Compute {
+            let _ = write!(rerun, " --stage {}", plan.stage.name());
+        }
+        if let Some(adapter) = &self.adapter {
+            let _ = write!(rerun, " --adapter {adapter}");
+        }
+        if self.profile.name != "wgsl" {
+            let _ = write!(rerun, " --profile {}", self.profile.name);
+        }
+        if let Some(dir) = &self.shaders {
+            let _ = write!(rerun, " --shaders '{}'", dir.display().to_string().replace('\'', r"'\''"));
+        }
+        rerun
+    }
+}
+
+/// A result as text or JSON.
+pub(crate) fn written(document: &Document, format: Format, rerun: &str) -> anyhow::Result<String> {
+    match format {
+        Format::Json => Ok(document.to_json()?),
+        Format::Junit => bail!("a sweep is written as text or json"),
+        Format::Text => {
+            let catalogue = catalogue();
+            let formula = catalogue.iter().find(|member| member.spec.id == document.sweep.formula);
+            let mut out = String::new();
+            text::write(document, formula.map_or("", |member| member.spec.text), rerun, &mut out)?;
+            Ok(out)
+        }
+    }
+}
+
+/// Whether some input is outside its bound.
+pub(crate) fn status(document: &Document) -> Status {
+    if document.statistics.failed > 0 { Status::Failed } else { Status::Success }
+}
+
+fn presets(format: Format) -> anyhow::Result<String> {
+    let range = |free: Free| match free {
+        Free::Number { over, from, to, .. } => format!("{over} from {from} to {to}"),
+        Free::Bytes => "source, destination, alpha".into(),
+    };
+    match format {
+        Format::Junit => bail!("the list is written as text or json"),
+        Format::Json => {
+            let rows: Vec<_> = PRESETS
+                .iter()
+                .map(|preset| {
+                    serde_json::json!({ "formula": preset.formula, "over": range(preset.free), "what": preset.what })
+                })
+                .collect();
+            Ok(serde_json::to_string_pretty(&serde_json::json!({ "schema": SCHEMA, "presets": rows }))? + "\n")
+        }
+        Format::Text => {
+            let mut out = String::new();
+            for preset in PRESETS {
+                writeln!(out, "{:<28} {:<28} {}", preset.formula, range(preset.free), preset.what)?;
+            }
+            Ok(out)
+        }
+    }
+}
+
+/// A bar on standard error, where that is a terminal.
+fn bar(document: &Document, shard: lightmeter::select::Shard) -> ProgressBar {
+    let inputs = document.sweep.span().inputs_of(shard, document.blocks);
+    let bar = ProgressBar::with_draw_target(Some(inputs), ProgressDrawTarget::stderr());
+    let template = "{bar:30} {human_pos}/{human_len} inputs  {rate} a second  {elapsed}, {eta} to go";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.with_key("rate", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a rate that is read by people"
+            )]
+            let rate = state.per_sec() as u64;
+            // A bar that cannot be written is none.
+            let _ = out.write_str(&thousands(rate));
+        }));
+    }
+    bar.set_position(document.statistics.inputs);
+    bar.reset_eta();
+    bar
+}
+
+/// A finite f32, decimal or by its bits.
+fn float(text: &str) -> Result<f32, String> {
+    let x = match text.strip_prefix("0x") {
+        Some(hex) => u32::from_str_radix(hex, 16).ok().map(f32::from_bits),
+        None => text.parse().ok(),
+    };
+    let x = x.ok_or("not a number; expected one such as 0.5, 1e6 or 0x3f800000")?;
+    if !x.is_finite() {
+        return Err(format!("{x} is no float that a sweep can reach; expected a finite f32, at most {:e}", f32::MAX));
+    }
+    Ok(x)
+}
+
+fn setting(text: &str) -> Result<(String, Vec<f32>), String> {
+    let expected = || "expected NAME=VALUE, as density=0.01 or fog=0.5,0.5,1".to_owned();
+    let (name, values) = text.split_once('=').ok_or_else(expected)?;
+    let values: Result<Vec<f32>, String> =
+        values.split(',').map(|value| float(value.trim()).map_err(|error| format!("`{value}`: {error}"))).collect();
+    Ok((name.trim().to_owned(), values?))
+}
+
+fn stage(text: &str) -> Result<Stage, String> {
+    let stages = [Stage::Compute, Stage::Fragment, Stage::FixedFunction];
+    let found = stages.into_iter().find(|stage| stage.name() == text);
+    found.ok_or_else(|| "no such stage; expected compute, fragment or fixed-function".into())
+}

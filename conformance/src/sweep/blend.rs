@@ -1,0 +1,138 @@
+//! A named blend mode over every byte of source, destination and source's alpha, by the blend unit on rgba8unorm.
+//!
+//! A pixel carries three inputs, one in each of its colour components, which share its alpha. Inputs are numbered by alpha, then
+//! source, then destination.
+
+use super::plan::Plan;
+use super::run::Work;
+use super::statistics::{Exact, Place, Seen, Statistics, Stored};
+use crate::blend_unit::draw::{Piece, draw};
+use crate::blend_unit::expect::expect;
+use crate::blend_unit::pixel::{self, Units};
+use crate::blend_unit::rules::Rules;
+use crate::blend_unit::tally::{Outcome, count_tier};
+use crate::cases::Kind;
+use crate::cases::blend::Program;
+use crate::report::Number;
+use crate::subject::Subject;
+use lightmeter_gpu::{Error, Route, Shaders};
+use lightmeter_scene::target::TargetFormat;
+use rayon::prelude::*;
+
+/// The shader that hands source colours to the unit.
+pub(super) const FILE: &str = "blend_unit.wgsl";
+const TARGET: TargetFormat = TargetFormat::Rgba8Unorm;
+/// Inputs of one alpha, which one piece draws.
+const PLANE: u64 = 1 << 16;
+/// Inputs of a pixel.
+const COMPONENTS: usize = 3;
+
+/// The blend unit at work on a mode.
+pub(super) struct BytesWork<'a> {
+    subject: &'a mut Subject,
+    shaders: &'a Shaders,
+    program: Program,
+    stride: usize,
+}
+
+impl<'a> BytesWork<'a> {
+    /// The unit of a subject; `Err` says what it lacks.
+    pub(super) fn new(plan: &Plan<'_>, subject: &'a mut Subject, shaders: &'a Shaders) -> Result<Self, &'static str> {
+        if let Some(reason) = subject.lacks_blending(TARGET) {
+            return Err(reason);
+        }
+        let Kind::Blend(program) = plan.member.spec.kind else { return Err("it is no blend state") };
+        Ok(Self { subject, shaders, program, stride: plan.member.spec.input_len() })
+    }
+
+    /// Inputs from one number to another, of one alpha, three to a pixel; the last pixel may repeat its last one.
+    fn piece(&self, from: u64, to: u64) -> Piece {
+        let mut inputs = vec![];
+        for first in (from..to).step_by(COMPONENTS) {
+            let bytes: [[u8; 3]; COMPONENTS] =
+                std::array::from_fn(|component| bytes((first + component as u64).min(to - 1)));
+            let unit = |byte: u8| f32::from(byte) / 255.0;
+            inputs.extend(bytes.map(|[_, source, _]| unit(source)));
+            inputs.push(unit(bytes[0][0]));
+            inputs.extend(bytes.map(|[_, _, destination]| unit(destination)));
+        }
+        Piece { program: self.program, route: Route::Native, inputs, stride: self.stride }
+    }
+
+    fn judge(&self, piece: &Piece, pixels: &[Units], from: u64, to: u64) -> Statistics {
+        let mut sum = Statistics::default();
+        let mut stored = Stored::default();
+        let (_, mask) = self.program.layer(0);
+        for (place, (first, pixel)) in (from..to).step_by(COMPONENTS).zip(pixels).enumerate() {
+            let case = piece.case(place);
+            let expected = expect(self.program, TARGET, &case, &Rules::RIGHT);
+            let model = self.subject.known.blend_model;
+            let predicted =
+                model.map(|model| model.predict(self.program, piece.route, &case, pixel::stored(TARGET, case.dst)));
+            for (component, number) in (first..to).take(COMPONENTS).enumerate() {
+                let value = pixel[component];
+                let verdict = expected.judge(TARGET, component, value);
+                let [alpha, source, destination] = bytes(number);
+                #[expect(clippy::cast_possible_truncation, reason = "a whole step")]
+                let seen = Seen {
+                    input: Place::Bytes { source, destination, alpha },
+                    value: Exact(value as f32),
+                    reference: Number(expected.reference[component]),
+                    low: Number(expected.low[component]),
+                    high: Number(expected.high[component]),
+                    error: Number(verdict.error),
+                    margin: Number(verdict.margin),
+                };
+                sum.inputs += 1;
+                sum.histogram.count(verdict.error);
+                sum.see_error(seen);
+                if verdict.error >= 1.0 {
+                    sum.see_margin(seen);
+                }
+                if verdict.outcome == Outcome::Pass {
+                    sum.passed += 1;
+                } else {
+                    sum.failed += 1;
+                    sum.see_failure(seen);
+                }
+                count_tier(&mut stored.tiers, expected.reference[component], value, verdict.outcome);
+                if mask.0[component] {
+                    stored.counts.count(expected.reference[component], value);
+                }
+                if let Some(predicted) = predicted {
+                    stored.predicted += 1;
+                    stored.departing += u64::from(predicted[component].to_bits() != value.to_bits());
+                }
+            }
+        }
+        sum.stored = Some(stored);
+        sum
+    }
+}
+
+/// Alpha, source and destination of an input.
+fn bytes(number: u64) -> [u8; 3] {
+    let [.., alpha, source, destination] = number.to_be_bytes();
+    [alpha, source, destination]
+}
+
+impl Work for BytesWork<'_> {
+    type Job = (u64, u64);
+
+    fn start(&mut self, first: u64, count: u64) -> Self::Job {
+        (first, first + count)
+    }
+
+    fn finish(&mut self, (first, end): Self::Job) -> Result<Statistics, Error> {
+        let planes: Vec<(u64, u64)> =
+            (first / PLANE..end.div_ceil(PLANE)).map(|k| (first.max(k * PLANE), end.min((k + 1) * PLANE))).collect();
+        let pieces: Vec<Piece> = planes.par_iter().map(|&(from, to)| self.piece(from, to)).collect();
+        let drawn = draw(self.subject, self.shaders, TARGET, &pieces.iter().collect::<Vec<_>>(), false)?;
+        let of_planes = planes.par_iter().zip(&pieces).zip(&drawn.pieces);
+        let parts: Vec<Statistics> =
+            of_planes.map(|((&(from, to), piece), pixels)| self.judge(piece, pixels, from, to)).collect();
+        let mut sum = Statistics::default();
+        parts.into_iter().for_each(|part| sum.add(part));
+        Ok(sum)
+    }
+}

@@ -1,0 +1,218 @@
+//! The way of a sweep's data: block after block, with the next ones under way on the device while one is judged.
+
+use super::blend::BytesWork;
+use super::document::{Document, DocumentError};
+use super::judge::Judge;
+use super::plan::{Over, Plan, input};
+use super::statistics::Statistics;
+use crate::arithmetic::Profile;
+use crate::cases::Stage;
+use crate::evaluate::kernel;
+use crate::subject::Subject;
+use lightmeter_gpu::{Along, Block, Error, Gpu, Shaders, Sweep, key_of};
+use rayon::prelude::*;
+use std::collections::VecDeque;
+use std::time::Instant;
+
+/// Inputs that a task of the pool takes at once, of the embedded implementation.
+const TASK: usize = 1 << 12;
+
+/// Why a sweep ends early.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// A shader or a device.
+    #[error(transparent)]
+    Gpu(#[from] Error),
+    /// The checkpoint.
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    /// The adapter lacks what it takes.
+    #[error("{adapter} cannot do this sweep: {reason}")]
+    Lacks {
+        /// Its short name.
+        adapter: String,
+        /// What.
+        reason: &'static str,
+    },
+}
+
+/// What does a block's work: starts it, and later says what came of it.
+pub(super) trait Work {
+    /// A block under way.
+    type Job;
+    /// Starts on so many inputs from the one of that number on.
+    fn start(&mut self, first: u64, count: u64) -> Self::Job;
+    /// What came of it.
+    fn finish(&mut self, job: Self::Job) -> Result<Statistics, Error>;
+}
+
+/// Sweeps on from where the document stands, at most so many blocks of its shard, and hands the document on after each.
+///
+/// # Errors
+/// Where the shader is invalid, the device refuses it or fails, or the document's receiver fails. What is done stands in the
+/// document.
+pub fn sweep(
+    plan: &Plan<'_>,
+    subject: &mut Subject,
+    shaders: &Shaders,
+    profile: &'static Profile,
+    document: &mut Document,
+    part: Option<u64>,
+    tell: &mut dyn FnMut(&Document) -> Result<(), DocumentError>,
+) -> Result<(), SweepError> {
+    let last = document.blocks.min(document.done.saturating_add(part.unwrap_or(u64::MAX)));
+    if document.done == last {
+        return Ok(());
+    }
+    let adapter = subject.identity.name.clone();
+    let lacks = |reason| SweepError::Lacks { adapter: adapter.clone(), reason };
+    match &plan.over {
+        Over::Bytes => {
+            let mut work = BytesWork::new(plan, subject, shaders).map_err(&lacks)?;
+            drive(&mut work, document, last, tell)
+        }
+        Over::Number { free, row, from, output, .. } => {
+            let along = Along { row, free: *free, output: *output };
+            let known = subject.known.clone();
+            let judge = Judge { formula: &*plan.member.formula, along, profile, deviations: &known.deviations };
+            let Some(gpu) = subject.gpu() else {
+                return drive(&mut Embedded { judge, from: *from }, document, last, tell);
+            };
+            let stage = match plan.stage {
+                Stage::Fragment => lightmeter_gpu::Stage::Fragment,
+                _ => lightmeter_gpu::Stage::Compute,
+            };
+            let kernel = kernel(shaders, plan.member)?.ok_or_else(|| lacks("no shader function evaluates it"))?;
+            let selectors = plan.member.spec.selectors.iter().map(|&code| f32::from_bits(code));
+            let selected: Vec<f32> = selectors.chain(row.iter().copied()).collect();
+            let along = Along { row: &selected, free: *free + plan.member.spec.selectors.len(), output: *output };
+            let capacity = usize::try_from(plan.span().block).unwrap_or(usize::MAX);
+            let sweep = Sweep::new(gpu, shaders, &kernel, stage, along, capacity)?;
+            let sweep = sweep.map_err(&lacks)?;
+            drive(&mut OnDevice { gpu, sweep, judge, from: *from }, document, last, tell)
+        }
+    }
+}
+
+fn drive<W: Work>(
+    work: &mut W,
+    document: &mut Document,
+    last: u64,
+    tell: &mut dyn FnMut(&Document) -> Result<(), DocumentError>,
+) -> Result<(), SweepError> {
+    let (before, clock) = (document.seconds, Instant::now());
+    let (span, shard) = (document.sweep.span(), document.shard());
+    let mut under_way = VecDeque::new();
+    let mut next = document.done;
+    while document.done < last {
+        while next < last && under_way.len() < Sweep::UNDER_WAY {
+            let (first, count) = span.block_of(shard, next);
+            under_way.push_back(work.start(first, count));
+            next += 1;
+        }
+        let Some(job) = under_way.pop_front() else { break };
+        document.statistics.add(work.finish(job)?);
+        document.done += 1;
+        document.seconds = before + clock.elapsed().as_secs_f64();
+        tell(document)?;
+    }
+    Ok(())
+}
+
+/// A shader.
+struct OnDevice<'a> {
+    gpu: &'a Gpu,
+    sweep: Sweep,
+    judge: Judge<'a>,
+    from: f32,
+}
+
+impl Work for OnDevice<'_> {
+    type Job = (u32, Block);
+
+    fn start(&mut self, first: u64, count: u64) -> Self::Job {
+        let key = key_of(input(self.from, first));
+        (key, self.sweep.submit(self.gpu, key, usize::try_from(count).unwrap_or(usize::MAX)))
+    }
+
+    fn finish(&mut self, (key, block): Self::Job) -> Result<Statistics, Error> {
+        self.sweep.read(self.gpu, block, |words| self.judge.block(key, words))
+    }
+}
+
+/// The formula in f32 on this processor.
+struct Embedded<'a> {
+    judge: Judge<'a>,
+    from: f32,
+}
+
+impl Work for Embedded<'_> {
+    type Job = (u64, u64);
+
+    fn start(&mut self, first: u64, count: u64) -> Self::Job {
+        (first, count)
+    }
+
+    fn finish(&mut self, (first, count): Self::Job) -> Result<Statistics, Error> {
+        let mut words = vec![0; usize::try_from(count).unwrap_or(usize::MAX)];
+        words.par_chunks_mut(TASK).enumerate().for_each(|(task, words)| {
+            let first = first + (task * TASK) as u64;
+            let inputs: Vec<f32> = (first..).take(words.len()).map(|number| input(self.from, number)).collect();
+            let mut out = vec![0.0; words.len()];
+            self.judge.formula.embedded_along(&self.judge.along, &inputs, &mut out);
+            for (word, value) in words.iter_mut().zip(out) {
+                *word = value.to_bits();
+            }
+        });
+        Ok(self.judge.block(key_of(input(self.from, first)), &words))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arithmetic::profile::WGSL;
+    use crate::select::{Shard, catalogue};
+    use crate::sweep::{Asked, Description};
+
+    /// A device that is lost in its fourth block.
+    struct Lost(u64);
+
+    impl Work for Lost {
+        type Job = u64;
+
+        fn start(&mut self, _first: u64, count: u64) -> u64 {
+            count
+        }
+
+        fn finish(&mut self, count: u64) -> Result<Statistics, Error> {
+            self.0 += 1;
+            if self.0 == 4 {
+                return Err(Error::Device("lost".into()));
+            }
+            let mut part = Statistics { inputs: count, passed: count, ..Statistics::default() };
+            part.histogram.count_near([count, 0, 0]);
+            Ok(part)
+        }
+    }
+
+    #[test]
+    fn what_was_judged_before_a_device_was_lost_is_kept() {
+        let catalogue = catalogue();
+        let asked = Asked { from: Some(1.0), to: Some(1.125), ..Asked::default() };
+        let plan = Plan::new(&catalogue, "fog/exp", &asked).expect("a plan");
+        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+        let sweep = Description::new(&plan, &Subject::embedded().identity, &WGSL, &shaders);
+        let mut document = Document::new(sweep, Shard::WHOLE);
+        let last = document.blocks;
+        let mut told = 0;
+        let lost = drive(&mut Lost(0), &mut document, last, &mut |_| {
+            told += 1;
+            Ok(())
+        });
+        assert!(matches!(lost, Err(SweepError::Gpu(Error::Device(_)))), "{lost:?}");
+        assert_eq!((document.done, told), (3, 3));
+        let text = document.to_json().expect("JSON");
+        assert_eq!(Document::parse(&text).expect("it adds up").done, 3);
+    }
+}

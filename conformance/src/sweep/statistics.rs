@@ -1,0 +1,298 @@
+//! What a sweep has come to. Statistics of parts add up to those of the whole, whatever the parts and their order: counts,
+//! greatest values with the first input that has them, and the first inputs that fail.
+
+use super::histogram::Histogram;
+use crate::blend_unit::store::StoreCounts;
+use crate::report::{Number, Tiers};
+use lightmeter_gpu::key_of;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Failing inputs that are kept.
+const KEPT: usize = 5;
+
+/// An f32 as it is read by people and as its bits, which are what counts.
+#[derive(Clone, Copy, Debug)]
+pub struct Exact(pub f32);
+
+impl PartialEq for Exact {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.to_bits() == other.0.to_bits()
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ExactParts {
+    value: serde_json::Value,
+    bits: String,
+}
+
+impl Serialize for Exact {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let value = serde_json::to_value(Number(self.0.into())).unwrap_or_default();
+        ExactParts { value, bits: format!("0x{:08x}", self.0.to_bits()) }.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Exact {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let parts = ExactParts::deserialize(deserializer)?;
+        let bits = parts.bits.strip_prefix("0x").and_then(|hex| u32::from_str_radix(hex, 16).ok());
+        let expected = || serde::de::Error::custom(format!("`{}` is no f32's bits, as 0x3f800000", parts.bits));
+        let x = f32::from_bits(bits.ok_or_else(expected)?);
+        if serde_json::to_value(Number(x.into())).ok().as_ref() != Some(&parts.value) {
+            return Err(serde::de::Error::custom(format!("{} is not the value of {}", parts.value, parts.bits)));
+        }
+        Ok(Self(x))
+    }
+}
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Written {
+            Finite(f64),
+            Word(String),
+        }
+        match Written::deserialize(deserializer)? {
+            Written::Finite(x) => Ok(Self(x)),
+            Written::Word(word) => match word.as_str() {
+                "NaN" => Ok(Self(f64::NAN)),
+                "Inf" => Ok(Self(f64::INFINITY)),
+                "-Inf" => Ok(Self(f64::NEG_INFINITY)),
+                _ => Err(serde::de::Error::custom(format!("`{word}` is no number; expected NaN, Inf or -Inf"))),
+            },
+        }
+    }
+}
+
+/// One input of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Place {
+    /// A float.
+    Float(Exact),
+    /// Of a blend state: a component of the source and of the destination, and the source's alpha, in 255ths.
+    Bytes {
+        /// The source's.
+        source: u8,
+        /// The destination's.
+        destination: u8,
+        /// The source's alpha.
+        alpha: u8,
+    },
+}
+
+impl Place {
+    /// Its number in the order of inputs.
+    #[must_use]
+    pub fn order(self) -> u32 {
+        match self {
+            Self::Float(Exact(x)) => key_of(x),
+            Self::Bytes { source, destination, alpha } => u32::from_be_bytes([0, alpha, source, destination]),
+        }
+    }
+}
+
+/// A verdict with all that it rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Seen {
+    /// The input.
+    pub input: Place,
+    /// What came out.
+    pub value: Exact,
+    /// What the formula gives.
+    pub reference: Number,
+    /// The least legal value.
+    pub low: Number,
+    /// The greatest.
+    pub high: Number,
+    /// The distance from the reference in the sweep's unit.
+    pub error: Number,
+    /// The distance from the reference over the distance to the end of what is legal.
+    pub margin: Number,
+}
+
+/// What the stores of a blend unit came to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stored {
+    /// By how near values come.
+    pub tiers: Tiers,
+    /// What the values say of how they are stored, red, green and blue together.
+    pub counts: StoreCounts,
+    /// Values that the device's declared model predicts.
+    pub predicted: u64,
+    /// Those that are another.
+    pub departing: u64,
+}
+
+/// What a sweep, or a part of one, has come to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Statistics {
+    /// Inputs.
+    pub inputs: u64,
+    /// Legal results.
+    pub passed: u64,
+    /// Others.
+    pub failed: u64,
+    /// Not legal, as a named deviation says.
+    pub expected_failures: u64,
+    /// Where the rules permit anything; in no bin of the histogram.
+    pub indeterminate: u64,
+    /// Which deviations were needed, and how often.
+    pub excused: BTreeMap<String, u64>,
+    /// The errors.
+    pub histogram: Histogram,
+    /// The greatest error.
+    pub worst: Option<Seen>,
+    /// The greatest margin of the values that are not next to the reference, where either float is legal: its margin is at most 1.
+    pub nearest_to_limit: Option<Seen>,
+    /// The first results that are not legal.
+    pub failures: Vec<Seen>,
+    /// Of a blend unit.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub stored: Option<Stored>,
+}
+
+impl Statistics {
+    /// Adds another part's.
+    pub fn add(&mut self, other: Self) {
+        self.inputs += other.inputs;
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.expected_failures += other.expected_failures;
+        self.indeterminate += other.indeterminate;
+        for (name, count) in other.excused {
+            *self.excused.entry(name).or_default() += count;
+        }
+        self.histogram.add(&other.histogram);
+        if let Some(seen) = other.worst {
+            self.see_error(seen);
+        }
+        if let Some(seen) = other.nearest_to_limit {
+            self.see_margin(seen);
+        }
+        self.failures.extend(other.failures);
+        self.failures.sort_by_key(|seen| seen.input.order());
+        self.failures.truncate(KEPT);
+        if let Some(other) = other.stored {
+            let stored = self.stored.get_or_insert_default();
+            stored.tiers.add(&other.tiers);
+            stored.counts.add(&other.counts);
+            stored.predicted += other.predicted;
+            stored.departing += other.departing;
+        }
+    }
+
+    /// Keeps it where its error is the greatest.
+    pub(super) fn see_error(&mut self, seen: Seen) {
+        if is_beyond(&seen, self.worst.as_ref(), |seen| seen.error.0) {
+            self.worst = Some(seen);
+        }
+    }
+
+    /// Keeps it where its margin is the greatest.
+    pub(super) fn see_margin(&mut self, seen: Seen) {
+        if is_beyond(&seen, self.nearest_to_limit.as_ref(), |seen| seen.margin.0) {
+            self.nearest_to_limit = Some(seen);
+        }
+    }
+
+    /// Keeps it where few have failed before; inputs come in order.
+    pub(super) fn see_failure(&mut self, seen: Seen) {
+        if self.failures.len() < KEPT {
+            self.failures.push(seen);
+        }
+    }
+
+    /// What does not add up; `None` where all does.
+    #[must_use]
+    pub fn problem(&self) -> Option<String> {
+        let judged = [self.passed, self.failed, self.expected_failures, self.indeterminate];
+        let sum = judged.into_iter().try_fold(0_u64, u64::checked_add);
+        if sum != Some(self.inputs) {
+            return Some(format!("its verdicts do not come to its {} inputs", self.inputs));
+        }
+        if self.histogram.total() != Some(self.inputs - self.indeterminate) {
+            return Some("its histogram does not come to its count of inputs".into());
+        }
+        let excused = self.excused.values().try_fold(0_u64, |sum, &count| sum.checked_add(count));
+        if excused != Some(self.expected_failures) {
+            return Some("its deviations do not come to its expected failures".into());
+        }
+        if self.failures.len() as u64 > self.failed || (self.failed > 0 && self.failures.is_empty()) {
+            return Some(format!("it keeps {} failures of {}", self.failures.len(), self.failed));
+        }
+        None
+    }
+}
+
+/// Whether it is greater, or as great at an earlier input.
+fn is_beyond(seen: &Seen, most: Option<&Seen>, of: impl Fn(&Seen) -> f64) -> bool {
+    most.is_none_or(|most| match of(seen).total_cmp(&of(most)) {
+        std::cmp::Ordering::Equal => seen.input.order() < most.input.order(),
+        order => order.is_gt(),
+    })
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    pub(in crate::sweep) fn seen(x: f32, error: f64) -> Seen {
+        Seen {
+            input: Place::Float(Exact(x)),
+            value: Exact(1.0),
+            reference: Number(1.0),
+            low: Number(0.5),
+            high: Number(2.0),
+            error: Number(error),
+            margin: Number(error / 8.0),
+        }
+    }
+
+    fn part(x: f32, error: f64) -> Statistics {
+        let mut part = Statistics { inputs: 1, failed: 1, ..Statistics::default() };
+        part.histogram.count(error);
+        part.see_error(seen(x, error));
+        part.see_margin(seen(x, error));
+        part.see_failure(seen(x, error));
+        part
+    }
+
+    #[test]
+    fn parts_add_up_in_any_order() {
+        let parts: Vec<Statistics> = [3.0, 9.0, 9.0, 1.0, 2.0, 5.0, 4.0]
+            .iter()
+            .zip([1_u8, 2, 3, 4, 5, 6, 7])
+            .map(|(e, x)| part(x.into(), *e))
+            .collect();
+        let mut forwards = Statistics::default();
+        parts.iter().for_each(|part| forwards.add(part.clone()));
+        let mut backwards = Statistics::default();
+        parts.iter().rev().for_each(|part| backwards.add(part.clone()));
+        assert_eq!(forwards, backwards);
+        assert_eq!(forwards.worst.map(|seen| seen.input), Some(Place::Float(Exact(2.0))), "the first of equals");
+        assert_eq!(forwards.failures.len(), KEPT);
+        assert_eq!(forwards.problem(), None);
+    }
+
+    #[test]
+    fn counts_that_do_not_add_up_are_told() {
+        let mut good = part(1.0, 3.0);
+        good.passed += 1;
+        assert!(good.problem().is_some_and(|problem| problem.contains("verdicts")));
+        let mut good = part(1.0, 3.0);
+        good.histogram.count(1.0);
+        assert!(good.problem().is_some_and(|problem| problem.contains("histogram")));
+        let mut good = part(1.0, 3.0);
+        good.failures.clear();
+        assert!(good.problem().is_some_and(|problem| problem.contains("failures")));
+        assert!(Statistics { inputs: 1, passed: u64::MAX, failed: 2, ..Statistics::default() }.problem().is_some());
+    }
+}
