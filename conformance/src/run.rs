@@ -166,7 +166,7 @@ fn judge_group(
     let first = report.groups.len();
     run_rows(members, group, subjects, options, report, progress)?;
     for (member, chosen) in members.iter().zip(group) {
-        stability::examine(member, chosen, subjects, options, report)?;
+        stability::examine(member, &chosen.hard, subjects, options, report)?;
     }
     for group in &mut report.groups[first..] {
         if let Some(unstable) = stability::problem(&report.stability, &group.id, &group.adapter, group.stage) {
@@ -178,7 +178,9 @@ fn judge_group(
     Ok(())
 }
 
-pub(crate) fn empty(subjects: &[Subject], options: &Options) -> Report {
+/// A report of nothing yet.
+#[must_use]
+pub fn empty(subjects: &[Subject], options: &Options) -> Report {
     Report {
         schema: "lightmeter.run/1",
         seed: options.seed,

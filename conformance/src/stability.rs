@@ -4,11 +4,12 @@
 //! vector. `exact` is the stable formula's f64 reference, which the certificate holds against many digits. What no method can
 //! do better than is the *condition*: so many roundings of the result come of one rounding of each input.
 
+use crate::arithmetic::Accept;
 use crate::cases::{AnyFormula, Naive, Size, Stable};
 use crate::evaluate::{Evaluator, kernel};
 use crate::report::{Number, Report};
 use crate::run::Options;
-use crate::select::{CaseRef, Member, Selected, catalogue};
+use crate::select::{CaseRef, Member, catalogue};
 use crate::subject::Subject;
 use lightmeter_gpu::{Error, RepeatPipeline};
 use serde::Serialize;
@@ -126,21 +127,21 @@ impl Rows {
 /// The greatest error at each hard case, and at which row.
 type Worst = BTreeMap<usize, (f64, CaseRef)>;
 
-/// Examines the selected hard cases of a formula that has a stable form: each is evaluated with those near it, by its own
+/// Examines hard cases, by their places, of a formula that has a stable form: each is evaluated with those near it, by its own
 /// shader function and by those of its naive forms, on every subject that has shaders.
 ///
 /// # Errors
 /// Where a shader is invalid or a device fails.
 pub fn examine(
     member: &Member,
-    chosen: &Selected,
+    hard: &[usize],
     subjects: &mut [Subject],
     options: &Options,
     report: &mut Report,
 ) -> Result<(), Error> {
     let Some(stable) = member.spec.stable else { return Ok(()) };
     let naive = |place: usize| member.spec.hard[place].naive;
-    let places: Vec<usize> = chosen.hard.iter().copied().filter(|&place| naive(place).is_some()).collect();
+    let places: Vec<usize> = hard.iter().copied().filter(|&place| naive(place).is_some()).collect();
     if places.is_empty() {
         return Ok(());
     }
@@ -323,46 +324,101 @@ pub fn problem(examined: &[Examined], group: &str, adapter: &str, stage: &str) -
 }
 
 /// What a form's legal values say of it at a case, apart from any renderer.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Standing {
     /// The result moves by no more than a few roundings, and so do the legal values.
     Stable,
-    /// The inputs' own roundings move the result by more than [`ILL_CONDITIONED`] of its roundings: no method can do better.
+    /// The inputs' own roundings move the result by more than [`ILL_CONDITIONED`] of its roundings: with inputs that were
+    /// rounded before no method can do better.
     IllConditioned,
     /// The legal values reach farther than [`UNSTABLE`] times what the condition explains: the fault of the form.
     Unstable,
-    /// The rules permit anything, though the result is a number: the fault of the form, or a value that there is not.
+    /// The rules permit anything, though the result is a number: the fault of the form.
     NothingPromised,
+    /// There is no value, or the least change of an input makes another of it.
+    Singular,
 }
 
-/// Ten bits lost by the inputs' own rounding.
+/// Ten bits are lost by the inputs' own rounding.
 pub const ILL_CONDITIONED: f64 = 1024.0;
 
 /// How far the legal values of a form reach, in roundings, over what its condition explains: beyond this the form is to blame.
-/// Of the published formulas' random cases less than 1 in 1,000 has that (a test holds it).
+/// Of random cases of published formulas less than 1 in 500 are called unstable (a test holds that), most of them forward
+/// differences, which are.
 pub const UNSTABLE: f64 = 256.0;
 
-impl Standing {
-    /// What stands there for a result of that condition, whose legal values reach so many roundings from the reference.
+/// How well a case can be computed, and how well a form promises to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Conditioning {
+    /// How many roundings of the result come of one rounding of each input.
+    pub condition: Number,
+    /// How many roundings the legal values reach from the reference; infinite where anything is legal.
+    pub reach: Number,
+    /// What follows.
+    pub standing: Standing,
+}
+
+impl Conditioning {
+    /// Of a formula at a case, by its legal values in force.
     #[must_use]
-    pub fn of(condition: f64, reach: f64) -> Self {
-        if !reach.is_finite() {
-            return Self::NothingPromised;
-        }
-        if reach > UNSTABLE * (1.0 + condition) {
-            return Self::Unstable;
-        }
-        if condition > ILL_CONDITIONED { Self::IllConditioned } else { Self::Stable }
+    pub fn of(member: &Member, inputs: &[f32], legal: &[Accept]) -> Self {
+        // A colour is a share of what is seen.
+        let is_color = member.spec.outputs.iter().all(|output| output.unit == "color");
+        let size = member.spec.stable.map_or(if is_color { Size::Unit } else { Size::Own }, |stable| stable.size);
+        let mut exact = vec![0.0; member.spec.output_len()];
+        member.formula.reference(inputs, &mut exact);
+        let condition = condition(member.formula.as_ref(), inputs, size);
+        let farthest = exact
+            .iter()
+            .zip(legal)
+            .map(|(x, legal)| if legal.is_any() { f64::INFINITY } else { (x - legal.low()).max(legal.high() - x) });
+        let farthest = norm(farthest);
+        let reach = if farthest == 0.0 { 0.0 } else { farthest / (ROUNDING * size_of(&exact, size)) };
+        let is_number = exact.iter().all(|x| x.is_finite());
+        let standing = if !is_number || !condition.is_finite() {
+            Standing::Singular
+        } else if reach.is_nan() || reach.is_infinite() {
+            Standing::NothingPromised
+        } else if reach > UNSTABLE * (1.0 + condition) {
+            Standing::Unstable
+        } else if condition > ILL_CONDITIONED {
+            Standing::IllConditioned
+        } else {
+            Standing::Stable
+        };
+        Self { condition: Number(condition), reach: Number(reach), standing }
     }
 
-    /// In words.
+    /// In a line.
     #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Stable => "stable",
-            Self::IllConditioned => "ill-conditioned",
-            Self::Unstable => "unstable",
-            Self::NothingPromised => "nothing promised",
+    pub fn text(&self) -> String {
+        let rounded = |x: Number| {
+            if x.0 >= 1e5 {
+                format!("{:.1e}", x.0)
+            } else if x.0 < 10.0 {
+                format!("{:.2}", x.0)
+            } else {
+                format!("{:.0}", x.0)
+            }
+        };
+        let (condition, reach) = (rounded(self.condition), rounded(self.reach));
+        let times = rounded(Number(self.reach.0 / (1.0 + self.condition.0)));
+        let moves = format!("a rounding of each input moves the result by {condition} of its own");
+        match self.standing {
+            Standing::Stable => format!("{moves}; legal values reach {reach}: stable"),
+            Standing::IllConditioned => {
+                format!(
+                    "{moves}; legal values reach {reach}: ill-conditioned: with inputs that were rounded no method can do better"
+                )
+            }
+            Standing::Unstable => {
+                format!(
+                    "{moves}; legal values reach {reach}, {times} times what that explains: unstable, the fault of the form"
+                )
+            }
+            Standing::NothingPromised => format!("{moves}; yet anything is legal: the fault of the form"),
+            Standing::Singular => "there is no value here, or the least change of an input makes another of it".into(),
         }
     }
 }

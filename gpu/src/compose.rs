@@ -169,8 +169,8 @@ pub struct Composer {
 }
 
 /// The files that composed shaders take formulas from.
-const FAMILIES: [&str; 6] =
-    ["attenuation.wgsl", "color.wgsl", "fog.wgsl", "lighting.wgsl", "texture.wgsl", "vector.wgsl"];
+const FAMILIES: [&str; 7] =
+    ["attenuation.wgsl", "color.wgsl", "elementary.wgsl", "fog.wgsl", "lighting.wgsl", "texture.wgsl", "vector.wgsl"];
 
 impl Composer {
     /// Reads the files.

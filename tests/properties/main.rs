@@ -12,6 +12,7 @@ mod interpolation;
 mod lighting;
 mod scene;
 mod soundness;
+mod stability;
 mod vector;
 
 use lightmeter_reference::Vec3;

@@ -165,7 +165,7 @@ formula!(
         Hard::new("zero", "0, not NaN", &[("v", &[0.0, 0.0, 0.0])])
             .naive("vector/normalize-unguarded", "0/0", f64::INFINITY),
         Hard::new("length-1e-20", "the squares are subnormal", &[("v", &[1e-20, -1e-20, 1e-20])])
-            .naive("vector/normalize", "a square of 1e-40 is flushed, or has few digits", 10.0),
+            .naive("vector/normalize", "a square of 1e-40 is flushed, or has few bits", 20.0),
         Hard::new("length-1e-22", "the squares are subnormal", &[("v", &[1e-22, 1e-22, 1e-22])])
             .naive("vector/normalize", "a square of 1e-44 has 3 bits, or none", 1e5),
         Hard::new("length-1e-23", "the squares underflow", &[("v", &[1e-23, 2e-23, -1e-23])])

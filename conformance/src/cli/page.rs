@@ -3,7 +3,7 @@
 use super::{Status, emit};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
-use lightmeter::report::page::{Run, markdown, scenes, special, svg, sweep};
+use lightmeter::report::page::{Run, markdown, scenes, special, stability, svg, sweep};
 use lightmeter::sweep::Document;
 use std::path::PathBuf;
 
@@ -16,6 +16,8 @@ enum Subject {
     Scenes,
     /// NaN, infinity, subnormals and signed zero, from the JSON of `special`.
     Special,
+    /// Hard cases by their stable and their naive forms, with a picture.
+    Stability,
     /// Sweeps, of as many results as are given.
     Sweep,
 }
@@ -49,6 +51,7 @@ impl Page {
             Subject::Blend => self.blend(&json),
             Subject::Scenes | Subject::Sweep => self.scenes(&json),
             Subject::Special => special(&json),
+            Subject::Stability => self.stability(&json),
         };
         emit(&text.with_context(|| format!("{name} makes no page"))?, self.out.as_deref())?;
         Ok(Status::Success)
@@ -78,6 +81,19 @@ impl Page {
         }
         let mut text = String::new();
         markdown(&run, picture.as_ref().map(|(_, name)| name.as_str()), &mut text)?;
+        Ok(text)
+    }
+
+    fn stability(&self, json: &str) -> anyhow::Result<String> {
+        let run = stability::Run::read(json).map_err(|message| anyhow!(message))?;
+        let picture = self.picture("svg");
+        if let Some((path, _)) = &picture {
+            let mut text = String::new();
+            stability::svg(&run, &mut text)?;
+            emit(&text, Some(path))?;
+        }
+        let mut text = String::new();
+        stability::markdown(&run, picture.as_ref().map(|(_, name)| name.as_str()), &mut text)?;
         Ok(text)
     }
 

@@ -233,7 +233,7 @@ const MARKS: [Mark; 57] = [
     ("Mix", |s| s.has_fog() || s.has_any(&[E::TextureBilinear, E::LightmapBilinear])),
     ("Normalize", |s| s.has_normals() || needs_point(s) && (s.has(E::LocalViewer) || s.has(E::Spot))),
     ("vector_normalize", |s| s.has_normals() || needs_point(s) && (s.has(E::LocalViewer) || s.has(E::Spot))),
-    ("vector_normal_inverse_transpose", |s| s.has(E::InverseTranspose)),
+    ("vector_normal_by_cofactors", |s| s.has(E::InverseTranspose)),
     ("vector_normal_modelview", |s| s.has_normals() && !s.has(E::InverseTranspose)),
     ("vector_reflect", |s| s.has(E::SpecularPhong)),
     ("vector_halfway", |s| s.has(E::SpecularBlinn)),

@@ -11,9 +11,12 @@ use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::evaluate::Evaluator;
+use lightmeter::filter::Filter;
 use lightmeter::judge::{Outcome, judge};
 use lightmeter::report::Number;
-use lightmeter::select::{CaseRef, Member, canonical_id, catalogue_of};
+use lightmeter::run;
+use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
+use lightmeter::stability::{self, Conditioning, Examined};
 use lightmeter::subject::Subject;
 use lightmeter::tally::{by_name, intervals};
 use serde_json::{Value, json};
@@ -49,6 +52,7 @@ struct Known {
     outputs: Vec<Trace>,
     steps: Vec<trace::Step>,
     condition: Vec<f64>,
+    conditioning: Conditioning,
 }
 
 impl Show {
@@ -71,15 +75,30 @@ impl Show {
         let ((), steps) = self.choice.profile.scope(|| trace::record(|| member.formula.trace(&inputs, &mut outputs)));
         legal_outputs(member, &inputs, self.choice.profile, &mut outputs);
         let condition = member.formula.condition(&inputs);
-        let known = Known { inputs, outputs, steps, condition };
+        let legal: Vec<Accept> = outputs.iter().map(|output| output.interval).collect();
+        let conditioning = self.choice.profile.scope(|| Conditioning::of(member, &inputs, &legal));
+        let known = Known { inputs, outputs, steps, condition, conditioning };
         let (answers, unit) = self.answers(member, &known.inputs)?;
+        let forms = self.forms(member, case)?;
         let text = match self.format {
             Format::Junit => bail!("a case is written as text or json"),
-            Format::Json => serde_json::to_string_pretty(&as_json(member, case, &known, &answers, &unit))? + "\n",
-            Format::Text => as_text(member, case, &known, &answers)? + &unit_text(&unit)?,
+            Format::Json => {
+                serde_json::to_string_pretty(&as_json(member, case, &known, &answers, &unit, &forms))? + "\n"
+            }
+            Format::Text => as_text(member, case, &known, &answers)? + &unit_text(&unit)? + &forms_text(&forms)?,
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
+    }
+
+    /// A hard case, and those near it, by its stable and its naive form.
+    fn forms(&self, member: &Member, case: CaseRef) -> anyhow::Result<Vec<Examined>> {
+        let (CaseRef::Hard(place) | CaseRef::Near(place, _)) = case else { return Ok(vec![]) };
+        let mut subjects = self.subjects()?;
+        let options = self.choice.options(Filter::default(), 1, Shard::WHOLE)?;
+        let mut report = run::empty(&subjects, &options);
+        stability::examine(member, &[place], &mut subjects, &options, &mut report)?;
+        Ok(report.stability)
     }
 
     fn subjects(&self) -> anyhow::Result<Vec<Subject>> {
@@ -163,6 +182,9 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
     if let CaseRef::Hard(place) = case {
         writeln!(text, "  pins: {}", spec.hard[place].pins)?;
     }
+    if let CaseRef::Near(place, _) = case {
+        writeln!(text, "  near: {} ({})", spec.hard[place].name, spec.hard[place].pins)?;
+    }
     writeln!(text, "\ninputs")?;
     let mut rest = known.inputs.as_slice();
     for input in spec.inputs {
@@ -187,6 +209,7 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
             range(&output.interval)
         )?;
     }
+    writeln!(text, "\nconditioning\n  {}", known.conditioning.text())?;
     for Answer { adapter, stage, values } in answers {
         writeln!(text, "\n{adapter}, {stage}")?;
         match values {
@@ -205,6 +228,26 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
                 }
             }
         }
+    }
+    Ok(text)
+}
+
+fn forms_text(forms: &[Examined]) -> anyhow::Result<String> {
+    let mut text = String::new();
+    for one in forms {
+        let near = |roundings: Number| format!("{} roundings", Number((roundings.0 * 100.0).round() / 100.0));
+        writeln!(
+            text,
+            "\nforms on {}, {}, here and within a few ULP\n  stable  {} at most, bound {}{}\n  naive   {}: {} ({})",
+            one.adapter,
+            one.stage,
+            near(one.stable),
+            one.bound,
+            if one.is_stable() { "" } else { ": broken" },
+            one.naive_formula,
+            if one.naive.0.is_finite() { near(one.naive) } else { "no number".into() },
+            one.fails
+        )?;
     }
     Ok(text)
 }
@@ -229,7 +272,14 @@ fn range(interval: &Accept) -> String {
     }
 }
 
-fn as_json(member: &Member, case: CaseRef, known: &Known, answers: &[Answer], unit: &[UnitAnswer]) -> Value {
+fn as_json(
+    member: &Member,
+    case: CaseRef,
+    known: &Known,
+    answers: &[Answer],
+    unit: &[UnitAnswer],
+    forms: &[Examined],
+) -> Value {
     let bounds = |interval: &Accept| json!([Number(interval.low()), Number(interval.high())]);
     let steps: Vec<Value> = known
         .steps
@@ -272,6 +322,6 @@ fn as_json(member: &Member, case: CaseRef, known: &Known, answers: &[Answer], un
         "source": member.spec.source,
         "inputs": by_name(member, &known.inputs, |x| json!(Number(x.into()))),
         "inputs_hex": by_name(member, &known.inputs, |x| json!(format!("0x{:08x}", x.to_bits()))),
-        "steps": steps, "outputs": outputs, "answers": answers,
+        "steps": steps, "outputs": outputs, "conditioning": known.conditioning, "answers": answers, "forms": forms,
     })
 }

@@ -3,6 +3,7 @@
 mod picture;
 pub mod scenes;
 pub mod special;
+pub mod stability;
 pub mod sweep;
 
 pub use picture::svg;

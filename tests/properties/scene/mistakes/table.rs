@@ -27,7 +27,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     (
         "normals by the modelview",
         "effects/inverse_transpose.wgsl",
-        "vector_normal_inverse_transpose(",
+        "vector_normal_by_cofactors(",
         "vector_normal_modelview(",
         "scaled-normals",
         "normal",
