@@ -5,7 +5,7 @@
 //! do better than is the *condition*: so many roundings of the result come of one rounding of each input.
 
 use crate::arithmetic::Accept;
-use crate::cases::{AnyFormula, Naive, Size, Stable};
+use crate::cases::{AnyFormula, Naive, Size, Spec, Stable};
 use crate::evaluate::{Evaluator, kernel};
 use crate::report::{Number, Report};
 use crate::run::Options;
@@ -68,6 +68,13 @@ pub fn roundings(values: &[f64], exact: &[f64], size: Size) -> f64 {
         return f64::INFINITY;
     }
     if off == 0.0 { 0.0 } else { off / (ROUNDING * size_of(exact, size)) }
+}
+
+/// What a formula's errors are relative to: as it claims, or, where it claims nothing, 1 for a colour, a share of what is seen.
+#[must_use]
+pub fn size(spec: &Spec) -> Size {
+    let is_color = spec.outputs.iter().all(|output| output.unit == "color");
+    spec.stable.map_or(if is_color { Size::Unit } else { Size::Own }, |stable| stable.size)
 }
 
 fn size_of(exact: &[f64], size: Size) -> f64 {
@@ -363,9 +370,7 @@ impl Conditioning {
     /// Of a formula at a case, by its legal values in force.
     #[must_use]
     pub fn of(member: &Member, inputs: &[f32], legal: &[Accept]) -> Self {
-        // A colour is a share of what is seen.
-        let is_color = member.spec.outputs.iter().all(|output| output.unit == "color");
-        let size = member.spec.stable.map_or(if is_color { Size::Unit } else { Size::Own }, |stable| stable.size);
+        let size = size(&member.spec);
         let mut exact = vec![0.0; member.spec.output_len()];
         member.formula.reference(inputs, &mut exact);
         let condition = condition(member.formula.as_ref(), inputs, size);

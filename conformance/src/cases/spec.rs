@@ -239,7 +239,7 @@ pub enum Size {
 ///
 /// Errors are counted in *roundings*: |value − exact| over 2⁻²⁴ of the result's size, all outputs taken together as one
 /// vector. A single operation that rounds to nearest errs by at most one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Stable {
     /// Roundings.
     pub bound: f64,

@@ -6,12 +6,15 @@ use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
 use lightmeter::cases::blend::{Samples, aliases, separate_of};
+use lightmeter::cases::{Kind, Naive};
 use lightmeter::image;
 use lightmeter::image::select::Chosen;
+use lightmeter::report::Number;
 use lightmeter::report::text::thousands;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load::{self, Loaded};
 use lightmeter::select::{CaseRef, Member, Random, Selected, catalogue_of, select};
+use lightmeter::stability;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -80,16 +83,12 @@ fn formula(member: &Member, aliases: &[String]) -> Value {
     let spec = &member.spec;
     json!({
         "id": spec.id, "formula": spec.text, "source": spec.source,
-        "stages": spec.stages(), "inputs": spec.inputs, "outputs": spec.outputs, "aliases": aliases,
+        "stages": spec.stages(), "stable": spec.stable, "inputs": spec.inputs, "outputs": spec.outputs, "aliases": aliases,
     })
 }
 
 fn cases(member: &Member, chosen: &Selected, aliases: &[String]) -> Value {
-    let hard: Vec<Value> = chosen
-        .hard
-        .iter()
-        .map(|&place| json!({ "id": member.case_id(CaseRef::Hard(place)), "pins": member.spec.hard[place].pins }))
-        .collect();
+    let hard: Vec<Value> = chosen.hard.iter().map(|&place| hard_case(member, place)).collect();
     let random: Vec<String> = chosen
         .cases()
         .filter(|case| matches!(case, CaseRef::Random(_)))
@@ -101,6 +100,23 @@ fn cases(member: &Member, chosen: &Selected, aliases: &[String]) -> Value {
     let mut entry = json!({ "formula": member.spec.id, "random": count, "hard": hard, "aliases": aliases });
     let key = if matches!(chosen.random, Random::First(_)) { "first" } else { "ids" };
     entry[key] = json!(random);
+    entry
+}
+
+/// A hard case with its condition number, and the naive form that fails there.
+fn hard_case(member: &Member, place: usize) -> Value {
+    let hard = &member.spec.hard[place];
+    let mut inputs = vec![];
+    member.inputs(CaseRef::Hard(place), 1, &mut inputs);
+    let mut entry = json!({ "id": member.case_id(CaseRef::Hard(place)), "pins": hard.pins });
+    if !matches!(member.spec.kind, Kind::Blend(_)) {
+        entry["condition"] =
+            json!(Number(stability::condition(member.formula.as_ref(), &inputs, stability::size(&member.spec))));
+        entry["near"] = json!(member.near());
+    }
+    if let Some(Naive { formula, fails, at_least }) = hard.naive {
+        entry["naive"] = json!({ "formula": formula, "fails": fails, "at_least": Number(at_least) });
+    }
     entry
 }
 
@@ -144,7 +160,11 @@ fn tree(catalogue: &[Member], selected: &[Selected], scenes: &[Chosen]) -> anyho
         for chosen in group {
             let member = &catalogue[chosen.member];
             for &place in &chosen.hard {
-                writeln!(text, "    hard/{:<28} {}", member.spec.hard[place].name, member.spec.hard[place].pins)?;
+                let hard = &member.spec.hard[place];
+                writeln!(text, "    hard/{:<28} {}", hard.name, hard.pins)?;
+                if let Some(naive) = hard.naive {
+                    writeln!(text, "    {:<33} fails: {}, {}", "", naive.formula, naive.fails)?;
+                }
             }
         }
     }

@@ -224,7 +224,7 @@ fn short(x: f64) -> String {
     match x {
         x if x.is_infinite() => "no number".into(),
         0.0 => "0".into(),
-        x if x >= 1e5 || x < 1e-2 => format!("{x:.1e}"),
+        x if !(1e-2..1e5).contains(&x) => format!("{x:.1e}"),
         x if x >= 10.0 => format!("{x:.0}"),
         x => format!("{x:.1}"),
     }
