@@ -3,6 +3,7 @@
 #![expect(clippy::float_cmp, reason = "what must hold exactly is compared exactly")]
 
 mod blend;
+mod hard;
 mod images;
 mod scene;
 mod special;
