@@ -201,8 +201,9 @@ fn a_run_in_json_has_what_others_build_upon() {
         assert!(!linear[field].is_null(), "{field}");
     }
     let catalogue = lightmeter::select::catalogue();
-    let hard = catalogue.iter().find(|member| member.spec.id == "fog/linear").expect("a formula").spec.hard.len();
-    assert_eq!(linear["cases"], 100 + hard);
+    let member = catalogue.iter().find(|member| member.spec.id == "fog/linear").expect("a formula");
+    let hard = member.spec.hard.len() as u64;
+    assert_eq!(linear["cases"], 100 + hard * (1 + member.near()));
     assert_eq!(report["failures"], Value::Array(vec![]));
 }
 
