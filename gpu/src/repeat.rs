@@ -63,7 +63,7 @@ impl RepeatPipeline {
         Ok(Ok(Self { pipeline, rows }))
     }
 
-    /// Seconds of wall time for one evaluation, of [`INVOCATIONS`] × [`TIMES`] in one submission.
+    /// Seconds of wall time for one evaluation, of some four million in one submission.
     ///
     /// # Errors
     /// Where the device fails.
