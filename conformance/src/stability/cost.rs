@@ -1,0 +1,82 @@
+//! What stable forms cost beside naive ones.
+
+use crate::evaluate::kernel;
+use crate::run::Options;
+use crate::select::{CaseRef, Member};
+use crate::subject::Subject;
+use lightmeter_gpu::{Error, RepeatPipeline};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What a stable form takes beside a naive one, in the compute stage: nanoseconds of wall time for an evaluation, medians of
+/// turns in which each is measured, less what reading the inputs takes.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cost {
+    /// The stable formula.
+    pub formula: String,
+    /// The naive one.
+    pub naive: &'static str,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// Of the stable form.
+    pub stable_ns: f64,
+    /// Of the naive form.
+    pub naive_ns: f64,
+    /// Of reading the inputs, which is in neither.
+    pub idle_ns: f64,
+    /// Median of the stable form's time over the naive one's, turn by turn, reading included in both.
+    pub ratio: f64,
+    /// Its lower and upper quartile.
+    pub quartiles: [f64; 2],
+}
+
+/// Turns that a cost is the median of.
+const TURNS: usize = 15;
+/// Random cases that are evaluated in turn.
+const COST_ROWS: u64 = 1024;
+
+/// Measures a stable form against its naive ones, in turns.
+pub(super) fn cost(
+    member: &Member,
+    rivals: &BTreeMap<&'static str, Member>,
+    subject: &Subject,
+    options: &Options,
+) -> Result<Vec<Cost>, Error> {
+    let Some(gpu) = subject.gpu() else { return Ok(vec![]) };
+    let mut rows = vec![];
+    for k in 0..COST_ROWS {
+        member.inputs(CaseRef::Random(k), options.seed, &mut rows);
+    }
+    let kernel_of = |member: &Member| Ok(kernel(&options.shaders, member)?.expect("arithmetic has a shader function"));
+    let own = kernel_of(member)?;
+    let Ok(idle) = RepeatPipeline::idle(gpu, &own, &rows)? else { return Ok(vec![]) };
+    let Ok(stable) = RepeatPipeline::new(gpu, &options.shaders, &own, &rows)? else { return Ok(vec![]) };
+    let mut costs = vec![];
+    for (id, rival) in rivals {
+        let Ok(naive) = RepeatPipeline::new(gpu, &options.shaders, &kernel_of(rival)?, &rows)? else { continue };
+        for warm in [&idle, &stable, &naive] {
+            warm.time(gpu)?;
+        }
+        let turns: Vec<[f64; 3]> = (0..TURNS)
+            .map(|_| Ok([idle.time(gpu)?, stable.time(gpu)?, naive.time(gpu)?]))
+            .collect::<Result<_, Error>>()?;
+        let sorted = |of: &dyn Fn(&[f64; 3]) -> f64| {
+            let mut all: Vec<f64> = turns.iter().map(of).collect();
+            all.sort_by(f64::total_cmp);
+            all
+        };
+        let median_ns = |of: &dyn Fn(&[f64; 3]) -> f64| sorted(of)[TURNS / 2] * 1e9;
+        let ratios = sorted(&|[_, stable, naive]| stable / naive);
+        costs.push(Cost {
+            formula: member.spec.id.clone(),
+            naive: id,
+            adapter: subject.identity.name.clone(),
+            stable_ns: median_ns(&|[idle, stable, _]| stable - idle),
+            naive_ns: median_ns(&|[idle, _, naive]| naive - idle),
+            idle_ns: median_ns(&|[idle, ..]| *idle),
+            ratio: ratios[TURNS / 2],
+            quartiles: [ratios[TURNS / 4], ratios[TURNS - 1 - TURNS / 4]],
+        });
+    }
+    Ok(costs)
+}

@@ -1,0 +1,215 @@
+//! Hard cases on both sides: the stable form of a formula must keep its claim there, and the naive form is seen to fail.
+//!
+//! Errors are told in *roundings*: |value − exact| over 2⁻²⁴ of the result's size, the outputs of a case taken together as one
+//! vector. `exact` is the stable formula's f64 reference, which the certificate holds against many digits. What no method can
+//! do better than is the *condition*: so many roundings of the result come of one rounding of each input.
+
+mod conditioning;
+mod cost;
+
+pub use conditioning::{Conditioning, ILL_CONDITIONED, ROUNDING, Standing, UNSTABLE, condition, roundings, size};
+pub use cost::Cost;
+
+use crate::cases::{Naive, Stable};
+use crate::evaluate::Evaluator;
+use crate::report::{Number, Report};
+use crate::run::Options;
+use crate::select::{CaseRef, Member, catalogue};
+use crate::subject::Subject;
+use lightmeter_gpu::Error;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A hard case by its stable and its naive form, on an adapter in a stage. Errors are in roundings, the greatest at the case
+/// and within a few ULP of it; infinite where a value is NaN or infinite.
+#[derive(Clone, Debug, Serialize)]
+pub struct Examined {
+    /// The case, of the stable formula.
+    pub id: String,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The stage's name.
+    pub stage: &'static str,
+    /// How much the result amplifies the inputs' errors at the case itself.
+    pub condition: Number,
+    /// What the stable form claims.
+    pub bound: f64,
+    /// The stable form's error.
+    pub stable: Number,
+    /// The case near by where that is.
+    pub stable_at: String,
+    /// The naive formula.
+    pub naive_formula: &'static str,
+    /// What goes wrong with it.
+    pub fails: &'static str,
+    /// By how much at least.
+    pub naive_at_least: Number,
+    /// The naive form's error.
+    pub naive: Number,
+}
+
+impl Examined {
+    /// Whether the stable form keeps its claim.
+    #[must_use]
+    pub fn is_stable(&self) -> bool {
+        self.stable.0 <= self.bound
+    }
+
+    /// Whether the naive form fails as it is said to.
+    #[must_use]
+    pub fn naive_fails(&self) -> bool {
+        self.naive.0 >= self.naive_at_least.0
+    }
+}
+
+/// The rows of a hard case: itself, and those near it.
+struct Rows {
+    cases: Vec<CaseRef>,
+    inputs: Vec<f32>,
+}
+
+impl Rows {
+    fn of(member: &Member, places: &[usize], seed: u64) -> Self {
+        let near = |&place: &usize| (0..member.near()).map(move |k| CaseRef::Near(place, k));
+        let cases: Vec<CaseRef> =
+            places.iter().flat_map(|place| std::iter::once(CaseRef::Hard(*place)).chain(near(place))).collect();
+        let mut inputs = vec![];
+        for &case in &cases {
+            member.inputs(case, seed, &mut inputs);
+        }
+        Self { cases, inputs }
+    }
+
+    fn place(case: CaseRef) -> usize {
+        match case {
+            CaseRef::Hard(place) | CaseRef::Near(place, _) => place,
+            CaseRef::Random(_) => unreachable!("only hard cases and those near them are rows here"),
+        }
+    }
+}
+
+/// The greatest error at each hard case, and at which row.
+type Worst = BTreeMap<usize, (f64, CaseRef)>;
+
+/// Examines hard cases, by their places, of a formula that has a stable form: each is evaluated with those near it, by its own
+/// shader function and by those of its naive forms, on every subject that has shaders.
+///
+/// # Errors
+/// Where a shader is invalid or a device fails.
+pub fn examine(
+    member: &Member,
+    hard: &[usize],
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut Report,
+) -> Result<(), Error> {
+    let Some(stable) = member.spec.stable else { return Ok(()) };
+    let naive = |place: usize| member.spec.hard[place].naive;
+    let places: Vec<usize> = hard.iter().copied().filter(|&place| naive(place).is_some()).collect();
+    if places.is_empty() {
+        return Ok(());
+    }
+    let rows = Rows::of(member, &places, options.seed);
+    let conditions: BTreeMap<usize, f64> = rows
+        .cases
+        .iter()
+        .zip(rows.inputs.chunks_exact(member.spec.input_len()))
+        .filter(|(case, _)| matches!(case, CaseRef::Hard(_)))
+        .map(|(&case, inputs)| (Rows::place(case), condition(member.formula.as_ref(), inputs, stable.size)))
+        .collect();
+    let exact = references(member, &rows);
+    let rivals = rivals(places.iter().filter_map(|&place| naive(place)));
+    for subject in subjects {
+        let own = errors(member, stable, &rows, &exact, subject, options)?;
+        let mut others = BTreeMap::new();
+        for (id, rival) in &rivals {
+            others.insert(*id, errors(rival, stable, &rows, &exact, subject, options)?);
+        }
+        if options.again {
+            report.stable_costs.extend(cost::cost(member, &rivals, subject, options)?);
+        }
+        for (stage, worst) in own {
+            for (&place, &(error, at)) in &worst {
+                let Some(naive) = naive(place) else { continue };
+                let of_naive = others[naive.formula].iter().find(|(other, _)| *other == stage);
+                let Some((naive_error, _)) = of_naive.and_then(|(_, worst)| worst.get(&place)) else { continue };
+                report.stability.push(Examined {
+                    id: member.case_id(CaseRef::Hard(place)),
+                    adapter: subject.identity.name.clone(),
+                    stage,
+                    condition: Number(conditions[&place]),
+                    bound: stable.bound,
+                    stable: Number(error),
+                    stable_at: member.case_id(at),
+                    naive_formula: naive.formula,
+                    fails: naive.fails,
+                    naive_at_least: Number(naive.at_least),
+                    naive: Number(*naive_error),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The naive formulas that some cases name.
+fn rivals(named: impl Iterator<Item = Naive>) -> BTreeMap<&'static str, Member> {
+    let wanted: Vec<&'static str> = named.map(|naive| naive.formula).collect();
+    let member = |member: Member| wanted.iter().find(|id| **id == member.spec.id).map(|id| (*id, member));
+    catalogue().into_iter().filter_map(member).collect()
+}
+
+fn references(member: &Member, rows: &Rows) -> Vec<f64> {
+    let (inputs, outputs) = (member.spec.input_len(), member.spec.output_len());
+    let mut exact = vec![0.0; rows.cases.len() * outputs];
+    for (inputs, exact) in rows.inputs.chunks_exact(inputs).zip(exact.chunks_exact_mut(outputs)) {
+        member.formula.reference(inputs, exact);
+    }
+    exact
+}
+
+/// The greatest error of a form at each hard case, in each stage that takes rows.
+fn errors(
+    form: &Member,
+    stable: Stable,
+    rows: &Rows,
+    exact: &[f64],
+    subject: &mut Subject,
+    options: &Options,
+) -> Result<Vec<(&'static str, Worst)>, Error> {
+    let (members, outputs) = ([form], form.spec.output_len());
+    let evaluator = Evaluator::new(subject, &members, &options.shaders)?;
+    let mut found = vec![];
+    for (stage, words) in evaluator.run(subject, &vec![0; rows.cases.len()], &rows.inputs)? {
+        let Ok(words) = words else { continue };
+        let mut worst = Worst::new();
+        let of_rows = words.chunks_exact(outputs).zip(exact.chunks_exact(outputs)).zip(&rows.cases);
+        for ((words, exact), &case) in of_rows {
+            let values: Vec<f64> = words.iter().map(|&bits| f64::from(f32::from_bits(bits))).collect();
+            let error = roundings(&values, exact, stable.size);
+            let entry = worst.entry(Rows::place(case)).or_insert((error, case));
+            if error > entry.0 {
+                *entry = (error, case);
+            }
+        }
+        found.push((stage.name(), worst));
+    }
+    Ok(found)
+}
+
+/// The group verdict: what a stable form that breaks its claim is told by.
+#[must_use]
+pub fn problem(examined: &[Examined], group: &str, adapter: &str, stage: &str) -> Option<String> {
+    let of_group =
+        |one: &&Examined| one.adapter == adapter && one.stage == stage && one.id.starts_with(&format!("{group}/"));
+    let broken: Vec<&Examined> = examined.iter().filter(of_group).filter(|one| !one.is_stable()).collect();
+    let worst = broken.iter().max_by(|a, b| (a.stable.0 / a.bound).total_cmp(&(b.stable.0 / b.bound)))?;
+    Some(format!(
+        "unstable at {} hard case{}: at {} it errs by {} roundings, where the form claims {}",
+        broken.len(),
+        if broken.len() == 1 { "" } else { "s" },
+        worst.stable_at,
+        Number(worst.stable.0.round()),
+        worst.bound
+    ))
+}
