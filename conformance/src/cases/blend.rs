@@ -371,7 +371,7 @@ formula!(
     OpacityOfLayersExpm1: "blend/opacity-of-layers-expm1" by "blend_opacity_of_layers_expm1",
     "opacity = −expm1(n·ln(1 − α)), short series for small ones", "002, of n layers",
     [LAYER_ALPHA, LAYER_COUNT] -> [SHOWN],
-    stable 64.0 Own "two series of a few roundings; beyond 1/16, log's 2⁻²¹ of at least 0.06",
+    stable 104.0 Own "two series summed in any order, 34 and 66, and a product; beyond 1/16, log's 2⁻²¹ of at least 0.06",
     |x, out| { out.scalar(opacity_of_layers_expm1(x.scalar(), x.scalar())); },
     hard [
         Hard::new("one-of-1e-8", "a layer thinner than a rounding of 1", &[("alpha", &[1e-8]), ("layers", &[1.0])])

@@ -223,7 +223,7 @@ formula!(
     OpacityExpm1: "fog/opacity-expm1" by "fog_opacity_expm1",
     "opacity = −expm1(−density·distance), a short series below ½", "000 §6.5, 1 − f",
     [THICKNESS, DENSITY] -> [OPACITY],
-    stable 16.0 Own "a product and a series whose terms fall by half or more; beyond ½, exp's bound on at most 0.61",
+    stable 72.0 Own "a product, and a series of 8 terms summed in any order, 66; beyond ½, exp's bound on at most 0.61",
     |x, out| { out.scalar(fog::opacity_expm1(x.scalar(), x.scalar())); },
     hard [
         Hard::new("one-in-1e3", "a thousandth of fog", &[("distance", &[1.0]), ("density", &[1.1e-3])])
