@@ -86,6 +86,11 @@ impl Filter {
         self.globs.iter().any(|glob| glob.text.contains("**") || glob.text.matches('/').count() + 1 >= segments)
     }
 
+    /// The globs as they were written.
+    pub fn globs(&self) -> impl Iterator<Item = &str> {
+        self.globs.iter().map(|glob| glob.text.as_str())
+    }
+
     /// The globs that may name one case: those without wildcards.
     pub fn literals(&self) -> impl Iterator<Item = &str> {
         self.globs.iter().map(|glob| glob.text.as_str()).filter(|text| !text.contains(['*', '?', '[', '{']))

@@ -186,6 +186,7 @@ pub fn empty(subjects: &[Subject], options: &Options) -> Report {
         seed: options.seed,
         seconds: 0.0,
         profile: options.profile.name,
+        filter: options.filter.globs().map(str::to_owned).collect(),
         adapters: subjects.iter().map(|subject| subject.identity.clone()).collect(),
         totals: Totals::default(),
         aliases: 0,

@@ -106,7 +106,8 @@ pub trait Real:
         self.exp() - Self::literal(1.0)
     }
 
-    /// a·b − c·d, with a small relative error however nearly the products cancel. (Kahan; Jeannerod, Louvet & Muller 2013.)
+    /// a·b − c·d, with a small relative error however nearly the products cancel. (f64 by Kahan's form with a fused
+    /// multiply-add, Jeannerod, Louvet & Muller 2013; shaders by that of Cornea, Harrison & Tang.)
     #[must_use]
     fn difference_of_products([a, b]: [Self; 2], [c, d]: [Self; 2]) -> Self {
         a * b - c * d

@@ -121,23 +121,27 @@ pub fn normal_by_determinant<R: Real>(modelview: &Mat3<R>, n: Vec3<R>) -> Vec3<R
     normal_inverse_transpose(modelview, n).normalize()
 }
 
-/// The same without the division: the cofactors' direction, turned round where the determinant is negative, of a matrix that
-/// is brought near 1 by a power of two first. Source: Lengyel.
+/// The same without the division: the cofactors' direction, turned round where the determinant is negative. Each column is
+/// brought near 1 by a power of two sᵢ first, so that nothing overflows or underflows, and n divided by it: `Σ nᵢ·sᵢ·cofactorᵢ`
+/// of the scaled columns has the same direction. Source: Lengyel.
 pub fn normal_by_cofactors<R: Real>(modelview: &Mat3<R>, n: Vec3<R>) -> Vec3<R> {
-    let [a, b, c] = modelview.0;
-    let largest = a.largest().max(b.largest()).max(c.largest());
-    let (scale, _) = binary_scale(largest);
-    let scaled = Mat3([a.scale(scale), b.scale(scale), c.scale(scale)]);
+    let scales = modelview.0.map(|column| binary_scale(column.largest()).0);
+    let scaled = Mat3(std::array::from_fn(|k| modelview.0[k].scale(scales[k])));
     let cofactors = scaled.cofactors();
-    let normal = cofactors.transform(n).normalize_scaled().named("⟨cofactors·n⟩");
-    let determinant = scaled.0[0].dot(cofactors.0[0]).named("determinant of the scaled");
+    let weights = near_one(n * Vector(scales));
+    let normal = cofactors.transform(weights).normalize_scaled().named("⟨cofactors·n⟩");
+    let determinant = scaled.0[0].dot(near_one(cofactors.0[0])).named("determinant, scaled");
     R::if_ge(determinant, R::literal(0.0), || normal, || -normal)
+}
+
+/// A vector brought near 1 by a power of two.
+fn near_one<R: Real>(v: Vec3<R>) -> Vec3<R> {
+    v.scale(binary_scale(v.largest()).0)
 }
 
 /// [`face_normal`] with the edges brought near 1 and a cross product that keeps its relative error small: right for faces of
 /// any size, and for slivers whose corners' differences are exact.
 pub fn face_normal_compensated<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>) -> Vec3<R> {
-    let near_one = |v: Vec3<R>| v.scale(binary_scale(v.largest()).0);
     near_one(b - a).cross_compensated(near_one(c - a)).normalize_scaled().named("n")
 }
 

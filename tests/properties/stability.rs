@@ -200,7 +200,9 @@ fn each_stable_form_with_the_naive_one_in_its_place_is_found_out() {
     let report = run(&mut subjects, &options(shaders), &mut Silent).expect("it runs");
     assert!(!report.is_success());
     for (group, naive) in &replaced {
-        for found in report.groups.iter().filter(|found| found.id == *group && found.stage != "fixed-function") {
+        let of_group = || report.groups.iter().filter(|found| found.id == *group && found.stage != "fixed-function");
+        assert_eq!(of_group().count(), 2 * subjects.len(), "{group} in two stages of every adapter");
+        for found in of_group() {
             let problem = found.problem.as_deref().unwrap_or_default();
             assert!(
                 problem.contains("unstable at"),
@@ -277,7 +279,7 @@ fn a_stable_form_computes_what_its_naive_form_means() {
 fn conditioning(member: &Member, row: &[f32]) -> Conditioning {
     let mut legal = vec![Accept::ANY; member.spec.output_len()];
     member.formula.interval(row, &mut legal);
-    Conditioning::of(member, row, &legal)
+    Conditioning::of(member, row, &legal, &[])
 }
 
 /// Forms whose claims hold for the operations in the order in which they are written, which the language does not promise.
@@ -352,8 +354,19 @@ fn ill_conditioned_unstable_and_singular_are_told_apart() {
         let (member, case) = found.unwrap_or_else(|| panic!("no case {id}"));
         let mut row = vec![];
         member.inputs(case, 1, &mut row);
-        conditioning(member, &row).standing
+        let CaseRef::Hard(place) = case else { panic!("{id} is no hard case") };
+        let near = |k| {
+            let mut row = vec![];
+            member.inputs(CaseRef::Near(place, k), 1, &mut row);
+            row
+        };
+        let near: Vec<Vec<f32>> = (0..member.near()).map(near).collect();
+        let mut legal = vec![Accept::ANY; member.spec.output_len()];
+        member.formula.interval(&row, &mut legal);
+        Conditioning::of(member, &row, &legal, &near).standing
     };
+    assert_eq!(standing("vector/halfway/hard/half-vector-of-nothing"), Standing::Singular);
+    assert_eq!(standing("fog/linear/hard/dmin-equals-dmax-at-the-step"), Standing::Singular);
     assert_eq!(standing("vector/normalize-scaled/hard/length-1e30"), Standing::Stable);
     assert_eq!(standing("vector/normalize/hard/tiny"), Standing::NothingPromised);
     assert_eq!(standing("vector/interpolated-normal/hard/nearly-opposite"), Standing::IllConditioned);

@@ -138,9 +138,9 @@ formula!(
     |x, out| { out.scalar(attenuation::spot_exponent_by_chord(x.vector(), x.vector(), x.scalar(), x.scalar())); },
     hard [
         Hard::new("beam-1e4", "half as bright at 0.67°", &[("l", &[-0.011_773_7, 0.0, -0.999_930_7]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e4])])
-            .naive("attenuation/spot-exponent", "1 − cosine has lost a bit in 1,000", 1e3),
+            .naive("attenuation/spot-exponent", "l·axis near 1 has no digits for the angle, which l + axis keeps", 1e3),
         Hard::new("beam-1e6", "half as bright at 0.07°", &[("l", &[-0.001_177_4, 0.0, -0.999_999_3]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e6])])
-            .naive("attenuation/spot-exponent", "1 − cosine has lost a bit in 10", 1e5),
+            .naive("attenuation/spot-exponent", "l·axis near 1 has no digits for the angle, which l + axis keeps", 1e5),
     ],
 );
 

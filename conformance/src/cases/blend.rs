@@ -415,9 +415,9 @@ formula!(
 formula!(
     /// The subtraction of two products that nearly cancel.
     SubtractCompensated: "blend/subtract-compensated" by "blend_subtract_compensated",
-    "src·S − dst·D, a difference of products (Kahan)", "Jeannerod, Louvet & Muller 2013",
+    "src·S − dst·D, a difference of products with their errors", "Cornea, Harrison & Tang 2002",
     [Input::scalar("src", "color", Domain::Unit), Input::scalar("s", "1", Domain::Unit), Input::scalar("dst", "color", Domain::Unit), Input::scalar("d", "1", Domain::Unit)] -> [Output::new("color", Shape::Scalar, "color")],
-    stable 2.0 Own "2 roundings (Kahan)",
+    stable 2.0 Own "2 roundings (Cornea, Harrison & Tang)",
     |x, out| { out.scalar(subtract_compensated(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
     hard [
         Hard::new("the-same-but-a-bit", "products that agree to the last bits", &[("src", &[0.3]), ("s", &[0.7]), ("dst", &[0.6]), ("d", &[0.350_000_03])])

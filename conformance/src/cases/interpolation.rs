@@ -259,9 +259,9 @@ formula!(
 formula!(
     /// The edge function of slivers.
     EdgeCompensated: "interpolation/edge-compensated" by "interpolation_edge_compensated",
-    "e = (b − a) × (p − a), a difference of products (Kahan)", "Jeannerod, Louvet & Muller 2013",
+    "e = (b − a) × (p − a), a difference of products with their errors", "Cornea, Harrison & Tang 2002",
     [window("a"), window("b"), window("p")] -> [TWICE_AREA],
-    stable 2.0 Own "2 roundings (Kahan), for corners whose differences are exact: within a factor of 2 of each other, or from the origin",
+    stable 2.0 Own "2 roundings (Cornea, Harrison & Tang), for corners whose differences are exact: within a factor of 2 of each other, or from the origin",
     |x, out| { out.scalar(interpolation::edge_compensated(x.vector(), x.vector(), x.vector())); },
     hard [
         Hard::new("sliver-1e-5", "the products agree to 5 digits", &[("a", &[0.0, 0.0]), ("b", &[0.7, 0.3]), ("p", &[1.4, 0.600_01])])

@@ -404,10 +404,10 @@ formula!(
 formula!(
     /// A highlight's power by the chord.
     CosinePowerByChord: "lighting/cosine-power-by-chord" by "lighting_cosine_power_by_chord",
-    "FS = exp(exponent·ln(1 − q)), q = ½|a − b|²; as published for exponents below 64 and angles above 60°", "000 §6.3, 004",
+    "FS = exp(exponent·ln(1 − q)), q = ½|a − b|²; as published for exponents of 64 and below and for angles above 60°", "000 §6.3, 004",
     [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 4096.0))] -> [POWER],
     fit toward_each_other,
-    stable 32.0 Unit "q errs by 4 roundings of itself, and q·exponent·(1 − q)^exponent is at most 0.37",
+    stable 32.0 Unit "above an exponent of 64: q errs by 8 roundings of itself, of which q·exponent·(1 − q)^exponent takes at most 0.37, and exp by 3 ULP and more; at 64 and below as pow",
     |x, out| { out.scalar(lighting::cosine_power_by_chord(x.vector(), x.vector(), x.scalar())); },
     hard [
         Hard::new("mirror-1e4", "1 where a = b, however they are rounded", &[("a", MIRROR), ("b", MIRROR), ("exponent", &[1e4])])
@@ -417,13 +417,13 @@ formula!(
         Hard::new("above-one-1e6", "never more than 1", &[("a", &[0.6, 0.0, 0.800_000_2]), ("b", &[0.6, 0.0, 0.800_000_2]), ("exponent", &[1e6])])
             .naive("lighting/cosine-power", "a cosine above 1 gives a highlight above 1", 1e5),
         Hard::new("half-1e3", "half as bright at 2.1°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.037_228_2, 0.0, 0.999_306_8]), ("exponent", &[1e3])])
-            .naive("lighting/cosine-power", "1 − cosine has lost a bit in 10,000", 100.0),
+            .naive("lighting/cosine-power", "a·b near 1 has no digits for the angle, which a − b keeps", 100.0),
         Hard::new("half-1e4", "half as bright at 0.67°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.011_773_7, 0.0, 0.999_930_7]), ("exponent", &[1e4])])
-            .naive("lighting/cosine-power", "1 − cosine has lost a bit in 1,000", 1e3),
+            .naive("lighting/cosine-power", "a·b near 1 has no digits for the angle, which a − b keeps", 1e3),
         Hard::new("half-1e5", "half as bright at 0.21°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.003_723_3, 0.0, 0.999_993_1]), ("exponent", &[1e5])])
-            .naive("lighting/cosine-power", "1 − cosine has lost a bit in 100", 1e4),
+            .naive("lighting/cosine-power", "a·b near 1 has no digits for the angle, which a − b keeps", 1e4),
         Hard::new("half-1e6", "half as bright at 0.07°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.001_177_4, 0.0, 0.999_999_3]), ("exponent", &[1e6])])
-            .naive("lighting/cosine-power", "1 − cosine has lost a bit in 10", 1e5),
+            .naive("lighting/cosine-power", "a·b near 1 has no digits for the angle, which a − b keeps", 1e5),
         Hard::new("behind-even", "0, never the even power of a negative cosine", &[("a", &[0.0, 0.0, -1.0]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[2.0])])
             .naive("lighting/cosine-power-unguarded", "NaN, or 1", 1e6),
         Hard::new("behind", "0, not NaN", &[("a", &[0.0, -0.6, -0.8]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[32.5])])

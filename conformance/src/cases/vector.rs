@@ -242,7 +242,7 @@ formula!(
 formula!(
     /// Normals by the cofactors alone.
     NormalByCofactors: "vector/normal-by-cofactors" by "vector_normal_by_cofactors",
-    "n′ = ±⟨cofactors(modelview·2ᵏ)·n⟩ by the determinant's sign", "Lengyel; ruling 6",
+    "n′ = ±⟨Σ nᵢ·sᵢ·cofactorᵢ⟩ of columns scaled by powers of two sᵢ, by the determinant's sign", "Lengyel; ruling 6",
     [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
     stable 64.0 Own "nine cofactors and a product that do not cancel, then a normalisation of 16",
     |x, out| { out.vector(vector::normal_by_cofactors(&x.mat3(), x.vector())); },
@@ -259,14 +259,18 @@ formula!(
             .naive("vector/normal-by-determinant", "the determinant overflows", 1e6),
         Hard::new("mirrored-and-flattened", "a reflection turns the cofactors round", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-20]), ("n", &[0.6, 0.0, 0.8])])
             .naive("vector/normal-by-determinant", "cofactors over the determinant have a square of 1e40", 1e6),
+        Hard::new("mirrored-and-thin-1e-20", "two axes of 1e-20 under reflection", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1e-20, 0.0, 0.0, 0.0, 1e-20]), ("n", &[0.0, 0.6, 0.8])])
+            .naive("vector/normal-by-determinant", "the determinant of 1e-40 underflows, or its inverse overflows", 1e6),
+        Hard::new("mirrored-and-thin-1e-30", "two axes of 1e-30 under reflection, the normal along the third", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1e-30, 0.0, 0.0, 0.0, 1e-30]), ("n", &[1.0, 0.0, 0.0])])
+            .naive("vector/normal-by-determinant", "the cofactor of 1e-60 underflows", 1e6),
     ],
 );
 formula!(
     /// The normal of any face.
     FaceNormalCompensated: "vector/face-normal-compensated" by "vector_face_normal_compensated",
-    "n = ⟨(b − a)·2ʲ × (c − a)·2ᵏ⟩, differences of products (Kahan)", "004, for faces of any size and slivers",
+    "n = ⟨(b − a)·2ʲ × (c − a)·2ᵏ⟩, differences of products with their errors", "004, for faces of any size and slivers",
     [Input::position("a"), Input::position("b"), Input::position("c")] -> [vec3("n")],
-    stable 24.0 Own "2 roundings a component (Kahan), then a normalisation of 16; for corners whose differences are exact",
+    stable 24.0 Own "2 roundings a component, then a normalisation of 16; for corners whose differences are exact",
     |x, out| { out.vector(vector::face_normal_compensated(x.vector(), x.vector(), x.vector())); },
     hard [
         Hard::new("tiny", "edges of 1e-12", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1e-12, 2e-12, 0.0]), ("c", &[-1e-12, 1e-12, 3e-12])])

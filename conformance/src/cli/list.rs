@@ -103,15 +103,20 @@ fn cases(member: &Member, chosen: &Selected, aliases: &[String]) -> Value {
     entry
 }
 
+/// The condition number of a hard case; of NaN and infinity in blending there is none.
+fn condition(member: &Member, place: usize) -> Option<f64> {
+    let mut inputs = vec![];
+    member.inputs(CaseRef::Hard(place), 1, &mut inputs);
+    let has_one = !matches!(member.spec.kind, Kind::Blend(_));
+    has_one.then(|| stability::condition(member.formula.as_ref(), &inputs, stability::size(&member.spec)))
+}
+
 /// A hard case with its condition number, and the naive form that fails there.
 fn hard_case(member: &Member, place: usize) -> Value {
     let hard = &member.spec.hard[place];
-    let mut inputs = vec![];
-    member.inputs(CaseRef::Hard(place), 1, &mut inputs);
     let mut entry = json!({ "id": member.case_id(CaseRef::Hard(place)), "pins": hard.pins });
-    if !matches!(member.spec.kind, Kind::Blend(_)) {
-        entry["condition"] =
-            json!(Number(stability::condition(member.formula.as_ref(), &inputs, stability::size(&member.spec))));
+    if let Some(condition) = condition(member, place) {
+        entry["condition"] = json!(Number(condition));
         entry["near"] = json!(member.near());
     }
     if let Some(Naive { formula, fails, at_least }) = hard.naive {
@@ -161,7 +166,8 @@ fn tree(catalogue: &[Member], selected: &[Selected], scenes: &[Chosen]) -> anyho
             let member = &catalogue[chosen.member];
             for &place in &chosen.hard {
                 let hard = &member.spec.hard[place];
-                writeln!(text, "    hard/{:<28} {}", hard.name, hard.pins)?;
+                let condition = condition(member, place).map_or(String::new(), |x| format!("; condition {x:.1e}"));
+                writeln!(text, "    hard/{:<28} {}{condition}", hard.name, hard.pins)?;
                 if let Some(naive) = hard.naive {
                     writeln!(text, "    {:<33} fails: {}, {}", "", naive.formula, naive.fails)?;
                 }

@@ -2,18 +2,18 @@
 
 use super::options::{Choice, Format, ShardArgument};
 use super::{NothingToRun, Status, emit};
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::cases::Stage;
 use lightmeter::report::text::thousands;
-use lightmeter::select::catalogue;
+use lightmeter::select::{Shard, catalogue};
 use lightmeter::sweep::{
     Asked, Description, Document, Free, Over, PRESETS, Plan, SCHEMA, SweepError, name_of, sweep, text,
 };
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// How often the checkpoint is written.
@@ -74,6 +74,12 @@ pub(crate) struct Sweep {
 impl Sweep {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let Some(formula) = &self.formula else {
+            let asks = self.asked() != Asked::default() || self.checkpoint.is_some() || self.shard.0 != Shard::WHOLE;
+            if asks {
+                bail!(
+                    "a formula is missing; expected one such as fog/exp: `lightmeter sweep` alone lists the ready-made"
+                );
+            }
             emit(&presets(self.format)?, self.out.as_deref())?;
             return Ok(Status::Success);
         };
@@ -88,7 +94,9 @@ impl Sweep {
             let many = if blocks == 1 { "one block".into() } else { format!("{blocks} blocks") };
             bail!("shard {name} has no inputs: the range has {many}; expected at most so many shards");
         }
-        if self.out.is_some() && self.out == self.checkpoint {
+        if let (Some(out), Some(checkpoint)) = (&self.out, &self.checkpoint)
+            && place_of(out) == place_of(checkpoint)
+        {
             bail!("--out and --checkpoint name one file; expected two");
         }
         let choice = self.choice();
@@ -105,7 +113,9 @@ impl Sweep {
             document.write(path)?;
         }
         if let Some(path) = &self.out {
-            emit("", Some(path))?;
+            // What stands there stays until there is a result.
+            let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
+            opened.with_context(|| format!("cannot write {}", path.display()))?;
         }
 
         let bar = bar(&document, shard);
@@ -213,6 +223,15 @@ pub(crate) fn written(document: &Document, format: Format, rerun: &str) -> anyho
             text::write(document, formula.map_or("", |member| member.spec.text), rerun, &mut out)?;
             Ok(out)
         }
+    }
+}
+
+/// Where a file is, however its path is written.
+fn place_of(path: &Path) -> PathBuf {
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match (parent.canonicalize(), path.file_name()) {
+        (Ok(parent), Some(name)) => path.canonicalize().unwrap_or_else(|_| parent.join(name)),
+        _ => path.to_owned(),
     }
 }
 

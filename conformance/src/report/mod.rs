@@ -348,6 +348,8 @@ pub struct Report {
     pub seconds: f64,
     /// The accuracy profile.
     pub profile: &'static str,
+    /// The globs that cases were chosen by; none for all.
+    pub filter: Vec<String>,
     /// What was judged.
     pub adapters: Vec<Identity>,
     /// The sum over the groups.

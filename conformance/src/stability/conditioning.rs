@@ -91,9 +91,9 @@ pub struct Conditioning {
 }
 
 impl Conditioning {
-    /// Of a formula at a case, by its legal values in force.
+    /// Of a formula at a case, by its legal values in force; `near` are inputs a few ULP away.
     #[must_use]
-    pub fn of(member: &Member, inputs: &[f32], legal: &[Accept]) -> Self {
+    pub fn of(member: &Member, inputs: &[f32], legal: &[Accept], near: &[Vec<f32>]) -> Self {
         let size = size(&member.spec);
         let mut exact = vec![0.0; member.spec.output_len()];
         member.formula.reference(inputs, &mut exact);
@@ -105,7 +105,13 @@ impl Conditioning {
         let farthest = norm(farthest);
         let reach = if farthest == 0.0 { 0.0 } else { farthest / (ROUNDING * size_of(&exact, size)) };
         let is_number = exact.iter().all(|x| x.is_finite());
-        let standing = if !is_number || !condition.is_finite() {
+        // A derivative sees no jump: a few ULP of each input explain no more than some tens of roundings times the condition.
+        let jumps = near.iter().any(|row| {
+            let mut there = vec![0.0; exact.len()];
+            member.formula.reference(row, &mut there);
+            roundings(&there, &exact, size) > UNSTABLE * (1.0 + condition)
+        });
+        let standing = if !is_number || !condition.is_finite() || jumps {
             Standing::Singular
         } else if reach.is_nan() || reach.is_infinite() {
             Standing::NothingPromised

@@ -46,6 +46,8 @@ pub struct Examined {
     pub naive_at_least: Number,
     /// The naive form's error.
     pub naive: Number,
+    /// Its error against its own exact value: where that is far less, it computes another function.
+    pub naive_rounding: Number,
 }
 
 impl Examined {
@@ -123,7 +125,9 @@ pub fn examine(
         let own = errors(member, stable, &rows, &exact, subject, options)?;
         let mut others = BTreeMap::new();
         for (id, rival) in &rivals {
-            others.insert(*id, errors(rival, stable, &rows, &exact, subject, options)?);
+            let own = references(rival, &rows);
+            let against = |exact: &[f64], subject: &mut Subject| errors(rival, stable, &rows, exact, subject, options);
+            others.insert(*id, (against(&exact, subject)?, against(&own, subject)?));
         }
         if options.again {
             report.stable_costs.extend(cost::cost(member, &rivals, subject, options)?);
@@ -131,8 +135,12 @@ pub fn examine(
         for (stage, worst) in own {
             for (&place, &(error, at)) in &worst {
                 let Some(naive) = naive(place) else { continue };
-                let of_naive = others[naive.formula].iter().find(|(other, _)| *other == stage);
-                let Some((naive_error, _)) = of_naive.and_then(|(_, worst)| worst.get(&place)) else { continue };
+                let (errors, roundings) = &others[naive.formula];
+                let in_stage = |of: &[(&'static str, Worst)]| {
+                    let (_, worst) = of.iter().find(|(other, _)| *other == stage)?;
+                    worst.get(&place).map(|(error, _)| *error)
+                };
+                let (Some(error_of_naive), Some(rounding)) = (in_stage(errors), in_stage(roundings)) else { continue };
                 report.stability.push(Examined {
                     id: member.case_id(CaseRef::Hard(place)),
                     adapter: subject.identity.name.clone(),
@@ -144,7 +152,8 @@ pub fn examine(
                     naive_formula: naive.formula,
                     fails: naive.fails,
                     naive_at_least: Number(naive.at_least),
-                    naive: Number(*naive_error),
+                    naive: Number(error_of_naive),
+                    naive_rounding: Number(rounding),
                 });
             }
         }

@@ -102,6 +102,30 @@ impl Description {
         }
     }
 
+    /// Whether it is over the inputs of a plan, to the last bit.
+    #[must_use]
+    pub fn is_over_inputs_of(&self, plan: &Plan<'_>) -> bool {
+        let bits = |x: Option<Exact>| x.map(|Exact(x)| x.to_bits());
+        let ends = match plan.over {
+            Over::Number { from, to, .. } => [Some(from), Some(to)].map(|x| x.map(f32::to_bits)),
+            Over::Bytes => [None, None],
+        };
+        let fixed = plan.fixed();
+        let pairs = || self.fixed.iter().zip(&fixed);
+        [bits(self.from), bits(self.to)] == ends
+            && (&self.over, &self.output) == (&plan.over_name(), &plan.output_name())
+            && self.fixed.len() == fixed.len()
+            && pairs().all(|((name, mine), (other, theirs))| name == other && mine.0.to_bits() == theirs.0.to_bits())
+    }
+
+    /// Its inputs as options of the command line.
+    #[must_use]
+    pub fn options(&self) -> String {
+        let (Some(Exact(from)), Some(Exact(to))) = (self.from, self.to) else { return String::new() };
+        let fixed: String = self.fixed.iter().map(|(name, Exact(x))| format!(" --set {name}={x}")).collect();
+        format!(" --over {} --from {from} --to {to}{fixed} --output {}", self.over, self.output)
+    }
+
     /// The inputs in blocks.
     #[must_use]
     pub const fn span(&self) -> Span {
@@ -198,7 +222,7 @@ pub enum DocumentError {
         message: String,
     },
     /// It is not what was written.
-    #[error("{} is damaged: {message}; delete it to start again", path.display())]
+    #[error("{} is damaged, or no result of `lightmeter sweep`: {message}; if it is one, delete it to start again", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,

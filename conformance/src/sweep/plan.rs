@@ -8,7 +8,7 @@ use crate::select::Member;
 use lightmeter_gpu::{float_of, key_of};
 
 /// What was asked for; what is missing is the preset's, or follows from the formula.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Asked {
     /// The free number.
     pub over: Option<String>,

@@ -40,7 +40,7 @@ fn elementary_product_error(a: f32, b: f32, product: f32) -> f32 {
     return elementary_opaque(second + a2 * b1) + a2 * b2;
 }
 
-// a*b - c*d: the difference of the rounded products, and that of their errors (Kahan).
+// a*b - c*d: the difference of the rounded products, and that of their errors (Cornea, Harrison & Tang 2002).
 fn elementary_difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
     let ab = a * b;
     let cd = c * d;

@@ -120,15 +120,24 @@ fn vector_normal_by_determinant(modelview: mat3x3f, n: vec3f) -> vec3f {
     return vector_normalize(vector_normal_inverse_transpose(modelview, n));
 }
 
-// Without the division by the determinant: only its sign is of use, which turns the cofactors round under reflection.
+fn vector_near_one(v: vec3f) -> vec3f {
+    return v * elementary_binary_scale(vector_largest(v));
+}
+
+// Without the division by the determinant: only its sign is of use, which turns the cofactors round under reflection. Each
+// column is brought near 1 first, and n divided by what it is scaled by.
 fn vector_normal_by_cofactors(modelview: mat3x3f, n: vec3f) -> vec3f {
-    let largest = max(max(vector_largest(modelview[0]), vector_largest(modelview[1])), vector_largest(modelview[2]));
-    let scaled = modelview * elementary_binary_scale(largest);
-    let bc = cross(scaled[1], scaled[2]);
-    let ca = cross(scaled[2], scaled[0]);
-    let ab = cross(scaled[0], scaled[1]);
-    let normal = vector_normalize_scaled(mat3x3f(bc, ca, ab) * n);
-    return select(-normal, normal, dot(scaled[0], bc) >= 0.0);
+    let scales = vec3f(
+        elementary_binary_scale(vector_largest(modelview[0])),
+        elementary_binary_scale(vector_largest(modelview[1])),
+        elementary_binary_scale(vector_largest(modelview[2])),
+    );
+    let a = modelview[0] * scales.x;
+    let b = modelview[1] * scales.y;
+    let c = modelview[2] * scales.z;
+    let bc = cross(b, c);
+    let normal = vector_normalize_scaled(mat3x3f(bc, cross(c, a), cross(a, b)) * vector_near_one(n * scales));
+    return select(-normal, normal, dot(a, vector_near_one(bc)) >= 0.0);
 }
 
 fn vector_cross_compensated(a: vec3f, b: vec3f) -> vec3f {
@@ -137,10 +146,6 @@ fn vector_cross_compensated(a: vec3f, b: vec3f) -> vec3f {
         elementary_difference_of_products(a.z, b.x, a.x, b.z),
         elementary_difference_of_products(a.x, b.y, a.y, b.x),
     );
-}
-
-fn vector_near_one(v: vec3f) -> vec3f {
-    return v * elementary_binary_scale(vector_largest(v));
 }
 
 fn vector_face_normal_compensated(a: vec3f, b: vec3f, c: vec3f) -> vec3f {

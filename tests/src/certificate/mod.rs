@@ -226,11 +226,16 @@ impl Finding {
         }
         if size.max(moved) < f64::MIN_POSITIVE {
             self.subnormal += 1;
-        } else if moved / size <= WELL_CONDITIONED && relative <= WELL {
+            return;
+        }
+        let is_held = if moved / size <= WELL_CONDITIONED {
             self.well.raise(relative, &at);
-        } else if moved / size > WELL_CONDITIONED && error <= moved * PER_CONDITION {
-            self.ill.raise(error / (moved * PER_CONDITION), &at);
+            relative <= WELL
         } else {
+            self.ill.raise(error / (moved * PER_CONDITION), &at);
+            error <= moved * PER_CONDITION
+        };
+        if !is_held {
             self.by_steps += 1;
             self.by_steps_worst.raise(relative, &at);
         }

@@ -4,7 +4,7 @@ use super::{CASES, EXCEPTIONS, Finding, PER_CONDITION, WELL, WELL_CONDITIONED, W
 use std::fmt::Write as _;
 
 /// The command that makes it.
-const COMMAND: &str = "cargo run -q -p lightmeter-tests --example certificate > docs/certificate.md";
+const COMMAND: &str = "./x certificate > docs/certificate.md";
 
 /// Findings by the first two segments of the id, so that blend states come by their equation.
 #[must_use]
@@ -26,14 +26,17 @@ pub fn groups(findings: &[Finding]) -> Vec<Finding> {
 pub fn page(findings: &[Finding]) -> String {
     let mut all = Finding::default();
     findings.iter().for_each(|finding| all.merge(finding));
-    let mut page = head(&all);
+    let mut held = Finding::default();
+    findings.iter().filter(|finding| finding.by_steps == 0).for_each(|finding| held.merge(finding));
+    let mut page = head(&all, &held);
     page.push_str(&table(&groups(findings)));
     page.push_str(&exceptions(findings));
     page.push_str(&choices(&all));
     page
 }
 
-fn head(all: &Finding) -> String {
+/// `held` is what was found of the formulas without an exception.
+fn head(all: &Finding, held: &Finding) -> String {
     let mut page = String::from("# The certificate of the reference\n\n");
     let _ = write!(
         page,
@@ -48,16 +51,17 @@ fn head(all: &Finding) -> String {
     );
     let _ = write!(
         page,
-        "| what | largest | where |\n|---|---|---|\n\
+        "Of the {} formulas without an exception:\n\n| what | largest | where |\n|---|---|---|\n\
          | relative error, condition at most {WELL_CONDITIONED}; {WELL:e} is allowed | {} | {} |\n\
          | error over condition × {PER_CONDITION:e}, elsewhere; 1 is allowed | {} | {} |\n\
          | error over what the roundings of its steps come to; 1 is allowed | {} | {} |\n\n",
-        exponential(all.well.figure),
-        all.well.at,
-        fraction(all.ill.figure),
-        all.ill.at,
-        fraction(all.of_steps.figure),
-        all.of_steps.at,
+        grouped(held.formulas),
+        exponential(held.well.figure),
+        held.well.at,
+        fraction(held.ill.figure),
+        held.ill.at,
+        fraction(held.of_steps.figure),
+        held.of_steps.at,
     );
     let _ = write!(
         page,
@@ -85,7 +89,8 @@ fn table(groups: &[Finding]) -> String {
     let mut page = String::from(
         "## By formula\n\n\
          *Error*: the largest relative one where the condition is at most 100. *Of condition*: the largest over condition × \
-         1e-15, elsewhere. *Of steps*: the largest over the roundings of the steps. A dash: none of that kind errs at all.\n\n\
+         1e-15, elsewhere. *Of steps*: the largest over the roundings of the steps. A dash: none of that kind errs at all. A \
+         star: some values are among the exceptions below.\n\n\
          | formula | formulas | cases | error | of condition | of steps | the largest error's case | no value | intervals | open |\n\
          |---|--:|--:|--:|--:|--:|---|--:|--:|--:|\n",
     );
@@ -93,7 +98,7 @@ fn table(groups: &[Finding]) -> String {
         let _ = writeln!(
             page,
             "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
-            group.id,
+            if group.by_steps > 0 { format!("{} *", group.id) } else { group.id.clone() },
             grouped(group.formulas),
             grouped(group.cases),
             exponential(group.well.figure),

@@ -16,7 +16,7 @@ use lightmeter::judge::{Outcome, judge};
 use lightmeter::report::Number;
 use lightmeter::run;
 use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
-use lightmeter::stability::{self, Conditioning, Examined};
+use lightmeter::stability::{self, Conditioning, Examined, Standing};
 use lightmeter::subject::Subject;
 use lightmeter::tally::{by_name, intervals};
 use serde_json::{Value, json};
@@ -76,7 +76,11 @@ impl Show {
         legal_outputs(member, &inputs, self.choice.profile, &mut outputs);
         let condition = member.formula.condition(&inputs);
         let legal: Vec<Accept> = outputs.iter().map(|output| output.interval).collect();
-        let conditioning = self.choice.profile.scope(|| Conditioning::of(member, &inputs, &legal));
+        let near: Vec<Vec<f32>> = match case {
+            CaseRef::Hard(place) => (0..member.near()).map(|k| self.row(member, CaseRef::Near(place, k))).collect(),
+            CaseRef::Near(..) | CaseRef::Random(_) => vec![],
+        };
+        let conditioning = self.choice.profile.scope(|| Conditioning::of(member, &inputs, &legal, &near));
         let known = Known { inputs, outputs, steps, condition, conditioning };
         let (answers, unit) = self.answers(member, &known.inputs)?;
         let forms = self.forms(member, case)?;
@@ -89,6 +93,12 @@ impl Show {
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
+    }
+
+    fn row(&self, member: &Member, case: CaseRef) -> Vec<f32> {
+        let mut row = vec![];
+        member.inputs(case, self.choice.seed, &mut row);
+        row
     }
 
     /// A hard case, and those near it, by its stable and its naive form.
@@ -210,6 +220,14 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
         )?;
     }
     writeln!(text, "\nconditioning\n  {}", known.conditioning.text())?;
+    let is_promised_less = matches!(known.conditioning.standing, Standing::Unstable | Standing::NothingPromised);
+    if let Some(stable) = spec.stable.filter(|_| is_promised_less) {
+        writeln!(
+            text,
+            "  with its operations as they are written the form claims {} roundings at its hard cases",
+            stable.bound
+        )?;
+    }
     for Answer { adapter, stage, values } in answers {
         writeln!(text, "\n{adapter}, {stage}")?;
         match values {

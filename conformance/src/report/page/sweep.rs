@@ -2,8 +2,9 @@
 
 use crate::report::Number;
 use crate::report::text::thousands;
+use crate::select::catalogue;
 use crate::sweep::text::{bars, error, margin, rate};
-use crate::sweep::{Document, Exact, PRESETS, Place, Seen};
+use crate::sweep::{Asked, Document, Exact, PRESETS, Place, Plan, Seen};
 use std::fmt::{Result, Write};
 
 /// The page in Markdown.
@@ -13,16 +14,8 @@ use std::fmt::{Result, Write};
 pub fn markdown(results: &[Document], out: &mut impl Write) -> Result {
     writeln!(out, "# Sweeps: every float of a range, every byte of a blend mode\n")?;
     writeln!(out, "Made from the results of `lightmeter sweep`, one file each:\n\n```")?;
-    for result in results {
-        let (sweep, stem) = (&result.sweep, stem(result));
-        let stage = if sweep.stage == "fragment" { " --stage fragment" } else { "" };
-        let is_ready_made = PRESETS.iter().any(|preset| preset.formula == sweep.formula);
-        let over = if is_ready_made { String::new() } else { format!(" --over {}", sweep.over) };
-        writeln!(
-            out,
-            "./x sweep {}{over}{stage} --adapter {} --format json --out {stem}.json",
-            sweep.formula, sweep.adapter.name
-        )?;
+    for (place, result) in results.iter().enumerate() {
+        writeln!(out, "./x sweep {} --format json --out {}.json", command(result), stem(results, place))?;
     }
     writeln!(out, "./x page sweep *.json --out docs/sweep.md\n```\n")?;
     let mut adapters: Vec<_> = results.iter().map(|result| &result.sweep.adapter).collect();
@@ -46,14 +39,42 @@ pub fn markdown(results: &[Document], out: &mut impl Write) -> Result {
     )?;
     writeln!(
         out,
-        "at most 1 is legal. Errors are large where a result underflows: flushed to 0, it is legal and millions of ULP away.\n"
+        "at most 1 is legal. A range from 0 begins with −0. Errors are large where a result underflows: flushed to 0, it is legal and millions of ULP away.\n"
     )?;
     table(results, out)?;
     results.iter().try_for_each(|result| section(result, out))
 }
 
-fn stem(result: &Document) -> String {
-    format!("{}-{}-{}", result.sweep.formula.replace('/', "-"), result.sweep.adapter.name, result.sweep.stage)
+/// What a result was asked for by, as on the command line: what its ready-made sweep says is left out.
+fn command(result: &Document) -> String {
+    let sweep = &result.sweep;
+    let mut command = sweep.formula.clone();
+    let catalogue = catalogue();
+    let is_ready_made = PRESETS.iter().any(|preset| preset.formula == sweep.formula)
+        && Plan::new(&catalogue, &sweep.formula, &Asked::default()).is_ok_and(|plan| sweep.is_over_inputs_of(&plan));
+    if !is_ready_made {
+        command += &sweep.options();
+    }
+    if sweep.stage == "fragment" {
+        command += " --stage fragment";
+    }
+    if sweep.profile != "wgsl" {
+        command += &format!(" --profile {}", sweep.profile);
+    }
+    if result.shard != "1/1" {
+        command += &format!(" --shard {}", result.shard);
+    }
+    command + &format!(" --adapter {}", sweep.adapter.name)
+}
+
+/// A file's name that no other of these results has.
+fn stem(results: &[Document], place: usize) -> String {
+    let named = |result: &Document| {
+        format!("{}-{}-{}", result.sweep.formula.replace('/', "-"), result.sweep.adapter.name, result.sweep.stage)
+    };
+    let name = named(&results[place]);
+    let earlier = results[..place].iter().filter(|result| named(result) == name).count();
+    if earlier == 0 { name } else { format!("{name}-{}", earlier + 1) }
 }
 
 fn table(results: &[Document], out: &mut impl Write) -> Result {
