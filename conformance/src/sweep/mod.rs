@@ -2,10 +2,11 @@
 //! destination and alpha.
 //!
 //! `preset` has the ready-made sweeps, `plan` works out what is swept, `span` cuts it into blocks and shares them out, `run` has
-//! a device evaluate them, `judge` and `blend` judge, `statistics` and `histogram` are what is found, `document` is the file that
+//! a device evaluate them, `judge` and `blend` judge, `statistics` and `histogram` are what is found, `description` says what is swept, `document` is the file that
 //! holds it, which is a checkpoint meanwhile, and `text` writes it for people.
 
 mod blend;
+mod description;
 mod document;
 mod histogram;
 mod judge;
@@ -16,7 +17,8 @@ mod span;
 mod statistics;
 pub mod text;
 
-pub use document::{Adapter, Description, Document, DocumentError, SCHEMA, name_of};
+pub use description::{Adapter, Description};
+pub use document::{Document, DocumentError, SCHEMA, name_of};
 pub use histogram::Histogram;
 pub use judge::Judge;
 pub use plan::{Asked, Over, Plan, Refused};

@@ -1,0 +1,178 @@
+//! What a sweep is: inputs, device and rules, by which files of the same sweep are told from others.
+
+use super::plan::{Over, Plan};
+use super::span::Span;
+use super::statistics::Exact;
+use crate::arithmetic::Profile;
+use crate::subject::Identity;
+use lightmeter_gpu::Shaders;
+use serde::{Deserialize, Serialize};
+
+/// What is swept, on what, by which rules: files of the same sweep have the same.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Description {
+    /// The formula's id.
+    pub formula: String,
+    /// What is free.
+    pub over: String,
+    /// The least float.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub from: Option<Exact>,
+    /// The greatest.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub to: Option<Exact>,
+    /// The other inputs by name.
+    pub fixed: Vec<(String, Exact)>,
+    /// The output.
+    pub output: String,
+    /// What errors are counted in: `ULP` or `step`.
+    pub unit: String,
+    /// The stage.
+    pub stage: String,
+    /// The adapter.
+    pub adapter: Adapter,
+    /// The accuracy rules.
+    pub profile: String,
+    /// A hash of the shader's text; of the version, where the embedded implementation is swept.
+    pub shader: String,
+    /// All inputs.
+    pub inputs: u64,
+    /// Inputs of a block.
+    pub block: u64,
+}
+
+/// How the adapter is named.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Adapter {
+    /// The short name.
+    pub name: String,
+    /// The device as the driver names it.
+    pub device: String,
+    /// `vulkan`, `gl` or `embedded`.
+    pub backend: String,
+    /// The driver and its version.
+    pub driver: String,
+}
+
+impl From<&Identity> for Adapter {
+    fn from(identity: &Identity) -> Self {
+        let Identity { name, device, backend, driver } = identity.clone();
+        Self { name, device, backend: backend.into(), driver }
+    }
+}
+
+impl Description {
+    /// What a plan sweeps on an adapter.
+    #[must_use]
+    pub fn new(plan: &Plan<'_>, adapter: &Identity, profile: &Profile, shaders: &Shaders) -> Self {
+        let (from, to, unit, file) = match plan.over {
+            Over::Number { from, to, .. } => {
+                (Some(Exact(from)), Some(Exact(to)), "ULP", format!("{}.wgsl", plan.member.spec.family()))
+            }
+            Over::Bytes => (None, None, "step", super::blend::FILE.into()),
+        };
+        let text = if adapter.backend == "embedded" { adapter.driver.clone() } else { shaders.source(&file) };
+        let Span { inputs, block } = plan.span();
+        Self {
+            formula: plan.member.spec.id.clone(),
+            over: plan.over_name(),
+            from,
+            to,
+            fixed: plan.fixed(),
+            output: plan.output_name(),
+            unit: unit.into(),
+            stage: plan.stage.name().into(),
+            adapter: adapter.into(),
+            profile: profile.name.into(),
+            shader: hash(text.as_bytes()),
+            inputs,
+            block,
+        }
+    }
+
+    /// Whether it is over the inputs of a plan, to the last bit.
+    #[must_use]
+    pub fn is_over_inputs_of(&self, plan: &Plan<'_>) -> bool {
+        let bits = |x: Option<Exact>| x.map(|Exact(x)| x.to_bits());
+        let ends = match plan.over {
+            Over::Number { from, to, .. } => [Some(from), Some(to)].map(|x| x.map(f32::to_bits)),
+            Over::Bytes => [None, None],
+        };
+        let fixed = plan.fixed();
+        let pairs = || self.fixed.iter().zip(&fixed);
+        [bits(self.from), bits(self.to)] == ends
+            && (&self.over, &self.output) == (&plan.over_name(), &plan.output_name())
+            && self.fixed.len() == fixed.len()
+            && pairs().all(|((name, mine), (other, theirs))| name == other && mine.0.to_bits() == theirs.0.to_bits())
+    }
+
+    /// Its inputs as options of the command line.
+    #[must_use]
+    pub fn options(&self) -> String {
+        let (Some(Exact(from)), Some(Exact(to))) = (self.from, self.to) else { return String::new() };
+        let fixed: String = self.fixed.iter().map(|(name, Exact(x))| format!(" --set {name}={x}")).collect();
+        format!(" --over {} --from {from} --to {to}{fixed} --output {}", self.over, self.output)
+    }
+
+    /// The inputs in blocks.
+    #[must_use]
+    pub const fn span(&self) -> Span {
+        Span { inputs: self.inputs, block: self.block }
+    }
+
+    /// What differs in another sweep's: `density: 0.01 there, 0.02 here`.
+    #[must_use]
+    pub fn differences(&self, other: &Self, [mine, others]: [&str; 2]) -> Vec<String> {
+        let (a, b) = (leaves(self), leaves(other));
+        let names = a.iter().chain(&b).map(|(name, _)| name.as_str());
+        let mut seen: Vec<&str> = vec![];
+        for name in names {
+            if !seen.contains(&name) {
+                seen.push(name);
+            }
+        }
+        let of = |leaves: &[(String, String)], name: &str| {
+            leaves.iter().find(|(other, _)| other == name).map_or("nothing".to_owned(), |(_, value)| value.clone())
+        };
+        seen.into_iter()
+            .map(|name| (name, of(&a, name), of(&b, name)))
+            .filter(|(_, a, b)| a != b)
+            .map(|(name, a, b)| format!("{name} is {a} {mine} and {b} {others}"))
+            .collect()
+    }
+}
+
+/// A description's values by name.
+fn leaves(description: &Description) -> Vec<(String, String)> {
+    let exact = |Exact(x): Exact| format!("{x} (0x{:08x})", x.to_bits());
+    let Description { formula, over, from, to, fixed, output, unit, stage, adapter, profile, shader, inputs, block } =
+        description.clone();
+    let mut leaves: Vec<(String, String)> = [("formula", formula), ("over", over)].map(|(k, v)| (k.into(), v)).into();
+    leaves.extend([("from", from), ("to", to)].into_iter().filter_map(|(name, x)| Some((name.into(), exact(x?)))));
+    leaves.extend(fixed.into_iter().map(|(name, x)| (name, exact(x))));
+    let rest = [
+        ("output", output),
+        ("unit", unit),
+        ("stage", stage),
+        ("adapter", adapter.name),
+        ("device", adapter.device),
+        ("backend", adapter.backend),
+        ("driver", adapter.driver),
+        ("profile", profile),
+        ("the shader's text", shader),
+        ("inputs", inputs.to_string()),
+        ("block", block.to_string()),
+    ];
+    leaves.extend(rest.map(|(name, value)| (name.to_owned(), value)));
+    leaves
+}
+
+/// FNV-1a of 64 bits: against damage and mix-ups, not against forgery.
+pub(super) fn hash(bytes: &[u8]) -> String {
+    let hash = bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("fnv1a:{hash:016x}")
+}
