@@ -22,6 +22,7 @@ mod items;
 mod template;
 
 use crate::error::Error;
+use crate::rung::Rung;
 use crate::shaders::Shaders;
 use items::{Item, reached, split};
 use lightmeter_scene::effects::{Effect, Effects};
@@ -49,6 +50,45 @@ impl Shader {
             Self::Composed => "composed",
             Self::Full => "full",
         }
+    }
+}
+
+/// Where a shader computes what it may compute elsewhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Technique {
+    /// As the scene asks for.
+    #[default]
+    Plain,
+    /// The fog's factor at the vertices, interpolated.
+    FogAtVertex,
+    /// Lit at the fragments, by N, L and V computed at the vertices, interpolated, and normalised again.
+    VectorsInterpolated,
+}
+
+/// How a frame's shaders are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recipe {
+    /// How much of the effects a shader holds.
+    pub shader: Shader,
+    /// The intermediate result that is drawn in place of the colour.
+    pub stage: Option<Stage>,
+    /// The arithmetic.
+    pub rung: Rung,
+    /// What is computed where.
+    pub technique: Technique,
+}
+
+impl Recipe {
+    /// In f32, as the scene asks for.
+    #[must_use]
+    pub const fn of(shader: Shader) -> Self {
+        Self { shader, stage: None, rung: Rung::F32, technique: Technique::Plain }
+    }
+
+    /// An intermediate result.
+    #[must_use]
+    pub const fn stage(stage: Stage) -> Self {
+        Self { stage: Some(stage), ..Self::of(Shader::Composed) }
     }
 }
 

@@ -23,7 +23,11 @@ pub struct Gpu {
 
 impl Gpu {
     pub(crate) fn open(name: &str, adapter: &wgpu::Adapter) -> Result<Self, Error> {
-        let wanted = wgpu::Features::FLOAT32_BLENDABLE | wgpu::Features::DUAL_SOURCE_BLENDING;
+        let wanted = wgpu::Features::FLOAT32_BLENDABLE
+            | wgpu::Features::DUAL_SOURCE_BLENDING
+            | wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::SHADER_F16
+            | wgpu::Features::SHADER_F64;
         let features = adapter.features() & wanted;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("lightmeter"),
@@ -123,9 +127,19 @@ impl Gpu {
             .then_some("the adapter cannot draw to the format: it lacks RENDER_ATTACHMENT there")
     }
 
+    /// Whether the device has a feature.
+    pub(crate) fn has(&self, feature: wgpu::Features) -> bool {
+        self.features.contains(feature)
+    }
+
+    /// Whether passes can be told to write timestamps.
+    pub(crate) fn has_timestamps(&self) -> bool {
+        self.has(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
     /// Whether a fragment may have two source colours.
     pub(crate) fn has_dual_source(&self) -> bool {
-        self.features.contains(wgpu::Features::DUAL_SOURCE_BLENDING)
+        self.has(wgpu::Features::DUAL_SOURCE_BLENDING)
     }
 
     /// Why a stage that reads storage buffers cannot run here; `None` where it can.

@@ -1,6 +1,7 @@
 //! A WGSL function as something to evaluate on rows of numbers: its signature read by naga, its entry points written here.
 
 use crate::error::Error;
+use crate::readback::SENTINEL;
 use crate::shaders::{Shaders, validate};
 use crate::sweep::{SWEEP_GROUP, SWEEP_WIDTH};
 use naga::{Handle, Module, ScalarKind, Type, TypeInner};
@@ -61,20 +62,27 @@ impl Kernel {
 
     /// The function with an entry point that evaluates it many times over: see [`crate::RepeatPipeline`].
     pub(crate) fn repeat(&self, shaders: &Shaders) -> Result<String, Error> {
-        let signature = Signature::read(shaders, &self.file, &self.function, moved_word)?;
-        let source = format!(
-            "{}\n{}",
-            shaders.source(&self.file),
-            repeat_entry(&signature.call, self.inputs, &signature.fields)
-        );
+        let word = |k: usize| self.moved_word(k);
+        let signature = Signature::read(shaders, &self.file, &self.function, word)?;
+        let entry = repeat_entry(&signature.call, self.inputs, &signature.fields);
+        let source = format!("{}\n{entry}", shaders.source(&self.file));
         validate(&self.file, &source)?;
         Ok(source)
     }
 
     /// The same without the function: what reading the inputs and the loop take by themselves.
     pub(crate) fn idle(&self) -> String {
-        let words: Vec<String> = (0..self.inputs).map(moved_word).collect();
-        repeat_entry("", self.inputs, &words)
+        let words: Vec<String> = (0..self.inputs).map(|k| self.moved_word(k)).collect();
+        repeat_entry("", self.inputs, &[words.join(" ^ ")])
+    }
+
+    /// The k-th word of an invocation's row, read beforehand, with a number's last three bits moved from turn to turn.
+    fn moved_word(&self, k: usize) -> String {
+        if k < self.selectors {
+            format!("lightmeter_word{k}")
+        } else {
+            format!("(lightmeter_word{k} ^ (lightmeter_turn & 7u))")
+        }
     }
 
     /// Targets of four words that the fragment stage writes.
@@ -143,15 +151,16 @@ fn lightmeter_compute(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
     )
 }
 
-/// The k-th word of an invocation's row, read beforehand, with its last three bits moved from turn to turn.
-fn moved_word(k: usize) -> String {
-    format!("(lightmeter_word{k} ^ (lightmeter_turn & 7u))")
-}
-
 /// Evaluates a row over and over, each number's last three bits moved from turn to turn, and folds what comes out into a word.
+/// The first rows' results of the first turn, whose numbers are as they were given, are written, and what was folded after
+/// them; other invocations write nothing.
 fn repeat_entry(call: &str, inputs: usize, fields: &[String]) -> String {
     let words = (0..inputs).fold(String::new(), |mut text, k| {
         let _ = writeln!(text, "    let lightmeter_word{k} = {};", row_word(k));
+        text
+    });
+    let stores = fields.iter().enumerate().fold(String::new(), |mut text, (k, field)| {
+        let _ = writeln!(text, "            lightmeter_results[lightmeter_place + {k}u] = {field};");
         text
     });
     format!(
@@ -160,15 +169,25 @@ override lightmeter_times: u32;
 @compute @workgroup_size(64)
 fn lightmeter_repeat(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
     let lightmeter_base = (lightmeter_id.x % (arrayLength(&lightmeter_rows) / {inputs}u)) * {inputs}u;
+    let lightmeter_place = lightmeter_id.x * {stride}u;
+    let lightmeter_writes = lightmeter_place < arrayLength(&lightmeter_results);
 {words}    var lightmeter_folded = 0u;
     for (var lightmeter_turn = 0u; lightmeter_turn < lightmeter_times; lightmeter_turn++) {{
         {call}
-        lightmeter_folded ^= {};
+        if lightmeter_turn == 0u && lightmeter_writes {{
+{stores}        }}
+        lightmeter_folded ^= {folded};
     }}
-    lightmeter_results[lightmeter_id.x] = lightmeter_folded;
+    if lightmeter_writes {{
+        lightmeter_results[lightmeter_place + {last}u] = lightmeter_folded;
+    }} else if lightmeter_folded == {SENTINEL}u {{
+        lightmeter_results[0] = 0u;
+    }}
 }}
 ",
-        fields.join(" ^ ")
+        stride = fields.len() + 1,
+        last = fields.len(),
+        folded = fields.join(" ^ ")
     )
 }
 

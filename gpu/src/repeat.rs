@@ -1,27 +1,35 @@
 //! A kernel evaluated many times over for its time: each invocation has a row of inputs, whose last bits differ from turn to turn, and
-//! what comes out is folded into one word, so that nothing can be left out and little is read or written.
+//! what comes out is folded into one word, so that nothing can be left out and little is read or written. The same pipeline
+//! hands back what it gives for the rows as they are.
 
 use crate::arithmetic::bind;
+use crate::clock::{Clock, Reading};
 use crate::device::Gpu;
 use crate::error::Error;
 use crate::kernel::Kernel;
-use crate::readback::{Pending, staging};
+use crate::readback::{Pending, SENTINEL, staging};
 use crate::shaders::Shaders;
-use std::time::Instant;
 
 /// Evaluations of one invocation.
-const TIMES: u32 = 64;
-/// Invocations.
-const INVOCATIONS: u32 = 1 << 16;
+pub(crate) const TIMES: u32 = 32;
+/// Invocations of a workgroup.
+const GROUP: u32 = 64;
 
 /// A kernel compiled to be timed.
 #[derive(Debug)]
 pub struct RepeatPipeline {
     pipeline: wgpu::ComputePipeline,
     rows: wgpu::Buffer,
+    /// Rows that there are.
+    count: usize,
+    /// Words of a row's outputs.
+    words: usize,
 }
 
 impl RepeatPipeline {
+    /// Evaluations of one workgroup.
+    pub const EVALUATIONS: u32 = GROUP * TIMES;
+
     /// Compiles the kernel for rows of inputs that its invocations take in turn. `Ok(Err(reason))` where the adapter has no
     /// compute stage.
     ///
@@ -33,7 +41,7 @@ impl RepeatPipeline {
         kernel: &Kernel,
         rows: &[f32],
     ) -> Result<Result<Self, &'static str>, Error> {
-        Self::of(gpu, kernel, kernel.repeat(shaders)?, rows)
+        Self::of(gpu, kernel, kernel.repeat(shaders)?, rows, kernel.outputs)
     }
 
     /// The same without the function: what reading the inputs and the loop take by themselves.
@@ -41,10 +49,16 @@ impl RepeatPipeline {
     /// # Errors
     /// Where the device refuses the pipeline.
     pub fn idle(gpu: &Gpu, kernel: &Kernel, rows: &[f32]) -> Result<Result<Self, &'static str>, Error> {
-        Self::of(gpu, kernel, kernel.idle(), rows)
+        Self::of(gpu, kernel, kernel.idle(), rows, 1)
     }
 
-    fn of(gpu: &Gpu, kernel: &Kernel, source: String, rows: &[f32]) -> Result<Result<Self, &'static str>, Error> {
+    fn of(
+        gpu: &Gpu,
+        kernel: &Kernel,
+        source: String,
+        rows: &[f32],
+        words: usize,
+    ) -> Result<Result<Self, &'static str>, Error> {
         if let Some(reason) = gpu.lacks_compute() {
             return Ok(Err(reason));
         }
@@ -59,30 +73,52 @@ impl RepeatPipeline {
             cache: None,
         });
         gpu.check_shader(&kernel.file)?;
+        let count = rows.len() / kernel.inputs;
         let rows = gpu.buffer(bytemuck::cast_slice(rows), wgpu::BufferUsages::STORAGE);
-        Ok(Ok(Self { pipeline, rows }))
+        Ok(Ok(Self { pipeline, rows, count, words }))
     }
 
-    /// Seconds of wall time for one evaluation, of some four million in one submission.
+    /// The words of every row's outputs, row after row.
+    ///
+    /// # Errors
+    /// Where the device failed or was lost.
+    pub fn outputs(&self, gpu: &Gpu) -> Result<Vec<u32>, Error> {
+        let stride = self.words + 1;
+        let (results, bindings) = self.bindings(gpu, self.count * stride);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let groups = u32::try_from(self.count).unwrap_or(u32::MAX).div_ceil(GROUP);
+        self.encode(&mut encoder, None, &bindings, groups);
+        let staging = staging(gpu, self.count * stride);
+        encoder.copy_buffer_to_buffer(&results, 0, &staging, 0, results.size());
+        Pending::submit(gpu, encoder, staging, (stride, self.words)).wait(gpu)
+    }
+
+    /// How long so many workgroups take, of [`Self::EVALUATIONS`] each.
     ///
     /// # Errors
     /// Where the device fails.
-    pub fn time(&self, gpu: &Gpu) -> Result<f64, Error> {
-        let results = vec![0_u32; INVOCATIONS as usize];
+    pub fn time(&self, gpu: &Gpu, clock: &Clock, groups: u32) -> Result<Reading, Error> {
+        let (_, bindings) = self.bindings(gpu, self.words + 1);
+        clock.time(gpu, |encoder, span| self.encode(encoder, span.compute(), &bindings, groups))
+    }
+
+    fn bindings(&self, gpu: &Gpu, words: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let results = gpu.buffer(bytemuck::cast_slice(&results), usage);
+        let results = gpu.buffer(bytemuck::cast_slice(&vec![SENTINEL; words]), usage);
         let bindings = bind(gpu, &self.pipeline.get_bind_group_layout(0), &[&self.rows, &results]);
-        let staging = staging(gpu, 1);
-        let clock = Instant::now();
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            pass.dispatch_workgroups(INVOCATIONS / 64, 1, 1);
-        }
-        encoder.copy_buffer_to_buffer(&results, 0, &staging, 0, 4);
-        Pending::submit(gpu, encoder, staging, (1, 1)).wait(gpu)?;
-        Ok(clock.elapsed().as_secs_f64() / f64::from(INVOCATIONS * TIMES))
+        (results, bindings)
+    }
+
+    fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
+        bindings: &wgpu::BindGroup,
+        groups: u32,
+    ) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, bindings, &[]);
+        pass.dispatch_workgroups(groups, 1, 1);
     }
 }

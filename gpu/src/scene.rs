@@ -8,7 +8,8 @@ mod pipeline;
 mod uniforms;
 
 use crate::blend_unit::{Route, format};
-use crate::compose::{Composer, Shader, Stage};
+use crate::clock::{Clock, Reading};
+use crate::compose::{Composer, Recipe, Shader, Stage};
 use crate::device::Gpu;
 use crate::error::Error;
 use crate::readback::{Pending, staging};
@@ -18,7 +19,6 @@ use lightmeter_scene::effects::{Called, Effects};
 use lightmeter_scene::frame::{Frame, Texture};
 use lightmeter_scene::target::TargetFormat;
 use pipeline::{DEPTH, Key, Pipelines};
-use std::time::Instant;
 use uniforms::{Packer, Resource, resource};
 
 /// A frame on a device, ready to be drawn: pipelines, buffers and textures.
@@ -62,14 +62,8 @@ impl SceneRenderer {
     ///
     /// # Panics
     /// Where a stage is asked of [`Shader::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
-    pub fn new(
-        gpu: &Gpu,
-        shaders: &Shaders,
-        frame: &Frame,
-        sets: &[Called],
-        shader: Shader,
-        stage: Option<Stage>,
-    ) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, shaders: &Shaders, frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<Self, Error> {
+        let Recipe { shader, stage, .. } = recipe;
         if sets.len() != frame.draws.len() {
             return Err(Error::Sets { draws: frame.draws.len(), sets: sets.len() });
         }
@@ -127,7 +121,7 @@ impl SceneRenderer {
     #[must_use]
     pub fn submit(&self, gpu: &Gpu) -> Pending {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.encode(&mut encoder);
+        self.encode(&mut encoder, None);
         let size = self.target.size();
         let row_bytes = self.pixel_bytes * size.width;
         let padded = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -151,25 +145,20 @@ impl SceneRenderer {
         Ok(bytemuck::cast_slice(&pending.wait(gpu)?).to_vec())
     }
 
-    /// Seconds that it takes to draw the frame so many times in one submission, by the clock on the wall. A driver
-    /// compiles at the first draw: draw once before.
+    /// How long it takes to draw the frame so many times in one submission. A driver compiles at the first draw: draw once
+    /// before.
     ///
     /// # Errors
     /// Where the device failed or was lost.
-    pub fn time(&self, gpu: &Gpu, repeats: u32) -> Result<f64, Error> {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        for _ in 0..repeats {
-            self.encode(&mut encoder);
-        }
-        let commands = encoder.finish();
-        gpu.wait()?;
-        let start = Instant::now();
-        gpu.queue.submit([commands]);
-        gpu.wait()?;
-        Ok(start.elapsed().as_secs_f64())
+    pub fn time(&self, gpu: &Gpu, clock: &Clock, repeats: u32) -> Result<Reading, Error> {
+        clock.time(gpu, |encoder, span| {
+            for k in 0..repeats {
+                self.encode(encoder, span.render(k == 0, k + 1 == repeats));
+            }
+        })
     }
 
-    fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder, timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>) {
         let view = self.target.create_view(&Default::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -186,6 +175,7 @@ impl SceneRenderer {
                 }),
                 stencil_ops: None,
             }),
+            timestamp_writes: timestamps,
             ..Default::default()
         });
         for draw in self.draws.iter().filter(|draw| draw.index_count > 0) {

@@ -2,9 +2,9 @@
 
 use crate::report::EffectsCost;
 use crate::subject::Subject;
-use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Error, Shaders};
+use lightmeter_gpu::{Clock, Error, Shaders};
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
 
@@ -27,20 +27,25 @@ pub(super) fn cost(
     called: &[Called],
 ) -> Result<Option<EffectsCost>, Error> {
     let Some(gpu) = subject.gpu() else { return Ok(None) };
-    let composed = SceneRenderer::new(gpu, shaders, frame, called, Shader::Composed, None)?;
-    let full = SceneRenderer::new(gpu, shaders, frame, called, Shader::Full, None)?;
-    composed.time(gpu, 1)?;
-    full.time(gpu, 1)?;
-    let repeats = if full.time(gpu, 1)? > SLOW { 1 } else { REPEATS };
+    let composed = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(Shader::Composed))?;
+    let full = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(Shader::Full))?;
+    let clock = Clock::wall(None);
+    let time = |renderer: &SceneRenderer, repeats: u32| {
+        let reading = renderer.time(gpu, &clock, repeats)?;
+        Ok::<_, Error>(reading.seconds().expect("the clock on the wall goes forward"))
+    };
+    time(&composed, 1)?;
+    time(&full, 1)?;
+    let repeats = if time(&full, 1)? > SLOW { 1 } else { REPEATS };
     let mut turns = vec![];
     for turn in 0..TURNS {
         // Each goes first every other time.
         let (a, b) = if turn % 2 == 0 {
-            let a = composed.time(gpu, repeats)?;
-            (a, full.time(gpu, repeats)?)
+            let a = time(&composed, repeats)?;
+            (a, time(&full, repeats)?)
         } else {
-            let b = full.time(gpu, repeats)?;
-            (composed.time(gpu, repeats)?, b)
+            let b = time(&full, repeats)?;
+            (time(&composed, repeats)?, b)
         };
         turns.push((a, b));
     }

@@ -2,7 +2,7 @@
 
 use super::file::Stored;
 use crate::subject::Subject;
-use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_reference::render::render;
@@ -28,7 +28,7 @@ pub fn drawn(
     if let Some(reason) = SceneRenderer::lacks(gpu, frame) {
         return Ok(Err(reason));
     }
-    let renderer = SceneRenderer::new(gpu, shaders, frame, sets, shader, None)?;
+    let renderer = SceneRenderer::new(gpu, shaders, frame, sets, Recipe::of(shader))?;
     let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu))?;
     Ok(Ok(Stored::read(frame.target.width as usize, frame.target.format, &bytes)))
 }
@@ -48,7 +48,7 @@ pub fn intermediate(
     let Some(gpu) = subject.gpu() else {
         return Ok(Stored::unrounded(&render::<f32>(frame, None, Some(stage)), format));
     };
-    let renderer = SceneRenderer::new(gpu, shaders, frame, sets, Shader::Composed, Some(stage))?;
+    let renderer = SceneRenderer::new(gpu, shaders, frame, sets, Recipe::stage(stage))?;
     let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu))?;
     Ok(Stored::read(frame.target.width as usize, format, &bytes))
 }

@@ -15,7 +15,7 @@ use crate::run::{Options, Progress, problem};
 use crate::scene::Loaded;
 use crate::subject::Subject;
 use crate::tally::KEPT_FAILURES;
-use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Error, Pending};
 use lightmeter_reference::render::render;
@@ -144,7 +144,7 @@ fn start(
     if let Some(reason) = SceneRenderer::lacks(gpu, frame) {
         return Ok(Drawing::Skipped(reason));
     }
-    let renderer = SceneRenderer::new(gpu, &options.shaders, frame, sets, shader, None)?;
+    let renderer = SceneRenderer::new(gpu, &options.shaders, frame, sets, Recipe::of(shader))?;
     Ok(Drawing::Pending(Box::new(renderer.submit(gpu))))
 }
 

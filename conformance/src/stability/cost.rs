@@ -4,7 +4,7 @@ use crate::evaluate::kernel;
 use crate::run::Options;
 use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
-use lightmeter_gpu::{Error, RepeatPipeline};
+use lightmeter_gpu::{Clock, Error, RepeatPipeline};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -32,6 +32,8 @@ pub struct Cost {
 
 /// Turns that a cost is the median of.
 const TURNS: usize = 15;
+/// Workgroups of a turn: some four million evaluations.
+const GROUPS: u32 = 2048;
 /// Random cases that are evaluated in turn.
 const COST_ROWS: u64 = 1024;
 
@@ -51,15 +53,20 @@ pub(super) fn cost(
     let own = kernel_of(member)?;
     let Ok(idle) = RepeatPipeline::idle(gpu, &own, &rows)? else { return Ok(vec![]) };
     let Ok(stable) = RepeatPipeline::new(gpu, &options.shaders, &own, &rows)? else { return Ok(vec![]) };
+    let clock = Clock::wall(None);
+    let time = |pipeline: &RepeatPipeline| {
+        let reading = pipeline.time(gpu, &clock, GROUPS)?;
+        let seconds = reading.seconds().expect("the clock on the wall goes forward");
+        Ok::<_, Error>(seconds / (f64::from(GROUPS) * f64::from(RepeatPipeline::EVALUATIONS)))
+    };
     let mut costs = vec![];
     for (id, rival) in rivals {
         let Ok(naive) = RepeatPipeline::new(gpu, &options.shaders, &kernel_of(rival)?, &rows)? else { continue };
         for warm in [&idle, &stable, &naive] {
-            warm.time(gpu)?;
+            time(warm)?;
         }
-        let turns: Vec<[f64; 3]> = (0..TURNS)
-            .map(|_| Ok([idle.time(gpu)?, stable.time(gpu)?, naive.time(gpu)?]))
-            .collect::<Result<_, Error>>()?;
+        let turns: Vec<[f64; 3]> =
+            (0..TURNS).map(|_| Ok([time(&idle)?, time(&stable)?, time(&naive)?])).collect::<Result<_, Error>>()?;
         let sorted = |of: &dyn Fn(&[f64; 3]) -> f64| {
             let mut all: Vec<f64> = turns.iter().map(of).collect();
             all.sort_by(f64::total_cmp);

@@ -115,10 +115,10 @@ fn frame() -> Frame {
 
 fn drawn(gpu: &Gpu, frame: &Frame, sets: &[Called], shader: Shader, stage: Option<Stage>) -> Vec<u8> {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
-    let renderer =
-        SceneRenderer::new(gpu, &shaders, frame, sets, shader, stage).unwrap_or_else(|error| panic!("{error}"));
+    let renderer = SceneRenderer::new(gpu, &shaders, frame, sets, Recipe { stage, ..Recipe::of(shader) })
+        .unwrap_or_else(|error| panic!("{error}"));
     let pixels = SceneRenderer::pixels(gpu, renderer.submit(gpu)).unwrap_or_else(|error| panic!("{error}"));
-    assert!(renderer.time(gpu, 2).expect("the device answers") > 0.0);
+    assert!(renderer.time(gpu, &Clock::wall(None), 2).expect("the device answers").seconds().is_some_and(|s| s > 0.0));
     pixels
 }
 
@@ -235,7 +235,7 @@ fn composed_and_full_shaders_draw_alike_for_sets_of_all_sorts() {
         let mut called = named(&frame);
         called[0].effects = set;
         let [composed, full] = Shader::ALL.map(|shader| {
-            let renderer = SceneRenderer::new(&gpu, &shaders, &frame, &called, shader, None);
+            let renderer = SceneRenderer::new(&gpu, &shaders, &frame, &called, Recipe::of(shader));
             let renderer = renderer.unwrap_or_else(|error| panic!("{set}: {error}"));
             SceneRenderer::pixels(&gpu, renderer.submit(&gpu)).unwrap_or_else(|error| panic!("{set}: {error}"))
         });
@@ -306,7 +306,7 @@ fn what_the_unit_cannot_blend_and_sets_of_another_frame_are_errors() {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let mut frame = frame();
     let says = |frame: &Frame, sets: &[Called]| {
-        let made = SceneRenderer::new(&gpu, &shaders, frame, sets, Shader::Composed, None);
+        let made = SceneRenderer::new(&gpu, &shaders, frame, sets, Recipe::of(Shader::Composed));
         made.expect_err("it cannot be drawn").to_string()
     };
     assert!(says(&frame, &[]).contains("1 draws"), "{}", says(&frame, &[]));

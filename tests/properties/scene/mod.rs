@@ -13,7 +13,7 @@ use lightmeter::image::run::profile_of;
 use lightmeter::image::{Expected, expect};
 use lightmeter::subject::Subject;
 use lightmeter_gpu::Shaders;
-use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_reference::render::{Image, render};
 use lightmeter_scene::effects::{effects, named};
@@ -120,7 +120,7 @@ fn devices_draw_random_frames_within_what_is_legal() {
         let frame = frame(seed);
         let expected = expect(&frame, None, None, &profile);
         for (shader, sets) in [(Shader::Composed, effects(&frame)), (Shader::Full, named(&frame))] {
-            let renderer = SceneRenderer::new(gpu, &shaders, &frame, &sets, shader, None).expect("it compiles");
+            let renderer = SceneRenderer::new(gpu, &shaders, &frame, &sets, Recipe::of(shader)).expect("it compiles");
             let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu)).expect("it draws");
             let image = Stored::read(48, frame.target.format, &bytes);
             for (number, (pixel, legal)) in image.pixels.iter().zip(&expected).enumerate() {

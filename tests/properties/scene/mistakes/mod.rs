@@ -14,7 +14,7 @@ use lightmeter::image::{Expected, expect};
 use lightmeter::scene::load;
 use lightmeter::subject::Subject;
 use lightmeter_gpu::Shaders;
-use lightmeter_gpu::compose::Shader;
+use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{Called, effects};
@@ -56,7 +56,7 @@ impl Prepared {
     /// The scene as a device draws it by composed shaders, judged.
     fn judged(&self, subject: &Subject, shaders: &Shaders) -> Judged {
         let gpu = subject.gpu().expect("an adapter has a device");
-        let renderer = SceneRenderer::new(gpu, shaders, &self.frame, &self.sets, Shader::Composed, None);
+        let renderer = SceneRenderer::new(gpu, shaders, &self.frame, &self.sets, Recipe::of(Shader::Composed));
         let renderer = renderer.expect("the mistakes compile");
         let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu)).expect("it draws");
         let image = Stored::read(self.reference.width, self.reference.format, &bytes);

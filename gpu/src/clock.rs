@@ -1,0 +1,223 @@
+//! How long a device works: by its own timestamps, or, where it has none that can be used, by the clock on the wall.
+
+use crate::device::Gpu;
+use crate::error::Error;
+use std::time::Instant;
+
+/// How a clock tells time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClockKind {
+    /// The device's timestamps, before the first pass and after the last.
+    Timestamps,
+    /// The time from a submission until the device is idle.
+    Wall,
+}
+
+impl ClockKind {
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Timestamps => "timestamps",
+            Self::Wall => "wall",
+        }
+    }
+}
+
+/// A reading of a clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// Seconds.
+    Seconds(f64),
+    /// A reading that cannot be true, and why.
+    Rejected(&'static str),
+}
+
+impl Reading {
+    /// The seconds; `None` of what was rejected.
+    #[must_use]
+    pub const fn seconds(self) -> Option<f64> {
+        match self {
+            Self::Seconds(seconds) => Some(seconds),
+            Self::Rejected(_) => None,
+        }
+    }
+
+    /// What two timestamps say, in ticks of so many seconds, of work that took no more than `wall` seconds.
+    #[must_use]
+    pub fn of_ticks([start, end]: [u64; 2], period: f64, wall: f64) -> Self {
+        // Drivers leave 0 where nothing was written.
+        if start == 0 || end == 0 {
+            return Self::Rejected("a timestamp is 0: it was never written");
+        }
+        if end < start {
+            return Self::Rejected("the end is before the start");
+        }
+        if end == start {
+            return Self::Rejected("no time went by");
+        }
+        #[expect(clippy::cast_precision_loss, reason = "2^53 ticks of a nanosecond are a hundred days")]
+        let seconds = (end - start) as f64 * period;
+        // A period that is no number, or negative, fails here as well.
+        if seconds > 0.0 && seconds <= wall {
+            Self::Seconds(seconds)
+        } else {
+            Self::Rejected("longer than from the submission to its end by the clock on the wall")
+        }
+    }
+}
+
+/// A clock of a device.
+#[derive(Debug)]
+pub struct Clock {
+    stamps: Option<Stamps>,
+    note: Option<String>,
+}
+
+#[derive(Debug)]
+struct Stamps {
+    queries: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    staging: wgpu::Buffer,
+    period: f64,
+}
+
+/// Where a measurement's passes write their timestamps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Span<'a>(Option<&'a wgpu::QuerySet>);
+
+impl<'a> Span<'a> {
+    /// Nothing is measured.
+    pub(crate) const NONE: Self = Self(None);
+
+    /// For a compute pass.
+    pub(crate) fn compute(self) -> Option<wgpu::ComputePassTimestampWrites<'a>> {
+        self.0.map(|query_set| wgpu::ComputePassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: Some(0),
+            end_of_pass_write_index: Some(1),
+        })
+    }
+
+    /// For a render pass, of some in one submission.
+    pub(crate) fn render(self, is_first: bool, is_last: bool) -> Option<wgpu::RenderPassTimestampWrites<'a>> {
+        let query_set = self.0.filter(|_| is_first || is_last)?;
+        Some(wgpu::RenderPassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: is_first.then_some(0),
+            end_of_pass_write_index: is_last.then_some(1),
+        })
+    }
+}
+
+impl Clock {
+    /// The device's timestamps where they can be used, else the clock on the wall.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn new(gpu: &Gpu) -> Result<Self, Error> {
+        if !gpu.has_timestamps() {
+            return Ok(Self::wall(Some("the adapter lacks the feature TIMESTAMP_QUERY".into())));
+        }
+        let clock = Self { stamps: Some(Stamps::new(gpu)), note: None };
+        gpu.check()?;
+        Ok(clock)
+    }
+
+    /// The clock on the wall, and why it is that.
+    #[must_use]
+    pub const fn wall(note: Option<String>) -> Self {
+        Self { stamps: None, note }
+    }
+
+    /// How it tells time.
+    #[must_use]
+    pub const fn kind(&self) -> ClockKind {
+        if self.stamps.is_some() { ClockKind::Timestamps } else { ClockKind::Wall }
+    }
+
+    /// Why it is the clock on the wall.
+    #[must_use]
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// Times the passes that are encoded, in a submission of their own on an idle device.
+    pub(crate) fn time(
+        &self,
+        gpu: &Gpu,
+        encode: impl FnOnce(&mut wgpu::CommandEncoder, Span<'_>),
+    ) -> Result<Reading, Error> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encode(&mut encoder, self.stamps.as_ref().map_or(Span::NONE, |stamps| Span(Some(&stamps.queries))));
+        if let Some(stamps) = &self.stamps {
+            encoder.resolve_query_set(&stamps.queries, 0..2, &stamps.resolved, 0);
+            encoder.copy_buffer_to_buffer(&stamps.resolved, 0, &stamps.staging, 0, 16);
+        }
+        let commands = encoder.finish();
+        gpu.wait()?;
+        let start = Instant::now();
+        gpu.queue.submit([commands]);
+        gpu.wait()?;
+        let wall = start.elapsed().as_secs_f64();
+        match &self.stamps {
+            None => Ok(Reading::Seconds(wall)),
+            Some(stamps) => Ok(Reading::of_ticks(stamps.read(gpu)?, stamps.period, wall)),
+        }
+    }
+}
+
+impl Stamps {
+    fn new(gpu: &Gpu) -> Self {
+        let buffer = |usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("timestamps"),
+                size: 16,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        Self {
+            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("timestamps"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2,
+            }),
+            resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
+            staging: buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
+            period: f64::from(gpu.queue.get_timestamp_period()) * 1e-9,
+        }
+    }
+
+    fn read(&self, gpu: &Gpu) -> Result<[u64; 2], Error> {
+        let failed = |message: String| Error::Device(message);
+        self.staging.map_async(wgpu::MapMode::Read, .., |_| {});
+        gpu.wait()?;
+        let ticks = {
+            let view = self.staging.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
+            let ticks: &[u64] = bytemuck::cast_slice(&view);
+            [ticks[0], ticks[1]]
+        };
+        self.staging.unmap();
+        Ok(ticks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_true_is_rejected() {
+        let nanosecond = 1e-9;
+        assert_eq!(Reading::of_ticks([1_000, 3_000], nanosecond, 1.0), Reading::Seconds(2_000.0 * nanosecond));
+        for ticks in [[0, 5], [5, 0], [0, 0], [7, 5], [u64::MAX, 1], [5, 5]] {
+            assert_eq!(Reading::of_ticks(ticks, nanosecond, 1.0).seconds(), None, "{ticks:?}");
+        }
+        // Two seconds by a device, of one on the wall.
+        assert_eq!(Reading::of_ticks([1, 2_000_000_001], nanosecond, 1.0).seconds(), None);
+        for period in [0.0, -1e-9, f64::NAN, f64::INFINITY] {
+            assert_eq!(Reading::of_ticks([1, 2], period, 1.0).seconds(), None, "{period}");
+        }
+    }
+}
