@@ -1,6 +1,7 @@
 //! The suite: cases, acceptance, verdicts, the runner and its reports, as a library for the `lightmeter` binary and others.
 
 pub mod arithmetic;
+pub mod bench;
 pub mod blend_unit;
 pub mod cases;
 pub mod devices;

@@ -48,26 +48,6 @@ impl<'de> Deserialize<'de> for Exact {
     }
 }
 
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum Written {
-            Finite(f64),
-            Word(String),
-        }
-        match Written::deserialize(deserializer)? {
-            Written::Finite(x) => Ok(Self(x)),
-            Written::Word(word) => match word.as_str() {
-                "NaN" => Ok(Self(f64::NAN)),
-                "Inf" => Ok(Self(f64::INFINITY)),
-                "-Inf" => Ok(Self(f64::NEG_INFINITY)),
-                _ => Err(serde::de::Error::custom(format!("`{word}` is no number; expected NaN, Inf or -Inf"))),
-            },
-        }
-    }
-}
-
 /// One input of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]

@@ -2,6 +2,7 @@
 //! claim and cost, and a picture of both errors against the condition.
 
 use crate::cases::Stable;
+use crate::report::Number;
 use crate::select::{Member, catalogue};
 use crate::stability::UNSTABLE;
 use serde::Deserialize;
@@ -57,16 +58,7 @@ struct Cost {
 
 /// A number, or the name of one that JSON has not.
 fn number<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Written {
-        Number(f64),
-        Name(String),
-    }
-    match Written::deserialize(deserializer)? {
-        Written::Number(x) => Ok(x),
-        Written::Name(name) => name.parse().map_err(serde::de::Error::custom),
-    }
+    Number::deserialize(deserializer).map(|number| number.0)
 }
 
 /// What stages and adapters found of one case: the stable form at its worst, the naive one at its best.
