@@ -2,3 +2,5 @@
 //! time that it takes.
 
 pub mod document;
+pub mod errors;
+pub mod turns;
