@@ -62,12 +62,17 @@ impl Gpu {
         Self::open(&self.name, &self.adapter)
     }
 
+    /// Whether the driver computes on the processor.
+    #[must_use]
+    pub fn is_cpu(&self) -> bool {
+        self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    }
+
     /// How many devices compile pipelines side by side: a software Vulkan driver compiles at the first draw, on the one
     /// thread of its queue.
     pub(crate) fn lanes(&self) -> usize {
-        let is_cpu = self.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
         let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        if is_cpu && !self.is_gl { cores.min(4) } else { 1 }
+        if self.is_cpu() && !self.is_gl { cores.min(4) } else { 1 }
     }
 
     /// The first error that the device reported since the last time this was asked.

@@ -64,7 +64,8 @@ impl Kernel {
     pub(crate) fn repeat(&self, shaders: &Shaders) -> Result<String, Error> {
         let word = |k: usize| self.moved_word(k);
         let signature = Signature::read(shaders, &self.file, &self.function, word)?;
-        let entry = repeat_entry(&signature.call, self.inputs, &signature.fields);
+        let words: Vec<String> = (0..self.inputs).map(word).collect();
+        let entry = repeat_entry(&signature.call, self.inputs, &signature.fields, &words);
         let source = format!("{}\n{entry}", shaders.source(&self.file));
         validate(&self.file, &source)?;
         Ok(source)
@@ -73,7 +74,7 @@ impl Kernel {
     /// The same without the function: what reading the inputs and the loop take by themselves.
     pub(crate) fn idle(&self) -> String {
         let words: Vec<String> = (0..self.inputs).map(|k| self.moved_word(k)).collect();
-        repeat_entry("", self.inputs, &[words.join(" ^ ")])
+        repeat_entry("", self.inputs, &[], &words)
     }
 
     /// The k-th word of an invocation's row, read beforehand, with a number's last three bits moved from turn to turn.
@@ -81,7 +82,7 @@ impl Kernel {
         if k < self.selectors {
             format!("lightmeter_word{k}")
         } else {
-            format!("(lightmeter_word{k} ^ (lightmeter_turn & 7u))")
+            format!("(lightmeter_word{k} ^ (lightmeter_turn & lightmeter_moved{k}))")
         }
     }
 
@@ -151,18 +152,23 @@ fn lightmeter_compute(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
     )
 }
 
-/// Evaluates a row over and over, each number's last three bits moved from turn to turn, and folds what comes out into a word.
-/// The first rows' results of the first turn, whose numbers are as they were given, are written, and what was folded after
-/// them; other invocations write nothing.
-fn repeat_entry(call: &str, inputs: usize, fields: &[String]) -> String {
-    let words = (0..inputs).fold(String::new(), |mut text, k| {
+/// Evaluates a row over and over, each number's last three bits moved from turn to turn, and folds what comes out and what goes in
+/// into a word. The first rows' results of the first turn, whose numbers are as they were given, are written, and what was
+/// folded after them; other invocations write nothing.
+///
+/// Zeros stay zeros: next to them are subnormals, which take some processors a hundred times as long.
+fn repeat_entry(call: &str, inputs: usize, fields: &[String], words: &[String]) -> String {
+    let read = (0..inputs).fold(String::new(), |mut text, k| {
         let _ = writeln!(text, "    let lightmeter_word{k} = {};", row_word(k));
+        let _ =
+            writeln!(text, "    let lightmeter_moved{k} = select(0u, 7u, (lightmeter_word{k} & 0x7f800000u) != 0u);");
         text
     });
     let stores = fields.iter().enumerate().fold(String::new(), |mut text, (k, field)| {
         let _ = writeln!(text, "            lightmeter_results[lightmeter_place + {k}u] = {field};");
         text
     });
+    let folded: Vec<&str> = fields.iter().chain(words).map(String::as_str).collect();
     format!(
         "{ROWS}@group(0) @binding(1) var<storage, read_write> lightmeter_results: array<u32>;
 override lightmeter_times: u32;
@@ -171,7 +177,7 @@ fn lightmeter_repeat(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
     let lightmeter_base = (lightmeter_id.x % (arrayLength(&lightmeter_rows) / {inputs}u)) * {inputs}u;
     let lightmeter_place = lightmeter_id.x * {stride}u;
     let lightmeter_writes = lightmeter_place < arrayLength(&lightmeter_results);
-{words}    var lightmeter_folded = 0u;
+{read}    var lightmeter_folded = 0u;
     for (var lightmeter_turn = 0u; lightmeter_turn < lightmeter_times; lightmeter_turn++) {{
         {call}
         if lightmeter_turn == 0u && lightmeter_writes {{
@@ -187,7 +193,7 @@ fn lightmeter_repeat(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
 ",
         stride = fields.len() + 1,
         last = fields.len(),
-        folded = fields.join(" ^ ")
+        folded = folded.join(" ^ ")
     )
 }
 

@@ -20,8 +20,8 @@ const GROUP: u32 = 64;
 pub struct RepeatPipeline {
     pipeline: wgpu::ComputePipeline,
     rows: wgpu::Buffer,
-    /// Rows that there are.
-    count: usize,
+    /// Numbers of a row.
+    inputs: usize,
     /// Words of a row's outputs.
     words: usize,
 }
@@ -39,9 +39,13 @@ impl RepeatPipeline {
         gpu: &Gpu,
         shaders: &Shaders,
         kernel: &Kernel,
+        rung: crate::Rung,
         rows: &[f32],
-    ) -> Result<Result<Self, &'static str>, Error> {
-        Self::of(gpu, kernel, kernel.repeat(shaders)?, rows, kernel.outputs)
+    ) -> Result<Result<Self, String>, Error> {
+        if rung != crate::Rung::F32 {
+            return Ok(Err("it is not built yet".into()));
+        }
+        Ok(Self::of(gpu, kernel, kernel.repeat(shaders)?, rows, kernel.outputs)?.map_err(str::to_owned))
     }
 
     /// The same without the function: what reading the inputs and the loop take by themselves.
@@ -49,7 +53,7 @@ impl RepeatPipeline {
     /// # Errors
     /// Where the device refuses the pipeline.
     pub fn idle(gpu: &Gpu, kernel: &Kernel, rows: &[f32]) -> Result<Result<Self, &'static str>, Error> {
-        Self::of(gpu, kernel, kernel.idle(), rows, 1)
+        Self::of(gpu, kernel, kernel.idle(), rows, 0)
     }
 
     fn of(
@@ -73,23 +77,23 @@ impl RepeatPipeline {
             cache: None,
         });
         gpu.check_shader(&kernel.file)?;
-        let count = rows.len() / kernel.inputs;
         let rows = gpu.buffer(bytemuck::cast_slice(rows), wgpu::BufferUsages::STORAGE);
-        Ok(Ok(Self { pipeline, rows, count, words }))
+        Ok(Ok(Self { pipeline, rows, inputs: kernel.inputs, words }))
     }
 
-    /// The words of every row's outputs, row after row.
+    /// The words of the outputs of rows of inputs, row after row.
     ///
     /// # Errors
     /// Where the device failed or was lost.
-    pub fn outputs(&self, gpu: &Gpu) -> Result<Vec<u32>, Error> {
-        let stride = self.words + 1;
-        let (results, bindings) = self.bindings(gpu, self.count * stride);
+    pub fn outputs(&self, gpu: &Gpu, rows: &[f32]) -> Result<Vec<u32>, Error> {
+        let (stride, count) = (self.words + 1, rows.len() / self.inputs);
+        let rows = gpu.buffer(bytemuck::cast_slice(rows), wgpu::BufferUsages::STORAGE);
+        let (results, bindings) = self.bindings(gpu, &rows, count * stride);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let groups = u32::try_from(self.count).unwrap_or(u32::MAX).div_ceil(GROUP);
+        let groups = u32::try_from(count).unwrap_or(u32::MAX).div_ceil(GROUP);
         self.encode(&mut encoder, None, &bindings, groups);
-        let staging = staging(gpu, self.count * stride);
-        encoder.copy_buffer_to_buffer(&results, 0, &staging, 0, results.size());
+        let staging = staging(gpu, count * stride);
+        encoder.copy_buffer_to_buffer(&results, 0, &staging, 0, staging.size());
         Pending::submit(gpu, encoder, staging, (stride, self.words)).wait(gpu)
     }
 
@@ -98,14 +102,14 @@ impl RepeatPipeline {
     /// # Errors
     /// Where the device fails.
     pub fn time(&self, gpu: &Gpu, clock: &Clock, groups: u32) -> Result<Reading, Error> {
-        let (_, bindings) = self.bindings(gpu, self.words + 1);
+        let (_, bindings) = self.bindings(gpu, &self.rows, self.words + 1);
         clock.time(gpu, |encoder, span| self.encode(encoder, span.compute(), &bindings, groups))
     }
 
-    fn bindings(&self, gpu: &Gpu, words: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
+    fn bindings(&self, gpu: &Gpu, rows: &wgpu::Buffer, words: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         let results = gpu.buffer(bytemuck::cast_slice(&vec![SENTINEL; words]), usage);
-        let bindings = bind(gpu, &self.pipeline.get_bind_group_layout(0), &[&self.rows, &results]);
+        let bindings = bind(gpu, &self.pipeline.get_bind_group_layout(0), &[rows, &results]);
         (results, bindings)
     }
 

@@ -46,6 +46,11 @@ impl Rung {
         }
     }
 
+    /// Why a device has it not; `None` where it has.
+    pub fn unavailable(self, gpu: &Gpu) -> Result<Option<String>, crate::Error> {
+        Ok((self != Self::F32).then(|| self.lacks(gpu).unwrap_or("it is not built yet").to_owned()))
+    }
+
     /// The feature that a device lacks for it; `None` where it has what it takes.
     #[must_use]
     pub fn lacks(self, gpu: &Gpu) -> Option<&'static str> {

@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The built-in files that stand by themselves: a formula family each, the elementary functions that WGSL lacks, four
-/// that drive fixed hardware, and two of probes.
-pub const FILES: [(&str, &str); 16] = [
+/// that drive fixed hardware, two of probes, and the techniques that are measured against each other.
+pub const FILES: [(&str, &str); 17] = [
     ("attenuation.wgsl", include_str!("shaders/attenuation.wgsl")),
     ("blend.wgsl", include_str!("shaders/blend.wgsl")),
     ("blend_unit.wgsl", include_str!("shaders/blend_unit.wgsl")),
@@ -23,6 +23,7 @@ pub const FILES: [(&str, &str); 16] = [
     ("probe.wgsl", include_str!("shaders/probe.wgsl")),
     ("raster.wgsl", include_str!("shaders/raster.wgsl")),
     ("special.wgsl", include_str!("shaders/special.wgsl")),
+    ("technique.wgsl", include_str!("shaders/technique.wgsl")),
     ("texture.wgsl", include_str!("shaders/texture.wgsl")),
     ("vector.wgsl", include_str!("shaders/vector.wgsl")),
 ];

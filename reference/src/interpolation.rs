@@ -85,6 +85,12 @@ pub fn forward_differences<R: Real, const N: usize>(a: R, b: R) -> R {
     R::sum(std::array::from_fn::<R, N, _>(|k| if k == 0 { a } else { step }))
 }
 
+/// The last of a span's N pixels by forward differences: `a` and N − 1 times the step `(b − a)/N`. Source: 004.
+pub fn last_by_differences<R: Real, const N: usize>(a: R, b: R) -> R {
+    let step = ((b - a) / R::literal(u32::try_from(N).map_or(f64::INFINITY, f64::from))).named("step");
+    R::sum(std::array::from_fn::<R, N, _>(|k| if k == 0 { a } else { step }))
+}
+
 /// `Attr(p) = Σ λᵢ·Attrᵢ/wᵢ / Σ λᵢ/wᵢ`, λ the weights in screen space: perspective-correct interpolation.
 pub fn perspective<R: Real>(lambda: [R; 3], w: [R; 3], attr: [R; 3]) -> R {
     let q: [R; 3] = std::array::from_fn(|k| lambda[k] / w[k]);

@@ -333,6 +333,13 @@ pub fn cosine_power<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
     a.dot(b).named("a·b").lobe(exponent)
 }
 
+/// `t/(S − S·t + t)` for `t = max(a·b, 0)`: an approximation of `t^S` without a power, of its value and slope at 1 and of its
+/// value at 0. Source: Schlick 1994.
+pub fn cosine_power_by_schlick<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
+    let t = a.dot(b).max(R::literal(0.0)).named("t");
+    t / R::sum([exponent, -(exponent * t), t])
+}
+
 /// The same without the `max`: no value where the cosine is negative.
 pub fn cosine_power_unguarded<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
     a.dot(b).named("a·b").pow(exponent)

@@ -2,6 +2,7 @@
 
 #![expect(clippy::float_cmp, reason = "what must hold exactly is compared exactly")]
 
+mod bench;
 mod blend;
 mod hard;
 mod images;

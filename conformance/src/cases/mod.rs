@@ -12,7 +12,7 @@ pub mod lighting;
 pub mod vector;
 
 mod draw;
-mod formula;
+pub(crate) mod formula;
 mod raster;
 mod rows;
 mod spec;

@@ -1,6 +1,7 @@
 //! The command line: what can be asked for, and the exit codes.
 
 mod adapters;
+mod bench;
 mod effects;
 mod eval;
 mod list;
@@ -41,6 +42,8 @@ enum Command {
     List(list::List),
     /// Show one case: formula, inputs, each step, the interval, and what the adapter gives
     Show(show::Show),
+    /// Measure what accuracy costs in time: each technique and rung, its error and its time
+    Bench(bench::Bench),
     /// List what can be run on
     Adapters(adapters::Adapters),
     /// Judge a formula along one of its inputs over every float of a range, or a blend mode over every byte
@@ -69,6 +72,7 @@ impl Cli {
             Command::Run(run) => run.run(),
             Command::List(list) => list.run(),
             Command::Show(show) => show.run(),
+            Command::Bench(bench) => bench.run(),
             Command::Adapters(adapters) => adapters.run(),
             Command::Sweep(sweep) => sweep.run(),
             Command::Merge(merge) => merge.run(),

@@ -4,7 +4,7 @@ use crate::evaluate::kernel;
 use crate::run::Options;
 use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
-use lightmeter_gpu::{Clock, Error, RepeatPipeline};
+use lightmeter_gpu::{Clock, Error, RepeatPipeline, Rung};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -52,7 +52,7 @@ pub(super) fn cost(
     let kernel_of = |member: &Member| Ok(kernel(&options.shaders, member)?.expect("arithmetic has a shader function"));
     let own = kernel_of(member)?;
     let Ok(idle) = RepeatPipeline::idle(gpu, &own, &rows)? else { return Ok(vec![]) };
-    let Ok(stable) = RepeatPipeline::new(gpu, &options.shaders, &own, &rows)? else { return Ok(vec![]) };
+    let Ok(stable) = RepeatPipeline::new(gpu, &options.shaders, &own, Rung::F32, &rows)? else { return Ok(vec![]) };
     let clock = Clock::wall(None);
     let time = |pipeline: &RepeatPipeline| {
         let reading = pipeline.time(gpu, &clock, GROUPS)?;
@@ -61,7 +61,9 @@ pub(super) fn cost(
     };
     let mut costs = vec![];
     for (id, rival) in rivals {
-        let Ok(naive) = RepeatPipeline::new(gpu, &options.shaders, &kernel_of(rival)?, &rows)? else { continue };
+        let Ok(naive) = RepeatPipeline::new(gpu, &options.shaders, &kernel_of(rival)?, Rung::F32, &rows)? else {
+            continue;
+        };
         for warm in [&idle, &stable, &naive] {
             time(warm)?;
         }

@@ -1,0 +1,111 @@
+//! `lightmeter bench`.
+
+use super::options::{Choice, shaders, subjects};
+use super::{NothingToRun, Status, emit};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lightmeter::arithmetic::Profile;
+use lightmeter::bench::{Options, bench};
+use lightmeter::filter::Filter;
+use lightmeter::run::Progress;
+use lightmeter_gpu::ClockKind;
+use std::path::PathBuf;
+
+/// Measure what accuracy costs in time: each technique at each rung of the ladder, its error and its time.
+#[derive(Debug, Args)]
+pub(crate) struct Bench {
+    /// Groups to measure, as globs: `fog`, `lighting/blinn`, `technique/*`, `stable/**`, `scene/teapot`, `scaling/lights`; or
+    /// a scene's file, whose name ends in .json
+    filter: Vec<String>,
+    /// Fewer groups, cases and turns: done within a minute
+    #[arg(long)]
+    quick: bool,
+    /// Adapter to measure, as for `run`; without it: lavapipe, or the first there is
+    #[arg(long, value_name = "NAME")]
+    adapter: Vec<String>,
+    /// How GPU times are told; without it: by timestamps where the adapter has them
+    #[arg(long, value_enum, value_name = "CLOCK")]
+    clock: Option<Clock>,
+    /// Seed of the random cases
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Accuracy rules: wgsl or vulkan
+    #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
+    profile: &'static Profile,
+    /// Measure the WGSL in this folder in place of the built-in files of the same names
+    #[arg(long, value_name = "DIR")]
+    shaders: Option<PathBuf>,
+    /// How the result is written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write it to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// How output is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// How GPU times are told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Clock {
+    /// By the device's timestamps
+    Timestamps,
+    /// By the clock on the wall
+    Wall,
+}
+
+impl Bench {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let options = Options {
+            filter: Filter::new(&self.filter)?,
+            quick: self.quick,
+            seed: self.seed,
+            clock: self.clock.map(|clock| match clock {
+                Clock::Timestamps => ClockKind::Timestamps,
+                Clock::Wall => ClockKind::Wall,
+            }),
+            profile: self.profile,
+            shaders: shaders(self.shaders.as_deref())?,
+            command: "lightmeter bench".into(),
+        };
+        let mut subjects = subjects(&self.adapter)?;
+        let mut bar = Bar::default();
+        let document = bench(&mut subjects, &options, &mut bar);
+        bar.0.finish_and_clear();
+        let document = document?;
+        emit(&(serde_json::to_string_pretty(&document)? + "\n"), self.out.as_deref())?;
+        if document.adapters.iter().all(|adapter| adapter.groups.is_empty() && adapter.scalings.is_empty()) {
+            return Err(NothingToRun("no group matches".into()).into());
+        }
+        Ok(Status::Success)
+    }
+}
+
+/// A bar on standard error, where that is a terminal.
+struct Bar(ProgressBar);
+
+impl Default for Bar {
+    fn default() -> Self {
+        Self(ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()))
+    }
+}
+
+impl Progress for Bar {
+    fn start(&mut self, groups: u64) {
+        self.0.set_length(groups);
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} groups  {elapsed}  {msg}") {
+            self.0.set_style(style);
+        }
+    }
+    fn group(&mut self, id: &str) {
+        self.0.set_message(id.to_owned());
+    }
+    fn advance(&mut self, groups: u64) {
+        self.0.inc(groups);
+    }
+}
