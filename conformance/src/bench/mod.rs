@@ -5,9 +5,18 @@ mod claims;
 mod contest;
 pub mod document;
 pub mod errors;
+mod figures;
 mod formulas;
 mod growth;
+pub mod ladder;
+pub mod page;
+pub mod pareto;
+pub mod plot;
+pub mod recommend;
+#[cfg(test)]
+mod synthetic;
 mod techniques;
+pub mod text;
 pub mod turns;
 
 use crate::arithmetic::Profile;
@@ -15,7 +24,7 @@ use crate::filter::Filter;
 use crate::run::Progress;
 use crate::select::catalogue;
 use crate::subject::Subject;
-use document::{ClockUse, Document, Group, Measured, SCHEMA};
+use document::{ClockUse, Document, Family, Group, GroupKind, Measured, SCHEMA};
 use lightmeter_gpu::{Clock, ClockKind, Error, Gpu, Rung, Shaders};
 use std::time::Instant;
 use turns::Effort;
@@ -193,6 +202,10 @@ fn measured(
         scalings,
         claims: vec![],
     };
+    for group in &mut measured.groups {
+        group.front = pareto::front_of(group);
+    }
+    measured.families = families(&measured.groups);
     measured.claims = claims::claims(&measured.groups);
     Ok(measured)
 }
@@ -216,4 +229,17 @@ fn ladder_of(subject: &Subject) -> Result<Vec<(Rung, Option<String>)>, Error> {
         Some(gpu) => Ok((rung, rung.unavailable(gpu)?)),
     };
     Rung::ALL.into_iter().map(of).collect()
+}
+
+/// The families whose formulas, or scenes, were measured beside f32.
+fn families(groups: &[Group]) -> Vec<Family> {
+    let mut families: Vec<Family> = vec![];
+    let is_of_ladder = |group: &&Group| group.kind != GroupKind::Technique && group.baseline == Rung::F32.name();
+    for group in groups.iter().filter(is_of_ladder) {
+        if families.iter().all(|family| family.id != group.family) {
+            let of = groups.iter().filter(is_of_ladder).filter(|other| other.family == group.family);
+            families.push(ladder::family(&group.family, of));
+        }
+    }
+    families
 }

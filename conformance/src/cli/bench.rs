@@ -5,7 +5,9 @@ use super::{NothingToRun, Status, emit};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::arithmetic::Profile;
-use lightmeter::bench::{Options, bench};
+use lightmeter::bench::document::Document;
+use lightmeter::bench::recommend::{self, Inputs, Limit, recommend};
+use lightmeter::bench::{Options, bench, page, text};
 use lightmeter::filter::Filter;
 use lightmeter::run::Progress;
 use lightmeter_gpu::ClockKind;
@@ -35,9 +37,18 @@ pub(crate) struct Bench {
     /// Measure the WGSL in this folder in place of the built-in files of the same names
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
+    /// Name the cheapest row of each group whose largest error is at most this: absolute as `1e-4`, or `4ulp`, or `0.5/255`
+    #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
+    recommend: Option<Limit>,
+    /// The inputs that it must hold on: random, hard or all
+    #[arg(long, value_name = "INPUTS", default_value = "all", requires = "recommend")]
+    inputs: Inputs,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
+    /// Text: every formula, row by row
+    #[arg(long)]
+    details: bool,
     /// Write it to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -48,6 +59,8 @@ pub(crate) struct Bench {
 enum Format {
     Text,
     Json,
+    /// A table for a README
+    Markdown,
 }
 
 /// How GPU times are told.
@@ -71,18 +84,62 @@ impl Bench {
             }),
             profile: self.profile,
             shaders: shaders(self.shaders.as_deref())?,
-            command: "lightmeter bench".into(),
+            command: self.command(),
         };
         let mut subjects = subjects(&self.adapter)?;
         let mut bar = Bar::default();
         let document = bench(&mut subjects, &options, &mut bar);
         bar.0.finish_and_clear();
         let document = document?;
-        emit(&(serde_json::to_string_pretty(&document)? + "\n"), self.out.as_deref())?;
         if document.adapters.iter().all(|adapter| adapter.groups.is_empty() && adapter.scalings.is_empty()) {
-            return Err(NothingToRun("no group matches".into()).into());
+            let message =
+                "no group matches; there are the formulas, as fog/exp, technique/*, stable/**, scene/* and scaling/*";
+            return Err(NothingToRun(message.into()).into());
         }
+        emit(&self.write(&document)?, self.out.as_deref())?;
         Ok(Status::Success)
+    }
+
+    fn write(&self, document: &Document) -> anyhow::Result<String> {
+        let mut out = String::new();
+        match (self.recommend, self.format) {
+            (None, Format::Json) => out = serde_json::to_string_pretty(document)? + "\n",
+            (None, Format::Text) => text::write(document, self.details, &mut out)?,
+            (None, Format::Markdown) => page::readme(document, &mut out)?,
+            (Some(limit), format) => {
+                let recommendation = recommend(document, &Filter::default(), limit, self.inputs);
+                match format {
+                    Format::Json => out = serde_json::to_string_pretty(&recommendation)? + "\n",
+                    Format::Text => recommend::write(&recommendation, &mut out)?,
+                    Format::Markdown => anyhow::bail!("a recommendation is written as text or json"),
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// The command, but for where its result goes.
+    fn command(&self) -> String {
+        let mut command = "lightmeter bench".to_owned();
+        for filter in &self.filter {
+            command += &format!(" '{filter}'");
+        }
+        for adapter in &self.adapter {
+            command += &format!(" --adapter {adapter}");
+        }
+        if self.quick {
+            command += " --quick";
+        }
+        if let Some(clock) = self.clock.and_then(|clock| clock.to_possible_value()) {
+            command += &format!(" --clock {}", clock.get_name());
+        }
+        if self.seed != 1 {
+            command += &format!(" --seed {}", self.seed);
+        }
+        if self.profile.name != "wgsl" {
+            command += &format!(" --profile {}", self.profile.name);
+        }
+        command
     }
 }
 

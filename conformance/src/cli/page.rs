@@ -3,13 +3,18 @@
 use super::{Status, emit};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
-use lightmeter::report::page::{Run, markdown, scenes, special, stability, svg, sweep};
-use lightmeter::sweep::Document;
+use lightmeter::bench::document::{Document, SCHEMA};
+use lightmeter::bench::{page, plot};
+use lightmeter::report;
+use lightmeter::report::page::{Run, markdown, scenes, special, stability, svg};
+use lightmeter::sweep;
 use std::path::PathBuf;
 
 /// What a page is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Subject {
+    /// What accuracy costs in time, from the JSON of `bench`, with pictures.
+    Bench,
     /// Blend states against routes and drivers.
     Blend,
     /// The built-in scenes, with a contact sheet.
@@ -28,10 +33,11 @@ pub(crate) struct Page {
     /// What it is about
     #[arg(value_enum)]
     subject: Subject,
-    /// The JSON of `lightmeter run --format json`, or of `lightmeter special --format json`; of sweeps, that of each
+    /// The JSON of `lightmeter run --format json`, or of `special` or `bench` with the same; of sweeps, that of each
     #[arg(required = true)]
     runs: Vec<PathBuf>,
-    /// Write the page to a file, and its picture to one of the same name that ends in .svg or .png
+    /// Write the page to a file, and its picture to one of the same name that ends in .svg or .png; those of a bench to a folder of
+    /// that name
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -48,6 +54,7 @@ impl Page {
         let name = run.display();
         let json = std::fs::read_to_string(run).with_context(|| format!("cannot read {name}"))?;
         let text = match self.subject {
+            Subject::Bench => self.bench(&json),
             Subject::Blend => self.blend(&json),
             Subject::Scenes | Subject::Sweep => self.scenes(&json),
             Subject::Special => special(&json),
@@ -60,14 +67,35 @@ impl Page {
     fn sweeps(&self) -> anyhow::Result<String> {
         let mut results = vec![];
         for path in &self.runs {
-            let result = Document::read(path)?;
+            let result = sweep::Document::read(path)?;
             if !result.is_finished() {
                 bail!("{} is not finished; give it as --checkpoint to its command again", path.display());
             }
             results.push(result);
         }
         let mut text = String::new();
-        sweep::markdown(&results, &mut text)?;
+        report::page::sweep::markdown(&results, &mut text)?;
+        Ok(text)
+    }
+
+    fn bench(&self, json: &str) -> anyhow::Result<String> {
+        let document: Document = serde_json::from_str(json)?;
+        if document.schema != SCHEMA {
+            bail!("its schema is {}; expected {SCHEMA}", document.schema);
+        }
+        let mut pictures = vec![];
+        let mut folder = String::new();
+        if let Some(out) = &self.out {
+            let dir = out.with_extension("");
+            folder = format!("{}/", dir.file_name().unwrap_or_default().to_string_lossy());
+            std::fs::create_dir_all(&dir).with_context(|| format!("cannot make the folder {}", dir.display()))?;
+            pictures = plot::pictures(&document)?;
+            for picture in &pictures {
+                emit(&picture.svg, Some(&dir.join(picture.stem()).with_extension("svg")))?;
+            }
+        }
+        let mut text = String::new();
+        page::markdown(&document, &pictures, &folder, &mut text)?;
         Ok(text)
     }
 
