@@ -183,6 +183,11 @@ formula!(
     Power: "technique/power" by "technique_power",
     "max(a·b, 0)^S", "000 §6.3", [A, B, EXPONENT] -> [FACTOR], fit near_each_other,
     |x, out| { out.scalar(lighting::cosine_power(x.vector(), x.vector(), x.scalar())); },
+);
+formula!(
+    PowerByChord: "technique/power-by-chord" by "technique_power_by_chord",
+    "exp(S·log1p(−½|a − b|²))", "Goldberg 1991 on log1p", [A, B, EXPONENT] -> [FACTOR], fit near_each_other,
+    |x, out| { out.scalar(lighting::cosine_power_by_chord(x.vector(), x.vector(), x.scalar())); },
     hard [
         Hard::new("ten-thousand", "shininess 1e4, half a degree off", &[
             ("a", &[0.0, 0.0, 1.0]), ("b", &[0.008_726_535, 0.0, 0.999_961_9]), ("exponent", &[1e4]),
@@ -191,11 +196,6 @@ formula!(
             ("a", &[0.0, 0.0, 1.0]), ("b", &[0.000_872_664_5, 0.0, 0.999_999_6]), ("exponent", &[1e6]),
         ]),
     ],
-);
-formula!(
-    PowerByChord: "technique/power-by-chord" by "technique_power_by_chord",
-    "exp(S·log1p(−½|a − b|²))", "Goldberg 1991 on log1p", [A, B, EXPONENT] -> [FACTOR], fit near_each_other,
-    |x, out| { out.scalar(lighting::cosine_power_by_chord(x.vector(), x.vector(), x.scalar())); },
 );
 formula!(
     PowerBySchlick: "technique/power-by-schlick" by "technique_power_by_schlick",
@@ -300,12 +300,12 @@ pub(super) fn all() -> Vec<Techniques> {
         Techniques {
             id: "technique/power",
             title: "a highlight's power by pow, by the chord, and Schlick's approximation",
-            ideal: "the power, in f64",
+            ideal: "the power of the angle between the two, by the chord in f64",
             baseline: "pow",
             all_rungs: true,
             techniques: vec![
-                technique("pow", "pow of the dot product", Power),
                 technique("chord", "exp(S·log1p(−½|a − b|²)), the stable form", PowerByChord),
+                technique("pow", "pow of the dot product", Power),
                 technique("schlick", "t/(S − S·t + t)", PowerBySchlick),
             ],
         },
