@@ -22,12 +22,13 @@ mod items;
 mod template;
 
 use crate::error::Error;
-use crate::rung::Rung;
-use crate::shaders::Shaders;
+use crate::rung::{Asked, Rung, lower};
+use crate::shaders::{Shaders, validate_lowered};
 use items::{Item, reached, split};
 use lightmeter_scene::effects::{Effect, Effects};
 pub use lightmeter_scene::stage::Stage;
 use naga::valid::ModuleInfo;
+use std::collections::BTreeMap;
 use template::{Template, Wanted};
 
 /// How much a draw's shader holds.
@@ -206,6 +207,8 @@ impl Composition {
 pub struct Composer {
     template: Template,
     families: Vec<Item>,
+    /// The stable form of each function that has one.
+    forms: BTreeMap<String, String>,
 }
 
 /// The files that composed shaders take formulas from.
@@ -222,7 +225,7 @@ impl Composer {
         for file in FAMILIES {
             families.extend(split(template::lines(file, shaders.text(file))));
         }
-        Ok(Self { template: Template::new(shaders)?, families })
+        Ok(Self { template: Template::new(shaders)?, families, forms: shaders.stable_forms() })
     }
 
     /// The shader of a draw of these effects. A stage goes with [`Shader::Composed`].
@@ -251,6 +254,28 @@ impl Composer {
             }
         }
         Ok(Composition { source, effects: live, origins })
+    }
+
+    /// A shader in a rung's arithmetic: see [`crate::Rung`].
+    ///
+    /// # Errors
+    /// [`Error::Unavailable`] where there is no such, with the reason.
+    pub(crate) fn lower(&self, composition: &Composition, rung: Rung) -> Result<String, Error> {
+        if rung == Rung::F32 {
+            return Ok(composition.source.clone());
+        }
+        let mut source = composition.source.clone();
+        if rung == Rung::Stable {
+            // What published functions are replaced by is reached by none of them.
+            for item in self.families.iter().filter(|item| !item.is_in(&composition.source)) {
+                source.push('\n');
+                source.extend(item.lines.iter().flat_map(|line| [line.text.as_str(), "\n"]));
+            }
+        }
+        let unavailable = |reason| Error::Unavailable { what: format!("a scene's shader in {}", rung.name()), reason };
+        let lowered = lower(&source, rung, &self.forms, Asked::Module).map_err(unavailable)?;
+        validate_lowered("scene.wgsl", &lowered.source)?;
+        Ok(lowered.source)
     }
 
     /// Composes and validates shaders that hold every effect once at least.

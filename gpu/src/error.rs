@@ -65,6 +65,14 @@ pub enum Error {
         /// Sets that were given.
         sets: usize,
     },
+    /// Something is unavailable in the arithmetic that was asked for.
+    #[error("{what} is unavailable: {reason}")]
+    Unavailable {
+        /// What was asked for.
+        what: String,
+        /// Why it is not to be had.
+        reason: String,
+    },
     /// The device does not answer.
     #[error("the device failed: no answer within {0} s; does a shader loop?")]
     Timeout(u64),

@@ -2,7 +2,8 @@
 
 use crate::error::Error;
 use crate::readback::SENTINEL;
-use crate::shaders::{Shaders, validate};
+use crate::rung::{Dialect, Lowered, Rung, Shape, Asked, lower, rung_struct};
+use crate::shaders::{Shaders, validate, validate_lowered};
 use crate::sweep::{SWEEP_GROUP, SWEEP_WIDTH};
 use naga::{Handle, Module, ScalarKind, Type, TypeInner};
 use std::fmt::Write as _;
@@ -33,7 +34,9 @@ impl Kernel {
     /// # Errors
     /// Where the file is invalid, has no such function, or one whose types cannot be read from numbers.
     pub fn new(shaders: &Shaders, file: &str, function: &str) -> Result<Self, Error> {
-        let Signature { inputs, selectors, fields, call } = Signature::read(shaders, file, function, row_word)?;
+        let signature = Signature::read(shaders, file, function, row_word, Rung::F32)?;
+        let (fields, call) = (signature.words(), &signature.call);
+        let Signature { inputs, selectors, .. } = signature;
         let source = shaders.source(file);
         let kernel = Self {
             file: file.into(),
@@ -41,8 +44,8 @@ impl Kernel {
             inputs,
             selectors,
             outputs: fields.len(),
-            compute: format!("{source}\n{}", compute_entry(&call, inputs, &fields)),
-            fragment: format!("{source}\n{}", fragment_entry(&call, inputs, &fields)),
+            compute: format!("{source}\n{}", compute_entry(call, inputs, &fields)),
+            fragment: format!("{source}\n{}", fragment_entry(call, inputs, &fields)),
         };
         // A name of the file's may stand in the way of the entry points', or an operation be out of place in a stage.
         validate(file, &kernel.compute)?;
@@ -53,28 +56,91 @@ impl Kernel {
     /// The function with entry points that evaluate one of its outputs along one of its inputs: see [`crate::Sweep`].
     pub(crate) fn sweep(&self, shaders: &Shaders, free: usize, output: usize) -> Result<String, Error> {
         let word = |k: usize| if k == free { "lightmeter_free".into() } else { format!("lightmeter_row[{k}u]") };
-        let signature = Signature::read(shaders, &self.file, &self.function, word)?;
-        let entries = sweep_entries(&signature.call, self.inputs, &signature.fields[output]);
+        let signature = Signature::read(shaders, &self.file, &self.function, word, Rung::F32)?;
+        let entries = sweep_entries(&signature.call, self.inputs, &signature.words()[output]);
         let source = format!("{}\n{entries}", shaders.source(&self.file));
         validate(&self.file, &source)?;
         Ok(source)
     }
 
-    /// The function with an entry point that evaluates it many times over: see [`crate::RepeatPipeline`].
-    pub(crate) fn repeat(&self, shaders: &Shaders) -> Result<String, Error> {
+    /// The function with an entry point that evaluates it many times over, in a rung's arithmetic: see
+    /// [`crate::RepeatPipeline`]. Inputs are numbers of f32; an output is handed back in [`Rung::parts`] words. `Ok(Err(reason))`
+    /// where it is unavailable there.
+    pub(crate) fn repeat(&self, shaders: &Shaders, rung: Rung) -> Result<Result<String, String>, Error> {
+        let source = shaders.source(&self.file);
+        let lowered = if rung == Rung::F32 {
+            Ok(Lowered { source, root: self.function.clone() })
+        } else {
+            lower(&source, rung, &shaders.stable_forms(), Asked::Function(&self.function))
+        };
+        let Lowered { source, root } = match lowered {
+            Ok(lowered) => lowered,
+            Err(reason) => return Ok(Err(reason)),
+        };
         let word = |k: usize| self.moved_word(k);
-        let signature = Signature::read(shaders, &self.file, &self.function, word)?;
-        let words: Vec<String> = (0..self.inputs).map(word).collect();
-        let entry = repeat_entry(&signature.call, self.inputs, &signature.fields, &words);
-        let source = format!("{}\n{entry}", shaders.source(&self.file));
-        validate(&self.file, &source)?;
-        Ok(source)
+        let mut signature = Signature::read(shaders, &self.file, &self.function, word, rung)?;
+        if rung != Rung::F32 && signature.fields.iter().any(|field| field.is_word) {
+            return Ok(Err("it gives whole numbers, which are the same at every rung".into()));
+        }
+        signature.call = signature.call.replacen(&format!("= {}(", self.function), &format!("= {root}("), 1);
+        let source = format!("{source}\n{}", self.repeat_entry(&signature.call, &signature.fields, rung));
+        validate_lowered(&self.file, &source)?;
+        Ok(Ok(source))
     }
 
     /// The same without the function: what reading the inputs and the loop take by themselves.
     pub(crate) fn idle(&self) -> String {
-        let words: Vec<String> = (0..self.inputs).map(|k| self.moved_word(k)).collect();
-        repeat_entry("", self.inputs, &[], &words)
+        self.repeat_entry("", &[], Rung::F32)
+    }
+
+    /// Evaluates a row over and over, each number's last three bits moved from turn to turn, and folds what comes out and what
+    /// goes in into a word. The first rows' results of the first turn, whose numbers are as they were given, are written, and
+    /// what was folded after them; other invocations write nothing.
+    ///
+    /// Zeros stay zeros: next to them are subnormals, which take some processors a hundred times as long.
+    fn repeat_entry(&self, call: &str, fields: &[Field], rung: Rung) -> String {
+        let inputs = self.inputs;
+        let parts: Vec<String> = fields.iter().flat_map(|field| field.words(rung)).collect();
+        let words = (0..inputs).map(|k| self.moved_word(k));
+        let folded: Vec<String> = fields.iter().map(|field| field.folded(rung)).chain(words).collect();
+        let read = (0..inputs).fold(String::new(), |mut text, k| {
+            let _ = writeln!(text, "    let lightmeter_word{k} = {};", row_word(k));
+            let _ = writeln!(
+                text,
+                "    let lightmeter_moved{k} = select(0u, 7u, (lightmeter_word{k} & 0x7f800000u) != 0u);"
+            );
+            text
+        });
+        let stores = parts.iter().enumerate().fold(String::new(), |mut text, (k, field)| {
+            let _ = writeln!(text, "            lightmeter_results[lightmeter_place + {k}u] = {field};");
+            text
+        });
+        format!(
+            "{ROWS}@group(0) @binding(1) var<storage, read_write> lightmeter_results: array<u32>;
+override lightmeter_times: u32;
+@compute @workgroup_size(64)
+fn lightmeter_repeat(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
+    let lightmeter_base = (lightmeter_id.x % (arrayLength(&lightmeter_rows) / {inputs}u)) * {inputs}u;
+    let lightmeter_place = lightmeter_id.x * {stride}u;
+    let lightmeter_writes = lightmeter_place < arrayLength(&lightmeter_results);
+{read}    var lightmeter_folded = 0u;
+    for (var lightmeter_turn = 0u; lightmeter_turn < lightmeter_times; lightmeter_turn++) {{
+        {call}
+        if lightmeter_turn == 0u && lightmeter_writes {{
+{stores}        }}
+        lightmeter_folded ^= {folded};
+    }}
+    if lightmeter_writes {{
+        lightmeter_results[lightmeter_place + {last}u] = lightmeter_folded;
+    }} else if lightmeter_folded == {SENTINEL}u {{
+        lightmeter_results[0] = 0u;
+    }}
+}}
+",
+            stride = parts.len() + 1,
+            last = parts.len(),
+            folded = folded.join(" ^ ")
+        )
     }
 
     /// The k-th word of an invocation's row, read beforehand, with a number's last three bits moved from turn to turn.
@@ -96,14 +162,29 @@ impl Kernel {
 struct Signature {
     inputs: usize,
     selectors: usize,
-    /// Expressions of the numbers of `result`.
-    fields: Vec<String>,
+    /// The numbers of `result`.
+    fields: Vec<Field>,
     /// A statement that calls it with the words that a row has for its inputs.
     call: String,
 }
 
+/// A number of a result.
+struct Field {
+    /// Its expression.
+    value: String,
+    /// Whether it is a word already.
+    is_word: bool,
+}
+
 impl Signature {
-    fn read(shaders: &Shaders, file: &str, function: &str, word: impl Fn(usize) -> String) -> Result<Self, Error> {
+    /// A function of f32, or its counterpart in another arithmetic.
+    fn read(
+        shaders: &Shaders,
+        file: &str,
+        function: &str,
+        word: impl Fn(usize) -> String,
+        rung: Rung,
+    ) -> Result<Self, Error> {
         let module = shaders.parse(file)?;
         let missing = || Error::MissingFunction { file: file.into(), function: function.into() };
         let (_, found) =
@@ -113,16 +194,45 @@ impl Signature {
         let (mut inputs, mut selectors, mut arguments) = (0, 0, vec![]);
         for argument in &found.arguments {
             let before = inputs;
-            arguments.push(construct(&module, argument.ty, &word, &mut inputs).map_err(unsupported)?);
+            arguments.push(construct(&module, argument.ty, &word, &mut inputs, rung).map_err(unsupported)?);
             if is_selector(&module, argument.ty) {
                 selectors += inputs - before;
             }
         }
         let result = found.result.as_ref().ok_or_else(|| unsupported("nothing is returned".into()))?;
         let mut fields = vec![];
-        flatten(&module, result.ty, "result", &mut fields).map_err(unsupported)?;
+        flatten(&module, result.ty, "result", &mut fields, rung).map_err(unsupported)?;
         let call = format!("let result = {function}({});", arguments.join(", "));
         Ok(Self { inputs, selectors, fields, call })
+    }
+
+    /// Expressions of the words of a result of f32.
+    fn words(&self) -> Vec<String> {
+        self.fields.iter().map(|field| field.words(Rung::F32).remove(0)).collect()
+    }
+}
+
+impl Field {
+    /// Expressions of the words that it is handed back in, the greatest part first.
+    fn words(&self, rung: Rung) -> Vec<String> {
+        let Self { value, is_word } = self;
+        match Dialect::of(rung) {
+            _ if *is_word => vec![value.clone()],
+            Dialect::Pair | Dialect::Double => {
+                (0..rung.parts()).map(|part| format!("bitcast<u32>(rung_parts({value})[{part}])")).collect()
+            }
+            single => vec![format!("bitcast<u32>({})", single.down(Shape::Scalar, value))],
+        }
+    }
+
+    /// A word that nothing can be left out of.
+    fn folded(&self, rung: Rung) -> String {
+        let Self { value, is_word } = self;
+        match Dialect::of(rung) {
+            _ if *is_word => value.clone(),
+            Dialect::Pair => format!("bitcast<u32>({value}.hi) ^ bitcast<u32>({value}.lo)"),
+            dialect => format!("bitcast<u32>({})", dialect.down(Shape::Scalar, value)),
+        }
     }
 }
 
@@ -149,51 +259,6 @@ fn lightmeter_compute(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
 {stores}}}
 ",
         fields.len()
-    )
-}
-
-/// Evaluates a row over and over, each number's last three bits moved from turn to turn, and folds what comes out and what goes in
-/// into a word. The first rows' results of the first turn, whose numbers are as they were given, are written, and what was
-/// folded after them; other invocations write nothing.
-///
-/// Zeros stay zeros: next to them are subnormals, which take some processors a hundred times as long.
-fn repeat_entry(call: &str, inputs: usize, fields: &[String], words: &[String]) -> String {
-    let read = (0..inputs).fold(String::new(), |mut text, k| {
-        let _ = writeln!(text, "    let lightmeter_word{k} = {};", row_word(k));
-        let _ =
-            writeln!(text, "    let lightmeter_moved{k} = select(0u, 7u, (lightmeter_word{k} & 0x7f800000u) != 0u);");
-        text
-    });
-    let stores = fields.iter().enumerate().fold(String::new(), |mut text, (k, field)| {
-        let _ = writeln!(text, "            lightmeter_results[lightmeter_place + {k}u] = {field};");
-        text
-    });
-    let folded: Vec<&str> = fields.iter().chain(words).map(String::as_str).collect();
-    format!(
-        "{ROWS}@group(0) @binding(1) var<storage, read_write> lightmeter_results: array<u32>;
-override lightmeter_times: u32;
-@compute @workgroup_size(64)
-fn lightmeter_repeat(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
-    let lightmeter_base = (lightmeter_id.x % (arrayLength(&lightmeter_rows) / {inputs}u)) * {inputs}u;
-    let lightmeter_place = lightmeter_id.x * {stride}u;
-    let lightmeter_writes = lightmeter_place < arrayLength(&lightmeter_results);
-{read}    var lightmeter_folded = 0u;
-    for (var lightmeter_turn = 0u; lightmeter_turn < lightmeter_times; lightmeter_turn++) {{
-        {call}
-        if lightmeter_turn == 0u && lightmeter_writes {{
-{stores}        }}
-        lightmeter_folded ^= {folded};
-    }}
-    if lightmeter_writes {{
-        lightmeter_results[lightmeter_place + {last}u] = lightmeter_folded;
-    }} else if lightmeter_folded == {SENTINEL}u {{
-        lightmeter_results[0] = 0u;
-    }}
-}}
-",
-        stride = fields.len() + 1,
-        last = fields.len(),
-        folded = folded.join(" ^ ")
     )
 }
 
@@ -273,7 +338,9 @@ fn construct(
     ty: Handle<Type>,
     word: &impl Fn(usize) -> String,
     place: &mut usize,
+    rung: Rung,
 ) -> Result<String, String> {
+    let dialect = Dialect::of(rung);
     let next = |place: &mut usize| {
         *place += 1;
         word(*place - 1)
@@ -281,38 +348,51 @@ fn construct(
     let number = |place: &mut usize| format!("bitcast<f32>({})", next(place));
     let vector = |size: u8, place: &mut usize| {
         let parts: Vec<String> = (0..size).map(|_| number(place)).collect();
-        format!("vec{size}f({})", parts.join(", "))
+        dialect.up(Shape::Vector(size), &format!("vec{size}f({})", parts.join(", ")))
     };
     match &module.types[ty].inner {
-        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => Ok(number(place)),
+        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => {
+            Ok(dialect.up(Shape::Scalar, &number(place)))
+        }
         TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Uint => Ok(next(place)),
         TypeInner::Vector { size, scalar } if scalar.kind == ScalarKind::Float => Ok(vector(*size as u8, place)),
         TypeInner::Matrix { columns, rows, .. } => {
             let (columns, rows) = (*columns as u8, *rows as u8);
             let parts: Vec<String> = (0..columns).map(|_| vector(rows, place)).collect();
-            Ok(format!("mat{columns}x{rows}f({})", parts.join(", ")))
+            Ok(format!("{}({})", dialect.type_of(Shape::Matrix(columns, rows)), parts.join(", ")))
         }
         TypeInner::Struct { members, .. } => {
             let parts: Result<Vec<String>, String> =
-                members.iter().map(|m| construct(module, m.ty, word, place)).collect();
-            Ok(format!("{}({})", type_name(module, ty), parts?.join(", ")))
+                members.iter().map(|m| construct(module, m.ty, word, place, rung)).collect();
+            Ok(format!("{}({})", rung_struct(rung, &type_name(module, ty)), parts?.join(", ")))
         }
         _ => Err(type_name(module, ty)),
     }
 }
 
-/// The expressions of the words of a value's numbers, in order.
-fn flatten(module: &Module, ty: Handle<Type>, value: &str, fields: &mut Vec<String>) -> Result<(), String> {
+/// The numbers of a value, in order.
+fn flatten(
+    module: &Module,
+    ty: Handle<Type>,
+    value: &str,
+    fields: &mut Vec<Field>,
+    rung: Rung,
+) -> Result<(), String> {
     match &module.types[ty].inner {
-        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => fields.push(format!("bitcast<u32>({value})")),
-        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Uint => fields.push(value.into()),
+        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => {
+            fields.push(Field { value: value.into(), is_word: false });
+        }
+        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Uint => {
+            fields.push(Field { value: value.into(), is_word: true });
+        }
         TypeInner::Vector { size, scalar } if scalar.kind == ScalarKind::Float => {
-            fields.extend((0..*size as u8).map(|k| format!("bitcast<u32>({value}[{k}])")));
+            let component = |k: u8| Dialect::of(rung).component(value, &k.to_string());
+            fields.extend((0..*size as u8).map(|k| Field { value: component(k), is_word: false }));
         }
         TypeInner::Struct { members, .. } => {
             for member in members {
                 let name = member.name.as_deref().unwrap_or_default();
-                flatten(module, member.ty, &format!("{value}.{name}"), fields)?;
+                flatten(module, member.ty, &format!("{value}.{name}"), fields, rung)?;
             }
         }
         _ => return Err(type_name(module, ty)),

@@ -8,6 +8,7 @@ use crate::device::Gpu;
 use crate::error::Error;
 use crate::kernel::Kernel;
 use crate::readback::{Pending, SENTINEL, staging};
+use crate::rung::Rung;
 use crate::shaders::Shaders;
 
 /// Evaluations of one invocation.
@@ -22,7 +23,7 @@ pub struct RepeatPipeline {
     rows: wgpu::Buffer,
     /// Numbers of a row.
     inputs: usize,
-    /// Words of a row's outputs.
+    /// Words of a row's outputs: for each, those that its rung hands it back in.
     words: usize,
 }
 
@@ -30,8 +31,9 @@ impl RepeatPipeline {
     /// Evaluations of one workgroup.
     pub const EVALUATIONS: u32 = GROUP * TIMES;
 
-    /// Compiles the kernel for rows of inputs that its invocations take in turn. `Ok(Err(reason))` where the adapter has no
-    /// compute stage.
+    /// Compiles the kernel in a rung's arithmetic, for rows of inputs that its invocations take in turn. `Ok(Err(reason))` where
+    /// the adapter has no compute stage or lacks what the rung takes, or the function is unavailable there; whether the
+    /// arithmetic does what it should is [`Rung::unavailable`]'s to say.
     ///
     /// # Errors
     /// Where the device refuses the pipeline.
@@ -39,20 +41,23 @@ impl RepeatPipeline {
         gpu: &Gpu,
         shaders: &Shaders,
         kernel: &Kernel,
-        rung: crate::Rung,
+        rung: Rung,
         rows: &[f32],
     ) -> Result<Result<Self, String>, Error> {
-        if rung != crate::Rung::F32 {
-            return Ok(Err("it is not built yet".into()));
+        if let Some(reason) = rung.lacks(gpu) {
+            return Ok(Err(reason.into()));
         }
-        Ok(Self::of(gpu, kernel, kernel.repeat(shaders)?, rows, kernel.outputs)?.map_err(str::to_owned))
+        match kernel.repeat(shaders, rung)? {
+            Ok(source) => Self::of(gpu, kernel, source, rows, kernel.outputs * rung.parts()),
+            Err(reason) => Ok(Err(reason)),
+        }
     }
 
     /// The same without the function: what reading the inputs and the loop take by themselves.
     ///
     /// # Errors
     /// Where the device refuses the pipeline.
-    pub fn idle(gpu: &Gpu, kernel: &Kernel, rows: &[f32]) -> Result<Result<Self, &'static str>, Error> {
+    pub fn idle(gpu: &Gpu, kernel: &Kernel, rows: &[f32]) -> Result<Result<Self, String>, Error> {
         Self::of(gpu, kernel, kernel.idle(), rows, 0)
     }
 
@@ -62,9 +67,9 @@ impl RepeatPipeline {
         source: String,
         rows: &[f32],
         words: usize,
-    ) -> Result<Result<Self, &'static str>, Error> {
+    ) -> Result<Result<Self, String>, Error> {
         if let Some(reason) = gpu.lacks_compute() {
-            return Ok(Err(reason));
+            return Ok(Err(reason.into()));
         }
         let module = gpu.module(&kernel.function, source);
         let constants = [("lightmeter_times", f64::from(TIMES))];

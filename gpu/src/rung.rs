@@ -1,6 +1,15 @@
 //! The ladder: the arithmetics that the same WGSL is evaluated in on a device.
 
+mod body;
+mod dialect;
+mod lower;
+mod probe;
+mod widen;
+
 use crate::device::Gpu;
+use crate::error::Error;
+pub(crate) use dialect::{Dialect, Shape};
+pub(crate) use lower::{Lowered, Asked, lower, rung_struct};
 
 /// A rung of the ladder: what a shader's f32 becomes, and by what its functions are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -46,11 +55,6 @@ impl Rung {
         }
     }
 
-    /// Why a device has it not; `None` where it has.
-    pub fn unavailable(self, gpu: &Gpu) -> Result<Option<String>, crate::Error> {
-        Ok((self != Self::F32).then(|| self.lacks(gpu).unwrap_or("it is not built yet").to_owned()))
-    }
-
     /// The feature that a device lacks for it; `None` where it has what it takes.
     #[must_use]
     pub fn lacks(self, gpu: &Gpu) -> Option<&'static str> {
@@ -61,4 +65,19 @@ impl Rung {
         };
         (!gpu.has(feature)).then_some(reason)
     }
+
+    /// Why it is unavailable on a device: by what the device lacks, else by a probe of its arithmetic. `None` where it is
+    /// available.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn unavailable(self, gpu: &Gpu) -> Result<Option<String>, Error> {
+        match self.lacks(gpu) {
+            Some(reason) => Ok(Some(reason.into())),
+            None => probe::probe(self, gpu),
+        }
+    }
 }
+
+#[cfg(test)]
+mod tests;

@@ -57,20 +57,24 @@ impl SceneRenderer {
     /// target is rgba32float and 0 where nothing is drawn, nothing is blended, and fragments give that intermediate result.
     ///
     /// # Errors
+    /// [`Error::Unavailable`] where a shader is, in the arithmetic that is asked for, or the device lacks what that takes.
     /// Where the sets are not one a draw, a blend state has no factor on the unit, a shader is invalid, or the device
     /// refuses a pipeline.
     ///
     /// # Panics
     /// Where a stage is asked of [`Shader::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
     pub fn new(gpu: &Gpu, shaders: &Shaders, frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<Self, Error> {
-        let Recipe { shader, stage, .. } = recipe;
+        let stage = recipe.stage;
         if sets.len() != frame.draws.len() {
             return Err(Error::Sets { draws: frame.draws.len(), sets: sets.len() });
+        }
+        if let Some(reason) = recipe.rung.lacks(gpu) {
+            return Err(Error::Unavailable { what: recipe.rung.name().into(), reason: reason.into() });
         }
         let composer = Composer::new(shaders)?;
         let target = if stage.is_some() { TargetFormat::Rgba32Float } else { frame.target.format };
         let tests_depth = frame.draws.iter().any(|draw| draw.depth.is_some());
-        let mut pipelines = Pipelines::new(gpu, composer, shader, stage, format(target), tests_depth);
+        let mut pipelines = Pipelines::new(gpu, composer, recipe, format(target), tests_depth);
         let mut packer = Packer::new(gpu);
         let mut prepared = vec![];
         for (draw, called) in frame.draws.iter().zip(sets) {

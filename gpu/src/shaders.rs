@@ -122,6 +122,19 @@ impl Shaders {
         self.files.get(file).map(String::as_str).unwrap_or_default()
     }
 
+    /// The stable form of each function that has one, as `// stable form of:` lines say, directly above the stable function.
+    pub(crate) fn stable_forms(&self) -> BTreeMap<String, String> {
+        let mut forms = BTreeMap::new();
+        for text in self.files.values() {
+            for (mark, function) in text.lines().zip(text.lines().skip(1)) {
+                let Some(published) = mark.strip_prefix("// stable form of:") else { continue };
+                let name = function.strip_prefix("fn ").and_then(|rest| rest.split('(').next()).unwrap_or_default();
+                forms.extend(published.split_whitespace().map(|published| (published.into(), name.into())));
+            }
+        }
+        forms
+    }
+
     /// A file followed by those that it requires: its own lines come first, so that messages count from its start.
     #[must_use]
     pub fn source(&self, file: &str) -> String {
@@ -183,6 +196,18 @@ pub(crate) fn validate(file: &str, source: &str) -> Result<naga::Module, Error> 
     let module =
         naga::front::wgsl::parse_str(source).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
     validator().validate(&module).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
+    Ok(module)
+}
+
+/// The same of a text in another arithmetic.
+pub(crate) fn validate_lowered(file: &str, source: &str) -> Result<naga::Module, Error> {
+    let invalid = |message: String| Error::Shader { file: file.into(), message };
+    let module =
+        naga::front::wgsl::parse_str(source).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
+    let capabilities = Capabilities::FLOAT64 | Capabilities::SHADER_FLOAT16 | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    Validator::new(ValidationFlags::all(), Capabilities::default() | capabilities)
+        .validate(&module)
+        .map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
     Ok(module)
 }
 

@@ -65,9 +65,9 @@ impl Setting {
     #[must_use]
     pub const fn new(quick: bool, seed: u64) -> Self {
         if quick {
-            Self { effort: Effort { turns: 5, seconds: 1e-3 }, cases: 512, seed, quick }
+            Self { effort: Effort { turns: 5, readings: 2, seconds: 5e-4 }, cases: 512, seed, quick }
         } else {
-            Self { effort: Effort { turns: 11, seconds: 2e-3 }, cases: 2048, seed, quick }
+            Self { effort: Effort { turns: 11, readings: 3, seconds: 1e-3 }, cases: 2048, seed, quick }
         }
     }
 }

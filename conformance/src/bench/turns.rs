@@ -1,5 +1,5 @@
-//! Times in turns: everything that is compared is measured once in each turn, so that what else the machine does falls upon all
-//! alike, and a ratio is of two times of the same turn.
+//! Times in turns: everything that is compared is measured in each turn, so that what else the machine does falls upon all
+//! alike, and a ratio is of two times of the same turn. What is measured in a turn is the least of a few readings.
 
 use super::document::{Standing, Time};
 use lightmeter_gpu::{Error, Reading};
@@ -26,6 +26,8 @@ pub type Laps = Vec<Option<f64>>;
 pub struct Effort {
     /// Turns.
     pub turns: usize,
+    /// Readings of a turn, of which the least counts.
+    pub readings: usize,
     /// Seconds of a measurement, at least.
     pub seconds: f64,
 }
@@ -62,9 +64,15 @@ impl<'a> Entry<'a> {
         }
     }
 
-    fn lap(&mut self) -> Result<Option<f64>, Error> {
-        let seconds = (self.run)(self.amount)?.seconds();
-        Ok(seconds.map(|seconds| seconds / (f64::from(self.amount) * self.units)))
+    /// The least of some readings: what else the machine does can only make one longer.
+    fn lap(&mut self, readings: usize) -> Result<Option<f64>, Error> {
+        let mut least: Option<f64> = None;
+        for _ in 0..readings {
+            if let Some(seconds) = (self.run)(self.amount)?.seconds() {
+                least = Some(least.map_or(seconds, |least| least.min(seconds)));
+            }
+        }
+        Ok(least.map(|seconds| seconds / (f64::from(self.amount) * self.units)))
     }
 
     /// The clock, as reports name it.
@@ -89,7 +97,7 @@ pub fn measure(entries: &mut [Entry<'_>], effort: Effort) -> Result<Vec<Laps>, E
             order.reverse();
         }
         for k in order {
-            laps[k][turn] = entries[k].lap()?;
+            laps[k][turn] = entries[k].lap(effort.readings)?;
         }
     }
     Ok(laps)
@@ -220,7 +228,7 @@ mod tests {
             most_at_once = most_at_once.max(amount);
             Ok(Reading::Seconds(f64::from(amount) * 1e-6))
         })];
-        let laps = measure(&mut entries, Effort { turns: 3, seconds: 1e-3 }).expect("nothing fails");
+        let laps = measure(&mut entries, Effort { turns: 3, readings: 1, seconds: 1e-3 }).expect("nothing fails");
         assert!(laps[0].iter().all(|lap| (lap.expect("it is read") - 1e-6).abs() < 1e-12));
         drop(entries);
         assert!((1_000..=32_000).contains(&most_at_once), "{most_at_once}");

@@ -61,9 +61,8 @@ pub(super) fn cost(
     };
     let mut costs = vec![];
     for (id, rival) in rivals {
-        let Ok(naive) = RepeatPipeline::new(gpu, &options.shaders, &kernel_of(rival)?, Rung::F32, &rows)? else {
-            continue;
-        };
+        let rival = kernel_of(rival)?;
+        let Ok(naive) = RepeatPipeline::new(gpu, &options.shaders, &rival, Rung::F32, &rows)? else { continue };
         for warm in [&idle, &stable, &naive] {
             time(warm)?;
         }

@@ -61,6 +61,14 @@ impl Item {
     }
 }
 
+impl Item {
+    /// Whether a text has an item of the name.
+    pub(super) fn is_in(&self, source: &str) -> bool {
+        let (function, structure) = (format!("fn {}(", self.name), format!("struct {} ", self.name));
+        source.lines().any(|line| line.starts_with(&function) || line.starts_with(&structure))
+    }
+}
+
 /// The identifiers of a line that may be of items: not what follows a dot, nor what a type follows.
 fn identifiers(code: &str, names: &mut Vec<String>) {
     let mut before = ' ';

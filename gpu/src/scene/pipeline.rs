@@ -1,7 +1,7 @@
 //! Pipelines, shared by draws that differ in numbers alone.
 
 use super::geometry::Input;
-use super::{Effects, Error, Gpu, Route, Shader, Stage};
+use super::{Effects, Error, Gpu, Recipe, Route, Shader, Stage};
 use crate::blend_unit::{self, routes};
 use crate::compose::{Composer, Composition, live};
 use crate::depth_unit::compare_function;
@@ -43,8 +43,7 @@ impl Program {
 pub(super) struct Pipelines<'a> {
     gpu: &'a Gpu,
     composer: Composer,
-    shader: Shader,
-    stage: Option<Stage>,
+    recipe: Recipe,
     format: wgpu::TextureFormat,
     tests_depth: bool,
     /// By their text: different effects may have use for the same.
@@ -56,24 +55,23 @@ impl<'a> Pipelines<'a> {
     pub(super) fn new(
         gpu: &'a Gpu,
         composer: Composer,
-        shader: Shader,
-        stage: Option<Stage>,
+        recipe: Recipe,
         format: wgpu::TextureFormat,
         tests_depth: bool,
     ) -> Self {
         let (programs, pipelines) = (HashMap::new(), HashMap::new());
-        Self { gpu, composer, shader, stage, format, tests_depth, programs, pipelines }
+        Self { gpu, composer, recipe, format, tests_depth, programs, pipelines }
     }
 
     pub(super) fn get(&mut self, mut key: Key) -> Result<(wgpu::RenderPipeline, Rc<Program>), Error> {
         // A stage without light still tells whether there are normals, which `live` leaves out.
         let has_normals = key.effects.has_normals();
         let called = key.effects;
-        key.effects = if self.shader == Shader::Full { Effects::NONE } else { live(called, self.stage) };
+        key.effects = if self.recipe.shader == Shader::Full { Effects::NONE } else { live(called, self.recipe.stage) };
         if let Some(found) = self.pipelines.get(&(key, has_normals)) {
             return Ok(found.clone());
         }
-        let composition = self.composer.compose(called, self.shader, self.stage)?;
+        let composition = self.composer.compose(called, self.recipe.shader, self.recipe.stage)?;
         let program = match self.programs.get(&composition.source) {
             Some(program) => program.clone(),
             None => {
@@ -106,7 +104,7 @@ impl<'a> Pipelines<'a> {
             Some(naga::Binding::Location { location, .. }) => Input::at(location),
             _ => None,
         });
-        let mut source = composition.source.clone();
+        let mut source = self.composer.lower(composition, self.recipe.rung)?;
         if self.gpu.is_gl {
             // GLSL cannot choose the provoking vertex, and naga refuses what asks for the first.
             source = source.replace("@interpolate(flat, first)", "@interpolate(flat, either)");
@@ -115,7 +113,7 @@ impl<'a> Pipelines<'a> {
             module: self.gpu.module("scene.wgsl", source),
             bindings: bindings.collect(),
             inputs: inputs.collect(),
-            stage: self.stage,
+            stage: self.recipe.stage,
         })
     }
 

@@ -47,14 +47,17 @@ fn attenuation_polynomial_expanded(kc: f32, kl: f32, kq: f32, d: f32) -> f32 {
     return 1.0 / (kc + kl * d + kq * (d * d));
 }
 
+// stable form of: attenuation_polynomial attenuation_polynomial_expanded
 fn attenuation_polynomial_bounded(kc: f32, kl: f32, kq: f32, d: f32) -> f32 {
     return 1.0 / clamp(kc + d * (kl + d * kq), 0x1p-126, 0x1p126);
 }
 
+// stable form of: attenuation_point
 fn attenuation_point_scaled(kc: f32, kl: f32, kq: f32, light: vec3f, p: vec3f) -> f32 {
     return attenuation_polynomial_bounded(kc, kl, kq, vector_length_scaled(light - p));
 }
 
+// stable form of: attenuation_spot_exponent
 fn attenuation_spot_exponent_by_chord(l: vec3f, axis: vec3f, cutoff_cosine: f32, exponent: f32) -> f32 {
     if attenuation_cone(dot(-l, axis), cutoff_cosine) <= 0.0 {
         return 0.0;

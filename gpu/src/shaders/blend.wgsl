@@ -79,6 +79,7 @@ fn blend_alpha_clamped(src: vec4f, dst: vec4f) -> vec4f {
 
 // Other forms of the same: some lose what others keep.
 
+// stable form of: blend_over_incremental
 fn blend_over(src: vec4f, dst: vec3f) -> vec3f {
     return src.rgb * src.a + dst * (1.0 - src.a);
 }
@@ -91,6 +92,7 @@ fn blend_opacity_of_layers(alpha: f32, layers: f32) -> f32 {
     return 1.0 - pow(1.0 - alpha, layers);
 }
 
+// stable form of: blend_opacity_of_layers
 fn blend_opacity_of_layers_expm1(alpha: f32, layers: f32) -> f32 {
     return -elementary_exp_m1(layers * elementary_ln_1p(-alpha));
 }
@@ -99,6 +101,7 @@ fn blend_unpremultiply(color: vec3f, alpha: f32) -> vec3f {
     return color / alpha;
 }
 
+// stable form of: blend_unpremultiply
 fn blend_unpremultiply_guarded(color: vec3f, alpha: f32) -> vec3f {
     if alpha < 0x1p-126 {
         return vec3f(0.0);
@@ -110,6 +113,7 @@ fn blend_subtract(src: f32, s: f32, dst: f32, d: f32) -> f32 {
     return src * s - dst * d;
 }
 
+// stable form of: blend_subtract
 fn blend_subtract_compensated(src: f32, s: f32, dst: f32, d: f32) -> f32 {
     return elementary_difference_of_products(src, s, dst, d);
 }

@@ -35,6 +35,7 @@ fn depth_recovered(near: f32, far: f32, z: f32) -> f32 {
     return near * far / (far - stored * range);
 }
 
+// stable form of: depth_recovered
 fn depth_recovered_reversed(near: f32, far: f32, z: f32) -> f32 {
     let range = far - near;
     let stored = near * (far - z) / (z * range);

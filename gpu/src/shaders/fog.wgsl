@@ -38,6 +38,7 @@ fn fog_exp2_opengl_factor(distance: f32, density: f32) -> f32 {
     return clamp(exp(-(t * t)), 0.0, 1.0);
 }
 
+// stable form of: fog_linear_multiply_add
 fn fog_linear(p: vec3f, dmin: f32, dmax: f32, fog: vec3f, shaded: vec3f) -> Fogged {
     return fog_mix(fog_linear_factor(fog_planar_distance(p), dmin, dmax), fog, shaded);
 }
@@ -54,6 +55,7 @@ fn fog_exp_radial(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
     return fog_mix(fog_exp_factor(fog_radial_distance(p), density), fog, shaded);
 }
 
+// stable form of: fog_exp2_document_square
 fn fog_exp2_document(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
     return fog_mix(fog_exp2_document_factor(fog_planar_distance(p), density), fog, shaded);
 }
@@ -62,6 +64,7 @@ fn fog_exp2_document_radial(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -
     return fog_mix(fog_exp2_document_factor(fog_radial_distance(p), density), fog, shaded);
 }
 
+// stable form of: fog_exp2_opengl_squares
 fn fog_exp2_opengl(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
     return fog_mix(fog_exp2_opengl_factor(fog_planar_distance(p), density), fog, shaded);
 }
@@ -92,10 +95,12 @@ fn fog_opacity(distance: f32, density: f32) -> f32 {
     return 1.0 - exp(-(density * distance));
 }
 
+// stable form of: fog_opacity
 fn fog_opacity_expm1(distance: f32, density: f32) -> f32 {
     return -elementary_exp_m1(-(density * distance));
 }
 
+// stable form of: fog_exp_radial
 fn fog_exp_radial_scaled(p: vec3f, density: f32, fog: vec3f, shaded: vec3f) -> Fogged {
     return fog_mix(fog_exp_factor(vector_length_scaled(p), density), fog, shaded);
 }

@@ -122,12 +122,14 @@ fn interpolation_edge_from_origin(a: vec2f, b: vec2f, p: vec2f) -> f32 {
     return a.x * b.y - a.y * b.x + b.x * p.y - b.y * p.x + p.x * a.y - p.y * a.x;
 }
 
+// stable form of: interpolation_edge interpolation_edge_from_origin
 fn interpolation_edge_compensated(a: vec2f, b: vec2f, p: vec2f) -> f32 {
     let ab = b - a;
     let ap = p - a;
     return elementary_difference_of_products(ab.x, ap.y, ab.y, ap.x);
 }
 
+// stable form of: interpolation_last_weight_by_difference
 fn interpolation_last_weight(a: vec2f, b: vec2f, c: vec2f, p: vec2f) -> f32 {
     return interpolation_edge(a, b, p) / interpolation_edge(a, b, c);
 }
@@ -137,6 +139,7 @@ fn interpolation_last_weight_by_difference(a: vec2f, b: vec2f, c: vec2f, p: vec2
     return 1.0 - weights.x - weights.y;
 }
 
+// stable form of: interpolation_mix_incremental
 fn interpolation_mix(a: f32, b: f32, t: f32) -> f32 {
     return a * (1.0 - t) + b * t;
 }
@@ -153,6 +156,7 @@ fn interpolation_scaled_weight(lambda: f32, least: f32, w: f32) -> f32 {
     return lambda * (least / w);
 }
 
+// stable form of: interpolation_perspective
 fn interpolation_perspective_scaled(lambda: vec3f, w: vec3f, attr: vec3f) -> f32 {
     let least = min(min(w.x, w.y), w.z);
     let q = vec3f(

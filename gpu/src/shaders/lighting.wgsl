@@ -41,11 +41,11 @@ fn lighting_diffuse_travel(light: vec3f, material: vec3f, i: vec3f, n: vec3f) ->
 }
 
 fn lighting_specular_phong(light: vec3f, material: vec3f, r: vec3f, v: vec3f, shininess: f32) -> vec3f {
-    return light * material * vector_lobe(dot(r, v), shininess);
+    return light * material * vector_cosine_power(r, v, shininess);
 }
 
 fn lighting_specular_blinn(light: vec3f, material: vec3f, n: vec3f, h: vec3f, shininess: f32) -> vec3f {
-    return light * material * vector_lobe(dot(n, h), shininess);
+    return light * material * vector_cosine_power(n, h, shininess);
 }
 
 fn lighting_specular_nonlocal(light: vec3f, material: vec3f, r: vec3f, shininess: f32) -> vec3f {
@@ -53,11 +53,11 @@ fn lighting_specular_nonlocal(light: vec3f, material: vec3f, r: vec3f, shininess
 }
 
 fn lighting_highlight_phong(n: vec3f, l: vec3f, v: vec3f, shininess: f32) -> f32 {
-    return vector_lobe(dot(vector_reflect(-l, n), v), shininess);
+    return vector_cosine_power(vector_reflect(-l, n), v, shininess);
 }
 
 fn lighting_highlight_blinn(n: vec3f, l: vec3f, v: vec3f, shininess: f32) -> f32 {
-    return vector_lobe(dot(n, vector_halfway(v, l)), shininess);
+    return vector_cosine_power(n, vector_halfway(v, l), shininess);
 }
 
 fn lighting_highlight_unnormalised(n: vec3f, l: vec3f, v: vec3f, shininess: f32) -> f32 {
@@ -256,6 +256,7 @@ fn lighting_cosine_power_unguarded(a: vec3f, b: vec3f, exponent: f32) -> f32 {
     return pow(dot(a, b), exponent);
 }
 
+// stable form of: lighting_cosine_power lighting_cosine_power_unguarded
 fn lighting_cosine_power_by_chord(a: vec3f, b: vec3f, exponent: f32) -> f32 {
     return vector_cosine_power_by_chord(a, b, exponent);
 }

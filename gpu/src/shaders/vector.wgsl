@@ -26,6 +26,7 @@ fn vector_reflect_toward(l: vec3f, n: vec3f) -> vec3f {
     return -l + 2.0 * dot(l, n) * n;
 }
 
+// stable form of: vector_halfway_unguarded
 fn vector_halfway(v: vec3f, l: vec3f) -> vec3f {
     return vector_normalize(v + l);
 }
@@ -87,6 +88,7 @@ fn vector_largest(v: vec3f) -> f32 {
 }
 
 // Brought near 1 by a power of two first, so that no square overflows or underflows.
+// stable form of: vector_normalize vector_normalize_unguarded
 fn vector_normalize_scaled(v: vec3f) -> vec3f {
     let largest = vector_largest(v);
     if largest <= 0.0 {
@@ -99,6 +101,7 @@ fn vector_length(v: vec3f) -> f32 {
     return length(v);
 }
 
+// stable form of: vector_length fog_radial_distance
 fn vector_length_scaled(v: vec3f) -> f32 {
     let largest = vector_largest(v);
     if largest <= 0.0 {
@@ -126,6 +129,7 @@ fn vector_near_one(v: vec3f) -> vec3f {
 
 // Without the division by the determinant: only its sign is of use, which turns the cofactors round under reflection. Each
 // column is brought near 1 first, and n divided by what it is scaled by.
+// stable form of: vector_normal_by_determinant
 fn vector_normal_by_cofactors(modelview: mat3x3f, n: vec3f) -> vec3f {
     let scales = vec3f(
         elementary_binary_scale(vector_largest(modelview[0])),
@@ -148,6 +152,7 @@ fn vector_cross_compensated(a: vec3f, b: vec3f) -> vec3f {
     );
 }
 
+// stable form of: vector_face_normal
 fn vector_face_normal_compensated(a: vec3f, b: vec3f, c: vec3f) -> vec3f {
     return vector_normalize_scaled(vector_cross_compensated(vector_near_one(b - a), vector_near_one(c - a)));
 }
@@ -157,6 +162,7 @@ fn vector_interpolated_normal(n0: vec3f, n1: vec3f, face: vec3f, t: f32) -> vec3
 }
 
 // What is left of opposite normals is their rounding: the face's own normal stands in below 2^-10.
+// stable form of: vector_interpolated_normal
 fn vector_interpolated_normal_guarded(n0: vec3f, n1: vec3f, face: vec3f, t: f32) -> vec3f {
     let n = mix(n0, n1, t);
     if dot(n, n) >= 0x1p-20 {
@@ -171,6 +177,7 @@ fn vector_cosine_power(a: vec3f, b: vec3f, exponent: f32) -> f32 {
 }
 
 // The same by q = 1 - cosine from the chord between a and b, of which a cosine near 1 has lost all below 2^-24.
+// stable form of: vector_cosine_power
 fn vector_cosine_power_by_chord(a: vec3f, b: vec3f, exponent: f32) -> f32 {
     let between = a - b;
     let q = 0.5 * dot(between, between);
