@@ -2,6 +2,7 @@
 
 use crate::device::Gpu;
 use crate::error::Error;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// How a clock tells time.
@@ -72,6 +73,8 @@ impl Reading {
 pub struct Clock {
     stamps: Option<Stamps>,
     note: Option<String>,
+    readings: AtomicU64,
+    rejected: AtomicU64,
 }
 
 #[derive(Debug)]
@@ -119,7 +122,7 @@ impl Clock {
         if !gpu.has_timestamps() {
             return Ok(Self::wall(Some("the adapter lacks the feature TIMESTAMP_QUERY".into())));
         }
-        let clock = Self { stamps: Some(Stamps::new(gpu)), note: None };
+        let clock = Self { stamps: Some(Stamps::new(gpu)), ..Self::wall(None) };
         gpu.check()?;
         Ok(clock)
     }
@@ -127,13 +130,19 @@ impl Clock {
     /// The clock on the wall, and why it is that.
     #[must_use]
     pub const fn wall(note: Option<String>) -> Self {
-        Self { stamps: None, note }
+        Self { stamps: None, note, readings: AtomicU64::new(0), rejected: AtomicU64::new(0) }
     }
 
     /// How it tells time.
     #[must_use]
     pub const fn kind(&self) -> ClockKind {
         if self.stamps.is_some() { ClockKind::Timestamps } else { ClockKind::Wall }
+    }
+
+    /// Readings that were taken so far, and how many of them could not be true.
+    #[must_use]
+    pub fn readings(&self) -> (u64, u64) {
+        (self.readings.load(Ordering::Relaxed), self.rejected.load(Ordering::Relaxed))
     }
 
     /// Why it is the clock on the wall.
@@ -160,10 +169,13 @@ impl Clock {
         gpu.queue.submit([commands]);
         gpu.wait()?;
         let wall = start.elapsed().as_secs_f64();
-        match &self.stamps {
-            None => Ok(Reading::Seconds(wall)),
-            Some(stamps) => Ok(Reading::of_ticks(stamps.read(gpu)?, stamps.period, wall)),
-        }
+        let reading = match &self.stamps {
+            None => Reading::Seconds(wall),
+            Some(stamps) => Reading::of_ticks(stamps.read(gpu)?, stamps.period, wall),
+        };
+        self.readings.fetch_add(1, Ordering::Relaxed);
+        self.rejected.fetch_add(u64::from(reading.seconds().is_none()), Ordering::Relaxed);
+        Ok(reading)
     }
 }
 

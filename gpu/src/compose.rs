@@ -15,7 +15,9 @@
 //! | `//@ choose name: type from slot else expression` | a value by the one effect's expression, or by this |
 //! | `//@ at slot` | what follows, to the next such line, is for the slot |
 //!
-//! Conditions are of effects' names, `stage_<name>`, `has_normals`, `!`, `&`, `|` and parentheses.
+//! Conditions are of effects' names, `stage_<name>`, `has_normals`, the techniques `fog_at_vertex`, `vectors_interpolated`
+//! and `unit_vectors`, `toward_1` to `toward_4` where at least so many lights' vectors are interpolated, `!`, `&`, `|` and
+//! parentheses.
 
 mod condition;
 mod items;
@@ -62,9 +64,49 @@ pub enum Technique {
     Plain,
     /// The fog's factor at the vertices, interpolated.
     FogAtVertex,
-    /// Lit at the fragments, by N, L and V computed at the vertices, interpolated, and normalised again.
+    /// Lit at the fragments, by N, L and V computed at the vertices, interpolated, and normalised again. L and V have their
+    /// lengths at the vertices, as in 003's program: they are affine in the position, and their interpolation exact.
     VectorsInterpolated,
+    /// The same with L and V normalised at the vertices already, so that what is interpolated turns less than it should.
+    UnitVectorsInterpolated,
 }
+
+impl Technique {
+    /// All.
+    pub const ALL: [Self; 4] =
+        [Self::Plain, Self::FogAtVertex, Self::VectorsInterpolated, Self::UnitVectorsInterpolated];
+
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Plain => "plain",
+            Self::FogAtVertex => "fog-at-vertex",
+            Self::VectorsInterpolated => "vectors-interpolated",
+            Self::UnitVectorsInterpolated => "unit-vectors-interpolated",
+        }
+    }
+
+    /// Whether a draw of these effects has use for it.
+    #[must_use]
+    pub(crate) fn concerns(self, effects: Effects) -> bool {
+        match self {
+            Self::Plain => true,
+            Self::FogAtVertex => effects.has_fog(),
+            Self::VectorsInterpolated | Self::UnitVectorsInterpolated => {
+                effects.has(Effect::Phong) && effects.has_normals()
+            }
+        }
+    }
+
+    /// Whether vectors are interpolated.
+    pub(crate) const fn has_vectors(self) -> bool {
+        matches!(self, Self::VectorsInterpolated | Self::UnitVectorsInterpolated)
+    }
+}
+
+/// Lights whose vectors a draw hands from its vertices to its fragments, at most: what every adapter has varyings for.
+pub const MOST_TOWARD: usize = 4;
 
 /// How a frame's shaders are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -228,17 +270,25 @@ impl Composer {
         Ok(Self { template: Template::new(shaders)?, families, forms: shaders.stable_forms() })
     }
 
-    /// The shader of a draw of these effects. A stage goes with [`Shader::Composed`].
+    /// The shader of a draw of these effects. A stage goes with [`Shader::Composed`], and so does a technique, which changes
+    /// nothing where the effects have no use for it. `toward` lights stand at a point or in a cone: as many vectors are
+    /// interpolated where the technique says so.
     ///
     /// # Errors
     /// Where the effects' files do not go together, with the file and the line.
     ///
     /// # Panics
-    /// Where a stage is asked of [`Shader::Full`].
-    pub fn compose(&self, effects: Effects, shader: Shader, stage: Option<Stage>) -> Result<Composition, Error> {
+    /// Where a stage or a technique is asked of [`Shader::Full`], or more vectors than [`MOST_TOWARD`] are interpolated.
+    pub fn compose(&self, effects: Effects, recipe: Recipe, toward: usize) -> Result<Composition, Error> {
+        let Recipe { shader, stage, technique, .. } = recipe;
         assert!(shader == Shader::Composed || stage.is_none(), "the full shader has no stages");
+        assert!(shader == Shader::Composed || technique == Technique::Plain, "the full shader has no techniques");
         let live = live(effects, stage);
-        let wanted = Wanted { effects: live, stage, has_normals: effects.has_normals(), full: shader == Shader::Full };
+        let technique = if technique.concerns(live) { technique } else { Technique::Plain };
+        let toward = if technique.has_vectors() { toward } else { 0 };
+        assert!(toward <= MOST_TOWARD, "{toward} lights' vectors are interpolated, and {MOST_TOWARD} can be");
+        let has_normals = effects.has_normals();
+        let wanted = Wanted { effects: live, stage, has_normals, full: shader == Shader::Full, technique, toward };
         let own = split(self.template.expand(&wanted)?);
         let items = reached(&own, &self.families);
         let (mut source, mut origins) = (String::new(), vec![]);
@@ -284,11 +334,19 @@ impl Composer {
     /// The first mistake.
     pub fn check(&self) -> Result<(), Error> {
         for effects in covering() {
-            self.compose(effects, Shader::Composed, None)?.validate()?;
+            for technique in Technique::ALL.into_iter().filter(|technique| technique.concerns(live(effects, None))) {
+                let recipe = Recipe { technique, ..Recipe::of(Shader::Composed) };
+                self.compose(effects, recipe, toward(effects))?.validate()?;
+            }
         }
-        self.compose(Effects::NONE, Shader::Full, None)?.validate()?;
+        self.compose(Effects::NONE, Recipe::of(Shader::Full), 0)?.validate()?;
         Ok(())
     }
+}
+
+/// A light of each kind that stands somewhere.
+fn toward(effects: Effects) -> usize {
+    usize::from(effects.has(Effect::Point)) + usize::from(effects.has(Effect::Spot))
 }
 
 /// A small set with each effect.

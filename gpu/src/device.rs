@@ -57,15 +57,21 @@ impl Gpu {
         })
     }
 
-    /// Another device on the same adapter, with a queue of its own.
-    pub(crate) fn sibling(&self) -> Result<Self, Error> {
-        Self::open(&self.name, &self.adapter)
-    }
-
     /// Whether the driver computes on the processor.
     #[must_use]
     pub fn is_cpu(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Pixels of a target's side, at most.
+    #[must_use]
+    pub fn most_pixels(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
+    }
+
+    /// Another device on the same adapter, with a queue of its own.
+    pub(crate) fn sibling(&self) -> Result<Self, Error> {
+        Self::open(&self.name, &self.adapter)
     }
 
     /// How many devices compile pipelines side by side: a software Vulkan driver compiles at the first draw, on the one

@@ -57,6 +57,14 @@ pub enum Error {
         /// Why, and what would be right.
         message: String,
     },
+    /// A frame has no use for a technique, or more than it can do.
+    #[error("the technique {technique} cannot draw the frame: {reason}")]
+    Technique {
+        /// The technique's name.
+        technique: &'static str,
+        /// What the frame has or lacks.
+        reason: String,
+    },
     /// The effects given do not belong to the frame.
     #[error("a frame of {draws} draws needs the effects of each, and {sets} sets were given")]
     Sets {

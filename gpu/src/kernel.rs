@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::readback::SENTINEL;
-use crate::rung::{Dialect, Lowered, Rung, Shape, Asked, lower, rung_struct};
+use crate::rung::{Asked, Dialect, Lowered, Rung, Shape, lower, rung_struct};
 use crate::shaders::{Shaders, validate, validate_lowered};
 use crate::sweep::{SWEEP_GROUP, SWEEP_WIDTH};
 use naga::{Handle, Module, ScalarKind, Type, TypeInner};
@@ -351,9 +351,7 @@ fn construct(
         dialect.up(Shape::Vector(size), &format!("vec{size}f({})", parts.join(", ")))
     };
     match &module.types[ty].inner {
-        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => {
-            Ok(dialect.up(Shape::Scalar, &number(place)))
-        }
+        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => Ok(dialect.up(Shape::Scalar, &number(place))),
         TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Uint => Ok(next(place)),
         TypeInner::Vector { size, scalar } if scalar.kind == ScalarKind::Float => Ok(vector(*size as u8, place)),
         TypeInner::Matrix { columns, rows, .. } => {
@@ -371,13 +369,7 @@ fn construct(
 }
 
 /// The numbers of a value, in order.
-fn flatten(
-    module: &Module,
-    ty: Handle<Type>,
-    value: &str,
-    fields: &mut Vec<Field>,
-    rung: Rung,
-) -> Result<(), String> {
+fn flatten(module: &Module, ty: Handle<Type>, value: &str, fields: &mut Vec<Field>, rung: Rung) -> Result<(), String> {
     match &module.types[ty].inner {
         TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => {
             fields.push(Field { value: value.into(), is_word: false });

@@ -9,7 +9,7 @@ mod widen;
 use crate::device::Gpu;
 use crate::error::Error;
 pub(crate) use dialect::{Dialect, Shape};
-pub(crate) use lower::{Lowered, Asked, lower, rung_struct};
+pub(crate) use lower::{Asked, Lowered, lower, rung_struct};
 
 /// A rung of the ladder: what a shader's f32 becomes, and by what its functions are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -9,14 +9,14 @@ mod uniforms;
 
 use crate::blend_unit::{Route, format};
 use crate::clock::{Clock, Reading};
-use crate::compose::{Composer, Recipe, Shader, Stage};
+use crate::compose::{Composer, MOST_TOWARD, Recipe, Shader, Stage, Technique, live};
 use crate::device::Gpu;
 use crate::error::Error;
 use crate::readback::{Pending, staging};
 use crate::shaders::Shaders;
 use geometry::Geometry;
-use lightmeter_scene::effects::{Called, Effects};
-use lightmeter_scene::frame::{Frame, Texture};
+use lightmeter_scene::effects::{Called, Effect, Effects};
+use lightmeter_scene::frame::{Frame, Place, Texture};
 use lightmeter_scene::target::TargetFormat;
 use pipeline::{DEPTH, Key, Pipelines};
 use uniforms::{Packer, Resource, resource};
@@ -58,8 +58,8 @@ impl SceneRenderer {
     ///
     /// # Errors
     /// [`Error::Unavailable`] where a shader is, in the arithmetic that is asked for, or the device lacks what that takes.
-    /// Where the sets are not one a draw, a blend state has no factor on the unit, a shader is invalid, or the device
-    /// refuses a pipeline.
+    /// Where the sets are not one a draw, the frame has no use for the technique, a blend state has no factor on the unit, a
+    /// shader is invalid, or the device refuses a pipeline.
     ///
     /// # Panics
     /// Where a stage is asked of [`Shader::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
@@ -71,6 +71,7 @@ impl SceneRenderer {
         if let Some(reason) = recipe.rung.lacks(gpu) {
             return Err(Error::Unavailable { what: recipe.rung.name().into(), reason: reason.into() });
         }
+        check_technique(frame, sets, recipe)?;
         let composer = Composer::new(shaders)?;
         let target = if stage.is_some() { TargetFormat::Rgba32Float } else { frame.target.format };
         let tests_depth = frame.draws.iter().any(|draw| draw.depth.is_some());
@@ -85,6 +86,7 @@ impl SceneRenderer {
                 blend: blend.map(|(state, _)| state),
                 depth: draw.depth,
                 cull: draw.cull,
+                toward: toward(frame, called, recipe),
             };
             let (pipeline, program) = pipelines.get(key)?;
             let told = uniforms::Told { frame, draw, called, effects: program.effects(called.effects), stage };
@@ -195,6 +197,48 @@ impl SceneRenderer {
             pass.draw_indexed(0..draw.index_count, 0, 0..1);
         }
     }
+}
+
+/// Lights of a draw that stand somewhere and whose vectors are interpolated.
+fn toward(frame: &Frame, called: &Called, recipe: Recipe) -> usize {
+    let effects = live(called.effects, recipe.stage);
+    if !recipe.technique.has_vectors() || !recipe.technique.concerns(effects) {
+        return 0;
+    }
+    let stands = |&&light: &&usize| match frame.lights[light].place {
+        Place::Directional { .. } => false,
+        Place::Point { .. } => effects.has(Effect::Point),
+        Place::Spot { .. } => effects.has(Effect::Spot),
+    };
+    called.lights.iter().filter(stands).count()
+}
+
+/// Whether some draw has use for the technique, and none is more than it can do.
+fn check_technique(frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<(), Error> {
+    let technique = recipe.technique;
+    let refused = |reason: String| Err(Error::Technique { technique: technique.name(), reason });
+    if technique == Technique::Plain {
+        return Ok(());
+    }
+    if recipe.shader == Shader::Full {
+        return refused("the shader with all effects is drawn plainly alone".into());
+    }
+    if !sets.iter().any(|called| technique.concerns(live(called.effects, recipe.stage))) {
+        return refused(match technique {
+            Technique::FogAtVertex => "no draw of it is in fog".into(),
+            _ => "no draw of it is lit at its fragments by a light that needs the normal".into(),
+        });
+    }
+    for (draw, called) in frame.draws.iter().zip(sets) {
+        let lights = toward(frame, called, recipe);
+        if lights > MOST_TOWARD {
+            let name = &draw.name;
+            return refused(format!(
+                "{lights} lights at a point or in a cone shine on `{name}`, and {MOST_TOWARD} are interpolated at most"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// A texture of binary32 texels.

@@ -1,10 +1,10 @@
 //! Functions that compute the same, each in an arithmetic of its own: what they give for the same rows of numbers, and how long
 //! they take, in turns.
 
+use super::Bench;
 use super::document::{Errors, Row, Time};
 use super::errors::Gathered;
 use super::turns::{self, Entry, Laps};
-use super::{Bench, Counted};
 use crate::arithmetic::{Accept, Profile};
 use crate::evaluate::kernel;
 use crate::judge::{Outcome, judge};
@@ -175,7 +175,7 @@ struct Compiled {
 
 /// The rows of a group, measured against a baseline by its name.
 pub(super) fn contest(
-    bench: &mut Bench<'_>,
+    bench: &Bench<'_>,
     sample: &Sample<'_>,
     contenders: &[Contender<'_>],
     baseline: &str,
@@ -336,7 +336,7 @@ fn wrong(sample: &Sample<'_>, found: &[f64], exact: &[f64], legal: &[Accept]) ->
 }
 
 fn time_rows(
-    bench: &mut Bench<'_>,
+    bench: &Bench<'_>,
     sample: &Sample<'_>,
     contenders: &[Contender<'_>],
     compiled: &[Option<Compiled>],
@@ -363,11 +363,6 @@ fn time_rows(
     let mut laps = turns::measure(&mut entries, bench.setting.effort)?;
     let clocks: Vec<&'static str> = entries.iter().map(Entry::clock).collect();
     drop(entries);
-    for (laps, clock) in laps.iter().zip(&clocks) {
-        if *clock != "processor" {
-            bench.counted.add(laps);
-        }
-    }
     let idle = places.first().is_some_and(Option::is_none).then(|| laps[0].clone());
     let base = places.iter().position(|place| place.is_some_and(|k| rows[k].name == baseline));
     // A processor reads and computes at once, so that what is left of a time less the idle one is off by as much as that may
@@ -425,11 +420,4 @@ fn processor_entry<'a>(sample: &'a Sample<'_>, formula: Option<&'a Member>, arit
         }
         Ok(Reading::Seconds(start.elapsed().as_secs_f64()))
     })
-}
-
-impl Counted {
-    pub(super) fn add(&mut self, laps: &Laps) {
-        self.readings += laps.len() as u64;
-        self.rejected += laps.iter().filter(|lap| lap.is_none()).count() as u64;
-    }
 }

@@ -1,9 +1,9 @@
 //! How time grows with the number of cases.
 
-use super::Bench;
 use super::contest::timed;
 use super::document::{Scaling, ScalingPoint};
 use super::turns::{self, Effort, Entry};
+use super::{Bench, fit};
 use crate::select::catalogue;
 use lightmeter_gpu::{Error, RepeatPipeline};
 
@@ -13,7 +13,7 @@ const FORMULA: &str = "lighting/blinn";
 const MOST: u32 = 1 << 13;
 
 /// Time against the number of evaluations in one submission.
-pub(super) fn cases(bench: &mut Bench<'_>) -> Result<Vec<Scaling>, Error> {
+pub(super) fn cases(bench: &Bench<'_>) -> Result<Vec<Scaling>, Error> {
     let Some(gpu) = bench.gpu else { return Ok(vec![]) };
     let catalogue = catalogue();
     let Some(member) = catalogue.iter().find(|member| member.spec.id == FORMULA) else { return Ok(vec![]) };
@@ -27,9 +27,6 @@ pub(super) fn cases(bench: &mut Bench<'_>) -> Result<Vec<Scaling>, Error> {
         .collect();
     let laps = turns::measure(&mut entries, Effort { seconds: 0.0, ..bench.setting.effort })?;
     drop(entries);
-    for laps in &laps {
-        bench.counted.add(laps);
-    }
     let points: Vec<ScalingPoint> = steps
         .iter()
         .zip(&laps)
@@ -44,7 +41,7 @@ pub(super) fn cases(bench: &mut Bench<'_>) -> Result<Vec<Scaling>, Error> {
         what: format!("{FORMULA} in f32, so many evaluations in one dispatch"),
         unit: "evaluations".into(),
         clock: bench.clock.kind().name().into(),
-        fit: None,
+        fit: fit::fit(&points),
         points,
         unavailable: vec![],
     }])

@@ -6,6 +6,7 @@ mod contest;
 pub mod document;
 pub mod errors;
 mod figures;
+pub mod fit;
 mod formulas;
 mod growth;
 pub mod ladder;
@@ -13,6 +14,7 @@ pub mod page;
 pub mod pareto;
 pub mod plot;
 pub mod recommend;
+pub mod scenes;
 #[cfg(test)]
 mod synthetic;
 mod techniques;
@@ -22,9 +24,10 @@ pub mod turns;
 use crate::arithmetic::Profile;
 use crate::filter::Filter;
 use crate::run::Progress;
-use crate::select::catalogue;
+use crate::scene::Loaded;
+use crate::select::{Member, catalogue};
 use crate::subject::Subject;
-use document::{ClockUse, Document, Family, Group, GroupKind, Measured, SCHEMA};
+use document::{ClockUse, Document, Family, Group, GroupKind, Measured, SCHEMA, Scaling};
 use lightmeter_gpu::{Clock, ClockKind, Error, Gpu, Rung, Shaders};
 use std::time::Instant;
 use turns::Effort;
@@ -33,6 +36,8 @@ use turns::Effort;
 pub struct Options {
     /// Which groups, by their ids.
     pub filter: Filter,
+    /// Scenes from files, by a name of their own; where there are some and no filter, nothing else is measured.
+    pub scenes: Vec<(String, Loaded)>,
     /// Less of all, within a minute.
     pub quick: bool,
     /// What inputs are drawn from.
@@ -72,13 +77,6 @@ impl Setting {
     }
 }
 
-/// Readings of a clock.
-#[derive(Clone, Copy, Debug, Default)]
-struct Counted {
-    readings: u64,
-    rejected: u64,
-}
-
 /// What measures on an adapter.
 struct Bench<'a> {
     gpu: Option<&'a Gpu>,
@@ -89,7 +87,6 @@ struct Bench<'a> {
     /// The rules that values are held to, the driver's known deviations granted.
     profile: Profile,
     setting: Setting,
-    counted: Counted,
 }
 
 /// What a quick bench measures of the formulas: one or two of each family.
@@ -138,76 +135,100 @@ fn measured(
     progress: &mut impl Progress,
 ) -> Result<Measured, Error> {
     let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
-    let mut bench = Bench {
+    let bench = Bench {
         gpu: subject.gpu(),
         clock: clock(subject, options.clock)?,
         shaders: &options.shaders,
         ladder: ladder_of(subject)?,
         profile,
         setting,
-        counted: Counted::default(),
     };
     let catalogue = catalogue();
+    let asked = |id: &str| options.filter.selects(id);
+    // What is asked for by name is measured in a quick bench, too.
+    let quick = options.quick && options.filter.is_empty() && options.scenes.is_empty();
+    let all = options.scenes.is_empty() || !options.filter.is_empty();
+    let wanted = |id: &str, is_quick: &dyn Fn() -> bool| all && asked(id) && (!quick || is_quick());
+
     let formulas: Vec<_> = formulas::groups(&catalogue)
         .into_iter()
-        .filter(|(id, _)| options.filter.selects(id))
-        .filter(|(id, _)| !options.quick || !options.filter.is_empty() || QUICK.contains(&id.as_str()))
+        .filter(|(id, _)| wanted(id, &|| QUICK.contains(&id.as_str())))
         .collect();
-    let techniques: Vec<_> = techniques::all().into_iter().filter(|group| options.filter.selects(group.id)).collect();
-    let stable: Vec<_> = catalogue
+    let techniques: Vec<_> = techniques::all().into_iter().filter(|group| wanted(group.id, &|| true)).collect();
+    let stable: Vec<&Member> = catalogue
         .iter()
         .filter(|member| member.spec.stable.is_some())
-        .filter(|member| options.filter.selects(&format!("stable/{}", member.spec.id)))
         .filter(|member| {
-            !options.quick || !options.filter.is_empty() || QUICK_STABLE.contains(&member.spec.id.as_str())
+            wanted(&format!("stable/{}", member.spec.id), &|| QUICK_STABLE.contains(&member.spec.id.as_str()))
         })
         .collect();
-    progress.start((formulas.len() + techniques.len() + stable.len()) as u64);
-    let mut groups: Vec<Group> = vec![];
+    let mut drawn = scenes::technique_ids();
+    drawn.retain(|id| wanted(id, &|| true));
+    let mut named = scenes::all();
+    named.retain(|name| wanted(&format!("scene/{name}"), &|| scenes::QUICK.contains(name)));
+    let mut growing = scenes::SCALINGS.to_vec();
+    growing.retain(|name| wanted(&format!("scaling/{name}"), &|| true));
+    let by_cases = wanted("scaling/cases", &|| true);
+
+    let on = scenes::On { subject, shaders: &options.shaders, clock: &bench.clock, profile: &bench.profile, setting };
+    let on_device = techniques.len() + stable.len() + drawn.len() + named.len() + growing.len() + usize::from(by_cases);
+    let on_device = if bench.gpu.is_some() { on_device + options.scenes.len() } else { 0 };
+    progress.start((formulas.len() + on_device) as u64);
+    let (mut groups, mut scalings): (Vec<Group>, Vec<Scaling>) = (vec![], vec![]);
+    for (id, members) in &formulas {
+        progress.group(id);
+        groups.push(formulas::formula(&bench, id, members)?);
+        progress.advance(1);
+    }
     if bench.gpu.is_some() {
         for group in &techniques {
             progress.group(group.id);
-            groups.push(techniques::techniques(&mut bench, group)?);
+            groups.push(techniques::techniques(&bench, group)?);
             progress.advance(1);
         }
+        groups.extend(scenes::techniques(&on, &drawn, progress)?);
         for member in stable {
             progress.group(&member.spec.id);
-            groups.extend(techniques::stable(&mut bench, member, &catalogue)?);
+            groups.extend(techniques::stable(&bench, member, &catalogue)?);
+            progress.advance(1);
+        }
+        groups.extend(scenes::scenes(&on, &bench.ladder, &named, progress)?);
+        for (name, loaded) in &options.scenes {
+            progress.group(name);
+            let (title, frame) = (loaded.title.clone(), loaded.frame.clone());
+            groups.extend(scenes::scene(&on, &bench.ladder, format!("scene/{name}"), title, frame)?);
+            progress.advance(1);
+        }
+        scalings.extend(scenes::scalings(&on, &growing, progress)?);
+        if by_cases {
+            progress.group("scaling/cases");
+            scalings.extend(growth::cases(&bench)?);
             progress.advance(1);
         }
     }
-    for (id, members) in &formulas {
-        progress.group(id);
-        groups.push(formulas::formula(&mut bench, id, members)?);
-        progress.advance(1);
+    for group in &mut groups {
+        group.front = pareto::front_of(group);
     }
-    let scalings = if options.filter.selects("scaling/cases") { growth::cases(&mut bench)? } else { vec![] };
-    let Bench { clock, ladder, counted, .. } = bench;
+    let (readings, rejected) = bench.clock.readings();
     let identity = subject.identity.clone();
-    let mut measured = Measured {
+    Ok(Measured {
         adapter: identity.name,
         device: identity.device,
         backend: identity.backend.into(),
         driver: identity.driver,
         is_cpu: subject.gpu().is_none_or(Gpu::is_cpu),
         clock: ClockUse {
-            kind: clock.kind().name().into(),
-            note: clock.note().map(str::to_owned),
-            readings: counted.readings,
-            rejected: counted.rejected,
+            kind: bench.clock.kind().name().into(),
+            note: bench.clock.note().map(str::to_owned),
+            readings,
+            rejected,
         },
-        rungs: formulas::rungs(&ladder),
+        rungs: formulas::rungs(&bench.ladder),
+        families: families(&groups),
+        claims: claims::claims(&groups),
         groups,
-        families: vec![],
         scalings,
-        claims: vec![],
-    };
-    for group in &mut measured.groups {
-        group.front = pareto::front_of(group);
-    }
-    measured.families = families(&measured.groups);
-    measured.claims = claims::claims(&measured.groups);
-    Ok(measured)
+    })
 }
 
 /// Of the stable forms, those of a quick bench.

@@ -337,7 +337,7 @@ const DIRECT: &str = "a·(1 − t) + b·t at each pixel";
 const DIFFERENCES: &str = "the step added once a pixel";
 
 /// The techniques of a group, each at the ladder's rungs.
-pub(super) fn techniques(bench: &mut Bench<'_>, group: &Techniques) -> Result<Group, Error> {
+pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<Group, Error> {
     let ideal = &group.techniques[0].member;
     let sample = Sample::new(&[ideal], bench.setting.cases, bench.setting.seed);
     let mut contenders = vec![];
@@ -373,7 +373,7 @@ pub(super) fn techniques(bench: &mut Bench<'_>, group: &Techniques) -> Result<Gr
 }
 
 /// The published and the stable form of a formula that has both, at its hard cases.
-pub(super) fn stable(bench: &mut Bench<'_>, member: &Member, catalogue: &[Member]) -> Result<Option<Group>, Error> {
+pub(super) fn stable(bench: &Bench<'_>, member: &Member, catalogue: &[Member]) -> Result<Option<Group>, Error> {
     let mut naive: Vec<&Member> = vec![];
     for hard in member.spec.hard.iter().filter_map(|hard| hard.naive) {
         let rival = catalogue.iter().find(|rival| rival.spec.id == hard.formula);

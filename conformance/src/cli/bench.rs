@@ -10,8 +10,9 @@ use lightmeter::bench::recommend::{self, Inputs, Limit, recommend};
 use lightmeter::bench::{Options, bench, page, text};
 use lightmeter::filter::Filter;
 use lightmeter::run::Progress;
+use lightmeter::scene::load;
 use lightmeter_gpu::ClockKind;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Measure what accuracy costs in time: each technique at each rung of the ladder, its error and its time.
 #[derive(Debug, Args)]
@@ -74,8 +75,15 @@ enum Clock {
 
 impl Bench {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let (files, globs): (Vec<String>, Vec<String>) =
+            self.filter.iter().cloned().partition(|name| Path::new(name).extension().is_some_and(|end| end == "json"));
+        let scenes = files.iter().map(|file| {
+            let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            Ok((name, load::scene(file)?))
+        });
         let options = Options {
-            filter: Filter::new(&self.filter)?,
+            filter: Filter::new(&globs)?,
+            scenes: scenes.collect::<anyhow::Result<_>>()?,
             quick: self.quick,
             seed: self.seed,
             clock: self.clock.map(|clock| match clock {

@@ -9,6 +9,7 @@ use super::file::{self, Stored};
 use super::judge::{Judged, Miss, error, judge};
 use super::select::{Chosen, pixel_id, scene_id, size};
 use crate::arithmetic::Profile;
+use crate::devices::Deviation;
 use crate::judge::is_worse;
 use crate::report::{Failure, Group, ImageUse, Number, Report, Totals};
 use crate::run::{Options, Progress, problem};
@@ -153,6 +154,26 @@ fn embedded(frame: &Frame, shader: Shader) -> Option<Stored> {
     (shader == Shader::Composed).then(|| Stored::of(&render::<f32>(frame, None, None), frame.target.format))
 }
 
+/// Takes the misses out that a named deviation makes legal; how many there are.
+pub(crate) fn excuse(
+    judged: &mut Judged,
+    image: &Stored,
+    frame: &Frame,
+    deviation: &Deviation,
+    profile: &Profile,
+) -> u64 {
+    let granted = deviation.grant(*profile);
+    let expectation = granted.scope(|| Expectation::new(frame, None, None, &granted));
+    let before = judged.misses.len();
+    judged.misses.retain(|miss| {
+        let (x, y) = (miss.pixel % image.width, miss.pixel / image.width);
+        let legal = expectation.pixel(x, y, &granted);
+        let value = image.pixels[miss.pixel][miss.component];
+        !(legal.low[miss.component] <= value && value <= legal.high[miss.component])
+    });
+    (before - judged.misses.len()) as u64
+}
+
 /// The accuracy rules for a subject: the profile's, with the subpixel bits that its rasteriser is known to have.
 #[must_use]
 pub fn profile_of(subject: &Subject, profile: &Profile) -> Profile {
@@ -285,16 +306,7 @@ impl<'a> Scene<'a> {
             if judged.misses.is_empty() {
                 break;
             }
-            let granted = deviation.grant(*profile);
-            let expectation = granted.scope(|| Expectation::new(self.frame, None, None, &granted));
-            let before = judged.misses.len();
-            judged.misses.retain(|miss| {
-                let (x, y) = (miss.pixel % image.width, miss.pixel / image.width);
-                let legal = expectation.pixel(x, y, &granted);
-                let value = image.pixels[miss.pixel][miss.component];
-                !(legal.low[miss.component] <= value && value <= legal.high[miss.component])
-            });
-            let count = (before - judged.misses.len()) as u64;
+            let count = excuse(judged, image, self.frame, deviation, profile);
             excused += count;
             let adapter = &subject.identity.name;
             if let Some(uses) = report.deviations.iter_mut().find(|d| d.name == deviation.name && d.adapter == *adapter)

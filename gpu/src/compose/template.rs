@@ -1,7 +1,7 @@
 //! The skeleton with the effects' texts put into it.
 
-use super::Stage;
 use super::condition::{Condition, Named, Truth};
+use super::{MOST_TOWARD, Stage, Technique};
 use crate::error::Error;
 use crate::shaders::Shaders;
 use lightmeter_scene::effects::{Effect, Effects};
@@ -49,6 +49,10 @@ pub(super) struct Wanted {
     pub(super) has_normals: bool,
     /// Whether every effect is there, behind switches.
     pub(super) full: bool,
+    /// What is computed where; plain where the effects have no use for it.
+    pub(super) technique: Technique,
+    /// Lights whose vectors are interpolated.
+    pub(super) toward: usize,
 }
 
 /// A part of the text.
@@ -200,6 +204,16 @@ impl Wanted {
     fn truth(&self, name: &str) -> Option<Truth> {
         if name == "has_normals" {
             return Some(Truth::Known(self.has_normals));
+        }
+        match name {
+            "fog_at_vertex" => return Some(Truth::Known(self.technique == Technique::FogAtVertex)),
+            "vectors_interpolated" => return Some(Truth::Known(self.technique.has_vectors())),
+            "unit_vectors" => return Some(Truth::Known(self.technique == Technique::UnitVectorsInterpolated)),
+            _ => {}
+        }
+        if let Some(number) = name.strip_prefix("toward_") {
+            let number: usize = number.parse().ok().filter(|number| (1..=MOST_TOWARD).contains(number))?;
+            return Some(Truth::Known(self.toward >= number));
         }
         if let Some(stage) = name.strip_prefix("stage_") {
             let stage = Stage::ALL.into_iter().find(|of| of.name() == stage)?;

@@ -129,7 +129,7 @@ fn each<T: Sync>(items: &[T], check: impl Fn(&T) + Sync) {
 }
 
 fn composed(composer: &Composer, effects: Effects, stage: Option<Stage>) -> Composition {
-    let composition = composer.compose(effects, Shader::Composed, stage);
+    let composition = composer.compose(effects, Recipe { stage, ..Recipe::of(Shader::Composed) }, 0);
     composition.unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -324,6 +324,57 @@ fn stages_hold_what_they_need() {
     });
 }
 
+/// Names of what techniques add.
+const OF_TECHNIQUES: [&str; 4] = ["fog_factor: f32", "viewer: vec3f", "toward_1", "scene_toward"];
+
+#[test]
+fn a_technique_is_in_no_shader_that_it_is_not_asked_of() {
+    let composer = composer();
+    let sets: Vec<Effects> = sets().into_iter().step_by(7).collect();
+    each(&sets, |set| {
+        let plain = composed(&composer, *set, None);
+        for name in OF_TECHNIQUES {
+            assert!(!plain.source.contains(name), "`{name}` in the plain shader of: {set}");
+        }
+        for technique in Technique::ALL {
+            let what = format!("{} of {set}", technique.name());
+            let recipe = Recipe { technique, ..Recipe::of(Shader::Composed) };
+            let one = composer.compose(*set, recipe, toward(plain.effects)).unwrap_or_else(|e| panic!("{what}: {e}"));
+            let (module, _) = one.validate().unwrap_or_else(|error| panic!("{error}"));
+            assert_compact(&module, &what);
+            let (marks, effects) = (marks(&module), one.effects);
+            let concerned = technique.concerns(effects);
+            let varying = effects.has_any(&[E::Point, E::Spot, E::LocalViewer]);
+            let vectors = concerned && technique.has_vectors() && varying;
+            let fog = concerned && technique == Technique::FogAtVertex;
+            let has = |member: &str| marks.contains(&format!("SceneVaryings.{member}"));
+            assert_eq!(has("fog_factor"), fog, "{what}");
+            assert_eq!(has("viewer"), vectors && effects.has(E::LocalViewer), "{what}");
+            assert_eq!(has("toward_1"), vectors && effects.has_any(&[E::Point, E::Spot]), "{what}");
+            assert_eq!(has("toward_2"), vectors && effects.has(E::Point) && effects.has(E::Spot), "{what}");
+            let at_fragments = effects.has(E::Phong) && needs_point(effects);
+            let place = if vectors { effects.has(E::Attenuation) } else { at_fragments };
+            assert_eq!(has("p"), effects.has_fog() && !fog || place, "{what}");
+            assert_eq!(one.source == plain.source, technique == Technique::Plain || !fog && !vectors, "{what}");
+        }
+    });
+}
+
+#[test]
+fn every_number_of_vectors_up_to_the_most_is_valid() {
+    let composer = composer();
+    for kinds in [&[E::Point][..], &[E::Spot], &[E::Point, E::Spot]] {
+        let set: Effects = [E::Phong, E::Diffuse, E::SpecularBlinn].into_iter().chain(kinds.iter().copied()).collect();
+        for number in kinds.len()..=MOST_TOWARD {
+            let recipe = Recipe { technique: Technique::VectorsInterpolated, ..Recipe::of(Shader::Composed) };
+            let one = composer.compose(set, recipe, number).unwrap_or_else(|error| panic!("{error}"));
+            let (module, _) = one.validate().unwrap_or_else(|error| panic!("{error}"));
+            assert_compact(&module, &format!("{number} vectors of {set}"));
+            assert!(marks(&module).contains(&format!("SceneVaryings.toward_{number}")), "{number} of {set}");
+        }
+    }
+}
+
 /// Instructions of a module in SPIR-V.
 fn instructions(composer: &Composer, effects: Effects) -> usize {
     let (module, info) =
@@ -381,7 +432,7 @@ fn a_shader_never_grows_when_an_effect_leaves() {
 #[test]
 fn the_full_shader_is_one_and_holds_everything() {
     let composer = composer();
-    let full = |set| composer.compose(set, Shader::Full, None).unwrap_or_else(|error| panic!("{error}"));
+    let full = |set| composer.compose(set, Recipe::of(Shader::Full), 0).unwrap_or_else(|error| panic!("{error}"));
     let (one, other) = (full(Effects::NONE), full(sets()[4321]));
     assert_eq!(one.source, other.source);
     let (module, _) = one.validate().unwrap_or_else(|error| panic!("{error}"));

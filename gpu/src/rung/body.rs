@@ -7,7 +7,8 @@ use naga::front::Typifier;
 use naga::proc::{ResolveContext, TypeResolution};
 use naga::{
     AddressSpace, BinaryOperator, Binding, Block, BuiltIn, EntryPoint, Expression, Function, Handle, ImageQuery,
-    LocalVariable, MathFunction, RelationalFunction, ScalarKind, Statement, SwitchValue, Type, TypeInner, UnaryOperator,
+    LocalVariable, MathFunction, RelationalFunction, ScalarKind, Statement, SwitchValue, Type, TypeInner,
+    UnaryOperator,
 };
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
@@ -16,11 +17,23 @@ type Value = Handle<Expression>;
 
 /// Built-in functions that drivers get right in f64.
 const RIGHT_IN_F64: [&str; 14] = [
-    "abs", "sign", "floor", "ceil", "trunc", "round", "min", "max", "clamp", "dot", "cross", "sqrt", "inverseSqrt", "mix",
+    "abs",
+    "sign",
+    "floor",
+    "ceil",
+    "trunc",
+    "round",
+    "min",
+    "max",
+    "clamp",
+    "dot",
+    "cross",
+    "sqrt",
+    "inverseSqrt",
+    "mix",
 ];
 /// Built-in functions of vectors that are not those of their components.
-const OF_VECTORS: [&str; 8] =
-    ["dot", "cross", "length", "distance", "normalize", "reflect", "refract", "faceForward"];
+const OF_VECTORS: [&str; 8] = ["dot", "cross", "length", "distance", "normalize", "reflect", "refract", "faceForward"];
 
 /// Where something is kept.
 struct Place {
@@ -227,7 +240,9 @@ impl<'w, 'a> Body<'w, 'a> {
 
     /// What is returned: an entry point's result is f32.
     fn returned(&mut self, value: Value) -> Result<String, String> {
-        let Some(result) = self.entry.and_then(|entry| entry.function.result.as_ref()) else { return self.value(value) };
+        let Some(result) = self.entry.and_then(|entry| entry.function.result.as_ref()) else {
+            return self.value(value);
+        };
         if self.raw.contains(&value) {
             return Ok(self.bound[&value].clone());
         }
@@ -335,7 +350,8 @@ impl<'w, 'a> Body<'w, 'a> {
             Expression::Swizzle { size, vector, pattern } => {
                 let is_float = self.shape(vector).is_some();
                 let vector = self.operand(vector, is_plain)?;
-                let letters: String = pattern[..size as usize].iter().map(|c| char::from(b"xyzw"[*c as usize])).collect();
+                let letters: String =
+                    pattern[..size as usize].iter().map(|c| char::from(b"xyzw"[*c as usize])).collect();
                 if is_pair && is_float {
                     return Ok(format!("DF{}({vector}.hi.{letters}, {vector}.lo.{letters})", size as u8));
                 }
@@ -354,28 +370,28 @@ impl<'w, 'a> Body<'w, 'a> {
             },
             Expression::FunctionArgument(k) if is_plain => Ok(format!("_i{k}")),
             Expression::FunctionArgument(k) => Ok(format!("_a{k}")),
-            Expression::GlobalVariable(global) => {
-                Ok(module.global_variables[global].name.clone().unwrap_or_default())
-            }
+            Expression::GlobalVariable(global) => Ok(module.global_variables[global].name.clone().unwrap_or_default()),
             Expression::Load { pointer } => {
                 let place = self.place(pointer)?;
                 if is_plain && !place.is_plain {
                     return Err("a clip position comes of a variable".into());
                 }
-                let text = place.component.as_ref().map_or_else(
-                    || place.text.clone(),
-                    |index| Dialect::Pair.component(&place.text, index),
-                );
+                let text = place
+                    .component
+                    .as_ref()
+                    .map_or_else(|| place.text.clone(), |index| Dialect::Pair.component(&place.text, index));
                 if is_plain || !place.is_plain { Ok(text) } else { self.raise(value, &text) }
             }
             Expression::ImageLoad { image, coordinate, array_index: None, sample: None, level } => {
                 let (image, coordinate) = (self.value(image)?, self.value(coordinate)?);
-                let level = level.map_or(Ok(String::new()), |level| Ok::<_, String>(format!(", {}", self.value(level)?)))?;
+                let level =
+                    level.map_or(Ok(String::new()), |level| Ok::<_, String>(format!(", {}", self.value(level)?)))?;
                 self.raise(value, &format!("textureLoad({image}, {coordinate}{level})"))
             }
             Expression::ImageQuery { image, query: ImageQuery::Size { level } } => {
                 let image = self.value(image)?;
-                let level = level.map_or(Ok(String::new()), |level| Ok::<_, String>(format!(", {}", self.value(level)?)))?;
+                let level =
+                    level.map_or(Ok(String::new()), |level| Ok::<_, String>(format!(", {}", self.value(level)?)))?;
                 Ok(format!("textureDimensions({image}{level})"))
             }
             Expression::Unary { op, expr } => {
@@ -407,8 +423,12 @@ impl<'w, 'a> Body<'w, 'a> {
                     _ => Ok(format!("select({r}, {a}, {condition})")),
                 }
             }
-            Expression::Relational { fun: RelationalFunction::All, argument } => Ok(format!("all({})", self.value(argument)?)),
-            Expression::Relational { fun: RelationalFunction::Any, argument } => Ok(format!("any({})", self.value(argument)?)),
+            Expression::Relational { fun: RelationalFunction::All, argument } => {
+                Ok(format!("all({})", self.value(argument)?))
+            }
+            Expression::Relational { fun: RelationalFunction::Any, argument } => {
+                Ok(format!("any({})", self.value(argument)?))
+            }
             Expression::Math { fun, arg, arg1, arg2, arg3 } => {
                 let arguments: Vec<Value> = [Some(arg), arg1, arg2, arg3].into_iter().flatten().collect();
                 self.math(value, fun, &arguments, is_plain)
@@ -462,13 +482,17 @@ impl<'w, 'a> Body<'w, 'a> {
         };
         let ((a, x), (b, y)) = (left, right);
         match (a, b) {
-            (Shape::Matrix(columns, rows), Shape::Vector(_)) if op == B::Multiply => Ok(columns_by(x, columns, rows, y)),
+            (Shape::Matrix(columns, rows), Shape::Vector(_)) if op == B::Multiply => {
+                Ok(columns_by(x, columns, rows, y))
+            }
             (Shape::Matrix(columns, rows), Shape::Matrix(others, _)) if op == B::Multiply => {
                 let products: Vec<String> =
                     (0..others).map(|k| columns_by(x, columns, rows, &format!("{y}[{k}]"))).collect();
                 Ok(format!("array<DF{rows}, {others}>({})", products.join(", ")))
             }
-            (Shape::Matrix(..), _) | (_, Shape::Matrix(..)) => Err("an operation on matrices has no double-float form".into()),
+            (Shape::Matrix(..), _) | (_, Shape::Matrix(..)) => {
+                Err("an operation on matrices has no double-float form".into())
+            }
             _ => {
                 let width = a.width().max(b.width());
                 let widened = |shape: Shape, text: &str| {
@@ -570,7 +594,9 @@ impl<'w, 'a> Body<'w, 'a> {
                 let global = &module.global_variables[global];
                 let name = global.name.clone().unwrap_or_default();
                 match global.space {
-                    AddressSpace::Uniform | AddressSpace::Storage { .. } if self.writer.bindings => Ok(kept(name, true)),
+                    AddressSpace::Uniform | AddressSpace::Storage { .. } if self.writer.bindings => {
+                        Ok(kept(name, true))
+                    }
                     _ => Err(format!("it reads `{name}`, which is not handed to it")),
                 }
             }

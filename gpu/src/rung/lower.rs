@@ -278,9 +278,9 @@ impl Writer<'_> {
                 AddressSpace::Handle => "",
                 other => return Err(format!("`{name}` is in an address space that is not lowered: {other:?}")),
             };
-            let place = global.binding.map_or(String::new(), |place| {
-                format!("@group({}) @binding({}) ", place.group, place.binding)
-            });
+            let place = global
+                .binding
+                .map_or(String::new(), |place| format!("@group({}) @binding({}) ", place.group, place.binding));
             let ty = self.type_name(global.ty, true)?;
             let _ = writeln!(out, "{place}var{space} {name}: {ty};");
         }
@@ -309,7 +309,9 @@ impl Writer<'_> {
         let stage = match entry.stage {
             ShaderStage::Vertex => "@vertex".to_owned(),
             ShaderStage::Fragment => "@fragment".to_owned(),
-            ShaderStage::Compute => format!("@compute @workgroup_size({:?})", entry.workgroup_size).replace(['[', ']'], ""),
+            ShaderStage::Compute => {
+                format!("@compute @workgroup_size({:?})", entry.workgroup_size).replace(['[', ']'], "")
+            }
             other => return Err(format!("a stage that is not lowered: {other:?}")),
         };
         let (mut arguments, mut received) = (vec![], String::new());

@@ -1,7 +1,7 @@
 //! Texts in every rung's arithmetic: that they are valid, and what they compute.
 
 use super::dialect::Prelude;
-use super::lower::{NOTHING_STABLE, READS_BITS, Asked, lower};
+use super::lower::{Asked, NOTHING_STABLE, READS_BITS, lower};
 use super::probe::probe_with;
 use super::*;
 use crate::adapters;
@@ -71,7 +71,8 @@ fn what_is_unavailable_on_an_adapter_is_known() {
     for adapter in adapters().into_iter().filter(|adapter| adapter.is_cpu) {
         let gpu = adapter.open().unwrap_or_else(|error| panic!("{error}"));
         for rung in Rung::ALL {
-            let reason = rung.unavailable(&gpu).unwrap_or_else(|error| panic!("{} {}: {error}", adapter.name, rung.name()));
+            let reason =
+                rung.unavailable(&gpu).unwrap_or_else(|error| panic!("{} {}: {error}", adapter.name, rung.name()));
             let expected = match rung {
                 Rung::F16 if adapter.name != "lavapipe" => Some("the adapter lacks the feature SHADER_F16"),
                 Rung::F64 if adapter.name != "lavapipe" => Some("the adapter lacks the feature SHADER_F64"),

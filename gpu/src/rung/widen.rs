@@ -72,7 +72,9 @@ fn power_of_two(number: &str) -> Option<f64> {
 
 /// A decimal float without a suffix.
 fn is_decimal(number: &str) -> bool {
-    !number.starts_with("0x") && number.contains(['.', 'e']) && number.ends_with(|c: char| c.is_ascii_digit() || c == '.')
+    !number.starts_with("0x")
+        && number.contains(['.', 'e'])
+        && number.ends_with(|c: char| c.is_ascii_digit() || c == '.')
 }
 
 #[cfg(test)]

@@ -20,6 +20,8 @@ pub(super) struct Key {
     pub(super) blend: Option<wgpu::BlendState>,
     pub(super) depth: Option<DepthTest>,
     pub(super) cull: Cull,
+    /// Lights whose vectors are interpolated.
+    pub(super) toward: usize,
 }
 
 /// A shader with what it reads.
@@ -67,11 +69,12 @@ impl<'a> Pipelines<'a> {
         // A stage without light still tells whether there are normals, which `live` leaves out.
         let has_normals = key.effects.has_normals();
         let called = key.effects;
-        key.effects = if self.recipe.shader == Shader::Full { Effects::NONE } else { live(called, self.recipe.stage) };
+        let Recipe { shader, stage, .. } = self.recipe;
+        key.effects = if shader == Shader::Full { Effects::NONE } else { live(called, stage) };
         if let Some(found) = self.pipelines.get(&(key, has_normals)) {
             return Ok(found.clone());
         }
-        let composition = self.composer.compose(called, self.recipe.shader, self.recipe.stage)?;
+        let composition = self.composer.compose(called, self.recipe, key.toward)?;
         let program = match self.programs.get(&composition.source) {
             Some(program) => program.clone(),
             None => {

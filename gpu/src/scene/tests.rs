@@ -3,6 +3,7 @@
 use super::uniforms::Told;
 use super::*;
 use crate::adapters;
+use crate::clock::ClockKind;
 use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::effects::{effects, named};
@@ -276,6 +277,127 @@ fn stages_are_steps_towards_the_colour() {
     }
 }
 
+/// Drawn by a technique.
+fn by(gpu: &Gpu, frame: &Frame, technique: Technique) -> Result<Vec<u8>, Error> {
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    let recipe = Recipe { technique, ..Recipe::of(Shader::Composed) };
+    let renderer = SceneRenderer::new(gpu, &shaders, frame, &effects(frame), recipe)?;
+    SceneRenderer::pixels(gpu, renderer.submit(gpu))
+}
+
+/// The greatest difference of a component.
+fn apart(a: &[u8], b: &[u8]) -> f32 {
+    floats(a).iter().zip(&floats(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn fog_at_the_vertices_is_fog_where_its_factor_is_constant_and_not_elsewhere() {
+    let _alone = alone();
+    for (name, gpu, format) in devices() {
+        for frequency in [Frequency::Gouraud, Frequency::Phong] {
+            let mut frame = frame();
+            frame.target.format = format;
+            let draw = &mut frame.draws[0];
+            draw.shading.as_mut().expect("it is lit").frequency = frequency;
+            let fog = frame.fog.as_mut().expect("there is fog");
+            (fog.form, fog.distance) = (FogForm::Exp { density: 1.0 }, Distance::Planar);
+            let mut both = |z: [f32; 4]| {
+                frame.meshes[0].positions.iter_mut().zip(z).for_each(|(position, z)| position[2] = z);
+                let drawn = |technique| by(&gpu, &frame, technique).unwrap_or_else(|error| panic!("{error}"));
+                (drawn(Technique::Plain), drawn(Technique::FogAtVertex))
+            };
+            let what = format!("{frequency:?} on {name}");
+            let (plain, vertex) = both([0.0; 4]);
+            assert_alike(&plain, &vertex, &what);
+            let (plain, vertex) = both([0.9, -3.0, -4.0, 0.5]);
+            assert!(apart(&plain, &vertex) > 0.02, "{what}: {}", apart(&plain, &vertex));
+        }
+    }
+}
+
+#[test]
+fn interpolated_vectors_are_the_vectors_unless_they_are_normalised_first() {
+    let _alone = alone();
+    for (name, gpu, format) in devices() {
+        let mut frame = frame();
+        (frame.target.format, frame.fog) = (format, None);
+        frame.lights.push(Light { diffuse: [0.1, 0.7, 0.2], ..frame.lights[2].clone() });
+        frame.lights.push(Light { diffuse: [0.7, 0.1, 0.1], ..frame.lights[3].clone() });
+        let Place::Point { position, .. } = &mut frame.lights[4].place else { panic!("it is a point light") };
+        *position = [-0.6, -0.4, -1.3];
+        let Place::Spot { position, .. } = &mut frame.lights[5].place else { panic!("it is a spotlight") };
+        *position = [-0.9, 0.2, -0.1];
+        let drawn = |frame: &Frame, technique| by(&gpu, frame, technique).unwrap_or_else(|error| panic!("{error}"));
+        let plain = drawn(&frame, Technique::Plain);
+        // Affine in the position, so that their interpolation is exact but for rounding: each light by its own vector.
+        let vectors = drawn(&frame, Technique::VectorsInterpolated);
+        assert!(apart(&plain, &vectors) <= 1.01 / 255.0, "{name}: {}", apart(&plain, &vectors));
+        let unit = drawn(&frame, Technique::UnitVectorsInterpolated);
+        assert!(apart(&plain, &unit) > 0.02, "{name}: {}", apart(&plain, &unit));
+        // A vector that is everywhere the same.
+        frame.lights.truncate(2);
+        frame.draws[0].shading.as_mut().expect("it is lit").viewer = Viewer::NonLocal;
+        let plain = drawn(&frame, Technique::Plain);
+        for technique in [Technique::VectorsInterpolated, Technique::UnitVectorsInterpolated] {
+            assert_alike(&plain, &drawn(&frame, technique), &format!("{} on {name}", technique.name()));
+        }
+    }
+}
+
+#[test]
+fn a_frame_that_has_no_use_for_a_technique_is_refused() {
+    let _alone = alone();
+    let (_, gpu, _) = devices().next().expect("there is one");
+    let refused = |frame: &Frame, technique: Technique| match by(&gpu, frame, technique) {
+        Err(Error::Technique { technique: named, reason }) => {
+            assert_eq!(named, technique.name());
+            reason
+        }
+        other => panic!("{}: {other:?}", technique.name()),
+    };
+    let mut clear = frame();
+    clear.fog = None;
+    assert!(refused(&clear, Technique::FogAtVertex).contains("fog"));
+    let mut gouraud = frame();
+    gouraud.draws[0].shading.as_mut().expect("it is lit").frequency = Frequency::Gouraud;
+    assert!(refused(&gouraud, Technique::VectorsInterpolated).contains("fragments"));
+    let mut bright = frame();
+    bright.lights.extend([2, 2, 2].map(|light: usize| bright.lights[light].clone()));
+    assert!(refused(&bright, Technique::UnitVectorsInterpolated).contains("5 lights"));
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    let recipe = Recipe { technique: Technique::FogAtVertex, ..Recipe::of(Shader::Full) };
+    let full = SceneRenderer::new(&gpu, &shaders, &frame(), &effects(&frame()), recipe);
+    assert!(matches!(full, Err(Error::Technique { .. })));
+}
+
+/// Timestamps that a driver takes before it has rasterised would tell less than goes by on the wall.
+#[test]
+fn timestamps_tell_the_time_that_a_frame_takes() {
+    let _alone = alone();
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    for (name, gpu, format) in devices() {
+        let clock = Clock::new(&gpu).unwrap_or_else(|error| panic!("{error}"));
+        if clock.kind() != ClockKind::Timestamps || !gpu.is_cpu() {
+            continue;
+        }
+        let mut frame = frame();
+        frame.target = Target { width: 512, height: 512, format };
+        let renderer = SceneRenderer::new(&gpu, &shaders, &frame, &effects(&frame), Recipe::of(Shader::Composed));
+        let renderer = renderer.unwrap_or_else(|error| panic!("{error}"));
+        let time = |clock: &Clock| renderer.time(&gpu, clock, 4).unwrap_or_else(|error| panic!("{error}"));
+        time(&clock);
+        let mut ratios: Vec<f64> = (0..9)
+            .map(|_| {
+                let (stamps, wall) = (time(&clock).seconds(), time(&Clock::wall(None)).seconds());
+                stamps.unwrap_or(0.0) / wall.expect("the clock on the wall goes forward")
+            })
+            .collect();
+        ratios.sort_by(f64::total_cmp);
+        // What else the machine does falls upon either, so that half and double say enough.
+        assert!((0.5..2.0).contains(&ratios[4]), "{name}: {ratios:?}");
+    }
+}
+
 #[test]
 fn a_flat_face_has_the_colour_of_its_provoking_vertex() {
     let _alone = alone();
@@ -340,7 +462,7 @@ fn word(module: &naga::Module, binding: &str, path: &[&str]) -> usize {
 fn numbers_lie_where_naga_reads_them() {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let composer = Composer::new(&shaders).expect("the files can be read");
-    let full = composer.compose(Effects::NONE, Shader::Full, None).expect("it can be composed");
+    let full = composer.compose(Effects::NONE, Recipe::of(Shader::Full), 0).expect("it can be composed");
     let (module, _) = full.validate().unwrap_or_else(|error| panic!("{error}"));
     let mut frame = frame();
     frame.lights.push(frame.lights[2].clone());
@@ -400,7 +522,7 @@ fn numbers_lie_where_naga_reads_them() {
 fn every_uniform_is_as_long_as_its_struct() {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let composer = Composer::new(&shaders).expect("the files can be read");
-    let full = composer.compose(Effects::NONE, Shader::Full, None).expect("it can be composed");
+    let full = composer.compose(Effects::NONE, Recipe::of(Shader::Full), 0).expect("it can be composed");
     let (module, _) = full.validate().unwrap_or_else(|error| panic!("{error}"));
     let frame = frame();
     let called = &named(&frame)[0];

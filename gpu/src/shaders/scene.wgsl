@@ -10,8 +10,10 @@
 //@ let fog = fog_linear | fog_exp | fog_exp2_document | fog_exp2_opengl
 //@ let weight_used = diffuse | specular | attenuated_ambient
 //@ let weighted = weight_used & (attenuation | spot)
-//@ let lit_position = local_viewer | weight_used & spot | (diffuse | specular | attenuation) & point
-//@ let fragment_position = fog | stage_position | phong & lit_position
+//@ let vectors_in = toward_1 | vectors_interpolated & specular & local_viewer
+//@ let place_used = local_viewer | weight_used & spot | (diffuse | specular | attenuation) & point
+//@ let lit_position = place_used & !vectors_interpolated | attenuation & vectors_interpolated
+//@ let fragment_position = fog & !fog_at_vertex | stage_position | phong & lit_position
 //@ let fragment_normal = stage_normal & has_normals | phong & normals
 //@ let lit_in = flat | gouraud | phong & (lit_position | normals | fog)
 //@ let colored_in = surface & (texture | lightmap | vertex_color) | fog | stage_normal & has_normals
@@ -46,6 +48,24 @@ struct SceneVaryings {
     //@ end
     //@ when lightmap
     @location(3) lightmap_uv: vec2f,
+    //@ end
+    //@ when fog & fog_at_vertex
+    @location(7) fog_factor: f32,
+    //@ end
+    //@ when vectors_interpolated & specular & local_viewer
+    @location(8) viewer: vec3f,
+    //@ end
+    //@ when toward_1
+    @location(9) toward_1: vec3f,
+    //@ end
+    //@ when toward_2
+    @location(10) toward_2: vec3f,
+    //@ end
+    //@ when toward_3
+    @location(11) toward_3: vec3f,
+    //@ end
+    //@ when toward_4
+    @location(12) toward_4: vec3f,
     //@ end
     //@ members varyings
 }
@@ -83,6 +103,27 @@ fn scene_vertex(in: SceneVertex) -> SceneVaryings {
     );
     //@ slot vertex_lit
     //@ end
+    //@ when fog & fog_at_vertex
+    out.fog_factor = scene_fog_factor(eye.xyz);
+    //@ end
+    //@ when vectors_interpolated & specular & local_viewer & !unit_vectors
+    out.viewer = -eye.xyz;
+    //@ end
+    //@ when vectors_interpolated & specular & local_viewer & unit_vectors
+    out.viewer = vector_normalize(-eye.xyz);
+    //@ end
+    //@ when toward_1
+    out.toward_1 = scene_toward_at_vertex(0u, eye.xyz);
+    //@ end
+    //@ when toward_2
+    out.toward_2 = scene_toward_at_vertex(1u, eye.xyz);
+    //@ end
+    //@ when toward_3
+    out.toward_3 = scene_toward_at_vertex(2u, eye.xyz);
+    //@ end
+    //@ when toward_4
+    out.toward_4 = scene_toward_at_vertex(3u, eye.xyz);
+    //@ end
     //@ slot vertex_out
     return out;
 }
@@ -112,8 +153,11 @@ fn scene_fragment(
     in: SceneVaryings,
     //@ end
 ) -> @location(0) vec4f {
-    //@ when fog
+    //@ when fog & !fog_at_vertex
     let f = scene_fog_factor(in.p);
+    //@ end
+    //@ when fog & fog_at_vertex
+    let f = clamp(in.fog_factor, 0.0, 1.0);
     //@ end
     //@ when surface
     //@ when before_surface

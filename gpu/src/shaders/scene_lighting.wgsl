@@ -20,6 +20,9 @@ struct SceneSum {
 }
 
 fn scene_lit(
+    //@ when vectors_in
+    in: SceneVaryings,
+    //@ end
     //@ when lit_position
     p: vec3f,
     //@ end
@@ -53,6 +56,49 @@ fn scene_lit(
     return scene_constant();
     //@ end
 }
+
+//@ when vectors_interpolated & (point | spot)
+// From p to a light's place: the lights at a point in one row with those within a cone, which come after.
+fn scene_toward_at_vertex(number: u32, p: vec3f) -> vec3f {
+    //@ when point & spot
+    let is_point = number < scene_point.count;
+    let spot = select(number - scene_point.count, 0u, is_point);
+    let place = select(scene_spot.lights[spot].position, scene_point.lights[number].position, is_point);
+    //@ end
+    //@ when point & !spot
+    let place = scene_point.lights[number].position;
+    //@ end
+    //@ when spot & !point
+    let place = scene_spot.lights[number].position;
+    //@ end
+    //@ when unit_vectors
+    return vector_toward(place, p);
+    //@ end
+    //@ when !unit_vectors
+    return place - p;
+    //@ end
+}
+
+// The unit vector to a light, from what was interpolated.
+fn scene_toward(
+    in: SceneVaryings,
+    //@ when toward_2
+    number: u32,
+    //@ end
+) -> vec3f {
+    var l = in.toward_1;
+    //@ when toward_2
+    l = select(l, in.toward_2, number == 1u);
+    //@ end
+    //@ when toward_3
+    l = select(l, in.toward_3, number == 2u);
+    //@ end
+    //@ when toward_4
+    l = select(l, in.toward_4, number == 3u);
+    //@ end
+    return vector_normalize(l);
+}
+//@ end
 
 // Adds a light's terms.
 fn scene_shine(

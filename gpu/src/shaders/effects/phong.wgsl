@@ -16,6 +16,9 @@ fn scene_lit_at_fragment(
     //@ end
     {
         rgb = scene_lit(
+            //@ when vectors_in
+            in,
+            //@ end
             //@ when lit_position
             in.p,
             //@ end

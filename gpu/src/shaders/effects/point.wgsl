@@ -16,11 +16,19 @@ struct ScenePoints {
 //@ at lights
 for (var i = 0u; i < scene_point.count; i++) {
     let colors = scene_point.lights[i].colors;
-    //@ when normals | attenuation
+    //@ when normals & !vectors_interpolated | attenuation
     let position = scene_point.lights[i].position;
     //@ end
-    //@ when normals
+    //@ when normals & !vectors_interpolated
     let l = vector_toward(position, p);
+    //@ end
+    //@ when normals & vectors_interpolated
+    let l = scene_toward(
+        in,
+        //@ when toward_2
+        i,
+        //@ end
+    );
     //@ end
     //@ when attenuation
     let falloff = scene_point.lights[i].falloff;

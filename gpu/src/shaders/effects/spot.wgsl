@@ -20,8 +20,23 @@ struct SceneSpots {
 for (var i = 0u; i < scene_spot.count; i++) {
     let colors = scene_spot.lights[i].colors;
     //@ when weight_used
+    //@ when !vectors_interpolated | attenuation
     let position = scene_spot.lights[i].position;
+    //@ end
+    //@ when !vectors_interpolated
     let l = vector_toward(position, p);
+    //@ end
+    //@ when vectors_interpolated
+    let l = scene_toward(
+        in,
+        //@ when toward_2 & point
+        scene_point.count + i,
+        //@ end
+        //@ when toward_2 & !point
+        i,
+        //@ end
+    );
+    //@ end
     let axis = vector_normalize(scene_spot.lights[i].axis);
     let cutoff_cosine = scene_spot.lights[i].cutoff_cosine;
     //@ choose cone: f32 from cone else attenuation_spot_cutoff(l, axis, cutoff_cosine)
