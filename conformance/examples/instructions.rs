@@ -32,10 +32,10 @@ struct Cli {
     work: bool,
 }
 
-/// How far a count may be from the record's, either way.
-const ALLOWANCE: f64 = 0.05;
-/// The same in instructions, for items of a few.
-const LEAST_ALLOWANCE: f64 = 4.0;
+/// How far a count may be from the record's, either way. Counts of one program differ by 0.01 % at most (where a hash table's
+/// seed is drawn), and by 0.1 % when it is built in another folder, with other features, or after a change elsewhere in the
+/// same crates; twenty times that leaves room for a compiler that inlines otherwise.
+const ALLOWANCE: f64 = 0.02;
 
 /// What is committed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -138,7 +138,7 @@ fn problems(record: &BTreeMap<String, f64>, counts: &BTreeMap<String, f64>) -> V
             continue;
         };
         let change = count - was;
-        if change.abs() > (ALLOWANCE * was).max(LEAST_ALLOWANCE) {
+        if change.abs() > ALLOWANCE * was {
             let word = if change > 0.0 { "more" } else { "fewer: the record is stale" };
             let percent = 100.0 * (change / was).abs();
             problems.push(format!("{name} takes {count:.1} instructions for {was:.1}, {percent:.1} % {word}"));
@@ -213,7 +213,10 @@ fn count() -> anyhow::Result<Option<BTreeMap<String, f64>>> {
     // No environment, so that nothing of it is in the counts.
     callgrind.env_clear().envs(std::env::var_os("PATH").map(|path| ("PATH", path)));
     callgrind.env("GLIBC_TUNABLES", GENERIC);
-    output(&mut callgrind)?;
+    output(&mut callgrind).context(
+        "valgrind cannot run the workloads; where it meets an instruction that it does not know, CORE-MATH was compiled for \
+         another processor (.cargo/config.toml), and `cargo clean -p core-math-sys` lets it be compiled anew",
+    )?;
     let parts = totals(&std::fs::read_to_string(&file)?)?;
     let workloads = workload::all();
     if parts.len() != 3 * workloads.len() + 1 {
@@ -294,12 +297,11 @@ mod tests {
     #[test]
     fn what_is_outside_the_record_is_told() {
         let record = counts(&[("a", 1000.0), ("b", 10.0)]);
-        let rows: [Row<'_>; 7] = [
+        let rows: [Row<'_>; 6] = [
             (&[("a", 1000.0), ("b", 10.0)], &[]),
-            (&[("a", 1049.0), ("b", 13.0)], &[]),
-            (&[("a", 951.0), ("b", 7.0)], &[]),
-            (&[("a", 1051.0), ("b", 10.0)], &["a takes 1051.0 instructions for 1000.0, 5.1 % more"]),
-            (&[("a", 1000.0), ("b", 15.0)], &["b takes 15.0 instructions for 10.0, 50.0 % more"]),
+            (&[("a", 1019.0), ("b", 10.1)], &[]),
+            (&[("a", 981.0), ("b", 9.9)], &[]),
+            (&[("a", 1021.0), ("b", 10.0)], &["a takes 1021.0 instructions for 1000.0, 2.1 % more"]),
             (
                 &[("a", 900.0), ("b", 10.0)],
                 &["a takes 900.0 instructions for 1000.0, 10.0 % fewer: the record is stale"],
