@@ -1,6 +1,6 @@
 //! Instructions for each item of the workloads, counted by valgrind and held against the record, `benches/instructions.json`.
 //!
-//! The program runs itself under callgrind, which counts the instructions from one call of [`between_workloads`] to the next: a
+//! The program runs itself under callgrind, which counts the instructions from one call of `between_workloads` to the next: a
 //! round, then two rounds. Their difference is a round, without what counting costs. Nothing is timed, so that the load of the
 //! machine is nothing to it.
 //!
