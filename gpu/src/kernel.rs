@@ -120,7 +120,7 @@ impl Kernel {
 override lightmeter_times: u32;
 @compute @workgroup_size(64)
 fn lightmeter_repeat(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
-    let lightmeter_base = (lightmeter_id.x % (arrayLength(&lightmeter_rows) / {inputs}u)) * {inputs}u;
+{zero}    let lightmeter_base = (lightmeter_id.x % (arrayLength(&lightmeter_rows) / {inputs}u)) * {inputs}u;
     let lightmeter_place = lightmeter_id.x * {stride}u;
     let lightmeter_writes = lightmeter_place < arrayLength(&lightmeter_results);
 {read}    var lightmeter_folded = 0u;
@@ -137,6 +137,8 @@ fn lightmeter_repeat(@builtin(global_invocation_id) lightmeter_id: vec3u) {{
     }}
 }}
 ",
+            // Workgroups stand in one row, which no compiler knows; an array's length it takes for short.
+            zero = if rung == Rung::DoubleFloat { "    rung_zero = lightmeter_id.y;\n" } else { "" },
             stride = parts.len() + 1,
             last = parts.len(),
             folded = folded.join(" ^ ")

@@ -61,7 +61,7 @@ impl RepeatPipeline {
         Self::of(gpu, kernel, kernel.idle(), rows, 0)
     }
 
-    fn of(
+    pub(crate) fn of(
         gpu: &Gpu,
         kernel: &Kernel,
         source: String,

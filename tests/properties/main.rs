@@ -9,6 +9,7 @@ mod condition;
 mod depth;
 mod fog;
 mod interpolation;
+mod ladder;
 mod lighting;
 mod scene;
 mod soundness;

@@ -366,10 +366,9 @@ fn time_rows(
     let idle = places.first().is_some_and(Option::is_none).then(|| laps[0].clone());
     let base = places.iter().position(|place| place.is_some_and(|k| rows[k].name == baseline));
     // A processor reads and computes at once, so that what is left of a time less the idle one is off by as much as that may
-    // be: it is told where it is the greater part. Else reading is in all that are compared.
+    // be: it is told where it is the greater part, in every turn. Else reading is in all that are compared.
     let is_told = |own: &Laps, idle: &Laps| {
-        let (own, idle) = (turns::median_of(own), turns::median_of(idle));
-        own.zip(idle).is_some_and(|(own, idle)| own >= 2.0 * idle)
+        own.iter().zip(idle).filter_map(|(own, idle)| own.zip(*idle)).all(|(own, idle)| own >= 2.0 * idle)
     };
     let on_device = |k: usize| clocks[k] != "processor" && places[k].is_some();
     let all_told =

@@ -109,14 +109,6 @@ pub fn less(laps: &Laps, idle: &Laps) -> Laps {
     laps.iter().zip(idle).map(|(lap, idle)| Some((*lap)? - (*idle)?)).collect()
 }
 
-/// The median of the laps that there are.
-#[must_use]
-pub fn median_of(laps: &Laps) -> Option<f64> {
-    let mut kept: Vec<f64> = laps.iter().flatten().copied().collect();
-    kept.sort_by(f64::total_cmp);
-    (!kept.is_empty()).then(|| median(&kept))
-}
-
 /// The time that laps tell beside those of a baseline; `None` where no turn has both.
 ///
 /// The ratio is the median of the turns' ratios. Its spread goes from the second least of them to the second greatest, from the

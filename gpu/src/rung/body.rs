@@ -1,14 +1,13 @@
 //! A function's statements and expressions in a rung's arithmetic.
 
 use super::dialect::{Dialect, Shape, plain_vector};
-use super::lower::{READS_BITS, Writer, integer, literal, shape_of};
+use super::lower::{READS_BITS, Writer, integer, is_position, literal, shape_of};
 use naga::common::wgsl::TryToWgsl as _;
 use naga::front::Typifier;
 use naga::proc::{ResolveContext, TypeResolution};
 use naga::{
-    AddressSpace, BinaryOperator, Binding, Block, BuiltIn, EntryPoint, Expression, Function, Handle, ImageQuery,
-    LocalVariable, MathFunction, RelationalFunction, ScalarKind, Statement, SwitchValue, Type, TypeInner,
-    UnaryOperator,
+    AddressSpace, BinaryOperator, Block, EntryPoint, Expression, Function, Handle, ImageQuery, LocalVariable,
+    MathFunction, RelationalFunction, ScalarKind, Statement, SwitchValue, Type, TypeInner, UnaryOperator,
 };
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
@@ -759,10 +758,6 @@ impl<'w, 'a> Body<'w, 'a> {
             }
         }
     }
-}
-
-fn is_position(binding: &Binding) -> bool {
-    matches!(binding, Binding::BuiltIn(BuiltIn::Position { .. }))
 }
 
 fn local_name(local: Handle<LocalVariable>) -> String {

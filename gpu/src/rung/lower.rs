@@ -320,6 +320,9 @@ impl Writer<'_> {
             arguments.push(format!("{binding}_i{k}: {}", self.type_name(argument.ty, true)?));
             let _ = writeln!(received, "    let _a{k} = {};", self.convert(argument.ty, &format!("_i{k}"), true)?);
         }
+        if self.dialect == Dialect::Pair {
+            received.push_str(&self.unknown_zero(entry, &mut arguments)?);
+        }
         let result = match &function.result {
             Some(result) => {
                 let binding = result.binding.as_ref().map_or(Ok(String::new()), attributes)?;
@@ -333,6 +336,34 @@ impl Writer<'_> {
         Ok(())
     }
 
+    /// A statement that fills `rung_zero` with a zero that no compiler knows: the index of the only instance, or what
+    /// a fragment's place in pixels has beyond 2^20.
+    fn unknown_zero(&self, entry: &EntryPoint, arguments: &mut Vec<String>) -> Result<String, String> {
+        let value = match entry.stage {
+            ShaderStage::Vertex => {
+                arguments.push("@builtin(instance_index) _zero: u32".into());
+                "_zero".into()
+            }
+            ShaderStage::Fragment => {
+                let place = entry.function.arguments.iter().enumerate().find_map(|(k, argument)| {
+                    if argument.binding.as_ref().is_some_and(is_position) {
+                        return Some(format!("_i{k}"));
+                    }
+                    let TypeInner::Struct { members, .. } = &self.module.types[argument.ty].inner else { return None };
+                    let member = members.iter().find(|member| member.binding.as_ref().is_some_and(is_position))?;
+                    Some(format!("_i{k}.{}", member.name.as_deref().unwrap_or_default()))
+                });
+                let place = place.unwrap_or_else(|| {
+                    arguments.push("@builtin(position) _place: vec4f".into());
+                    "_place".into()
+                });
+                format!("u32({place}.x) >> 20u")
+            }
+            other => return Err(format!("a stage without a zero that no compiler knows: {other:?}")),
+        };
+        Ok(format!("    rung_zero = {value};\n"))
+    }
+
     /// A constant expression of the module's.
     pub(super) fn constant(&mut self, init: Handle<Expression>, dialect: Dialect) -> Result<String, String> {
         match &self.module.global_expressions[init] {
@@ -342,6 +373,10 @@ impl Writer<'_> {
             other => Err(format!("a constant that is not lowered: {other:?}")),
         }
     }
+}
+
+pub(super) fn is_position(binding: &Binding) -> bool {
+    matches!(binding, Binding::BuiltIn(BuiltIn::Position { .. }))
 }
 
 pub(super) const fn integer(kind: ScalarKind) -> &'static str {

@@ -8,6 +8,9 @@ use crate::device::Gpu;
 use crate::error::Error;
 use crate::readback::{Pending, SENTINEL, staging};
 
+/// What is wrong with what came of two numbers.
+type Judge = fn(f64, f64, &[f32]) -> Option<&'static str>;
+
 /// Pairs of numbers that are tried.
 const PAIRS: usize = 256;
 
@@ -17,7 +20,7 @@ pub(super) fn probe(rung: Rung, gpu: &Gpu) -> Result<Option<String>, Error> {
 }
 
 pub(super) fn probe_with(rung: Rung, prelude: &str, gpu: &Gpu) -> Result<Option<String>, Error> {
-    let (entry, words, judge): (_, _, fn(f64, f64, &[f32]) -> Option<&'static str>) = match rung {
+    let (entry, words, judge): (_, _, Judge) = match rung {
         Rung::Cheap | Rung::F32 | Rung::Stable => return Ok(None),
         Rung::F16 => (HALF, 4, judge_half),
         Rung::DoubleFloat => (DOUBLE_FLOAT, 6, judge_double_float),
@@ -29,7 +32,7 @@ pub(super) fn probe_with(rung: Rung, prelude: &str, gpu: &Gpu) -> Result<Option<
     let pairs = pairs(rung);
     let given: Vec<f32> = pairs.iter().flatten().copied().collect();
     let enable = if rung == Rung::F16 { "enable f16;\n" } else { "" };
-    let found = evaluate(gpu, format!("{enable}{entry}\n{prelude}"), &given, words)?;
+    let found = evaluate(gpu, rung, format!("{enable}{entry}\n{prelude}"), &given, words)?;
     let mut lost: Vec<&str> = vec![];
     for (&[x, y], found) in pairs.iter().zip(found.chunks_exact(words)) {
         lost.extend(judge(x.into(), y.into(), found));
@@ -137,20 +140,22 @@ fn as_half(x: f64) -> f64 {
 }
 
 /// What `probed` gives of each pair.
-fn evaluate(gpu: &Gpu, source: String, given: &[f32], words: usize) -> Result<Vec<f32>, Error> {
+fn evaluate(gpu: &Gpu, rung: Rung, source: String, given: &[f32], words: usize) -> Result<Vec<f32>, Error> {
     let source = format!(
         "{source}
 @group(0) @binding(0) var<storage, read> given: array<vec2f, {PAIRS}>;
 @group(0) @binding(1) var<storage, read_write> found: array<f32, {count}>;
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {{
+    {zero}
     var words = probed(given[id.x].x, given[id.x].y);
     for (var k = 0u; k < {words}u; k++) {{
         found[id.x * {words}u + k] = words[k];
     }}
 }}
 ",
-        count = PAIRS * words
+        count = PAIRS * words,
+        zero = if rung == Rung::DoubleFloat { "rung_zero = id.y;" } else { "" },
     );
     let module = gpu.module("probe", source);
     let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {

@@ -8,6 +8,7 @@ use crate::adapters;
 use crate::compose::tests::sets;
 use crate::compose::{Composer, Shader};
 use crate::shaders::{Shaders, validate_lowered};
+use crate::{Kernel, RepeatPipeline};
 use lightmeter_scene::effects::Effects;
 
 const FAMILIES: [&str; 9] =
@@ -86,7 +87,7 @@ fn what_is_unavailable_on_an_adapter_is_known() {
 #[test]
 fn transforms_that_a_compiler_sees_through_are_found_out() {
     let text = Prelude::of(Rung::DoubleFloat).text;
-    let opaque = "bitcast<f32>(reverseBits(reverseBits(bitcast<u32>(x))))";
+    let opaque = "bitcast<f32>(bitcast<u32>(x) ^ u32(rung_zero))";
     assert!(text.contains(opaque));
     // Mesa's compiler does; SwiftShader's does not.
     for adapter in adapters().into_iter().filter(|adapter| adapter.name.contains("pipe")) {
@@ -135,4 +136,85 @@ fn shaders_of_scenes_are_valid_at_every_rung() {
         }
     }
     assert!(nothing_stable < 100, "{nothing_stable}");
+}
+
+/// What a function gives for rows of inputs, as sums of its words.
+fn values(gpu: &Gpu, file: &str, function: &str, rung: Rung, rows: &[f32]) -> Vec<f64> {
+    let shaders = built_in();
+    let failed = |error: Error| panic!("{function}, {}: {error}", rung.name());
+    let kernel = Kernel::new(&shaders, file, function).unwrap_or_else(failed);
+    let pipeline = RepeatPipeline::new(gpu, &shaders, &kernel, rung, rows)
+        .unwrap_or_else(|error| panic!("{function}, {}: {error}", rung.name()))
+        .unwrap_or_else(|reason| panic!("{function}, {}: {reason}", rung.name()));
+    let words = pipeline.outputs(gpu).unwrap_or_else(|error| panic!("{function}, {}: {error}", rung.name()));
+    let value = |parts: &[u32]| parts.iter().rev().map(|&part| f64::from(f32::from_bits(part))).sum();
+    words.chunks_exact(rung.parts()).map(value).collect()
+}
+
+#[test]
+fn functions_have_the_values_of_f64_to_the_digits_of_the_rung() {
+    let bases = [0.001_f32, 0.3, 0.5, 0.9, 0.99, 0.999_999, 1.0, 1.3, 7.5, 1000.0];
+    let exponents = [0.5_f32, 1.0, 3.7, 12.0];
+    let pairs: Vec<[f32; 2]> = bases.iter().flat_map(|&x| exponents.map(|y| [x, y])).collect();
+    let given: Vec<f32> = pairs.iter().flatten().copied().collect();
+    let vectors: Vec<f32> = (0..60_u8).map(|k| (f32::from(k) * 1.37 + 0.3).sin() * 40.0).collect();
+    let unit = |v: &[f32]| {
+        let v: Vec<f64> = v.iter().copied().map(f64::from).collect();
+        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        v.into_iter().map(move |x| x / length).collect::<Vec<f64>>()
+    };
+    let wide = |[x, y]: [f32; 2]| [f64::from(x), f64::from(y)];
+    let rows: [(&str, &str, &[f32], Vec<f64>); 4] = [
+        ("vector.wgsl", "vector_lobe", &given, pairs.iter().map(|&p| wide(p)).map(|[x, y]| x.powf(y)).collect()),
+        (
+            "fog.wgsl",
+            "fog_opacity_expm1",
+            &given,
+            pairs.iter().map(|&p| wide(p)).map(|[x, y]| -(-x * y).exp_m1()).collect(),
+        ),
+        ("fog.wgsl", "fog_exp_factor", &given, pairs.iter().map(|&p| wide(p)).map(|[x, y]| (-x * y).exp()).collect()),
+        ("vector.wgsl", "vector_normalize", &vectors, vectors.chunks_exact(3).flat_map(unit).collect()),
+    ];
+    for adapter in adapters() {
+        let gpu = adapter.open().unwrap_or_else(|error| panic!("{error}"));
+        for (rung, share) in [(Rung::DoubleFloat, 2.0_f64.powi(-40)), (Rung::F64, 1e-13)] {
+            if rung.unavailable(&gpu).unwrap_or_else(|error| panic!("{error}")).is_some() {
+                continue;
+            }
+            for (file, function, given, expected) in &rows {
+                let found = values(&gpu, file, function, rung, given);
+                assert_eq!(found.len(), expected.len());
+                for (place, (found, expected)) in found.iter().zip(expected).enumerate() {
+                    // Below 2^-100 the low part has fewer digits, and below 2^-126 there is nothing.
+                    let off = (found - expected).abs();
+                    let is_near = off <= share * expected.abs() + 2.0_f64.powi(-126);
+                    assert!(is_near, "{}, {function} {place}: {found:e}, {expected:e}, {}", adapter.name, rung.name());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_lowered_to_f32_is_what_it_was() {
+    let rows: Vec<f32> = (0..24 * 16_u16).map(|k| (f32::from(k) * 0.37).sin() * 3.0).collect();
+    let shaders = built_in();
+    let kernel = Kernel::new(&shaders, "lighting.wgsl", "lighting_blinn").unwrap_or_else(|error| panic!("{error}"));
+    let source = shaders.source("lighting.wgsl");
+    let lowered = lower(&source, Rung::F32, &shaders.stable_forms(), Asked::Function("lighting_blinn"));
+    let lowered = lowered.unwrap_or_else(|reason| panic!("{reason}")).source;
+    let plain = kernel.repeat(&shaders, Rung::F32).unwrap_or_else(|error| panic!("{error}"));
+    let plain = plain.unwrap_or_else(|reason| panic!("{reason}"));
+    let written = plain.replace(&source, &lowered);
+    assert_ne!(plain, written);
+    for adapter in adapters() {
+        let gpu = adapter.open().unwrap_or_else(|error| panic!("{error}"));
+        let outputs = |source: &str| {
+            let pipeline = RepeatPipeline::of(&gpu, &kernel, source.into(), &rows, kernel.outputs);
+            let pipeline =
+                pipeline.unwrap_or_else(|error| panic!("{error}")).unwrap_or_else(|reason| panic!("{reason}"));
+            pipeline.outputs(&gpu).unwrap_or_else(|error| panic!("{error}"))
+        };
+        assert_eq!(outputs(&plain), outputs(&written), "{}", adapter.name);
+    }
 }

@@ -4,6 +4,7 @@ use super::uniforms::Told;
 use super::*;
 use crate::adapters;
 use crate::clock::ClockKind;
+use crate::rung::Rung;
 use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::effects::{effects, named};
@@ -533,6 +534,71 @@ fn every_uniform_is_as_long_as_its_struct() {
         match uniforms::words(&told, name).unwrap_or_else(|error| panic!("{error}")) {
             Some(words) => assert_eq!(4 * words.len(), size.next_multiple_of(16), "{name}"),
             None => assert!(name == "scene_texture" || name == "scene_lightmap", "{name}"),
+        }
+    }
+}
+
+/// The frame's pixels at a rung; `None` where the device lacks it.
+fn at_rung(gpu: &Gpu, frame: &Frame, recipe: Recipe) -> Option<Vec<f32>> {
+    if recipe.rung.unavailable(gpu).unwrap_or_else(|error| panic!("{error}")).is_some() {
+        return None;
+    }
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    let renderer = SceneRenderer::new(gpu, &shaders, frame, &effects(frame), recipe)
+        .unwrap_or_else(|error| panic!("{}: {error}", recipe.rung.name()));
+    let pixels = SceneRenderer::pixels(gpu, renderer.submit(gpu)).unwrap_or_else(|error| panic!("{error}"));
+    Some(floats(&pixels))
+}
+
+#[test]
+fn a_frame_is_drawn_at_every_rung() {
+    let _alone = alone();
+    let mut frame = frame();
+    // A hole's edge moves with the alpha.
+    frame.draws[0].cutout = None;
+    // Below 64 a power's stable form is the published one.
+    frame.draws[0].material.shininess = 100.0;
+    for (name, gpu, format) in devices().filter(|(_, _, format)| *format == TargetFormat::Rgba32Float) {
+        frame.target.format = format;
+        let recipe = |rung| Recipe { rung, ..Recipe::of(Shader::Composed) };
+        // With few digits another texel is the nearest, and a cone's edge is elsewhere.
+        let mut smooth = frame.clone();
+        smooth.lights.truncate(3);
+        (smooth.draws[0].texture, smooth.draws[0].lightmap) = (None, None);
+        let single = at_rung(&gpu, &frame, recipe(Rung::F32)).expect("f32 is everywhere");
+        let single_smooth = at_rung(&gpu, &smooth, recipe(Rung::F32)).expect("f32 is everywhere");
+        let mut drawn = vec![];
+        for (rung, most) in
+            [(Rung::F16, 0.05), (Rung::Cheap, 0.2), (Rung::Stable, 1e-5), (Rung::DoubleFloat, 1e-5), (Rung::F64, 1e-5)]
+        {
+            let (frame, single) = if most > 1e-3 { (&smooth, &single_smooth) } else { (&frame, &single) };
+            let Some(pixels) = at_rung(&gpu, frame, recipe(rung)) else { continue };
+            let off = pixels.iter().zip(single).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(off > 0.0 && off <= most, "{name}, {}: {off:e}", rung.name());
+            // The same pixels are covered, whatever the lighting is computed in.
+            let covered = |pixels: &[f32]| pixels.chunks_exact(4).map(|p| p[3] > 0.5).collect::<Vec<_>>();
+            assert_eq!(covered(&pixels), covered(single), "{name}, {}", rung.name());
+            drawn.push((rung, pixels));
+        }
+        let of = |wanted: Rung| drawn.iter().find(|(rung, _)| *rung == wanted).map(|(_, pixels)| pixels);
+        if let (Some(pair), Some(double)) = (of(Rung::DoubleFloat), of(Rung::F64)) {
+            let same = |a: &[f32]| a.iter().zip(double).filter(|(a, b)| a.to_bits() == b.to_bits()).count();
+            let all = double.len();
+            assert!(same(pair) * 1000 >= all * 998, "{name}: {} of {all} are those of f64", same(pair));
+            assert!(same(&single) * 10 < all * 9, "{name}: {} of {all} in f32", same(&single));
+        }
+    }
+}
+
+#[test]
+fn the_clip_position_is_of_f32_at_every_rung() {
+    let _alone = alone();
+    let frame = frame();
+    for (name, gpu, _) in devices().filter(|(_, gpu, _)| gpu.lacks_target(TargetFormat::Rgba32Float).is_none()) {
+        let depth = |rung| at_rung(&gpu, &frame, Recipe { rung, ..Recipe::stage(Stage::Depth) });
+        let single = depth(Rung::F32).expect("f32 is everywhere");
+        for rung in [Rung::Cheap, Rung::DoubleFloat, Rung::F64] {
+            assert!(depth(rung).is_none_or(|pixels| pixels == single), "{name}, {}", rung.name());
         }
     }
 }

@@ -2,6 +2,9 @@
 // exp by x = k ln 2 + r and a series, log by the exponent and atanh; the terms below 2^-24 of the sum in binary32.
 // Relative errors of some 2^-44; of a power, |exponent * log(base)| times 2^-46 besides.
 
+// 0, which entry points take from what no compiler knows.
+var<private> rung_zero: u32;
+
 // The two parts of a number.
 fn rung_parts(x: DF1) -> vec2f {
     return vec2f(x.hi, x.lo);
@@ -158,31 +161,36 @@ fn rung_scaled(x: DF1, k: i32) -> DF1 {
     return DF1(hi, rung_kept_1(hi, rung_opaque_1(x.lo * first) * second));
 }
 
-fn rung_exp_1(x: DF1) -> DF1 {
-    if x.hi > 89.0 {
-        return rung_whole(rung_infinity());
-    }
-    if x.hi < -104.0 {
-        return rung_whole(0.0);
-    }
+// x, or the nearer end. Exponentials do without a branch: Mesa 22.3's lavapipe crashes where one is on a value that a uniform
+// goes into and loops on uniforms follow, as in fog.
+fn rung_limited(x: DF1, least: f32, most: f32) -> DF1 {
+    let is_within = x.hi >= least && x.hi <= most;
+    return DF1(clamp(x.hi, least, most), select(0.0, x.lo, is_within));
+}
+
+// The power that was computed of a limited x.
+fn rung_unlimited(power: DF1, x: f32, least: f32, most: f32) -> DF1 {
+    let is_within = x >= least && x <= most;
+    return DF1(select(select(rung_infinity(), 0.0, x < least), power.hi, is_within), select(0.0, power.lo, is_within));
+}
+
+fn rung_exp_1(given: DF1) -> DF1 {
+    let x = rung_limited(given, -104.0, 89.0);
     let k = round(x.hi * 1.442695);
     // Products of at most 8 bits and 16.
     var r = rung_add_1(x, rung_whole(-(k * 0.69314575)));
     r = rung_add_1(r, rung_whole(-(k * 1.4281832e-06)));
     r = rung_add_1(r, rung_whole(-(k * 4.2365214e-10)));
-    return rung_scaled(rung_add_1(rung_whole(1.0), rung_exp_m1_series(r)), i32(k));
+    let power = rung_scaled(rung_add_1(rung_whole(1.0), rung_exp_m1_series(r)), i32(k));
+    return rung_unlimited(power, given.hi, -104.0, 89.0);
 }
 
-fn rung_exp2_1(x: DF1) -> DF1 {
-    if x.hi > 128.0 {
-        return rung_whole(rung_infinity());
-    }
-    if x.hi < -150.0 {
-        return rung_whole(0.0);
-    }
+fn rung_exp2_1(given: DF1) -> DF1 {
+    let x = rung_limited(given, -150.0, 128.0);
     let k = round(x.hi);
     let r = rung_mul_1(rung_add_1(x, rung_whole(-k)), DF1(0.6931472, -1.9046542e-09));
-    return rung_scaled(rung_add_1(rung_whole(1.0), rung_exp_m1_series(r)), i32(k));
+    let power = rung_scaled(rung_add_1(rung_whole(1.0), rung_exp_m1_series(r)), i32(k));
+    return rung_unlimited(power, given.hi, -150.0, 128.0);
 }
 
 fn rung_log_1(given: DF1) -> DF1 {

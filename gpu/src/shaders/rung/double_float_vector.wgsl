@@ -1,7 +1,8 @@
 // Component-wise operations on unevaluated sums hi + lo of two numbers of binary32, |lo| at most half an ULP of hi: some 48
 // bits. Written for three components; the text for other widths is made of this one.
-// Error-free transforms by Knuth and Dekker. A compiler that reassociates undoes them but for `rung_opaque`; one that fuses
-// products with sums does no harm, as each product that is added is exact.
+// Error-free transforms by Knuth and Dekker. A compiler that reassociates undoes them but for `rung_opaque`, an exclusive or
+// with a zero that is known at run time alone; one that fuses products with sums does no harm, as each product that is added
+// is exact.
 // Beside what is infinite or NaN the low part is 0, so that guards see what they would of binary32.
 
 struct DF3 {
@@ -10,7 +11,7 @@ struct DF3 {
 }
 
 fn rung_opaque_3(x: vec3f) -> vec3f {
-    return bitcast<vec3f>(reverseBits(reverseBits(bitcast<vec3u>(x))));
+    return bitcast<vec3f>(bitcast<vec3u>(x) ^ vec3u(rung_zero));
 }
 
 // The error of a result, or 0 where that is no number.

@@ -68,27 +68,29 @@ fn rung_atanh_series(s: f64) -> f64 {
     return 2.0lf * s + 2.0lf * s * z * p;
 }
 
+// x, or its nearest between -most and most. Exponentials do without a branch: Mesa 22.3's lavapipe crashes where one is on a
+// value that a uniform goes into and loops on uniforms follow, as in fog.
+fn rung_limited(x: f64, least: f64, most: f64) -> f64 {
+    return select(select(x, least, x < least), most, x > most);
+}
+
+// The power that was computed of a limited x.
+fn rung_unlimited(power: f64, x: f64, least: f64, most: f64) -> f64 {
+    return select(select(power, 0.0lf, x < least), rung_infinity(), x > most);
+}
+
 fn rung_exp_1(x: f64) -> f64 {
-    if x > 709.0lf {
-        return rung_infinity();
-    }
-    if x < -698.0lf {
-        return 0.0lf;
-    }
-    let k = floor(x * 1.4426950408889634lf + 0.5lf);
-    let r = (x - k * 0.6931471803691238lf) - k * 1.9082149292705877e-10lf;
-    return (1.0lf + rung_exp_m1_series(r)) * rung_power(i32(k));
+    let limited = rung_limited(x, -698.0lf, 709.0lf);
+    let k = floor(limited * 1.4426950408889634lf + 0.5lf);
+    let r = (limited - k * 0.6931471803691238lf) - k * 1.9082149292705877e-10lf;
+    return rung_unlimited((1.0lf + rung_exp_m1_series(r)) * rung_power(i32(k)), x, -698.0lf, 709.0lf);
 }
 
 fn rung_exp2_1(x: f64) -> f64 {
-    if x > 1023.0lf {
-        return rung_infinity();
-    }
-    if x < -1007.0lf {
-        return 0.0lf;
-    }
-    let k = floor(x + 0.5lf);
-    return (1.0lf + rung_exp_m1_series((x - k) * 0.6931471805599453lf)) * rung_power(i32(k));
+    let limited = rung_limited(x, -1007.0lf, 1023.0lf);
+    let k = floor(limited + 0.5lf);
+    let power = (1.0lf + rung_exp_m1_series((limited - k) * 0.6931471805599453lf)) * rung_power(i32(k));
+    return rung_unlimited(power, x, -1007.0lf, 1023.0lf);
 }
 
 fn rung_log_1(x: f64) -> f64 {
