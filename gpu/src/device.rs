@@ -70,7 +70,10 @@ impl Gpu {
     }
 
     /// Another device on the same adapter, with a queue of its own.
-    pub(crate) fn sibling(&self) -> Result<Self, Error> {
+    ///
+    /// # Errors
+    /// Where the driver gives none.
+    pub fn sibling(&self) -> Result<Self, Error> {
         Self::open(&self.name, &self.adapter)
     }
 

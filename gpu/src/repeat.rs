@@ -131,3 +131,36 @@ impl RepeatPipeline {
         pass.dispatch_workgroups(groups, 1, 1);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapters;
+    use crate::clock::ClockKind;
+
+    /// Timestamps that a driver takes before it has computed would tell less than goes by on the wall.
+    #[test]
+    fn timestamps_tell_the_time_that_a_dispatch_takes() {
+        let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+        let kernel = Kernel::new(&shaders, "fog.wgsl", "fog_exp").unwrap_or_else(|error| panic!("{error}"));
+        let rows = vec![0.5; 16 * kernel.inputs];
+        for adapter in adapters() {
+            let gpu = adapter.open().unwrap_or_else(|error| panic!("{error}"));
+            let clock = Clock::new(&gpu).unwrap_or_else(|error| panic!("{error}"));
+            if clock.kind() != ClockKind::Timestamps || !gpu.is_cpu() {
+                continue;
+            }
+            let made = RepeatPipeline::new(&gpu, &shaders, &kernel, Rung::F32, &rows);
+            let Ok(pipeline) = made.unwrap_or_else(|error| panic!("{error}")) else { continue };
+            let time = |clock: &Clock| {
+                let reading = pipeline.time(&gpu, clock, 4096).unwrap_or_else(|error| panic!("{error}"));
+                reading.seconds().unwrap_or(0.0)
+            };
+            time(&clock);
+            let mut ratios: Vec<f64> = (0..9).map(|_| time(&clock) / time(&Clock::wall(None))).collect();
+            ratios.sort_by(f64::total_cmp);
+            // What else the machine does falls upon either, so that half and double say enough.
+            assert!((0.5..2.0).contains(&ratios[4]), "{}: {ratios:?}", adapter.name);
+        }
+    }
+}

@@ -135,9 +135,11 @@ fn measured(
     progress: &mut impl Progress,
 ) -> Result<Measured, Error> {
     let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
+    // What computes and what draws have devices of their own: Mesa 22.3's llvmpipe loses the time of a dispatch once it has drawn.
+    let own = subject.gpu().map(Gpu::sibling).transpose()?;
     let bench = Bench {
-        gpu: subject.gpu(),
-        clock: clock(subject, options.clock)?,
+        gpu: own.as_ref(),
+        clock: clock(own.as_ref(), options.clock)?,
         shaders: &options.shaders,
         ladder: ladder_of(subject)?,
         profile,
@@ -170,7 +172,8 @@ fn measured(
     growing.retain(|name| wanted(&format!("scaling/{name}"), &|| true));
     let by_cases = wanted("scaling/cases", &|| true);
 
-    let on = scenes::On { subject, shaders: &options.shaders, clock: &bench.clock, profile: &bench.profile, setting };
+    let drawing = clock(subject.gpu(), options.clock)?;
+    let on = scenes::On { subject, shaders: &options.shaders, clock: &drawing, profile: options.profile, setting };
     let on_device = techniques.len() + stable.len() + drawn.len() + named.len() + growing.len() + usize::from(by_cases);
     let on_device = if bench.gpu.is_some() { on_device + options.scenes.len() } else { 0 };
     progress.start((formulas.len() + on_device) as u64);
@@ -210,6 +213,7 @@ fn measured(
         group.front = pareto::front_of(group);
     }
     let (readings, rejected) = bench.clock.readings();
+    let of_drawing = drawing.readings();
     let identity = subject.identity.clone();
     Ok(Measured {
         adapter: identity.name,
@@ -220,8 +224,8 @@ fn measured(
         clock: ClockUse {
             kind: bench.clock.kind().name().into(),
             note: bench.clock.note().map(str::to_owned),
-            readings,
-            rejected,
+            readings: readings + of_drawing.0,
+            rejected: rejected + of_drawing.1,
         },
         rungs: formulas::rungs(&bench.ladder),
         families: families(&groups),
@@ -234,9 +238,9 @@ fn measured(
 /// Of the stable forms, those of a quick bench.
 const QUICK_STABLE: [&str; 2] = ["vector/normalize-scaled", "lighting/cosine-power-by-chord"];
 
-/// The clock of a subject, or the one that is asked for.
-fn clock(subject: &Subject, asked: Option<ClockKind>) -> Result<Clock, Error> {
-    match (subject.gpu(), asked) {
+/// The clock of a device, or the one that is asked for.
+fn clock(gpu: Option<&Gpu>, asked: Option<ClockKind>) -> Result<Clock, Error> {
+    match (gpu, asked) {
         (None, _) => Ok(Clock::wall(Some("the embedded implementation has no device".into()))),
         (_, Some(ClockKind::Wall)) => Ok(Clock::wall(Some("it was asked for".into()))),
         (Some(gpu), _) => Clock::new(gpu),
