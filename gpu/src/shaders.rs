@@ -122,6 +122,12 @@ impl Shaders {
         self.files.get(file).map(String::as_str).unwrap_or_default()
     }
 
+    /// The stable form of a function, which stands in for it at that rung; `None` where it has none of its own.
+    #[must_use]
+    pub fn stable_form(&self, function: &str) -> Option<String> {
+        self.stable_forms().remove(function)
+    }
+
     /// The stable form of each function that has one, as `// stable form of:` lines say, directly above the stable function.
     pub(crate) fn stable_forms(&self) -> BTreeMap<String, String> {
         let mut forms = BTreeMap::new();

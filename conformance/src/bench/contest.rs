@@ -216,7 +216,7 @@ pub(super) fn contest(
     for ((contender, row), compiled) in contenders.iter().zip(&mut rows).zip(&compiled) {
         if row.unavailable.is_none() {
             let values = compiled.as_ref().map(|compiled| compiled.values.as_slice());
-            judge_row(row, contender, sample, &exact, values, &bench.profile);
+            judge_row(bench, row, contender, sample, &exact, values);
             row.compile_ms = compiled.as_ref().map(|compiled| compiled.milliseconds);
         }
     }
@@ -268,16 +268,16 @@ pub(super) fn timed(bench: &Bench<'_>, gpu: &Gpu, member: &Member) -> Result<Opt
 
 /// Errors against the exact values of the rows' formulas, and against those of the contender's own; whether all is legal.
 fn judge_row(
+    bench: &Bench<'_>,
     row: &mut Row,
     contender: &Contender<'_>,
     sample: &Sample<'_>,
     exact: &[f64],
     values: Option<&[f64]>,
-    profile: &Profile,
 ) {
     let own = contender.formula.map(|formula| sample.references(Some(formula)));
     let own_exact = own.as_deref().unwrap_or(exact);
-    let legal = sample.intervals(contender.formula, profile);
+    let legal = sample.intervals(bench.judged_by(contender, sample.of[0]).or(contender.formula), &bench.profile);
     let found: Vec<f64> = match (contender.on, values) {
         (On::Device(_), Some(values)) => values.to_vec(),
         (On::Device(_), None) => return,
@@ -306,6 +306,22 @@ fn judge_row(
     row.rounding = own.as_ref().and_then(|own| errors(&found[..split], &own[..split], &legal[..split]));
     if row.claims_exact {
         row.disqualified = wrong(sample, &found, own_exact, &legal);
+    }
+}
+
+impl<'a> Bench<'a> {
+    /// The formula that a stable form is by itself, where one stands in for a contender's function: what is legal of the
+    /// published form may leave no room for it.
+    fn judged_by(&self, contender: &Contender<'_>, of: &Member) -> Option<&'a Member> {
+        let spec = &contender.formula.unwrap_or(of).spec;
+        let function = match contender.on {
+            On::Device(Rung::Stable) => self.shaders.stable_form(spec.function)?,
+            _ => return None,
+        };
+        self.catalogue.iter().find(|member| {
+            let own = &member.spec;
+            own.function == function && own.inputs == spec.inputs && own.outputs == spec.outputs
+        })
     }
 }
 

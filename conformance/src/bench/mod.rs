@@ -82,6 +82,7 @@ struct Bench<'a> {
     gpu: Option<&'a Gpu>,
     clock: Clock,
     shaders: &'a Shaders,
+    catalogue: &'a [Member],
     /// The rungs, each with the reason why the adapter has it not.
     ladder: Vec<(Rung, Option<String>)>,
     /// The rules that values are held to, the driver's known deviations granted.
@@ -137,15 +138,16 @@ fn measured(
     let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
     // What computes and what draws have devices of their own: Mesa 22.3's llvmpipe loses the time of a dispatch once it has drawn.
     let own = subject.gpu().map(Gpu::sibling).transpose()?;
+    let catalogue = catalogue();
     let bench = Bench {
         gpu: own.as_ref(),
         clock: clock(own.as_ref(), options.clock)?,
         shaders: &options.shaders,
+        catalogue: &catalogue,
         ladder: ladder_of(subject)?,
         profile,
         setting,
     };
-    let catalogue = catalogue();
     let asked = |id: &str| options.filter.selects(id);
     // What is asked for by name is measured in a quick bench, too.
     let quick = options.quick && options.filter.is_empty() && options.scenes.is_empty();
@@ -192,7 +194,7 @@ fn measured(
         groups.extend(scenes::techniques(&on, &drawn, progress)?);
         for member in stable {
             progress.group(&member.spec.id);
-            groups.extend(techniques::stable(&bench, member, &catalogue)?);
+            groups.extend(techniques::stable(&bench, member)?);
             progress.advance(1);
         }
         groups.extend(scenes::scenes(&on, &bench.ladder, &named, progress)?);

@@ -373,10 +373,10 @@ pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<Group,
 }
 
 /// The published and the stable form of a formula that has both, at its hard cases.
-pub(super) fn stable(bench: &Bench<'_>, member: &Member, catalogue: &[Member]) -> Result<Option<Group>, Error> {
+pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<Group>, Error> {
     let mut naive: Vec<&Member> = vec![];
     for hard in member.spec.hard.iter().filter_map(|hard| hard.naive) {
-        let rival = catalogue.iter().find(|rival| rival.spec.id == hard.formula);
+        let rival = bench.catalogue.iter().find(|rival| rival.spec.id == hard.formula);
         naive.extend(rival.filter(|rival| naive.iter().all(|known| known.spec.id != rival.spec.id)));
     }
     let Some(first) = naive.first() else { return Ok(None) };

@@ -602,3 +602,23 @@ fn the_clip_position_is_of_f32_at_every_rung() {
         }
     }
 }
+
+/// Exponentials of what uniforms go into, before loops on uniforms: a branch in them brings Mesa 22.3's lavapipe down.
+#[test]
+fn exponential_fog_and_all_effects_are_drawn_at_every_rung() {
+    let _alone = alone();
+    let mut frame = frame();
+    frame.draws[0].cutout = None;
+    frame.fog = frame.fog.map(|fog| Fog { form: FogForm::Exp { density: 0.3 }, ..fog });
+    for (name, gpu, format) in devices().filter(|(_, _, format)| *format == TargetFormat::Rgba32Float) {
+        frame.target.format = format;
+        // All effects in double-floats take half a minute to compile.
+        for rung in [Rung::F16, Rung::Cheap, Rung::Stable, Rung::F64] {
+            let drawn = |shader| at_rung(&gpu, &frame, Recipe { rung, ..Recipe::of(shader) });
+            let (Some(composed), Some(full)) = (drawn(Shader::Composed), drawn(Shader::Full)) else { continue };
+            let off = composed.iter().zip(&full).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            let most = if rung == Rung::F16 { 0.01 } else { 1e-5 };
+            assert!(off <= most, "{name}, {}: {off:e}", rung.name());
+        }
+    }
+}

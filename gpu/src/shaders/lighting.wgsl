@@ -41,11 +41,11 @@ fn lighting_diffuse_travel(light: vec3f, material: vec3f, i: vec3f, n: vec3f) ->
 }
 
 fn lighting_specular_phong(light: vec3f, material: vec3f, r: vec3f, v: vec3f, shininess: f32) -> vec3f {
-    return light * material * vector_cosine_power(r, v, shininess);
+    return light * material * vector_lobe(dot(r, v), shininess);
 }
 
 fn lighting_specular_blinn(light: vec3f, material: vec3f, n: vec3f, h: vec3f, shininess: f32) -> vec3f {
-    return light * material * vector_cosine_power(n, h, shininess);
+    return light * material * vector_lobe(dot(n, h), shininess);
 }
 
 fn lighting_specular_nonlocal(light: vec3f, material: vec3f, r: vec3f, shininess: f32) -> vec3f {

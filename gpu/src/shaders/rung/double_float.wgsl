@@ -1,6 +1,7 @@
 // Double-floats: functions of numbers, and of vectors as a whole. The component-wise ones are in double_float_vector.wgsl.
 // exp by x = k ln 2 + r and a series, log by the exponent and atanh; the terms below 2^-24 of the sum in binary32.
-// Relative errors of some 2^-44; of a power, |exponent * log(base)| times 2^-46 besides.
+// Relative errors of some 2^-44; of a power, |exponent * log(base)| times 2^-46 besides. No branches, for the
+// reason that f64.wgsl gives.
 
 // 0, which entry points take from what no compiler knows.
 var<private> rung_zero: u32;
@@ -161,57 +162,48 @@ fn rung_scaled(x: DF1, k: i32) -> DF1 {
     return DF1(hi, rung_kept_1(hi, rung_opaque_1(x.lo * first) * second));
 }
 
-// x, or the nearer end. Exponentials do without a branch: Mesa 22.3's lavapipe crashes where one is on a value that a uniform
-// goes into and loops on uniforms follow, as in fog.
-fn rung_limited(x: DF1, least: f32, most: f32) -> DF1 {
-    let is_within = x.hi >= least && x.hi <= most;
-    return DF1(clamp(x.hi, least, most), select(0.0, x.lo, is_within));
-}
-
-// The power that was computed of a limited x.
-fn rung_unlimited(power: DF1, x: f32, least: f32, most: f32) -> DF1 {
-    let is_within = x >= least && x <= most;
-    return DF1(select(select(rung_infinity(), 0.0, x < least), power.hi, is_within), select(0.0, power.lo, is_within));
+// A power, infinity beyond its range and 0 below.
+fn rung_ranged(power: DF1, x: f32, least: f32, most: f32) -> DF1 {
+    let ranged = rung_either_1(power, rung_whole(rung_infinity()), x > most);
+    return rung_either_1(ranged, rung_whole(0.0), x < least);
 }
 
 fn rung_exp_1(given: DF1) -> DF1 {
-    let x = rung_limited(given, -104.0, 89.0);
+    let x = rung_clamp_1(given, rung_whole(-104.0), rung_whole(89.0));
     let k = round(x.hi * 1.442695);
     // Products of at most 8 bits and 16.
     var r = rung_add_1(x, rung_whole(-(k * 0.69314575)));
     r = rung_add_1(r, rung_whole(-(k * 1.4281832e-06)));
     r = rung_add_1(r, rung_whole(-(k * 4.2365214e-10)));
     let power = rung_scaled(rung_add_1(rung_whole(1.0), rung_exp_m1_series(r)), i32(k));
-    return rung_unlimited(power, given.hi, -104.0, 89.0);
+    return rung_ranged(power, given.hi, -104.0, 89.0);
 }
 
 fn rung_exp2_1(given: DF1) -> DF1 {
-    let x = rung_limited(given, -150.0, 128.0);
+    let x = rung_clamp_1(given, rung_whole(-150.0), rung_whole(128.0));
     let k = round(x.hi);
     let r = rung_mul_1(rung_add_1(x, rung_whole(-k)), DF1(0.6931472, -1.9046542e-09));
     let power = rung_scaled(rung_add_1(rung_whole(1.0), rung_exp_m1_series(r)), i32(k));
-    return rung_unlimited(power, given.hi, -150.0, 128.0);
+    return rung_ranged(power, given.hi, -150.0, 128.0);
 }
 
 fn rung_log_1(given: DF1) -> DF1 {
-    if given.hi <= 0.0 {
-        // Of 0 minus infinity; of what is negative no number.
-        return rung_whole(select(sqrt(given.hi), -rung_infinity(), given.hi == 0.0));
-    }
-    if (bitcast<u32>(given.hi) & 0x7f800000u) == 0x7f800000u {
-        return given;
-    }
     let is_tiny = given.hi < 0x1p-90;
     let up = select(1.0, 0x1p64, is_tiny);
     let x = DF1(given.hi * up, given.lo * up);
-    var exponent = i32(bitcast<u32>(x.hi) >> 23u) - 127;
+    // The sign apart, so that what is negative stays in range.
+    var exponent = i32((bitcast<u32>(x.hi) >> 23u) & 0xffu) - 127;
     // A significand above the root of 2 belongs to the next power.
     exponent += select(0, 1, (bitcast<u32>(x.hi) & 0x7fffffu) > 0x3504f3u);
     let m = rung_scaled(x, -exponent);
     let s = rung_div_1(rung_add_1(m, rung_whole(-1.0)), rung_add_1(m, rung_whole(1.0)));
     let e = f32(exponent - select(0, 64, is_tiny));
     let of_power = rung_add_1(rung_two_sum_1(e * 0.69314575, e * 1.4281832e-06), rung_whole(e * 4.2365214e-10));
-    return rung_add_1(of_power, rung_atanh_series(s));
+    let log = rung_add_1(of_power, rung_atanh_series(s));
+    // Of 0 minus infinity, of what is negative no number, of infinity itself.
+    let lowest = rung_whole(select(sqrt(given.hi), -rung_infinity(), given.hi == 0.0));
+    let is_great = (bitcast<u32>(given.hi) & 0x7f800000u) == 0x7f800000u;
+    return rung_either_1(rung_either_1(log, lowest, given.hi <= 0.0), given, is_great && given.hi > 0.0);
 }
 
 fn rung_log2_1(x: DF1) -> DF1 {
@@ -219,13 +211,9 @@ fn rung_log2_1(x: DF1) -> DF1 {
 }
 
 fn rung_pow_1(base: DF1, exponent: DF1) -> DF1 {
-    if exponent.hi == 0.0 {
-        return rung_whole(1.0);
-    }
-    if base.hi == 0.0 {
-        return rung_whole(select(rung_infinity(), 0.0, exponent.hi > 0.0));
-    }
-    return rung_exp_1(rung_mul_1(exponent, rung_log_1(base)));
+    let of_zero = rung_whole(select(rung_infinity(), 0.0, exponent.hi > 0.0));
+    let power = rung_either_1(rung_exp_1(rung_mul_1(exponent, rung_log_1(base))), of_zero, base.hi == 0.0);
+    return rung_either_1(power, rung_whole(1.0), exponent.hi == 0.0);
 }
 
 // What elementary.wgsl has for binary32.

@@ -1,6 +1,7 @@
 // What drivers lack in f64 or get wrong: exponentials, logarithms and powers. Powers of two are made of the bits of an f32.
 // Relative errors of a few 2^-52; of exp besides |x| times 2^-53, as a compiler may join the two parts of ln 2, and of a power
-// |exponent * log(base)| times that.
+// |exponent * log(base)| times that. No branches: Mesa 22.3's lavapipe crashes where one on what a uniform goes into is followed
+// by loops on uniforms.
 
 // A number as a sum of three f32.
 fn rung_parts(x: f64) -> vec3f {
@@ -68,85 +69,59 @@ fn rung_atanh_series(s: f64) -> f64 {
     return 2.0lf * s + 2.0lf * s * z * p;
 }
 
-// x, or its nearest between -most and most. Exponentials do without a branch: Mesa 22.3's lavapipe crashes where one is on a
-// value that a uniform goes into and loops on uniforms follow, as in fog.
-fn rung_limited(x: f64, least: f64, most: f64) -> f64 {
-    return select(select(x, least, x < least), most, x > most);
+fn rung_exp_1(given: f64) -> f64 {
+    let x = clamp(given, -698.0lf, 709.0lf);
+    let k = floor(x * 1.4426950408889634lf + 0.5lf);
+    let r = (x - k * 0.6931471803691238lf) - k * 1.9082149292705877e-10lf;
+    let power = (1.0lf + rung_exp_m1_series(r)) * rung_power(i32(k));
+    return select(select(power, rung_infinity(), given > 709.0lf), 0.0lf, given < -698.0lf);
 }
 
-// The power that was computed of a limited x.
-fn rung_unlimited(power: f64, x: f64, least: f64, most: f64) -> f64 {
-    return select(select(power, 0.0lf, x < least), rung_infinity(), x > most);
-}
-
-fn rung_exp_1(x: f64) -> f64 {
-    let limited = rung_limited(x, -698.0lf, 709.0lf);
-    let k = floor(limited * 1.4426950408889634lf + 0.5lf);
-    let r = (limited - k * 0.6931471803691238lf) - k * 1.9082149292705877e-10lf;
-    return rung_unlimited((1.0lf + rung_exp_m1_series(r)) * rung_power(i32(k)), x, -698.0lf, 709.0lf);
-}
-
-fn rung_exp2_1(x: f64) -> f64 {
-    let limited = rung_limited(x, -1007.0lf, 1023.0lf);
-    let k = floor(limited + 0.5lf);
-    let power = (1.0lf + rung_exp_m1_series((limited - k) * 0.6931471805599453lf)) * rung_power(i32(k));
-    return rung_unlimited(power, x, -1007.0lf, 1023.0lf);
+fn rung_exp2_1(given: f64) -> f64 {
+    let x = clamp(given, -1007.0lf, 1023.0lf);
+    let k = floor(x + 0.5lf);
+    let power = (1.0lf + rung_exp_m1_series((x - k) * 0.6931471805599453lf)) * rung_power(i32(k));
+    return select(select(power, rung_infinity(), given > 1023.0lf), 0.0lf, given < -1007.0lf);
 }
 
 fn rung_log_1(x: f64) -> f64 {
-    if x <= 0.0lf {
-        // Of 0 minus infinity; of what is negative no number.
-        if x == 0.0lf {
-            return -rung_infinity();
-        }
-        return sqrt(x);
-    }
-    if x > 1.7e308lf {
-        return x;
-    }
     var m = x;
     var e = 0;
-    if m >= 1.3407807929942597e+154lf {
-        m *= 7.458340731200207e-155lf;
-        e += 512;
-    }
-    if m < 7.458340731200207e-155lf {
-        m *= 1.3407807929942597e+154lf;
-        e -= 512;
-    }
-    if m >= 1.157920892373162e+77lf {
-        m *= 8.636168555094445e-78lf;
-        e += 256;
-    }
-    if m < 8.636168555094445e-78lf {
-        m *= 1.157920892373162e+77lf;
-        e -= 256;
-    }
-    if m >= 3.402823669209385e+38lf {
-        m *= 2.938735877055719e-39lf;
-        e += 128;
-    }
-    if m < 2.938735877055719e-39lf {
-        m *= 3.402823669209385e+38lf;
-        e -= 128;
-    }
-    if m >= 1.8446744073709552e+19lf {
-        m *= 5.421010862427522e-20lf;
-        e += 64;
-    }
-    if m < 5.421010862427522e-20lf {
-        m *= 1.8446744073709552e+19lf;
-        e -= 64;
-    }
+    var is_far = false;
+    is_far = m >= 1.3407807929942597e+154lf;
+    m *= select(1.0lf, 7.458340731200207e-155lf, is_far);
+    e += select(0, 512, is_far);
+    is_far = m < 7.458340731200207e-155lf;
+    m *= select(1.0lf, 1.3407807929942597e+154lf, is_far);
+    e -= select(0, 512, is_far);
+    is_far = m >= 1.157920892373162e+77lf;
+    m *= select(1.0lf, 8.636168555094445e-78lf, is_far);
+    e += select(0, 256, is_far);
+    is_far = m < 8.636168555094445e-78lf;
+    m *= select(1.0lf, 1.157920892373162e+77lf, is_far);
+    e -= select(0, 256, is_far);
+    is_far = m >= 3.402823669209385e+38lf;
+    m *= select(1.0lf, 2.938735877055719e-39lf, is_far);
+    e += select(0, 128, is_far);
+    is_far = m < 2.938735877055719e-39lf;
+    m *= select(1.0lf, 3.402823669209385e+38lf, is_far);
+    e -= select(0, 128, is_far);
+    is_far = m >= 1.8446744073709552e+19lf;
+    m *= select(1.0lf, 5.421010862427522e-20lf, is_far);
+    e += select(0, 64, is_far);
+    is_far = m < 5.421010862427522e-20lf;
+    m *= select(1.0lf, 1.8446744073709552e+19lf, is_far);
+    e -= select(0, 64, is_far);
     let k = i32(bitcast<u32>(f32(m)) >> 23u) - 127;
-    m *= rung_small_power(-k);
-    e += k;
-    if m > 1.4142135623730951lf {
-        m *= 0.5lf;
-        e += 1;
-    }
+    m *= rung_small_power(clamp(-k, -126, 127));
+    let is_above = m > 1.4142135623730951lf;
+    m *= select(1.0lf, 0.5lf, is_above);
+    e += k + select(0, 1, is_above);
     let s = (m - 1.0lf) / (m + 1.0lf);
-    return f64(e) * 0.6931471803691238lf + (f64(e) * 1.9082149292705877e-10lf + rung_atanh_series(s));
+    let log = f64(e) * 0.6931471803691238lf + (f64(e) * 1.9082149292705877e-10lf + rung_atanh_series(s));
+    // Of 0 minus infinity, of what is negative no number, of infinity itself.
+    let lowest = select(sqrt(x), -rung_infinity(), x == 0.0lf);
+    return select(select(log, lowest, x <= 0.0lf), x, x > 1.7e308lf);
 }
 
 fn rung_log2_1(x: f64) -> f64 {
@@ -154,16 +129,9 @@ fn rung_log2_1(x: f64) -> f64 {
 }
 
 fn rung_pow_1(base: f64, exponent: f64) -> f64 {
-    if exponent == 0.0lf {
-        return 1.0lf;
-    }
-    if base == 0.0lf {
-        if exponent > 0.0lf {
-            return 0.0lf;
-        }
-        return rung_infinity();
-    }
-    return rung_exp_1(exponent * rung_log_1(base));
+    let of_zero = select(rung_infinity(), 0.0lf, exponent > 0.0lf);
+    let power = select(rung_exp_1(exponent * rung_log_1(base)), of_zero, base == 0.0lf);
+    return select(power, 1.0lf, exponent == 0.0lf);
 }
 
 fn rung_saturate_1(x: f64) -> f64 {
