@@ -72,7 +72,7 @@ impl Setting {
         if quick {
             Self { effort: Effort { turns: 5, readings: 2, seconds: 5e-4 }, cases: 512, seed, quick }
         } else {
-            Self { effort: Effort { turns: 11, readings: 3, seconds: 1e-3 }, cases: 2048, seed, quick }
+            Self { effort: Effort { turns: 11, readings: 4, seconds: 1.5e-3 }, cases: 2048, seed, quick }
         }
     }
 }
