@@ -18,7 +18,8 @@ fn values(gpu: &Gpu, shaders: &Shaders, member: &Member, rung: Rung, rows: &[Vec
     let pipeline = RepeatPipeline::new(gpu, shaders, &kernel, rung, &given).unwrap_or_else(|error| {
         panic!("{} at {}: {error}", member.spec.id, rung.name());
     })?;
-    let words = pipeline.outputs(gpu).unwrap_or_else(|error| panic!("{} at {}: {error}", member.spec.id, rung.name()));
+    let words =
+        pipeline.outputs(gpu, &given).unwrap_or_else(|error| panic!("{} at {}: {error}", member.spec.id, rung.name()));
     let value = |parts: &[u32]| parts.iter().rev().map(|&part| f64::from(f32::from_bits(part))).sum();
     Ok(words.chunks_exact(rung.parts()).map(value).collect())
 }

@@ -2,9 +2,9 @@
 //! they take, in turns.
 
 use super::Bench;
-use super::document::{Errors, Row, Time};
+use super::document::{Errors, Row};
 use super::errors::Gathered;
-use super::turns::{self, Entry, Laps};
+use super::turns::{self, Entry};
 use crate::arithmetic::{Accept, Profile};
 use crate::evaluate::kernel;
 use crate::judge::{Outcome, judge};
@@ -173,13 +173,14 @@ struct Compiled {
     milliseconds: f64,
 }
 
-/// The rows of a group, measured against a baseline by its name.
+/// The rows of a group, measured against a baseline by its name, those of the processor against its own f32; and what errors and
+/// times are over.
 pub(super) fn contest(
     bench: &Bench<'_>,
     sample: &Sample<'_>,
     contenders: &[Contender<'_>],
     baseline: &str,
-) -> Result<Vec<Row>, Error> {
+) -> Result<(Vec<Row>, String), Error> {
     let exact = sample.references(None);
     let mut rows: Vec<Row> = contenders.iter().map(blank).collect();
     let (mut compiled, mut idle) = (vec![], None);
@@ -220,8 +221,12 @@ pub(super) fn contest(
             row.compile_ms = compiled.as_ref().map(|compiled| compiled.milliseconds);
         }
     }
-    time_rows(bench, sample, contenders, &compiled, idle.as_ref(), baseline, &mut rows)?;
-    Ok(rows)
+    let idle_ns = time_rows(bench, sample, contenders, &compiled, idle.as_ref(), baseline, &mut rows)?;
+    let mut work = format!("{} random rows, and {} hard ones and near them", sample.random(), sample.hard());
+    if let Some(idle_ns) = idle_ns {
+        work += &format!("; reading the inputs and the loop take {idle_ns:.2} ns of each time on the device");
+    }
+    Ok((rows, work))
 }
 
 fn blank(contender: &Contender<'_>) -> Row {
@@ -359,7 +364,7 @@ fn time_rows(
     idle: Option<&RepeatPipeline>,
     baseline: &str,
     rows: &mut [Row],
-) -> Result<(), Error> {
+) -> Result<Option<f64>, Error> {
     let clock = &bench.clock;
     let (mut entries, mut places) = (vec![], vec![]);
     if let (Some(gpu), Some(idle)) = (bench.gpu, idle) {
@@ -376,38 +381,23 @@ fn time_rows(
         }
         places.push(Some(k));
     }
-    let mut laps = turns::measure(&mut entries, bench.setting.effort)?;
+    let laps = turns::measure(&mut entries, bench.setting.effort)?;
     let clocks: Vec<&'static str> = entries.iter().map(Entry::clock).collect();
     drop(entries);
-    let idle = places.first().is_some_and(Option::is_none).then(|| laps[0].clone());
-    let base = places.iter().position(|place| place.is_some_and(|k| rows[k].name == baseline));
-    // A processor reads and computes at once, so that what is left of a time less the idle one is off by as much as that may
-    // be: it is told where it is the greater part, in every turn. Else reading is in all that are compared.
-    let is_told = |own: &Laps, idle: &Laps| {
-        own.iter().zip(idle).filter_map(|(own, idle)| own.zip(*idle)).all(|(own, idle)| own >= 2.0 * idle)
-    };
-    let on_device = |k: usize| clocks[k] != "processor" && places[k].is_some();
-    let all_told =
-        idle.as_ref().is_some_and(|idle| (0..laps.len()).filter(|&k| on_device(k)).all(|k| is_told(&laps[k], idle)));
-    if let (true, Some(idle)) = (all_told, &idle) {
-        for k in (0..laps.len()).filter(|&k| on_device(k)) {
-            laps[k] = turns::less(&laps[k], idle);
-        }
-    }
+    let idle_ns = places.first().is_some_and(Option::is_none).then(|| turns::time(clocks[0], &laps[0], None));
+    let place_of = |name: &str| places.iter().position(|place| place.is_some_and(|k| rows[k].name == name));
+    let (base, processor) = (place_of(baseline), place_of(Arithmetic::F32.name()));
     for ((place, own), clock) in places.iter().zip(&laps).zip(&clocks) {
         let Some(k) = *place else { continue };
+        // The processor's one core beside all that a device has says more of the machine than of the arithmetic.
+        let base = if *clock == "processor" { processor } else { base };
         let against = base.filter(|&base| places[base] != Some(k)).map(|base| &laps[base]);
-        let time: Option<Time> = turns::time(clock, own, against);
-        rows[k].time = time.map(|time| Time {
-            note: (!all_told && *clock != "processor")
-                .then(|| "with reading the inputs, which some rows do not take twice as long as".into()),
-            ..time
-        });
+        rows[k].time = turns::time(clock, own, against);
         if rows[k].time.is_none() {
             rows[k].unavailable = Some("every timestamp was rejected".into());
         }
     }
-    Ok(())
+    Ok(idle_ns.flatten().map(|time| time.ns))
 }
 
 fn device_entry<'a>(gpu: &'a Gpu, clock: &'a Clock, pipeline: &'a RepeatPipeline) -> Entry<'a> {

@@ -114,7 +114,8 @@ pub struct Group {
     pub work: String,
     /// The rows.
     pub rows: Vec<Row>,
-    /// Rows than which none is both faster and closer, the fastest first: by their time, and the largest error on random inputs.
+    /// Rows than which none is both as fast, within the spreads, and closer, the fastest first; errors are the largest on random
+    /// inputs.
     pub front: Vec<String>,
 }
 
@@ -177,13 +178,14 @@ pub struct Spread {
 pub struct Time {
     /// `timestamps`, `wall`, or `processor` of the rungs on one core of the processor.
     pub clock: String,
-    /// Nanoseconds, the median of the turns; of an evaluation less what reading the inputs takes.
+    /// Nanoseconds, the median of the turns; of an evaluation on a device with what reading the inputs takes, which the group's
+    /// `work` tells.
     pub ns: f64,
     /// The lower and the upper end of the middle half of the turns.
     pub quartiles_ns: [f64; 2],
-    /// The median, turn by turn, over the baseline's time in the same turn.
+    /// The median, turn by turn, over the baseline's time in the same turn; of the processor's rungs over `cpu-f32`.
     pub ratio: f64,
-    /// From where to where that goes: what a repeated run is expected to find within.
+    /// From where to where that goes in the turns.
     pub spread: [f64; 2],
     /// What the ratio says.
     pub verdict: Standing,

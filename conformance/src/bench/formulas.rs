@@ -87,7 +87,7 @@ pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Resul
     let spec = &members[0].spec;
     let has_shader = !spec.function.is_empty() && bench.gpu.is_some();
     let baseline = if has_shader { Rung::F32.name() } else { Arithmetic::F32.name() };
-    let rows = contest(bench, &sample, &contenders, baseline)?;
+    let (rows, work) = contest(bench, &sample, &contenders, baseline)?;
     let title =
         if members.len() == 1 { spec.text.into() } else { format!("{} states by one shader function", members.len()) };
     Ok(Group {
@@ -98,15 +98,10 @@ pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Resul
         ideal: "the formula in f64".into(),
         baseline: baseline.into(),
         unit: "evaluation".into(),
-        work: work(&sample),
+        work,
         rows,
         front: vec![],
     })
-}
-
-/// What errors are over.
-pub(super) fn work(sample: &Sample<'_>) -> String {
-    format!("{} random rows, and {} hard ones and near them", sample.random(), sample.hard())
 }
 
 #[cfg(test)]

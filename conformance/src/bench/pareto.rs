@@ -5,6 +5,7 @@
 //! a rung on the processor, which no shader can take.
 
 use super::document::{Errors, Group, GroupKind, Row};
+use std::cmp::Ordering;
 
 /// The names of the points `(name, time, error)` on the front, the fastest first.
 #[must_use]
@@ -26,15 +27,30 @@ pub fn front<'a>(points: &[(&'a str, Option<f64>, f64)]) -> Vec<&'a str> {
 }
 
 /// The front of a group's rows: by their time and their largest error on random inputs, which is in ULP of a formula and absolute
-/// of techniques and scenes.
+/// of techniques and scenes. Times whose ratios' spreads overlap are equal, so that a second run finds the same front; of rows
+/// that are equal in both the baseline is on it, or the first.
 #[must_use]
 pub fn front_of(group: &Group) -> Vec<String> {
-    let point = |row: &'_ Row| row.random.as_ref().map(|errors| largest(group.kind, errors));
-    let points: Vec<_> = (group.rows.iter())
-        .filter(|row| refusal(row).is_none())
-        .filter_map(|row| Some((row.name.as_str(), row.time.as_ref().map(|time| time.ns), point(row)?)))
-        .collect();
-    front(&points).into_iter().map(str::to_owned).collect()
+    let point = |(place, row): (usize, &'_ Row)| {
+        let error = largest(group.kind, row.random.as_ref()?);
+        let (time, is_other) = (row.time.clone()?, row.name != group.baseline);
+        (refusal(row).is_none() && error.is_finite()).then_some((row.name.clone(), time, error, (is_other, place)))
+    };
+    let mut points: Vec<_> = group.rows.iter().enumerate().filter_map(point).collect();
+    let all = points.clone();
+    points.retain(|(_, time, error, order)| {
+        !all.iter().any(|(_, other, closer, before)| {
+            let (is_slower, is_faster) = (other.spread[0] > time.spread[1], other.spread[1] < time.spread[0]);
+            let wins = match closer.total_cmp(error) {
+                Ordering::Less => true,
+                Ordering::Equal => is_faster || before < order,
+                Ordering::Greater => false,
+            };
+            !is_slower && wins
+        })
+    });
+    points.sort_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio));
+    points.into_iter().map(|(name, ..)| name).collect()
 }
 
 /// The largest error in the unit that a group of that kind is told by.

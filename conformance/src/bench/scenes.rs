@@ -127,8 +127,7 @@ pub fn scene(
     let drawn = drawer.draw(&plans, &standard)?;
     let baseline = plans.iter().position(|plan| plan.name == Rung::F32.name());
     let mut rows = drawer.rows(&drawn, baseline, on.setting.effort)?;
-    let timed = baseline.and_then(|place| drawn[place].timed.as_ref());
-    rows.extend(processor(&drawer, &standard, timed, on.setting.effort)?);
+    rows.extend(processor(&drawer, &standard, on.setting.effort)?);
     let format = standard.frame.target.format.name();
     Ok(Some(Group {
         id,
@@ -159,13 +158,8 @@ const fn what(rung: Rung) -> &'static str {
 /// What a row of the processor draws.
 type Draw = Box<dyn Fn(&Frame) + Send + Sync>;
 
-/// The reference renderer on one core, beside the baseline in turns of their own.
-fn processor(
-    drawer: &Drawer<'_>,
-    standard: &Standard,
-    baseline: Option<&SceneRenderer>,
-    effort: Effort,
-) -> Result<Vec<Row>, Error> {
+/// The reference renderer on one core, in turns of its own.
+fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result<Vec<Row>, Error> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let (frame, profile) = (&standard.frame, drawer.profile);
     let kinds: [(&str, &str, Draw); 3] = [
@@ -181,13 +175,13 @@ fn processor(
         ),
         (
             "cpu-accept",
-            "the legal values of every pixel by the accuracy rules, on one core",
+            "the legal values of every pixel by the accuracy rules, on one core; its error is how far they reach",
             Box::new(move |frame| drop(black_box(crate::image::expect(frame, None, None, &profile)))),
         ),
     ];
     // A larger frame than the errors' is the device's alone: the processor's time is brought to it.
     let share = drawer.share(frame);
-    let mut entries: Vec<Entry<'_>> = baseline.map(|renderer| drawer.entry(renderer)).into_iter().collect();
+    let mut entries: Vec<Entry<'_>> = vec![];
     for (_, _, draw) in &kinds {
         let pool = &pool;
         entries.push(Entry::new("processor", share, 64, move |amount| {
@@ -199,14 +193,14 @@ fn processor(
         }));
     }
     let laps = turns::measure(&mut entries, Effort { turns: effort.turns.min(TURNS), ..effort })?;
-    let first = usize::from(baseline.is_some());
     let rows = kinds.iter().enumerate().map(|(k, (name, what, _))| {
         let image = match *name {
             "cpu-f32" => Some(Stored::unrounded(&render::<f32>(frame, None, None), frame.target.format)),
             "cpu-f64" => Some(standard.reference.clone()),
             _ => None,
         };
-        let mut time = turns::time("processor", &laps[first + k], baseline.map(|_| &laps[0]));
+        let reach = image.is_none().then(|| standard.farthest());
+        let mut time = turns::time("processor", &laps[k], (k > 0).then(|| &laps[0]));
         if let Some(time) = time.as_mut().filter(|_| share < 1.0) {
             time.note = Some("of a smaller frame, and as many times that as there are more pixels".into());
         }
@@ -216,7 +210,7 @@ fn processor(
             claims_exact: image.is_some(),
             unavailable: None,
             disqualified: image.as_ref().and_then(|image| drawer.outside(image, standard)),
-            random: image.as_ref().and_then(|image| drawing::errors(image, standard, &[standard])),
+            random: image.as_ref().or(reach.as_ref()).and_then(|image| drawing::errors(image, standard, &[standard])),
             hard: None,
             rounding: None,
             time,
@@ -252,7 +246,7 @@ mod tests {
         assert_eq!(f32.time.as_ref().map(|time| time.verdict), Some(Standing::Baseline));
         assert_eq!((f64.unavailable.as_deref(), f64.time.is_none()), (Some("a reason"), true));
         let max = |row: &Row| row.random.as_ref().map(|errors| errors.absolute.max.0);
-        assert!(max(cpu64) == Some(0.0) && max(cpu32) > Some(0.0) && max(accept).is_none());
+        assert!(max(cpu64) == Some(0.0) && max(cpu32) > Some(0.0) && max(accept) > max(cpu32));
         for row in [f32, cpu32, cpu64, accept] {
             assert_eq!((&row.disqualified, row.time.is_some()), (&None, true), "{}", row.name);
         }

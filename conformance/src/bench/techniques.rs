@@ -4,7 +4,7 @@
 use super::Bench;
 use super::contest::{Contender, On, Sample, contest};
 use super::document::{Group, GroupKind};
-use super::formulas::{on_device, work};
+use super::formulas::on_device;
 use crate::cases::formula::formula;
 use crate::cases::{Domain, Formula, Hard, Input, Output, Reader, Shape};
 use crate::select::Member;
@@ -228,7 +228,7 @@ macro_rules! span {
             |x, out| {
                 let [a, b] = x.array();
                 // Exact: N is a power of two.
-                out.scalar(interpolation::mix(a, b, R::literal(($n as f64 - 1.0) / $n as f64)));
+                out.scalar(interpolation::mix(a, b, R::literal(f64::from($n - 1) / f64::from($n))));
             },
         );
         formula!(
@@ -357,7 +357,7 @@ pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<Group,
             ..contender
         }));
     }
-    let rows = contest(bench, &sample, &contenders, group.baseline)?;
+    let (rows, work) = contest(bench, &sample, &contenders, group.baseline)?;
     Ok(Group {
         id: group.id.into(),
         kind: GroupKind::Technique,
@@ -366,7 +366,7 @@ pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<Group,
         ideal: group.ideal.into(),
         baseline: group.baseline.into(),
         unit: "evaluation".into(),
-        work: work(&sample),
+        work,
         rows,
         front: vec![],
     })
@@ -395,7 +395,7 @@ pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<Group>
         on: On::Device(Rung::F32),
         unavailable: None,
     }));
-    let rows = contest(bench, &sample, &contenders, &short(first))?;
+    let (rows, work) = contest(bench, &sample, &contenders, &short(first))?;
     Ok(Some(Group {
         id: format!("stable/{}", member.spec.id),
         kind: GroupKind::Technique,
@@ -404,7 +404,7 @@ pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<Group>
         ideal: format!("{} in f64", member.spec.id),
         baseline: short(first),
         unit: "evaluation".into(),
-        work: work(&sample),
+        work,
         rows,
         front: vec![],
     }))

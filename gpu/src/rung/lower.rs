@@ -40,6 +40,8 @@ pub(crate) struct Lowered {
 
 /// Why a rung of f32's own types has nothing to say of a function.
 pub(super) const NOTHING_STABLE: &str = "no step of it has a stable form of its own";
+/// The same of approximations.
+pub(super) const NOTHING_CHEAP: &str = "no step of it has a cheap approximation";
 /// Why a function has no meaning in other arithmetics.
 pub(super) const READS_BITS: &str = "it reads the bits of a number of binary32";
 
@@ -97,6 +99,9 @@ pub(super) fn lower_with(
     writer.structs(&mut body)?;
     if rung == Rung::Stable && !writer.is_replaced {
         return Err(NOTHING_STABLE.into());
+    }
+    if rung == Rung::Cheap && !body.contains("rung_") {
+        return Err(NOTHING_CHEAP.into());
     }
     let enable = if rung == Rung::F16 { "enable f16;\n" } else { "" };
     Ok(Lowered { source: format!("{enable}{body}\n{}", writer.prelude.text), root })

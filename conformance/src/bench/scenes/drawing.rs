@@ -38,6 +38,18 @@ impl Standard {
         let expected = expect(&frame, None, None, profile);
         Self { exact: image.pixels, reference, expected, frame }
     }
+
+    /// An image of the legal values that are farthest from the reference.
+    pub(super) fn farthest(&self) -> Stored {
+        let mut image = self.reference.clone();
+        for (pixel, legal) in image.pixels.iter_mut().zip(&self.expected) {
+            *pixel = std::array::from_fn(|k| {
+                let (low, high) = (legal.low[k], legal.high[k]);
+                if high - pixel[k] > pixel[k] - low { high } else { low }
+            });
+        }
+        image
+    }
 }
 
 /// A row that is to be drawn.
