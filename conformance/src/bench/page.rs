@@ -78,15 +78,16 @@ fn reading(out: &mut impl Write) -> Result {
     writeln!(
         out,
         "Rows of a group compute the same and are measured in turns beside the group's baseline. A *time* is the median of the \
-         turns; of an evaluation it is less what reading the inputs takes. A *ratio* is the median, turn by turn, of a row's time over the baseline's; its spread is where a \
-         repeated run is expected to find it, and where 1 lies within it is a *tie*. Errors are against the f64 reference of what the \
-         group is for: in ULP of binary32, absolute, or in 1/255 of full scale. *Random* inputs are drawn over a formula's \
-         domain; *hard* ones are its named hard cases and what lies within a few ULP of them. ∞ stands where a value was \
+         turns, with reading the inputs, which each group's line of work tells. A *ratio* is the median, turn by turn, of a \
+         row's time over the baseline's, of the processor's rungs over `cpu-f32`; its spread goes from the least to the greatest \
+         of the turns, and where 1 lies within it is a *tie*. Errors are against the f64 reference of what the group is for: in \
+         ULP of binary32, absolute, or in 1/255 of full scale. *Random* inputs are drawn over a formula's domain; *hard* ones \
+         are its named hard cases and what lies within a few ULP of them. ∞ stands where a value was \
          NaN or infinite and the reference is a number.\n"
     )?;
     writeln!(
         out,
-        "**Bold** is the Pareto front: nothing else is both faster and closer. ✗ is wrong in value beyond what it is \
+        "**Bold** is the Pareto front: nothing else is as fast, within the spreads, and closer. ✗ is wrong in value beyond what it is \
          meant to be, is on no front and never recommended. — was not measured. Rungs named `cpu-` run on one core of the \
          processor, are on no front, and are grey in pictures. In pictures an error of 0 lies in a band at the bottom."
     )
@@ -106,7 +107,8 @@ fn claims(document: &Document, out: &mut impl Write) -> Result {
                 measured.claims.iter().filter(|one| one.id == claim.id)
             {
                 let (name, sentence) = (&measured.adapter, plain(sentence));
-                let sentence = sentence.trim_end_matches('.');
+                let said = format!("{}: ", plain(&claim.claim));
+                let sentence = sentence.strip_prefix(&said).unwrap_or(&sentence).trim_end_matches('.');
                 let says = holding(*holds);
                 writeln!(out, "  * {name}: *{says}*. {sentence} (ratio {}, {}).", digits(*ratio), spread(*from_to))?;
             }
@@ -553,7 +555,10 @@ mod tests {
                 let line = text.lines().find(of).expect("a line each");
                 assert_eq!(cells_of(line).len(), 8, "{line}");
             }
-            assert!(measured.claims.iter().all(|claim| text.contains(&claim.sentence)));
+            assert!(measured.claims.iter().all(|claim| {
+                let sentence = claim.sentence.trim_start_matches(&format!("{}: ", claim.claim));
+                text.contains(sentence.trim_end_matches('.'))
+            }));
         }
         assert!(text.contains("| f16 | — | — | — | — | — | — | — |"), "{text}");
         assert!(text.contains("`lighting/blinn`, ns | ULP |"));

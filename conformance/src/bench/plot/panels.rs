@@ -32,7 +32,7 @@ pub(super) fn svg(groups: &[&Group], title: &str) -> Result<Option<String>, Erro
         }
         top += HEIGHT;
     }
-    let words = "line and bold names: nothing else is both faster and closer; whiskers: the middle half of the turns; hollow: wrong in value";
+    let words = "line and bold names: nothing else is both faster and closer; whiskers: the middle half of the turns; no name: at another rung";
     text([12.0, height - 14.0], "start", false, words, &mut out)?;
     out.push_str("</svg>\n");
     Ok(Some(out))
@@ -74,13 +74,18 @@ fn panel(group: &Group, [left, top]: [f64; 2], out: &mut String) -> Written {
         room.take_line([from, at], [to, at], 2.0);
         writeln!(out, r##"<path d="M{from:.1} {at:.1}H{to:.1}" stroke="#777777" stroke-width="1.2"/>"##)?;
     }
-    let named = rows.iter().enumerate().map(|(place, (row, ns, _, error))| Named {
-        name: row.name.clone(),
-        at: [x.at(*ns), y.at(*error)],
-        r: 6.5,
-        style: style(&row.name, place),
-        front: group.front.iter().position(|name| *name == row.name),
-        is_hollow: row.disqualified.is_some(),
+    let named = rows.iter().enumerate().map(|(place, (row, ns, _, error))| {
+        let front = group.front.iter().position(|name| *name == row.name);
+        // A technique at another rung looks like that rung, and has no name of its own where it is on no front.
+        let rung = row.name.rsplit_once(' ').map(|(_, rung)| rung);
+        Named {
+            name: if rung.is_some() && front.is_none() { String::new() } else { row.name.clone() },
+            at: [x.at(*ns), y.at(*error)],
+            r: if rung.is_some() { 5.0 } else { 6.5 },
+            style: style(rung.unwrap_or(&row.name), place),
+            front,
+            is_hollow: row.disqualified.is_some(),
+        }
     });
     markers(&named.collect::<Vec<_>>(), room, out)
 }

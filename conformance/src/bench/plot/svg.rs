@@ -115,7 +115,7 @@ pub(super) fn markers(named: &[Named], mut room: Room, out: &mut impl Write) -> 
     }
     let others = named.iter().filter(|one| one.front.is_none());
     let mut names = vec![];
-    for one in front.iter().copied().chain(others) {
+    for one in front.iter().copied().chain(others).filter(|one| !one.name.is_empty()) {
         let width = text_width(&one.name, SIZE) * if one.front.is_some() { 1.1 } else { 1.0 };
         let put = room.put(one.at, one.r, [width, SIZE + 2.0]);
         if let Some([x, y]) = put.leader {
