@@ -2,7 +2,7 @@
 //!
 //! Errors are of every component of every pixel whose coverage and winner are settled, against the f64 reference. A driver that
 //! computes on the processor draws what is timed in the errors' size; any other, on which such a frame is over before it has
-//! begun, in [`TIMED`].
+//! begun, in 1,024 pixels.
 
 mod drawing;
 mod frames;

@@ -383,7 +383,7 @@ fn left_out(measured: &Measured, out: &mut impl Write) -> Result {
 
 fn legend(out: &mut impl Write) -> Result {
     writeln!(out, "\n● nothing else is both faster and closer · ✗ wrong in value, in no mean · — not measured here")?;
-    writeln!(out, "tie: 1 lies within the spread, where a repeated run is expected to find the ratio")
+    writeln!(out, "tie: 1 lies within the spread, which is the range of the turns")
 }
 
 /// Writes words in lines no longer than the terminal is wide: `head` before the first line, `indent` before the others.
