@@ -20,6 +20,7 @@
 //! parentheses.
 
 mod condition;
+mod forbidden;
 mod items;
 mod template;
 
@@ -237,7 +238,10 @@ impl Composition {
             invalid(line, error.emit_to_string_with_path(&self.source, "composed"))
         })?;
         let info = crate::shaders::validator().validate(&module).map_err(|error| {
-            let line = error.location(&self.source).map(|at| at.line_number);
+            // What a stage forbids, naga tells without a place.
+            let location = error.location(&self.source);
+            let location = location.or_else(|| Some(forbidden::in_vertices(&module)?.location(&self.source)));
+            let line = location.map(|at| at.line_number);
             invalid(line, error.emit_to_string_with_path(&self.source, "composed"))
         })?;
         Ok((module, info))
