@@ -32,6 +32,18 @@ impl Rung {
     /// All, the coarsest first.
     pub const ALL: [Self; 6] = [Self::F16, Self::Cheap, Self::F32, Self::Stable, Self::DoubleFloat, Self::F64];
 
+    /// Whether that is the reason of what is no program of its own at a rung, but that of f32.
+    #[must_use]
+    pub fn is_as_f32(reason: &str) -> bool {
+        [lower::NOTHING_CHEAP, lower::NOTHING_STABLE].contains(&reason)
+    }
+
+    /// Whether it computes what f32 does, only closer or by another form: not coarser, and not by approximations.
+    #[must_use]
+    pub const fn is_exact(self) -> bool {
+        matches!(self, Self::F32 | Self::Stable | Self::DoubleFloat | Self::F64)
+    }
+
     /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -11,8 +11,10 @@ struct Claimed {
     group: &'static str,
     /// The row that the claim is about, and the one that it is held against.
     rows: [&'static str; 2],
-    /// What the ratio of the first's time to the second's should be.
-    expects: Standing,
+    /// What the ratio of the first's time to the second's should be, where it is about time.
+    time: Option<Standing>,
+    /// What the first's error should be, where it is about that.
+    quality: Option<Quality>,
     /// Which error goes with it.
     error: Figure,
 }
@@ -28,6 +30,15 @@ enum Figure {
     TimesLarger,
 }
 
+/// What a claim says of the first row's error.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Quality {
+    /// It is larger than the second's.
+    Worse,
+    /// The figure is below half a step of 8 bits: nobody sees it.
+    Unseen,
+}
+
 const CLAIMS: [Claimed; 9] = [
     Claimed {
         id: "phong-costs-more",
@@ -35,7 +46,8 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Lighting every fragment costs more than lighting the vertices",
         group: "technique/shading",
         rows: ["phong", "gouraud"],
-        expects: Standing::Slower,
+        time: Some(Standing::Slower),
+        quality: None,
         error: Figure::TimesLarger,
     },
     Claimed {
@@ -44,7 +56,8 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Shading at each pixel is more accurate than interpolating the vertices' colours",
         group: "technique/shading",
         rows: ["gouraud", "phong"],
-        expects: Standing::Faster,
+        time: None,
+        quality: Some(Quality::Worse),
         error: Figure::Largest,
     },
     Claimed {
@@ -53,7 +66,8 @@ const CLAIMS: [Claimed; 9] = [
         claim: "A viewer infinitely far away saves computing v, with similar results",
         group: "technique/viewer",
         rows: ["nonlocal", "local"],
-        expects: Standing::Faster,
+        time: Some(Standing::Faster),
+        quality: Some(Quality::Unseen),
         error: Figure::Mean,
     },
     Claimed {
@@ -62,7 +76,8 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Blinn's half vector avoids r and its normalisation",
         group: "technique/highlight",
         rows: ["blinn", "phong-normalised"],
-        expects: Standing::Faster,
+        time: Some(Standing::Faster),
+        quality: None,
         error: Figure::Mean,
     },
     Claimed {
@@ -71,7 +86,8 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Blinn's half vector is cheaper than r where r is not normalised again, as the documents' programs have it",
         group: "technique/highlight",
         rows: ["blinn", "phong"],
-        expects: Standing::Faster,
+        time: Some(Standing::Faster),
+        quality: None,
         error: Figure::Mean,
     },
     Claimed {
@@ -80,7 +96,8 @@ const CLAIMS: [Claimed; 9] = [
         claim: "A light's direction that is a unit vector need not be normalised",
         group: "technique/unit-light",
         rows: ["assumed-unit", "normalised"],
-        expects: Standing::Faster,
+        time: Some(Standing::Faster),
+        quality: None,
         error: Figure::Largest,
     },
     Claimed {
@@ -89,7 +106,8 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Difference equations along a span are efficient",
         group: "technique/span-256",
         rows: ["differences", "direct"],
-        expects: Standing::Faster,
+        time: Some(Standing::Faster),
+        quality: None,
         error: Figure::Largest,
     },
     Claimed {
@@ -98,7 +116,8 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Difference equations along a long span are efficient",
         group: "technique/span-4096",
         rows: ["differences", "direct"],
-        expects: Standing::Faster,
+        time: Some(Standing::Faster),
+        quality: None,
         error: Figure::Largest,
     },
     Claimed {
@@ -107,7 +126,8 @@ const CLAIMS: [Claimed; 9] = [
         claim: "N, L and V may be computed at the vertices, interpolated, and normalised at the fragment",
         group: "technique/vectors",
         rows: ["interpolated", "computed"],
-        expects: Standing::Faster,
+        time: None,
+        quality: Some(Quality::Unseen),
         error: Figure::Largest,
     },
 ];
@@ -124,20 +144,35 @@ fn claim(claimed: &Claimed, group: &Group) -> Option<Claim> {
     let [own, other] = [about.random.as_ref()?, against.random.as_ref()?];
     let (error, error_is) = figure(claimed.error, own, other);
     let verdict = super::turns::standing(spread);
-    let holds = (verdict != Standing::Tie).then_some(verdict == claimed.expects);
-    let judgement = match holds {
+    let in_time = claimed.time.map(|expected| (verdict != Standing::Tie).then_some(verdict == expected));
+    let in_quality = claimed.quality.map(|quality| {
+        Some(match quality {
+            Quality::Worse => own.absolute.max.0 > other.absolute.max.0,
+            Quality::Unseen => error < 0.5,
+        })
+    });
+    let said: Vec<Option<bool>> = [in_time, in_quality].into_iter().flatten().collect();
+    // It holds where all of it does, and does not where any of it does not.
+    let holds =
+        if said.contains(&Some(false)) { Some(false) } else { said.iter().all(Option::is_some).then_some(true) };
+    let word = |holds| match holds {
         Some(true) => "holds",
         Some(false) => "does not hold",
         None => "is left open: a tie",
     };
+    let judgements: Vec<String> = [("as to time", in_time), ("as to error", in_quality)]
+        .into_iter()
+        .filter_map(|(what, holds)| Some(format!("{what} it {}", word(holds?))))
+        .collect();
     let sentence = format!(
-        "{}: {} takes {ratio:.2} times as long as {} ({:.2} to {:.2}), and {error_is} is {}; as to time it {judgement}.",
+        "{}: {} takes {ratio:.2} times as long as {} ({:.2} to {:.2}), and {error_is} is {}; {}.",
         claimed.claim,
         about.name,
         against.name,
         spread[0],
         spread[1],
         rounded(error),
+        judgements.join(", "),
     );
     Some(Claim {
         id: claimed.id.into(),

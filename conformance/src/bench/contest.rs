@@ -4,7 +4,7 @@
 use super::Bench;
 use super::document::{Errors, Row};
 use super::errors::Gathered;
-use super::turns::{self, Entry};
+use super::turns::{self, Entry, Laps};
 use crate::arithmetic::{Accept, Profile};
 use crate::evaluate::kernel;
 use crate::judge::{Outcome, judge};
@@ -18,6 +18,9 @@ use std::time::Instant;
 const TIMED_ROWS: usize = 1024;
 /// The most workgroups at once.
 const MOST_GROUPS: u32 = 1 << 14;
+
+/// The least part of a time that is told after reading the inputs is taken off.
+const LEAST_SHARE: f64 = 0.2;
 
 /// Rows of inputs, and the formula that each is of.
 pub(super) struct Sample<'a> {
@@ -160,7 +163,7 @@ impl On {
     /// Whether what it gives is meant to be the formula itself, and must be legal.
     const fn claims_exact(self) -> bool {
         match self {
-            Self::Device(rung) => matches!(rung, Rung::F32 | Rung::Stable | Rung::DoubleFloat | Rung::F64),
+            Self::Device(rung) => rung.is_exact(),
             Self::Processor(_) => true,
         }
     }
@@ -215,16 +218,24 @@ pub(super) fn contest(
         }
     }
     for ((contender, row), compiled) in contenders.iter().zip(&mut rows).zip(&compiled) {
-        if row.unavailable.is_none() {
+        if row.unavailable.is_none() && bench.setting.judges {
             let values = compiled.as_ref().map(|compiled| compiled.values.as_slice());
             judge_row(bench, row, contender, sample, &exact, values);
             row.compile_ms = compiled.as_ref().map(|compiled| compiled.milliseconds);
         }
     }
-    let idle_ns = time_rows(bench, sample, contenders, &compiled, idle.as_ref(), baseline, &mut rows)?;
+    let idle = time_rows(bench, sample, contenders, &compiled, idle.as_ref(), baseline, &mut rows)?;
     let mut work = format!("{} random rows, and {} hard ones and near them", sample.random(), sample.hard());
-    if let Some(idle_ns) = idle_ns {
-        work += &format!("; reading the inputs and the loop take {idle_ns:.2} ns of each time on the device");
+    match idle {
+        None => {}
+        Some((ns, true)) => {
+            work += &format!("; reading the inputs and the loop, {ns:.2} ns on the device, are taken off")
+        }
+        Some((ns, false)) => {
+            work += &format!(
+                "; reading the inputs and the loop, {ns:.2} ns on the device, are nearly all of it: not taken off"
+            );
+        }
     }
     Ok((rows, work))
 }
@@ -257,6 +268,9 @@ fn compile(
         Ok(pipeline) => pipeline,
         Err(reason) => return Ok(Err(reason)),
     };
+    if !bench.setting.judges {
+        return Ok(Ok(Compiled { pipeline, values: vec![], milliseconds: 1e3 * start.elapsed().as_secs_f64() }));
+    }
     let words = pipeline.outputs(gpu, selected)?;
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
     let number = |parts: &[u32]| parts.iter().map(|&bits| f64::from(f32::from_bits(bits))).sum();
@@ -364,7 +378,7 @@ fn time_rows(
     idle: Option<&RepeatPipeline>,
     baseline: &str,
     rows: &mut [Row],
-) -> Result<Option<f64>, Error> {
+) -> Result<Option<(f64, bool)>, Error> {
     let clock = &bench.clock;
     let (mut entries, mut places) = (vec![], vec![]);
     if let (Some(gpu), Some(idle)) = (bench.gpu, idle) {
@@ -381,12 +395,27 @@ fn time_rows(
         }
         places.push(Some(k));
     }
-    let laps = turns::measure(&mut entries, bench.setting.effort)?;
+    let mut laps = turns::measure(&mut entries, bench.setting.effort)?;
     let clocks: Vec<&'static str> = entries.iter().map(Entry::clock).collect();
     drop(entries);
-    let idle_ns = places.first().is_some_and(Option::is_none).then(|| turns::time(clocks[0], &laps[0], None));
+    let mut idle_is = None;
+    if places.first().is_some_and(Option::is_none) {
+        let device: Vec<usize> = (1..laps.len()).filter(|&k| clocks[k] != "processor").collect();
+        let net: Vec<Laps> = device.iter().map(|&k| turns::net(&laps[k], &laps[0])).collect();
+        // A difference of nearly equal times says nothing.
+        let is_told = device.iter().zip(&net).all(|(&k, net)| turns::share(net, &laps[k]) > LEAST_SHARE);
+        let ns = turns::time(clocks[0], &laps[0], None).map(|time| time.ns);
+        idle_is = ns.map(|ns| (ns, is_told));
+        if is_told {
+            for (&k, net) in device.iter().zip(net) {
+                laps[k] = net;
+            }
+        }
+    }
     let place_of = |name: &str| places.iter().position(|place| place.is_some_and(|k| rows[k].name == name));
-    let (base, processor) = (place_of(baseline), place_of(Arithmetic::F32.name()));
+    let of_processor = Arithmetic::F32.name();
+    let processor = place_of(of_processor).or_else(|| place_of(&format!("{baseline} {of_processor}")));
+    let base = place_of(baseline);
     for ((place, own), clock) in places.iter().zip(&laps).zip(&clocks) {
         let Some(k) = *place else { continue };
         // The processor's one core beside all that a device has says more of the machine than of the arithmetic.
@@ -394,10 +423,10 @@ fn time_rows(
         let against = base.filter(|&base| places[base] != Some(k)).map(|base| &laps[base]);
         rows[k].time = turns::time(clock, own, against);
         if rows[k].time.is_none() {
-            rows[k].unavailable = Some("every timestamp was rejected".into());
+            rows[k].unavailable = Some(turns::reason(own).into());
         }
     }
-    Ok(idle_ns.flatten().map(|time| time.ns))
+    Ok(idle_is)
 }
 
 fn device_entry<'a>(gpu: &'a Gpu, clock: &'a Clock, pipeline: &'a RepeatPipeline) -> Entry<'a> {

@@ -70,6 +70,14 @@ pub struct ClockUse {
     pub rejected: u64,
 }
 
+impl ClockUse {
+    /// Whether readings were taken and every one was rejected.
+    #[must_use]
+    pub const fn tells_nothing(&self) -> bool {
+        self.readings > 0 && self.rejected == self.readings
+    }
+}
+
 /// A rung of the ladder on an adapter.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RungUse {
@@ -229,17 +237,21 @@ pub struct FamilyRung {
     pub name: String,
     /// Formulas of the family that were measured at it and are right in value.
     pub formulas: usize,
+    /// Formulas no step of which has such a form, so that f32's figures count.
+    pub as_f32: usize,
     /// Formulas that it is disqualified at.
     pub disqualified: usize,
     /// Formulas that have it not.
     pub unavailable: usize,
     /// The geometric mean of its ratios to f32.
     pub ratio: f64,
+    /// The same of the ends of their spreads.
+    pub spread: [f64; 2],
     /// The geometric mean of its times in nanoseconds.
     pub ns: f64,
-    /// The median of its formulas' largest errors on random inputs, in ULP of binary32.
-    pub ulp_max: Number,
-    /// Each formula's ratio and largest error in ULP.
+    /// The median of its formulas' largest errors on random inputs, absolute.
+    pub error_max: Number,
+    /// Each formula's ratio and largest error.
     pub points: Vec<(String, f64, Number)>,
 }
 

@@ -76,7 +76,7 @@ pub(super) fn groups(catalogue: &[Member]) -> Vec<(String, Vec<&Member>)> {
 /// A formula at every rung.
 pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Result<Group, Error> {
     let sample = Sample::new(members, bench.setting.cases, bench.setting.seed);
-    let mut contenders = on_device(&bench.ladder, None, |rung| rung.name().into());
+    let mut contenders = on_device(bench.ladder, None, |rung| rung.name().into());
     contenders.extend(Arithmetic::ALL.into_iter().map(|arithmetic| Contender {
         name: arithmetic.name().into(),
         what: arithmetic.what().into(),

@@ -1,7 +1,7 @@
 //! Rungs over many groups: the geometric mean of times, the median of largest errors.
 
 use super::document::{Errors, Family, FamilyRung, Group, Row};
-use super::pareto::{self, is_processor};
+use super::pareto::{self, Point, is_processor};
 use crate::report::Number;
 
 /// A rung over many groups.
@@ -11,12 +11,16 @@ pub struct Rung {
     pub name: String,
     /// Groups that it was measured in and is right in value.
     pub groups: usize,
+    /// Groups in which it is f32's own program, no step of which has such a form: f32's figures count there.
+    pub as_f32: usize,
     /// Groups that it is disqualified in.
     pub disqualified: usize,
     /// Groups that have it not.
     pub unavailable: usize,
     /// The geometric mean of its ratios to the baseline.
     pub ratio: f64,
+    /// From where to where: the same of the ends of their spreads.
+    pub spread: [f64; 2],
     /// The geometric mean of its times in nanoseconds.
     pub ns: f64,
     /// The median of its largest errors on random inputs.
@@ -42,37 +46,56 @@ pub fn rungs<'a>(groups: impl Iterator<Item = &'a Group> + Clone, error: impl Fn
 }
 
 fn rung<'a>(name: &str, rows: impl Iterator<Item = (&'a Group, &'a Row)>, error: &impl Fn(&Errors) -> f64) -> Rung {
-    let (mut disqualified, mut unavailable) = (0, 0);
-    let (mut points, mut ns) = (vec![], vec![]);
+    let (mut disqualified, mut unavailable, mut as_f32) = (0, 0, 0);
+    let (mut points, mut figures) = (vec![], vec![]);
     for (group, row) in rows {
-        match row {
+        let mut own = row;
+        if row.unavailable.as_deref().is_some_and(lightmeter_gpu::Rung::is_as_f32) {
+            // Means are of the same groups whatever the rung.
+            let Some(base) = group.rows.iter().find(|base| base.name == group.baseline) else { continue };
+            own = base;
+        }
+        match own {
             Row { unavailable: Some(_), .. } => unavailable += 1,
             Row { disqualified: Some(_), .. } => disqualified += 1,
             Row { time: Some(time), random: Some(errors), .. } => {
-                points.push((group.id.clone(), time.ratio, error(errors)));
-                ns.push(time.ns);
+                if row.name == own.name {
+                    points.push((group.id.clone(), time.ratio, error(errors)));
+                } else {
+                    as_f32 += 1;
+                }
+                figures.push((time.ratio, time.spread, time.ns, error(errors)));
             }
             _ => {}
         }
     }
+    let end = |k: usize| geometric_mean(figures.iter().map(|figure| figure.1[k]));
     Rung {
         name: name.to_owned(),
         groups: points.len(),
+        as_f32,
         disqualified,
         unavailable,
-        ratio: geometric_mean(points.iter().map(|point| point.1)),
-        ns: geometric_mean(ns.into_iter()),
-        error: median(points.iter().map(|point| point.2)),
+        ratio: geometric_mean(figures.iter().map(|figure| figure.0)),
+        spread: [end(0), end(1)],
+        ns: geometric_mean(figures.iter().map(|figure| figure.2)),
+        error: median(figures.iter().map(|figure| figure.3)),
         points,
     }
 }
 
-/// The rungs than which none is both faster and closer, the fastest first.
+/// The rungs than which none is both as fast and closer: see [`pareto::front`].
 #[must_use]
 pub fn front(rungs: &[Rung]) -> Vec<String> {
     let taken = rungs.iter().filter(|rung| rung.groups > 0 && !is_processor(&rung.name));
-    let points: Vec<_> = taken.map(|rung| (rung.name.as_str(), Some(rung.ratio), rung.error)).collect();
-    pareto::front(&points).into_iter().map(str::to_owned).collect()
+    let points = taken.map(|rung| Point {
+        name: rung.name.clone(),
+        time: rung.spread,
+        ratio: rung.ratio,
+        error: rung.error,
+        is_baseline: rung.name == lightmeter_gpu::Rung::F32.name(),
+    });
+    pareto::front(points.collect())
 }
 
 /// A family of formulas as the document has it.
@@ -81,14 +104,16 @@ pub fn family<'a>(id: &str, groups: impl Iterator<Item = &'a Group> + Clone) -> 
     let of = |rung: Rung| FamilyRung {
         name: rung.name,
         formulas: rung.groups,
+        as_f32: rung.as_f32,
         disqualified: rung.disqualified,
         unavailable: rung.unavailable,
         ratio: rung.ratio,
+        spread: rung.spread,
         ns: rung.ns,
-        ulp_max: Number(rung.error),
+        error_max: Number(rung.error),
         points: rung.points.into_iter().map(|(id, ratio, error)| (id, ratio, Number(error))).collect(),
     };
-    let rungs = rungs(groups, |errors| errors.ulp.max.0);
+    let rungs = rungs(groups, |errors| errors.absolute.max.0);
     let front = front(&rungs);
     Family { id: id.to_owned(), rungs: rungs.into_iter().map(of).collect(), front }
 }
@@ -98,11 +123,13 @@ impl From<&FamilyRung> for Rung {
         Self {
             name: rung.name.clone(),
             groups: rung.formulas,
+            as_f32: rung.as_f32,
             disqualified: rung.disqualified,
             unavailable: rung.unavailable,
             ratio: rung.ratio,
+            spread: rung.spread,
             ns: rung.ns,
-            error: rung.ulp_max.0,
+            error: rung.error_max.0,
             points: rung.points.iter().map(|(id, ratio, error)| (id.clone(), *ratio, error.0)).collect(),
         }
     }
@@ -149,8 +176,23 @@ mod tests {
         let [f32, f16] = family.rungs.as_slice() else { panic!("two rungs: {family:?}") };
         assert_eq!((f16.formulas, f16.disqualified, f16.unavailable, f16.points.len()), (2, 1, 1, 2));
         assert!((f16.ratio - 4.0).abs() < 1e-12 && (f16.ns - 4.0).abs() < 1e-12, "{f16:?}");
-        assert_eq!((f16.ulp_max, f32.ulp_max), (Number(500.0), Number(4.0)));
+        let absolute = |ulp: f64| errors(ulp).absolute.max;
+        assert_eq!((f16.error_max, f32.error_max), (absolute(500.0), absolute(4.0)));
         assert_eq!((f32.formulas, family.front.as_slice()), (4, ["f32".to_owned()].as_slice()));
+        // Where no step has such a form, the rung is f32: means are of the same formulas.
+        let reason = "no step of it has a cheap approximation";
+        groups.iter_mut().for_each(|group| group.rows.truncate(1));
+        for (place, group) in groups.iter_mut().enumerate() {
+            let mut cheap = row("f32-cheap", 1.0, 0.5, 100.0);
+            if place > 0 {
+                cheap = Row { unavailable: Some(reason.into()), time: None, random: None, ..cheap };
+            }
+            group.rows.push(cheap);
+        }
+        let own = super::family("fog", groups.iter());
+        let cheap = &own.rungs[1];
+        assert_eq!((cheap.formulas, cheap.as_f32, cheap.unavailable, cheap.points.len()), (1, 3, 0, 1));
+        assert!((cheap.ratio - 0.5_f64.powf(0.25)).abs() < 1e-12 && cheap.error_max == absolute(4.0), "{cheap:?}");
         let again: Vec<Rung> = family.rungs.iter().map(Rung::from).collect();
         assert_eq!(front(&again), family.front);
     }

@@ -15,6 +15,7 @@ pub mod pareto;
 pub mod plot;
 pub mod recommend;
 pub mod scenes;
+mod sittings;
 #[cfg(test)]
 mod synthetic;
 mod techniques;
@@ -55,8 +56,12 @@ pub struct Options {
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
-    /// Turns and their length.
+    /// Sittings: each on devices of its own, with everything compiled anew.
+    pub sittings: usize,
+    /// Turns of a sitting, and their length.
     pub effort: Effort,
+    /// Whether errors are told, too, as in the first sitting.
+    pub judges: bool,
     /// Random cases of a group.
     pub cases: u64,
     /// What they are drawn from.
@@ -69,11 +74,12 @@ impl Setting {
     /// As the options ask.
     #[must_use]
     pub const fn new(quick: bool, seed: u64) -> Self {
-        if quick {
-            Self { effort: Effort { turns: 5, readings: 2, seconds: 5e-4 }, cases: 512, seed, quick }
+        let (effort, cases) = if quick {
+            (Effort { turns: 2, readings: 2, seconds: 5e-4 }, 512)
         } else {
-            Self { effort: Effort { turns: 11, readings: 4, seconds: 1.5e-3 }, cases: 2048, seed, quick }
-        }
+            (Effort { turns: 4, readings: 3, seconds: 1.5e-3 }, 2048)
+        };
+        Self { sittings: 3, effort, judges: true, cases, seed, quick }
     }
 }
 
@@ -84,7 +90,7 @@ struct Bench<'a> {
     shaders: &'a Shaders,
     catalogue: &'a [Member],
     /// The rungs, each with the reason why the adapter has it not.
-    ladder: Vec<(Rung, Option<String>)>,
+    ladder: &'a [(Rung, Option<String>)],
     /// The rules that values are held to, the driver's known deviations granted.
     profile: Profile,
     setting: Setting,
@@ -110,13 +116,11 @@ const QUICK: [&str; 12] = [
 ///
 /// # Errors
 /// Where a shader is invalid or a device fails.
-pub fn bench(subjects: &mut [Subject], options: &Options, progress: &mut impl Progress) -> Result<Document, Error> {
+pub fn bench(subjects: &[Subject], options: &Options, progress: &mut impl Progress) -> Result<Document, Error> {
     let start = Instant::now();
     let setting = Setting::new(options.quick, options.seed);
-    let adapters = subjects
-        .iter_mut()
-        .map(|subject| measured(subject, options, setting, progress))
-        .collect::<Result<_, Error>>()?;
+    let adapters =
+        subjects.iter().map(|subject| measured(subject, options, setting, progress)).collect::<Result<_, Error>>()?;
     Ok(Document {
         schema: SCHEMA.into(),
         command: options.command.clone(),
@@ -130,92 +134,29 @@ pub fn bench(subjects: &mut [Subject], options: &Options, progress: &mut impl Pr
 }
 
 fn measured(
-    subject: &mut Subject,
+    subject: &Subject,
     options: &Options,
     setting: Setting,
     progress: &mut impl Progress,
 ) -> Result<Measured, Error> {
-    let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
-    // What computes and what draws have devices of their own: Mesa 22.3's llvmpipe loses the time of a dispatch once it has drawn.
-    let own = subject.gpu().map(Gpu::sibling).transpose()?;
     let catalogue = catalogue();
-    let bench = Bench {
-        gpu: own.as_ref(),
-        clock: clock(own.as_ref(), options.clock)?,
-        shaders: &options.shaders,
-        catalogue: &catalogue,
-        ladder: ladder_of(subject)?,
-        profile,
-        setting,
-    };
-    let asked = |id: &str| options.filter.selects(id);
-    // What is asked for by name is measured in a quick bench, too.
-    let quick = options.quick && options.filter.is_empty() && options.scenes.is_empty();
-    let all = options.scenes.is_empty() || !options.filter.is_empty();
-    let wanted = |id: &str, is_quick: &dyn Fn() -> bool| all && asked(id) && (!quick || is_quick());
-
-    let formulas: Vec<_> = formulas::groups(&catalogue)
-        .into_iter()
-        .filter(|(id, _)| wanted(id, &|| QUICK.contains(&id.as_str())))
-        .collect();
-    let techniques: Vec<_> = techniques::all().into_iter().filter(|group| wanted(group.id, &|| true)).collect();
-    let stable: Vec<&Member> = catalogue
-        .iter()
-        .filter(|member| member.spec.stable.is_some())
-        .filter(|member| {
-            wanted(&format!("stable/{}", member.spec.id), &|| QUICK_STABLE.contains(&member.spec.id.as_str()))
-        })
-        .collect();
-    let mut drawn = scenes::technique_ids();
-    drawn.retain(|id| wanted(id, &|| true));
-    let mut named = scenes::all();
-    named.retain(|name| wanted(&format!("scene/{name}"), &|| scenes::QUICK.contains(name)));
-    let mut growing = scenes::SCALINGS.to_vec();
-    growing.retain(|name| wanted(&format!("scaling/{name}"), &|| true));
-    let by_cases = wanted("scaling/cases", &|| true);
-
-    let drawing = clock(subject.gpu(), options.clock)?;
-    let on = scenes::On { subject, shaders: &options.shaders, clock: &drawing, profile: options.profile, setting };
-    let on_device = techniques.len() + stable.len() + drawn.len() + named.len() + growing.len() + usize::from(by_cases);
-    let on_device = if bench.gpu.is_some() { on_device + options.scenes.len() } else { 0 };
-    progress.start((formulas.len() + on_device) as u64);
-    let (mut groups, mut scalings): (Vec<Group>, Vec<Scaling>) = (vec![], vec![]);
-    for (id, members) in &formulas {
-        progress.group(id);
-        groups.push(formulas::formula(&bench, id, members)?);
-        progress.advance(1);
-    }
-    if bench.gpu.is_some() {
-        for group in &techniques {
-            progress.group(group.id);
-            groups.push(techniques::techniques(&bench, group)?);
-            progress.advance(1);
-        }
-        groups.extend(scenes::techniques(&on, &drawn, progress)?);
-        for member in stable {
-            progress.group(&member.spec.id);
-            groups.extend(techniques::stable(&bench, member)?);
-            progress.advance(1);
-        }
-        groups.extend(scenes::scenes(&on, &bench.ladder, &named, progress)?);
-        for (name, loaded) in &options.scenes {
-            progress.group(name);
-            let (title, frame) = (loaded.title.clone(), loaded.frame.clone());
-            groups.extend(scenes::scene(&on, &bench.ladder, format!("scene/{name}"), title, frame)?);
-            progress.advance(1);
-        }
-        scalings.extend(scenes::scalings(&on, &growing, progress)?);
-        if by_cases {
-            progress.group("scaling/cases");
-            scalings.extend(growth::cases(&bench)?);
-            progress.advance(1);
+    let asked = Asked::new(options, &catalogue, ladder_of(subject)?);
+    progress.start(setting.sittings as u64 * asked.count(subject));
+    let mut all = vec![];
+    let mut use_wall = false;
+    while all.len() < setting.sittings {
+        let setting = Setting { judges: all.is_empty(), ..setting };
+        let sitting = sitting(subject, options, setting, &asked, use_wall, progress)?;
+        if all.is_empty() && !use_wall && options.clock.is_none() && sitting.clock.tells_nothing() {
+            use_wall = true;
+        } else {
+            all.push(sitting);
         }
     }
+    let Sitting { mut groups, scalings, clock } = sittings::together(all);
     for group in &mut groups {
         group.front = pareto::front_of(group);
     }
-    let (readings, rejected) = bench.clock.readings();
-    let of_drawing = drawing.readings();
     let identity = subject.identity.clone();
     Ok(Measured {
         adapter: identity.name,
@@ -223,13 +164,8 @@ fn measured(
         backend: identity.backend.into(),
         driver: identity.driver,
         is_cpu: subject.gpu().is_none_or(Gpu::is_cpu),
-        clock: ClockUse {
-            kind: bench.clock.kind().name().into(),
-            note: bench.clock.note().map(str::to_owned),
-            readings: readings + of_drawing.0,
-            rejected: rejected + of_drawing.1,
-        },
-        rungs: formulas::rungs(&bench.ladder),
+        clock,
+        rungs: formulas::rungs(&asked.ladder),
         families: families(&groups),
         claims: claims::claims(&groups),
         groups,
@@ -237,12 +173,149 @@ fn measured(
     })
 }
 
+/// What is to be measured.
+struct Asked<'a> {
+    catalogue: &'a [Member],
+    /// The rungs, each with the reason why the adapter has it not.
+    ladder: Vec<(Rung, Option<String>)>,
+    formulas: Vec<(String, Vec<&'a Member>)>,
+    techniques: Vec<techniques::Techniques>,
+    stable: Vec<&'a Member>,
+    drawn: Vec<&'static str>,
+    scenes: Vec<&'static str>,
+    scalings: Vec<&'static str>,
+    by_cases: bool,
+    /// Scenes from files.
+    files: &'a [(String, Loaded)],
+}
+
+impl<'a> Asked<'a> {
+    fn new(options: &'a Options, catalogue: &'a [Member], ladder: Vec<(Rung, Option<String>)>) -> Self {
+        // What is asked for by name is measured in a quick bench, too.
+        let quick = options.quick && options.filter.is_empty() && options.scenes.is_empty();
+        let all = options.scenes.is_empty() || !options.filter.is_empty();
+        let wanted = |id: &str, is_quick: bool| all && options.filter.selects(id) && (!quick || is_quick);
+        let is_stable = |member: &&Member| {
+            let id = &member.spec.id;
+            member.spec.stable.is_some() && wanted(&format!("stable/{id}"), QUICK_STABLE.contains(&id.as_str()))
+        };
+        let mut formulas = formulas::groups(catalogue);
+        formulas.retain(|(id, _)| wanted(id, QUICK.contains(&id.as_str())));
+        let mut drawn = scenes::technique_ids();
+        drawn.retain(|id| wanted(id, true));
+        let mut named = scenes::all();
+        named.retain(|name| wanted(&format!("scene/{name}"), scenes::QUICK.contains(name)));
+        let mut scalings = scenes::SCALINGS.to_vec();
+        scalings.retain(|name| wanted(&format!("scaling/{name}"), true));
+        Self {
+            catalogue,
+            ladder,
+            formulas,
+            techniques: techniques::all().into_iter().filter(|group| wanted(group.id, true)).collect(),
+            stable: catalogue.iter().filter(is_stable).collect(),
+            drawn,
+            scenes: named,
+            scalings,
+            by_cases: wanted("scaling/cases", true),
+            files: &options.scenes,
+        }
+    }
+
+    /// Groups and scalings of a sitting; only formulas are measured without a device.
+    fn count(&self, subject: &Subject) -> u64 {
+        let drawn = self.drawn.len() + self.scenes.len() + self.files.len() + self.scalings.len();
+        let on_device = self.techniques.len() + self.stable.len() + drawn + usize::from(self.by_cases);
+        (self.formulas.len() + if subject.gpu().is_some() { on_device } else { 0 }) as u64
+    }
+}
+
+/// What is measured at one time, on devices of its own.
+struct Sitting {
+    groups: Vec<Group>,
+    scalings: Vec<Scaling>,
+    clock: ClockUse,
+}
+
+fn sitting(
+    subject: &Subject,
+    options: &Options,
+    setting: Setting,
+    asked: &Asked<'_>,
+    use_wall: bool,
+    progress: &mut impl Progress,
+) -> Result<Sitting, Error> {
+    let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
+    // What computes and what draws have devices of their own: Mesa 22.3's llvmpipe loses the time of a dispatch once it has drawn.
+    let [computes, draws] = [(); 2].map(|()| subject.gpu().map(Gpu::sibling).transpose());
+    let (computes, draws) = (computes?, draws?);
+    let bench = Bench {
+        gpu: computes.as_ref(),
+        clock: clock(computes.as_ref(), options.clock, use_wall)?,
+        shaders: &options.shaders,
+        catalogue: asked.catalogue,
+        ladder: &asked.ladder,
+        profile,
+        setting,
+    };
+    let drawing = clock(draws.as_ref(), options.clock, use_wall)?;
+    let on = scenes::On {
+        subject,
+        gpu: draws.as_ref(),
+        shaders: &options.shaders,
+        clock: &drawing,
+        profile: options.profile,
+        setting,
+    };
+    let (mut groups, mut scalings): (Vec<Group>, Vec<Scaling>) = (vec![], vec![]);
+    for (id, members) in &asked.formulas {
+        progress.group(id);
+        groups.push(formulas::formula(&bench, id, members)?);
+        progress.advance(1);
+    }
+    if bench.gpu.is_some() {
+        for group in &asked.techniques {
+            progress.group(group.id);
+            groups.push(techniques::techniques(&bench, group)?);
+            progress.advance(1);
+        }
+        groups.extend(scenes::techniques(&on, &asked.ladder, &asked.drawn, progress)?);
+        for member in &asked.stable {
+            progress.group(&member.spec.id);
+            groups.extend(techniques::stable(&bench, member)?);
+            progress.advance(1);
+        }
+        groups.extend(scenes::scenes(&on, &asked.ladder, &asked.scenes, progress)?);
+        for (name, loaded) in asked.files {
+            progress.group(name);
+            let (title, frame) = (loaded.title.clone(), loaded.frame.clone());
+            groups.extend(scenes::scene(&on, &asked.ladder, format!("scene/{name}"), title, frame)?);
+            progress.advance(1);
+        }
+        scalings.extend(scenes::scalings(&on, &asked.scalings, progress)?);
+        if asked.by_cases {
+            progress.group("scaling/cases");
+            scalings.extend(growth::cases(&bench)?);
+            progress.advance(1);
+        }
+    }
+    let (readings, rejected) = bench.clock.readings();
+    let of_drawing = drawing.readings();
+    let clock = ClockUse {
+        kind: bench.clock.kind().name().into(),
+        note: bench.clock.note().map(str::to_owned),
+        readings: readings + of_drawing.0,
+        rejected: rejected + of_drawing.1,
+    };
+    Ok(Sitting { groups, scalings, clock })
+}
+
 /// Of the stable forms, those of a quick bench.
 const QUICK_STABLE: [&str; 2] = ["vector/normalize-scaled", "lighting/cosine-power-by-chord"];
 
 /// The clock of a device, or the one that is asked for.
-fn clock(gpu: Option<&Gpu>, asked: Option<ClockKind>) -> Result<Clock, Error> {
+fn clock(gpu: Option<&Gpu>, asked: Option<ClockKind>, use_wall: bool) -> Result<Clock, Error> {
     match (gpu, asked) {
+        _ if use_wall => Ok(Clock::wall(Some("every one of its timestamps was one that cannot be true".into()))),
         (None, _) => Ok(Clock::wall(Some("the embedded implementation has no device".into()))),
         (_, Some(ClockKind::Wall)) => Ok(Clock::wall(Some("it was asked for".into()))),
         (Some(gpu), _) => Clock::new(gpu),

@@ -1,7 +1,7 @@
 //! The page on what accuracy costs, and the README's part of it, in Markdown.
 
 use super::document::{Claim, Document, Family, Group, GroupKind, Measured, Row};
-use super::figures::{count, digits, error, holding, spread, standing, time};
+use super::figures::{compilation, count, digits, error, holding, spread, standing, time};
 use super::ladder::{Rung, rungs};
 use super::pareto::is_processor;
 use super::plot::Picture;
@@ -52,7 +52,8 @@ fn made(document: &Document, out: &mut impl Write) -> Result {
         "Version {version}, seed {seed}, {} of the processor, {seconds:.0} s.{quick}\n",
         count(*cores, "core")
     )?;
-    for Measured { adapter, device, backend, driver, is_cpu, clock, .. } in &document.adapters {
+    for measured in &document.adapters {
+        let Measured { adapter, device, backend, driver, is_cpu, clock, .. } = measured;
         let processor = if *is_cpu { "; it computes on the processor, so its times are the processor's" } else { "" };
         let note = clock.note.as_ref().map(|note| format!(" ({})", plain(note))).unwrap_or_default();
         let rejected = match clock.rejected {
@@ -62,7 +63,8 @@ fn made(document: &Document, out: &mut impl Write) -> Result {
         let (kind, readings) = (clock_name(&clock.kind), thousands(clock.readings));
         writeln!(
             out,
-            "* **{adapter}**: {device}, {backend}, {driver}{processor}. Clock: {kind}{note}; {readings} readings, {rejected}."
+            "* **{adapter}**: {device}, {backend}, {driver}{processor}. Clock: {kind}{note}; {readings} readings, {rejected}.{}",
+            compilation(measured).map(|told| format!(" Compilation is in no time: {told}.")).unwrap_or_default()
         )?;
     }
     Ok(())
@@ -77,10 +79,10 @@ fn reading(out: &mut impl Write) -> Result {
     writeln!(out, "\n## How to read\n")?;
     writeln!(
         out,
-        "Rows of a group compute the same and are measured in turns beside the group's baseline. A *time* is the median of the \
-         turns, with reading the inputs, which each group's line of work tells. A *ratio* is the median, turn by turn, of a \
-         row's time over the baseline's, of the processor's rungs over `cpu-f32`; its spread goes from the least to the greatest \
-         of the turns, and where 1 lies within it is a *tie*. Errors are against the f64 reference of what the group is for: in \
+        "Rows of a group compute the same and are measured in turns beside the group's baseline, in three sittings, each on devices of its own with everything \
+         compiled anew. A *time* is the median of the turns; reading the inputs is taken off where the group's line of work says \
+         so. A *ratio* is the median, turn by turn, of a row's time over the baseline's, of the processor's rungs over \
+         `cpu-f32`, and of these the sittings' median; its spread goes from the least to the greatest of all turns, and where 1 lies within it is a *tie*. Errors are against the f64 reference of what the group is for: in \
          ULP of binary32, absolute, or in 1/255 of full scale. *Random* inputs are drawn over a formula's domain; *hard* ones \
          are its named hard cases and what lies within a few ULP of them. ∞ stands where a value was \
          NaN or infinite and the reference is a number.\n"
@@ -150,8 +152,8 @@ fn ladder(measured: &Measured, out: &mut impl Write) -> Result {
     }
     writeln!(
         out,
-        "\nTime over that of f32 (the geometric mean of a family's formulas), then the error in ULP (the median of their largest on \
-         random inputs):\n"
+        "\nTime over that of f32 (the geometric mean of a family's formulas), then the absolute error (the median of their largest on \
+         random inputs). Where no step of a formula has such a form, f32's figures count:\n"
     )?;
     let names = names(measured);
     head("family", &names, out)?;
@@ -159,7 +161,7 @@ fn ladder(measured: &Measured, out: &mut impl Write) -> Result {
         write!(out, "| {id} |")?;
         for name in &names {
             let rung = rungs.iter().find(|rung| rung.name == *name && rung.formulas > 0);
-            let cell = rung.map(|rung| format!("{} · {}", digits(rung.ratio), error(rung.ulp_max.0)));
+            let cell = rung.map(|rung| format!("{} · {}", digits(rung.ratio), error(rung.error_max.0)));
             write!(out, " {} |", marked(cell, front.iter().any(|one| one == name)))?;
         }
         writeln!(out)?;
@@ -284,19 +286,21 @@ fn scenes(measured: &Measured, out: &mut impl Write) -> Result {
         let baseline = group.rows.iter().find(|row| row.name == group.baseline).and_then(|row| row.time.as_ref());
         let baseline = baseline.map_or_else(|| "—".into(), |taken| time(taken.ns));
         write!(out, "| {} | {baseline} |", group.id.trim_start_matches("scene/"))?;
-        cells(group, &names, |row| row.random.as_ref().map(|of| of.steps.max.0), out)?;
+        cells(group, &names, |row| [row.random.as_ref().map(|of| of.steps.max.0), None], out)?;
     }
     Ok(())
 }
 
-/// A cell for each row by name: its ratio and its largest error.
-fn cells(group: &Group, names: &[&str], largest: impl Fn(&Row) -> Option<f64>, out: &mut impl Write) -> Result {
+/// A cell for each row by name: its ratio, and its largest errors on random and on hard inputs.
+fn cells(group: &Group, names: &[&str], largest: impl Fn(&Row) -> [Option<f64>; 2], out: &mut impl Write) -> Result {
     for name in names {
         let row = group.rows.iter().find(|row| row.name == *name && row.unavailable.is_none());
         let figures = row.map(|row| {
             let ratio = row.time.as_ref().map_or_else(|| "—".into(), |time| digits(time.ratio));
             let wrong = if row.disqualified.is_some() { "✗ " } else { "" };
-            format!("{wrong}{ratio} · {}", largest(row).map_or_else(|| "—".into(), error))
+            let [random, hard] = largest(row);
+            let hard = hard.map(|hard| format!(" · {}", error(hard))).unwrap_or_default();
+            format!("{wrong}{ratio} · {}{hard}", random.map_or_else(|| "—".into(), error))
         });
         write!(out, " {} |", marked(figures, group.front.iter().any(|one| one == name)))?;
     }
@@ -367,12 +371,15 @@ fn formulas(measured: &Measured, out: &mut impl Write) -> Result {
     }
     let names = names(measured);
     writeln!(out, "\n### Every formula\n")?;
-    writeln!(out, "Time over that of f32, then the largest error on random inputs in ULP.\n")?;
+    writeln!(
+        out,
+        "Time over that of f32, then the largest error in ULP on random inputs, and on hard cases and near them.\n"
+    )?;
     head("formula | time of f32", &names, out)?;
     for group in formulas {
         let baseline = group.rows.iter().find(|row| row.name == group.baseline).and_then(|row| row.time.as_ref());
         write!(out, "| `{}` | {} |", group.id, baseline.map_or_else(|| "—".into(), |taken| time(taken.ns)))?;
-        cells(group, &names, |row| row.random.as_ref().map(|of| of.ulp.max.0), out)?;
+        cells(group, &names, |row| [&row.random, &row.hard].map(|of| of.as_ref().map(|of| of.ulp.max.0)), out)?;
     }
     Ok(())
 }
@@ -386,15 +393,16 @@ const SHOWN: [&str; 2] = ["lighting/blinn", "fog/exp"];
 /// Where the writer fails.
 pub fn readme(document: &Document, out: &mut impl Write) -> Result {
     for measured in &document.adapters {
-        let formulas = measured.groups.iter().filter(|group| group.kind == GroupKind::Formula);
-        let all = rungs(formulas.clone(), |errors| errors.ulp.max.0);
+        let is_in_shaders = |group: &&Group| group.kind == GroupKind::Formula && !is_processor(&group.baseline);
+        let formulas = measured.groups.iter().filter(is_in_shaders);
+        let all = rungs(formulas.clone(), |errors| errors.absolute.max.0);
         let shown: Vec<&Group> =
             SHOWN.into_iter().filter_map(|id| formulas.clone().find(|group| group.id == id)).collect();
         let Measured { adapter, device, clock, .. } = measured;
         let count = count(formulas.count(), "formula");
         writeln!(out, "{adapter} ({device}), {count}, timed by {}:\n", clock_name(&clock.kind))?;
-        write!(out, "| rung | time over f32 | ns | error, ULP |")?;
-        shown.iter().try_for_each(|group| write!(out, " `{0}`, ns | ULP |", group.id))?;
+        write!(out, "| rung | time over f32 | ns | error |")?;
+        shown.iter().try_for_each(|group| write!(out, " `{0}`, ns | error |", group.id))?;
         writeln!(out, "\n|---|--:|--:|--:|{}", "--:|--:|".repeat(shown.len()))?;
         let front = super::ladder::front(&all);
         for name in names(measured) {
@@ -406,7 +414,7 @@ pub fn readme(document: &Document, out: &mut impl Write) -> Result {
             for group in &shown {
                 let row = group.rows.iter().find(|row| row.name == rung.name);
                 let ns = row.and_then(|row| row.time.as_ref()).map_or_else(|| "—".into(), |time| digits(time.ns));
-                let errs = row.and_then(|row| row.random.as_ref()).map(|errors| error(errors.ulp.max.0));
+                let errs = row.and_then(|row| row.random.as_ref()).map(|errors| error(errors.absolute.max.0));
                 write!(out, " {ns} | {} |", errs.unwrap_or_else(|| "—".into()))?;
             }
             writeln!(out)?;
@@ -561,6 +569,6 @@ mod tests {
             }));
         }
         assert!(text.contains("| f16 | — | — | — | — | — | — | — |"), "{text}");
-        assert!(text.contains("`lighting/blinn`, ns | ULP |"));
+        assert!(text.contains("`lighting/blinn`, ns | error |"));
     }
 }

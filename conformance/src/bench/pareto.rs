@@ -1,71 +1,73 @@
 //! The Pareto front: what nothing else is both faster and closer than.
 //!
-//! A point is on it where no other is at most as slow *and* at most as far off, and one of these strictly. Of points that are
-//! equal the first is. What has no time or no finite error is never on it; nor is a row that is unavailable or wrong in value, nor
+//! A point is on it where no other of it is at most as slow *and* at most as far off, and one of these strictly. What has no time or no finite error is never on it; nor is a row that is unavailable or wrong in value, nor
 //! a rung on the processor, which no shader can take.
 
-use super::document::{Errors, Group, GroupKind, Row};
-use std::cmp::Ordering;
+use super::document::{Group, Row};
 
-/// The names of the points `(name, time, error)` on the front, the fastest first.
-#[must_use]
-pub fn front<'a>(points: &[(&'a str, Option<f64>, f64)]) -> Vec<&'a str> {
-    let finite = |&(name, time, error): &(&'a str, Option<f64>, f64)| {
-        let time = time.filter(|time| time.is_finite())?;
-        // A sum with 0 is never −0, which the total order has before 0.
-        error.is_finite().then_some((name, time + 0.0, error + 0.0))
-    };
-    let mut points: Vec<_> = points.iter().filter_map(finite).collect();
-    points.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2)));
-    let mut least = f64::INFINITY;
-    points.retain(|&(_, _, error)| {
-        let is_closer = error < least;
-        least = least.min(error);
-        is_closer
-    });
-    points.into_iter().map(|(name, ..)| name).collect()
+/// A row, or a rung over many.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Its name.
+    pub name: String,
+    /// Its time, from the least to the greatest that it may be.
+    pub time: [f64; 2],
+    /// What it is told as, between these.
+    pub ratio: f64,
+    /// Its error.
+    pub error: f64,
+    /// Whether it is what the others are measured against.
+    pub is_baseline: bool,
 }
 
-/// The front of a group's rows: by their time and their largest error on random inputs, which is in ULP of a formula and absolute
-/// of techniques and scenes. Times whose ratios' spreads overlap are equal, so that a second run finds the same front; of rows
-/// that are equal in both the baseline is on it, or the first.
+impl Point {
+    /// Whether its time is that of another, as far as is known.
+    fn ties(&self, other: &Self) -> bool {
+        self.time[0] <= other.time[1] && other.time[0] <= self.time[1]
+    }
+}
+
+/// The names of the points on the front, the fastest first. Times whose spreads overlap are equal, so that a second run finds the
+/// same front; of points that are equal in both the baseline is on it, or the fastest. That equality is not transitive: the front
+/// is built from its closest point on, and a point is left out only for one that stays.
+#[must_use]
+pub fn front(mut points: Vec<Point>) -> Vec<String> {
+    let is_known = |point: &Point| point.time.iter().all(|time| time.is_finite()) && point.error.is_finite();
+    points.retain(is_known);
+    // A sum with 0 is never −0, which the total order has before 0.
+    points
+        .sort_by(|a, b| (a.error + 0.0).total_cmp(&(b.error + 0.0)).then((a.ratio + 0.0).total_cmp(&(b.ratio + 0.0))));
+    let mut kept: Vec<Point> = vec![];
+    for point in points {
+        let same = |other: &&mut Point| other.error.total_cmp(&point.error).is_eq() && other.ties(&point);
+        if let Some(same) = kept.iter_mut().find(same) {
+            if point.is_baseline {
+                *same = point;
+            }
+        } else if !kept.iter().any(|closer| closer.time[0] <= point.time[1]) {
+            kept.push(point);
+        }
+    }
+    kept.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    kept.into_iter().map(|point| point.name).collect()
+}
+
+/// The front of a group's rows: by their time and their largest absolute error on random inputs.
 #[must_use]
 pub fn front_of(group: &Group) -> Vec<String> {
-    let point = |(place, row): (usize, &'_ Row)| {
-        let error = largest(group.kind, row.random.as_ref()?);
-        let (time, is_other) = (row.time.clone()?, row.name != group.baseline);
-        (refusal(row).is_none() && error.is_finite()).then_some((row.name.clone(), time, error, (is_other, place)))
+    let point = |row: &Row| {
+        let (error, time) = (row.random.as_ref()?.absolute.max.0, row.time.as_ref()?);
+        let (name, is_baseline) = (row.name.clone(), row.name == group.baseline);
+        let point = Point { name, time: time.spread, ratio: time.ratio, error, is_baseline };
+        refusal(row).is_none().then_some(point)
     };
-    let mut points: Vec<_> = group.rows.iter().enumerate().filter_map(point).collect();
-    let all = points.clone();
-    points.retain(|(_, time, error, order)| {
-        !all.iter().any(|(_, other, closer, before)| {
-            let (is_slower, is_faster) = (other.spread[0] > time.spread[1], other.spread[1] < time.spread[0]);
-            let wins = match closer.total_cmp(error) {
-                Ordering::Less => true,
-                Ordering::Equal => is_faster || before < order,
-                Ordering::Greater => false,
-            };
-            !is_slower && wins
-        })
-    });
-    points.sort_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio));
-    points.into_iter().map(|(name, ..)| name).collect()
-}
-
-/// The largest error in the unit that a group of that kind is told by.
-#[must_use]
-pub const fn largest(kind: GroupKind, errors: &Errors) -> f64 {
-    match kind {
-        GroupKind::Formula => errors.ulp.max.0,
-        GroupKind::Technique | GroupKind::Scene => errors.absolute.max.0,
-    }
+    front(group.rows.iter().filter_map(point).collect())
 }
 
 /// Whether a rung is one on the processor: `cpu-f64` and its like, which no shader can take.
 #[must_use]
 pub fn is_processor(name: &str) -> bool {
-    name.starts_with("cpu-")
+    name.rsplit(' ').next().is_some_and(|rung| rung.starts_with("cpu-"))
 }
 
 /// Why a row is on no front and never recommended, if so.
@@ -80,22 +82,26 @@ mod tests {
     use super::super::synthetic::{Draw, document};
     use super::*;
 
-    /// By the definition, pair by pair.
-    fn by_definition<'a>(points: &[(&'a str, Option<f64>, f64)]) -> Vec<&'a str> {
-        let known: Vec<_> = (points.iter())
-            .filter_map(|&(name, time, error)| Some((name, time?, error)))
-            .filter(|(_, time, error)| time.is_finite() && error.is_finite())
-            .collect();
-        let mut kept: Vec<_> = vec![];
-        for (place, &(name, time, error)) in known.iter().enumerate() {
-            let is_beaten = known.iter().any(|&(_, t, e)| t <= time && e <= error && (t < time || e < error));
-            let is_repeated = known[..place].iter().any(|&(_, t, e)| (t + 0.0, e + 0.0) == (time + 0.0, error + 0.0));
+    fn point(name: &str, time: [f64; 2], error: f64) -> Point {
+        Point { name: name.into(), time, ratio: 0.5 * (time[0] + time[1]), error, is_baseline: name == "base" }
+    }
+
+    /// By the definition, pair by pair, where no time has a spread.
+    fn by_definition(points: &[Point]) -> Vec<String> {
+        let known = || points.iter().filter(|point| point.time[0].is_finite() && point.error.is_finite());
+        let mut kept: Vec<&Point> = vec![];
+        for (place, own) in known().enumerate() {
+            let is_beaten = known().any(|other| {
+                let (time, error) = ((other.ratio, own.ratio), (other.error, own.error));
+                time.0 <= time.1 && error.0 <= error.1 && (time.0 < time.1 || error.0 < error.1)
+            });
+            let is_repeated = known().take(place).any(|other| (other.ratio, other.error) == (own.ratio, own.error));
             if !is_beaten && !is_repeated {
-                kept.push((name, time));
+                kept.push(own);
             }
         }
-        kept.sort_by(|a, b| a.1.partial_cmp(&b.1).expect("times are finite"));
-        kept.into_iter().map(|(name, _)| name).collect()
+        kept.sort_by(|a, b| a.ratio.partial_cmp(&b.ratio).expect("times are finite"));
+        kept.into_iter().map(|point| point.name.clone()).collect()
     }
 
     #[test]
@@ -108,17 +114,12 @@ mod tests {
             let value = |draw: &mut Draw| match draw.below(9) {
                 0 => f64::NAN,
                 1 => f64::INFINITY,
-                2 => -0.0,
-                k => f64::from(k - 3),
+                k => f64::from(k - 2),
             };
             let count = draw.below(13) as usize;
-            let points: Vec<_> = (0..count)
-                .map(|place| {
-                    let time = if draw.below(8) == 0 { None } else { Some(value(&mut draw)) };
-                    (NAMES[place], time, value(&mut draw))
-                })
-                .collect();
-            let found = front(&points);
+            let points: Vec<_> =
+                NAMES[..count].iter().map(|name| point(name, [value(&mut draw); 2], value(&mut draw))).collect();
+            let found = front(points.clone());
             assert_eq!(found, by_definition(&points), "{points:?}");
             sizes[found.len()] += 1;
         }
@@ -126,21 +127,27 @@ mod tests {
     }
 
     /// What a row pins, points, and their front.
-    type Figures<'a> = (&'a str, &'a [(&'a str, Option<f64>, f64)], &'a [&'a str]);
+    type Figures<'a> = (&'a str, &'a [(&'a str, [f64; 2], f64)], &'a [&'a str]);
 
     #[test]
     fn figures_of_a_front() {
         let rows: [Figures; 8] = [
-            ("a trade", &[("slow", Some(2.0), 1.0), ("fast", Some(1.0), 2.0)], &["fast", "slow"]),
-            ("dominated", &[("worse", Some(2.0), 2.0), ("better", Some(1.0), 1.0)], &["better"]),
-            ("equal: the first", &[("a", Some(1.0), 1.0), ("b", Some(1.0), 1.0)], &["a"]),
-            ("as fast, farther off", &[("a", Some(1.0), 2.0), ("b", Some(1.0), 1.0)], &["b"]),
-            ("as close, slower", &[("a", Some(2.0), 0.0), ("b", Some(1.0), 0.0)], &["b"]),
-            ("either zero", &[("a", Some(0.0), 0.0), ("b", Some(-0.0), -0.0)], &["a"]),
-            ("no number", &[("a", Some(0.5), f64::INFINITY), ("b", Some(0.5), f64::NAN), ("c", None, 0.0)], &[]),
-            ("a time below zero is a time", &[("a", Some(-0.1), 3.0), ("b", Some(1.0), 2.0)], &["a", "b"]),
+            ("a trade", &[("slow", [2.0; 2], 1.0), ("fast", [1.0; 2], 2.0)], &["fast", "slow"]),
+            ("dominated", &[("worse", [2.0; 2], 2.0), ("better", [1.0; 2], 1.0)], &["better"]),
+            ("equal: the baseline", &[("a", [1.0; 2], 1.0), ("base", [1.0; 2], 1.0)], &["base"]),
+            ("a tie, farther off", &[("a", [0.8, 1.1], 2.0), ("b", [1.0, 1.2], 1.0)], &["b"]),
+            ("as close, slower", &[("a", [2.0; 2], 0.0), ("b", [1.0; 2], -0.0)], &["b"]),
+            ("no number", &[("a", [0.5; 2], f64::INFINITY), ("b", [0.5; 2], f64::NAN), ("c", [f64::NAN; 2], 0.0)], &[]),
+            // Each ties with the next, and the first and the last differ.
+            (
+                "what is left out leaves nothing out",
+                &[("a", [0.3, 0.7], 9.0), ("b", [0.6, 1.4], 3.0), ("c", [1.3, 1.8], 1.0)],
+                &["a", "c"],
+            ),
+            ("a baseline that is slower", &[("base", [1.0; 2], 1.0), ("b", [0.5, 0.9], 1.0)], &["b"]),
         ];
         for (pins, points, expected) in rows {
+            let points = points.iter().map(|&(name, time, error)| point(name, time, error)).collect();
             assert_eq!(front(points), expected, "{pins}");
         }
     }

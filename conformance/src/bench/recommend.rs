@@ -166,6 +166,8 @@ pub struct Candidate {
     pub ns: f64,
     /// Over the baseline.
     pub ratio: f64,
+    /// From where to where that goes.
+    pub spread: [f64; 2],
     /// The largest error on those inputs, in the limit's unit.
     pub error: Number,
 }
@@ -185,8 +187,11 @@ fn advice(adapter: &str, group: &Group, limit: Limit, inputs: Inputs) -> Advice 
     let has_hard = group.rows.iter().any(|row| row.hard.is_some());
     let inputs = if inputs == Inputs::All && !has_hard { Inputs::Random } else { inputs };
     let candidates: Vec<Candidate> = group.rows.iter().filter_map(|row| candidate(row, limit, inputs)).collect();
-    let within = candidates.iter().filter(|one| one.error.0 <= limit.number());
-    let chosen = within.min_by(|a, b| a.ns.total_cmp(&b.ns)).cloned();
+    let within = || candidates.iter().filter(|one| one.error.0 <= limit.number());
+    // Of what is as fast as far as is known, the closest.
+    let fastest = within().min_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    let ties = within().filter(|one| fastest.is_some_and(|fastest| one.spread[0] <= fastest.spread[1]));
+    let chosen = ties.min_by(|a, b| a.error.0.total_cmp(&b.error.0).then(a.ratio.total_cmp(&b.ratio))).cloned();
     // A NaN is as far off as can be.
     let distance = |one: &Candidate| if one.error.0.is_nan() { f64::INFINITY } else { one.error.0 };
     let closest = candidates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.ns.total_cmp(&b.ns)));
@@ -215,7 +220,7 @@ fn candidate(row: &Row, limit: Limit, inputs: Inputs) -> Option<Candidate> {
     };
     let time = row.time.as_ref().filter(|time| time.ns.is_finite())?;
     let (row, what) = (row.name.clone(), row.what.clone());
-    Some(Candidate { row, what, ns: time.ns, ratio: time.ratio, error: Number(error) })
+    Some(Candidate { row, what, ns: time.ns, ratio: time.ratio, spread: time.spread, error: Number(error) })
 }
 
 /// Writes it for people.
@@ -304,7 +309,7 @@ mod tests {
             ("stable", 3.0, 1.0, Some(2.0)),
         ];
         let plain = [("coarse", 1.0, 50.0, None), ("plain", 2.0, 3.0, None)];
-        let rows: [Choice; 9] = [
+        let rows: [Choice; 10] = [
             ("random alone", &ladder, Limit::Ulp(4.0), Inputs::Random, Some("plain"), None),
             ("the limit itself is within", &ladder, Limit::Ulp(3.0), Inputs::Random, Some("plain"), None),
             ("both must hold", &ladder, Limit::Ulp(4.0), Inputs::All, Some("stable"), None),
@@ -313,6 +318,14 @@ mod tests {
             ("the closest miss", &ladder, Limit::Ulp(0.5), Inputs::Random, None, Some("stable")),
             ("no hard cases: random alone", &plain, Limit::Ulp(4.0), Inputs::All, Some("plain"), None),
             ("no hard cases asked for", &plain, Limit::Ulp(4.0), Inputs::Hard, None, None),
+            (
+                "among ties the closest",
+                &[("fast", 1.0, 9.0, None), ("tie", 1.01, 2.0, None)],
+                Limit::Ulp(10.0),
+                Inputs::All,
+                Some("tie"),
+                None,
+            ),
             ("another unit", &ladder, Limit::Steps(1e6), Inputs::Random, Some("coarse"), None),
         ];
         for (pins, rows, limit, inputs, chosen, closest) in rows {

@@ -39,7 +39,7 @@ const SIZE: u32 = 128;
 /// The same of a quick bench.
 const SIZE_QUICK: u32 = 64;
 /// Turns of the processor's rows, which are slow, at most.
-const TURNS: usize = 5;
+const TURNS: usize = 2;
 
 /// The scenes of a quick bench: lit at vertices and at fragments, in fog, by a spotlight, blended.
 pub const QUICK: [&str; 5] = ["fog-exp2-opengl", "gouraud", "phong-blinn", "spotlight", "translucent-square"];
@@ -52,8 +52,10 @@ pub fn all() -> Vec<&'static str> {
 
 /// What is drawn on, by what rules, and how much.
 pub struct On<'a> {
-    /// Its device; nothing is measured of the embedded implementation, which has none.
+    /// The adapter; nothing is measured of the embedded implementation, which has no device.
     pub subject: &'a Subject,
+    /// A device of the adapter.
+    pub gpu: Option<&'a Gpu>,
     /// The shaders.
     pub shaders: &'a Shaders,
     /// How the device's time is told.
@@ -111,7 +113,7 @@ pub fn scene(
 ) -> Result<Option<Group>, Error> {
     let Some(drawer) = Drawer::new(on) else { return Ok(None) };
     let frame = widened(drawer.gpu, frame);
-    let standard = Standard::new(frame, &drawer.profile);
+    let standard = drawer.standard(frame);
     let mut plans = vec![];
     for (rung, unavailable) in ladder {
         plans.push(Plan {
@@ -119,8 +121,8 @@ pub fn scene(
             what: what(*rung).into(),
             frame: &standard.frame,
             recipe: Recipe { rung: *rung, ..Recipe::of(Shader::Composed) },
-            claims_exact: matches!(rung, Rung::F32 | Rung::Stable | Rung::DoubleFloat | Rung::F64),
-            own: matches!(rung, Rung::F32 | Rung::Stable | Rung::DoubleFloat | Rung::F64).then_some(&standard),
+            claims_exact: rung.is_exact(),
+            own: rung.is_exact().then_some(&standard),
             unavailable: unavailable.clone(),
         });
     }
@@ -195,11 +197,12 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
     let laps = turns::measure(&mut entries, Effort { turns: effort.turns.min(TURNS), ..effort })?;
     let rows = kinds.iter().enumerate().map(|(k, (name, what, _))| {
         let image = match *name {
+            _ if !drawer.judges => None,
             "cpu-f32" => Some(Stored::unrounded(&render::<f32>(frame, None, None), frame.target.format)),
             "cpu-f64" => Some(standard.reference.clone()),
             _ => None,
         };
-        let reach = image.is_none().then(|| standard.farthest());
+        let reach = (image.is_none() && drawer.judges).then(|| standard.farthest());
         let mut time = turns::time("processor", &laps[k], (k > 0).then(|| &laps[0]));
         if let Some(time) = time.as_mut().filter(|_| share < 1.0) {
             time.note = Some("of a smaller frame, and as many times that as there are more pixels".into());
@@ -207,7 +210,7 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
         Row {
             name: (*name).into(),
             what: (*what).into(),
-            claims_exact: image.is_some(),
+            claims_exact: *name != "cpu-accept",
             unavailable: None,
             disqualified: image.as_ref().and_then(|image| drawer.outside(image, standard)),
             random: image.as_ref().or(reach.as_ref()).and_then(|image| drawing::errors(image, standard, &[standard])),
@@ -235,7 +238,8 @@ mod tests {
         let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
         let clock = Clock::wall(None);
         let setting = Setting::new(true, 1);
-        let on = On { subject: &subject, shaders: &shaders, clock: &clock, profile: &WGSL, setting };
+        let on =
+            On { subject: &subject, gpu: subject.gpu(), shaders: &shaders, clock: &clock, profile: &WGSL, setting };
         let ladder = [(Rung::F32, None), (Rung::F64, Some("a reason".to_owned()))];
         let made = scenes(&on, &ladder, &["gouraud"], &mut Silent).unwrap_or_else(|error| panic!("{error}"));
         let [group] = made.as_slice() else { panic!("{} groups", made.len()) };

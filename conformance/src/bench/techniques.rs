@@ -2,7 +2,7 @@
 //! is in the catalogue: `run` does not judge them.
 
 use super::Bench;
-use super::contest::{Contender, On, Sample, contest};
+use super::contest::{Arithmetic, Contender, On, Sample, contest};
 use super::document::{Group, GroupKind};
 use super::formulas::on_device;
 use crate::cases::formula::formula;
@@ -27,8 +27,6 @@ pub(super) struct Techniques {
     title: &'static str,
     ideal: &'static str,
     baseline: &'static str,
-    /// Whether all rungs are measured, or f32 alone.
-    all_rungs: bool,
     techniques: Vec<Technique>,
 }
 
@@ -258,7 +256,6 @@ pub(super) fn all() -> Vec<Techniques> {
         title: "a span of pixels, each computed against forward differences; a time is of a whole span",
         ideal: "the last pixel's value in f64",
         baseline: "direct",
-        all_rungs: false,
         techniques: vec![direct, by],
     };
     vec![
@@ -267,7 +264,6 @@ pub(super) fn all() -> Vec<Techniques> {
             title: "a local viewer, v = ⟨−p⟩, against one infinitely far away, v = (0, 0, 1)",
             ideal: "a local viewer, in f64",
             baseline: "local",
-            all_rungs: true,
             techniques: vec![
                 technique("local", "v computed for each point", Local),
                 technique("nonlocal", "v = (0, 0, 1)", NonLocal),
@@ -278,7 +274,6 @@ pub(super) fn all() -> Vec<Techniques> {
             title: "Phong's highlight by the mirrored light against Blinn's by the half vector",
             ideal: "Phong's, in f64",
             baseline: "phong",
-            all_rungs: true,
             techniques: vec![
                 technique("phong-normalised", "r·v, r normalised", PhongNormalised),
                 technique("phong", "r·v, r as it is reflected: of length 1 where n and l are", Phong),
@@ -291,7 +286,6 @@ pub(super) fn all() -> Vec<Techniques> {
             title: "a light's direction normalised against taken as a unit vector",
             ideal: "normalised, in f64",
             baseline: "normalised",
-            all_rungs: true,
             techniques: vec![
                 technique("normalised", "l = ⟨−i⟩", Normalised),
                 technique("assumed-unit", "l = −i", AssumedUnit),
@@ -302,7 +296,6 @@ pub(super) fn all() -> Vec<Techniques> {
             title: "a highlight's power by pow, by the chord, and Schlick's approximation",
             ideal: "the power of the angle between the two, by the chord in f64",
             baseline: "pow",
-            all_rungs: true,
             techniques: vec![
                 technique("chord", "exp(S·log1p(−½|a − b|²)), the stable form", PowerByChord),
                 technique("pow", "pow of the dot product", Power),
@@ -314,7 +307,6 @@ pub(super) fn all() -> Vec<Techniques> {
             title: "fog by the distance from the eye against the depth before it",
             ideal: "the distance, in f64",
             baseline: "radial",
-            all_rungs: true,
             techniques: vec![technique("radial", "|p|", Radial), technique("planar", "|z|", Planar)],
         },
         spans("technique/span-16", technique("direct", DIRECT, Span16), technique("differences", DIFFERENCES, By16)),
@@ -342,20 +334,7 @@ pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<Group,
     let sample = Sample::new(&[ideal], bench.setting.cases, bench.setting.seed);
     let mut contenders = vec![];
     for (k, technique) in group.techniques.iter().enumerate() {
-        let name = |rung: Rung| match rung {
-            Rung::F32 => technique.name.to_owned(),
-            _ => format!("{} {}", technique.name, rung.name()),
-        };
-        let formula = (k > 0).then_some(&technique.member);
-        let at_rungs = on_device(&bench.ladder, formula, name).into_iter();
-        let wanted = at_rungs.filter(|contender| group.all_rungs || contender.on == On::Device(Rung::F32));
-        contenders.extend(wanted.map(|contender| Contender {
-            what: match contender.on {
-                On::Device(Rung::F32) => technique.what.into(),
-                _ => format!("{}; {}", technique.what, contender.what),
-            },
-            ..contender
-        }));
+        contenders.extend(at_every_rung(bench, technique.name, technique.what, (k > 0).then_some(&technique.member)));
     }
     let (rows, work) = contest(bench, &sample, &contenders, group.baseline)?;
     Ok(Group {
@@ -372,6 +351,34 @@ pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<Group,
     })
 }
 
+/// A technique at each rung of the ladder and in the processor's arithmetics; at f32 it goes by its name alone.
+fn at_every_rung<'a>(
+    bench: &Bench<'_>,
+    technique: &str,
+    what: &str,
+    formula: Option<&'a Member>,
+) -> Vec<Contender<'a>> {
+    let name = |rung: Rung| match rung {
+        Rung::F32 => technique.to_owned(),
+        _ => format!("{technique} {}", rung.name()),
+    };
+    let device = on_device(bench.ladder, formula, name).into_iter().map(|contender| Contender {
+        what: match contender.on {
+            On::Device(Rung::F32) => what.into(),
+            _ => format!("{what}; {}", contender.what),
+        },
+        ..contender
+    });
+    let processor = Arithmetic::ALL.into_iter().map(|arithmetic| Contender {
+        name: format!("{technique} {}", arithmetic.name()),
+        what: format!("{what}; {}", arithmetic.what()),
+        formula,
+        on: On::Processor(arithmetic),
+        unavailable: None,
+    });
+    device.chain(processor).collect()
+}
+
 /// The published and the stable form of a formula that has both, at its hard cases.
 pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<Group>, Error> {
     let mut naive: Vec<&Member> = vec![];
@@ -381,20 +388,10 @@ pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<Group>
     }
     let Some(first) = naive.first() else { return Ok(None) };
     let sample = Sample::new(&[member], bench.setting.cases, bench.setting.seed);
-    let mut contenders = vec![Contender {
-        name: short(member),
-        what: member.spec.text.into(),
-        formula: None,
-        on: On::Device(Rung::F32),
-        unavailable: None,
-    }];
-    contenders.extend(naive.iter().map(|naive| Contender {
-        name: short(naive),
-        what: naive.spec.text.into(),
-        formula: Some(naive),
-        on: On::Device(Rung::F32),
-        unavailable: None,
-    }));
+    let mut contenders = at_every_rung(bench, &short(member), member.spec.text, None);
+    for naive in &naive {
+        contenders.extend(at_every_rung(bench, &short(naive), naive.spec.text, Some(naive)));
+    }
     let (rows, work) = contest(bench, &sample, &contenders, &short(first))?;
     Ok(Some(Group {
         id: format!("stable/{}", member.spec.id),

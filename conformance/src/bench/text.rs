@@ -1,7 +1,7 @@
 //! A bench for people to read on a terminal, 120 columns wide.
 
 use super::document::{Document, Family, Group, GroupKind, Measured, Row, Scaling};
-use super::figures::{count, digits, error, holding, spread, standing, time};
+use super::figures::{compilation, count, digits, error, spread, standing, time};
 use super::ladder::{Rung, rungs};
 use crate::report::text::thousands;
 use std::fmt::{Result, Write};
@@ -24,7 +24,8 @@ pub fn write(document: &Document, details: bool, out: &mut impl Write) -> Result
         adapter(measured, out)?;
         claims(measured, out)?;
         families(measured, out)?;
-        if details {
+        let has_families = !measured.families.is_empty();
+        if details || !has_families {
             let formulas = measured.groups.iter().filter(|group| group.kind == GroupKind::Formula);
             formulas.into_iter().try_for_each(|group| block(group, out))?;
         }
@@ -63,6 +64,9 @@ fn adapter(measured: &Measured, out: &mut impl Write) -> Result {
     };
     let clock = format!("{}{note}; {} readings, {rejected}", clock.kind, thousands(clock.readings));
     wrapped("  clock        ", &" ".repeat(15), &clock, out)?;
+    if let Some(told) = compilation(measured) {
+        wrapped("  compilation  ", &" ".repeat(15), &told, out)?;
+    }
     for rung in &measured.rungs {
         let why = rung.unavailable.as_ref().map(|why| format!(" — unavailable: {why}")).unwrap_or_default();
         wrapped(&format!("  {:<12} ", rung.name), &" ".repeat(15), &format!("{}{why}", rung.what), out)?;
@@ -80,7 +84,7 @@ fn claims(measured: &Measured, out: &mut impl Write) -> Result {
             Some(false) => '✗',
             None => '?',
         };
-        let text = format!("{} [{}: {}; {}]", claim.sentence, claim.source, claim.claim, holding(claim.holds));
+        let text = format!("{} [{}]", claim.sentence, claim.source);
         wrapped(&format!("  {mark} "), "    ", &text, out)?;
     }
     Ok(())
@@ -100,7 +104,7 @@ fn families(measured: &Measured, out: &mut impl Write) -> Result {
     }
     let titles = [
         "families: time over f32, the geometric mean of the formulas'",
-        "families: error in ULP, the median of the formulas' largest on random inputs",
+        "families: error, the median of the formulas' largest on random inputs, absolute",
     ];
     for (place, title) in titles.into_iter().enumerate() {
         let figure = |rung: &Rung| if place == 0 { digits(rung.ratio) } else { error(rung.error) };
@@ -383,7 +387,7 @@ fn left_out(measured: &Measured, out: &mut impl Write) -> Result {
 
 fn legend(out: &mut impl Write) -> Result {
     writeln!(out, "\n● nothing else is both faster and closer · ✗ wrong in value, in no mean · — not measured here")?;
-    writeln!(out, "tie: 1 lies within the spread, which is the range of the turns")
+    writeln!(out, "tie: 1 lies within the spread, which is the range of all turns of all sittings")
 }
 
 /// Writes words in lines no longer than the terminal is wide: `head` before the first line, `indent` before the others.

@@ -134,6 +134,31 @@ pub fn time(clock: &'static str, own: &Laps, baseline: Option<&Laps>) -> Option<
     })
 }
 
+/// What is left of each turn when something else's time in it is taken off; nothing where that is not above 0.
+#[must_use]
+pub fn net(own: &Laps, idle: &Laps) -> Laps {
+    own.iter().zip(idle).map(|(own, idle)| Some((*own)? - (*idle)?).filter(|net| *net > 0.0)).collect()
+}
+
+/// The median part of the whole that is left; 0 where any turn has nothing left.
+#[must_use]
+pub fn share(net: &Laps, whole: &Laps) -> f64 {
+    let shares = net.iter().zip(whole).filter(|(_, whole)| whole.is_some());
+    let mut shares: Vec<f64> = shares.map(|(net, whole)| net.unwrap_or(0.0) / whole.unwrap_or(1.0)).collect();
+    shares.sort_by(f64::total_cmp);
+    if shares.first().is_none_or(|least| *least <= 0.0) { 0.0 } else { median(&shares) }
+}
+
+/// Why there is no time.
+#[must_use]
+pub fn reason(own: &Laps) -> &'static str {
+    if own.iter().all(Option::is_none) {
+        "every reading of the clock was one that cannot be true"
+    } else {
+        "no turn has a reading of it and of the baseline that can be true"
+    }
+}
+
 /// The median of the turns' ratios, and its spread.
 #[must_use]
 pub fn ratio(own: &Laps, baseline: &Laps) -> Option<(f64, [f64; 2])> {
@@ -158,7 +183,9 @@ pub fn standing([low, high]: [f64; 2]) -> Standing {
     }
 }
 
-fn median(sorted: &[f64]) -> f64 {
+/// Of sorted values.
+#[must_use]
+pub fn median(sorted: &[f64]) -> f64 {
     let n = sorted.len();
     if n % 2 == 1 { sorted[n / 2] } else { 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]) }
 }
@@ -178,6 +205,15 @@ mod tests {
         let time = time("timestamps", &own, Some(&base)).expect("two turns have both");
         assert_eq!((time.rejected, time.turns), (1, 3));
         assert!((time.ratio - 2.0).abs() < 1e-12 && (time.spread[1] - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_taken_off_leaves_the_rest_of_each_turn() {
+        let own = vec![Some(3.0), Some(4.0), None, Some(1.0)];
+        let idle = vec![Some(1.0), Some(1.0), Some(1.0), Some(2.0)];
+        assert_eq!(net(&own, &idle), [Some(2.0), Some(3.0), None, None]);
+        assert!((share(&net(&own[..3].to_vec(), &idle), &own[..3].to_vec()) - 0.5 * (2.0 / 3.0 + 0.75)).abs() < 1e-12);
+        assert!(share(&net(&own, &idle), &own) == 0.0, "nothing was left in a turn");
     }
 
     #[test]

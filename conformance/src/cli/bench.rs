@@ -11,6 +11,7 @@ use lightmeter::bench::{Options, bench, page, text};
 use lightmeter::filter::Filter;
 use lightmeter::run::Progress;
 use lightmeter::scene::load;
+use lightmeter::select::catalogue;
 use lightmeter_gpu::ClockKind;
 use std::path::{Path, PathBuf};
 
@@ -32,7 +33,7 @@ pub(crate) struct Bench {
     /// Seed of the random cases
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Accuracy rules: wgsl or vulkan
+    /// Accuracy rules: wgsl, vulkan or opengl
     #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
     profile: &'static Profile,
     /// Measure the WGSL in this folder in place of the built-in files of the same names
@@ -75,11 +76,15 @@ enum Clock {
 
 impl Bench {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let (files, globs): (Vec<String>, Vec<String>) =
-            self.filter.iter().cloned().partition(|name| Path::new(name).extension().is_some_and(|end| end == "json"));
+        let (files, globs): (Vec<String>, Vec<String>) = self
+            .filter
+            .iter()
+            .cloned()
+            .partition(|name| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("json")));
         let scenes = files.iter().map(|file| {
             let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            Ok((name, load::scene(file)?))
+            let loaded = load::scene(file).map_err(|error| anyhow::anyhow!("{file}: {error}"))?;
+            Ok((name, loaded))
         });
         let options = Options {
             filter: Filter::new(&globs)?,
@@ -94,9 +99,28 @@ impl Bench {
             shaders: shaders(self.shaders.as_deref())?,
             command: self.command(),
         };
-        let mut subjects = subjects(&self.adapter)?;
+        let mut names: Vec<&str> = options.scenes.iter().map(|(name, _)| name.as_str()).collect();
+        names.sort_unstable();
+        if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+            anyhow::bail!(
+                "two files are called `{0}.json`: their groups would both be scene/{0}; rename one",
+                twice[0]
+            );
+        }
+        if self.recommend.is_some() && self.format == Format::Markdown {
+            anyhow::bail!("a recommendation is written as text or json");
+        }
+        if let Some(path) = &self.out {
+            // Not after minutes of work.
+            emit("", Some(path))?;
+        }
+        let subjects = subjects(&self.adapter)?;
+        if self.adapter == ["cpu"] && !self.measures_formulas(&options.filter) {
+            let message = "the embedded implementation has no shaders: formulas alone are measured of it";
+            return Err(NothingToRun(message.into()).into());
+        }
         let mut bar = Bar::default();
-        let document = bench(&mut subjects, &options, &mut bar);
+        let document = bench(&subjects, &options, &mut bar);
         bar.0.finish_and_clear();
         let document = document?;
         if document.adapters.iter().all(|adapter| adapter.groups.is_empty() && adapter.scalings.is_empty()) {
@@ -119,7 +143,7 @@ impl Bench {
                 match format {
                     Format::Json => out = serde_json::to_string_pretty(&recommendation)? + "\n",
                     Format::Text => recommend::write(&recommendation, &mut out)?,
-                    Format::Markdown => anyhow::bail!("a recommendation is written as text or json"),
+                    Format::Markdown => unreachable!("it was refused"),
                 }
             }
         }
@@ -147,7 +171,18 @@ impl Bench {
         if self.profile.name != "wgsl" {
             command += &format!(" --profile {}", self.profile.name);
         }
+        if let Some(folder) = &self.shaders {
+            command += &format!(" --shaders '{}'", folder.display());
+        }
         command
+    }
+
+    /// Whether any formula is asked for.
+    fn measures_formulas(&self, filter: &Filter) -> bool {
+        let asked = |id: &str| filter.selects(id);
+        let has_files = self.filter.len() > filter.globs().count();
+        (!has_files || !filter.is_empty())
+            && catalogue().iter().any(|member| asked(&member.spec.id) || asked(member.spec.group()))
     }
 }
 

@@ -51,7 +51,9 @@ impl Item {
         // What it is called follows `fn`, `struct` or `const`, or ends the declaration of a binding.
         let keyword = names.iter().position(|name| matches!(name.as_str(), "fn" | "struct" | "const" | "var"));
         let after = keyword.map_or(0, |place| {
-            let spaced = names[place + 1..].iter().position(|name| !matches!(name.as_str(), "uniform" | "private"));
+            let spaced = names[place + 1..]
+                .iter()
+                .position(|name| !matches!(name.as_str(), "uniform" | "private" | "storage" | "read"));
             place + 1 + spaced.unwrap_or(0)
         });
         let name = names.get(after).cloned().unwrap_or_default();

@@ -31,7 +31,9 @@ pub(super) struct Packer {
 
 impl Packer {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment as usize / 4;
+        let limits = gpu.device.limits();
+        let alignment = limits.min_uniform_buffer_offset_alignment.max(limits.min_storage_buffer_offset_alignment);
+        let alignment = alignment as usize / 4;
         Self { alignment, words: vec![], places: HashMap::new() }
     }
 
@@ -47,7 +49,7 @@ impl Packer {
     }
 
     pub(super) fn finish(self, gpu: &Gpu) -> wgpu::Buffer {
-        gpu.buffer(bytemuck::cast_slice(&self.words), wgpu::BufferUsages::UNIFORM)
+        gpu.buffer(bytemuck::cast_slice(&self.words), wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE)
     }
 }
 

@@ -1,5 +1,6 @@
 // What a scene's shader is told, where more than one effect reads it; the others' bindings stand in the effects' own
-// files.
+// files. What decides a branch or ends a loop is in storage: of a uniform Mesa's lavapipe takes the value for a constant and
+// compiles the shader anew at each draw.
 
 struct SceneDraw {
     projection: mat4x4f,
@@ -56,9 +57,9 @@ struct SceneDirectionals {
 @group(0) @binding(0) var<uniform> scene_draw: SceneDraw;
 @group(0) @binding(1) var<uniform> scene_material: SceneMaterial;
 @group(0) @binding(2) var<uniform> scene_ambient: SceneAmbient;
-@group(0) @binding(3) var<uniform> scene_fog: SceneFog;
-@group(0) @binding(4) var<uniform> scene_switches: SceneSwitches;
-@group(0) @binding(5) var<uniform> scene_texture_reading: SceneReading;
+@group(0) @binding(3) var<storage, read> scene_fog: SceneFog;
+@group(0) @binding(4) var<storage, read> scene_switches: SceneSwitches;
+@group(0) @binding(5) var<storage, read> scene_texture_reading: SceneReading;
 @group(0) @binding(6) var scene_texture: texture_2d<f32>;
-@group(0) @binding(7) var<uniform> scene_lightmap_reading: SceneReading;
+@group(0) @binding(7) var<storage, read> scene_lightmap_reading: SceneReading;
 @group(0) @binding(8) var scene_lightmap: texture_2d<f32>;

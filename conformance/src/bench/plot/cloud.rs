@@ -32,8 +32,12 @@ impl Cloud<'_> {
             return Ok(None);
         }
         let (right, bottom) = (PLOT.left + PLOT.width, PLOT.top + PLOT.height);
-        let groups =
-            self.rungs.iter().map(|rung| rung.groups + rung.disqualified + rung.unavailable).max().unwrap_or(0);
+        let groups = self
+            .rungs
+            .iter()
+            .map(|rung| rung.groups + rung.as_f32 + rung.disqualified + rung.unavailable)
+            .max()
+            .unwrap_or(0);
         let below = format!(
             "{}; large: the geometric mean of ratios and the median of largest errors; small: one {} each",
             count(groups, self.of),
@@ -43,7 +47,11 @@ impl Cloud<'_> {
         open(bottom + 76.0, &self.title, &below, &mut out)?;
         let measured = || self.rungs.iter().filter(|rung| rung.groups > 0);
         let ratios = points().map(|point| point.1).chain(measured().map(|rung| rung.ratio));
-        let largest = points().map(|point| point.2).chain(measured().map(|rung| rung.error));
+        // How far legal values reach is shown as far as the others' errors go.
+        let is_bounded = |rung: &&Rung| rung.name != "cpu-accept";
+        let shown = || measured().filter(is_bounded);
+        let of_points = shown().flat_map(|rung| &rung.points).map(|point| point.2);
+        let largest = of_points.chain(shown().map(|rung| rung.error));
         let x = Axis::over(ratios, 0.6, [PLOT.left, right]);
         let y = ErrorAxis::over(largest, [PLOT.top, bottom], 15.0);
         errors(&y, [PLOT.left, right], 12, &mut out)?;

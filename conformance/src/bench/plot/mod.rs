@@ -44,14 +44,15 @@ impl Picture {
 pub fn pictures(document: &Document) -> Result<Vec<Picture>, std::fmt::Error> {
     let mut pictures = vec![];
     for measured in &document.adapters {
-        for family in &measured.families {
+        // Scenes have a picture of their own.
+        for family in measured.families.iter().filter(|family| family.id != "scene") {
             let rungs: Vec<Rung> = family.rungs.iter().map(Rung::from).collect();
             let cloud = cloud::Cloud {
                 title: format!("{} on {}: error against time", family.id, measured.adapter),
                 rungs: &rungs,
                 front: &family.front,
                 of: "formula",
-                error: "largest error on random inputs, ULP",
+                error: "largest absolute error on random inputs",
             };
             push(measured, &family.id, &cloud.title, cloud.svg()?, &mut pictures);
         }

@@ -2,10 +2,11 @@
 
 use super::axis::{Axis, ErrorAxis};
 use super::label::{Area, Room};
-use super::mark::style;
-use super::svg::{Named, WIDTH, across, errors, escaped, frame, markers, open, shortened, text};
+use super::mark::{mark, style};
+use super::svg::{Named, SIZE, WIDTH, across, errors, escaped, frame, markers, open, shortened, text, text_width};
 use crate::bench::document::{Group, Row};
-use crate::bench::pareto::largest;
+use crate::bench::pareto::is_processor;
+use lightmeter_gpu::Rung;
 use std::fmt::{Error, Result as Written, Write};
 
 const COLUMNS: usize = 2;
@@ -22,7 +23,7 @@ pub(super) fn svg(groups: &[&Group], title: &str) -> Result<Option<String>, Erro
     }
     let mut out = String::new();
     let mut top = HEAD;
-    let height = HEAD + HEIGHT * (0..groups.len().div_ceil(COLUMNS)).map(|_| 1.0).sum::<f64>() + 34.0;
+    let height = HEAD + HEIGHT * (0..groups.len().div_ceil(COLUMNS)).map(|_| 1.0).sum::<f64>() + 52.0;
     open(height, title, "across: time; upward: the largest absolute error on random inputs", &mut out)?;
     for pair in groups.chunks(COLUMNS) {
         let mut left = 0.0;
@@ -32,15 +33,23 @@ pub(super) fn svg(groups: &[&Group], title: &str) -> Result<Option<String>, Erro
         }
         top += HEIGHT;
     }
-    let words = "line and bold names: nothing else is both faster and closer; whiskers: the middle half of the turns; no name: at another rung";
-    text([12.0, height - 14.0], "start", false, words, &mut out)?;
+    let words =
+        "line and bold names: nothing else is both faster and closer; whiskers: the middle half of the turns; small:";
+    text([12.0, height - 32.0], "start", false, words, &mut out)?;
+    let mut x = 18.0;
+    for rung in Rung::ALL.into_iter().filter(|rung| *rung != Rung::F32) {
+        mark(style(rung.name(), 0), [x, height - 15.0], 5.0, false, &mut out)?;
+        let name = format!("at {}", rung.name());
+        text([x + 10.0, height - 11.0], "start", false, &name, &mut out)?;
+        x += 38.0 + text_width(&name, SIZE);
+    }
     out.push_str("</svg>\n");
     Ok(Some(out))
 }
 
-/// A row's time and its quartiles, where it has them and errors.
+/// A row's time and its quartiles, where it has them and errors. What the processor takes is told in tables.
 fn place(row: &Row) -> Option<(f64, [f64; 2])> {
-    row.random.as_ref()?;
+    row.random.as_ref().filter(|_| !is_processor(&row.name))?;
     row.time.as_ref().map(|time| (time.ns, time.quartiles_ns))
 }
 
@@ -53,7 +62,7 @@ fn panel(group: &Group, [left, top]: [f64; 2], out: &mut String) -> Written {
     text([area.left, top + 32.0], "start", true, &shortened(&group.title, 12.0, room_for(0.0)), out)?;
     let rows: Vec<(&Row, f64, [f64; 2], f64)> = (group.rows.iter())
         .filter_map(|row| place(row).map(|(ns, quartiles)| (row, ns, quartiles)))
-        .filter_map(|(row, ns, quartiles)| Some((row, ns, quartiles, largest(group.kind, row.random.as_ref()?))))
+        .filter_map(|(row, ns, quartiles)| Some((row, ns, quartiles, row.random.as_ref()?.absolute.max.0)))
         .collect();
     let x = Axis::over(rows.iter().flat_map(|row| [row.1, row.2[0], row.2[1]]), 0.7, [area.left, right]);
     let y = ErrorAxis::over(rows.iter().map(|row| row.3), [area.top, bottom], 12.0);
@@ -62,8 +71,10 @@ fn panel(group: &Group, [left, top]: [f64; 2], out: &mut String) -> Written {
     across(&x, [area.top, bottom], 8, scale, out)?;
     frame(area, out)?;
     text([right, bottom + 34.0], "end", true, &format!("{unit} per {}", group.unit), out)?;
-    let mut lacking: Vec<&str> =
-        group.rows.iter().filter(|row| place(row).is_none()).map(|row| row.name.as_str()).collect();
+    let mut lacking: Vec<&str> = (group.rows.iter())
+        .filter(|row| place(row).is_none() && !is_processor(&row.name))
+        .map(|row| row.name.as_str())
+        .collect();
     if !lacking.is_empty() {
         lacking.insert(0, "not measured:");
         text([area.left, bottom + 34.0], "start", true, &shortened(&lacking.join(" "), 12.0, room_for(110.0)), out)?;

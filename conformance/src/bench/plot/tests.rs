@@ -89,7 +89,7 @@ fn crowded() -> Document {
     for measured in &mut document.adapters {
         for rung in measured.families.iter_mut().flat_map(|family| &mut family.rungs) {
             rung.ratio = 1.0 + (rung.ratio - 1.0) * 1e-4;
-            rung.ulp_max.0 = rung.ulp_max.0.clamp(0.5, 0.51);
+            rung.error_max.0 = rung.error_max.0.clamp(0.5, 0.51);
             rung.points.iter_mut().for_each(|point| (point.1, point.2.0) = (1.0, 0.5));
         }
         let rows = measured.groups.iter_mut().flat_map(|group| &mut group.rows);

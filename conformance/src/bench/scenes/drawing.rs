@@ -33,10 +33,15 @@ pub(super) struct Standard {
 
 impl Standard {
     pub(super) fn new(frame: Frame, profile: &Profile) -> Self {
+        let expected = expect(&frame, None, None, profile);
+        Self { expected, ..Self::unjudged(frame) }
+    }
+
+    /// Of a frame that is only timed.
+    fn unjudged(frame: Frame) -> Self {
         let image = render::<f64>(&frame, None, None);
         let reference = Stored::unrounded(&image, frame.target.format);
-        let expected = expect(&frame, None, None, profile);
-        Self { exact: image.pixels, reference, expected, frame }
+        Self { exact: image.pixels, reference, expected: vec![], frame }
     }
 
     /// An image of the legal values that are farthest from the reference.
@@ -79,25 +84,25 @@ pub(super) struct Drawer<'a> {
     pub(super) clock: &'a Clock,
     pub(super) profile: Profile,
     deviations: &'a [&'static Deviation],
-    is_llvmpipe: bool,
+    /// Whether what is drawn is held against the reference, and not only timed.
+    pub(super) judges: bool,
 }
 
 impl<'a> Drawer<'a> {
     /// `None` of the embedded implementation, which draws on no device.
     pub(super) fn new(on: &On<'a>) -> Option<Self> {
         Some(Self {
-            gpu: on.subject.gpu()?,
+            gpu: on.gpu?,
             shaders: on.shaders,
             clock: on.clock,
             profile: profile_of(on.subject, on.profile),
             deviations: &on.subject.known.deviations,
-            is_llvmpipe: on.subject.identity.device.contains("llvmpipe"),
+            judges: on.setting.judges,
         })
     }
 
-    /// Why a shader with switches takes as long as it does, where the driver is known for it.
-    pub(super) fn recompiles(&self) -> Option<&'static str> {
-        self.is_llvmpipe.then_some("llvmpipe compiles anew at each draw where a uniform decides what is run")
+    pub(super) fn standard(&self, frame: Frame) -> Standard {
+        if self.judges { Standard::new(frame, &self.profile) } else { Standard::unjudged(frame) }
     }
 
     /// Draws each plan once: its errors against the ideal, what is wrong with it, and how long it took to compile.
@@ -133,6 +138,9 @@ impl<'a> Drawer<'a> {
         let compile_ms = Some(1e3 * start.elapsed().as_secs_f64());
         let image = Stored::read(plan.frame.target.width as usize, plan.frame.target.format, &bytes);
         let settled: Vec<&Standard> = std::iter::once(ideal).chain(plan.own).collect();
+        if !self.judges {
+            return Ok(Drawn { row: Row { compile_ms, ..row }, timed: Some(self.larger(plan, renderer)?) });
+        }
         let row = Row {
             disqualified: plan.own.and_then(|own| self.outside(&image, own)),
             random: errors(&image, ideal, &settled),
@@ -140,15 +148,15 @@ impl<'a> Drawer<'a> {
             compile_ms,
             ..row
         };
-        let timed = match self.timed(plan.frame) {
-            None => renderer,
-            Some(frame) => {
-                let renderer = self.renderer(&frame, plan.recipe)?;
-                SceneRenderer::pixels(self.gpu, renderer.submit(self.gpu))?;
-                renderer
-            }
-        };
-        Ok(Drawn { row, timed: Some(timed) })
+        Ok(Drawn { row, timed: Some(self.larger(plan, renderer)?) })
+    }
+
+    /// What is timed in the place of what has been drawn.
+    fn larger(&self, plan: &Plan<'_>, drawn: SceneRenderer) -> Result<SceneRenderer, Error> {
+        let Some(frame) = self.timed(plan.frame) else { return Ok(drawn) };
+        let renderer = self.renderer(&frame, plan.recipe)?;
+        SceneRenderer::pixels(self.gpu, renderer.submit(self.gpu))?;
+        Ok(renderer)
     }
 
     pub(super) fn renderer(&self, frame: &Frame, recipe: Recipe) -> Result<SceneRenderer, Error> {
@@ -181,8 +189,11 @@ impl<'a> Drawer<'a> {
         let base = baseline.and_then(of);
         let rows = drawn.iter().enumerate().map(|(place, drawn)| {
             let against = if Some(place) == baseline { None } else { base };
-            let time = of(place).filter(|_| base.is_some());
-            Row { time: time.and_then(|own| turns::time(self.clock.kind().name(), own, against)), ..drawn.row.clone() }
+            let own = of(place);
+            let time = own.filter(|_| base.is_some());
+            let time = time.and_then(|own| turns::time(self.clock.kind().name(), own, against));
+            let reason = own.filter(|_| time.is_none()).map(|own| turns::reason(own).to_owned());
+            Row { time, unavailable: drawn.row.unavailable.clone().or(reason), ..drawn.row.clone() }
         });
         Ok(rows.collect())
     }
@@ -208,7 +219,7 @@ impl<'a> Drawer<'a> {
 
     /// What errors and times are over.
     pub(super) fn work(&self, ideal: &Standard, all: &[&Standard]) -> String {
-        let open = (0..ideal.exact.len()).filter(|&pixel| is_open(pixel, all)).count();
+        let open = if self.judges { (0..ideal.exact.len()).filter(|&pixel| is_open(pixel, all)).count() } else { 0 };
         let size = |frame: &Frame| format!("{} × {}", frame.target.width, frame.target.height);
         let timed = self.timed(&ideal.frame);
         let timed = timed.map(|frame| format!("; timed at {}", size(&frame))).unwrap_or_default();
@@ -272,7 +283,8 @@ pub(super) mod tests {
         let gpu = subject.gpu().expect("an adapter has a device");
         let clock = Clock::new(gpu).unwrap_or_else(|error| panic!("{error}"));
         let setting = Setting::new(true, 1);
-        let on = On { subject: &subject, shaders: &shaders, clock: &clock, profile: &WGSL, setting };
+        let on =
+            On { subject: &subject, gpu: subject.gpu(), shaders: &shaders, clock: &clock, profile: &WGSL, setting };
         check(&Drawer::new(&on).expect("it has a device"));
     }
 

@@ -4,8 +4,8 @@ use super::drawing::{Drawer, Plan, Standard, side, sized};
 use super::{On, Setting, frames};
 use crate::bench::document::{Group, GroupKind};
 use crate::run::Progress;
-use lightmeter_gpu::Error;
 use lightmeter_gpu::compose::{Recipe, Shader, Technique};
+use lightmeter_gpu::{Error, Rung};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
 
@@ -22,16 +22,21 @@ pub fn technique_ids() -> Vec<&'static str> {
     comparisons().into_iter().map(|comparison| comparison.id).collect()
 }
 
-/// The groups of these ids.
+/// The groups of these ids, each way to draw at the rungs of the ladder.
 ///
 /// # Errors
 /// Where a shader is invalid or the device fails.
-pub fn techniques(on: &On<'_>, ids: &[&str], progress: &mut impl Progress) -> Result<Vec<Group>, Error> {
+pub fn techniques(
+    on: &On<'_>,
+    ladder: &[(Rung, Option<String>)],
+    ids: &[&str],
+    progress: &mut impl Progress,
+) -> Result<Vec<Group>, Error> {
     let Some(drawer) = Drawer::new(on) else { return Ok(vec![]) };
     let mut groups = vec![];
     for comparison in comparisons().into_iter().filter(|comparison| ids.contains(&comparison.id)) {
         progress.group(comparison.id);
-        groups.push(comparison.measure(&drawer, &on.setting)?);
+        groups.push(comparison.measure(&drawer, ladder, &on.setting)?);
         progress.advance(1);
     }
     Ok(groups)
@@ -77,16 +82,17 @@ impl Way {
 }
 
 impl Comparison {
-    fn measure(&self, drawer: &Drawer<'_>, setting: &Setting) -> Result<Group, Error> {
+    fn measure(
+        &self,
+        drawer: &Drawer<'_>,
+        ladder: &[(Rung, Option<String>)],
+        setting: &Setting,
+    ) -> Result<Group, Error> {
         let standards = self.standards(drawer, side(setting, SIDE, SIDE_QUICK));
-        let drawn = drawer.draw(&self.plans(&standards), &standards[0])?;
-        let baseline = self.ways.iter().position(|way| way.name == self.baseline);
-        let mut rows = drawer.rows(&drawn, baseline, setting.effort)?;
-        for (row, way) in rows.iter_mut().zip(&self.ways) {
-            if let Some(time) = row.time.as_mut().filter(|_| way.recipe.shader == Shader::Full) {
-                time.note = drawer.recompiles().map(str::to_owned);
-            }
-        }
+        let plans = self.plans(&standards, ladder);
+        let drawn = drawer.draw(&plans, &standards[0])?;
+        let baseline = plans.iter().position(|plan| plan.name == self.baseline);
+        let rows = drawer.rows(&drawn, baseline, setting.effort)?;
         Ok(Group {
             id: self.id.into(),
             kind: GroupKind::Technique,
@@ -107,28 +113,35 @@ impl Comparison {
         for frame in std::iter::once(&self.exact).chain(self.ways.iter().map(|way| &way.frame)) {
             let frame = sized(frame.clone(), side);
             if !standards.iter().any(|known| known.frame == frame) {
-                standards.push(Standard::new(frame, &drawer.profile));
+                standards.push(drawer.standard(frame));
             }
         }
         standards
     }
 
-    fn plans<'a>(&self, standards: &'a [Standard]) -> Vec<Plan<'a>> {
+    fn plans<'a>(&self, standards: &'a [Standard], ladder: &[(Rung, Option<String>)]) -> Vec<Plan<'a>> {
         let side = standards[0].frame.target.width.max(standards[0].frame.target.height);
-        let plan = |way: &Way| {
+        let plan = |way: &Way, rung: Rung, unavailable: &Option<String>| {
             let frame = sized(way.frame.clone(), side);
             let own = standards.iter().find(|known| known.frame == frame).expect("each way has its standard");
+            let (name, what) = match rung {
+                Rung::F32 => (way.name.clone(), way.what.clone()),
+                _ => (format!("{} {}", way.name, rung.name()), format!("{}; {}", way.what, super::what(rung))),
+            };
             Plan {
-                name: way.name.clone(),
-                what: way.what.clone(),
+                name,
+                what,
                 frame: &own.frame,
-                recipe: way.recipe,
-                claims_exact: way.claims_exact,
-                own: way.has_reference.then_some(own),
-                unavailable: None,
+                recipe: Recipe { rung, ..way.recipe },
+                claims_exact: way.claims_exact && rung.is_exact(),
+                own: (way.has_reference && rung.is_exact()).then_some(own),
+                unavailable: unavailable.clone(),
             }
         };
-        self.ways.iter().map(plan).collect()
+        let ways = self.ways.iter();
+        ways.flat_map(|way| ladder.iter().map(move |(rung, unavailable)| (way, *rung, unavailable)))
+            .map(|(way, rung, unavailable)| plan(way, rung, unavailable))
+            .collect()
     }
 }
 
@@ -257,7 +270,7 @@ mod tests {
         on_a_device(|drawer| {
             for comparison in comparisons() {
                 let standards = comparison.standards(drawer, 48);
-                let mut plans = comparison.plans(&standards);
+                let mut plans = comparison.plans(&standards, &[(Rung::F32, None)]);
                 let rows = |plans: &[Plan<'_>]| -> Vec<Row> {
                     let drawn = drawer.draw(plans, &standards[0]).unwrap_or_else(|error| panic!("{error}"));
                     drawn.into_iter().map(|drawn| drawn.row).collect()
@@ -285,7 +298,7 @@ mod tests {
             let errors = |id: &str| -> Vec<(String, f64, bool)> {
                 let comparison = comparisons().into_iter().find(|comparison| comparison.id == id).expect("it is there");
                 let standards = comparison.standards(drawer, 48);
-                let drawn = drawer.draw(&comparison.plans(&standards), &standards[0]);
+                let drawn = drawer.draw(&comparison.plans(&standards, &[(Rung::F32, None)]), &standards[0]);
                 let rows = drawn.unwrap_or_else(|error| panic!("{error}")).into_iter().map(|drawn| drawn.row);
                 let of = |row: Row| {
                     let max = row.random.map_or(f64::NAN, |errors| errors.absolute.max.0);

@@ -1,6 +1,6 @@
 // A light infinitely far away, its vector normalised.
 
-@group(0) @binding(9) var<uniform> scene_directional: SceneDirectionals;
+@group(0) @binding(9) var<storage, read> scene_directional: SceneDirectionals;
 
 //@ at lights
 for (var i = 0u; i < scene_directional.count; i++) {

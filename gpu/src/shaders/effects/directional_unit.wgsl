@@ -1,6 +1,6 @@
 // A light infinitely far away, its vector taken as a unit vector.
 
-@group(0) @binding(10) var<uniform> scene_directional_unit: SceneDirectionals;
+@group(0) @binding(10) var<storage, read> scene_directional_unit: SceneDirectionals;
 
 //@ at lights
 for (var i = 0u; i < scene_directional_unit.count; i++) {

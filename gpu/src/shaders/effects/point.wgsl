@@ -11,7 +11,7 @@ struct ScenePoints {
     lights: array<ScenePoint, 64>,
 }
 
-@group(0) @binding(11) var<uniform> scene_point: ScenePoints;
+@group(0) @binding(11) var<storage, read> scene_point: ScenePoints;
 
 //@ at lights
 for (var i = 0u; i < scene_point.count; i++) {

@@ -14,7 +14,7 @@ struct SceneSpots {
     lights: array<SceneSpot, 64>,
 }
 
-@group(0) @binding(12) var<uniform> scene_spot: SceneSpots;
+@group(0) @binding(12) var<storage, read> scene_spot: SceneSpots;
 
 //@ at lights
 for (var i = 0u; i < scene_spot.count; i++) {

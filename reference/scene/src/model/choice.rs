@@ -37,6 +37,14 @@ macro_rules! choice {
                 }
             }
         }
+
+        impl From<$resolved> for $name {
+            fn from(resolved: $resolved) -> Self {
+                match resolved {
+                    $(<$resolved>::$variant => Self::$variant,)*
+                }
+            }
+        }
     };
 }
 
