@@ -6,6 +6,7 @@ pub mod blend_unit;
 pub mod cases;
 pub mod devices;
 pub mod evaluate;
+pub mod faults;
 pub mod filter;
 pub mod image;
 pub mod judge;

@@ -6,6 +6,7 @@ pub mod fixed;
 pub mod format;
 pub mod paths;
 pub mod profile;
+pub mod random;
 pub mod trace;
 
 pub use accept::Accept;
@@ -13,4 +14,5 @@ pub use dual::Dual;
 pub use fixed::Fixed;
 pub use format::{F16, F32, Format, Hardware};
 pub use profile::Profile;
+pub use random::Draw;
 pub use trace::Trace;

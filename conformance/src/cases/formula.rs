@@ -3,7 +3,7 @@
 use super::raster;
 use super::rows::{Reader, Writer};
 use super::spec::{Kind, Spec};
-use crate::arithmetic::{Accept, Dual, Profile, Trace, dual};
+use crate::arithmetic::{Accept, Draw, Dual, Profile, Trace, dual};
 use lightmeter_gpu::{Along, Raster};
 use lightmeter_reference::Real;
 
@@ -35,6 +35,18 @@ pub trait AnyFormula: Send + Sync {
 
     /// The values that are legal in the programmable stages.
     fn interval(&self, inputs: &[f32], out: &mut [Accept]);
+
+    /// The outputs for a row of inputs of f64.
+    fn on_f64(&self, inputs: &[f64], out: &mut [f64]);
+
+    /// The same of f32.
+    fn on_f32(&self, inputs: &[f32], out: &mut [f32]);
+
+    /// The same of intervals.
+    fn on_accept(&self, inputs: &[Accept], out: &mut [Accept]);
+
+    /// The same of legal evaluations drawn at random.
+    fn on_draw(&self, inputs: &[Draw], out: &mut [Draw]);
 
     /// The values that are legal as they leave a rasteriser that snaps positions to so many bits after the point.
     fn raster_interval(&self, kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]);
@@ -115,6 +127,22 @@ impl<F: Formula> AnyFormula for F {
 
     fn interval(&self, inputs: &[f32], out: &mut [Accept]) {
         run(self, inputs, out);
+    }
+
+    fn on_f64(&self, inputs: &[f64], out: &mut [f64]) {
+        self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
+    }
+
+    fn on_f32(&self, inputs: &[f32], out: &mut [f32]) {
+        self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
+    }
+
+    fn on_accept(&self, inputs: &[Accept], out: &mut [Accept]) {
+        self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
+    }
+
+    fn on_draw(&self, inputs: &[Draw], out: &mut [Draw]) {
+        self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
     }
 
     fn raster_interval(&self, kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]) {

@@ -1,0 +1,345 @@
+//! Blending with mistakes: the state that is drawn with is another one, or an operand is.
+
+use super::row::{Row, put};
+use crate::cases::blend::{MOST_LAYERS, Program};
+use crate::cases::{Kind, Spec};
+use lightmeter_reference::blend::{Mode, Operands, Saturate, blend, blend_separate, masked};
+use lightmeter_reference::{Real, Vec4, Vector};
+use lightmeter_scene::blend::{Equation, Factor, Separate, State};
+
+/// A step that goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Twist {
+    /// The factors exchanged.
+    FactorsExchanged,
+    /// Source less destination for destination less source, and the reverse.
+    OperandsReversed,
+    /// A subtraction taken for an addition.
+    AlwaysAdd,
+    /// MIN for MAX, and the reverse.
+    MinForMax,
+    /// The constant's alpha for its colour, and the reverse.
+    ConstantAlphaForColor,
+    /// 1 − forgotten in the destination's factor.
+    OneMinusForgotten,
+    /// 1 − forgotten in the source's factor.
+    OneMinusForgottenInSource,
+    /// Source for destination in what a factor reads.
+    SourceForDestination,
+    /// Destination for source.
+    DestinationForSource,
+    /// Alpha for colour.
+    AlphaForColor,
+    /// Colour for alpha.
+    ColorForAlpha,
+    /// The source drawn as if it were premultiplied: factor ONE for SRC_ALPHA.
+    AsPremultiplied,
+    /// SRC_ALPHA_SATURATE as SRC_ALPHA.
+    NotSaturated,
+    /// SRC_ALPHA_SATURATE by the source's own alpha.
+    SaturatedBySource,
+    /// The alpha blended by the state of the colour.
+    AlphaByTheColorsState,
+    /// The alpha of the source kept.
+    AlphaReplaced,
+    /// The destination's alpha kept.
+    AlphaKept,
+    /// The write mask ignored.
+    MaskIgnored,
+    /// What is there before ignored.
+    NotBlended,
+    /// Operands and result limited to [0, 1].
+    Clamped,
+    /// The last layer alone.
+    LastLayerAlone,
+    /// The layers in reverse.
+    LayersReversed,
+}
+
+/// How a draw is blended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Model {
+    program: Program,
+    state: Separate,
+    saturate: Saturate,
+    alpha: Alpha,
+    masked: bool,
+    clamped: bool,
+    last_alone: bool,
+    reversed: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Alpha {
+    Right,
+    Source,
+    Destination,
+}
+
+fn right(spec: &Spec) -> Option<Model> {
+    let program = match spec.kind {
+        Kind::Blend(Program::Special(_)) => return None,
+        Kind::Blend(program) => program,
+        _ => match spec.id.as_str() {
+            "blend/over" | "blend/over-incremental" => Program::WithoutAlpha(Mode::Alpha.state()),
+            _ => return None,
+        },
+    };
+    Some(Model {
+        program,
+        state: program.layer(0).0,
+        saturate: Saturate::SourceAndDestination,
+        alpha: Alpha::Right,
+        masked: true,
+        clamped: false,
+        last_alone: false,
+        reversed: false,
+    })
+}
+
+impl Model {
+    fn each(&mut self, f: impl Fn(State) -> State) {
+        if !matches!(self.program, Program::Layers(_)) {
+            self.state = Separate { color: f(self.state.color), alpha: f(self.state.alpha) };
+        }
+    }
+
+    const fn has_alpha(&self) -> bool {
+        matches!(self.program, Program::Draw(..))
+    }
+
+    fn writes(&self, component: usize) -> bool {
+        !matches!(self.program, Program::Draw(_, mask) if !mask.0[component])
+    }
+
+    /// Makes the mistake; `false` where the state has no such step, or the outcome is the same.
+    fn twist(&mut self, twist: Twist) -> bool {
+        let before = *self;
+        let is_plain = matches!(self.program, Program::Draw(state, _) if state.color == state.alpha);
+        match twist {
+            Twist::FactorsExchanged => self.each(|s| State { src: s.dst, dst: s.src, ..s }),
+            Twist::OperandsReversed => self.each(|s| State { equation: reversed(s.equation), ..s }),
+            Twist::AlwaysAdd => self.each(|s| match s.equation {
+                Equation::Subtract | Equation::ReverseSubtract => State { equation: Equation::Add, ..s },
+                _ => s,
+            }),
+            Twist::MinForMax => self.each(|s| match s.equation {
+                Equation::Min => State { equation: Equation::Max, ..s },
+                Equation::Max => State { equation: Equation::Min, ..s },
+                _ => s,
+            }),
+            Twist::ConstantAlphaForColor => self.factors(constant_of_the_other_kind),
+            Twist::OneMinusForgotten => self.each(|s| State { dst: without_one_minus(s.dst), ..s }),
+            Twist::OneMinusForgottenInSource => self.each(|s| State { src: without_one_minus(s.src), ..s }),
+            Twist::SourceForDestination => self.factors(source_for_destination),
+            Twist::DestinationForSource => self.factors(destination_for_source),
+            Twist::AlphaForColor => self.color_factors(alpha_for_color),
+            Twist::ColorForAlpha => self.color_factors(color_for_alpha),
+            Twist::AsPremultiplied => {
+                self.each(|s| if s.src == Factor::SrcAlpha { State { src: Factor::One, ..s } } else { s })
+            }
+            Twist::NotSaturated => self.color_factors(|f| match f {
+                Factor::SrcAlphaSaturate => Factor::SrcAlpha,
+                other => other,
+            }),
+            Twist::SaturatedBySource => {
+                let reads = |s: State| s.src == Factor::SrcAlphaSaturate || s.dst == Factor::SrcAlphaSaturate;
+                if reads(self.state.color) && !self.state.color.equation.ignores_factors() {
+                    self.saturate = Saturate::SourceOnly;
+                }
+            }
+            Twist::AlphaByTheColorsState if self.has_alpha() && !is_plain => self.state.alpha = self.state.color,
+            Twist::AlphaReplaced if self.has_alpha() && is_plain && self.writes(3) => {
+                let alone = State { equation: Equation::Add, src: Factor::One, dst: Factor::Zero };
+                if !is_source_alone(self.state.alpha) {
+                    self.state.alpha = alone;
+                    self.alpha = Alpha::Source;
+                }
+            }
+            Twist::AlphaKept if self.has_alpha() && is_plain && self.writes(3) => {
+                if !is_destination_alone(self.state.alpha) {
+                    self.alpha = Alpha::Destination;
+                }
+            }
+            Twist::MaskIgnored => {
+                if matches!(self.program, Program::Draw(_, mask) if mask.0 != [true; 4]) {
+                    self.masked = false;
+                }
+            }
+            Twist::NotBlended => {
+                self.each(|_| State { equation: Equation::Add, src: Factor::One, dst: Factor::Zero });
+            }
+            Twist::Clamped => self.clamped = true,
+            Twist::LastLayerAlone => self.last_alone = matches!(self.program, Program::Layers(_)),
+            Twist::LayersReversed => self.reversed = matches!(self.program, Program::Layers(_)),
+            _ => {}
+        }
+        let same = |a: State, b: State| a.canonical() == b.canonical();
+        let state_differs = {
+            let color = !same(self.state.color, before.state.color) && (0..3).any(|k| self.shows(k));
+            let alpha = !same(self.state.alpha, before.state.alpha) && self.has_alpha() && self.shows(3);
+            color || alpha
+        };
+        state_differs || Self { state: before.state, ..*self } != before
+    }
+
+    fn shows(&self, component: usize) -> bool {
+        self.writes(component) || !self.masked
+    }
+
+    fn factors(&mut self, f: impl Fn(Factor) -> Factor) {
+        self.each(|s| State { src: f(s.src), dst: f(s.dst), ..s });
+    }
+
+    /// What differs between colour and alpha is the same for alpha itself.
+    fn color_factors(&mut self, f: impl Fn(Factor) -> Factor) {
+        if !matches!(self.program, Program::Layers(_)) {
+            let s = self.state.color;
+            self.state.color = State { src: f(s.src), dst: f(s.dst), ..s };
+        }
+    }
+
+    fn evaluate<R: Real>(&self, x: &Row<'_, R>, out: &mut [R]) -> Option<()> {
+        let unit = |c: Vec4<R>| if self.clamped { c.map(|x| x.clamp(R::literal(0.0), R::literal(1.0))) } else { c };
+        let zero = Vector::splat(R::literal(0.0));
+        match self.program {
+            Program::Layers(modes) => put(out, 0, self.layers(modes, x)?),
+            Program::WithoutAlpha(_) => {
+                let dst = x.vector::<3>("dst")?.extend(R::literal(1.0));
+                let operands = Operands { src: unit(x.vector("src")?), dst: unit(dst), constant: zero };
+                put(out, 0, unit(blend(self.state.color, &operands, self.saturate)).xyz());
+            }
+            Program::Draw(_, mask) => {
+                let operands = Operands {
+                    src: unit(x.vector("src")?),
+                    dst: unit(x.vector("dst")?),
+                    constant: unit(x.vector("constant")?),
+                };
+                let blended = unit(blend_separate(self.state, &operands, self.saturate));
+                let blended = match self.alpha {
+                    Alpha::Right => blended,
+                    Alpha::Source => blended.xyz().extend(operands.src.w()),
+                    Alpha::Destination => blended.xyz().extend(operands.dst.w()),
+                };
+                put(out, 0, if self.masked { masked(mask, blended, x.vector("dst")?) } else { blended });
+            }
+            Program::Special(_) => return None,
+        }
+        Some(())
+    }
+
+    fn layers<R: Real>(&self, modes: &[Mode], x: &Row<'_, R>) -> Option<Vec4<R>> {
+        let (dst, count): (Vec4<R>, R) = (x.vector("dst")?, x.scalar("count")?);
+        let unit = |c: Vec4<R>| if self.clamped { c.map(|x| x.clamp(R::literal(0.0), R::literal(1.0))) } else { c };
+        let mut sources = vec![];
+        for number in 1..=MOST_LAYERS {
+            sources.push(x.vector::<4>(&format!("src-{number}"))?);
+        }
+        let mut below = unit(dst);
+        let places: Vec<usize> =
+            if self.reversed { (0..MOST_LAYERS).rev().collect() } else { (0..MOST_LAYERS).collect() };
+        for place in places {
+            let at = if self.last_alone { dst } else { below };
+            let mode = modes[place % modes.len()];
+            let of = Operands { src: unit(sources[place]), dst: at, constant: Vector::splat(R::literal(0.0)) };
+            let drawn = || unit(blend(mode.state(), &of, self.saturate));
+            let number = u32::try_from(place + 1).map_or(f64::INFINITY, f64::from);
+            below = R::if_ge(count, R::literal(number), drawn, || below);
+        }
+        Some(below)
+    }
+}
+
+fn is_source_alone(state: State) -> bool {
+    state.equation == Equation::Add && state.src == Factor::One && state.dst == Factor::Zero
+}
+
+fn is_destination_alone(state: State) -> bool {
+    matches!(state.equation, Equation::Add | Equation::ReverseSubtract)
+        && state.src == Factor::Zero
+        && state.dst == Factor::One
+}
+
+const fn reversed(equation: Equation) -> Equation {
+    match equation {
+        Equation::Subtract => Equation::ReverseSubtract,
+        Equation::ReverseSubtract => Equation::Subtract,
+        other => other,
+    }
+}
+
+const fn constant_of_the_other_kind(factor: Factor) -> Factor {
+    match factor {
+        Factor::ConstantColor => Factor::ConstantAlpha,
+        Factor::ConstantAlpha => Factor::ConstantColor,
+        Factor::OneMinusConstantColor => Factor::OneMinusConstantAlpha,
+        Factor::OneMinusConstantAlpha => Factor::OneMinusConstantColor,
+        other => other,
+    }
+}
+
+const fn without_one_minus(factor: Factor) -> Factor {
+    match factor {
+        Factor::OneMinusSrcColor => Factor::SrcColor,
+        Factor::OneMinusDstColor => Factor::DstColor,
+        Factor::OneMinusSrcAlpha => Factor::SrcAlpha,
+        Factor::OneMinusDstAlpha => Factor::DstAlpha,
+        Factor::OneMinusConstantColor => Factor::ConstantColor,
+        Factor::OneMinusConstantAlpha => Factor::ConstantAlpha,
+        other => other,
+    }
+}
+
+const fn source_for_destination(factor: Factor) -> Factor {
+    match factor {
+        Factor::DstColor => Factor::SrcColor,
+        Factor::OneMinusDstColor => Factor::OneMinusSrcColor,
+        Factor::DstAlpha => Factor::SrcAlpha,
+        Factor::OneMinusDstAlpha => Factor::OneMinusSrcAlpha,
+        other => other,
+    }
+}
+
+const fn destination_for_source(factor: Factor) -> Factor {
+    match factor {
+        Factor::SrcColor => Factor::DstColor,
+        Factor::OneMinusSrcColor => Factor::OneMinusDstColor,
+        Factor::SrcAlpha => Factor::DstAlpha,
+        Factor::OneMinusSrcAlpha => Factor::OneMinusDstAlpha,
+        other => other,
+    }
+}
+
+const fn alpha_for_color(factor: Factor) -> Factor {
+    match factor {
+        Factor::SrcColor => Factor::SrcAlpha,
+        Factor::OneMinusSrcColor => Factor::OneMinusSrcAlpha,
+        Factor::DstColor => Factor::DstAlpha,
+        Factor::OneMinusDstColor => Factor::OneMinusDstAlpha,
+        other => other,
+    }
+}
+
+const fn color_for_alpha(factor: Factor) -> Factor {
+    match factor {
+        Factor::SrcAlpha => Factor::SrcColor,
+        Factor::OneMinusSrcAlpha => Factor::OneMinusSrcColor,
+        Factor::DstAlpha => Factor::DstColor,
+        Factor::OneMinusDstAlpha => Factor::OneMinusDstColor,
+        other => other,
+    }
+}
+
+/// Whether the formula has these steps, and each makes a difference to it.
+pub(super) fn concerns(spec: &Spec, twists: &[Twist]) -> bool {
+    right(spec).is_some_and(|mut model| twists.iter().all(|&twist| model.twist(twist)))
+}
+
+/// The formula with these steps wrong.
+pub(super) fn evaluate<R: Real>(spec: &Spec, twists: &[Twist], numbers: &[R], out: &mut [R]) -> Option<()> {
+    let mut model = right(spec)?;
+    for &twist in twists {
+        model.twist(twist);
+    }
+    model.evaluate(&Row::new(spec, numbers), out)
+}
