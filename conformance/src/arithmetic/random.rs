@@ -77,6 +77,14 @@ impl Draw {
         Self { value, unrounded: value }
     }
 
+    /// The f32 that it is.
+    #[must_use]
+    pub const fn narrow(self) -> f32 {
+        #[expect(clippy::cast_possible_truncation, reason = "the value is an f32 already")]
+        let narrow = self.value as f32;
+        narrow
+    }
+
     /// A built-in that errs by at most so much: some f32 within.
     fn within(x: f64, error: f64) -> Self {
         let (low, high) = (x - error, x + error);

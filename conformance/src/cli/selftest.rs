@@ -1,19 +1,54 @@
 //! `lightmeter selftest`.
 
 use super::options::{Choice, Format, Targets};
-use super::{Status, emit};
+use super::{NothingToRun, Status, emit};
 use anyhow::bail;
-use clap::Args;
+use clap::{Args, ValueEnum};
+use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::selftest::{Finding, Row, selftest};
+use lightmeter::faults::calibrate::calibrate;
+use lightmeter::faults::selftest as formulas;
+use lightmeter::filter::Filter;
+use lightmeter::report::selftest as report;
 use lightmeter_scene::target::TargetFormat;
 use serde_json::json;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
-/// Show that the suite catches the mistakes that it knows and tells them by name. So far: those of a blend unit.
+/// What is tested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Part {
+    /// Mistakes in formulas.
+    Formulas,
+    /// Mistakes of a blend unit.
+    BlendUnit,
+}
+
+/// Show that the suite catches the mistakes that it knows and tells them by name: in formulas, and of a blend unit
 #[derive(Debug, Args)]
 pub(crate) struct Selftest {
+    /// Formulas to make mistakes in: globs of ids, as for `run`; without any, all, and the blend unit too
+    #[arg(value_name = "FILTER")]
+    filter: Vec<String>,
+    /// Only one of the two
+    #[arg(long, value_enum, value_name = "PART")]
+    only: Option<Part>,
+    /// Random cases for each formula; a quarter of them for each of the many blend states
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u64).range(16..=65_536))]
+    formula_cases: u64,
+    /// Legal evaluations of each case, drawn at random, that must not be flagged
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(0..=1024))]
+    draws: u64,
+    /// Measure the smallest errors that 4,096 cases name, for each parameter of each formula
+    #[arg(long)]
+    calibrate: bool,
+    /// Accuracy rules, as for `run`
+    #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
+    profile: &'static Profile,
+    /// Seed of the random cases
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
     /// Format to blend on, as for `run`; without it: all
     #[arg(long, value_name = "NAME", value_parser = Choice::target)]
     target: Vec<Targets>,
@@ -30,22 +65,72 @@ pub(crate) struct Selftest {
 
 impl Selftest {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let targets = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
+        if self.format == Format::Junit {
+            bail!("the self-test is written as text or json");
+        }
+        if self.only == Some(Part::BlendUnit) && !self.filter.is_empty() {
+            bail!("a filter selects formulas; expected none beside `--only blend-unit`");
+        }
+        let filter = Filter::new(&self.filter)?;
         let shows = std::io::stderr().is_terminal();
-        let rows = selftest(&targets, self.cases, &mut |target| {
+        let say = |what: &str| {
             if shows {
-                eprintln!("every fault on {target}");
+                eprintln!("{what}");
             }
-        })?;
+        };
+        let (mut record, mut resolutions, mut rows) = (None, vec![], None);
+        if self.only != Some(Part::BlendUnit) {
+            say("every mistake in every formula that it concerns");
+            let options = formulas::Options {
+                filter: filter.clone(),
+                cases: self.formula_cases,
+                seed: self.seed,
+                draws: self.draws,
+                profile: self.profile,
+            };
+            let tried = formulas::selftest(&options);
+            if tried.clean.is_empty() {
+                return Err(NothingToRun("no formula matches the filter".into()).into());
+            }
+            record = Some(tried);
+            if self.calibrate {
+                say("the smallest errors that are named");
+                resolutions = calibrate(&options);
+            }
+        }
+        let targets = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
+        if self.only != Some(Part::Formulas) && self.filter.is_empty() {
+            rows = Some(selftest(&targets, self.cases, &mut |target| say(&format!("every fault on {target}")))?);
+        }
         let text = match self.format {
-            Format::Junit => bail!("the self-test is written as text or json"),
             Format::Json => {
-                serde_json::to_string_pretty(&json!({ "schema": "lightmeter.selftest/1", "rows": rows }))? + "\n"
+                let mut document =
+                    json!({ "schema": "lightmeter.selftest/1", "rows": rows.as_deref().unwrap_or_default() });
+                if let Some(record) = &record {
+                    document["kills"] = serde_json::to_value(&record.kills)?;
+                    document["clean"] = serde_json::to_value(&record.clean)?;
+                    document["calibration"] = serde_json::to_value(&resolutions)?;
+                }
+                serde_json::to_string_pretty(&document)? + "\n"
             }
-            Format::Text => table(&targets, &rows)?,
+            Format::Text | Format::Junit => {
+                let mut text = String::new();
+                if let Some(record) = &record {
+                    report::text(record, &resolutions, &mut text)?;
+                }
+                if let Some(rows) = &rows {
+                    if record.is_some() {
+                        text.push('\n');
+                    }
+                    text += &table(&targets, rows)?;
+                }
+                text
+            }
         };
         emit(&text, self.out.as_deref())?;
-        Ok(if rows.iter().all(|row| row.finding.is_good()) { Status::Success } else { Status::Failed })
+        let unit = rows.iter().flatten().all(|row| row.finding.is_good());
+        let good = unit && record.iter().all(formulas::Record::is_good);
+        Ok(if good { Status::Success } else { Status::Failed })
     }
 }
 

@@ -4,7 +4,7 @@
 use super::row::{Row, put};
 use crate::cases::Spec;
 use lightmeter_reference::attenuation::{polynomial, spot_exponent};
-use lightmeter_reference::lighting::cosine_power_by_schlick;
+use lightmeter_reference::lighting::{cosine_power_by_chord, cosine_power_by_schlick};
 use lightmeter_reference::vector::{face_normal, halfway, halfway_unnormalised, reflect};
 use lightmeter_reference::{Real, Vec3, Vector};
 use std::f64::consts::FRAC_1_PI;
@@ -56,7 +56,6 @@ pub(super) enum Twist {
     GouraudForPhong,
     PhongForGouraud,
     VectorsAtTheVertices,
-    VectorsAtThePoint,
     LitAtTheLastVertex,
     LitAtTheMiddle,
     OneLightAlone,
@@ -77,6 +76,8 @@ enum Edge {
     Gouraud,
     Phong,
     Interpolated,
+    /// Between unit vectors.
+    UnitVectors,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -179,6 +180,8 @@ struct Model {
     mirror: Mirror,
     incidence: Incidence,
     lobe: Lobe,
+    /// Powers by the chord between the vectors.
+    by_chord: bool,
     gated: bool,
     strength: Strength,
     over_pi: bool,
@@ -245,6 +248,7 @@ fn right(id: &str) -> Option<Model> {
         mirror: Mirror::Right,
         incidence: Incidence::Max,
         lobe: Lobe::Max,
+        by_chord: is(&["cosine-power-by-chord", "blinn-stable"]),
         gated: is(&["phong-gated", "point-opengl", "blinn-stable"]),
         strength: Strength::Plain,
         over_pi: false,
@@ -338,8 +342,7 @@ impl Model {
             Twist::SpecularNotInCone if self.cone == Cone::Right => self.specular_in_cone = false,
             Twist::GouraudForPhong => self.edge(&[Edge::Phong, Edge::Interpolated], Edge::Gouraud),
             Twist::PhongForGouraud => self.edge(&[Edge::Gouraud], Edge::Phong),
-            Twist::VectorsAtTheVertices => self.edge(&[Edge::Phong], Edge::Interpolated),
-            Twist::VectorsAtThePoint => self.edge(&[Edge::Interpolated], Edge::Phong),
+            Twist::VectorsAtTheVertices => self.edge(&[Edge::Phong, Edge::Interpolated], Edge::UnitVectors),
             Twist::LitAtTheLastVertex if matches!(self.arrangement, Arrangement::Face) => self.lit_at = LitAt::Last,
             Twist::LitAtTheMiddle if matches!(self.arrangement, Arrangement::Face) => self.lit_at = LitAt::Middle,
             Twist::OneLightAlone if matches!(self.arrangement, Arrangement::TwoLights) => self.both_lights = false,
@@ -399,6 +402,7 @@ impl Model {
 
     fn power<R: Real>(&self, a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
         let lobe = match self.lobe {
+            Lobe::Max if self.by_chord => cosine_power_by_chord(a, b, exponent),
             Lobe::Max => a.dot(b).lobe(exponent),
             Lobe::Abs => a.dot(b).abs().lobe(exponent),
             Lobe::Schlick => cosine_power_by_schlick(a, b, exponent),
@@ -564,11 +568,16 @@ impl Model {
         let lit = |p: Vec3<R>, n: Vec3<R>| {
             self.intensity([self.normal(n), self.light(Source::Position, position, p), self.eye(p)], material)
         };
+        let from = |p: Vec3<R>| if self.position_as_direction { position } else { position - p };
         Some(match edge {
+            Edge::UnitVectors => {
+                let unit = |a: Vec3<R>, b: Vec3<R>| a.normalize().mix(b.normalize(), t);
+                let l = self.light(Source::Toward, unit(from(pa), from(pb)), pa);
+                self.intensity([self.normal(unit(na, nb)), l, self.eye(-unit(-pa, -pb))], material)
+            }
             Edge::Gouraud => R::mix(lit(pa, na), lit(pb, nb), t),
             Edge::Phong => lit(pa.mix(pb, t), na.mix(nb, t)),
             Edge::Interpolated => {
-                let from = |p: Vec3<R>| if self.position_as_direction { position } else { position - p };
                 let l = self.light(Source::Toward, from(pa).mix(from(pb), t), pa);
                 let v = self.eye(-(-pa).mix(-pb, t));
                 self.intensity([self.normal(na.mix(nb, t)), l, v], material)

@@ -5,18 +5,22 @@
 
 mod blend;
 mod body;
+pub mod calibrate;
 mod catalogue;
 mod change;
 mod diagnose;
 mod factor;
 mod fog;
+mod group;
 mod lighting;
 mod row;
+pub mod selftest;
 mod table;
 mod variation;
 
 pub use catalogue::{Fault, concerning, faults};
 pub use diagnose::{Answered, Diagnosis, Explanation, diagnose};
 pub use factor::Scaled;
+pub use group::{Error, LEAST_SHARE, LEAST_VALUES, LEAST_Z, Systematic, group_verdict};
 pub use row::Arithmetic;
 pub use variation::Variation;

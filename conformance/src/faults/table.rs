@@ -336,15 +336,10 @@ const LIGHTING: &[Fault] = &[
     ),
     fault(
         "vectors-at-the-vertices",
-        "light and view vectors are interpolated from the vertices",
+        "normal, light and view vectors are interpolated between unit vectors of the vertices",
         &[&[lit(Lit::VectorsAtTheVertices)]],
     )
-    .seen_in("shaders that pass l and v as varyings, unnormalised"),
-    fault(
-        "vectors-at-the-point",
-        "light and view vectors are those of the point where they are to be interpolated",
-        &[&[lit(Lit::VectorsAtThePoint)]],
-    ),
+    .seen_in("shaders that pass normalised l and v as varyings"),
     fault("lit-at-the-last-vertex", "a flat face is lit at its last vertex", &[&[lit(Lit::LitAtTheLastVertex)]])
         .seen_in("OpenGL's provoking vertex"),
     fault("lit-at-the-middle", "a flat face is lit at its middle", &[&[lit(Lit::LitAtTheMiddle)]]),

@@ -2,6 +2,7 @@
 
 pub mod junit;
 pub mod page;
+pub mod selftest;
 pub mod special;
 pub mod text;
 

@@ -1,0 +1,276 @@
+//! Whether the suite catches every mistake of the catalogue and tells it by its name, and flags nothing that is right.
+//!
+//! Each mistake is made by the embedded implementation and judged like any renderer; its answers are diagnosed. What is right,
+//! the embedded implementation and legal evaluations drawn at random, must be flagged by no verdict.
+
+use super::catalogue::{Fault, concerning};
+use super::diagnose::{Answered, Diagnosis, diagnose};
+use super::group::{Systematic, group_verdict};
+use super::variation::Variation;
+use crate::arithmetic::{Accept, Draw, Profile, random};
+use crate::cases::Kind;
+use crate::filter::Filter;
+use crate::judge::{Outcome, judge};
+use crate::select::{CaseRef, Member, Shard, catalogue, select};
+use lightmeter_reference::Real as _;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// What is tried.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Which formulas.
+    pub filter: Filter,
+    /// Random cases for each formula; a quarter of them for each of the many blend states.
+    pub cases: u64,
+    /// Their seed.
+    pub seed: u64,
+    /// Legal evaluations drawn for each case.
+    pub draws: u64,
+    /// By which rules.
+    pub profile: &'static Profile,
+}
+
+/// What became of a mistake in a formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Finding {
+    /// Caught, and the first diagnosis is it, or one of the same values in every case.
+    Named,
+    /// Caught, and the first diagnosis is another.
+    Caught,
+    /// Not caught.
+    Survived,
+}
+
+/// A mistake in a formula.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Kill {
+    /// The mistake.
+    pub fault: String,
+    /// The formula.
+    pub formula: String,
+    /// What became of it.
+    pub finding: Finding,
+    /// Cases that were tried.
+    pub cases: usize,
+    /// Those of them that fail.
+    pub failing: usize,
+    /// How many cases suffice to catch it, in the order of a run.
+    pub smallest: Option<usize>,
+    /// The case that catches it.
+    pub first_case: Option<String>,
+    /// How many random cases alone suffice.
+    pub smallest_random: Option<usize>,
+    /// The first diagnosis.
+    pub diagnosis: Vec<String>,
+    /// It in words.
+    pub sentence: String,
+    /// Whether the diagnosis names another mistake of the same values in every case, from which it cannot be told.
+    pub alias: bool,
+}
+
+/// A formula without a mistake.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Clean {
+    /// The formula.
+    pub formula: String,
+    /// Verdicts on the embedded implementation and on legal evaluations drawn at random.
+    pub verdicts: u64,
+    /// Those that failed.
+    pub failed: u64,
+    /// What a group verdict named, of the embedded implementation or of the draws.
+    pub systematic: Option<Systematic>,
+}
+
+/// The outcome of the self-test.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Record {
+    /// Every mistake in every formula that it concerns.
+    pub kills: Vec<Kill>,
+    /// Every formula without a mistake.
+    pub clean: Vec<Clean>,
+}
+
+impl Record {
+    /// Whether every mistake is caught and nothing right is flagged.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.kills.iter().all(|kill| kill.finding != Finding::Survived)
+            && self.clean.iter().all(|clean| clean.failed == 0 && clean.systematic.is_none())
+    }
+
+    /// Mistakes in formulas of a finding.
+    #[must_use]
+    pub fn count(&self, finding: Finding) -> usize {
+        self.kills.iter().filter(|kill| kill.finding == finding).count()
+    }
+}
+
+/// Tries every mistake, and none, in every formula that a filter selects.
+#[must_use]
+pub fn selftest(options: &Options) -> Record {
+    let members = catalogue();
+    let selected = select(&members, &options.filter, options.cases, Shard::WHOLE);
+    let tried: Vec<(Vec<Kill>, Clean)> =
+        selected.par_iter().map(|chosen| Bench::new(&members[chosen.member], options).run()).collect();
+    let (kills, clean): (Vec<Vec<Kill>>, Vec<Clean>) = tried.into_iter().unzip();
+    Record { kills: kills.into_iter().flatten().collect(), clean }
+}
+
+/// The cases of one formula, with what is right and what is legal in each.
+struct Bench<'a> {
+    member: &'a Member,
+    options: &'a Options,
+    cases: Vec<CaseRef>,
+    inputs: Vec<Vec<f32>>,
+    reference: Vec<f64>,
+    legal: Vec<Accept>,
+}
+
+impl<'a> Bench<'a> {
+    fn new(member: &'a Member, options: &'a Options) -> Self {
+        let spec = &member.spec;
+        let random = if spec.id.starts_with("blend/") && matches!(spec.kind, Kind::Blend(_)) {
+            options.cases.div_ceil(4)
+        } else {
+            options.cases
+        };
+        let hard = (0..spec.hard.len()).map(CaseRef::Hard);
+        let near = (0..spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));
+        let cases: Vec<CaseRef> = hard.chain(near).chain((0..random).map(CaseRef::Random)).collect();
+        let inputs: Vec<Vec<f32>> = cases
+            .iter()
+            .map(|&case| {
+                let mut row = vec![];
+                member.inputs(case, options.seed, &mut row);
+                row
+            })
+            .collect();
+        let outputs = spec.output_len();
+        let mut reference = vec![0.0; cases.len() * outputs];
+        let mut legal = vec![Accept::ANY; cases.len() * outputs];
+        options.profile.scope(|| {
+            let rows = reference.chunks_exact_mut(outputs).zip(legal.chunks_exact_mut(outputs));
+            for (inputs, (reference, legal)) in inputs.iter().zip(rows) {
+                member.formula.reference(inputs, reference);
+                member.formula.promised_interval(spec.kind, inputs, options.profile, legal);
+            }
+        });
+        Self { member, options, cases, inputs, reference, legal }
+    }
+
+    fn outputs(&self) -> usize {
+        self.member.spec.output_len()
+    }
+
+    /// Whether a case's answer fails a verdict.
+    fn is_wrong(&self, case: usize, values: &[f32]) -> bool {
+        let at = case * self.outputs();
+        values.iter().enumerate().any(|(k, value)| {
+            let verdict = judge(value.to_bits(), self.reference[at + k], &self.legal[at + k]);
+            verdict.outcome == Outcome::Fail
+        })
+    }
+
+    fn answers(&self, implementation: impl Fn(&[f32], &mut [f32])) -> Vec<Vec<f32>> {
+        let answer = |inputs: &Vec<f32>| {
+            let mut out = vec![0.0; self.outputs()];
+            implementation(inputs, &mut out);
+            out
+        };
+        self.inputs.iter().map(answer).collect()
+    }
+
+    fn answered<'b>(&'b self, values: &'b [Vec<f32>]) -> Vec<Answered<'b>> {
+        let rows = self.inputs.iter().zip(values).enumerate();
+        rows.map(|(case, (inputs, values))| Answered { inputs, values, is_wrong: self.is_wrong(case, values) })
+            .collect()
+    }
+
+    fn run(&self) -> (Vec<Kill>, Clean) {
+        let kills = concerning(&self.member.spec)
+            .filter_map(|fault| Some(self.kill(fault, &Variation::new(self.member, &[fault])?)))
+            .collect();
+        (kills, self.clean())
+    }
+
+    fn kill(&self, fault: &'static Fault, variation: &Variation<'_>) -> Kill {
+        let values = self.answers(|inputs, out| variation.evaluate::<f32>(inputs, out));
+        let rows = self.answered(&values);
+        let smallest = rows.iter().position(|row| row.is_wrong);
+        let mut random = rows.iter().zip(&self.cases).filter(|(_, case)| matches!(case, CaseRef::Random(_)));
+        let diagnosis = diagnose(self.member, &rows, self.options.profile);
+        let named = diagnosis.explanations.first().map(|first| first.faults.clone()).unwrap_or_default();
+        let is_named = named == [fault.name];
+        let alias = !is_named && self.is_alias(variation, &diagnosis);
+        Kill {
+            fault: fault.name.into(),
+            formula: self.member.spec.id.clone(),
+            finding: match smallest {
+                None => Finding::Survived,
+                Some(_) if is_named || alias => Finding::Named,
+                Some(_) => Finding::Caught,
+            },
+            cases: rows.len(),
+            failing: diagnosis.failing,
+            smallest: smallest.map(|place| place + 1),
+            first_case: smallest.map(|place| self.member.case_id(self.cases[place])),
+            smallest_random: random.position(|(row, _)| row.is_wrong).map(|place| place + 1),
+            diagnosis: named.into_iter().map(String::from).collect(),
+            sentence: diagnosis.sentence,
+            alias,
+        }
+    }
+
+    /// Whether what is diagnosed has the same values in every case, as nearly as can be told.
+    fn is_alias(&self, variation: &Variation<'_>, diagnosis: &Diagnosis) -> bool {
+        let Some(first) = diagnosis.explanations.first() else { return false };
+        let faults: Vec<&'static Fault> = first.faults.iter().filter_map(|name| Fault::by_name(name)).collect();
+        let Some(other) = Variation::new(self.member, &faults).filter(|_| !faults.is_empty()) else { return false };
+        let within = |value: &Variation<'_>, interval: &Variation<'_>| {
+            let mut legal = vec![Accept::ANY; self.outputs()];
+            let mut values = vec![0.0_f32; self.outputs()];
+            self.inputs.iter().all(|inputs| {
+                interval.interval(inputs, self.options.profile, &mut legal);
+                value.evaluate::<f32>(inputs, &mut values);
+                values.iter().zip(&legal).all(|(&value, legal)| legal.contains(value.into()))
+            })
+        };
+        within(variation, &other) && within(&other, variation)
+    }
+
+    fn clean(&self) -> Clean {
+        let spec = &self.member.spec;
+        let mut clean = Clean { formula: spec.id.clone(), verdicts: 0, failed: 0, systematic: None };
+        let mut take = |values: Vec<Vec<f32>>| {
+            let rows = self.answered(&values);
+            clean.verdicts += (rows.len() * self.outputs()) as u64;
+            clean.failed += rows.iter().filter(|row| row.is_wrong).count() as u64;
+            if clean.systematic.is_none() {
+                clean.systematic = group_verdict(self.member, &rows, self.options.profile);
+            }
+        };
+        take(self.answers(|inputs, out| self.member.formula.embedded(inputs, out)));
+        // A rasteriser chooses where it snaps, not how it rounds.
+        if !matches!(spec.kind, Kind::Raster(_)) {
+            for draw in 0..self.options.draws {
+                random::seed(self.options.seed.wrapping_add(draw));
+                take(self.answers(|inputs, out| self.draw(inputs, out)));
+            }
+        }
+        clean
+    }
+
+    /// One legal evaluation.
+    fn draw(&self, inputs: &[f32], out: &mut [f32]) {
+        self.options.profile.scope(|| {
+            let inputs: Vec<Draw> = inputs.iter().map(|&x| Draw::input(x)).collect();
+            let mut drawn = vec![Draw::of(0.0); out.len()];
+            self.member.formula.on_draw(&inputs, &mut drawn);
+            for (out, drawn) in out.iter_mut().zip(drawn) {
+                *out = drawn.narrow();
+            }
+        });
+    }
+}
