@@ -79,7 +79,7 @@ fn a_page_is_made_of_a_run() {
 
 #[test]
 fn the_self_test_names_every_fault() {
-    let output = lightmeter(&["selftest", "--cases", "64"]);
+    let output = lightmeter(&["selftest", "--only", "blend-unit", "--cases", "64"]);
     let text = stdout(&output);
     assert_eq!(code(&output), 0, "{text}");
     for fault in lightmeter::blend_unit::rules::FAULTS {

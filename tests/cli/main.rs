@@ -7,6 +7,7 @@ mod blend;
 mod hard;
 mod images;
 mod scene;
+mod selftest;
 mod special;
 mod sweep;
 

@@ -90,12 +90,13 @@ const MOST_INPUTS: usize = 80;
 /// Room for the outputs of any formula.
 const MOST_OUTPUTS: usize = 16;
 
-fn run<F: Formula, R: Real>(formula: &F, inputs: &[f32], out: &mut [R]) {
+/// Widens a row of inputs for an evaluation.
+fn run<R: Real>(inputs: &[f32], evaluate: impl FnOnce(&[R])) {
     let mut row = [R::literal(0.0); MOST_INPUTS];
     for (wide, &narrow) in row.iter_mut().zip(inputs) {
         *wide = R::input(narrow);
     }
-    formula.evaluate(&mut Reader::new(&row[..inputs.len()]), &mut Writer::new(out));
+    evaluate(&row[..inputs.len()]);
 }
 
 /// The same along one input, in a loop of the formula's own type.
@@ -118,42 +119,46 @@ impl<F: Formula> AnyFormula for F {
     }
 
     fn reference(&self, inputs: &[f32], out: &mut [f64]) {
-        run(self, inputs, out);
+        run(inputs, |row| self.on_f64(row, out));
     }
 
     fn embedded(&self, inputs: &[f32], out: &mut [f32]) {
-        run(self, inputs, out);
+        self.on_f32(inputs, out);
     }
 
     fn interval(&self, inputs: &[f32], out: &mut [Accept]) {
-        run(self, inputs, out);
+        run(inputs, |row| self.on_accept(row, out));
     }
 
+    #[inline(never)]
     fn on_f64(&self, inputs: &[f64], out: &mut [f64]) {
         self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
     }
 
+    #[inline(never)]
     fn on_f32(&self, inputs: &[f32], out: &mut [f32]) {
         self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
     }
 
+    #[inline(never)]
     fn on_accept(&self, inputs: &[Accept], out: &mut [Accept]) {
         self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
     }
 
+    #[inline(never)]
     fn on_draw(&self, inputs: &[Draw], out: &mut [Draw]) {
         self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
     }
 
     fn raster_interval(&self, kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]) {
         match kind {
-            Raster::Flat { .. } | Raster::SameDepth(_) => run(self, inputs, out),
+            Raster::Flat { .. } | Raster::SameDepth(_) => self.interval(inputs, out),
             _ => raster::interval(kind, inputs, subpixel_bits, out),
         }
     }
 
     fn trace(&self, inputs: &[f32], out: &mut [Trace]) {
-        run(self, inputs, out);
+        run(inputs, |row| self.evaluate(&mut Reader::new(row), &mut Writer::new(out)));
     }
 
     fn derivatives(&self, inputs: &[f32]) -> Vec<Vec<Dual>> {

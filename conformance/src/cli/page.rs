@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use lightmeter::bench::document::{Document, SCHEMA};
 use lightmeter::bench::{page, plot};
 use lightmeter::report;
-use lightmeter::report::page::{Run, markdown, scenes, special, stability, svg};
+use lightmeter::report::page::{Run, markdown, scenes, selftest, special, stability, svg};
 use lightmeter::sweep;
 use std::path::PathBuf;
 
@@ -19,6 +19,8 @@ enum Subject {
     Blend,
     /// The built-in scenes, with a contact sheet.
     Scenes,
+    /// What the suite catches and how small an error it names, from the JSON of `selftest`.
+    Selftest,
     /// NaN, infinity, subnormals and signed zero, from the JSON of `special`.
     Special,
     /// Hard cases by their stable and their naive forms, with a picture.
@@ -33,7 +35,7 @@ pub(crate) struct Page {
     /// What it is about
     #[arg(value_enum)]
     subject: Subject,
-    /// The JSON of `lightmeter run --format json`, or of `special` or `bench` with the same; of sweeps, that of each
+    /// The JSON of `lightmeter run --format json`, or of `special`, `selftest` or `bench` with the same; of sweeps, that of each
     #[arg(required = true)]
     runs: Vec<PathBuf>,
     /// Write the page to a file, and its picture to one of the same name that ends in .svg or .png; those of a bench to a folder of
@@ -57,6 +59,7 @@ impl Page {
             Subject::Bench => self.bench(&json),
             Subject::Blend => self.blend(&json),
             Subject::Scenes | Subject::Sweep => self.scenes(&json),
+            Subject::Selftest => caught(&json),
             Subject::Special => special(&json),
             Subject::Stability => self.stability(&json),
         };
@@ -149,5 +152,12 @@ fn special(json: &str) -> anyhow::Result<String> {
     let run = special::Run::read(json).map_err(|message| anyhow!(message))?;
     let mut text = String::new();
     special::markdown(&run, &mut text)?;
+    Ok(text)
+}
+
+fn caught(json: &str) -> anyhow::Result<String> {
+    let run = selftest::Run::read(json).map_err(|message| anyhow!(message))?;
+    let mut text = String::new();
+    selftest::markdown(&run, &mut text)?;
     Ok(text)
 }

@@ -31,7 +31,9 @@ pub struct Explanation {
     pub parameter: Option<Scaled>,
     /// Failing cases whose answer is legal for who makes the mistake.
     pub explained: usize,
-    /// Passing cases whose answer is.
+    /// Failing cases in which who makes the mistake may answer anything.
+    pub open: usize,
+    /// Passing cases whose answer would be too.
     pub consistent: usize,
     /// How much the mistake leaves open: the mean of log₂(1 + the interval's width in ULP).
     pub openness: f64,
@@ -58,6 +60,8 @@ const MOST_EXPLANATIONS: usize = 5;
 const WHOLE: f64 = 0.9;
 /// The share below which it is told as none.
 const PART: f64 = 0.5;
+/// The share of failing cases that lie inside, where the mistake promises something, at least.
+const LEAST: f64 = 0.1;
 /// Failing cases that a mistake is tried on first.
 const PROBES: usize = 24;
 /// Failing cases that a pair of mistakes is tried on first; all but one of them must be explained.
@@ -99,7 +103,8 @@ fn better(a: &Explanation, b: &Explanation) -> Ordering {
     let many = |a: usize, b: usize| b.cmp(&a);
     // Parameters last, then pairs.
     let kind = |e: &Explanation| if e.parameter.is_some() { 3 } else { e.faults.len() };
-    many(a.explained, b.explained)
+    many(a.explained + a.open, b.explained + b.open)
+        .then(many(a.explained, b.explained))
         .then(many(a.consistent, b.consistent))
         .then(a.openness.total_cmp(&b.openness))
         .then(kind(a).cmp(&kind(b)))
@@ -111,13 +116,15 @@ fn sentence(failing: usize, best: Option<&Explanation>) -> String {
         _ if failing == 0 => "nothing fails".into(),
         None => format!("nothing in the catalogue explains the failing cases, of which there are {failing}"),
         Some(best) => {
-            let Explanation { explained, says, .. } = best;
+            let Explanation { explained, open, says, .. } = best;
             let told = format!("{explained} of {failing} failing {cases} explained by: {says}");
-            if share(*explained, failing) < WHOLE {
-                let rest = failing - explained;
-                format!("{told}; nothing in the catalogue explains the other {rest}")
-            } else {
-                told
+            let rest = failing - explained - open;
+            match open {
+                _ if share(explained + open, failing) < WHOLE => {
+                    format!("{told}; nothing in the catalogue explains {rest} others")
+                }
+                0 => told,
+                open => format!("{told}; in {open} it may give anything"),
             }
         }
     }
@@ -140,26 +147,35 @@ fn smallest(rows: &[Answered<'_>]) -> Option<usize> {
     failing.min_by_key(|(_, row)| row.inputs.iter().map(|&x| digits(x)).sum::<u32>()).map(|(place, _)| place)
 }
 
-/// What a row's answer says of an interval of each output.
-pub(super) struct Fit {
-    /// Every output lies in its interval, and one of them at least is bound to.
-    pub(super) is_explained: bool,
-    openness: f64,
+/// What a row's answer says of the intervals of its outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fit {
+    /// Every output lies in its interval, and one of them at least is bound to something.
+    Inside,
+    /// Nothing is promised.
+    Open,
+    /// An output lies outside.
+    Outside,
 }
 
-/// Whether an answer is one that these intervals allow.
-pub(super) fn fit(values: &[f32], legal: &[Accept]) -> Fit {
-    let mut openness = 0.0;
-    let (mut inside, mut bound) = (true, false);
+/// Whether an answer is one that these intervals allow, and how much they leave open.
+pub(super) fn fit(values: &[f32], legal: &[Accept]) -> (Fit, f64) {
+    // What counts as the width of an interval that anything lies in.
+    const WIDEST_ULP: f64 = 1e9;
+    let (mut inside, mut bound, mut openness) = (true, false, 0.0);
     for (&value, legal) in values.iter().zip(legal) {
         inside &= legal.contains(value.into());
-        // A value that is no number is bound by nothing more than that nothing is promised.
+        // A value that is no number is as much as can be said where nothing is promised.
         bound |= !legal.is_any() || !value.is_finite();
-        let ulps =
-            if legal.is_any() { 1e9 } else { legal.width() / F32::ulp(f64::from(value)).max(F32::MIN_SUBNORMAL) };
-        openness += (1.0 + ulps.min(1e9)).log2();
+        let ulps = legal.width() / F32::ulp(f64::from(value)).max(F32::MIN_SUBNORMAL);
+        openness += (1.0 + ulps.min(WIDEST_ULP)).log2();
     }
-    Fit { is_explained: inside && bound, openness: openness / share(values.len().max(1), 1) }
+    let fit = match (inside, bound) {
+        (false, _) => Fit::Outside,
+        (true, false) => Fit::Open,
+        (true, true) => Fit::Inside,
+    };
+    (fit, openness / share(values.len().max(1), 1))
 }
 
 struct Trial<'a> {
@@ -172,7 +188,7 @@ struct Trial<'a> {
 
 impl Trial<'_> {
     fn is_explained(&self) -> bool {
-        self.found.iter().any(|found| found.explained == self.failing.len())
+        self.found.iter().any(|found| found.explained + found.open == self.failing.len())
     }
 
     /// So many of the failing cases, evenly spread.
@@ -180,20 +196,21 @@ impl Trial<'_> {
         self.failing.iter().step_by((self.failing.len() / count).max(1)).take(count)
     }
 
-    fn counts(&self, count: usize, interval: impl Fn(&[f32], &mut [Accept])) -> (usize, usize) {
+    /// How many of some failing cases lie outside the intervals, and how many are tried.
+    fn contradicted(&self, count: usize, interval: impl Fn(&[f32], &mut [Accept])) -> (usize, usize) {
         let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
-        let (mut explained, mut tried) = (0, 0);
+        let (mut outside, mut tried) = (0, 0);
         for row in self.probes(count) {
             interval(row.inputs, &mut legal);
-            explained += usize::from(fit(row.values, &legal).is_explained);
+            outside += usize::from(fit(row.values, &legal).0 == Fit::Outside);
             tried += 1;
         }
-        (explained, tried)
+        (outside, tried)
     }
 
     fn singles(&mut self) {
         for fault in concerning(&self.member.spec) {
-            self.try_faults(&[fault], PROBES, |explained, tried| 2 * explained >= tried);
+            self.try_faults(&[fault], PROBES, |outside, tried| 2 * outside <= tried);
         }
     }
 
@@ -201,7 +218,7 @@ impl Trial<'_> {
         let concerned: Vec<&'static Fault> = concerning(&self.member.spec).collect();
         for (place, first) in concerned.iter().enumerate() {
             for second in &concerned[place + 1..] {
-                self.try_faults(&[first, second], PAIR_PROBES, |explained, tried| explained + 1 >= tried);
+                self.try_faults(&[first, second], PAIR_PROBES, |outside, _| outside <= 1);
             }
         }
     }
@@ -209,8 +226,8 @@ impl Trial<'_> {
     fn try_faults(&mut self, faults: &[&'static Fault], probes: usize, is_likely: impl Fn(usize, usize) -> bool) {
         let Some(variation) = Variation::new(self.member, faults) else { return };
         let interval = |inputs: &[f32], out: &mut [Accept]| variation.interval(inputs, self.profile, out);
-        let (explained, tried) = self.counts(probes, interval);
-        if !is_likely(explained, tried) {
+        let (outside, tried) = self.contradicted(probes, interval);
+        if !is_likely(outside, tried) {
             return;
         }
         let names = faults.iter().map(|fault| fault.name).collect();
@@ -227,8 +244,8 @@ impl Trial<'_> {
             let says = scaled.says();
             let (member, profile) = (self.member, self.profile);
             let interval = |inputs: &[f32], out: &mut [Accept]| scaled.interval(member, inputs, profile, out);
-            let (explained, tried) = self.counts(PROBES, interval);
-            if 2 * explained >= tried {
+            let (outside, tried) = self.contradicted(PROBES, interval);
+            if 2 * outside <= tried {
                 self.take(vec![], says, Some(scaled.clone()), interval);
             }
         }
@@ -242,19 +259,118 @@ impl Trial<'_> {
         interval: impl Fn(&[f32], &mut [Accept]),
     ) {
         let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
-        let (mut counts, mut openness) = ([0, 0], 0.0);
-        for (count, rows) in counts.iter_mut().zip([self.failing, self.passing]) {
-            for row in rows {
-                interval(row.inputs, &mut legal);
-                let fit = fit(row.values, &legal);
-                *count += usize::from(fit.is_explained);
-                openness += fit.openness;
+        let (mut explained, mut open, mut consistent, mut openness) = (0, 0, 0, 0.0);
+        let mut held = |row: &Answered<'_>| {
+            interval(row.inputs, &mut legal);
+            let (fit, left_open) = fit(row.values, &legal);
+            openness += left_open;
+            fit
+        };
+        for row in self.failing {
+            match held(row) {
+                Fit::Inside => explained += 1,
+                Fit::Open => open += 1,
+                Fit::Outside => {}
             }
         }
-        let [explained, consistent] = counts;
-        if share(explained, self.failing.len()) >= PART {
-            let openness = openness / share(self.failing.len() + self.passing.len(), 1);
-            self.found.push(Explanation { faults, says, parameter, explained, consistent, openness });
+        for row in self.passing {
+            consistent += usize::from(held(row) != Fit::Outside);
         }
+        // What may give anything explains nothing by that alone.
+        if share(explained + open, self.failing.len()) >= PART && share(explained, self.failing.len()) >= LEAST {
+            let openness = openness / share(self.failing.len() + self.passing.len(), 1);
+            self.found.push(Explanation { faults, says, parameter, explained, open, consistent, openness });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arithmetic::profile::WGSL;
+    use crate::faults::catalogue::formulas;
+    use crate::judge::{Outcome, judge};
+    use crate::select::CaseRef;
+
+    /// The diagnosis of an implementation of a formula, of 256 cases.
+    fn diagnosis(id: &str, implementation: impl Fn(&Member, &[f32], &mut [f32])) -> (Diagnosis, Vec<Vec<f32>>) {
+        let member = formulas().iter().find(|member| member.spec.id == id).expect(id);
+        let outputs = member.spec.output_len();
+        let (mut inputs, mut values, mut wrong) = (vec![], vec![], vec![]);
+        for k in 0..256 {
+            let (mut row, mut out) = (vec![], vec![0.0; outputs]);
+            member.inputs(CaseRef::Random(k), 1, &mut row);
+            implementation(member, &row, &mut out);
+            let (mut reference, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
+            member.formula.reference(&row, &mut reference);
+            member.formula.interval(&row, &mut legal);
+            let fails = |k: usize| judge(out[k].to_bits(), reference[k], &legal[k]).outcome == Outcome::Fail;
+            wrong.push((0..outputs).any(fails));
+            inputs.push(row);
+            values.push(out);
+        }
+        let rows: Vec<Answered<'_>> =
+            (0..256).map(|k| Answered { inputs: &inputs[k], values: &values[k], is_wrong: wrong[k] }).collect();
+        (diagnose(member, &rows, &WGSL), inputs)
+    }
+
+    fn making(names: &'static [&'static str]) -> impl Fn(&Member, &[f32], &mut [f32]) {
+        let faults: Vec<&'static Fault> = names.iter().map(|name| Fault::by_name(name).expect(name)).collect();
+        move |member, inputs, out| Variation::new(member, &faults).expect("they fit").evaluate(inputs, out)
+    }
+
+    #[test]
+    fn a_mistake_is_told_in_a_sentence() {
+        let (found, inputs) = diagnosis("fog/exp", making(&["fog-radial"]));
+        let n = found.failing;
+        assert!(n > 100, "{n}");
+        assert_eq!(found.sentence, format!("{n} of {n} failing cases are explained by: fog uses radial distance"));
+        assert_eq!(found.failing + found.passing, inputs.len());
+        assert!(found.smallest.is_some());
+    }
+
+    #[test]
+    fn two_mistakes_are_told_together() {
+        let (found, _) = diagnosis("fog/exp2-opengl", making(&["fog-radial", "red-and-blue-swapped"]));
+        assert_eq!(found.explanations[0].faults, ["fog-radial", "red-and-blue-swapped"], "{}", found.sentence);
+    }
+
+    #[test]
+    fn a_wrong_parameter_is_told_with_its_factor() {
+        for (id, name, factor, says) in [
+            ("lighting/phong", "shininess", 2.5, "as if shininess were 2.50 times what was asked"),
+            ("fog/linear", "dmax", 1.02, "as if dmax were 2.0 % larger"),
+            ("lighting/point-blinn", "kq", 0.3, "as if kq were 0.300 times what was asked"),
+        ] {
+            let (found, _) = diagnosis(id, |member, inputs, out| {
+                let mut row = inputs.to_vec();
+                row[member.spec.place(name).expect(name)].iter_mut().for_each(|x| *x *= factor);
+                member.formula.embedded(&row, out);
+            });
+            assert!(found.sentence.ends_with(says), "{}", found.sentence);
+        }
+    }
+
+    #[test]
+    fn what_nothing_explains_is_said_to_be_so() {
+        let (found, _) = diagnosis("lighting/blinn", |_, inputs, out| {
+            out.iter_mut().zip(inputs).for_each(|(out, x)| *out = (x * 1000.0).sin() * 7.0);
+        });
+        assert_eq!((found.explanations.len(), found.failing), (0, 256));
+        assert!(
+            found.sentence.starts_with("nothing in the catalogue explains the failing cases"),
+            "{}",
+            found.sentence
+        );
+    }
+
+    #[test]
+    fn answers_that_are_no_numbers_or_too_short_are_borne() {
+        let (found, _) = diagnosis("lighting/spot", |_, _, out| out.fill(f32::NAN));
+        assert!(found.failing == 256 && found.explanations.is_empty(), "{}", found.sentence);
+        let member = formulas().iter().find(|member| member.spec.id == "fog/exp").expect("fog/exp");
+        let short = [Answered { inputs: &[1.0], values: &[], is_wrong: true }];
+        assert_eq!(diagnose(member, &short, &WGSL).sentence, "nothing fails");
+        assert_eq!(diagnose(member, &[], &WGSL).smallest, None);
     }
 }

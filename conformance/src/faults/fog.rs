@@ -151,6 +151,7 @@ pub(super) fn evaluate<R: Real>(spec: &Spec, twists: &[Twist], numbers: &[R], ou
     let zero = R::literal(0.0);
     let d = match model.length {
         Length::Planar => fog::distance(p, Distance::Planar),
+        Length::Radial if spec.id.ends_with("-scaled") => fog::radial_distance_scaled(p),
         Length::Radial => R::if_ge(zero, p.dot(p), || zero, || fog::distance(p, Distance::Radial)),
         Length::Signed => p.z(),
     };

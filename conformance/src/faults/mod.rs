@@ -24,3 +24,9 @@ pub use factor::Scaled;
 pub use group::{Error, LEAST_SHARE, LEAST_VALUES, LEAST_Z, Systematic, group_verdict};
 pub use row::Arithmetic;
 pub use variation::Variation;
+
+/// A share in percent; 100 of nothing.
+#[must_use]
+pub(crate) fn percent(part: usize, whole: usize) -> f64 {
+    if whole == 0 { 100.0 } else { 100.0 * diagnose::share(part, whole) }
+}

@@ -15,6 +15,7 @@ use crate::select::{CaseRef, Member, Shard, catalogue, select};
 use lightmeter_reference::Real as _;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::cell::LazyCell;
 
 /// What is tried.
 #[derive(Clone, Debug)]
@@ -113,9 +114,30 @@ pub fn selftest(options: &Options) -> Record {
     let members = catalogue();
     let selected = select(&members, &options.filter, options.cases, Shard::WHOLE);
     let tried: Vec<(Vec<Kill>, Clean)> =
-        selected.par_iter().map(|chosen| Bench::new(&members[chosen.member], options).run()).collect();
+        selected.par_iter().map(|chosen| try_all(&members[chosen.member], options)).collect();
     let (kills, clean): (Vec<Vec<Kill>>, Vec<Clean>) = tried.into_iter().unzip();
     Record { kills: kills.into_iter().flatten().collect(), clean }
+}
+
+/// Random cases of a run, which a mistake must show in at the latest.
+const CASES_OF_A_RUN: u64 = 4096;
+
+/// Every mistake in a formula, and none.
+fn try_all(member: &Member, options: &Options) -> (Vec<Kill>, Clean) {
+    let spec = &member.spec;
+    let is_state = matches!(spec.kind, Kind::Blend(_));
+    let few = Bench::new(member, options, if is_state { options.cases.div_ceil(4) } else { options.cases });
+    let all = LazyCell::new(|| Bench::new(member, options, CASES_OF_A_RUN));
+    let mut kills = vec![];
+    for fault in concerning(spec) {
+        let Some(variation) = Variation::new(member, &[fault]) else { continue };
+        let kill = few.kill(fault, &variation);
+        // What does not show in a few cases has those of a run.
+        kills.push(if kill.finding == Finding::Survived { all.kill(fault, &variation) } else { kill });
+    }
+    // Blend states are products and a sum each; a group verdict on all of them says nothing more than one on the modes.
+    let is_grouped = matches!(spec.kind, Kind::Arithmetic) || spec.id.starts_with("blend/mode");
+    (kills, if is_grouped { all.clean() } else { few.clean() })
 }
 
 /// The cases of one formula, with what is right and what is legal in each.
@@ -129,13 +151,8 @@ struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    fn new(member: &'a Member, options: &'a Options) -> Self {
+    fn new(member: &'a Member, options: &'a Options, random: u64) -> Self {
         let spec = &member.spec;
-        let random = if spec.id.starts_with("blend/") && matches!(spec.kind, Kind::Blend(_)) {
-            options.cases.div_ceil(4)
-        } else {
-            options.cases
-        };
         let hard = (0..spec.hard.len()).map(CaseRef::Hard);
         let near = (0..spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));
         let cases: Vec<CaseRef> = hard.chain(near).chain((0..random).map(CaseRef::Random)).collect();
@@ -188,13 +205,6 @@ impl<'a> Bench<'a> {
             .collect()
     }
 
-    fn run(&self) -> (Vec<Kill>, Clean) {
-        let kills = concerning(&self.member.spec)
-            .filter_map(|fault| Some(self.kill(fault, &Variation::new(self.member, &[fault])?)))
-            .collect();
-        (kills, self.clean())
-    }
-
     fn kill(&self, fault: &'static Fault, variation: &Variation<'_>) -> Kill {
         let values = self.answers(|inputs, out| variation.evaluate::<f32>(inputs, out));
         let rows = self.answered(&values);
@@ -243,20 +253,23 @@ impl<'a> Bench<'a> {
     fn clean(&self) -> Clean {
         let spec = &self.member.spec;
         let mut clean = Clean { formula: spec.id.clone(), verdicts: 0, failed: 0, systematic: None };
-        let mut take = |values: Vec<Vec<f32>>| {
+        let mut take = |values: Vec<Vec<f32>>, grouped: bool| {
             let rows = self.answered(&values);
             clean.verdicts += (rows.len() * self.outputs()) as u64;
             clean.failed += rows.iter().filter(|row| row.is_wrong).count() as u64;
-            if clean.systematic.is_none() {
-                clean.systematic = group_verdict(self.member, &rows, self.options.profile);
+            if grouped && clean.systematic.is_none() {
+                // Hard cases are no sample of anything.
+                let random = rows.iter().zip(&self.cases).filter(|(_, case)| matches!(case, CaseRef::Random(_)));
+                let random: Vec<Answered<'_>> = random.map(|(row, _)| *row).collect();
+                clean.systematic = group_verdict(self.member, &random, self.options.profile);
             }
         };
-        take(self.answers(|inputs, out| self.member.formula.embedded(inputs, out)));
+        take(self.answers(|inputs, out| self.member.formula.embedded(inputs, out)), true);
         // A rasteriser chooses where it snaps, not how it rounds.
         if !matches!(spec.kind, Kind::Raster(_)) {
             for draw in 0..self.options.draws {
                 random::seed(self.options.seed.wrapping_add(draw));
-                take(self.answers(|inputs, out| self.draw(inputs, out)));
+                take(self.answers(|inputs, out| self.draw(inputs, out)), draw == 0);
             }
         }
         clean

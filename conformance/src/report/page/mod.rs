@@ -2,6 +2,7 @@
 
 mod picture;
 pub mod scenes;
+pub mod selftest;
 pub mod special;
 pub mod stability;
 pub mod sweep;

@@ -1,0 +1,75 @@
+//! Mistakes in how a colour is given out, whatever it is of.
+
+use super::super::catalogue::Fault;
+use super::super::catalogue::Step::{After, Before};
+use super::super::change::After as Out;
+use super::super::change::Before as In;
+use super::{fault, where_colors_are_drawn};
+use crate::cases::Spec;
+
+pub(super) const FAULTS: &[Fault] = &[
+    fault("gamma-encoded", "the output is gamma-encoded, c^(1/2.2)", &[&[After(Out::Gamma)]])
+        .only(where_colors_are_drawn),
+    fault("srgb-encoded", "the output is sRGB-encoded", &[&[After(Out::Srgb)]])
+        .only(where_colors_are_drawn)
+        .seen_in("three.js, the default output colour space"),
+    fault("srgb-decoded", "the output is decoded as if it were sRGB", &[&[After(Out::Decode)]])
+        .only(where_colors_are_drawn),
+    fault(
+        "materials-decoded",
+        "the material's colours are decoded as if they were sRGB",
+        &[
+            &[Before(In::Decode("ma")), Before(In::Decode("md")), Before(In::Decode("ms"))],
+            &[Before(In::Decode("ma"))],
+            &[Before(In::Decode("md"))],
+            &[Before(In::Decode("ms"))],
+            &[Before(In::Decode("diffuse")), Before(In::Decode("specular"))],
+            &[Before(In::Decode("surface"))],
+            &[Before(In::Decode("texel"))],
+        ],
+    )
+    .only(|spec| spec.id != "lighting/highlight-plastic")
+    .seen_in("three.js, Color.setHex under colour management"),
+    fault("output-clamped", "the sum is clamped to [0, 1] before the target's own clamp", &[&[After(Out::Clamp)]])
+        .only(where_sums_go_beyond)
+        .seen_in("OpenGL's fixed function"),
+    fault("red-and-blue-swapped", "red and blue are swapped", &[&[After(Out::RedBlue)]])
+        .only(where_colors_are_drawn)
+        .seen_in("BGRA read as RGBA"),
+    fault("truncated-store", "the output is cut to whole 255ths", &[&[After(Out::Truncate)]])
+        .only(where_colors_are_drawn),
+    fault("stored-in-8-bits", "the output is rounded to whole 255ths", &[&[After(Out::Round)]])
+        .only(where_colors_are_drawn)
+        .seen_in("answers read back from an 8-bit target"),
+    fault("premultiplied-output", "the output is multiplied by its alpha", &[&[After(Out::Premultiply)]])
+        .only(where_alpha_varies)
+        .seen_in("a browser's canvas"),
+    fault("alpha-dropped", "alpha is 1 whatever it is to be", &[&[After(Out::Opaque)]])
+        .only(where_alpha_varies)
+        .seen_in("three.js, materials not marked transparent"),
+];
+
+/// Whether an alpha comes out that may be other than 1.
+fn where_alpha_varies(spec: &Spec) -> bool {
+    where_colors_are_drawn(spec)
+        && match spec.family() {
+            "lighting" => matches!(spec.id.as_str(), "lighting/point-opengl" | "lighting/two-lights"),
+            "color" => matches!(spec.id.as_str(), "color/modulate" | "color/replace"),
+            _ => true,
+        }
+}
+
+/// Sums that may leave [0, 1].
+fn where_sums_go_beyond(spec: &Spec) -> bool {
+    match spec.family() {
+        // Attenuated light is seldom as bright as that.
+        "lighting" if spec.place("kc").is_some() => false,
+        "lighting" => {
+            !["ambient", "diffuse-", "specular-", "highlight-"]
+                .iter()
+                .any(|stem| spec.id["lighting/".len()..].starts_with(stem))
+                || spec.id == "lighting/ambient-constant"
+        }
+        _ => matches!(spec.id.as_str(), "blend/mode-add" | "blend/unpremultiply" | "blend/unpremultiply-guarded"),
+    }
+}

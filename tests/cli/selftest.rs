@@ -1,0 +1,50 @@
+//! `lightmeter selftest` on formulas, and its page.
+
+use super::{code, lightmeter, stderr, stdout};
+use serde_json::Value;
+
+#[test]
+fn mistakes_in_formulas_are_caught_and_named() {
+    let path = std::env::temp_dir().join(format!("lightmeter-selftest-{}.json", std::process::id()));
+    let file = path.to_str().expect("a path of letters");
+    let output = lightmeter(&["selftest", "fog", "attenuation", "lighting/phong", "--format", "json", "--out", file]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let run: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("the file")).expect("JSON");
+    assert_eq!((&run["schema"], run["rows"].as_array().map(Vec::len)), (&"lightmeter.selftest/1".into(), Some(0)));
+    let kills = run["kills"].as_array().expect("kills");
+    let named = kills.iter().filter(|kill| kill["finding"] == "named").count();
+    assert!(kills.len() > 300 && 100 * named >= 95 * kills.len(), "{named} of {}", kills.len());
+    for kill in kills {
+        assert!(kill["finding"] != "survived" && kill["smallest"].as_u64() >= Some(1), "{kill}");
+    }
+    for clean in run["clean"].as_array().expect("formulas") {
+        assert!(clean["failed"] == 0 && clean["systematic"].is_null(), "{clean}");
+    }
+    let page = lightmeter(&["page", "selftest", file]);
+    assert_eq!(code(&page), 0, "{}", stderr(&page));
+    assert!(stdout(&page).contains("| fog-radial | fog uses radial distance |"), "{}", stdout(&page));
+    let _ = std::fs::remove_file(path);
+}
+
+#[test]
+fn the_resolution_is_told_by_parameter() {
+    let output = lightmeter(&["selftest", "fog/exp", "--calibrate", "--draws", "0"]);
+    let text = stdout(&output);
+    assert_eq!(code(&output), 0, "{text}");
+    let density =
+        text.lines().find(|line| line.starts_with("fog/exp ") && line.contains("density") && line.contains("scale"));
+    let errors: Vec<f64> = density.expect(&text).split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    assert!(errors.len() == 2 && errors.iter().all(|error| (1e-8..1e-4).contains(error)), "{errors:?}");
+}
+
+#[test]
+fn bad_usage_is_said() {
+    for (arguments, status, message) in [
+        (&["selftest", "fog", "--only", "blend-unit"][..], 2, "a filter selects formulas"),
+        (&["selftest", "frog"], 3, "no formula matches the filter"),
+        (&["selftest", "--formula-cases", "0"], 2, "0 is not in"),
+    ] {
+        let output = lightmeter(arguments);
+        assert!(code(&output) == status && stderr(&output).contains(message), "{}", stderr(&output));
+    }
+}
