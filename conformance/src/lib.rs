@@ -8,6 +8,7 @@ pub mod devices;
 pub mod evaluate;
 pub mod faults;
 pub mod filter;
+pub mod gate;
 pub mod image;
 pub mod judge;
 pub mod report;

@@ -4,6 +4,7 @@
 
 mod bench;
 mod blend;
+mod gate;
 mod hard;
 mod images;
 mod scene;

@@ -102,6 +102,16 @@ impl<F: Format> Accept<F> {
         Self::raw(low, high)
     }
 
+    /// [`Accept::seal`] of a sum's or a product's exact range, widened where the profile promises less than correct rounding.
+    #[inline]
+    fn rounded(low: f64, high: f64) -> Self {
+        let relative = current(|p| p.relative);
+        if relative > 0.0 {
+            return Self::seal(low - relative * low.abs(), high + relative * high.abs());
+        }
+        Self::seal(low, high)
+    }
+
     /// [`Accept::seal`] of fixed hardware, where what is too great becomes infinite or the greatest finite number.
     #[cold]
     fn overflow(low: f64, high: f64) -> Self {
@@ -201,7 +211,7 @@ impl<F: Format> Accept<F> {
     /// x·x, which is never negative: the two factors are one value.
     fn square(self) -> Self {
         let x = self.abs();
-        Self::seal(x.low * x.low, x.high * x.high)
+        Self::rounded(x.low * x.low, x.high * x.high)
     }
 }
 
@@ -250,14 +260,20 @@ fn add_down(a: f64, b: f64) -> f64 {
 
 /// Greater only for rounding at the last bits of f64 than the true ((1 + ε)ⁿ⁻¹ − 1).
 fn chain_error<F: Format>(n: usize) -> f64 {
-    (1..n).fold(1.0, |growth, _| growth * (1.0 + F::EPSILON)) - 1.0 + F64_SLACK
+    let epsilon = epsilon::<F>();
+    (1..n).fold(1.0, |growth, _| growth * (1.0 + epsilon)) - 1.0 + F64_SLACK
+}
+
+/// How far an addition or a multiplication may be off, relatively: a rounding up or down, or what the profile says.
+fn epsilon<F: Format>() -> f64 {
+    F::EPSILON.max(current(|p| p.relative))
 }
 
 impl<F: Format> Add for Accept<F> {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
-        Self::seal(add_down(self.low, other.low), -add_down(-self.high, -other.high))
+        Self::rounded(add_down(self.low, other.low), -add_down(-self.high, -other.high))
     }
 }
 
@@ -290,7 +306,7 @@ impl<F: Format> Mul for Accept<F> {
         }
         // A product of two numbers of at most 24 bits is exact in f64.
         let (low, high) = Self::product_range((self.low, self.high), (other.low, other.high));
-        Self::seal(low, high)
+        Self::rounded(low, high)
     }
 }
 
@@ -407,9 +423,10 @@ impl<F: Format> Real for Accept<F> {
         let error = |y: f64| {
             // A term has at most 6 products, a rounded coefficient and 6 sums; against the sum of their magnitudes, at most
             // 1.07 times the result; the next term of the series is below ε/8.
-            let series = 16.0 * F::EPSILON * 1.07 + F::EPSILON / 8.0;
+            let series = 16.0 * epsilon::<F>() * 1.07 + F::EPSILON / 8.0;
             // 1 + x is rounded; log errs by 2⁻²¹ near 1 and by 3 ULP elsewhere.
-            let log = current(|p| p.log2_absolute) + 1.02 * F::EPSILON + current(|p| p.log2_ulp) * F::EPSILON * y.abs();
+            let log =
+                current(|p| p.log2_absolute) + 1.02 * epsilon::<F>() + current(|p| p.log2_ulp) * F::EPSILON * y.abs();
             (if may_be_series { series * y.abs() } else { 0.0 }).max(if may_be_log { log } else { 0.0 })
         };
         let (low, high) = (core_math::log1p(self.low), core_math::log1p(self.high));
@@ -428,7 +445,7 @@ impl<F: Format> Real for Accept<F> {
         }
         // At most 8 products, a rounded coefficient and 8 sums a term; the magnitudes' sum is at most 1.65 times the result;
         // the next term is below ε/8.
-        let error = 20.0 * F::EPSILON * 1.65 + F::EPSILON / 8.0;
+        let error = 20.0 * epsilon::<F>() * 1.65 + F::EPSILON / 8.0;
         let (low, high) = (core_math::expm1(self.low.max(-SERIES)), core_math::expm1(self.high.min(SERIES)));
         let low = (low - error * low.abs()).next_down();
         let high = (high + error * high.abs()).next_up();
@@ -541,9 +558,9 @@ impl<F: Format> Real for Accept<F> {
         if any_zero {
             return Self::exactly(0.0);
         }
-        let mut error = if rounded > 2 { chain_error::<F>(rounded) } else { 0.0 };
+        let mut error = if rounded > 2 { chain_error::<F>(rounded) } else { current(|p| p.relative) };
         if rounded <= 2 && least >= F::MIN_NORMAL {
-            return Self::seal(range.0, range.1);
+            return Self::rounded(range.0, range.1);
         }
         error *= range.0.abs().max(range.1.abs());
         // A partial product below the normal range may be flushed, and what it lost is then scaled up again.

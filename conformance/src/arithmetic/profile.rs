@@ -29,6 +29,8 @@ pub struct Profile {
     pub name: &'static str,
     /// Where the figures come from.
     pub source: &'static str,
+    /// How far `+ − ×` may be off, relatively; 0 where they are correctly rounded, up or down.
+    pub relative: f64,
     /// `/`, for a divisor whose magnitude lies in [2⁻¹²⁶, 2¹²⁶]; undefined elsewhere.
     pub divide_ulp: f64,
     /// inverseSqrt; sqrt is 1 / inverseSqrt.
@@ -55,6 +57,7 @@ const EXPONENTIAL: GrowingUlp = GrowingUlp { base: 3.0, slope: 2.0 };
 pub const WGSL: Profile = Profile {
     name: "wgsl",
     source: "WGSL, Floating Point Accuracy",
+    relative: 0.0,
     divide_ulp: 2.5,
     inverse_sqrt_ulp: 2.0,
     exp_ulp: EXPONENTIAL,
@@ -71,8 +74,26 @@ pub const WGSL: Profile = Profile {
 pub const VULKAN: Profile =
     Profile { name: "vulkan", source: "Vulkan, Precision and Operation of SPIR-V Instructions", ..WGSL };
 
+/// One part in 10⁵, in ULP of binary32.
+const OPENGL_ULP: f64 = 1e-5 * 8_388_608.0;
+
+/// OpenGL's floor for every operation, fixed-function ones too. It says nothing of functions apart: they are held to the same,
+/// exponentials besides to what their argument's error makes of them, and log2 near 1 to one part in 10⁵ of 1.
+pub const OPENGL: Profile = Profile {
+    name: "opengl",
+    source: "OpenGL 2.1 §2.1.1, 4.6 §2.3.4: about 1 part in 10⁵",
+    relative: 1e-5,
+    divide_ulp: OPENGL_ULP,
+    inverse_sqrt_ulp: OPENGL_ULP,
+    exp_ulp: GrowingUlp { base: OPENGL_ULP, slope: 2.0 },
+    exp2_ulp: GrowingUlp { base: OPENGL_ULP, slope: 2.0 },
+    log2_absolute: 1e-5,
+    log2_ulp: OPENGL_ULP,
+    ..WGSL
+};
+
 /// The profiles by name, the default first.
-pub const PROFILES: [&Profile; 2] = [&WGSL, &VULKAN];
+pub const PROFILES: [&Profile; 3] = [&WGSL, &VULKAN, &OPENGL];
 
 impl Profile {
     /// The profile of that name.

@@ -19,7 +19,7 @@ use std::io::{BufRead as _, Write as _};
 /// f32; NaN, Inf and -Inf are strings. `lightmeter list --formulas` names the inputs.
 #[derive(Debug, Args)]
 pub(crate) struct Eval {
-    /// Accuracy rules: wgsl or vulkan
+    /// Accuracy rules: wgsl, vulkan or opengl
     #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
     profile: &'static Profile,
 }

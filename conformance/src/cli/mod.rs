@@ -4,9 +4,11 @@ mod adapters;
 mod bench;
 mod effects;
 mod eval;
+mod gate;
 mod list;
 mod merge;
 mod options;
+mod pack;
 mod page;
 mod render;
 mod run;
@@ -27,7 +29,7 @@ use std::process::ExitCode;
     name = "lightmeter",
     version,
     after_help = "Exit codes: 0 all as expected · 1 something failed or passed unexpectedly · 2 bad usage or input · \
-    3 nothing could run · 4 the device failed or was lost"
+    3 nothing could run · 4 the device failed or was lost, or the renderer under test crashed, hung or broke the protocol"
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
@@ -56,6 +58,10 @@ enum Command {
     Special(special::Special),
     /// Draw a scene, by the reference or by an adapter
     Render(render::Render),
+    /// Write cases as files, for a renderer that answers by files
+    Pack(pack::Pack),
+    /// Judge another renderer, by its files or as a process
+    Gate(gate::Gate),
     /// Write a page of the docs from a run's JSON
     Page(page::Page),
     /// Print what a scene calls for, draw by draw and light by light, and why
@@ -79,6 +85,8 @@ impl Cli {
             Command::Selftest(selftest) => selftest.run(),
             Command::Special(special) => special.run(),
             Command::Render(render) => render.run(),
+            Command::Pack(pack) => pack.run(),
+            Command::Gate(gate) => gate.run(),
             Command::Page(page) => page.run(),
             Command::Effects(effects) => effects.run(),
             Command::Schema(schema) => schema.run(),
@@ -98,7 +106,7 @@ pub(crate) enum Status {
     BadInput = 2,
     /// Nothing could run.
     Nothing = 3,
-    /// The device failed or was lost.
+    /// The device failed or was lost, or the renderer under test crashed, hung or broke the protocol.
     Device = 4,
 }
 
@@ -118,6 +126,9 @@ impl Status {
     pub(crate) fn of(error: &anyhow::Error) -> Self {
         if error.downcast_ref::<NothingToRun>().is_some() {
             return Self::Nothing;
+        }
+        if let Some(lightmeter::gate::process::Error::Start { .. }) = error.downcast_ref() {
+            return Self::Device;
         }
         match error.downcast_ref::<lightmeter_gpu::Error>() {
             Some(lightmeter_gpu::Error::Device(_) | lightmeter_gpu::Error::Timeout(_)) => Self::Device,

@@ -47,7 +47,7 @@ pub(crate) struct Choice {
     /// Again for several. Without it: lavapipe, or the first adapter there is
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Vec<String>,
-    /// Accuracy rules: wgsl or vulkan
+    /// Accuracy rules: wgsl, vulkan or opengl
     #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
     pub(crate) profile: &'static Profile,
     /// Format to blend on: rgba32float, rgba16float, rgba8unorm, rgba8unorm-srgb or bgra8unorm; again for several; `all`.

@@ -48,7 +48,7 @@ pub(crate) struct Sweep {
     /// Adapter to run on, as for `run`; without it: lavapipe, or the first there is
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
-    /// Accuracy rules: wgsl or vulkan
+    /// Accuracy rules: wgsl, vulkan or opengl
     #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
     profile: &'static Profile,
     /// Judge the WGSL in this folder in place of the built-in files of the same names

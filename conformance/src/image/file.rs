@@ -89,7 +89,7 @@ impl Stored {
         }
     }
 
-    fn encode(&self, path: &Path) -> Result<Vec<u8>, Error> {
+    pub(crate) fn encode(&self, path: &Path) -> Result<Vec<u8>, Error> {
         let format = Self::check_name(path)?;
         let failed = |message: String| Error::Encode { path: path.into(), message };
         let [width, height] = [self.width, self.pixels.len() / self.width]

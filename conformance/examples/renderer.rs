@@ -1,0 +1,133 @@
+//! A renderer in a process of its own, which speaks `lightmeter.protocol/1`: the formulas in f32, and scenes by the reference
+//! renderer in f32. It shows what a renderer in Rust does, and can be told to fail in every way that a renderer may, for the
+//! gate's own tests:
+//!
+//! ```text
+//! lightmeter gate fog --exec 'target/debug/examples/renderer'
+//! lightmeter gate fog --exec 'target/debug/examples/renderer crash-at=fog/exp/random/000017'
+//! ```
+
+use lightmeter::image::file::Stored;
+use lightmeter::report::Number;
+use lightmeter::scene::load;
+use lightmeter::select::{Member, catalogue};
+use lightmeter_reference::render::render;
+use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::io::{BufRead as _, Write as _};
+use std::path::{Path, PathBuf};
+
+/// What goes wrong, and at which case.
+struct Faults(HashMap<String, String>);
+
+impl Faults {
+    fn read() -> Self {
+        let pair = |word: String| word.split_once('=').map(|(name, id)| (name.to_owned(), id.to_owned()));
+        Self(std::env::args().skip(1).filter_map(pair).collect())
+    }
+
+    fn has(&self, fault: &str, id: &str) -> bool {
+        self.0.get(fault).is_some_and(|at| at == id || at == "all")
+    }
+}
+
+fn main() -> anyhow::Result<()> {
+    let faults = Faults::read();
+    let catalogue = catalogue();
+    let by_id: HashMap<&str, &Member> = catalogue.iter().map(|member| (member.spec.id.as_str(), member)).collect();
+    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    let (mut folder, mut answered) = (PathBuf::new(), 0_u32);
+    for line in std::io::stdin().lock().lines() {
+        let request: Value = serde_json::from_str(&line?)?;
+        if request.get("hello").is_some() {
+            folder = request["folder"].as_str().unwrap_or_default().into();
+            let hello = json!({
+                "hello": "lightmeter.protocol/1",
+                "renderer": "example",
+                "version": "1.0",
+                "formulas": ["**"],
+                "scenes": ["**"],
+            });
+            writeln!(out, "{}", if faults.has("no-hello", "") { json!("what?") } else { hello })?;
+            out.flush()?;
+        } else if request.get("batch").is_some() {
+            out.flush()?;
+        } else {
+            let id = request["id"].as_str().unwrap_or_default();
+            if faults.has("crash-at", id) {
+                // Like a renderer that loses what it had not written.
+                std::process::abort();
+            } else if faults.has("hang-at", id) {
+                out.flush()?;
+                loop {
+                    std::thread::sleep(std::time::Duration::from_secs(1));
+                }
+            }
+            let mut answer = match request.get("scene") {
+                Some(_) => draw(id, &folder, &faults)?,
+                None => evaluate(&request, &by_id, &faults),
+            };
+            answered += 1;
+            if faults.has("unstable-at", id) {
+                answer["value"][0] = json!(f64::from(answered));
+            }
+            if faults.has("long-at", id) {
+                out.write_all(&vec![b'x'; 64 << 20])?;
+                writeln!(out)?;
+            }
+            if faults.has("truncated-at", id) {
+                writeln!(out, "{{\"id\": \"{id}\", \"value\": [0.1, ")?;
+            }
+            if faults.has("unknown-at", id) {
+                writeln!(out, "{}", json!({ "id": "fog/none/random/000000", "value": [0] }))?;
+            }
+            if faults.has("twice-at", id) {
+                writeln!(out, "{answer}")?;
+            }
+            if !faults.has("drop-at", id) {
+                writeln!(out, "{answer}")?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A formula's outputs.
+fn evaluate(request: &Value, by_id: &HashMap<&str, &Member>, faults: &Faults) -> Value {
+    let id = &request["id"];
+    let Some(member) = request["formula"].as_str().and_then(|formula| by_id.get(formula)) else {
+        return json!({ "id": id, "skip": "no such formula" });
+    };
+    let mut row = vec![];
+    for input in member.spec.inputs {
+        let value = &request["inputs"][input.name];
+        let numbers = value.as_array().map_or(std::slice::from_ref(value), Vec::as_slice);
+        #[expect(clippy::cast_possible_truncation, reason = "inputs are f32")]
+        row.extend(numbers.iter().map(|number| number.as_f64().unwrap_or(f64::NAN) as f32));
+    }
+    let mut values = vec![0.0; member.spec.output_len()];
+    member.formula.embedded(&row, &mut values);
+    let name = id.as_str().unwrap_or_default();
+    if faults.has("nan-at", name) {
+        values[0] = f32::NAN;
+    }
+    if faults.has("wrong-at", name) {
+        values[0] += 1.0;
+    }
+    if faults.has("short-at", name) {
+        values.clear();
+    }
+    json!({ "id": id, "value": values.into_iter().map(|x| Number(x.into())).collect::<Vec<_>>() })
+}
+
+/// A scene's image. A renderer in another language would read the scene's file; this one knows it.
+fn draw(id: &str, folder: &Path, faults: &Faults) -> anyhow::Result<Value> {
+    let mut frame = load::scene(id)?.frame;
+    if faults.has("half-at", id) {
+        frame.target.width /= 2;
+    }
+    let name = format!("{}.exr", id.replace('/', "-"));
+    Stored::of(&render::<f32>(&frame, None, None), frame.target.format).write(&folder.join(&name))?;
+    let name = if faults.has("elsewhere-at", id) { "../elsewhere.exr".to_owned() } else { name };
+    Ok(json!({ "id": id, "image": name }))
+}

@@ -1,0 +1,237 @@
+//! `lightmeter gate`.
+
+use super::pack::Cases;
+use super::{NothingToRun, Status, emit};
+use anyhow::{Context as _, bail};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lightmeter::arithmetic::Profile;
+use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::gate::answer::Hello;
+use lightmeter::gate::baseline::{self, Baseline};
+use lightmeter::gate::expectations::Expectations;
+use lightmeter::gate::ledger::Ledger;
+use lightmeter::gate::plan::Plan;
+use lightmeter::gate::process::{self, Limits, Outcome};
+use lightmeter::gate::report::Report;
+use lightmeter::gate::{outputs, pack};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Judge another renderer, by its files or as a process: see docs/gate.md.
+///
+/// `gate PACK ANSWERS` judges the answers to a pack that `lightmeter pack` wrote; more ANSWERS are of further runs of the same
+/// renderer, and must be the same. `gate --exec COMMAND [FILTER…]` starts a renderer that speaks JSON lines.
+#[derive(Debug, Args)]
+pub(crate) struct Gate {
+    /// PACK ANSWERS [ANSWERS…]; with --exec: globs of the cases
+    #[arg(value_name = "PACK ANSWERS | FILTER")]
+    given: Vec<String>,
+    /// Start this command, by `sh -c`, and ask it
+    #[arg(long, value_name = "COMMAND")]
+    exec: Option<String>,
+    #[command(flatten)]
+    cases: Cases,
+    /// Accuracy rules: wgsl, vulkan or opengl; without it: what the renderer asks for, or wgsl
+    #[arg(long, value_name = "NAME", value_parser = super::options::Choice::profile)]
+    profile: Option<&'static Profile>,
+    /// Seconds that a case may take
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds)]
+    case_timeout: f64,
+    /// Seconds that a scene may take
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
+    scene_timeout: f64,
+    /// Seconds that all may take; without it: as long as it takes
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    timeout: Option<f64>,
+    /// Keep the images of a process in this folder
+    #[arg(long, value_name = "DIR", requires = "exec")]
+    images: Option<PathBuf>,
+    /// Known failures with their reasons, a TOML file
+    #[arg(long, value_name = "FILE")]
+    expect: Option<PathBuf>,
+    /// An earlier result, than which nothing may be worse
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// By how much an error may grow against the baseline
+    #[arg(long, value_name = "FACTOR", default_value_t = 2.0, requires = "baseline", value_parser = factor)]
+    growth: f64,
+    /// Write the result to the baseline's file instead of comparing with it
+    #[arg(long, requires = "baseline")]
+    update_baseline: bool,
+    /// How the result is written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write the result to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// How output is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+    Junit,
+    /// Lines that GitHub Actions shows as annotations
+    Github,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| "expected seconds, such as 10 or 0.5".to_owned())?;
+    if seconds > 0.0 && seconds <= 1e9 { Ok(seconds) } else { Err("expected seconds above 0".into()) }
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    let factor: f64 = text.parse().map_err(|_| "expected a factor, such as 1.5".to_owned())?;
+    if factor >= 1.0 && factor.is_finite() { Ok(factor) } else { Err("expected a factor of 1 or more".into()) }
+}
+
+impl Gate {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let expectations = self.expect.as_deref().map(Expectations::read).transpose()?.unwrap_or_default();
+        let known = match &self.baseline {
+            Some(path) if !self.update_baseline => Some((path, Baseline::read(path)?)),
+            _ => None,
+        };
+        if let Some(path) = &self.out {
+            // Not after hours of work.
+            emit("", Some(path))?;
+        }
+        let start = Instant::now();
+        let (plan, answers) = self.asked()?;
+        let mut ledger = Ledger::new(&plan, self.profile.unwrap_or(&WGSL));
+        ledger.is_held_to = self.profile.is_some();
+        let bar = bar(plan.cases() + plan.scenes.len() as u64);
+        let outcome = match &self.exec {
+            Some(command) => self.process(&mut ledger, &plan, command, expectations, &bar),
+            None => files(&mut ledger, &answers, &expectations, &bar),
+        };
+        bar.finish_and_clear();
+        let mut report = Report::new(&mut ledger, outcome?, command(), start.elapsed().as_secs_f64());
+        if let Some((path, known)) = &known {
+            report.regressions = known.compare(&report, self.growth, path)?;
+        }
+        emit(&self.write(&report)?, self.out.as_deref())?;
+        if let Some(path) = self.baseline.as_ref().filter(|_| self.update_baseline) {
+            baseline::update(&report, path)?;
+            eprintln!("the baseline {} is this result now", path.display());
+        }
+        Ok(status(&report))
+    }
+
+    /// The cases, and the files of answers.
+    fn asked(&self) -> anyhow::Result<(Plan, Vec<PathBuf>)> {
+        if self.exec.is_some() {
+            return Ok((self.cases.plan(&self.given)?, vec![]));
+        }
+        let [folder, answers @ ..] = self.given.as_slice() else {
+            bail!("expected PACK ANSWERS, or --exec COMMAND; `lightmeter pack DIR` writes a pack");
+        };
+        if answers.is_empty() {
+            bail!("expected PACK ANSWERS: a file of JSON lines, or a folder with answers.jsonl");
+        }
+        let manifest = pack::read(Path::new(folder))?;
+        Ok((Plan::new(manifest.choice)?, answers.iter().map(PathBuf::from).collect()))
+    }
+
+    fn process(
+        &self,
+        ledger: &mut Ledger<'_>,
+        plan: &Plan,
+        command: &str,
+        expectations: Expectations,
+        bar: &ProgressBar,
+    ) -> anyhow::Result<Outcome> {
+        let own = std::env::temp_dir().join(format!("lightmeter-gate-{}", std::process::id()));
+        let folder = self.images.clone().unwrap_or_else(|| own.clone());
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot write {}", folder.display()))?;
+        let folder = folder.canonicalize()?;
+        let duration = Duration::from_secs_f64;
+        let limits = Limits {
+            case: duration(self.case_timeout),
+            scene: duration(self.scene_timeout),
+            total: self.timeout.map(duration),
+            ..Limits::default()
+        };
+        ledger.known = expectations;
+        let outcome = process::ask(ledger, plan, command, &folder, limits, &mut |count| bar.inc(count));
+        if self.images.is_none() {
+            let _ = std::fs::remove_dir_all(own);
+        }
+        Ok(outcome?)
+    }
+
+    fn write(&self, report: &Report) -> anyhow::Result<String> {
+        Ok(match self.format {
+            Format::Json => serde_json::to_string_pretty(report)? + "\n",
+            Format::Junit => outputs::junit(report)?,
+            Format::Github => outputs::github(report),
+            Format::Text => {
+                let mut out = String::new();
+                outputs::text(report, &mut out)?;
+                out
+            }
+        })
+    }
+}
+
+/// Judges files of answers: the first of each case, and that further ones are the same.
+fn files(
+    ledger: &mut Ledger<'_>,
+    answers: &[PathBuf],
+    expectations: &Expectations,
+    bar: &ProgressBar,
+) -> anyhow::Result<Outcome> {
+    ledger.known = expectations.clone();
+    let mut hello = None;
+    for (k, path) in answers.iter().enumerate() {
+        let mut answers = pack::Answers::open(path)?;
+        if k == 0 {
+            let first = answers.hello.take().unwrap_or_else(Hello::everything);
+            ledger.begin(&first)?;
+            hello = Some(first);
+        }
+        answers.judge(ledger, k > 0, &mut |count| bar.inc(count))?;
+    }
+    let hello = hello.unwrap_or_default();
+    Ok(Outcome { hello, ..Outcome::default() })
+}
+
+fn bar(cases: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr());
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} cases  {elapsed}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// The command, but for where its result goes.
+fn command() -> String {
+    let mut words = vec!["lightmeter".to_owned()];
+    let mut given = std::env::args().skip(1);
+    while let Some(word) = given.next() {
+        if word == "--out" {
+            given.next();
+        } else if !word.starts_with("--out=") {
+            let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:".contains(c);
+            words.push(if word.chars().all(is_plain) { word } else { format!("'{word}'") });
+        }
+    }
+    words.join(" ")
+}
+
+/// A renderer that broke off, or wrote what is no answer, ends with 4 whatever else is right.
+fn status(report: &Report) -> Status {
+    if report.is_broken() {
+        Status::Device
+    } else if report.is_failed() {
+        Status::Failed
+    } else if report.has_judged() {
+        Status::Success
+    } else {
+        let error = NothingToRun("nothing was judged: the renderer declares or answers none of these cases".into());
+        eprintln!("error: {error}");
+        Status::Nothing
+    }
+}

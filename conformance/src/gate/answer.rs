@@ -1,0 +1,277 @@
+//! A line that a renderer writes.
+
+use crate::filter::Filter;
+use serde::de::{Deserializer, Visitor};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::fmt;
+use std::io::BufRead;
+
+/// Bytes of a line, at most.
+pub const MOST_BYTES: usize = 1 << 20;
+/// The protocol's name and version.
+pub const PROTOCOL: &str = "lightmeter.protocol/1";
+
+/// Who answers, and what is to be asked.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Hello {
+    /// Its name.
+    pub renderer: String,
+    /// Its version.
+    pub version: String,
+    /// Globs of the formulas that it evaluates.
+    pub formulas: Vec<String>,
+    /// Globs of the scenes that it draws.
+    pub scenes: Vec<String>,
+    /// Formats of targets that it draws on; `None` for all.
+    pub formats: Option<Vec<String>>,
+    /// Effects that it has; `None` for all. A scene that calls for another is not asked for.
+    pub effects: Option<Vec<String>>,
+    /// The accuracy rules that it is held to.
+    pub profile: Option<String>,
+}
+
+impl Hello {
+    /// Of answers that do not say what they are to: everything is asked.
+    #[must_use]
+    pub fn everything() -> Self {
+        Self { renderer: "unnamed".into(), formulas: vec!["**".into()], scenes: vec!["**".into()], ..Self::default() }
+    }
+
+    /// What it says of itself, read as filters.
+    ///
+    /// # Errors
+    /// Where a glob cannot be read.
+    pub fn filters(&self) -> Result<[Option<Filter>; 2], crate::filter::FilterError> {
+        // No glob matches everything in a filter, and nothing in a declaration.
+        let read = |globs: &[String]| (!globs.is_empty()).then(|| Filter::new(globs)).transpose();
+        Ok([read(&self.formulas)?, read(&self.scenes)?])
+    }
+}
+
+/// What a line says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Line<'a> {
+    /// Who answers.
+    Hello(Box<Hello>),
+    /// A case's outputs.
+    Value(Cow<'a, str>, Vec<f32>),
+    /// A scene's image, by the name of its file.
+    Image(Cow<'a, str>, Cow<'a, str>),
+    /// The renderer does not do this, and why.
+    Skip(Cow<'a, str>, Cow<'a, str>),
+    /// The renderer could not do this, and why.
+    Error(Cow<'a, str>, Cow<'a, str>),
+}
+
+/// What else a line has is the renderer's own.
+#[derive(Deserialize)]
+struct Raw<'a> {
+    #[serde(borrow)]
+    id: Cow<'a, str>,
+    value: Option<Values>,
+    #[serde(borrow)]
+    image: Option<Cow<'a, str>>,
+    #[serde(borrow)]
+    skip: Option<Cow<'a, str>>,
+    #[serde(borrow)]
+    error: Option<Cow<'a, str>>,
+}
+
+/// Numbers, or one.
+struct Values(Vec<f32>);
+
+/// A number, or the word of one that JSON has not.
+struct Float(f32);
+
+impl<'de> Deserialize<'de> for Float {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Read;
+        impl Visitor<'_> for Read {
+            type Value = f32;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, \"NaN\", \"Inf\" or \"-Inf\"")
+            }
+            #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is what is asked for")]
+            fn visit_f64<E>(self, x: f64) -> Result<f32, E> {
+                Ok(x as f32)
+            }
+            #[expect(clippy::cast_precision_loss, reason = "the nearest f32 is what is asked for")]
+            fn visit_i64<E>(self, x: i64) -> Result<f32, E> {
+                Ok(x as f32)
+            }
+            #[expect(clippy::cast_precision_loss, reason = "the nearest f32 is what is asked for")]
+            fn visit_u64<E>(self, x: u64) -> Result<f32, E> {
+                Ok(x as f32)
+            }
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<f32, E> {
+                match text {
+                    "NaN" => Ok(f32::NAN),
+                    "Inf" => Ok(f32::INFINITY),
+                    "-Inf" => Ok(f32::NEG_INFINITY),
+                    _ => Err(E::invalid_value(serde::de::Unexpected::Str(text), &self)),
+                }
+            }
+        }
+        deserializer.deserialize_any(Read).map(Self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Values {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let numbers = Vec::<Float>::deserialize(deserializer)?;
+        Ok(Self(numbers.into_iter().map(|Float(x)| x).collect()))
+    }
+}
+
+/// Reads a line.
+///
+/// # Errors
+/// What is wrong with it, in words.
+pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
+    let text = std::str::from_utf8(line).map_err(|_| "it is not UTF-8".to_owned())?;
+    let raw = match serde_json::from_str::<Raw<'_>>(text) {
+        Ok(raw) => raw,
+        Err(error) => return hello(text).ok_or_else(|| format!("{error}; expected {EXPECTED}")),
+    };
+    let id = raw.id;
+    match (raw.value, raw.image, raw.skip, raw.error) {
+        (Some(Values(values)), None, None, None) => Ok(Line::Value(id, values)),
+        (None, Some(file), None, None) => Ok(Line::Image(id, file)),
+        (None, None, Some(reason), None) => Ok(Line::Skip(id, reason)),
+        (None, None, None, Some(reason)) => Ok(Line::Error(id, reason)),
+        _ => {
+            Err(format!("it has none, or more than one, of `value`, `image`, `skip` and `error`; expected {EXPECTED}"))
+        }
+    }
+}
+
+const EXPECTED: &str = "an answer such as {\"id\": \"fog/exp/random/000017\", \"value\": [0.5, 1, 2, 3]}";
+
+fn hello(text: &str) -> Option<Line<'_>> {
+    #[derive(Deserialize)]
+    struct Greeting {
+        /// The protocol; a file of answers may leave it out.
+        hello: Option<String>,
+        renderer: String,
+        #[serde(flatten)]
+        rest: serde_json::Map<String, serde_json::Value>,
+    }
+    let Greeting { hello, renderer, rest } = serde_json::from_str(text).ok()?;
+    if hello.is_some_and(|protocol| protocol != PROTOCOL) {
+        return None;
+    }
+    let hello: Hello = serde_json::from_value(rest.into()).ok()?;
+    Some(Line::Hello(Box::new(Hello { renderer, ..hello })))
+}
+
+/// The id of an answer, whatever else is wrong with it.
+#[must_use]
+pub fn id(line: &[u8]) -> Option<Cow<'_, str>> {
+    #[derive(Deserialize)]
+    struct Id<'a> {
+        #[serde(borrow)]
+        id: Cow<'a, str>,
+    }
+    serde_json::from_slice::<Id<'_>>(line).ok().map(|line| line.id)
+}
+
+/// Why a line cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum Unread {
+    /// It is longer than any answer is.
+    #[error("a line of more than {} bytes", MOST_BYTES)]
+    TooLong,
+    /// The stream failed.
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+}
+
+/// The next line without its end, in a buffer that never grows beyond [`MOST_BYTES`]; what is too long is read to its end and
+/// dropped. `false` at the end of the stream.
+///
+/// # Errors
+/// Where the line is too long, or the stream fails.
+pub fn next(stream: &mut impl BufRead, line: &mut Vec<u8>) -> Result<bool, Unread> {
+    line.clear();
+    let mut dropped = false;
+    loop {
+        let available = match stream.fill_buf() {
+            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
+            available => available?,
+        };
+        if available.is_empty() {
+            if dropped {
+                return Err(Unread::TooLong);
+            }
+            return Ok(!line.is_empty());
+        }
+        let end = available.iter().position(|&byte| byte == b'\n');
+        let part = &available[..end.unwrap_or(available.len())];
+        if !dropped && line.len() + part.len() <= MOST_BYTES {
+            line.extend_from_slice(part);
+        } else {
+            dropped = true;
+        }
+        let used = part.len() + usize::from(end.is_some());
+        stream.consume(used);
+        if end.is_some() {
+            if dropped {
+                return Err(Unread::TooLong);
+            }
+            if line.last() == Some(&b'\r') {
+                line.pop();
+            }
+            return Ok(true);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_read_and_what_is_wrong_is_said() {
+        let value = |numbers: &[f32]| Line::Value("a".into(), numbers.to_vec());
+        assert_eq!(read(br#"{"id":"a","value":[1,-2.5,1e-3]}"#), Ok(value(&[1.0, -2.5, 1e-3])));
+        assert_eq!(
+            read(br#"{"id":"a","value":["Inf","-Inf",1e39]}"#).ok().map(|line| format!("{line:?}")).unwrap_or_default(),
+            format!("{:?}", value(&[f32::INFINITY, f32::NEG_INFINITY, f32::INFINITY]))
+        );
+        assert_eq!(read(br#"{"id":"s","image":"s.png"}"#), Ok(Line::Image("s".into(), "s.png".into())));
+        assert_eq!(read(br#"{"id":"s","skip":"no fog"}"#), Ok(Line::Skip("s".into(), "no fog".into())));
+        let hello =
+            read(br#"{"hello":"lightmeter.protocol/1","renderer":"r","version":"2","formulas":["fog"],"extra":1}"#);
+        let Ok(Line::Hello(hello)) = hello else { panic!("{hello:?}") };
+        assert_eq!((hello.renderer.as_str(), hello.formulas.as_slice()), ("r", ["fog".to_owned()].as_slice()));
+        for (line, said) in [
+            (&br#"{"id":"a","value":[1,2"#[..], "EOF"),
+            (br#"{"id":"a","value":["nan"]}"#, "expected"),
+            (br#"{"id":"a"}"#, "none, or more than one"),
+            (br#"{"id":"a","value":[1],"skip":"x"}"#, "none, or more than one"),
+            (br#"{"id":"a","values":[1]}"#, "none, or more than one"),
+            (br#"[1]"#, "expected an answer"),
+            (b"\xff", "UTF-8"),
+            (br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#, "expected an answer"),
+        ] {
+            let error = read(line).expect_err(said);
+            assert!(error.contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_never_ends_takes_no_memory_and_the_rest_is_read() {
+        let long = vec![b'x'; 3 * MOST_BYTES];
+        let mut stream = std::io::BufReader::new(std::io::Read::chain(
+            std::io::Read::chain(&b"one\r\n"[..], long.as_slice()),
+            &b"\ntwo"[..],
+        ));
+        let mut line = vec![];
+        assert!(matches!(next(&mut stream, &mut line), Ok(true)) && line == b"one");
+        assert!(matches!(next(&mut stream, &mut line), Err(Unread::TooLong)) && line.capacity() <= 2 * MOST_BYTES);
+        assert!(matches!(next(&mut stream, &mut line), Ok(true)) && line == b"two");
+        assert!(matches!(next(&mut stream, &mut line), Ok(false)));
+    }
+}

@@ -1,0 +1,165 @@
+//! Known failures, written down with their reason: they do not fail a gate, and it says so when they pass.
+
+use crate::filter::Filter;
+use semver::{Version, VersionReq};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// A known failure, as the file has it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    /// A glob of cases, or of an ancestor of theirs.
+    id: String,
+    /// Why they fail.
+    reason: String,
+    /// The renderer's name; any without it.
+    renderer: Option<String>,
+    /// The renderer's versions, as `>=0.150, <0.170`; any without it.
+    version: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    expected: Vec<Written>,
+}
+
+/// A known failure, and what became of its cases.
+#[derive(Clone, Debug, Serialize)]
+pub struct Expectation {
+    /// A glob of cases.
+    pub id: String,
+    /// Why they fail.
+    pub reason: String,
+    /// Cases of it that failed.
+    pub failed: u64,
+    /// Cases of it that passed.
+    pub passed: u64,
+    #[serde(skip)]
+    filter: Filter,
+}
+
+impl Expectation {
+    /// Whether it has a case.
+    #[must_use]
+    pub fn has(&self, id: &str) -> bool {
+        self.filter.selects(id)
+    }
+
+    /// Whether its cases were asked and none failed: it is to be taken out.
+    #[must_use]
+    pub const fn passes_unexpectedly(&self) -> bool {
+        self.failed == 0 && self.passed > 0
+    }
+}
+
+/// Why a file of expectations is refused.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {message}", .path.display())]
+pub struct Error {
+    path: PathBuf,
+    message: String,
+}
+
+/// A file of known failures.
+#[derive(Clone, Debug, Default)]
+pub struct Expectations {
+    written: Vec<(Written, Filter, Option<VersionReq>)>,
+}
+
+impl Expectations {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Where it cannot be read, or says what nothing can be made of.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let refused = |message: String| Error { path: path.into(), message };
+        let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
+        Self::parse(&text).map_err(refused)
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let file: File = toml::from_str(text).map_err(|error| error.to_string())?;
+        let read = |(k, written): (usize, Written)| {
+            let filter = Filter::new(std::slice::from_ref(&written.id)).map_err(|error| error.to_string())?;
+            if written.reason.trim().is_empty() {
+                return Err(format!("expected[{k}] `{}` has no reason", written.id));
+            }
+            let version = written.version.as_ref().map(|text| {
+                let expected = "expected such as \">=1.2, <2\"";
+                VersionReq::parse(text).map_err(|error| format!("expected[{k}].version `{text}`: {error}; {expected}"))
+            });
+            Ok((written, filter, version.transpose()?))
+        };
+        let written = file.expected.into_iter().enumerate().map(read).collect::<Result<_, String>>()?;
+        Ok(Self { written })
+    }
+
+    /// Those of a renderer.
+    #[must_use]
+    pub fn of(&self, renderer: &str, version: &str) -> Vec<Expectation> {
+        let version = lenient(version);
+        let concerns = |(written, _, range): &&(Written, Filter, Option<VersionReq>)| {
+            let is_version = range.as_ref().is_none_or(|range| version.as_ref().is_some_and(|own| range.matches(own)));
+            written.renderer.as_ref().is_none_or(|name| name == renderer) && is_version
+        };
+        let of = |(written, filter, _): &(Written, Filter, _)| Expectation {
+            id: written.id.clone(),
+            reason: written.reason.clone(),
+            failed: 0,
+            passed: 0,
+            filter: filter.clone(),
+        };
+        self.written.iter().filter(concerns).map(of).collect()
+    }
+}
+
+/// The first number of a version in any words: `Mesa 22.3.6` is 22.3.6, `r170` is 170.0.0.
+fn lenient(text: &str) -> Option<Version> {
+    let start = text.find(|c: char| c.is_ascii_digit())?;
+    let rest = &text[start..];
+    let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
+    let mut parts = rest[..end].split('.').map(|part| part.parse().unwrap_or(0));
+    let [major, minor, patch] = std::array::from_fn(|_| parts.next().unwrap_or(0));
+    Some(Version::new(major, minor, patch))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn expectations_are_of_a_renderer_and_its_versions() {
+        let text = r#"
+            [[expected]]
+            id = "fog/linear"
+            reason = "it has smoothstep"
+            renderer = "three.js"
+            version = ">=0.150, <0.170"
+            [[expected]]
+            id = "scene/**"
+            reason = "for any"
+        "#;
+        let file = Expectations::parse(text).expect("it is valid");
+        let ids = |renderer: &str, version: &str| -> Vec<String> {
+            file.of(renderer, version).into_iter().map(|one| one.id).collect()
+        };
+        assert_eq!(ids("three.js", "0.160.1"), ["fog/linear", "scene/**"]);
+        assert_eq!(ids("three.js", "three r0.170"), ["scene/**"]);
+        assert_eq!(ids("other", "0.160.1"), ["scene/**"]);
+        assert!(file.of("three.js", "0.160")[0].has("fog/linear/random/000001"));
+        assert!(!file.of("three.js", "0.160")[0].has("fog/linear-radial/random/000001"));
+        for (text, said) in [
+            ("[[expected]]\nid = \"fog\"", "missing field `reason`"),
+            ("[[expected]]\nid = \"fog\"\nreason = \" \"", "no reason"),
+            ("[[expected]]\nid = \"fog\"\nreason = \"r\"\nversion = \"new\"", "version `new`"),
+            ("[[expect]]\nid = \"fog\"\nreason = \"r\"", "unknown field `expect`"),
+            ("[[expected]]\nid = \"[\"\nreason = \"r\"", "["),
+        ] {
+            let error = Expectations::parse(text).expect_err(said);
+            assert!(error.contains(said), "{error}");
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! A gate's result for people, for CI servers and for GitHub.
+
+use super::ledger::Failure;
+use super::report::{Group, Report};
+use crate::report::Number;
+use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
+use std::fmt::{Result, Write};
+
+/// Groups that fail, of which all is told.
+const MOST_TOLD: usize = 24;
+
+/// Writes it for people.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn text(report: &Report, out: &mut impl Write) -> Result {
+    let renderer = &report.renderer;
+    writeln!(out, "{} {} · profile {} · {:.1} s", renderer.name, renderer.version, report.profile, report.seconds)?;
+    families(report, out)?;
+    let failed: Vec<&Group> = report.groups.iter().filter(|group| group.is_failed()).collect();
+    for group in failed.iter().take(MOST_TOLD) {
+        told(group, report, out)?;
+    }
+    if failed.len() > MOST_TOLD {
+        let more: Vec<&str> = failed[MOST_TOLD..].iter().map(|group| group.id.as_str()).take(200).collect();
+        writeln!(out, "\n{} more fail: {}", failed.len() - MOST_TOLD, more.join(", "))?;
+    }
+    listed("changed when they were asked once more", &report.unstable, out)?;
+    listed("are worse than in the baseline", &report.regressions, out)?;
+    for one in &report.expectations {
+        let said = match (one.failed, one.passed) {
+            (0, 0) => "was not asked",
+            (0, _) => "PASSES: take it out",
+            _ => "fails as expected",
+        };
+        writeln!(
+            out,
+            "\nexpected failure `{}` {said} ({} failed, {} passed): {}",
+            one.id, one.failed, one.passed, one.reason
+        )?;
+    }
+    listed("went wrong with the process", &report.incidents, out)?;
+    if !report.problems.is_empty() {
+        let counts: Vec<String> =
+            report.problems.counts.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+        writeln!(out, "\nlines that are no answers: {}", counts.join(", "))?;
+        report.problems.first.iter().take(20).try_for_each(|what| writeln!(out, "  {what}"))?;
+    }
+    let totals = &report.totals;
+    write!(out, "\n{} of {} cases pass, {} fail", totals.passed, totals.asked, totals.failed)?;
+    for (count, what) in [
+        (totals.expected_failures, "of them as expected"),
+        (totals.unexpected_passes, "expectations pass"),
+        (totals.unstable, "are unstable"),
+        (totals.missing, "were never answered"),
+        (totals.skipped, "were skipped"),
+        (totals.not_asked, "were not asked: the renderer does not declare them"),
+    ] {
+        if count > 0 {
+            write!(out, ", {count} {what}")?;
+        }
+    }
+    writeln!(out, "; {} verdicts, {} of them where anything is legal", totals.verdicts, totals.indeterminate)
+}
+
+/// A line a family.
+fn families(report: &Report, out: &mut impl Write) -> Result {
+    let family = |group: &Group| group.id.split('/').next().unwrap_or_default().to_owned();
+    let mut names: Vec<String> = vec![];
+    for group in report.groups.iter().filter(|group| group.asked > 0) {
+        if !names.contains(&family(group)) {
+            names.push(family(group));
+        }
+    }
+    for name in names {
+        let of: Vec<&Group> = report.groups.iter().filter(|group| group.asked > 0 && family(group) == name).collect();
+        let sum = |count: fn(&Group) -> u64| of.iter().map(|group| count(group)).sum::<u64>();
+        let (asked, failed, missing) =
+            (sum(|group| group.asked), sum(|group| group.failed), sum(|group| group.missing));
+        let failing = of.iter().filter(|group| group.is_failed()).count();
+        let mark = if failing == 0 { '✓' } else { '✗' };
+        let error = of.iter().map(|group| group.error_max.0).fold(0.0, crate::judge::worse);
+        let margin = of.iter().map(|group| group.margin_max.0).fold(0.0, crate::judge::worse);
+        let what = if name == "scene" { "scenes" } else { "formulas" };
+        write!(out, "{mark} {name:<14} {:>4} {what:<9} {asked:>9} cases", of.len())?;
+        if failing > 0 {
+            write!(out, ", {failed} fail in {failing} {what}")?;
+        }
+        if missing > 0 {
+            write!(out, ", {missing} never answered")?;
+        }
+        writeln!(out, ", errors up to {} ULP, {} of what is legal", short(error), short(margin))?;
+    }
+    Ok(())
+}
+
+fn short(x: f64) -> String {
+    match x {
+        x if !x.is_finite() => Number(x).to_string(),
+        x if x == 0.0 || (0.01..1e6).contains(&x) => format!("{x:.2}"),
+        x => format!("{x:.1e}"),
+    }
+}
+
+/// What fails in a group, what explains it, and the first failure.
+fn told(group: &Group, report: &Report, out: &mut impl Write) -> Result {
+    writeln!(out, "\n✗ {}: {} of {} cases fail", group.id, group.failed, group.asked)?;
+    if group.missing > 0 {
+        writeln!(out, "  {} cases were never answered", group.missing)?;
+    }
+    for what in group.diagnosis.iter().chain(&group.problem) {
+        writeln!(out, "  {what}")?;
+    }
+    let below = format!("{}/", group.id);
+    let is_of = |failure: &&Failure| {
+        failure.id == group.id || failure.id.starts_with(&below) || group.smallest.as_ref() == Some(&failure.id)
+    };
+    let of: Vec<&Failure> = report.failures.iter().filter(is_of).collect();
+    let smallest = of.iter().find(|failure| group.smallest.as_ref() == Some(&failure.id));
+    if let Some(first) = smallest.or(of.first()) {
+        failure(first, out)?;
+    }
+    Ok(())
+}
+
+/// A failure.
+fn failure(failure: &Failure, out: &mut impl Write) -> Result {
+    let list = |numbers: &[Number]| numbers.iter().map(Number::to_string).collect::<Vec<_>>().join(", ");
+    writeln!(out, "  {}", failure.id)?;
+    if let Some(problem) = &failure.problem {
+        writeln!(out, "    {problem}")?;
+    }
+    if !failure.inputs.is_empty() {
+        writeln!(out, "    inputs    {}", list(&failure.inputs))?;
+    }
+    if !failure.value.is_empty() {
+        writeln!(out, "    value     {}", list(&failure.value))?;
+        writeln!(out, "    reference {}", list(&failure.reference))?;
+        let ends: Vec<String> = failure.interval.iter().map(|[low, high]| format!("[{low}, {high}]")).collect();
+        writeln!(out, "    legal     {}", ends.join(", "))?;
+        writeln!(out, "    lightmeter show {}", failure.id)?;
+    }
+    Ok(())
+}
+
+fn listed(what: &str, all: &[String], out: &mut impl Write) -> Result {
+    if !all.is_empty() {
+        writeln!(out, "\n{} {what}:", all.len())?;
+        all.iter().take(20).try_for_each(|one| writeln!(out, "  {one}"))?;
+    }
+    Ok(())
+}
+
+/// What is wrong with a group, on one line.
+fn sentence(group: &Group) -> String {
+    let mut said = format!("{} of {} cases fail", group.failed, group.asked);
+    if group.missing > 0 {
+        said += &format!(", {} were never answered", group.missing);
+    }
+    for more in group.diagnosis.iter().chain(&group.problem) {
+        said += &format!("; {more}");
+    }
+    said
+}
+
+/// What is wrong with all of it, each on a line with its title.
+fn whole(report: &Report) -> Vec<(String, String)> {
+    let mut said = vec![];
+    said.extend(report.incidents.iter().map(|what| ("process".to_owned(), what.clone())));
+    said.extend(report.problems.first.iter().map(|what| ("answers".to_owned(), what.clone())));
+    said.extend(
+        report.unstable.iter().map(|id| (id.clone(), "its answer changed when it was asked once more".to_owned())),
+    );
+    said.extend(report.regressions.iter().map(|what| ("baseline".to_owned(), what.clone())));
+    let passes = report.expectations.iter().filter(|one| one.passes_unexpectedly());
+    said.extend(passes.map(|one| (one.id.clone(), format!("passes, and is expected to fail: {}", one.reason))));
+    said
+}
+
+/// The result as JUnit XML: a test for each formula and scene.
+///
+/// # Errors
+/// Where it cannot be written as XML.
+pub fn junit(report: &Report) -> std::result::Result<String, SerializeError> {
+    let mut document = Document::new("lightmeter gate");
+    let mut suite = TestSuite::new(format!("{} {}", report.renderer.name, report.renderer.version));
+    for group in &report.groups {
+        let mut status = TestCaseStatus::success();
+        if group.is_failed() {
+            status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+            status.set_message(sentence(group));
+            let mut description = String::new();
+            // Writing to a string does not fail.
+            let _ = told(group, report, &mut description);
+            status.set_description(description);
+        } else if group.asked == group.skipped {
+            status = TestCaseStatus::skipped();
+            status.set_message(group.reason.clone().unwrap_or_default());
+        }
+        let mut case = TestCase::new(group.id.as_str(), status);
+        case.set_classname(group.id.split('/').next().unwrap_or_default());
+        suite.add_test_case(case);
+    }
+    for (title, what) in whole(report) {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+        status.set_message(what);
+        suite.add_test_case(TestCase::new(title, status));
+    }
+    document.add_test_suite(suite);
+    document.to_string()
+}
+
+/// Lines that GitHub Actions shows as annotations.
+#[must_use]
+pub fn github(report: &Report) -> String {
+    let data = |text: &str| text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
+    let property = |text: &str| data(text).replace(':', "%3A").replace(',', "%2C");
+    let mut out = String::new();
+    for group in report.groups.iter().filter(|group| group.is_failed()) {
+        out += &format!("::error title={}::{}\n", property(&group.id), data(&sentence(group)));
+    }
+    for (title, what) in whole(report) {
+        out += &format!("::error title={}::{}\n", property(&title), data(&what));
+    }
+    let totals = &report.totals;
+    out += &format!(
+        "::notice title=lightmeter::{}\n",
+        data(&format!(
+            "{}: {} of {} cases pass, {} fail",
+            report.renderer.name, totals.passed, totals.asked, totals.failed
+        ))
+    );
+    out
+}

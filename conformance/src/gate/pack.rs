@@ -1,0 +1,398 @@
+//! A pack: the cases as files, for a renderer that answers by files.
+
+use super::answer::{self, Hello, Unread};
+use super::frame;
+use super::ledger::Ledger;
+use super::picture::within;
+use super::plan::{Choice, Plan};
+use crate::cases::{GENERATOR_VERSION, Shape};
+use crate::image::file::{Stored, whole};
+use crate::report::Number;
+use lightmeter_scene::frame::{Frame, Mesh, Texture};
+use lightmeter_scene::target::TargetFormat;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufReader, BufWriter, Read as _, Write};
+use std::path::{Path, PathBuf};
+
+/// The schema's name.
+pub const SCHEMA: &str = "lightmeter.pack/1";
+const MANIFEST: &str = "manifest.json";
+const CASES: &str = "cases.jsonl";
+/// The name of a folder's answers.
+pub const ANSWERS: &str = "answers.jsonl";
+/// Lines that are judged at once.
+pub const LINES: usize = 1 << 14;
+
+/// What a pack holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// The version of what draws the cases: with another one they are others.
+    pub generator: u64,
+    /// The version of lightmeter that wrote it.
+    pub version: String,
+    /// What chose the cases.
+    #[serde(flatten)]
+    pub choice: Choice,
+    /// The formulas, with their inputs and outputs.
+    pub formulas: Vec<Value>,
+    /// The scenes.
+    pub scenes: Vec<Value>,
+    /// Each file's bytes and checksum.
+    pub files: Vec<Listed>,
+}
+
+/// A file of a pack.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Listed {
+    /// Its name within the pack.
+    pub name: String,
+    /// Its length.
+    pub bytes: u64,
+    /// Its CRC-32, as 8 digits of base 16.
+    pub crc32: String,
+}
+
+/// Why a pack was not written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A file cannot be written.
+    #[error("cannot write {}: {message}", .path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// A file cannot be read.
+    #[error("cannot read {}: {message}", .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// It is no pack, or another's.
+    #[error("{}: {message}", .path.display())]
+    Manifest {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what would be right.
+        message: String,
+    },
+    /// A scene is refused, or a glob.
+    #[error("{0}")]
+    Plan(String),
+}
+
+/// What a formula takes and gives, as `lightmeter list --formulas` has it.
+#[must_use]
+pub fn formula(plan: &Plan, formula: usize) -> Value {
+    let spec = &plan.member(formula).spec;
+    let value = |name: &str, shape: Shape, unit: &str| json!({ "name": name, "shape": shape, "unit": unit });
+    json!({
+        "id": spec.id,
+        "formula": spec.text,
+        "inputs": spec.inputs.iter().map(|input| value(input.name, input.shape, input.unit)).collect::<Vec<_>>(),
+        "outputs": spec.outputs.iter().map(|output| value(output.name, output.shape, output.unit)).collect::<Vec<_>>(),
+        "count": plan.formulas[formula].count(),
+    })
+}
+
+/// A case as a renderer is asked it.
+#[must_use]
+pub fn case(plan: &Plan, formula: usize, case: usize) -> Value {
+    let spec = &plan.member(formula).spec;
+    let row = plan.inputs(formula, case);
+    let mut inputs = Map::new();
+    let mut rest = row.as_slice();
+    for input in spec.inputs {
+        let (own, after) = rest.split_at(input.shape.components());
+        rest = after;
+        let numbers: Vec<Value> = own.iter().map(|&x| json!(Number(x.into()))).collect();
+        let value = if let [one] = numbers.as_slice() { one.clone() } else { numbers.into() };
+        inputs.insert(input.name.to_owned(), value);
+    }
+    json!({ "id": plan.id(super::plan::Place::Case { formula, case }), "formula": spec.id, "inputs": inputs })
+}
+
+/// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack.
+///
+/// # Errors
+/// Where a file cannot be written, or the folder holds something else.
+pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, Error> {
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |error: std::io::Error| Error::Write { path, message: error.to_string() }
+    };
+    std::fs::create_dir_all(folder).map_err(failed(folder))?;
+    let mut entries = std::fs::read_dir(folder).map_err(failed(folder))?;
+    if entries.next().is_some() && !folder.join(MANIFEST).exists() {
+        let message = "it holds something else; expected a new or an empty folder, or one with a pack".into();
+        return Err(Error::Write { path: folder.into(), message });
+    }
+    let mut files = vec![];
+    let path = folder.join(CASES);
+    let mut out =
+        Summed { out: BufWriter::new(File::create(&path).map_err(failed(&path))?), sum: Default::default(), bytes: 0 };
+    for formula in 0..plan.formulas.len() {
+        for place in 0..plan.formulas[formula].count() {
+            writeln!(out, "{}", case(plan, formula, place)).map_err(failed(&path))?;
+        }
+    }
+    out.flush().map_err(failed(&path))?;
+    files.push(out.listed(CASES));
+    let mut scenes = vec![];
+    for scene in 0..plan.scenes.len() {
+        let (title, frame) = plan.frame(scene).map_err(|error| Error::Plan(error.to_string()))?;
+        let id = plan.id(super::plan::Place::Scene(scene));
+        let name = id.replacen("scene/", "scenes/", 1);
+        std::fs::create_dir_all(folder.join(&name)).map_err(failed(&folder.join(&name)))?;
+        let mut put = |file: String, bytes: Vec<u8>| -> Result<(), Error> {
+            let path = folder.join(&file);
+            whole(&path, &bytes).map_err(|error| Error::Write { path, message: error.to_string() })?;
+            files.push(Listed { crc32: digits(&bytes), bytes: bytes.len() as u64, name: file });
+            Ok(())
+        };
+        put(format!("{name}/scene.json"), format!("{}\n", frame::to_json(&id, &title, &frame)).into_bytes())?;
+        for (k, mesh) in frame.meshes.iter().enumerate() {
+            put(format!("{name}/mesh-{k}.obj"), obj(mesh).into_bytes())?;
+        }
+        for (k, texture) in frame.textures.iter().enumerate() {
+            put(format!("{name}/texture-{k}.png"), png(texture))?;
+        }
+        let (width, height) = (frame.target.width, frame.target.height);
+        let format = frame.target.format.name();
+        let file = format!("{name}/scene.json");
+        scenes.push(
+            json!({ "id": id, "title": title, "file": file, "width": width, "height": height, "format": format }),
+        );
+    }
+    let manifest = Manifest {
+        schema: SCHEMA.into(),
+        generator: GENERATOR_VERSION,
+        version: env!("CARGO_PKG_VERSION").into(),
+        choice: plan.choice.clone(),
+        formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
+        scenes,
+        files,
+    };
+    let path = folder.join(MANIFEST);
+    let text = serde_json::to_string_pretty(&manifest).map_err(|error| Error::Plan(error.to_string()))? + "\n";
+    whole(&path, text.as_bytes()).map_err(|error| Error::Write { path, message: error.to_string() })?;
+    Ok(manifest)
+}
+
+/// Counts and sums what is written.
+struct Summed<W> {
+    out: W,
+    sum: crc32fast::Hasher,
+    bytes: u64,
+}
+
+impl<W: Write> Write for Summed<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.sum.update(&bytes[..written]);
+        self.bytes += written as u64;
+        Ok(written)
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl<W> Summed<W> {
+    fn listed(self, name: &str) -> Listed {
+        Listed { name: name.into(), bytes: self.bytes, crc32: format!("{:08x}", self.sum.finalize()) }
+    }
+}
+
+fn digits(bytes: &[u8]) -> String {
+    format!("{:08x}", crc32fast::hash(bytes))
+}
+
+/// A mesh as Wavefront OBJ, which has no colours and no second texture coordinates.
+fn obj(mesh: &Mesh) -> String {
+    let mut out = String::new();
+    let mut line = |word: &str, numbers: &[f32]| {
+        let numbers: Vec<String> = numbers.iter().map(f32::to_string).collect();
+        let _ = writeln!(out, "{word} {}", numbers.join(" "));
+    };
+    mesh.positions.iter().for_each(|v| line("v", v));
+    // Images have their first row at the top, OBJ's coordinates grow upward.
+    mesh.uvs.iter().for_each(|[u, v]| line("vt", &[*u, 1.0 - v]));
+    mesh.normals.iter().for_each(|v| line("vn", v));
+    let corner = |k: u32| {
+        let k = k + 1;
+        match (mesh.uvs.is_empty(), mesh.normals.is_empty()) {
+            (true, true) => k.to_string(),
+            (true, false) => format!("{k}//{k}"),
+            (false, true) => format!("{k}/{k}"),
+            (false, false) => format!("{k}/{k}/{k}"),
+        }
+    };
+    for triangle in &mesh.triangles {
+        let corners = triangle.map(corner);
+        let _ = writeln!(out, "f {}", corners.join(" "));
+    }
+    out
+}
+
+/// A texture as PNG of 8 bits.
+fn png(texture: &Texture) -> Vec<u8> {
+    let pixels = texture.texels.iter().map(|texel| texel.map(|c| f64::from(c) * 255.0)).collect();
+    let image = Stored { width: texture.width as usize, format: TargetFormat::Rgba8Unorm, pixels };
+    image.encode(Path::new("texture.png")).unwrap_or_default()
+}
+
+/// Reads the manifest of a pack, and holds its files against it.
+///
+/// # Errors
+/// Where it is damaged, another version's, or leads out of its folder.
+pub fn read(folder: &Path) -> Result<Manifest, Error> {
+    let path = folder.join(MANIFEST);
+    let text = std::fs::read_to_string(&path).map_err(|error| Error::Read {
+        path: path.clone(),
+        message: format!("{error}; `lightmeter pack DIR` writes a pack"),
+    })?;
+    let refused = |message: String| Error::Manifest { path: path.clone(), message };
+    let value: Value = serde_json::from_str(&text).map_err(|error| refused(format!("it is damaged: {error}")))?;
+    match value.get("schema").and_then(Value::as_str) {
+        Some(SCHEMA) => {}
+        found => {
+            let found = found.map_or_else(|| "nothing".into(), |found| format!("`{found}`"));
+            return Err(refused(format!("its schema is {found}; expected `{SCHEMA}`")));
+        }
+    }
+    let manifest: Manifest =
+        serde_json::from_value(value).map_err(|error| refused(format!("it is damaged: {error}")))?;
+    if manifest.generator != GENERATOR_VERSION {
+        return Err(refused(format!(
+            "its cases were drawn by generator {}; this lightmeter has {GENERATOR_VERSION}: write the pack again",
+            manifest.generator
+        )));
+    }
+    for Listed { name, bytes, crc32 } in &manifest.files {
+        let file = within(folder, name).map_err(|error| refused(format!("files: {error}")))?;
+        let (found_bytes, found) =
+            sum(&file).map_err(|error| Error::Read { path: file.clone(), message: error.to_string() })?;
+        if (found_bytes, found.as_str()) != (*bytes, crc32.as_str()) {
+            let message = format!(
+                "it is not what was packed: {found_bytes} bytes with checksum {found}; expected {bytes} with {crc32}"
+            );
+            return Err(Error::Manifest { path: file, message });
+        }
+    }
+    Ok(manifest)
+}
+
+fn sum(path: &Path) -> std::io::Result<(u64, String)> {
+    let mut file = File::open(path)?;
+    let (mut sum, mut all) = (crc32fast::Hasher::new(), 0);
+    let mut part = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok((all, format!("{:08x}", sum.finalize()))),
+            count => {
+                sum.update(&part[..count]);
+                all += count as u64;
+            }
+        }
+    }
+}
+
+/// A file of answers, or that of a folder.
+pub struct Answers {
+    path: PathBuf,
+    stream: BufReader<File>,
+    /// Where images lie.
+    folder: PathBuf,
+    /// Lines that were read.
+    number: u64,
+    /// The first line, where it is an answer.
+    first: Vec<(u64, Vec<u8>)>,
+    /// Who answers, where the first line says so.
+    pub hello: Option<Hello>,
+}
+
+impl Answers {
+    /// Opens it and reads who answers.
+    ///
+    /// # Errors
+    /// Where it cannot be read.
+    pub fn open(answers: &Path) -> Result<Self, Error> {
+        let path = if answers.is_dir() { answers.join(ANSWERS) } else { answers.to_owned() };
+        let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
+        let file = File::open(&path).map_err(|error| Error::Read { path: path.clone(), message: error.to_string() })?;
+        let stream = BufReader::with_capacity(1 << 20, file);
+        let mut opened = Self { path, stream, folder, number: 0, first: vec![], hello: None };
+        if let Some(Ok(line)) = opened.next()? {
+            match answer::read(&line) {
+                Ok(answer::Line::Hello(hello)) => opened.hello = Some(*hello),
+                _ => opened.first.push((opened.number, line)),
+            }
+        }
+        Ok(opened)
+    }
+
+    /// The next line that is not blank, or that it is too long.
+    fn next(&mut self) -> Result<Option<Result<Vec<u8>, Unread>>, Error> {
+        let mut line = vec![];
+        loop {
+            self.number += 1;
+            return match answer::next(&mut self.stream, &mut line) {
+                Ok(false) => Ok(None),
+                Ok(true) if line.iter().all(u8::is_ascii_whitespace) => continue,
+                Ok(true) => Ok(Some(Ok(line))),
+                Err(error @ Unread::TooLong) => Ok(Some(Err(error))),
+                Err(Unread::Io(error)) => Err(Error::Read { path: self.path.clone(), message: error.to_string() }),
+            };
+        }
+    }
+
+    /// Judges all of it; `again` where the same cases have been answered before.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    pub fn judge(mut self, ledger: &mut Ledger<'_>, again: bool, progress: &mut impl FnMut(u64)) -> Result<(), Error> {
+        let mut lines = std::mem::take(&mut self.first);
+        loop {
+            let next = self.next()?;
+            let is_end = next.is_none();
+            match next {
+                Some(Ok(line)) => lines.push((self.number, line)),
+                Some(Err(error)) => {
+                    let number = self.number;
+                    ledger.problems.add("oversized", || format!("line {number}: {error}"));
+                }
+                None => {}
+            }
+            if lines.len() == LINES || is_end {
+                ledger.lines(&lines, &self.folder, again);
+                progress(lines.len() as u64);
+                lines.clear();
+            }
+            if is_end {
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// Whether a frame can be drawn by who answers, and why not.
+#[must_use]
+pub fn lacks(hello: &Hello, frame: &Frame) -> Option<String> {
+    let format = frame.target.format.name();
+    if hello.formats.as_ref().is_some_and(|formats| !formats.iter().any(|own| own == format)) {
+        return Some(format!("it does not draw on {format}"));
+    }
+    let has = hello.effects.as_ref()?;
+    let missing: Vec<&str> =
+        frame::called(frame).into_iter().filter(|name| !has.iter().any(|own| own == name)).collect();
+    (!missing.is_empty()).then(|| format!("it has no {}", missing.join(", ")))
+}

@@ -1,0 +1,193 @@
+//! Images that renderers write: PNG of 8 or 16 bits, EXR, NPY.
+
+use crate::arithmetic::Profile;
+use crate::blend_unit::pixel;
+use crate::faults::scene::Trial;
+use crate::image::expect;
+use crate::image::file::Stored;
+use crate::image::judge;
+use image::{DynamicImage, ImageReader};
+use lightmeter_reference::render::render;
+use lightmeter_scene::frame::Frame;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::io::Cursor;
+use std::path::{Component, Path, PathBuf};
+
+/// Bytes of a file, at most: 8192² pixels of binary32, and a header.
+const MOST_BYTES: u64 = (1 << 30) + (1 << 20);
+
+/// How an image compares.
+pub struct Found {
+    /// Components that were judged.
+    pub verdicts: u64,
+    /// Of them, those outside.
+    pub failed: u64,
+    /// Of them, those where anything is legal.
+    pub indeterminate: u64,
+    /// The largest error: ULP on float targets, steps on those of 8 bits.
+    pub error_max: f64,
+    /// The largest margin.
+    pub margin_max: f64,
+    /// The pixel that it is of, as `12-340`.
+    pub worst: String,
+    /// There: what the reference has, in the target's units.
+    pub reference: [f64; 4],
+    /// There: from where to where values are legal.
+    pub interval: [[f64; 2]; 4],
+    /// There: the image.
+    pub value: [f64; 4],
+    /// What explains the pixels that fail.
+    pub diagnosis: Option<String>,
+}
+
+/// A path within a folder, whatever the renderer wrote.
+///
+/// # Errors
+/// Where it leaves the folder, by itself or by a link.
+pub fn within(folder: &Path, file: &str) -> Result<PathBuf, String> {
+    let given = Path::new(file);
+    // A process may name a file by its whole path.
+    let relative = given.strip_prefix(folder).unwrap_or(given);
+    let is_inside = relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    let leaves = || format!("`{file}` leaves the folder of the answers; expected a name within it");
+    if !is_inside {
+        return Err(leaves());
+    }
+    let path = folder.join(relative);
+    let real = |path: &Path| path.canonicalize().map_err(|error| format!("cannot read `{file}`: {error}"));
+    if real(&path)?.starts_with(real(folder)?) { Ok(path) } else { Err(leaves()) }
+}
+
+/// Reads an image of a frame's size, in the units of its target, with a hash of its file.
+///
+/// # Errors
+/// Where it lies elsewhere, is no image, or is of another size.
+pub fn read(folder: &Path, file: &str, frame: &Frame) -> Result<(Stored, u32), String> {
+    let path = within(folder, file)?;
+    let unread = |error: &dyn std::fmt::Display| format!("cannot read `{file}`: {error}");
+    let bytes = path.metadata().map_err(|error| unread(&error))?.len();
+    if bytes > MOST_BYTES {
+        return Err(format!("`{file}` has {bytes} bytes; an image has {MOST_BYTES} at most"));
+    }
+    let bytes = std::fs::read(&path).map_err(|error| unread(&error))?;
+    let mut hasher = DefaultHasher::new();
+    bytes.hash(&mut hasher);
+    #[expect(clippy::cast_possible_truncation, reason = "a part of a hash")]
+    let digest = (hasher.finish() as u32).clamp(1, u32::MAX - 2);
+    let [width, height] = [frame.target.width, frame.target.height];
+    let is_npy = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npy"));
+    let (size, values) = if is_npy { npy(&bytes).map_err(|error| unread(&error))? } else { decoded(&bytes, file)? };
+    if size != [width, height] {
+        let [w, h] = size;
+        return Err(format!("`{file}` is {w} × {h}; the scene is {width} × {height}"));
+    }
+    Ok((Stored { width: width as usize, format: frame.target.format, pixels: values.units(frame) }, digest))
+}
+
+/// Pixels as a file has them.
+enum Values {
+    /// What a screen is shown, from 0 to 1: in the target's encoding.
+    Shown(Vec<[f64; 4]>),
+    /// Linear values.
+    Linear(Vec<[f64; 4]>),
+}
+
+impl Values {
+    fn units(self, frame: &Frame) -> Vec<[f64; 4]> {
+        let format = frame.target.format;
+        match self {
+            Self::Shown(pixels) => {
+                let scale = if format.is_unorm() { 255.0 } else { 1.0 };
+                pixels.into_iter().map(|pixel| pixel.map(|c| c * scale)).collect()
+            }
+            Self::Linear(pixels) => {
+                let units = |pixel: [f64; 4]| std::array::from_fn(|k| pixel::units(format, k, pixel[k]));
+                pixels.into_iter().map(units).collect()
+            }
+        }
+    }
+}
+
+fn decoded(bytes: &[u8], file: &str) -> Result<([u32; 2], Values), String> {
+    let unread = |error: &dyn std::fmt::Display| format!("cannot read `{file}`: {error}");
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| unread(&error))?;
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(2 * MOST_BYTES);
+    reader.limits(limits);
+    let image = reader.decode().map_err(|error| unread(&error))?;
+    let size = [image.width(), image.height()];
+    let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    let is_deep = matches!(
+        image,
+        DynamicImage::ImageLuma16(_)
+            | DynamicImage::ImageLumaA16(_)
+            | DynamicImage::ImageRgb16(_)
+            | DynamicImage::ImageRgba16(_)
+    );
+    let values = if is_float {
+        Values::Linear(image.to_rgba32f().pixels().map(|pixel| pixel.0.map(f64::from)).collect())
+    } else if is_deep {
+        Values::Shown(image.to_rgba16().pixels().map(|pixel| pixel.0.map(|c| f64::from(c) / 65535.0)).collect())
+    } else {
+        Values::Shown(image.to_rgba8().pixels().map(|pixel| pixel.0.map(|c| f64::from(c) / 255.0)).collect())
+    };
+    Ok((size, values))
+}
+
+/// NumPy's format: an array (height, width, 3 or 4) of u8, f32 or f64, in C's order.
+fn npy(bytes: &[u8]) -> Result<([u32; 2], Values), String> {
+    let file = npyz::NpyFile::new(bytes).map_err(|error| error.to_string())?;
+    let shape = file.shape().to_vec();
+    let [height, width, components @ (3 | 4)] = shape[..] else {
+        return Err(format!("an array of shape {shape:?}; expected (height, width, 3 or 4)"));
+    };
+    if file.order() != npyz::Order::C {
+        return Err("an array in Fortran's order; expected C's".into());
+    }
+    let side = |side: u64| u32::try_from(side).map_err(|_| "a side of more than 2³² pixels".to_owned());
+    let size = [side(width)?, side(height)?];
+    let count = usize::try_from(components).unwrap_or(4);
+    let pixels = |values: Vec<f64>| -> Vec<[f64; 4]> {
+        let pixel = |of: &[f64]| std::array::from_fn(|k| of.get(k).copied().unwrap_or(1.0));
+        values.chunks_exact(count).map(pixel).collect()
+    };
+    let message = |error: &dyn std::fmt::Display| error.to_string();
+    let npyz::DType::Plain(kind) = file.dtype() else { return Err("an array of records".into()) };
+    let values = match kind.to_string().trim_start_matches(['<', '|', '=']) {
+        "u1" => {
+            let values = file.into_vec::<u8>().map_err(|error| message(&error))?;
+            Values::Shown(pixels(values.into_iter().map(|c| f64::from(c) / 255.0).collect()))
+        }
+        "f4" => {
+            let values = file.into_vec::<f32>().map_err(|error| message(&error))?;
+            Values::Linear(pixels(values.into_iter().map(f64::from).collect()))
+        }
+        "f8" => Values::Linear(pixels(file.into_vec::<f64>().map_err(|error| message(&error))?)),
+        other => return Err(format!("an array of `{other}`; expected u1, f4 or f8, little-endian")),
+    };
+    Ok((size, values))
+}
+
+/// Judges every pixel by the full reference.
+#[must_use]
+pub fn judge(image: &Stored, frame: &Frame, profile: &Profile) -> Found {
+    let reference = Stored::unrounded(&render::<f64>(frame, None, None), frame.target.format);
+    let expected = expect(frame, None, None, profile);
+    let all: Vec<usize> = (0..image.pixels.len()).collect();
+    let judged = judge::judge(image, &reference, &expected, &all);
+    let failed = judged.misses.len() as u64;
+    let worst = judged.misses.iter().max_by(|a, b| a.margin.total_cmp(&b.margin)).copied().or(judged.worst);
+    let pixel = worst.map_or(0, |worst| worst.pixel);
+    Found {
+        verdicts: judged.passed + judged.indeterminate + failed,
+        failed,
+        indeterminate: judged.indeterminate,
+        error_max: judged.error_max,
+        margin_max: worst.map_or(0.0, |worst| worst.margin),
+        worst: format!("{}-{}", pixel % image.width, pixel / image.width),
+        reference: reference.pixels[pixel],
+        interval: std::array::from_fn(|k| [expected[pixel].low[k], expected[pixel].high[k]]),
+        value: image.pixels[pixel],
+        diagnosis: (failed > 0).then(|| Trial::new(frame, image, &expected, profile).diagnose().sentence),
+    }
+}

@@ -1,0 +1,229 @@
+//! Which cases another renderer is asked, and where each stands.
+
+use crate::cases::Kind;
+use crate::cases::blend::Program;
+use crate::filter::{Filter, FilterError};
+use crate::image::select::{builtin, scene_id};
+use crate::scene::library::SCENES;
+use crate::select::{CaseRef, Member, Random, Selected, Shard, catalogue, select};
+use lightmeter_scene::frame::Frame;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// What chooses the cases: the same of two gates means the same cases.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Choice {
+    /// Globs that match an id or an ancestor of it; all where there are none.
+    pub filter: Vec<String>,
+    /// Random cases for each formula.
+    pub cases: u64,
+    /// What they are drawn from.
+    pub seed: u64,
+    /// Pixels of the longer side of every scene; `None` for the scenes' own.
+    pub size: Option<u32>,
+}
+
+/// The cases that are chosen.
+pub struct Plan {
+    /// What chose them.
+    pub choice: Choice,
+    /// Every formula.
+    pub catalogue: Vec<Member>,
+    /// The formulas that have cases in it.
+    pub formulas: Vec<Formula>,
+    /// The scenes, by their places among the built-in ones.
+    pub scenes: Vec<usize>,
+    /// The formula of a path of random cases.
+    random: HashMap<String, usize>,
+    /// The formula and the case of an id with a name.
+    named: HashMap<String, (usize, CaseRef)>,
+}
+
+/// A formula with the cases that are chosen of it.
+pub struct Formula {
+    /// What is chosen.
+    pub selected: Selected,
+    /// Hard cases and those near them come first, and how many those are.
+    named: usize,
+    /// The places of the named cases.
+    places: HashMap<CaseRef, usize>,
+}
+
+/// A case of the plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// The formula's place among the plan's, and the case's among its own.
+    Case {
+        /// Of the formula.
+        formula: usize,
+        /// Of the case.
+        case: usize,
+    },
+    /// The scene's place among the plan's.
+    Scene(usize),
+}
+
+impl Plan {
+    /// The cases of a choice. NaN and infinity, of which nothing is promised, are no cases here.
+    ///
+    /// # Errors
+    /// Where a glob cannot be read.
+    pub fn new(choice: Choice) -> Result<Self, FilterError> {
+        let filter = Filter::new(&choice.filter)?;
+        let catalogue = catalogue();
+        let mut plan = Self {
+            scenes: (0..SCENES.len()).filter(|&place| filter.selects(&scene_id(place))).collect(),
+            formulas: vec![],
+            random: HashMap::new(),
+            named: HashMap::new(),
+            catalogue,
+            choice,
+        };
+        for selected in select(&plan.catalogue, &filter, plan.choice.cases, Shard::WHOLE) {
+            let member = &plan.catalogue[selected.member];
+            if matches!(member.spec.kind, Kind::Blend(Program::Special(_))) {
+                continue;
+            }
+            let formula = plan.formulas.len();
+            if selected.random_count() > 0 {
+                let first = member.case_id(CaseRef::Random(0));
+                let path = first.rsplit_once('/').map_or("", |(path, _)| path);
+                plan.random.insert(path.to_owned(), formula);
+            }
+            let mut places = HashMap::new();
+            for (place, case) in selected.cases().take_while(|case| !matches!(case, CaseRef::Random(_))).enumerate() {
+                plan.named.insert(member.case_id(case), (formula, case));
+                places.insert(case, place);
+            }
+            plan.formulas.push(Formula { selected, named: places.len(), places });
+        }
+        Ok(plan)
+    }
+
+    /// How many cases of formulas there are.
+    #[must_use]
+    pub fn cases(&self) -> u64 {
+        self.formulas.iter().map(|formula| formula.selected.count()).sum()
+    }
+
+    /// The description of a formula of the plan.
+    #[must_use]
+    pub fn member(&self, formula: usize) -> &Member {
+        &self.catalogue[self.formulas[formula].selected.member]
+    }
+
+    /// The place of an id; `None` where the plan has no such case.
+    #[must_use]
+    pub fn find(&self, id: &str) -> Option<Place> {
+        if let Some(name) = id.strip_prefix("scene/") {
+            let scene = self.scenes.iter().position(|&place| SCENES[place].0 == name)?;
+            return Some(Place::Scene(scene));
+        }
+        if let Some(&(formula, case)) = self.named.get(id) {
+            let case = *self.formulas[formula].places.get(&case)?;
+            return Some(Place::Case { formula, case });
+        }
+        let (path, number) = id.rsplit_once('/')?;
+        let &formula = self.random.get(path)?;
+        let case = self.formulas[formula].random(number.parse().ok()?)?;
+        // `17` is no id of case `000017`.
+        (self.member(formula).case_id(self.formulas[formula].case(case)) == id).then_some(Place::Case { formula, case })
+    }
+
+    /// The id at a place.
+    #[must_use]
+    pub fn id(&self, place: Place) -> String {
+        match place {
+            Place::Scene(scene) => scene_id(self.scenes[scene]),
+            Place::Case { formula, case } => self.member(formula).case_id(self.formulas[formula].case(case)),
+        }
+    }
+
+    /// The inputs of a case.
+    #[must_use]
+    pub fn inputs(&self, formula: usize, case: usize) -> Vec<f32> {
+        let member = self.member(formula);
+        let mut row = Vec::with_capacity(member.spec.input_len());
+        member.inputs(self.formulas[formula].case(case), self.choice.seed, &mut row);
+        row
+    }
+
+    /// A scene's title and frame.
+    ///
+    /// # Errors
+    /// Where it is refused, which a test rules out.
+    pub fn frame(&self, scene: usize) -> Result<(String, Frame), crate::scene::Error> {
+        let loaded = builtin(self.scenes[scene], self.choice.size)?;
+        Ok((loaded.title, loaded.frame))
+    }
+}
+
+impl Formula {
+    /// How many cases it has.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        usize::try_from(self.selected.count()).unwrap_or(usize::MAX)
+    }
+
+    /// The case at a place.
+    ///
+    /// # Panics
+    /// Where there is none.
+    #[must_use]
+    pub fn case(&self, place: usize) -> CaseRef {
+        if place < self.named {
+            return self.selected.cases().nth(place).expect("named cases come first");
+        }
+        let random = place - self.named;
+        CaseRef::Random(match &self.selected.random {
+            Random::First(_) => random as u64,
+            Random::Some(some) => some[random],
+        })
+    }
+
+    /// Whether the case at a place is a random one.
+    #[must_use]
+    pub const fn is_random(&self, place: usize) -> bool {
+        place >= self.named
+    }
+
+    /// The place of a random case.
+    fn random(&self, number: u64) -> Option<usize> {
+        let random = match &self.selected.random {
+            Random::First(count) => usize::try_from(number).ok().filter(|_| number < *count),
+            Random::Some(some) => some.binary_search(&number).ok(),
+        };
+        random.map(|random| self.named + random)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(filter: &[&str]) -> Plan {
+        let filter = filter.iter().map(|&glob| glob.to_owned()).collect();
+        Plan::new(Choice { filter, cases: 5, seed: 1, size: Some(32) }).expect("the globs are valid")
+    }
+
+    #[test]
+    fn every_case_is_found_by_its_id_and_no_other() {
+        let plan = plan(&["fog", "blend/add/zero", "vector/reflect", "blend/add/one/one/0003", "scene/phong"]);
+        let mut seen = 0;
+        for formula in 0..plan.formulas.len() {
+            for case in 0..plan.formulas[formula].count() {
+                let place = Place::Case { formula, case };
+                assert_eq!(plan.find(&plan.id(place)), Some(place), "{}", plan.id(place));
+                assert_eq!(plan.inputs(formula, case).len(), plan.member(formula).spec.input_len());
+                seen += 1;
+            }
+        }
+        assert_eq!(seen, plan.cases());
+        assert_eq!(plan.find("scene/phong"), Some(Place::Scene(0)));
+        for id in
+            ["fog/exp/random/17", "fog/exp/random/000005", "fog/exp", "scene/teapot", "blend/add/one/one/0002", ""]
+        {
+            assert_eq!(plan.find(id), None, "{id}");
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! What became of a gate: `lightmeter.gate/1`.
+
+use super::expectations::Expectation;
+use super::ledger::{Failure, Ledger, Problems, Row, Tally};
+use super::plan::{Choice, Place};
+use super::process::Outcome;
+use crate::faults::{Answered, diagnose, group_verdict};
+use crate::report::Number;
+use serde::{Deserialize, Serialize};
+
+/// The schema's name.
+pub const SCHEMA: &str = "lightmeter.gate/1";
+/// Failures with their numbers in a report.
+const MOST_FAILURES: usize = 1000;
+/// The part of a group's random verdicts that may permit anything.
+const MOST_INDETERMINATE: f64 = 0.01;
+
+/// A gate's result.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// [`SCHEMA`].
+    pub schema: &'static str,
+    /// The command.
+    pub command: String,
+    /// The version of lightmeter.
+    pub version: &'static str,
+    /// What chose the cases.
+    pub choice: Choice,
+    /// The version of what draws them.
+    pub generator: u64,
+    /// The accuracy rules.
+    pub profile: String,
+    /// Who answered.
+    pub renderer: Named,
+    /// How long it took.
+    pub seconds: f64,
+    /// Counts over all groups.
+    pub totals: Totals,
+    /// Lines that are no answers.
+    pub problems: Problems,
+    /// What went wrong with the process.
+    pub incidents: Vec<String>,
+    /// How often it was started.
+    pub starts: u64,
+    /// Formulas and scenes.
+    pub groups: Vec<Group>,
+    /// The first failures of each.
+    pub failures: Vec<Failure>,
+    /// Cases whose answer changed.
+    pub unstable: Vec<String>,
+    /// Known failures, and what became of them.
+    pub expectations: Vec<Expectation>,
+    /// What is worse than in the baseline.
+    pub regressions: Vec<String>,
+}
+
+/// A renderer.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Named {
+    /// Its name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+}
+
+/// Counts of cases, but for the verdicts, which are of scalars.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct Totals {
+    /// Asked for.
+    pub asked: u64,
+    /// Answered, and every verdict passed or permits anything.
+    pub passed: u64,
+    /// Failed.
+    pub failed: u64,
+    /// Failed as is expected.
+    pub expected_failures: u64,
+    /// Expectations none of whose cases failed.
+    pub unexpected_passes: u64,
+    /// Skipped by the renderer.
+    pub skipped: u64,
+    /// Never answered.
+    pub missing: u64,
+    /// Answered in another way when asked once more.
+    pub unstable: u64,
+    /// Cases that the renderer does not declare, and that were not asked.
+    pub not_asked: u64,
+    /// Scalars judged.
+    pub verdicts: u64,
+    /// Of them, those where anything is legal.
+    pub indeterminate: u64,
+}
+
+/// A formula or a scene.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Group {
+    /// Its id.
+    pub id: String,
+    /// Cases that were asked.
+    pub asked: u64,
+    /// Failed.
+    pub failed: u64,
+    /// Of them, those that are expected to.
+    pub expected_failures: u64,
+    /// Skipped.
+    pub skipped: u64,
+    /// Never answered.
+    pub missing: u64,
+    /// Scalars judged.
+    pub verdicts: u64,
+    /// Of them, those where anything is legal.
+    pub indeterminate: u64,
+    /// The largest error in ULP of binary32; of a scene, in its target's ULP or steps.
+    pub error_max: Number,
+    /// The largest margin.
+    pub margin_max: Number,
+    /// The case that it is of.
+    pub worst: Option<String>,
+    /// Why it was not asked, or why its cases were skipped.
+    pub reason: Option<String>,
+    /// What is wrong with the whole, where no single case shows it.
+    pub problem: Option<String>,
+    /// What explains its failures.
+    pub diagnosis: Option<String>,
+    /// The failing case with the simplest inputs.
+    pub smallest: Option<String>,
+}
+
+impl Group {
+    /// Whether something fails that is not expected to.
+    #[must_use]
+    pub const fn is_failed(&self) -> bool {
+        self.failed > self.expected_failures || self.missing > 0 || self.problem.is_some()
+    }
+}
+
+impl Report {
+    /// What a ledger holds.
+    #[must_use]
+    pub fn new(ledger: &mut Ledger<'_>, outcome: Outcome, command: String, seconds: f64) -> Self {
+        ledger.close();
+        let plan = ledger.plan();
+        let mut totals = Totals { unstable: ledger.unstable.len() as u64, ..Totals::default() };
+        let (mut groups, mut failures) = (vec![], vec![]);
+        for (k, tally) in ledger.tallies.iter().enumerate() {
+            let group = group(ledger, k, tally);
+            totals.asked += tally.asked;
+            totals.failed += tally.failed;
+            totals.expected_failures += tally.expected;
+            totals.skipped += tally.skipped;
+            totals.missing += tally.missing;
+            totals.verdicts += tally.verdicts;
+            totals.indeterminate += tally.indeterminate;
+            totals.passed += tally.answered - (tally.failed - tally.unjudged);
+            if tally.undeclared.is_some() {
+                totals.not_asked += plan.formulas.get(k).map_or(1, |formula| formula.count() as u64);
+            }
+            let room = MOST_FAILURES - failures.len();
+            failures.extend(tally.failures.iter().take(room).cloned());
+            groups.push(group);
+        }
+        let expectations = ledger.expectations.clone();
+        totals.unexpected_passes = expectations.iter().filter(|one| one.passes_unexpectedly()).count() as u64;
+        Self {
+            schema: SCHEMA,
+            command,
+            version: env!("CARGO_PKG_VERSION"),
+            choice: plan.choice.clone(),
+            generator: crate::cases::GENERATOR_VERSION,
+            profile: ledger.profile().name.into(),
+            renderer: Named { name: outcome.hello.renderer, version: outcome.hello.version },
+            seconds,
+            totals,
+            problems: ledger.problems.clone(),
+            incidents: outcome.incidents,
+            starts: outcome.starts,
+            groups,
+            failures,
+            unstable: ledger.unstable.clone(),
+            expectations,
+            regressions: vec![],
+        }
+    }
+
+    /// Whether the renderer broke off, or wrote what is no answer.
+    #[must_use]
+    pub fn is_broken(&self) -> bool {
+        !self.incidents.is_empty() || !self.problems.is_empty()
+    }
+
+    /// Whether anything fails that is not expected to, or passes that is.
+    #[must_use]
+    pub fn is_failed(&self) -> bool {
+        let totals = &self.totals;
+        totals.unstable + totals.unexpected_passes > 0
+            || !self.regressions.is_empty()
+            || self.groups.iter().any(Group::is_failed)
+    }
+
+    /// Whether anything was judged at all.
+    #[must_use]
+    pub const fn has_judged(&self) -> bool {
+        self.totals.verdicts > self.totals.indeterminate
+    }
+}
+
+/// What explains the failures of a formula, what is wrong with all of its values, and its simplest failing case.
+fn diagnosed(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> [Option<String>; 3] {
+    let plan = ledger.plan();
+    if k >= plan.formulas.len() {
+        return [tally.diagnosis.clone(), None, None];
+    }
+    let member = plan.member(k);
+    let of = |is_wrong: bool, rows: &[Row]| -> Vec<(usize, Vec<f32>, Vec<f32>, bool)> {
+        rows.iter().map(|row| (row.case, plan.inputs(k, row.case), row.values.clone(), is_wrong)).collect()
+    };
+    let rows: Vec<_> = of(true, &tally.rows[0]).into_iter().chain(of(false, &tally.rows[1])).collect();
+    let answered: Vec<Answered<'_>> =
+        rows.iter().map(|(_, inputs, values, is_wrong)| Answered { inputs, values, is_wrong: *is_wrong }).collect();
+    if tally.rows[0].is_empty() {
+        let systematic = group_verdict(member, &answered, ledger.profile());
+        return [None, systematic.map(|systematic| systematic.says), None];
+    }
+    let diagnosis = diagnose(member, &answered, ledger.profile());
+    let smallest = diagnosis.smallest.map(|place| plan.id(Place::Case { formula: k, case: rows[place].0 }));
+    [Some(diagnosis.sentence), None, smallest]
+}
+
+fn group(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> Group {
+    let plan = ledger.plan();
+    let [diagnosis, systematic, smallest] = diagnosed(ledger, k, tally);
+    let id = if k < plan.formulas.len() {
+        plan.member(k).spec.id.clone()
+    } else {
+        plan.id(Place::Scene(k - plan.formulas.len()))
+    };
+    let [random, indeterminate] = tally.random;
+    #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
+    let share = indeterminate as f64 / (random as f64).max(1.0);
+    let problem = (share > MOST_INDETERMINATE).then(|| {
+        let rules = ledger.profile().name;
+        format!("{:.1} % of its random verdicts permit anything under the profile {rules}", 100.0 * share)
+    });
+    let reason = tally.undeclared.clone().or_else(|| (!tally.reasons.is_empty()).then(|| tally.reasons.join("; ")));
+    Group {
+        id,
+        asked: tally.asked,
+        failed: tally.failed,
+        expected_failures: tally.expected,
+        skipped: tally.skipped,
+        missing: tally.missing,
+        verdicts: tally.verdicts,
+        indeterminate: tally.indeterminate,
+        error_max: Number(tally.error_max),
+        margin_max: Number(tally.margin_max),
+        worst: tally.worst.map(|place| plan.id(place)),
+        reason,
+        problem: problem.or(systematic),
+        diagnosis,
+        smallest,
+    }
+}
