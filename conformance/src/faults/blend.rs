@@ -1,8 +1,9 @@
 //! Blending with mistakes: the state that is drawn with is another one, or an operand is.
 
+use super::change::{After, Before};
 use super::row::{Row, put};
 use crate::cases::blend::{MOST_LAYERS, Program};
-use crate::cases::{Kind, Spec};
+use crate::cases::{Domain, Input, Kind, Spec};
 use lightmeter_reference::blend::{Mode, Operands, Saturate, blend, blend_separate, masked};
 use lightmeter_reference::{Real, Vec4, Vector};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State};
@@ -333,6 +334,39 @@ const fn color_for_alpha(factor: Factor) -> Factor {
 /// Whether the formula has these steps, and each makes a difference to it.
 pub(super) fn concerns(spec: &Spec, twists: &[Twist]) -> bool {
     right(spec).is_some_and(|mut model| twists.iter().all(|&twist| model.twist(twist)))
+}
+
+/// Whether a formula of the blend unit becomes another function of its operands.
+///
+/// Blending is a polynomial of its operands, but for a least or a greatest: two that agree at a dozen points that nothing
+/// connects are one.
+pub(super) fn differs(spec: &Spec, before: &[Before], twists: &[Twist], after: &[After]) -> bool {
+    const POINTS: u32 = 12;
+    const LEAST: f64 = 1e-4;
+    if right(spec).is_none() {
+        return true;
+    }
+    let mut number = 0.0_f64;
+    let mut next = |input: &Input| {
+        // Multiples of an irrational number, modulo the domain.
+        number += 0.618_033_988_749_894_8;
+        match input.domain {
+            Domain::Whole(low, high) => f64::from(low) + (number.fract() * f64::from(high - low)).round(),
+            _ => number.fract() * 2.0 - 0.5,
+        }
+    };
+    (0..POINTS).any(|_| {
+        let mut row: Vec<f64> = vec![];
+        for input in spec.inputs {
+            row.extend((0..input.shape.components()).map(|_| next(input)));
+        }
+        let (mut right, mut wrong) = (vec![0.0; spec.output_len()], vec![0.0; spec.output_len()]);
+        let is_known = evaluate(spec, &[], &row, &mut right).is_some();
+        before.iter().for_each(|before| before.apply(spec, &mut row));
+        let is_known = is_known && evaluate(spec, twists, &row, &mut wrong).is_some();
+        after.iter().for_each(|after| after.apply(spec, &mut wrong));
+        !is_known || right.iter().zip(&wrong).any(|(a, b)| (a - b).abs() > LEAST)
+    })
 }
 
 /// The formula with these steps wrong.

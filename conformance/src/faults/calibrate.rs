@@ -20,6 +20,10 @@ const HALVINGS: u32 = 12;
 /// The widest error that is tried; beyond, a parameter does not count.
 const WIDEST: f64 = 16.0;
 
+/// What an error grows by while the group verdict does not name it, and how often.
+const STEP: f64 = 1.25;
+const MOST_STEPS: u32 = 16;
+
 /// The smallest errors of a parameter that are named.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Resolution {
@@ -66,6 +70,8 @@ struct Scale<'a> {
     inputs: Vec<Vec<f32>>,
     reference: Vec<f64>,
     legal: Vec<Accept>,
+    /// The embedded implementation's answers.
+    right: Vec<f32>,
     design: Design,
 }
 
@@ -89,8 +95,12 @@ impl<'a> Scale<'a> {
                 member.formula.promised_interval(spec.kind, inputs, profile, legal);
             }
         });
+        let mut right = vec![0.0; inputs.len() * outputs];
+        for (inputs, out) in inputs.iter().zip(right.chunks_exact_mut(outputs)) {
+            member.formula.embedded(inputs, out);
+        }
         let design = Design::new(member, inputs.iter().map(Vec::as_slice), profile);
-        Self { member, inputs, reference, legal, design }
+        Self { member, inputs, reference, legal, right, design }
     }
 
     fn measure(&self) -> Vec<Resolution> {
@@ -172,19 +182,22 @@ impl<'a> Scale<'a> {
     /// From what the regression's own errors say, upward until the verdict is there.
     fn group(&self, place: usize, parameter: &Parameter) -> Option<f64> {
         let outputs = self.member.spec.output_len();
-        let named = |amount: f64| {
-            let mut values = vec![0.0; self.inputs.len() * outputs];
+        let mut values = vec![0.0; self.inputs.len() * outputs];
+        let mut named = |amount: f64| {
             for (case, out) in values.chunks_exact_mut(outputs).enumerate() {
                 self.answer(case, parameter, amount, out);
             }
             self.design.names(place, &values)
         };
-        let mut amount = self.design.least_amount(place)?;
-        while amount <= WIDEST {
+        let mut amount = self.design.least_amount(place, &self.right)?;
+        for _ in 0..MOST_STEPS {
+            if amount > WIDEST {
+                return None;
+            }
             if named(amount) {
                 return Some(amount);
             }
-            amount *= 1.25;
+            amount *= STEP;
         }
         None
     }

@@ -76,7 +76,9 @@ impl Fault {
         if is_special || !(self.only)(spec) {
             return None;
         }
-        self.ways.iter().copied().find(|way| way.iter().all(|step| step.fits(spec)))
+        let way = self.ways.iter().copied().find(|way| way.iter().all(|step| step.fits(spec)))?;
+        let is_blending = matches!(spec.kind, Kind::Blend(_));
+        (!is_blending || shows_in_blending(spec, way)).then_some(way)
     }
 
     /// The mistake of that name.
@@ -84,6 +86,20 @@ impl Fault {
     pub fn by_name(name: &str) -> Option<&'static Self> {
         faults().iter().copied().find(|fault| fault.name == name)
     }
+}
+
+/// Of some of the many states a mistake makes the same function.
+fn shows_in_blending(spec: &Spec, way: &[Step]) -> bool {
+    let (mut before, mut twists, mut after) = (vec![], vec![], vec![]);
+    for step in way {
+        match *step {
+            Step::Before(step) => before.push(step),
+            Step::Blend(step) => twists.push(step),
+            Step::After(step) => after.push(step),
+            _ => {}
+        }
+    }
+    blend::differs(spec, &before, &twists, &after)
 }
 
 /// Every mistake, in the order of tables.

@@ -220,16 +220,21 @@ impl Design {
         self.residuals(values).is_some_and(|residuals| Regressed::new(&residuals, &self.derivatives[place]).is_named())
     }
 
-    /// An error of a parameter that shifts the answers by [`LEAST_SHARE`]: no smaller one is named.
-    pub(super) fn least_amount(&self, place: usize) -> Option<f64> {
+    /// The error of a parameter that would just be named, were the answers linear in it, beside the residuals of answers that
+    /// are right.
+    pub(super) fn least_amount(&self, place: usize, right: &[f32]) -> Option<f64> {
         let derivatives = &self.derivatives[place];
-        let limit = limit(derivatives)?;
-        let (mut shift, mut count) = (0.0, 0.0);
-        for &d in derivatives.iter().filter(|&&d| d != 0.0) {
-            shift += f64::from(d).clamp(-limit, limit).powi(2);
+        let (residuals, limit) = (self.residuals(right)?, limit(derivatives)?);
+        let (mut shift, mut count, mut variance, mut slopes) = (0.0, 0.0, 0.0, 0.0);
+        for (r, &d) in residuals.iter().zip(derivatives).filter(|(_, d)| **d != 0.0) {
+            let (d, psi) = (f64::from(d), f64::from(d).clamp(-limit, limit));
+            shift += psi * psi;
             count += 1.0;
+            variance += (psi * r).powi(2);
+            slopes += psi * d;
         }
-        Some(LEAST_SHARE / (shift / count).sqrt())
+        let by_share: f64 = LEAST_SHARE / (shift / count).sqrt();
+        Some(by_share.max(LEAST_Z * variance.sqrt() / slopes))
     }
 }
 
