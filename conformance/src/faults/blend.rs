@@ -346,13 +346,16 @@ pub(super) fn differs(spec: &Spec, before: &[Before], twists: &[Twist], after: &
     if right(spec).is_none() {
         return true;
     }
+    // A draw's cases go beyond [0, 1].
+    let is_draw = matches!(spec.kind, Kind::Blend(Program::Draw(..)));
     let mut number = 0.0_f64;
     let mut next = |input: &Input| {
         // Multiples of an irrational number, modulo the domain.
         number += 0.618_033_988_749_894_8;
         match input.domain {
             Domain::Whole(low, high) => f64::from(low) + (number.fract() * f64::from(high - low)).round(),
-            _ => number.fract() * 2.0 - 0.5,
+            _ if is_draw => number.fract() * 2.0 - 0.5,
+            _ => number.fract(),
         }
     };
     (0..POINTS).any(|_| {

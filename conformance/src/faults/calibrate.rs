@@ -161,6 +161,8 @@ impl<'a> Scale<'a> {
         let (steepest, _) = cases.first()?;
         let fails = |amount: f64| cases.iter().any(|&(_, case)| self.fails(case, parameter, amount));
         let mut high = 1.0 / f64::from(*steepest);
+        // Below the least f32 nothing changes.
+        high = high.max(f64::from(f32::MIN_POSITIVE));
         while !fails(high) {
             high *= 2.0;
             if high > WIDEST {

@@ -39,6 +39,18 @@ pub(super) struct Parameter {
     pub(super) error: Error,
 }
 
+impl Parameter {
+    /// Numbers first, then vectors, then numbers of vectors, then outputs.
+    fn rank(&self) -> u8 {
+        match (self.is_output, self.name.contains('.'), self.range.len()) {
+            (true, _, _) => 3,
+            (false, true, _) => 2,
+            (false, false, 1) => 0,
+            (false, false, _) => 1,
+        }
+    }
+}
+
 /// A systematic error that the answers show together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Systematic {
@@ -75,6 +87,8 @@ pub const LEAST_Z: f64 = 8.0;
 pub const LEAST_SHARE: f64 = 0.125;
 /// Residuals beyond so many tolerances count as so many: one case far off does not decide.
 const FARTHEST: f64 = 4.0;
+/// How often what is left of the residuals is regressed again.
+const ROUNDS: usize = 4;
 
 /// The parameters of a formula: each input as a whole and each of its numbers, each output as a whole, scaled and moved.
 pub(super) fn parameters(spec: &Spec) -> Vec<Parameter> {
@@ -162,9 +176,9 @@ impl Design {
                             })
                             .sum()
                     };
-                    let derivative = slope * weight;
                     #[expect(clippy::cast_possible_truncation, reason = "a weight needs no more digits")]
-                    derivatives.push(if derivative.is_finite() { derivative as f32 } else { 0.0 });
+                    let derivative = (slope * weight) as f32;
+                    derivatives.push(if derivative.is_finite() { derivative } else { 0.0 });
                 }
             }
         }
@@ -178,7 +192,7 @@ impl Design {
             let residual = (f64::from(value) - reference) * weight;
             let counts = *weight > 0.0 && residual.is_finite();
             counted += usize::from(counts);
-            if counts { residual.clamp(-FARTHEST, FARTHEST) } else { 0.0 }
+            if counts { residual } else { 0.0 }
         });
         let residuals: Vec<f64> = residuals.collect();
         (counted >= LEAST_VALUES.min(1024 * self.outputs)).then_some(residuals)
@@ -189,9 +203,14 @@ impl Design {
         let residuals = self.residuals(values)?;
         let regressed: Vec<Regressed> =
             self.derivatives.iter().map(|derivatives| Regressed::new(&residuals, derivatives)).collect();
+        let strongest = regressed.iter().filter(|r| r.is_named()).map(|r| r.z.abs()).fold(0.0, f64::max);
+        // Of those that show alike a number that is asked for by itself is the likeliest, then a vector as a whole.
         let best = (0..regressed.len())
-            .filter(|&place| regressed[place].is_named())
-            .max_by(|&a, &b| regressed[a].z.abs().total_cmp(&regressed[b].z.abs()).then(b.cmp(&a)))?;
+            .filter(|&place| regressed[place].is_named() && regressed[place].z.abs() >= 0.99 * strongest)
+            .min_by(|&a, &b| {
+                let rank = |place: usize| self.parameters[place].rank();
+                rank(a).cmp(&rank(b)).then(regressed[b].z.abs().total_cmp(&regressed[a].z.abs()))
+            })?;
         let Regressed { amount, z, share } = regressed[best];
         let parameter = &self.parameters[best];
         let as_well = |place: &usize| *place != best && regressed[*place].z.abs() >= 0.99 * z.abs();
@@ -230,7 +249,7 @@ impl Design {
             let (d, psi) = (f64::from(d), f64::from(d).clamp(-limit, limit));
             shift += psi * psi;
             count += 1.0;
-            variance += (psi * r).powi(2);
+            variance += (psi * r.clamp(-FARTHEST, FARTHEST)).powi(2);
             slopes += psi * d;
         }
         let by_share: f64 = LEAST_SHARE / (shift / count).sqrt();
@@ -251,19 +270,19 @@ impl Regressed {
         self.z.abs() >= LEAST_Z && self.share >= LEAST_SHARE
     }
 
-    /// Solves Σ ψ(d)(r − δd) = 0, with ψ limiting how much a case can weigh, and White's standard error, which holds though
+    /// Solves Σ ψ(d)·χ(r − δd) = 0, with χ limiting a residual, ψ limiting how much a case can weigh, and White's standard error, which holds though
     /// rounding is greater in some cases than in others.
     fn new(residuals: &[f64], derivatives: &[f32]) -> Self {
         let none = Self { amount: 0.0, z: 0.0, share: 0.0 };
         let Some(limit) = limit(derivatives) else { return none };
         let psi = |d: f64| d.clamp(-limit, limit);
-        let (mut moments, mut slopes) = (0.0, 0.0);
-        for (r, &d) in residuals.iter().zip(derivatives) {
-            let d = f64::from(d);
-            moments += psi(d) * r;
-            slopes += psi(d) * d;
+        let slopes: f64 = derivatives.iter().map(|&d| psi(d.into()) * f64::from(d)).sum();
+        let mut amount = 0.0;
+        for _ in 0..ROUNDS {
+            let rest = |r: &f64, d: f32| (r - amount * f64::from(d)).clamp(-FARTHEST, FARTHEST);
+            let moments: f64 = residuals.iter().zip(derivatives).map(|(r, &d)| psi(d.into()) * rest(r, d)).sum();
+            amount += moments / slopes;
         }
-        let amount = moments / slopes;
         let (mut variance, mut shift, mut count) = (0.0, 0.0, 0.0);
         for (r, &d) in residuals.iter().zip(derivatives) {
             let d = f64::from(d);
@@ -274,7 +293,7 @@ impl Regressed {
                 count += 1.0;
             }
         }
-        let z = if variance > 0.0 { moments / variance.sqrt() } else { f64::INFINITY.copysign(amount) };
+        let z = if variance > 0.0 { amount * slopes / variance.sqrt() } else { f64::INFINITY.copysign(amount) };
         if amount == 0.0 || !amount.is_finite() { none } else { Self { amount, z, share: (shift / count).sqrt() } }
     }
 }

@@ -2,8 +2,7 @@
 
 use super::super::body::Body as Wrong;
 use super::super::catalogue::Fault;
-use super::super::catalogue::Step::{After, Before, Body, Instead};
-use super::super::change::After as Out;
+use super::super::catalogue::Step::{Before, Body, Instead};
 use super::super::change::Before as In;
 use super::fault;
 
@@ -58,17 +57,13 @@ pub(super) const FAULTS: &[Fault] = &[
         "averaged normals are divided by their number, not normalised",
         &[&[Body(Wrong::MeanNormal)]],
     ),
-    fault(
-        "winding-reversed",
-        "the face's corners are taken in reverse",
-        &[&[Before(In::Swap("b", "c"))], &[After(Out::OneMinus("front"))]],
-    )
-    .only(|spec| {
-        let id = spec.id.as_str();
-        id.starts_with("vector/face-normal")
-            || matches!(id, "lighting/flat" | "interpolation/front-facing" | "interpolation/raster-facing")
-    })
-    .seen_in("clockwise meshes; a mirrored projection"),
+    fault("winding-reversed", "the face's corners are taken in reverse", &[&[Before(In::Swap("b", "c"))]])
+        .only(|spec| {
+            let id = spec.id.as_str();
+            id.starts_with("vector/face-normal")
+                || matches!(id, "lighting/flat" | "interpolation/front-facing" | "interpolation/raster-facing")
+        })
+        .seen_in("clockwise meshes; a mirrored projection"),
     fault("face-normal-not-normalised", "the normal of a face is not normalised", &[&[Body(Wrong::FaceNotNormalised)]])
         .seen_in("normals weighted by area"),
     fault("normalised-by-sum", "vectors are divided by the sum of their components", &[&[Body(Wrong::NormalizeBySum)]]),
