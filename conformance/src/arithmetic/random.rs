@@ -2,6 +2,8 @@
 //! accuracy rules let a compiler and a device choose. Whatever it draws must lie inside the intervals of
 //! [`Accept`](super::Accept).
 
+#![expect(clippy::float_cmp, reason = "a tie is one to the last bit")]
+
 use super::format::{F32, Format as _};
 use super::profile::current;
 use lightmeter_reference::{Components, Real};

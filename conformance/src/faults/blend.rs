@@ -157,10 +157,10 @@ impl Model {
                     self.alpha = Alpha::Source;
                 }
             }
-            Twist::AlphaKept if self.has_alpha() && is_plain && self.writes(3) => {
-                if !is_destination_alone(self.state.alpha) {
-                    self.alpha = Alpha::Destination;
-                }
+            Twist::AlphaKept
+                if self.has_alpha() && is_plain && self.writes(3) && !is_destination_alone(self.state.alpha) =>
+            {
+                self.alpha = Alpha::Destination;
             }
             Twist::MaskIgnored => {
                 if matches!(self.program, Program::Draw(_, mask) if mask.0 != [true; 4]) {
