@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::selftest::{Finding, Row, selftest};
 use lightmeter::faults::calibrate::calibrate;
+use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
 use lightmeter::filter::Filter;
 use lightmeter::report::selftest as report;
@@ -16,6 +17,9 @@ use std::fmt::Write as _;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
+/// Pixels of the longer side of each scene.
+const SCENE_SIZE: u32 = 64;
+
 /// What is tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Part {
@@ -23,15 +27,17 @@ enum Part {
     Formulas,
     /// Mistakes of a blend unit.
     BlendUnit,
+    /// Mistakes of whole renderers, in the built-in scenes.
+    Scenes,
 }
 
-/// Show that the suite catches the mistakes that it knows and tells them by name: in formulas, and of a blend unit
+/// Show that the suite catches the mistakes that it knows and tells them by name: in formulas, in scenes, and of a blend unit
 #[derive(Debug, Args)]
 pub(crate) struct Selftest {
-    /// Formulas to make mistakes in: globs of ids, as for `run`; without any, all, and the blend unit too
+    /// Formulas to make mistakes in: globs of ids, as for `run`; without any, all, and scenes and the blend unit too
     #[arg(value_name = "FILTER")]
     filter: Vec<String>,
-    /// Only one of the two
+    /// Only one of the three
     #[arg(long, value_enum, value_name = "PART")]
     only: Option<Part>,
     /// Random cases for each formula; a quarter of them for each of the many blend states
@@ -68,8 +74,9 @@ impl Selftest {
         if self.format == Format::Junit {
             bail!("the self-test is written as text or json");
         }
-        if self.only == Some(Part::BlendUnit) && !self.filter.is_empty() {
-            bail!("a filter selects formulas; expected none beside `--only blend-unit`");
+        let wants = |part: Part| self.only.is_none_or(|only| only == part);
+        if !wants(Part::Formulas) && !self.filter.is_empty() {
+            bail!("a filter selects formulas; expected none beside `--only` of anything else");
         }
         let filter = Filter::new(&self.filter)?;
         let shows = std::io::stderr().is_terminal();
@@ -79,7 +86,7 @@ impl Selftest {
             }
         };
         let (mut record, mut resolutions, mut rows) = (None, vec![], None);
-        if self.only != Some(Part::BlendUnit) {
+        if wants(Part::Formulas) {
             say("every mistake in every formula that it concerns");
             let options = formulas::Options {
                 filter: filter.clone(),
@@ -99,7 +106,11 @@ impl Selftest {
             }
         }
         let targets = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
-        if self.only != Some(Part::Formulas) && self.filter.is_empty() {
+        let mut drawn = None;
+        if wants(Part::Scenes) && self.filter.is_empty() {
+            drawn = Some(scenes::selftest(SCENE_SIZE, self.profile, &|id| say(&format!("every mistake in {id}")))?);
+        }
+        if wants(Part::BlendUnit) && self.filter.is_empty() {
             rows = Some(selftest(&targets, self.cases, &mut |target| say(&format!("every fault on {target}")))?);
         }
         let text = match self.format {
@@ -111,6 +122,9 @@ impl Selftest {
                     document["clean"] = serde_json::to_value(&record.clean)?;
                     document["calibration"] = serde_json::to_value(&resolutions)?;
                 }
+                if let Some(scenes) = &drawn {
+                    document["scenes"] = serde_json::to_value(scenes)?;
+                }
                 serde_json::to_string_pretty(&document)? + "\n"
             }
             Format::Text | Format::Junit => {
@@ -118,8 +132,14 @@ impl Selftest {
                 if let Some(record) = &record {
                     report::text(record, &resolutions, &mut text)?;
                 }
-                if let Some(rows) = &rows {
+                if let Some(scenes) = &drawn {
                     if record.is_some() {
+                        text.push('\n');
+                    }
+                    scenes::text(scenes, &mut text)?;
+                }
+                if let Some(rows) = &rows {
+                    if record.is_some() || drawn.is_some() {
                         text.push('\n');
                     }
                     text += &table(&targets, rows)?;
@@ -129,7 +149,7 @@ impl Selftest {
         };
         emit(&text, self.out.as_deref())?;
         let unit = rows.iter().flatten().all(|row| row.finding.is_good());
-        let good = unit && record.iter().all(formulas::Record::is_good);
+        let good = unit && record.iter().all(formulas::Record::is_good) && drawn.iter().all(scenes::Record::is_good);
         Ok(if good { Status::Success } else { Status::Failed })
     }
 }

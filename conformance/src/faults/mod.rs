@@ -14,6 +14,7 @@ mod fog;
 mod group;
 mod lighting;
 mod row;
+pub mod scene;
 pub mod selftest;
 mod table;
 mod variation;

@@ -16,6 +16,9 @@ use std::path::{Component, Path, PathBuf};
 /// Bytes of a file, at most: 8192² pixels of binary32, and a header.
 const MOST_BYTES: u64 = (1 << 30) + (1 << 20);
 
+/// How far from a step of 8 bits a linear value of binary32 may be that is one.
+const WHOLE: f64 = 1e-3;
+
 /// How an image compares.
 pub struct Found {
     /// Components that were judged.
@@ -101,7 +104,14 @@ impl Values {
                 pixels.into_iter().map(|pixel| pixel.map(|c| c * scale)).collect()
             }
             Self::Linear(pixels) => {
-                let units = |pixel: [f64; 4]| std::array::from_fn(|k| pixel::units(format, k, pixel[k]));
+                let units = |pixel: [f64; 4]| {
+                    std::array::from_fn(|k| {
+                        let units = pixel::units(format, k, pixel[k]);
+                        // A whole step that was written as binary32 is that step.
+                        let step = units.round();
+                        if format.is_unorm() && (units - step).abs() < WHOLE { step } else { units }
+                    })
+                };
                 pixels.into_iter().map(units).collect()
             }
         }

@@ -95,6 +95,8 @@ struct Running {
     input: Option<ChildStdin>,
     events: Receiver<Event>,
     complaint: Arc<Mutex<Vec<u8>>>,
+    /// Reads what it complains of, until its end.
+    listening: Option<std::thread::JoinHandle<()>>,
 }
 
 impl Running {
@@ -115,7 +117,7 @@ impl Running {
             std::thread::spawn(move || listen(output, &send));
         }
         let complaint = Arc::new(Mutex::new(vec![]));
-        if let Some(mut errors) = errors {
+        let listening = errors.map(|mut errors| {
             let kept = complaint.clone();
             std::thread::spawn(move || {
                 let mut part = [0; 1024];
@@ -126,9 +128,9 @@ impl Running {
                         kept.drain(..excess);
                     }
                 }
-            });
-        }
-        Ok(Self { child, group, input, events, complaint })
+            })
+        });
+        Ok(Self { child, group, input, events, complaint, listening })
     }
 
     /// Writes lines in a thread of its own, since a renderer may answer before it has read all.
@@ -148,6 +150,11 @@ impl Running {
         }
         let _ = self.child.kill();
         let status = self.child.wait();
+        // A child that left the group may hold the pipe open: it is not waited for.
+        let until = Instant::now() + Duration::from_millis(200);
+        while self.listening.as_ref().is_some_and(|thread| !thread.is_finished()) && Instant::now() < until {
+            std::thread::sleep(Duration::from_millis(2));
+        }
         let said =
             self.complaint.lock().map(|said| String::from_utf8_lossy(&said).trim().to_owned()).unwrap_or_default();
         let status = status.map_or_else(|error| error.to_string(), |status| status.to_string());

@@ -66,3 +66,79 @@ pub fn ask(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::plan::Choice;
+    use super::super::process::Outcome;
+    use super::super::report::Report;
+    use super::*;
+    use crate::arithmetic::profile::WGSL;
+    use crate::faults::scene::{SCENE_FAULTS, draw};
+    use crate::faults::{Variation, concerning};
+    use crate::select::{Member, catalogue};
+
+    /// The formulas in f32, one of them with a mistake; scenes with another.
+    struct Wrong {
+        catalogue: Vec<Member>,
+        fault: Option<(&'static str, &'static str)>,
+        scene_fault: Option<&'static str>,
+    }
+
+    impl Renderer for Wrong {
+        fn hello(&self) -> Hello {
+            Hello { renderer: "wrong".into(), ..Hello::everything() }
+        }
+
+        fn evaluate(&mut self, spec: &Spec, inputs: &[f32]) -> Result<Vec<f32>, String> {
+            let member = self.catalogue.iter().find(|member| member.spec.id == spec.id).ok_or("no such formula")?;
+            let mut out = vec![0.0_f32; spec.output_len()];
+            match self.fault.filter(|(_, formula)| *formula == spec.id) {
+                None => member.formula.embedded(inputs, &mut out),
+                Some((name, _)) => {
+                    let fault = concerning(spec).into_iter().find(|fault| fault.name == name).ok_or("no such mistake")?;
+                    let variation = Variation::new(member, &[fault]).ok_or("it does not concern the formula")?;
+                    variation.evaluate(inputs, &mut out);
+                }
+            }
+            Ok(out)
+        }
+
+        fn draw(&mut self, id: &str, frame: &Frame, folder: &Path) -> Result<String, String> {
+            let fault = self.scene_fault.and_then(|name| SCENE_FAULTS.iter().find(|fault| fault.name == name));
+            let image = draw::<f32>(frame, &fault.into_iter().collect::<Vec<_>>());
+            let name = format!("{}.exr", id.replace('/', "-"));
+            image.write(&folder.join(&name)).map_err(|error| error.to_string())?;
+            Ok(name)
+        }
+    }
+
+    fn gate(filter: &[&str], fault: Option<(&'static str, &'static str)>, scene_fault: Option<&'static str>) -> Report {
+        let folder = std::env::temp_dir().join(format!("lightmeter-renderer-{}-{}", std::process::id(), filter.len()));
+        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        let filter = filter.iter().map(|&glob| glob.to_owned()).collect();
+        let plan = Plan::new(Choice { filter, cases: 64, seed: 1, size: Some(48) }).expect("the globs are valid");
+        let mut ledger = Ledger::new(&plan, &WGSL);
+        let mut renderer = Wrong { catalogue: catalogue(), fault, scene_fault };
+        ask(&mut ledger, &plan, &mut renderer, &folder).unwrap_or_else(|error| panic!("{error}"));
+        let _ = std::fs::remove_dir_all(&folder);
+        Report::new(&mut ledger, Outcome::default(), String::new(), 0.0)
+    }
+
+    #[test]
+    fn what_is_right_passes() {
+        let report = gate(&["fog", "vector", "scene/flat"], None, None);
+        let failed: Vec<_> = report.groups.iter().filter(|group| group.is_failed()).collect();
+        assert!(failed.is_empty() && report.has_judged(), "{failed:?}");
+    }
+
+    #[test]
+    fn a_mistake_in_a_formula_and_one_in_a_scene_are_told_by_name() {
+        let report = gate(&["fog/linear", "fog/exp"], Some(("fog-smoothstep", "fog/linear")), None);
+        let said: Vec<_> = report.groups.iter().filter_map(|group| group.diagnosis.clone()).collect();
+        assert!(said.len() == 1 && said[0].contains("smoothstep"), "{said:?}");
+        let report = gate(&["scene/fog-exp2-opengl", "scene/flat", "scene/gouraud"], None, Some("fog-distance"));
+        let said: Vec<_> = report.groups.iter().filter_map(|group| group.diagnosis.clone()).collect();
+        assert!(said.len() == 1 && said[0].contains("radial for planar"), "{said:?}");
+    }
+}

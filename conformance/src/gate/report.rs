@@ -217,7 +217,12 @@ fn diagnosed(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> [Option<String>; 3
     let answered: Vec<Answered<'_>> =
         rows.iter().map(|(_, inputs, values, is_wrong)| Answered { inputs, values, is_wrong: *is_wrong }).collect();
     if tally.rows[0].is_empty() {
-        let systematic = group_verdict(member, &answered, ledger.profile());
+        // Hard cases are where formulas are steep, and say nothing of a parameter.
+        let random: Vec<Answered<'_>> = (rows.iter().zip(&answered))
+            .filter(|(row, _)| plan.formulas[k].is_random(row.0))
+            .map(|(_, answered)| *answered)
+            .collect();
+        let systematic = group_verdict(member, &random, ledger.profile());
         return [None, systematic.map(|systematic| systematic.says), None];
     }
     let diagnosis = diagnose(member, &answered, ledger.profile());

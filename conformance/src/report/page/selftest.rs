@@ -2,6 +2,7 @@
 
 use crate::cases::FAMILIES;
 use crate::faults::calibrate::{CASES, Resolution};
+use crate::faults::scene::selftest as scenes;
 use crate::faults::selftest::{Clean, Finding, Kill, Record};
 use crate::faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
 use crate::report::selftest::smallest;
@@ -18,6 +19,7 @@ pub struct Run {
     calibration: Vec<Resolution>,
     #[serde(default)]
     rows: Vec<UnitRow>,
+    scenes: Option<scenes::Record>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -68,6 +70,9 @@ pub fn markdown(run: &Run, out: &mut impl Write) -> Written {
     matrix(&run.record, out)?;
     aliases(&run.record, out)?;
     clean(&run.record, out)?;
+    if let Some(scenes) = &run.scenes {
+        drawn(scenes, out)?;
+    }
     unit(&run.rows, out)?;
     resolution(&run.calibration, out)
 }
@@ -170,6 +175,29 @@ fn clean(record: &Record, out: &mut impl Write) -> Written {
         }
     }
     writeln!(out)
+}
+
+fn drawn(record: &scenes::Record, out: &mut impl Write) -> Written {
+    let [caught, named] = record.counts();
+    writeln!(out, "\n## Mistakes of whole renderers\n")?;
+    writeln!(
+        out,
+        "Each is made by the reference renderer in f32 in every built-in scene, where it changes anything that is not legal. \
+         {} mistakes\nare caught in {caught} images; the first diagnosis names {named} of them, {:.1} %, or one that draws the \
+         same image.\n",
+        record.rows.len(),
+        crate::faults::percent(named, caught)
+    )?;
+    writeln!(out, "| mistake | | scenes that catch it | named in | taken for another in |\n|---|---|--:|--:|---|")?;
+    for row in &record.rows {
+        let others: Vec<&str> = row.others.iter().filter_map(|other| other.split(':').next()).collect();
+        let [caught, named] = [row.caught.len(), row.named.len()];
+        writeln!(out, "| {} | {} | {caught} | {named} | {} |", row.fault, row.says, others.join(", "))?;
+    }
+    for alarm in &record.alarms {
+        writeln!(out, "\n**False alarm**: {alarm} fails and nothing is wrong.")?;
+    }
+    Ok(())
 }
 
 fn unit(rows: &[UnitRow], out: &mut impl Write) -> Written {

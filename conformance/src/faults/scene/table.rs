@@ -1,0 +1,259 @@
+//! The mistakes of whole renderers: a frame that is drawn as if it were another, and an image that is written as if it were.
+
+use lightmeter_reference::color;
+use lightmeter_scene::blend::{Factor, State};
+use lightmeter_scene::frame::{Cull, Filter, Fog, FogForm, Frame, Light, Material, Place, Shading, Wrap};
+use lightmeter_scene::raster::Provoking;
+use lightmeter_scene::shading::{Ambient, Distance, Frequency, Gate, LightAmbient, Normals, Specular, Viewer};
+
+/// A mistake of a renderer.
+#[derive(Debug)]
+pub struct SceneFault {
+    /// Its name.
+    pub name: &'static str,
+    /// In words, as the end of a sentence.
+    pub says: &'static str,
+    /// What it changes.
+    pub(super) change: Change,
+}
+
+/// What a mistake changes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Change {
+    /// The frame, before it is drawn.
+    Frame(fn(&mut Frame)),
+    /// The image in linear values, row after row from the top, before it is stored. It is monotone in each component.
+    Image(fn(&mut Vec<[f64; 4]>, usize)),
+}
+
+macro_rules! faults {
+    ($($kind:ident $name:literal $says:literal $change:expr;)*) => {
+        /// Every mistake.
+        pub const SCENE_FAULTS: &[SceneFault] =
+            &[$(SceneFault { name: $name, says: $says, change: Change::$kind($change) }),*];
+    };
+}
+
+faults! {
+    // Where lights are.
+    Frame "light-reversed" "lights shine from the other side" |frame| each_place(frame, |place| match place {
+        Place::Directional { toward, .. } => negate(toward),
+        Place::Point { position, .. } | Place::Spot { position, .. } => negate(position),
+    });
+    Frame "positional-as-directional" "positional lights are taken as directional" |frame| each_place(frame, |place| {
+        if let Place::Point { position, .. } | Place::Spot { position, .. } = place {
+            *place = Place::Directional { toward: *position, unit: false };
+        }
+    });
+    Frame "directional-as-positional" "directional lights are taken as positional" |frame| each_place(frame, |place| {
+        if let Place::Directional { toward, .. } = place {
+            *place = Place::Point { position: *toward, falloff: [1.0, 0.0, 0.0] };
+        }
+    });
+    Frame "light-not-normalised" "the vector to a directional light is not normalised" |frame| each_place(frame, |place| {
+        if let Place::Directional { unit, .. } = place {
+            *unit = true;
+        }
+    });
+    Frame "attenuation-left-out" "attenuation is left out" |frame| each_falloff(frame, |falloff| *falloff = [1.0, 0.0, 0.0]);
+    Frame "attenuation-swapped" "the linear and the quadratic term of attenuation are swapped" |frame| each_falloff(frame, |falloff| falloff.swap(1, 2));
+    Frame "attenuation-without-constant" "the constant term of attenuation is left out" |frame| each_falloff(frame, |falloff| if falloff[1] + falloff[2] > 0.0 { falloff[0] = 0.0 });
+    Frame "attenuation-inverse-square" "attenuation is the inverse square of the distance" |frame| each_falloff(frame, |falloff| *falloff = [0.0, 0.0, 1.0]);
+    Frame "spot-as-point" "spotlights shine all around" |frame| each_place(frame, |place| {
+        if let Place::Spot { position, falloff, .. } = *place {
+            *place = Place::Point { position, falloff };
+        }
+    });
+    Frame "spot-exponent-left-out" "a spotlight is as bright at its edge as in its middle" |frame| each_place(frame, |place| {
+        if let Place::Spot { exponent, .. } = place {
+            *exponent = 0.0;
+        }
+    });
+    Frame "spot-half-angle" "a spotlight's angle is taken for the whole cone's" |frame| each_place(frame, |place| {
+        if let Place::Spot { cutoff_cosine, .. } = place {
+            *cutoff_cosine = (0.5 * cutoff_cosine.acos()).cos();
+        }
+    });
+    Frame "last-light-left-out" "the last light is left out" |frame| { frame.lights.pop(); };
+    Frame "first-light-alone" "the first light alone shines" |frame| frame.lights.truncate(1);
+    // Terms.
+    Frame "ambient-left-out" "the ambient light is left out" |frame| frame.ambient = [0.0; 3];
+    Frame "ambient-twice" "the ambient light is added twice" |frame| frame.ambient = frame.ambient.map(|c| 2.0 * c);
+    Frame "ambient-form" "ambient light and material go together in the other form" |frame| frame.ambient_form = match frame.ambient_form {
+        Ambient::Product => Ambient::Constant,
+        Ambient::Constant => Ambient::Product,
+    };
+    Frame "light-ambient-left-out" "the lights' own ambient terms are left out" |frame| each_light(frame, |light| light.ambient = [0.0; 3]);
+    Frame "light-ambient-form" "attenuation weakens ambient terms in the other dialect" |frame| frame.light_ambient = match frame.light_ambient {
+        LightAmbient::Documents => LightAmbient::OpenGl,
+        LightAmbient::OpenGl => LightAmbient::Documents,
+    };
+    Frame "emission-left-out" "emission is left out" |frame| each_material(frame, |material| material.emissive = [0.0; 3]);
+    Frame "diffuse-left-out" "the diffuse term is left out" |frame| each_light(frame, |light| light.diffuse = [0.0; 3]);
+    Frame "specular-left-out" "the highlight is left out" |frame| each_material(frame, |material| material.specular = [0.0; 3]);
+    Frame "light-specular-ignored" "the highlight has the light's diffuse colour" |frame| each_light(frame, |light| light.specular = light.diffuse);
+    Frame "material-specular-ignored" "the highlight is white whatever the material" |frame| each_material(frame, |material| material.specular = [1.0; 3]);
+    Frame "shininess-fourfold" "shininess is 4 times what was asked" |frame| each_material(frame, |material| material.shininess *= 4.0);
+    Frame "shininess-quarter" "shininess is a quarter of what was asked" |frame| each_material(frame, |material| material.shininess *= 0.25);
+    Frame "shininess-128ths" "shininess is in 128ths" |frame| each_material(frame, |material| material.shininess /= 128.0);
+    // How it is lit.
+    Frame "gouraud-for-phong" "the vertices are lit in the place of the fragments" |frame| each_shading(frame, |shading| if shading.frequency == Frequency::Phong { shading.frequency = Frequency::Gouraud });
+    Frame "phong-for-gouraud" "the fragments are lit in the place of the vertices" |frame| each_shading(frame, |shading| if shading.frequency == Frequency::Gouraud { shading.frequency = Frequency::Phong });
+    Frame "flat-for-smooth" "faces are lit once" |frame| each_shading(frame, |shading| shading.frequency = Frequency::Flat);
+    Frame "smooth-for-flat" "flat faces are lit at their vertices" |frame| each_shading(frame, |shading| if shading.frequency == Frequency::Flat { shading.frequency = Frequency::Gouraud });
+    Frame "provoking-vertex" "a flat face has the colour of its other end's vertex" |frame| each_shading(frame, |shading| shading.provoking = match shading.provoking {
+        Provoking::First => Provoking::Last,
+        Provoking::Last => Provoking::First,
+    });
+    Frame "blinn-for-phong" "the highlight is Blinn's in the place of Phong's" |frame| each_shading(frame, |shading| if shading.specular == Specular::Phong { shading.specular = Specular::Blinn });
+    Frame "phong-for-blinn" "the highlight is Phong's in the place of Blinn's" |frame| each_shading(frame, |shading| if shading.specular == Specular::Blinn { shading.specular = Specular::Phong });
+    Frame "half-vector-not-normalised" "the half vector is not normalised" |frame| each_shading(frame, |shading| if shading.specular == Specular::Blinn { shading.specular = Specular::BlinnUnnormalised });
+    Frame "gate" "the highlight on what is turned away from the light is of the other dialect" |frame| each_shading(frame, |shading| shading.gate = match shading.gate {
+        Gate::Documents => Gate::OpenGl,
+        Gate::OpenGl => Gate::Documents,
+    });
+    Frame "viewer" "the viewer is taken to be at the other place, at infinity or at the eye" |frame| each_shading(frame, |shading| shading.viewer = match shading.viewer {
+        Viewer::Local => Viewer::NonLocal,
+        Viewer::NonLocal => Viewer::Local,
+    });
+    Frame "normals-by-modelview" "normals are brought to eye space by the modelview" |frame| each_shading(frame, |shading| shading.normals = Normals::Modelview);
+    Frame "normals-reversed" "normals point inward" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.normals).for_each(negate);
+    // Fog.
+    Frame "fog-left-out" "fog is left out" |frame| frame.fog = None;
+    Frame "fog-distance" "fog is by the other distance: radial for planar, or planar for radial" |frame| each_fog(frame, |fog| fog.distance = match fog.distance {
+        Distance::Planar => Distance::Radial,
+        Distance::Radial => Distance::Planar,
+    });
+    Frame "fog-exp2-form" "exponential fog of the square is of the other form" |frame| each_fog(frame, |fog| fog.form = match fog.form {
+        FogForm::Exp2Document { density } => FogForm::Exp2OpenGl { density },
+        FogForm::Exp2OpenGl { density } => FogForm::Exp2Document { density },
+        other => other,
+    });
+    Frame "fog-exp-for-exp2" "fog is of the distance in the place of its square" |frame| each_fog(frame, |fog| if let FogForm::Exp2Document { density } | FogForm::Exp2OpenGl { density } = fog.form {
+        fog.form = FogForm::Exp { density };
+    });
+    Frame "fog-exp2-for-exp" "fog is of the distance's square in the place of the distance" |frame| each_fog(frame, |fog| if let FogForm::Exp { density } = fog.form {
+        fog.form = FogForm::Exp2OpenGl { density };
+    });
+    Frame "fog-ends-swapped" "where linear fog begins and where it ends are swapped" |frame| each_fog(frame, |fog| if let FogForm::Linear { dmin, dmax } = &mut fog.form {
+        std::mem::swap(dmin, dmax);
+    });
+    Frame "fog-black" "fog is black" |frame| each_fog(frame, |fog| fog.color = [0.0; 3]);
+    // Blending, depth, order.
+    Frame "blend-left-out" "blending is left out" |frame| each_draw(frame, |draw| draw.blend = None);
+    Frame "blend-premultiplied" "colours are taken as multiplied by their alpha already" |frame| each_state(frame, |state| if state.src == Factor::SrcAlpha { state.src = Factor::One });
+    Frame "blend-factors-swapped" "the factors of source and destination are swapped" |frame| each_state(frame, |state| std::mem::swap(&mut state.src, &mut state.dst));
+    Frame "blend-additive" "colours are added whatever the destination's factor" |frame| each_state(frame, |state| state.dst = Factor::One);
+    Frame "alpha-one" "what is translucent is opaque" |frame| each_draw(frame, |draw| draw.alpha = 1.0);
+    Frame "order-reversed" "objects are drawn in the reverse order" |frame| frame.draws.reverse();
+    Frame "depth-left-out" "the depth test is left out" |frame| each_draw(frame, |draw| draw.depth = None);
+    Frame "depth-always-written" "what is blended leaves its depth" |frame| each_draw(frame, |draw| if let Some(test) = &mut draw.depth { test.write = true });
+    Frame "cull-other-face" "the other faces are culled" |frame| each_draw(frame, |draw| draw.cull = match draw.cull {
+        Cull::Back => Cull::Front,
+        Cull::Front => Cull::Back,
+        Cull::None => Cull::None,
+    });
+    Frame "cull-left-out" "no face is culled" |frame| each_draw(frame, |draw| draw.cull = Cull::None);
+    // Textures and colours of vertices.
+    Frame "texture-left-out" "textures are left out" |frame| each_draw(frame, |draw| draw.texture = None);
+    Frame "texture-replaces" "a texture takes the colour's place, or multiplies it, wrongly" |frame| each_draw(frame, |draw| if let Some(texture) = &mut draw.texture { texture.replaces = !texture.replaces });
+    Frame "texture-filter" "textures are read by the other filter" |frame| each_draw(frame, |draw| if let Some(texture) = &mut draw.texture {
+        texture.sampled.filter = match texture.sampled.filter {
+            Filter::Nearest => Filter::Bilinear,
+            Filter::Bilinear => Filter::Nearest,
+        };
+    });
+    Frame "texture-wrap" "textures go on in the other way beyond their edges" |frame| each_draw(frame, |draw| if let Some(texture) = &mut draw.texture {
+        texture.sampled.wrap = match texture.sampled.wrap {
+            Wrap::Repeat => Wrap::Clamp,
+            Wrap::Clamp => Wrap::Repeat,
+        };
+    });
+    Frame "texture-upside-down" "textures are upside down" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.uvs).for_each(|uv| uv[1] = 1.0 - uv[1]);
+    Frame "lightmap-left-out" "lightmaps are left out" |frame| each_draw(frame, |draw| draw.lightmap = None);
+    Frame "vertex-colours-left-out" "the vertices' colours are left out" |frame| each_draw(frame, |draw| draw.vertex_colors = false);
+    Frame "cutout-left-out" "nothing is cut out" |frame| each_draw(frame, |draw| draw.cutout = None);
+    // Where pixels are.
+    Frame "half-pixel" "all is half a pixel off" |frame| shift(frame, [0.5, 0.5]);
+    Frame "mirrored" "the image is mirrored" |frame| scale(frame, 0, -1.0);
+    Frame "background-black" "the background is black" |frame| frame.background = [0.0, 0.0, 0.0, frame.background[3]];
+    Image "upside-down" "the image is upside down" |pixels, width| {
+        let rows: Vec<Vec<[f64; 4]>> = pixels.chunks(width).rev().map(<[_]>::to_vec).collect();
+        *pixels = rows.concat();
+    };
+    // How colours are written.
+    Image "red-and-blue-swapped" "red and blue are swapped" |pixels, _| pixels.iter_mut().for_each(|pixel| pixel.swap(0, 2));
+    Image "srgb-encoded" "colours are encoded as sRGB and the target is not" |pixels, _| each_color(pixels, |c| color::srgb_encode(c.clamp(0.0, 1.0)));
+    Image "gamma-encoded" "colours are raised to the power 1/2.2" |pixels, _| each_color(pixels, |c| c.max(0.0).powf(1.0 / 2.2));
+    Image "gamma-decoded" "colours are raised to the power 2.2" |pixels, _| each_color(pixels, |c| c.max(0.0).powf(2.2));
+    Image "clamped" "colours are clamped to 1 and the target is not" |pixels, _| each_color(pixels, |c| c.clamp(0.0, 1.0));
+    Image "premultiplied" "colours are multiplied by their alpha" |pixels, _| pixels.iter_mut().for_each(|pixel| (0..3).for_each(|k| pixel[k] *= pixel[3]));
+    Image "alpha-lost" "alpha is 1 everywhere" |pixels, _| pixels.iter_mut().for_each(|pixel| pixel[3] = 1.0);
+    Image "truncated" "steps of 8 bits are truncated and not rounded" |pixels, _| pixels.iter_mut().flatten().for_each(|c| *c = ((255.0 * *c + 1e-9).floor() / 255.0).min(*c));
+    Image "half-as-bright" "all is half as bright" |pixels, _| each_color(pixels, |c| 0.5 * c);
+}
+
+fn negate(v: &mut [f32; 3]) {
+    v.iter_mut().for_each(|x| *x = -*x);
+}
+
+fn each_light(frame: &mut Frame, change: impl Fn(&mut Light)) {
+    frame.lights.iter_mut().for_each(change);
+}
+
+fn each_place(frame: &mut Frame, change: impl Fn(&mut Place)) {
+    each_light(frame, |light| change(&mut light.place));
+}
+
+fn each_falloff(frame: &mut Frame, change: impl Fn(&mut [f32; 3])) {
+    each_place(frame, |place| {
+        if let Place::Point { falloff, .. } | Place::Spot { falloff, .. } = place {
+            change(falloff);
+        }
+    });
+}
+
+fn each_draw(frame: &mut Frame, change: impl Fn(&mut lightmeter_scene::frame::Draw)) {
+    frame.draws.iter_mut().for_each(change);
+}
+
+fn each_material(frame: &mut Frame, change: impl Fn(&mut Material)) {
+    each_draw(frame, |draw| change(&mut draw.material));
+}
+
+fn each_shading(frame: &mut Frame, change: impl Fn(&mut Shading)) {
+    each_draw(frame, |draw| draw.shading.iter_mut().for_each(&change));
+}
+
+fn each_fog(frame: &mut Frame, change: impl Fn(&mut Fog)) {
+    frame.fog.iter_mut().for_each(change);
+}
+
+fn each_state(frame: &mut Frame, change: impl Fn(&mut State)) {
+    each_draw(frame, |draw| {
+        if let Some(blend) = &mut draw.blend {
+            change(&mut blend.state.color);
+            change(&mut blend.state.alpha);
+        }
+    });
+}
+
+fn each_color(pixels: &mut [[f64; 4]], change: impl Fn(f64) -> f64) {
+    pixels.iter_mut().for_each(|pixel| (0..3).for_each(|k| pixel[k] = change(pixel[k])));
+}
+
+/// Moves all that is drawn by so many pixels, right and down.
+#[expect(clippy::cast_precision_loss, reason = "a target's size")]
+fn shift(frame: &mut Frame, by: [f32; 2]) {
+    let size = [frame.target.width as f32, -(frame.target.height as f32)];
+    for column in &mut frame.projection {
+        for axis in 0..2 {
+            column[axis] += 2.0 * by[axis] / size[axis] * column[3];
+        }
+    }
+}
+
+/// Scales an axis of clip space.
+fn scale(frame: &mut Frame, axis: usize, by: f32) {
+    frame.projection.iter_mut().for_each(|column| column[axis] *= by);
+}
