@@ -1,0 +1,63 @@
+# What the renderers' gates share; sourced by each `gate` after it has set `here`, its own folder.
+renderers=$(dirname "$here")
+build=$renderers/.build
+mkdir -p "$build"
+# Mesa's device-select layer looks for a Wayland display and says so where there is none.
+export NODEVICE_SELECT=1
+
+# Installs Debian packages, or prints the command where that may not be done.
+apt_install() {
+    if [ "$(id -u)" = 0 ]; then
+        as_root=
+    elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
+        as_root="sudo -n"
+    else
+        echo "gate: missing packages; run: sudo apt-get install $*" >&2
+        exit 3
+    fi
+    echo "gate: installing $*" >&2
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get update -qq >&2
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >&2
+}
+
+has_library() {
+    for folder in /lib /usr/lib /usr/lib64 /usr/local/lib /lib/*-linux-gnu /usr/lib/*-linux-gnu; do
+        [ -e "$folder/$1" ] && return 0
+    done
+    return 1
+}
+
+# Mesa's software OpenGL through EGL, and a Python with what `common/requirements.txt` names.
+prepare_opengl() {
+    missing=
+    has_library libEGL.so.1 || missing="$missing libegl1"
+    has_library libOpenGL.so.0 || has_library libGL.so.1 || missing="$missing libgl1"
+    has_library libEGL_mesa.so.0 || missing="$missing libegl-mesa0"
+    has_library dri/swrast_dri.so || has_library libgallium.so || missing="$missing libgl1-mesa-dri"
+    python3 -c 'import ensurepip, venv' 2>/dev/null || missing="$missing python3 python3-venv"
+    # shellcheck disable=SC2086
+    [ -z "$missing" ] || apt_install $missing
+    python=$build/python/bin/python3
+    if ! cmp -s "$renderers/common/requirements.txt" "$build/python/requirements.txt"; then
+        rm -rf "$build/python"
+        python3 -m venv "$build/python"
+        "$python" -m pip install --quiet --disable-pip-version-check -r "$renderers/common/requirements.txt" >&2
+        cp "$renderers/common/requirements.txt" "$build/python/requirements.txt"
+    fi
+}
+
+# Runs the gate over a command; what the caller says stands last, and known failures are those of `expected.toml` unless it
+# names a file of its own.
+run_gate() {
+    command=$1
+    shift
+    expect="--expect $here/expected.toml"
+    case " $* " in *" --expect"*) expect= ;; esac
+    if [ -n "${LIGHTMETER:-}" ]; then
+        # shellcheck disable=SC2086
+        exec "$LIGHTMETER" gate --exec "$command" --profile opengl $expect "$@"
+    fi
+    # shellcheck disable=SC2086
+    exec cargo run --quiet --manifest-path "$renderers/../../Cargo.toml" -p lightmeter -- \
+        gate --exec "$command" --profile opengl $expect "$@"
+}
