@@ -6,18 +6,19 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
 
 import context
-from protocol import Skip, serve
+from protocol import serve
 from raster import Raster
+from scenes import EFFECTS, draw
 from stages import Stages
 from surfaces import Surfaces
 
-
-def draw(scene):
-    raise Skip("not yet")
-
-
-if __name__ == "__main__":
-    version = context.create()
-    functions = {**Surfaces().functions, **Raster().functions, **Stages().functions}
-    hello = {"renderer": "opengl-fixed-function", "version": version, "profile": "opengl", "scenes": []}
-    serve(hello, functions, draw)
+version = context.create()
+functions = {**Surfaces().functions, **Raster().functions, **Stages().functions}
+hello = {
+    "renderer": "opengl-fixed-function",
+    "version": version,
+    "profile": "opengl",
+    "scenes": ["scene"],
+    "effects": EFFECTS,
+}
+serve(hello, functions, draw)
