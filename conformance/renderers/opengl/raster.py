@@ -2,35 +2,17 @@
 and what textures and targets do to a colour."""
 import numpy as np
 from context import Target
+from frames import column_matrix
 from OpenGL.GL import *
+from pixels import SIDE, Pixels, identity
 from protocol import Skip
-from stages import COMPARES, SIDE
+from stages import COMPARES
 from surfaces import lights_off
 
-SIZE = 256
-SHAPES = {
-    "points": (GL_POINTS, 1, 1),
-    "line-list": (GL_LINES, 2, 2),
-    "line-strip": (GL_LINE_STRIP, 2, 1),
-    "triangle-list": (GL_TRIANGLES, 3, 3),
-    "triangle-strip": (GL_TRIANGLE_STRIP, 3, 1),
-}
 
-
-def identity():
-    for matrix in (GL_PROJECTION, GL_MODELVIEW):
-        glMatrixMode(matrix)
-        glLoadIdentity()
-
-
-def column_matrix(columns):
-    """A 4 × 4 matrix of columns, as OpenGL takes it."""
-    return np.ascontiguousarray(columns.reshape(4, 4))
-
-
-class Raster:
+class Raster(Pixels):
     def __init__(self):
-        self.target = Target(SIZE, SIZE)
+        super().__init__()
         self.bytes = Target(SIDE, SIDE, GL_RGBA8)
         self.small = Target(SIDE, SIDE)
         self.functions = {
@@ -54,30 +36,6 @@ class Raster:
             "vector/light-direction": self.light_direction,
             "vector/light-with-model": self.light_with_model,
         }
-
-    def pixels(self, cases, draw):
-        """The pixel of each case, after `draw` has drawn the case: RGBA."""
-        self.target.bind()
-        identity()
-        glEnable(GL_SCISSOR_TEST)
-        values = []
-        for k in range(cases.total):
-            case = cases.case(k)
-            # Pixels are counted from the upper left.
-            x, y = int(case.pixel[0]), SIZE - 1 - int(case.pixel[1])
-            glScissor(x, y, 1, 1)
-            self.target.clear()
-            draw(case)
-            values.append(self.target.read(x, y, 1, 1)[0, 0])
-        glDisable(GL_SCISSOR_TEST)
-        return np.array(values)
-
-    def primitive(self, shape, vertices, values):
-        glBegin(shape)
-        for vertex, value in zip(vertices, values):
-            glColor4f(value, value, value, 1)
-            glVertex4fv(np.append(vertex, [0.5, 1][len(vertex) - 2 :]).astype(np.float32))
-        glEnd()
 
     def both(self, cases, shape, draw):
         """Perspective-correct, and linear: the same with the vertices divided by w beforehand."""
@@ -148,26 +106,6 @@ class Raster:
 
         values = self.pixels(cases, draw)[:, :1]
         glDisable(GL_DEPTH_TEST)
-        return values
-
-    def flat(self, cases):
-        """Six vertices as a list or a strip, laid out so that the middle of the asked primitive falls on the pixel."""
-        name, provoking = cases.formula.removeprefix("interpolation/raster-flat-").rsplit("-", 1)
-        shape, corners, step = SHAPES[name]
-        layout = [(8 * v, 24 * (v % 2)) if corners == 3 else (16 * v, 0) for v in range(6)]
-        glShadeModel(GL_FLAT)
-        glProvokingVertex(GL_FIRST_VERTEX_CONVENTION if provoking == "first" else GL_LAST_VERTEX_CONVENTION)
-
-        def draw(c):
-            first = int(c.primitive) * step
-            middle = np.mean(layout[first : first + corners], axis=0)
-            window = [c.pixel + 0.5 + place - middle for place in np.array(layout)]
-            clip = [np.array([v[0] / 128 - 1, 1 - v[1] / 128], np.float32) for v in window]
-            self.primitive(shape, clip, [c.a0, c.a1, c.a2, c.a3, c.a4, c.a5])
-
-        values = self.pixels(cases, draw)[:, :1]
-        glShadeModel(GL_SMOOTH)
-        glProvokingVertex(GL_LAST_VERTEX_CONVENTION)
         return values
 
     def raster_position(self, cases, set_up):
