@@ -1,0 +1,1 @@
+export const EFFECTS=[]; export function drawScene(){ return {skip:"not yet"}; }
