@@ -55,7 +55,7 @@ points.frustumCulled = false;
 const scene = new THREE.Scene().add(points);
 
 function draw(colors, settings) {
-  Object.assign(material, { blending: THREE.NoBlending, premultipliedAlpha: false }, settings);
+  Object.assign(material, { blending: THREE.NoBlending, premultipliedAlpha: false, colorWrite: true }, settings);
   material.needsUpdate = true;
   geometry.attributes.color.array.set(colors.flat());
   geometry.attributes.color.needsUpdate = true;
