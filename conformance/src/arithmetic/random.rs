@@ -184,7 +184,7 @@ impl Real for Draw {
     }
     fn round(self) -> Self {
         let (floor, fraction) = (self.value.floor(), self.value.fract().rem_euclid(1.0));
-        let up = fraction >= 0.5 && (fraction > 0.5 || coin());
+        let up = fraction > 0.5 || (fraction == 0.5 && coin());
         let value = if up { floor + 1.0 } else { floor };
         Self { value, unrounded: value }
     }

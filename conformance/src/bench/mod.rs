@@ -77,7 +77,7 @@ impl Setting {
         let (effort, cases) = if quick {
             (Effort { turns: 2, readings: 2, seconds: 5e-4 }, 512)
         } else {
-            (Effort { turns: 4, readings: 3, seconds: 1.5e-3 }, 2048)
+            (Effort { turns: 3, readings: 2, seconds: 1e-3 }, 2048)
         };
         Self { sittings: 3, effort, judges: true, cases, seed, quick }
     }

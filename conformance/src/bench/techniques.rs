@@ -390,7 +390,9 @@ pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<Group>
     let sample = Sample::new(&[member], bench.setting.cases, bench.setting.seed);
     let mut contenders = at_every_rung(bench, &short(member), member.spec.text, None);
     for naive in &naive {
-        contenders.extend(at_every_rung(bench, &short(naive), naive.spec.text, Some(naive)));
+        // In stable forms a published one would be the stable one.
+        let rungs = at_every_rung(bench, &short(naive), naive.spec.text, Some(naive));
+        contenders.extend(rungs.into_iter().filter(|contender| contender.on != On::Device(Rung::Stable)));
     }
     let (rows, work) = contest(bench, &sample, &contenders, &short(first))?;
     Ok(Some(Group {

@@ -96,7 +96,8 @@ mod tests {
             match self.fault.filter(|(_, formula)| *formula == spec.id) {
                 None => member.formula.embedded(inputs, &mut out),
                 Some((name, _)) => {
-                    let fault = concerning(spec).into_iter().find(|fault| fault.name == name).ok_or("no such mistake")?;
+                    let fault =
+                        concerning(spec).into_iter().find(|fault| fault.name == name).ok_or("no such mistake")?;
                     let variation = Variation::new(member, &[fault]).ok_or("it does not concern the formula")?;
                     variation.evaluate(inputs, &mut out);
                 }
