@@ -27,10 +27,9 @@ pub fn text(report: &Report, out: &mut impl Write) -> Result {
     }
     listed("changed when they were asked once more", &report.unstable, out)?;
     listed("are worse than in the baseline", &report.regressions, out)?;
-    for one in &report.expectations {
-        let said = match (one.failed, one.passed) {
-            (0, 0) => "was not asked",
-            (0, _) => "PASSES: take it out",
+    for one in report.expectations.iter().filter(|one| one.failed + one.passed > 0) {
+        let said = match one.failed {
+            0 => "PASSES: take it out",
             _ => "fails as expected",
         };
         writeln!(

@@ -457,11 +457,9 @@ impl Session<'_> {
                 let (title, frame) = self.plan.frame(scene)?;
                 let id = self.plan.id(place);
                 let path = self.folder.join(format!("{}.json", id.replace('/', "-")));
-                if !path.exists() {
-                    let text = super::frame::to_json(&id, &title, &frame).to_string();
-                    std::fs::write(&path, text)
-                        .map_err(|error| Error::Folder { path: path.clone(), message: error.to_string() })?;
-                }
+                let text = super::frame::to_json(&id, &title, &frame).to_string();
+                std::fs::write(&path, text)
+                    .map_err(|error| Error::Folder { path: path.clone(), message: error.to_string() })?;
                 let (width, height) = (frame.target.width, frame.target.height);
                 let format = frame.target.format.name();
                 json!({ "id": id, "scene": path, "width": width, "height": height, "format": format }).to_string()
