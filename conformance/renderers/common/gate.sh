@@ -1,6 +1,8 @@
 # What the renderers' gates share; sourced by each `gate` after it has set `here`, its own folder.
 renderers=$(dirname "$here")
 build=$renderers/.build
+options=
+arguments=$*
 mkdir -p "$build"
 # Mesa's device-select layer looks for a Wayland display and says so where there is none.
 export NODEVICE_SELECT=1
@@ -46,18 +48,28 @@ prepare_opengl() {
     fi
 }
 
-# Runs the gate over a command; what the caller says stands last, and known failures are those of `expected.toml` unless it
-# names a file of its own.
+# Adds an option and its value to `options` unless the caller has said it.
+default_option() {
+    case " $arguments " in
+        *" $1 "* | *" $1="*) ;;
+        *) options="$options $1 $2" ;;
+    esac
+}
+
+# Runs the gate over a command; what the caller says stands last. Without it there are 64 cases of each formula, and known
+# failures are those of `expected.toml`.
 run_gate() {
     command=$1
     shift
-    expect="--expect $here/expected.toml"
-    case " $* " in *" --expect"*) expect= ;; esac
+    default_option --profile opengl
+    default_option --cases 64
+    expected=$here/expected.toml
+    case " $arguments " in *" --expect"*) expected= ;; esac
+    set -- --exec "$command" ${expected:+--expect "$expected"} "$@"
     if [ -n "${LIGHTMETER:-}" ]; then
         # shellcheck disable=SC2086
-        exec "$LIGHTMETER" gate --exec "$command" --profile opengl $expect "$@"
+        exec "$LIGHTMETER" gate $options "$@"
     fi
     # shellcheck disable=SC2086
-    exec cargo run --quiet --manifest-path "$renderers/../../Cargo.toml" -p lightmeter -- \
-        gate --exec "$command" --profile opengl $expect "$@"
+    exec cargo run --quiet --manifest-path "$renderers/../../Cargo.toml" -p lightmeter -- gate $options "$@"
 }
