@@ -2,7 +2,6 @@
 import numpy as np
 from context import Target
 from OpenGL.GL import *
-from stages import SIDE
 
 SIZE = 256
 SHAPES = {

@@ -5,7 +5,8 @@ import numpy as np
 from context import Target
 from OpenGL.GL import *
 from OpenGL.GL import shaders
-from pixels import SIDE, Pixels, identity
+from pixels import Pixels, identity
+from stages import SIDE
 
 LIBRARY = Path(__file__).with_name("library.glsl").read_text()
 

@@ -4,9 +4,9 @@ import numpy as np
 from context import Target
 from frames import column_matrix
 from OpenGL.GL import *
-from pixels import SIDE, Pixels, identity
+from pixels import Pixels, identity
 from protocol import Skip
-from stages import COMPARES
+from stages import COMPARES, SIDE
 from surfaces import lights_off
 
 
