@@ -13,6 +13,7 @@ use lightmeter_reference::Real;
 use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::{Encoding, TargetFormat};
+use std::cmp::Reverse;
 use table::Change;
 pub use table::{SCENE_FAULTS, SceneFault};
 
@@ -38,6 +39,8 @@ pub struct SceneExplanation {
     pub explained: usize,
     /// Passing components that are, too.
     pub consistent: usize,
+    /// How far some of the failing ones are from what these mistakes draw in f64, together, in units.
+    pub distance: f64,
 }
 
 /// What a renderer did wrong in a scene.
@@ -132,8 +135,8 @@ impl<'a> Trial<'a> {
         if !enough(best(&found)) {
             found.extend(self.ranked(self.pairs()));
         }
-        found
-            .sort_by_key(|one| (std::cmp::Reverse(one.explained), std::cmp::Reverse(one.consistent), one.faults.len()));
+        let key = |one: &SceneExplanation| (Reverse(one.explained), Reverse(one.consistent), one.faults.len());
+        found.sort_by(|a, b| key(a).cmp(&key(b)).then(a.distance.total_cmp(&b.distance)));
         #[expect(clippy::cast_precision_loss, reason = "counts of components")]
         found.retain(|one| one.explained as f64 >= PART * self.failing.len() as f64);
         let sentence = self.sentence(found.first());
@@ -151,18 +154,18 @@ impl<'a> Trial<'a> {
 
     /// The mistakes that come nearest by the middle of what is legal, each tried with all that is legal of it.
     fn ranked(&self, candidates: Vec<Vec<&'static SceneFault>>) -> Vec<SceneExplanation> {
-        let mut near: Vec<(usize, Vec<&'static SceneFault>)> =
+        let mut near: Vec<((usize, f64), Vec<&'static SceneFault>)> =
             candidates.into_iter().filter_map(|faults| Some((self.probe(&faults)?, faults))).collect();
-        near.sort_by_key(|(misses, _)| *misses);
+        near.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let probes = self.failing.len().min(PROBES);
-        near.retain(|(misses, _)| 2 * misses <= probes);
+        near.retain(|((misses, _), _)| 2 * misses <= probes);
         near.truncate(MOST_TRIED);
-        near.into_iter().map(|(_, faults)| self.tried(faults)).collect()
+        near.into_iter().map(|((_, distance), faults)| self.tried(faults, distance)).collect()
     }
 
-    /// The failing components, of some, that are not near what these mistakes draw in f64, and the passing ones; `None` where
-    /// they change nothing.
-    fn probe(&self, faults: &[&'static SceneFault]) -> Option<usize> {
+    /// The failing components, of some, that are not near what these mistakes draw in f64, and the passing ones, and how far the
+    /// failing ones are from that; `None` where they change nothing.
+    fn probe(&self, faults: &[&'static SceneFault]) -> Option<(usize, f64)> {
         let frame = with(self.frame, faults);
         let changes_frame = faults.iter().any(|fault| fault.is_of_frame());
         if changes_frame && frame == *self.frame {
@@ -177,10 +180,13 @@ impl<'a> Trial<'a> {
             distance.is_nan() || distance > near
         };
         let far = |of: &[usize]| spread(of, PROBES).filter(|&number| is_far(number)).count();
-        Some(far(&self.failing) + far(&self.passing))
+        let distance = spread(&self.failing, PROBES)
+            .map(|number| (self.image.pixels[number / 4][number % 4] - drawn.pixels[number / 4][number % 4]).abs())
+            .sum();
+        Some((far(&self.failing) + far(&self.passing), distance))
     }
 
-    fn tried(&self, faults: Vec<&'static SceneFault>) -> SceneExplanation {
+    fn tried(&self, faults: Vec<&'static SceneFault>, distance: f64) -> SceneExplanation {
         let frame = with(self.frame, &faults);
         let legal = expect(&frame, None, None, self.profile);
         let format = self.image.format;
@@ -204,14 +210,14 @@ impl<'a> Trial<'a> {
             low[pixel][k] - slack <= value && value <= high[pixel][k] + slack
         };
         let count = |of: &[usize]| of.iter().filter(|number| is_legal(number)).count();
-        SceneExplanation { explained: count(&self.failing), consistent: count(&self.passing), faults }
+        SceneExplanation { explained: count(&self.failing), consistent: count(&self.passing), faults, distance }
     }
 
     /// Pairs of those that explain the most, with each of all.
     fn pairs(&self) -> Vec<Vec<&'static SceneFault>> {
-        let mut singles: Vec<(usize, &'static SceneFault)> =
+        let mut singles: Vec<((usize, f64), &'static SceneFault)> =
             SCENE_FAULTS.iter().filter_map(|fault| Some((self.probe(&[fault])?, fault))).collect();
-        singles.sort_by_key(|(misses, _)| *misses);
+        singles.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let first: Vec<&'static SceneFault> = singles.iter().take(PAIRED).map(|(_, fault)| *fault).collect();
         let mut pairs = vec![];
         for (place, &one) in first.iter().enumerate() {
