@@ -125,16 +125,49 @@ impl<'de> Deserialize<'de> for Values {
     }
 }
 
-/// Reads a line.
+/// Reads a line. What Python writes for a number that JSON has not, bare `NaN` and `Infinity`, is understood.
 ///
 /// # Errors
 /// What is wrong with it, in words.
 pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
     let text = std::str::from_utf8(line).map_err(|_| "it is not UTF-8".to_owned())?;
-    let raw = match serde_json::from_str::<Raw<'_>>(text) {
-        Ok(raw) => raw,
-        Err(error) => return hello(text).ok_or_else(|| format!("{error}; expected {EXPECTED}")),
-    };
+    match serde_json::from_str::<Raw<'_>>(text) {
+        Ok(raw) => told(raw),
+        Err(error) => {
+            if let Some(hello) = hello(text) {
+                return Ok(hello);
+            }
+            if text.contains("NaN") || text.contains("Infinity") {
+                let words = quoted(text);
+                if let Ok(raw) = serde_json::from_str::<Raw<'_>>(&words) {
+                    return told(raw).map(Line::into_owned);
+                }
+            }
+            Err(format!("{error}; expected {EXPECTED}"))
+        }
+    }
+}
+
+/// Bare words for numbers that JSON has not, as strings.
+fn quoted(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 16);
+    let mut is_string = false;
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let word = [("NaN", "\"NaN\""), ("-Infinity", "\"-Inf\""), ("Infinity", "\"Inf\"")];
+        if let Some((word, string)) = word.into_iter().find(|(word, _)| !is_string && rest.starts_with(word)) {
+            out.push_str(string);
+            rest = &rest[word.len()..];
+            continue;
+        }
+        is_string ^= c == '"';
+        out.push(c);
+        rest = &rest[c.len_utf8()..];
+    }
+    out
+}
+
+fn told(raw: Raw<'_>) -> Result<Line<'_>, String> {
     let id = raw.id;
     match (raw.value, raw.image, raw.skip, raw.error) {
         (Some(Values(values)), None, None, None) => Ok(Line::Value(id, values)),
@@ -143,6 +176,19 @@ pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
         (None, None, None, Some(reason)) => Ok(Line::Error(id, reason)),
         _ => {
             Err(format!("it has none, or more than one, of `value`, `image`, `skip` and `error`; expected {EXPECTED}"))
+        }
+    }
+}
+
+impl Line<'_> {
+    fn into_owned(self) -> Line<'static> {
+        let own = |text: Cow<'_, str>| Cow::Owned(text.into_owned());
+        match self {
+            Self::Hello(hello) => Line::Hello(hello),
+            Self::Value(id, values) => Line::Value(own(id), values),
+            Self::Image(id, file) => Line::Image(own(id), own(file)),
+            Self::Skip(id, reason) => Line::Skip(own(id), own(reason)),
+            Self::Error(id, reason) => Line::Error(own(id), own(reason)),
         }
     }
 }
@@ -166,15 +212,14 @@ fn hello(text: &str) -> Option<Line<'_>> {
     Some(Line::Hello(Box::new(Hello { renderer, ..hello })))
 }
 
-/// The id of an answer, whatever else is wrong with it.
+/// The id of an answer, whatever else is wrong with it: the string behind the first `"id":`.
 #[must_use]
 pub fn id(line: &[u8]) -> Option<Cow<'_, str>> {
-    #[derive(Deserialize)]
-    struct Id<'a> {
-        #[serde(borrow)]
-        id: Cow<'a, str>,
-    }
-    serde_json::from_slice::<Id<'_>>(line).ok().map(|line| line.id)
+    let text = std::str::from_utf8(line).ok()?;
+    let (_, rest) = text.split_once("\"id\"")?;
+    let rest = rest.trim_start().strip_prefix(':')?.trim_start().strip_prefix('"')?;
+    // No id of a case has anything to escape.
+    rest.split_once('"').map(|(id, _)| Cow::Borrowed(id))
 }
 
 /// Why a line cannot be had.
@@ -246,6 +291,15 @@ mod tests {
             read(br#"{"hello":"lightmeter.protocol/1","renderer":"r","version":"2","formulas":["fog"],"extra":1}"#);
         let Ok(Line::Hello(hello)) = hello else { panic!("{hello:?}") };
         assert_eq!((hello.renderer.as_str(), hello.formulas.as_slice()), ("r", ["fog".to_owned()].as_slice()));
+        for bare in [
+            &br#"{"id":"NaN","value":[NaN,-Infinity,Infinity]}"#[..],
+            br#"{"id": "NaN", "value": ["NaN","-Inf","Inf"]}"#,
+        ] {
+            let Ok(Line::Value(id, values)) = read(bare) else { panic!("bare words are read") };
+            assert!(id == "NaN" && values[0].is_nan() && values[1..] == [f32::NEG_INFINITY, f32::INFINITY]);
+            assert_eq!(super::id(bare).as_deref(), Some("NaN"));
+        }
+        assert_eq!(super::id(br#"{"id":"a","value":[1,2"#).as_deref(), Some("a"));
         for (line, said) in [
             (&br#"{"id":"a","value":[1,2"#[..], "EOF"),
             (br#"{"id":"a","value":["nan"]}"#, "expected"),

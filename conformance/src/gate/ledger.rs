@@ -218,12 +218,16 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    fn tally(&mut self, place: Place) -> &mut Tally {
-        let scenes = self.plan.formulas.len();
-        &mut self.tallies[match place {
+    const fn place_of(&self, place: Place) -> usize {
+        match place {
             Place::Case { formula, .. } => formula,
-            Place::Scene(scene) => scenes + scene,
-        }]
+            Place::Scene(scene) => self.digests.len() + scene,
+        }
+    }
+
+    fn tally(&mut self, place: Place) -> &mut Tally {
+        let k = self.place_of(place);
+        &mut self.tallies[k]
     }
 
     /// The cases that are to be asked of who says hello, formulas first. What it does not declare is counted as not asked.
@@ -319,6 +323,12 @@ impl<'a> Ledger<'a> {
         let Some(place) = self.plan.find(id) else {
             return Judged::Problem("unknown", format!("line {number}: no case `{id}` was asked for"));
         };
+        if self.tallies[self.place_of(place)].undeclared.is_some() {
+            return Judged::Problem(
+                "unknown",
+                format!("line {number}: `{id}` is not among what the renderer declares"),
+            );
+        }
         match (line, place) {
             (Line::Skip(_, reason), _) => Judged::Skip(place, reason.into_owned()),
             (Line::Error(_, reason), _) => Judged::Error(place, reason.into_owned()),

@@ -26,6 +26,10 @@ pub const ANSWERS: &str = "answers.jsonl";
 /// Lines that are judged at once.
 pub const LINES: usize = 1 << 14;
 
+/// Random cases for each formula, and pixels of a scene's longer side, at most.
+const MOST_CASES: u64 = 1_000_000_000;
+const MOST_PIXELS: u32 = 8192;
+
 /// What a pack holds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
@@ -275,6 +279,12 @@ pub fn read(folder: &Path) -> Result<Manifest, Error> {
         return Err(refused(format!(
             "its cases were drawn by generator {}; this lightmeter has {GENERATOR_VERSION}: write the pack again",
             manifest.generator
+        )));
+    }
+    let Choice { cases, size, .. } = &manifest.choice;
+    if !(1..=MOST_CASES).contains(cases) || size.is_some_and(|size| !(1..=MOST_PIXELS).contains(&size)) {
+        return Err(refused(format!(
+            "it has {cases} cases and scenes of {size:?} pixels; expected 1 to {MOST_CASES}, and to {MOST_PIXELS}"
         )));
     }
     for Listed { name, bytes, crc32 } in &manifest.files {

@@ -68,24 +68,33 @@ pub fn within(folder: &Path, file: &str) -> Result<PathBuf, String> {
 pub fn read(folder: &Path, file: &str, frame: &Frame) -> Result<(Stored, u32), String> {
     let path = within(folder, file)?;
     let unread = |error: &dyn std::fmt::Display| format!("cannot read `{file}`: {error}");
-    let bytes = path.metadata().map_err(|error| unread(&error))?.len();
+    let metadata = path.metadata().map_err(|error| unread(&error))?;
+    if !metadata.is_file() {
+        return Err(format!("`{file}` is no file"));
+    }
+    let bytes = metadata.len();
     if bytes > MOST_BYTES {
         return Err(format!("`{file}` has {bytes} bytes; an image has {MOST_BYTES} at most"));
     }
     let bytes = std::fs::read(&path).map_err(|error| unread(&error))?;
-    let mut hasher = DefaultHasher::new();
-    bytes.hash(&mut hasher);
-    #[expect(clippy::cast_possible_truncation, reason = "a part of a hash")]
-    let digest = (hasher.finish() as u32).clamp(1, u32::MAX - 2);
     let [width, height] = [frame.target.width, frame.target.height];
     let is_npy = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npy"));
-    let (size, values) = if is_npy { npy(&bytes).map_err(|error| unread(&error))? } else { decoded(&bytes, file)? };
-    if size != [width, height] {
-        let [w, h] = size;
-        return Err(format!("`{file}` is {w} × {h}; the scene is {width} × {height}"));
-    }
-    Ok((Stored { width: width as usize, format: frame.target.format, pixels: values.units(frame) }, digest))
+    // Nothing of another size is decoded.
+    let fits = |[w, h]: [u64; 2]| {
+        let fits = [w, h] == [u64::from(width), u64::from(height)];
+        if fits { Ok(()) } else { Err(format!("`{file}` is {w} × {h}; the scene is {width} × {height}")) }
+    };
+    let values = if is_npy { npy(&bytes, file, &fits)? } else { decoded(&bytes, file, &fits)? };
+    let image = Stored { width: width as usize, format: frame.target.format, pixels: values.units(frame) };
+    let mut hasher = DefaultHasher::new();
+    image.pixels.iter().flatten().for_each(|c| c.to_bits().hash(&mut hasher));
+    #[expect(clippy::cast_possible_truncation, reason = "a part of a hash")]
+    let digest = (hasher.finish() as u32).clamp(1, u32::MAX - 2);
+    Ok((image, digest))
 }
+
+/// Whether an image has the scene's size.
+type Fits<'a> = &'a dyn Fn([u64; 2]) -> Result<(), String>;
 
 /// Pixels as a file has them.
 enum Values {
@@ -118,14 +127,16 @@ impl Values {
     }
 }
 
-fn decoded(bytes: &[u8], file: &str) -> Result<([u32; 2], Values), String> {
+fn decoded(bytes: &[u8], file: &str, fits: Fits<'_>) -> Result<Values, String> {
     let unread = |error: &dyn std::fmt::Display| format!("cannot read `{file}`: {error}");
-    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| unread(&error))?;
+    let opened = || ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| unread(&error));
+    let (width, height) = opened()?.into_dimensions().map_err(|error| unread(&error))?;
+    fits([width.into(), height.into()])?;
+    let mut reader = opened()?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(2 * MOST_BYTES);
     reader.limits(limits);
     let image = reader.decode().map_err(|error| unread(&error))?;
-    let size = [image.width(), image.height()];
     let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
     let is_deep = matches!(
         image,
@@ -141,12 +152,12 @@ fn decoded(bytes: &[u8], file: &str) -> Result<([u32; 2], Values), String> {
     } else {
         Values::Shown(image.to_rgba8().pixels().map(|pixel| pixel.0.map(|c| f64::from(c) / 255.0)).collect())
     };
-    Ok((size, values))
+    Ok(values)
 }
 
 /// NumPy's format: an array (height, width, 3 or 4) of u8, f32 or f64, in C's order.
-fn npy(bytes: &[u8]) -> Result<([u32; 2], Values), String> {
-    let file = npyz::NpyFile::new(bytes).map_err(|error| error.to_string())?;
+fn npy(bytes: &[u8], name: &str, fits: Fits<'_>) -> Result<Values, String> {
+    let file = npyz::NpyFile::new(bytes).map_err(|error| format!("cannot read `{name}`: {error}"))?;
     let shape = file.shape().to_vec();
     let [height, width, components @ (3 | 4)] = shape[..] else {
         return Err(format!("an array of shape {shape:?}; expected (height, width, 3 or 4)"));
@@ -154,14 +165,13 @@ fn npy(bytes: &[u8]) -> Result<([u32; 2], Values), String> {
     if file.order() != npyz::Order::C {
         return Err("an array in Fortran's order; expected C's".into());
     }
-    let side = |side: u64| u32::try_from(side).map_err(|_| "a side of more than 2³² pixels".to_owned());
-    let size = [side(width)?, side(height)?];
+    fits([width, height])?;
     let count = usize::try_from(components).unwrap_or(4);
     let pixels = |values: Vec<f64>| -> Vec<[f64; 4]> {
         let pixel = |of: &[f64]| std::array::from_fn(|k| of.get(k).copied().unwrap_or(1.0));
         values.chunks_exact(count).map(pixel).collect()
     };
-    let message = |error: &dyn std::fmt::Display| error.to_string();
+    let message = |error: &dyn std::fmt::Display| format!("cannot read `{name}`: {error}");
     let npyz::DType::Plain(kind) = file.dtype() else { return Err("an array of records".into()) };
     let values = match kind.to_string().trim_start_matches(['<', '|', '=']) {
         "u1" => {
@@ -175,7 +185,7 @@ fn npy(bytes: &[u8]) -> Result<([u32; 2], Values), String> {
         "f8" => Values::Linear(pixels(file.into_vec::<f64>().map_err(|error| message(&error))?)),
         other => return Err(format!("an array of `{other}`; expected u1, f4 or f8, little-endian")),
     };
-    Ok((size, values))
+    Ok(values)
 }
 
 /// Judges every pixel by the full reference.

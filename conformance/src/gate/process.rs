@@ -19,8 +19,14 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Cases that are asked at once.
-const BATCH: usize = 1024;
+/// Cases that are asked at once, at first and at most: twice as many where they were answered in an eighth of what a case may take.
+const BATCH: [usize; 2] = [16, 1024];
+/// Lines that wait to be judged, and their bytes, at most.
+const WAITING: (usize, usize) = (4096, 8 << 20);
+/// Lines of a process that wait to be read.
+const UNREAD: usize = 64;
+/// Lines beyond one a case, in a batch, that end a process.
+const SURPLUS: usize = 10_000;
 /// Bytes of standard error that are kept.
 const KEPT: usize = 4096;
 /// Failed starts in a row after which nothing more is asked.
@@ -112,7 +118,7 @@ impl Running {
         let group = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
         let (input, output, errors) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         // What is not taken waits in the pipe, so that memory stays flat.
-        let (send, events) = sync_channel(4 * BATCH);
+        let (send, events) = sync_channel(UNREAD);
         if let Some(output) = output {
             std::thread::spawn(move || listen(output, &send));
         }
@@ -202,6 +208,10 @@ enum Ended {
     Crashed,
     /// It took too long.
     Hung,
+    /// It wrote what was not asked for, without end.
+    Flooded,
+    /// It answered, and did not read what it was asked.
+    Deaf,
     /// Time for all is over.
     OutOfTime,
 }
@@ -242,6 +252,7 @@ pub fn ask(
         running: None,
         outcome: Outcome::default(),
         number: 0,
+        size: BATCH[0],
     };
     session.start()?;
     let hello = session.outcome.hello.clone();
@@ -269,6 +280,8 @@ struct Session<'a> {
     running: Option<Running>,
     outcome: Outcome,
     number: u64,
+    /// Cases that are asked at once.
+    size: usize,
 }
 
 impl Session<'_> {
@@ -280,6 +293,7 @@ impl Session<'_> {
         let greeting = json!({ "hello": PROTOCOL, "version": env!("CARGO_PKG_VERSION"), "folder": self.folder });
         let written = running.send(format!("{greeting}\n"));
         let until = Instant::now() + self.limits.start;
+        let until = self.deadline.map_or(until, |deadline| until.min(deadline));
         loop {
             let event = running.events.recv_timeout(until.saturating_duration_since(Instant::now()));
             let message = match event {
@@ -337,7 +351,7 @@ impl Session<'_> {
                     return Ok(true);
                 }
             }
-            let count = if alone > 0 || matches!(open[0], Place::Scene(_)) { 1 } else { BATCH };
+            let count = if alone > 0 || matches!(open[0], Place::Scene(_)) { 1 } else { self.size };
             let is_case = |place: &&Place| matches!(place, Place::Case { .. });
             let count = if count == 1 { 1 } else { open.iter().take(count).take_while(is_case).count() };
             let batch: Vec<Place> = open.iter().take(count).copied().collect();
@@ -356,6 +370,8 @@ impl Session<'_> {
                 }
                 Ended::Crashed => "it ended",
                 Ended::Hung => "it took longer than a case may",
+                Ended::Flooded => "it wrote many lines that answer nothing",
+                Ended::Deaf => "it answered, and did not read what it was asked",
             };
             let how = self.end(message);
             if let [culprit] = rest[..] {
@@ -373,7 +389,13 @@ impl Session<'_> {
                     return Ok(true);
                 }
             } else {
-                alone = rest.len();
+                // Nothing is retried into green: that it ended is told, whatever it answers afterwards.
+                let count = rest.len();
+                self.outcome
+                    .incidents
+                    .push(format!("with {count} cases open {message}: {how}; they are asked one by one"));
+                self.size = BATCH[0];
+                alone = count;
                 rest.into_iter().rev().for_each(|place| open.push_front(place));
             }
         }
@@ -405,46 +427,71 @@ impl Session<'_> {
         let mut writing = running.send(text);
         let limit = if matches!(batch[0], Place::Scene(_)) { self.limits.scene } else { self.limits.case };
         let mut open: HashMap<String, Place> = batch.iter().map(|&place| (self.plan.id(place), place)).collect();
-        let mut lines = vec![];
+        let (mut lines, mut bytes, mut surplus) = (vec![], 0, 0);
+        let start = Instant::now();
+        // Answers must come all the time, and nothing else counts.
+        let mut until = start + limit;
         let ended = loop {
             if open.is_empty() {
                 break Ended::Answered;
             }
-            // A batch may take as long as each of its cases may in a row, but something must come all the time.
-            let mut wait = limit;
-            if let Some(deadline) = self.deadline {
-                wait = wait.min(deadline.saturating_duration_since(Instant::now()));
-                if wait.is_zero() {
-                    break Ended::OutOfTime;
-                }
+            if surplus > SURPLUS {
+                break Ended::Flooded;
+            }
+            if lines.len() >= WAITING.0 || bytes >= WAITING.1 {
+                ledger.lines(&lines, self.folder, again);
+                lines.clear();
+                bytes = 0;
+            }
+            let over = self.deadline.map_or(until, |deadline| until.min(deadline));
+            let wait = over.saturating_duration_since(Instant::now());
+            if wait.is_zero() {
+                let is_over = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
+                break if is_over { Ended::OutOfTime } else { Ended::Hung };
             }
             match running.events.recv_timeout(wait) {
                 Ok(Event::Line(line)) => {
                     if line.iter().all(u8::is_ascii_whitespace) {
+                        surplus += 1;
                         continue;
                     }
-                    if let Some(id) = answer::id(&line) {
-                        open.remove(id.as_ref());
+                    if answer::id(&line).is_some_and(|id| open.remove(id.as_ref()).is_some()) {
+                        until = Instant::now() + limit;
+                    } else {
+                        surplus += 1;
                     }
+                    bytes += line.len();
                     self.outcome.lines += 1;
                     lines.push((self.outcome.lines, line));
                 }
                 Ok(Event::TooLong) => {
+                    surplus += 1;
                     self.outcome.lines += 1;
                     let number = self.outcome.lines;
                     ledger.problems.add("oversized", || format!("line {number}: {}", Unread::TooLong));
                 }
                 Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => break Ended::Crashed,
-                Err(RecvTimeoutError::Timeout) => {
-                    let is_over = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
-                    break if is_over { Ended::OutOfTime } else { Ended::Hung };
-                }
+                // The next turn tells which time is over.
+                Err(RecvTimeoutError::Timeout) => {}
             }
         };
         ledger.lines(&lines, self.folder, again);
+        let mut ended = ended;
         if matches!(ended, Ended::Answered) {
-            // A process that answers and does not read is no process to write to.
-            running.input = writing.take().and_then(|thread| thread.join().ok().flatten());
+            let is_written =
+                |thread: &Option<std::thread::JoinHandle<_>>| thread.as_ref().is_none_or(|one| one.is_finished());
+            let over = self.deadline.map_or(until, |deadline| until.min(deadline));
+            while !is_written(&writing) && Instant::now() < over {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            if is_written(&writing) {
+                running.input = writing.take().and_then(|thread| thread.join().ok().flatten());
+            } else {
+                ended = Ended::Deaf;
+            }
+            if start.elapsed() * 8 < limit {
+                self.size = (2 * self.size).min(BATCH[1]);
+            }
         }
         let left = batch.iter().copied().filter(|place| open.values().any(|open| open == place)).collect();
         Ok((ended, left))
