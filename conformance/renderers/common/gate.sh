@@ -7,6 +7,12 @@ mkdir -p "$build"
 # Mesa's device-select layer looks for a Wayland display and says so where there is none.
 export NODEVICE_SELECT=1
 
+# Nothing is judged where what a renderer needs is not here and cannot be had: 3.
+cannot_install() {
+    echo "gate: cannot install $*" >&2
+    exit 3
+}
+
 # Installs Debian packages, or prints the command where that may not be done.
 apt_install() {
     if [ "$(id -u)" = 0 ]; then
@@ -18,8 +24,9 @@ apt_install() {
         exit 3
     fi
     echo "gate: installing $*" >&2
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get update -qq >&2
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >&2
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get update -qq >&2 || true
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >&2 ||
+        cannot_install "$@"
 }
 
 has_library() {
@@ -43,7 +50,8 @@ prepare_opengl() {
     if ! cmp -s "$renderers/common/requirements.txt" "$build/python/requirements.txt"; then
         rm -rf "$build/python"
         python3 -m venv "$build/python"
-        "$python" -m pip install --quiet --disable-pip-version-check -r "$renderers/common/requirements.txt" >&2
+        "$python" -m pip install --quiet --disable-pip-version-check -r "$renderers/common/requirements.txt" >&2 ||
+            cannot_install "what common/requirements.txt names"
         cp "$renderers/common/requirements.txt" "$build/python/requirements.txt"
     fi
 }
