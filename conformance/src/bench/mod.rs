@@ -74,12 +74,12 @@ impl Setting {
     /// As the options ask.
     #[must_use]
     pub const fn new(quick: bool, seed: u64) -> Self {
-        let (effort, cases) = if quick {
-            (Effort { turns: 2, readings: 2, seconds: 5e-4 }, 512)
+        let (sittings, effort, cases) = if quick {
+            (2, Effort { turns: 2, readings: 2, seconds: 5e-4 }, 512)
         } else {
-            (Effort { turns: 3, readings: 2, seconds: 1e-3 }, 2048)
+            (3, Effort { turns: 3, readings: 2, seconds: 1e-3 }, 2048)
         };
-        Self { sittings: 3, effort, judges: true, cases, seed, quick }
+        Self { sittings, effort, judges: true, cases, seed, quick }
     }
 }
 

@@ -79,7 +79,7 @@ fn reading(out: &mut impl Write) -> Result {
     writeln!(out, "\n## How to read\n")?;
     writeln!(
         out,
-        "Rows of a group compute the same and are measured in turns beside the group's baseline, in three sittings, each on devices of its own with everything \
+        "Rows of a group compute the same and are measured in turns beside the group's baseline, in three sittings (two of a quick one), each on devices of its own with everything \
          compiled anew. A *time* is the median of the turns; reading the inputs is taken off where the group's line of work says \
          so. A *ratio* is the median, turn by turn, of a row's time over the baseline's, of the processor's rungs over \
          `cpu-f32`, and of these the sittings' median; its spread goes from the least to the greatest of all turns, and where 1 lies within it is a *tie*. Errors are against the f64 reference of what the group is for: in \
