@@ -54,6 +54,8 @@ prepare_opengl() {
             cannot_install "what common/requirements.txt names"
         cp "$renderers/common/requirements.txt" "$build/python/requirements.txt"
     fi
+    (cd "$renderers/common" && "$python" -c 'import context; context.create()') >&2 ||
+        cannot_install "an OpenGL 4.5 of the compatibility profile"
 }
 
 # Adds an option and its value to `options` unless the caller has said it.
