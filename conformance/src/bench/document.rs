@@ -186,8 +186,8 @@ pub struct Spread {
 pub struct Time {
     /// `timestamps`, `wall`, or `processor` of the rungs on one core of the processor.
     pub clock: String,
-    /// Nanoseconds, the median of the turns; of an evaluation on a device with what reading the inputs takes, which the group's
-    /// `work` tells.
+    /// Nanoseconds, the median of the turns, and of these of the sittings; what reading the inputs takes is taken off where the
+    /// group's `work` says so.
     pub ns: f64,
     /// The lower and the upper end of the middle half of the turns.
     pub quartiles_ns: [f64; 2],
