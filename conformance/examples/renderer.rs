@@ -84,10 +84,29 @@ fn main() -> anyhow::Result<()> {
             if faults.has("twice-at", id) {
                 writeln!(out, "{answer}")?;
             }
+            if faults.has("hello-at", id) {
+                writeln!(out, "{}", json!({ "hello": "lightmeter.protocol/1", "renderer": "another" }))?;
+            }
+            // Lines that answer nothing: without end, or one now and then for ever.
+            while faults.has("flood-at", id) {
+                writeln!(out, "{}", json!({ "id": "fog/none/random/000000", "value": [0] }))?;
+            }
+            while faults.has("trickle-at", id) {
+                writeln!(out)?;
+                out.flush()?;
+                std::thread::sleep(std::time::Duration::from_millis(50));
+            }
             if !faults.has("drop-at", id) {
                 writeln!(out, "{answer}")?;
             }
         }
+    }
+    out.flush()?;
+    if faults.has("lingers", "") {
+        std::thread::sleep(std::time::Duration::from_secs(600));
+    }
+    if let Some(code) = faults.0.get("exit") {
+        std::process::exit(code.parse()?);
     }
     Ok(())
 }
@@ -127,7 +146,9 @@ fn draw(id: &str, folder: &Path, faults: &Faults) -> anyhow::Result<Value> {
         frame.target.width /= 2;
     }
     let name = format!("{}.exr", id.replace('/', "-"));
-    Stored::of(&render::<f32>(&frame, None, None), frame.target.format).write(&folder.join(&name))?;
+    if !faults.has("stale-at", id) {
+        Stored::of(&render::<f32>(&frame, None, None), frame.target.format).write(&folder.join(&name))?;
+    }
     let name = if faults.has("elsewhere-at", id) { "../elsewhere.exr".to_owned() } else { name };
     Ok(json!({ "id": id, "image": name }))
 }

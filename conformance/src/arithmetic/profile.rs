@@ -74,8 +74,8 @@ pub const WGSL: Profile = Profile {
 pub const VULKAN: Profile =
     Profile { name: "vulkan", source: "Vulkan, Precision and Operation of SPIR-V Instructions", ..WGSL };
 
-/// One part in 10⁵, in ULP of binary32.
-const OPENGL_ULP: f64 = 1e-5 * 8_388_608.0;
+/// One part in 10⁵, in ULP of binary32: just below a power of two an ULP is 2⁻²⁴ of the value, just above it twice that.
+const OPENGL_ULP: f64 = 1e-5 * 16_777_216.0;
 
 /// OpenGL's floor for every operation, fixed-function ones too. It says nothing of functions apart: they are held to the same,
 /// exponentials besides to what their argument's error makes of them, and log2 near 1 to one part in 10⁵ of 1.
@@ -123,4 +123,37 @@ thread_local! {
 #[inline]
 pub(crate) fn current<T>(figure: impl FnOnce(&Profile) -> T) -> T {
     figure(&CURRENT.get())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arithmetic::Accept;
+    use lightmeter_reference::Real as _;
+
+    #[test]
+    fn opengl_permits_one_part_in_100000_of_every_operation_and_not_five() {
+        let [x, y] = [3.25_f32, 1.7];
+        let (a, b) = (f64::from(x), f64::from(y));
+        type Operation = fn(Accept, Accept) -> Accept;
+        let rows: [(&str, f64, Operation); 8] = [
+            ("+", a + b, |a, b| a + b),
+            ("−", a - b, |a, b| a - b),
+            ("×", a * b, |a, b| a * b),
+            ("/", a / b, |a, b| a / b),
+            ("√", a.sqrt(), |a, _| a.sqrt()),
+            ("1/√", a.sqrt().recip(), |a, _| a.inverse_sqrt()),
+            ("2^", a.exp2(), |a, _| a.exp2()),
+            ("log₂", a.log2(), |a, _| a.log2()),
+        ];
+        for (name, exact, operation) in rows {
+            let legal = |profile: &Profile| profile.scope(|| operation(Accept::input(x), Accept::input(y)));
+            let (opengl, wgsl) = (legal(&OPENGL), legal(&WGSL));
+            for sign in [1.0, -1.0] {
+                assert!(opengl.contains(exact * (1.0 + sign * 0.99e-5)), "{name}: {opengl:?}");
+                assert!(!opengl.contains(exact * (1.0 + sign * 5e-5)), "{name}: {opengl:?}");
+                assert!(!wgsl.contains(exact * (1.0 + sign * 0.99e-5)), "{name}: {wgsl:?}");
+            }
+        }
+    }
 }

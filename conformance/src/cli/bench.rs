@@ -1,7 +1,7 @@
 //! `lightmeter bench`.
 
 use super::options::{Choice, shaders, subjects};
-use super::{NothingToRun, Status, emit};
+use super::{NothingToRun, Status, emit, writable};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::arithmetic::Profile;
@@ -110,10 +110,7 @@ impl Bench {
         if self.recommend.is_some() && self.format == Format::Markdown {
             anyhow::bail!("a recommendation is written as text or json");
         }
-        if let Some(path) = &self.out {
-            // Not after minutes of work.
-            emit("", Some(path))?;
-        }
+        writable(self.out.as_deref())?;
         let subjects = subjects(&self.adapter)?;
         if self.adapter == ["cpu"] && !self.measures_formulas(&options.filter) {
             let message = "the embedded implementation has no shaders: formulas alone are measured of it";

@@ -1,21 +1,25 @@
 //! `lightmeter gate`.
 
 use super::pack::Cases;
-use super::{NothingToRun, Status, emit};
+use super::{NothingToRun, Status, emit, writable};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::gate::answer::Hello;
+use lightmeter::filter::Filter;
 use lightmeter::gate::baseline::{self, Baseline};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::ledger::Ledger;
-use lightmeter::gate::plan::Plan;
-use lightmeter::gate::process::{self, Limits, Outcome};
+use lightmeter::gate::outputs;
+use lightmeter::gate::pack::{self, Answers};
+use lightmeter::gate::plan::{Choice, Place, Plan};
+use lightmeter::gate::process::{self, Asking, Limits, Outcome};
 use lightmeter::gate::report::Report;
-use lightmeter::gate::{outputs, pack};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Judge another renderer, by its files or as a process: see docs/gate.md.
@@ -44,6 +48,9 @@ pub(crate) struct Gate {
     /// Seconds that all may take; without it: as long as it takes
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     timeout: Option<f64>,
+    /// Ask all of it so often; an answer that changes is unstable. Once, what failed is asked again
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "exec", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    runs: u64,
     /// Keep the images of a process in this folder
     #[arg(long, value_name = "DIR", requires = "exec")]
     images: Option<PathBuf>,
@@ -94,18 +101,20 @@ impl Gate {
             Some(path) if !self.update_baseline => Some((path, Baseline::read(path)?)),
             _ => None,
         };
-        if let Some(path) = &self.out {
-            // Not after hours of work.
-            emit("", Some(path))?;
-        }
+        matches_something(&expectations)?;
         let start = Instant::now();
         let (plan, answers) = self.asked()?;
+        writable(self.out.as_deref())?;
         let mut ledger = Ledger::new(&plan, self.profile.unwrap_or(&WGSL));
         ledger.is_held_to = self.profile.is_some();
         let bar = bar(plan.cases() + plan.scenes.len() as u64);
         let outcome = match &self.exec {
             Some(command) => self.process(&mut ledger, &plan, command, expectations, &bar),
-            None => files(&mut ledger, &answers, &expectations, &bar),
+            None => {
+                ledger.expected = expectations;
+                let hello = pack::judge(&mut ledger, answers, &mut |count| bar.inc(count));
+                hello.map(|hello| Outcome { hello, ..Outcome::default() }).map_err(Into::into)
+            }
         };
         bar.finish_and_clear();
         let mut report = Report::new(&mut ledger, outcome?, command(), start.elapsed().as_secs_f64());
@@ -121,7 +130,7 @@ impl Gate {
     }
 
     /// The cases, and the files of answers.
-    fn asked(&self) -> anyhow::Result<(Plan, Vec<PathBuf>)> {
+    fn asked(&self) -> anyhow::Result<(Plan, Vec<Answers>)> {
         if self.exec.is_some() {
             return Ok((self.cases.plan(&self.given)?, vec![]));
         }
@@ -131,8 +140,9 @@ impl Gate {
         if answers.is_empty() {
             bail!("expected PACK ANSWERS: a file of JSON lines, or a folder with answers.jsonl");
         }
-        let manifest = pack::read(Path::new(folder))?;
-        Ok((Plan::new(manifest.choice)?, answers.iter().map(PathBuf::from).collect()))
+        let plan = pack::read(Path::new(folder))?;
+        let answers = answers.iter().map(|path| Answers::open(Path::new(path)));
+        Ok((plan, answers.collect::<Result<_, _>>()?))
     }
 
     fn process(
@@ -154,8 +164,10 @@ impl Gate {
             total: self.timeout.map(duration),
             ..Limits::default()
         };
-        ledger.known = expectations;
-        let outcome = process::ask(ledger, plan, command, &folder, limits, &mut |count| bar.inc(count));
+        ledger.expected = expectations;
+        let stop = stopped_by_signals()?;
+        let asking = Asking { command, folder: &folder, limits, runs: self.runs, stop: &stop };
+        let outcome = process::ask(ledger, plan, asking, &mut |count| bar.inc(count));
         if self.images.is_none() {
             let _ = std::fs::remove_dir_all(own);
         }
@@ -176,26 +188,39 @@ impl Gate {
     }
 }
 
-/// Judges files of answers: the first of each case, and that further ones are the same.
-fn files(
-    ledger: &mut Ledger<'_>,
-    answers: &[PathBuf],
-    expectations: &Expectations,
-    bar: &ProgressBar,
-) -> anyhow::Result<Outcome> {
-    ledger.known = expectations.clone();
-    let mut hello = None;
-    for (k, path) in answers.iter().enumerate() {
-        let mut answers = pack::Answers::open(path)?;
-        if k == 0 {
-            let first = answers.hello.take().unwrap_or_else(Hello::everything);
-            ledger.begin(&first)?;
-            hello = Some(first);
-        }
-        answers.judge(ledger, k > 0, &mut |count| bar.inc(count))?;
+/// Set by the first signal that ends a program; the second ends this one at once.
+fn stopped_by_signals() -> anyhow::Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, stop.clone())?;
+        signal_hook::flag::register(signal, stop.clone())?;
     }
-    let hello = hello.unwrap_or_default();
-    Ok(Outcome { hello, ..Outcome::default() })
+    Ok(stop)
+}
+
+/// An expectation of what no renderer is ever asked is a mistake in its file.
+fn matches_something(expectations: &Expectations) -> anyhow::Result<()> {
+    let all = Plan::new(Choice { filter: vec![], cases: 1, seed: 1, size: None })?;
+    for id in expectations.ids() {
+        let filter = Filter::new(&[id])?;
+        // Any number of a random case may be meant.
+        let path = id.rsplit_once('/').filter(|(_, number)| number.bytes().all(|byte| byte.is_ascii_digit()));
+        let is_random =
+            |member: &str| path.is_some_and(|(path, _)| path.strip_suffix("/random").unwrap_or(path) == member);
+        let has_formula = (0..all.formulas.len()).any(|formula| {
+            let member = &all.member(formula).spec.id;
+            filter.selects(member) || filter.reaches_below(member) || is_random(member) || {
+                let cases = 0..all.formulas[formula].count();
+                id.starts_with(member.as_str())
+                    && cases.into_iter().any(|case| filter.selects(&all.id(Place::Case { formula, case })))
+            }
+        });
+        let has_scene = || (0..all.scenes.len()).any(|scene| filter.selects(&all.id(Place::Scene(scene))));
+        if !has_formula && !has_scene() {
+            bail!("the expectation `{id}` matches no case of any formula and no scene: see `lightmeter list`");
+        }
+    }
+    Ok(())
 }
 
 fn bar(cases: u64) -> ProgressBar {
@@ -215,7 +240,8 @@ fn command() -> String {
             given.next();
         } else if !word.starts_with("--out=") {
             let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:".contains(c);
-            words.push(if word.chars().all(is_plain) { word } else { format!("'{word}'") });
+            let quoted = || format!("'{}'", word.replace('\'', r"'\''"));
+            words.push(if word.chars().all(is_plain) { word.clone() } else { quoted() });
         }
     }
     words.join(" ")

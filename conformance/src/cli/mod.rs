@@ -138,6 +138,13 @@ impl Status {
     }
 }
 
+/// Whether a file that is to be written at the end can be, told before the work. What it holds stays until then.
+pub(crate) fn writable(file: Option<&Path>) -> anyhow::Result<()> {
+    let Some(path) = file else { return Ok(()) };
+    let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
+    opened.map(drop).map_err(|error| anyhow::anyhow!("cannot write {}: {error}", path.display()))
+}
+
 /// Writes to the file, or to standard output.
 pub(crate) fn emit(text: &str, file: Option<&Path>) -> anyhow::Result<()> {
     match file {

@@ -1,7 +1,7 @@
 //! `lightmeter run`.
 
 use super::options::{Amount, Choice, Format};
-use super::{NothingToRun, Status, emit};
+use super::{NothingToRun, Status, emit, writable};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::cases::blend::{Samples, separate_of};
@@ -50,10 +50,7 @@ impl Run {
         options.images = Some(self.images.clone());
         options.again = self.timing;
         options.samples = samples;
-        if let Some(path) = &self.out {
-            // Not after hours of work.
-            emit("", Some(path))?;
-        }
+        writable(self.out.as_deref())?;
         let mut subjects = self.choice.subjects()?;
         let mut bar = Bar::default();
         let report = run(&mut subjects, &options, &mut bar);

@@ -41,17 +41,39 @@ pub(super) enum Step {
     Body(Body),
     /// Another formula of the catalogue, by pairs of ids; those that begin with `*` are ends of ids.
     Instead(&'static [(&'static str, &'static str)]),
+    /// The form that the formula is the stable one of.
+    Naive,
     /// The outputs change.
     After(After),
 }
 
 impl Step {
+    /// The formula that stands in one's place, which takes and gives the same.
+    pub(super) fn instead(self, spec: &Spec) -> Option<&'static Member> {
+        let id = match self {
+            Self::Instead(pairs) => {
+                pairs.iter().find_map(|(from, to)| match (from.strip_prefix('*'), to.strip_prefix('*')) {
+                    (Some(from), Some(to)) => spec.id.strip_suffix(from).map(|stem| format!("{stem}{to}")),
+                    _ => (spec.id == *from).then(|| (*to).to_owned()),
+                })?
+            }
+            Self::Naive => spec.hard.iter().find_map(|hard| hard.naive)?.formula.to_owned(),
+            _ => return None,
+        };
+        let fits = |member: &&Member| {
+            member.spec.id == id
+                && member.spec.input_len() == spec.input_len()
+                && member.spec.output_len() == spec.output_len()
+        };
+        formulas().iter().find(fits)
+    }
+
     fn fits(self, spec: &Spec) -> bool {
         let is_raster = matches!(spec.kind, Kind::Raster(_));
         match self {
             Self::Before(before) => before.fits(spec),
             Self::After(after) => after.fits(spec),
-            Self::Instead(pairs) => instead(spec, pairs).is_some(),
+            Self::Instead(_) | Self::Naive => self.instead(spec).is_some(),
             // A rasteriser's answers follow from changed inputs alone.
             _ if is_raster => false,
             Self::Lighting(twist) => lighting::concerns(spec, &[twist]),
@@ -118,20 +140,6 @@ pub fn concerning(spec: &Spec) -> impl Iterator<Item = &'static Fault> {
 pub(super) fn formulas() -> &'static [Member] {
     static ALL: LazyLock<Vec<Member>> = LazyLock::new(|| catalogue_of(&Samples { count: 0, ..Samples::default() }));
     &ALL
-}
-
-/// The formula that stands in one's place by a list of pairs; it takes and gives the same.
-pub(super) fn instead(spec: &Spec, pairs: &[(&str, &str)]) -> Option<&'static Member> {
-    let id = pairs.iter().find_map(|(from, to)| match (from.strip_prefix('*'), to.strip_prefix('*')) {
-        (Some(from), Some(to)) => spec.id.strip_suffix(from).map(|stem| format!("{stem}{to}")),
-        _ => (spec.id == *from).then(|| (*to).to_owned()),
-    })?;
-    let fits = |member: &&Member| {
-        member.spec.id == id
-            && member.spec.input_len() == spec.input_len()
-            && member.spec.output_len() == spec.output_len()
-    };
-    formulas().iter().find(fits)
 }
 
 #[cfg(test)]

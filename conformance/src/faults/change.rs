@@ -147,6 +147,8 @@ pub(super) enum After {
     Truncate,
     /// Colours rounded to whole 255ths.
     Round,
+    /// Every output limited to [0, 1] and rounded to whole 255ths.
+    RoundAll,
     /// Red, green and blue times alpha.
     Premultiply,
     /// Alpha made 1.
@@ -176,6 +178,7 @@ impl After {
         };
         match self {
             Self::Gamma | Self::Srgb | Self::Decode | Self::Clamp | Self::Truncate | Self::Round => color(|_| true),
+            Self::RoundAll => color(|_| true) && spec.outputs.iter().any(|output| output.unit != "color"),
             Self::RedBlue => color(|shape| shape != Shape::Scalar),
             Self::Premultiply | Self::Opaque => color(|shape| shape == Shape::Vec4),
             Self::Copy(a, b) => shape(a).is_some() && shape(a) == shape(b),
@@ -211,6 +214,7 @@ impl After {
             Self::Clamp => colors(spec, out, 4, unit),
             Self::Truncate => colors(spec, out, 4, |c| (byte * unit(c)).floor_then(|n| R::literal(n) / byte)),
             Self::Round => colors(spec, out, 4, |c| (byte * unit(c)).round() / byte),
+            Self::RoundAll => out.iter_mut().for_each(|x| *x = (byte * unit(*x)).round() / byte),
             Self::RedBlue => each_color(spec, out, |color| {
                 if color.len() > 2 {
                     color.swap(0, 2);

@@ -50,8 +50,17 @@ pub struct Diagnosis {
     pub explanations: Vec<Explanation>,
     /// The outcome as a sentence.
     pub sentence: String,
-    /// Which of the failing cases has the simplest inputs, by its place among the rows.
-    pub smallest: Option<usize>,
+}
+
+impl Diagnosis {
+    /// The outcome where the failing cases are a sample of so many.
+    #[must_use]
+    pub fn sentence_of(&self, all: usize) -> String {
+        if all == self.failing {
+            return self.sentence.clone();
+        }
+        format!("in an even sample of the {all} failing cases, {}", self.sentence)
+    }
 }
 
 /// Explanations that are kept.
@@ -70,8 +79,8 @@ const PAIR_PROBES: usize = 8;
 /// Tries what the catalogue knows as explanations of a renderer's answers to one formula.
 ///
 /// Ranked by the failing cases that are explained, then by the passing ones that are consistent, then by how little is left
-/// open, then single mistakes before pairs and both before wrong parameters, then in the order of the catalogue. Pairs and
-/// parameters are tried where no single mistake explains every failing case.
+/// open, then single mistakes before pairs and both before wrong parameters, then in the order of the catalogue. Pairs,
+/// parameters, and mistakes with a parameter are tried where no single mistake explains every failing case.
 #[must_use]
 pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Diagnosis {
     let spec = &member.spec;
@@ -85,6 +94,9 @@ pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Di
             trial.pairs();
             trial.parameters();
         }
+        if !trial.is_explained() {
+            trial.faults_and_parameters();
+        }
     }
     let mut explanations = trial.found;
     explanations.sort_by(better);
@@ -92,17 +104,16 @@ pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Di
     Diagnosis {
         failing: failing.len(),
         passing: passing.len(),
-        sentence: sentence(failing.len(), explanations.first()),
+        sentence: sentence(failing.len(), &explanations),
         explanations,
-        smallest: smallest(rows),
     }
 }
 
 /// The better of two explanations first.
 fn better(a: &Explanation, b: &Explanation) -> Ordering {
     let many = |a: usize, b: usize| b.cmp(&a);
-    // Parameters last, then pairs.
-    let kind = |e: &Explanation| if e.parameter.is_some() { 3 } else { e.faults.len() };
+    // Single mistakes, pairs, parameters, mistakes with a parameter.
+    let kind = |e: &Explanation| if e.parameter.is_some() { 3 + e.faults.len() } else { e.faults.len() };
     many(a.explained + a.open, b.explained + b.open)
         .then(many(a.explained, b.explained))
         .then(many(a.consistent, b.consistent))
@@ -110,13 +121,15 @@ fn better(a: &Explanation, b: &Explanation) -> Ordering {
         .then(kind(a).cmp(&kind(b)))
 }
 
-fn sentence(failing: usize, best: Option<&Explanation>) -> String {
+fn sentence(failing: usize, explanations: &[Explanation]) -> String {
     let cases = if failing == 1 { "case is" } else { "cases are" };
-    match best {
+    match explanations.first() {
         _ if failing == 0 => "nothing fails".into(),
-        None => format!("nothing in the catalogue explains the failing cases, of which there are {failing}"),
+        None if failing == 1 => "nothing in the catalogue explains the failing case".into(),
+        None => format!("nothing in the catalogue explains the {failing} failing cases"),
         Some(best) => {
-            let Explanation { explained, open, says, .. } = best;
+            let Explanation { explained, open, .. } = best;
+            let says = together(best, explanations);
             let told = format!("{explained} of {failing} failing {cases} explained by: {says}");
             let rest = failing - explained - open;
             match open {
@@ -130,21 +143,37 @@ fn sentence(failing: usize, best: Option<&Explanation>) -> String {
     }
 }
 
+/// What the best explanation says, with the parameters that explain just as much by the same factor: nothing tells them apart.
+fn together(best: &Explanation, explanations: &[Explanation]) -> String {
+    let Some(scaled) = &best.parameter else { return best.says.clone() };
+    let is_same = |other: &&Explanation| {
+        let counts = |e: &Explanation| (e.explained, e.open, e.consistent);
+        let factor = other.parameter.as_ref().map_or(f64::NAN, |other| other.factor);
+        counts(other) == counts(best) && other.faults == best.faults && (factor / scaled.factor - 1.0).abs() < 1e-3
+    };
+    let names: Vec<&str> =
+        explanations.iter().filter(is_same).filter_map(|e| Some(e.parameter.as_ref()?.name)).collect();
+    let Some(phrase) = best.says.strip_prefix(&format!("as if {} ", scaled.name)).filter(|_| names.len() > 1) else {
+        return best.says.clone();
+    };
+    format!("as if {} (nothing tells which) {phrase}", names.join(" or "))
+}
+
 #[expect(clippy::cast_precision_loss, reason = "counts of cases are far below 2⁵³")]
 pub(super) fn share(part: usize, whole: usize) -> f64 {
     part as f64 / whole as f64
 }
 
-/// The failing case whose inputs take the least to write down.
-fn smallest(rows: &[Answered<'_>]) -> Option<usize> {
+/// How much inputs take to write down: the fewer, the simpler a case.
+#[must_use]
+pub fn simplicity(inputs: &[f32]) -> u32 {
     let digits = |x: f32| match x.abs() {
         0.0 => 0,
         1.0 => 1,
         x if x.is_finite() => 26 - x.to_bits().trailing_zeros().min(23),
         _ => 64,
     };
-    let failing = rows.iter().enumerate().filter(|(_, row)| row.is_wrong);
-    failing.min_by_key(|(_, row)| row.inputs.iter().map(|&x| digits(x)).sum::<u32>()).map(|(place, _)| place)
+    inputs.iter().map(|&x| digits(x)).sum()
 }
 
 /// What a row's answer says of the intervals of its outputs.
@@ -165,8 +194,7 @@ pub(super) fn fit(values: &[f32], legal: &[Accept]) -> (Fit, f64) {
     let (mut inside, mut bound, mut openness) = (true, false, 0.0);
     for (&value, legal) in values.iter().zip(legal) {
         inside &= legal.contains(value.into());
-        // A value that is no number is as much as can be said where nothing is promised.
-        bound |= !legal.is_any() || !value.is_finite();
+        bound |= !legal.is_any();
         let ulps = legal.width() / F32::ulp(f64::from(value)).max(F32::MIN_SUBNORMAL);
         openness += (1.0 + ulps.min(WIDEST_ULP)).log2();
     }
@@ -197,15 +225,15 @@ impl Trial<'_> {
     }
 
     /// How many of some failing cases lie outside the intervals, and how many are tried.
-    fn contradicted(&self, count: usize, interval: impl Fn(&[f32], &mut [Accept])) -> (usize, usize) {
+    fn contradicted(&self, count: usize, tried: &impl Wrong) -> (usize, usize) {
         let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
-        let (mut outside, mut tried) = (0, 0);
+        let (mut outside, mut seen) = (0, 0);
         for row in self.probes(count) {
-            interval(row.inputs, &mut legal);
+            tried.interval(row.inputs, self.profile, &mut legal);
             outside += usize::from(fit(row.values, &legal).0 == Fit::Outside);
-            tried += 1;
+            seen += 1;
         }
-        (outside, tried)
+        (outside, seen)
     }
 
     fn singles(&mut self) {
@@ -225,45 +253,61 @@ impl Trial<'_> {
 
     fn try_faults(&mut self, faults: &[&'static Fault], probes: usize, is_likely: impl Fn(usize, usize) -> bool) {
         let Some(variation) = Variation::new(self.member, faults) else { return };
-        let interval = |inputs: &[f32], out: &mut [Accept]| variation.interval(inputs, self.profile, out);
-        let (outside, tried) = self.contradicted(probes, interval);
-        if !is_likely(outside, tried) {
-            return;
+        let (outside, tried) = self.contradicted(probes, &variation);
+        if is_likely(outside, tried) {
+            let says = variation.says();
+            self.take(&variation, says, None);
         }
-        let names = faults.iter().map(|fault| fault.name).collect();
-        let says = faults.iter().map(|fault| fault.says).collect::<Vec<_>>().join(", and ");
-        self.take(names, says, None, interval);
     }
 
     /// Parameters, and the outputs themselves, some factor times what was asked.
     fn parameters(&mut self) {
-        if matches!(self.member.spec.kind, Kind::Raster(_)) {
-            return;
-        }
-        for scaled in factor::candidates(self.member, self.failing, self.profile) {
-            let says = scaled.says();
-            let (member, profile) = (self.member, self.profile);
-            let interval = |inputs: &[f32], out: &mut [Accept]| scaled.interval(member, inputs, profile, out);
-            let (outside, tried) = self.contradicted(PROBES, interval);
-            if 2 * outside <= tried {
-                self.take(vec![], says, Some(scaled.clone()), interval);
-            }
+        if !matches!(self.member.spec.kind, Kind::Raster(_)) {
+            let right = Variation::right(self.member);
+            factor::candidates(&right, self.failing, self.profile)
+                .into_iter()
+                .for_each(|scaled| self.try_scaled(&right, scaled));
         }
     }
 
-    fn take(
-        &mut self,
-        faults: Vec<&'static str>,
-        says: String,
-        parameter: Option<Scaled>,
-        interval: impl Fn(&[f32], &mut [Accept]),
-    ) {
-        let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
+    /// A mistake, and an input some factor times what was asked: those that come nearest by a rough search.
+    fn faults_and_parameters(&mut self) {
+        let spec = &self.member.spec;
+        if matches!(spec.kind, Kind::Raster(_)) {
+            return;
+        }
+        let (member, profile) = (self.member, self.profile);
+        let variations: Vec<Variation<'_>> =
+            concerning(spec).filter_map(|fault| Variation::new(member, &[fault])).collect();
+        for (variation, scaled) in factor::nearest(&variations, self.failing, profile) {
+            self.try_scaled(variation, scaled);
+        }
+    }
+
+    fn try_scaled(&mut self, variation: &Variation<'_>, scaled: Scaled) {
+        let tried = (variation, &scaled);
+        let (outside, probes) = self.contradicted(PROBES, &tried);
+        if 2 * outside <= probes {
+            let mistake = variation.says();
+            let says = if mistake.is_empty() { scaled.says() } else { format!("{mistake}, and {}", scaled.says()) };
+            self.take(&tried, says, Some(scaled.clone()));
+        }
+    }
+
+    fn take(&mut self, tried: &impl Wrong, says: String, parameter: Option<Scaled>) {
+        let outputs = self.member.spec.output_len();
+        let (mut legal, mut own) = (vec![Accept::ANY; outputs], vec![0.0; outputs]);
         let (mut explained, mut open, mut consistent, mut openness) = (0, 0, 0, 0.0);
         let mut held = |row: &Answered<'_>| {
-            interval(row.inputs, &mut legal);
+            tried.interval(row.inputs, self.profile, &mut legal);
             let (fit, left_open) = fit(row.values, &legal);
             openness += left_open;
+            if fit == Fit::Open {
+                // Where nothing is promised, an answer is explained by who computes just that.
+                tried.evaluate(row.inputs, &mut own);
+                let is_same = |(&a, &b): (&f32, &f32)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
+                return if row.values.iter().zip(&own).all(is_same) { Fit::Inside } else { Fit::Open };
+            }
             fit
         };
         for row in self.failing {
@@ -277,10 +321,50 @@ impl Trial<'_> {
             consistent += usize::from(held(row) != Fit::Outside);
         }
         // What may give anything explains nothing by that alone.
-        if share(explained + open, self.failing.len()) >= PART && share(explained, self.failing.len()) >= LEAST {
-            let openness = openness / share(self.failing.len() + self.passing.len(), 1);
+        let failing = self.failing.len();
+        if share(explained + open, failing) >= PART && share(explained, failing) >= LEAST {
+            let openness = openness / share(failing + self.passing.len(), 1);
+            let faults = tried.faults();
             self.found.push(Explanation { faults, says, parameter, explained, open, consistent, openness });
         }
+    }
+}
+
+/// A formula that is wrong in some way.
+trait Wrong {
+    /// The mistakes' names.
+    fn faults(&self) -> Vec<&'static str>;
+    /// What it may legally answer.
+    fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
+    /// What it answers in f32.
+    fn evaluate(&self, inputs: &[f32], out: &mut [f32]);
+}
+
+impl Wrong for Variation<'_> {
+    fn faults(&self) -> Vec<&'static str> {
+        self.faults.iter().map(|fault| fault.name).collect()
+    }
+
+    fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+        Variation::interval(self, inputs, profile, out);
+    }
+
+    fn evaluate(&self, inputs: &[f32], out: &mut [f32]) {
+        Variation::evaluate(self, inputs, out);
+    }
+}
+
+impl Wrong for (&Variation<'_>, &Scaled) {
+    fn faults(&self) -> Vec<&'static str> {
+        self.0.faults()
+    }
+
+    fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+        self.1.interval(self.0, inputs, profile, out);
+    }
+
+    fn evaluate(&self, inputs: &[f32], out: &mut [f32]) {
+        self.1.evaluate(self.0, inputs, out);
     }
 }
 
@@ -326,7 +410,6 @@ mod tests {
         assert!(n > 100, "{n}");
         assert_eq!(found.sentence, format!("{n} of {n} failing cases are explained by: fog uses radial distance"));
         assert_eq!(found.failing + found.passing, inputs.len());
-        assert!(found.smallest.is_some());
     }
 
     #[test]
@@ -358,7 +441,7 @@ mod tests {
         });
         assert_eq!((found.explanations.len(), found.failing), (0, 256));
         assert!(
-            found.sentence.starts_with("nothing in the catalogue explains the failing cases"),
+            found.sentence.starts_with("nothing in the catalogue explains the 256 failing cases"),
             "{}",
             found.sentence
         );
@@ -371,6 +454,6 @@ mod tests {
         let member = formulas().iter().find(|member| member.spec.id == "fog/exp").expect("fog/exp");
         let short = [Answered { inputs: &[1.0], values: &[], is_wrong: true }];
         assert_eq!(diagnose(member, &short, &WGSL).sentence, "nothing fails");
-        assert_eq!(diagnose(member, &[], &WGSL).smallest, None);
+        assert_eq!(diagnose(member, &[], &WGSL).sentence, "nothing fails");
     }
 }

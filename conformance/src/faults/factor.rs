@@ -2,6 +2,8 @@
 //! held against the interval of the scaled input.
 
 use super::diagnose::Answered;
+use super::row::Arithmetic;
+use super::variation::Variation;
 use crate::arithmetic::{Accept, F32, Format as _, Profile};
 use crate::cases::{Domain, Spec};
 use crate::select::Member;
@@ -31,8 +33,17 @@ const STEPS: usize = 16;
 /// Factors from 2⁻¹⁰ to 2¹⁰ in steps of a sixth of an octave.
 const OCTAVES: i32 = 10;
 const STEPS_AN_OCTAVE: i32 = 6;
+/// The same where mistakes are tried with parameters, cases, and how many of those are sought well.
+const ROUGH_OCTAVES: i32 = 5;
+const ROUGH_STEPS: i32 = 2;
+const FEW_ROWS: usize = 6;
+const NEAREST: usize = 12;
 
 impl Scaled {
+    const fn one(name: &'static str, range: Range<usize>, is_output: bool) -> Self {
+        Self { name, is_output, factor: 1.0, uncertainty: 0.0, range }
+    }
+
     /// In words: "as if shininess were 4.00 times what was asked".
     #[must_use]
     pub fn says(&self) -> String {
@@ -47,22 +58,31 @@ impl Scaled {
     }
 
     /// What is legal with the input so much greater, the factor known as well as it is.
-    pub(super) fn interval(&self, member: &Member, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+    pub(super) fn interval(&self, variation: &Variation<'_>, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
         let factor =
             Accept::from_bounds(self.factor * (1.0 - self.uncertainty), self.factor * (1.0 + self.uncertainty));
         profile.scope(|| {
             let mut row: Vec<Accept> = inputs.iter().map(|&x| Accept::input(x)).collect();
-            let scale = |row: &mut [Accept]| {
-                row.get_mut(self.range.clone()).into_iter().flatten().for_each(|x| *x = *x * factor);
-            };
-            if !self.is_output {
-                scale(&mut row);
-            }
-            member.formula.on_accept(&row, out);
-            if self.is_output {
-                scale(out);
-            }
+            self.scaled(variation, factor, &mut row, out);
         });
+    }
+
+    /// The outputs in f32.
+    pub(super) fn evaluate(&self, variation: &Variation<'_>, inputs: &[f32], out: &mut [f32]) {
+        #[expect(clippy::cast_possible_truncation, reason = "the factor in f32")]
+        self.scaled(variation, self.factor as f32, &mut inputs.to_vec(), out);
+    }
+
+    fn scaled<R: Arithmetic>(&self, variation: &Variation<'_>, factor: R, row: &mut [R], out: &mut [R]) {
+        let scale =
+            |row: &mut [R]| row.get_mut(self.range.clone()).into_iter().flatten().for_each(|x| *x = *x * factor);
+        if !self.is_output {
+            scale(row);
+        }
+        variation.evaluate_row(row, out);
+        if self.is_output {
+            scale(out);
+        }
     }
 }
 
@@ -89,35 +109,54 @@ pub(super) fn parameters(spec: &Spec) -> impl Iterator<Item = (&'static str, Ran
 }
 
 /// Factors of each parameter that would explain the answers best, whether they do or not.
-pub(super) fn candidates(member: &Member, failing: &[Answered<'_>], profile: &Profile) -> Vec<Scaled> {
-    let spec = &member.spec;
-    let rows: Vec<Row> = failing
-        .iter()
-        .step_by((failing.len() / ROWS).max(1))
-        .take(ROWS)
-        .filter_map(|row| Row::new(member, row, profile))
-        .collect();
+pub(super) fn candidates(variation: &Variation<'_>, failing: &[Answered<'_>], profile: &Profile) -> Vec<Scaled> {
+    let rows = rows(variation.member, failing, profile, ROWS);
     if rows.is_empty() {
         return vec![];
     }
+    let spec = &variation.member.spec;
     let mut start = 0;
-    let outputs: Vec<_> = spec
-        .outputs
-        .iter()
-        .map(|output| {
-            let range = start..start + output.shape.components();
-            start = range.end;
-            (output.name, range, true)
-        })
-        .collect();
-    let inputs = parameters(spec).map(|(name, range)| (name, range, false));
-    inputs
-        .chain(outputs)
-        .filter_map(|(name, range, is_output)| {
-            let scaled = Scaled { name, is_output, factor: 1.0, uncertainty: 0.0, range };
-            search(member, &rows, scaled)
-        })
-        .collect()
+    let outputs = spec.outputs.iter().map(|output| {
+        let range = start..start + output.shape.components();
+        start = range.end;
+        Scaled::one(output.name, range, true)
+    });
+    let outputs: Vec<Scaled> = outputs.collect();
+    let inputs = parameters(spec).map(|(name, range)| Scaled::one(name, range, false));
+    inputs.chain(outputs).filter_map(|scaled| search(variation, &rows, scaled)).collect()
+}
+
+/// The mistakes with an input some factor times what was asked that come nearest to the answers to a few cases by rough factors,
+/// each with its factor sought well.
+pub(super) fn nearest<'a, 'b>(
+    variations: &'b [Variation<'a>],
+    failing: &[Answered<'_>],
+    profile: &Profile,
+) -> Vec<(&'b Variation<'a>, Scaled)> {
+    let Some(first) = variations.first() else { return vec![] };
+    let few = rows(first.member, failing, profile, FEW_ROWS);
+    let all = rows(first.member, failing, profile, ROWS);
+    if few.is_empty() {
+        return vec![];
+    }
+    let mut tried: Vec<(f64, &Variation<'_>, Scaled)> = vec![];
+    for variation in variations {
+        for (name, range) in parameters(&variation.member.spec) {
+            let scaled = Scaled::one(name, range, false);
+            if let Some((cost, _)) = roughly(variation, &few, &scaled, ROUGH_OCTAVES, ROUGH_STEPS) {
+                tried.push((cost, variation, scaled));
+            }
+        }
+    }
+    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let sought = tried.into_iter().take(NEAREST);
+    sought.filter_map(|(_, variation, scaled)| Some((variation, search(variation, &all, scaled)?))).collect()
+}
+
+/// So many of the failing cases, evenly spread.
+fn rows(member: &Member, failing: &[Answered<'_>], profile: &Profile, count: usize) -> Vec<Row> {
+    let some = failing.iter().step_by((failing.len() / count).max(1)).take(count);
+    some.filter_map(|row| Row::new(member, row, profile)).collect()
 }
 
 /// An answer with the size of what its error is measured by.
@@ -142,18 +181,9 @@ impl Row {
     }
 
     /// The residual of each output at a factor, in tolerances.
-    fn residuals(&self, member: &Member, scaled: &Scaled, factor: f64, out: &mut Vec<f64>) {
-        let mut inputs = self.inputs.clone();
+    fn residuals(&self, variation: &Variation<'_>, scaled: &Scaled, factor: f64, out: &mut Vec<f64>) {
         let mut outputs = vec![0.0; self.values.len()];
-        let scale =
-            |row: &mut [f64]| row.get_mut(scaled.range.clone()).into_iter().flatten().for_each(|x| *x *= factor);
-        if !scaled.is_output {
-            scale(&mut inputs);
-        }
-        member.formula.on_f64(&inputs, &mut outputs);
-        if scaled.is_output {
-            scale(&mut outputs);
-        }
+        scaled.scaled(variation, factor, &mut self.inputs.clone(), &mut outputs);
         for ((value, output), tolerance) in self.values.iter().zip(&outputs).zip(&self.tolerance) {
             let residual = (value - output) / tolerance;
             out.push(if residual.is_finite() { residual } else { 0.0 });
@@ -161,22 +191,36 @@ impl Row {
     }
 }
 
-/// The factor of least residuals: the best of a wide range, refined.
-fn search(member: &Member, rows: &[Row], mut scaled: Scaled) -> Option<Scaled> {
+/// The residuals of all rows at a factor.
+fn residuals(variation: &Variation<'_>, rows: &[Row], scaled: &Scaled, factor: f64) -> Vec<f64> {
     let mut residuals = vec![];
-    let mut all = |scaled: &Scaled, factor: f64| {
-        residuals.clear();
-        for row in rows {
-            row.residuals(member, scaled, factor, &mut residuals);
-        }
-        residuals.clone()
-    };
-    // Logarithms, so that one case far off does not decide.
-    let cost = |residuals: &[f64]| residuals.iter().map(|r| (1.0 + r.abs()).ln()).sum::<f64>();
-    let of_step = |step: i32| (f64::from(step) / f64::from(STEPS_AN_OCTAVE)).exp2();
-    let most = OCTAVES * STEPS_AN_OCTAVE;
-    let best = (-most..=most).map(|step| (cost(&all(&scaled, of_step(step))), of_step(step)));
-    let (mut least, mut factor) = best.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    rows.iter().for_each(|row| row.residuals(variation, scaled, factor, &mut residuals));
+    residuals
+}
+
+/// Logarithms, so that one case far off does not decide.
+fn cost(residuals: &[f64]) -> f64 {
+    residuals.iter().map(|r| (1.0 + r.abs()).ln()).sum()
+}
+
+/// The best factor of a wide range, and its cost.
+fn roughly(
+    variation: &Variation<'_>,
+    rows: &[Row],
+    scaled: &Scaled,
+    octaves: i32,
+    steps_an_octave: i32,
+) -> Option<(f64, f64)> {
+    let of_step = |step: i32| (f64::from(step) / f64::from(steps_an_octave)).exp2();
+    let most = octaves * steps_an_octave;
+    let costs = (-most..=most).map(|step| (cost(&residuals(variation, rows, scaled, of_step(step))), of_step(step)));
+    costs.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// The factor of least residuals: the best of a wide range, refined.
+fn search(variation: &Variation<'_>, rows: &[Row], mut scaled: Scaled) -> Option<Scaled> {
+    let all = |scaled: &Scaled, factor: f64| residuals(variation, rows, scaled, factor);
+    let (mut least, mut factor) = roughly(variation, rows, &scaled, OCTAVES, STEPS_AN_OCTAVE)?;
     for _ in 0..STEPS {
         let (here, step) = (all(&scaled, factor), factor * 1e-6);
         let beyond = all(&scaled, factor + step);

@@ -97,7 +97,10 @@ impl Model {
             Twist::Exp2OpenGl if !ramp => self.factor = Factor::Exp2OpenGl,
             Twist::BaseTwo if !ramp => self.base_two = true,
             Twist::Inverted => self.inverted = true,
-            Twist::Unclamped if ramp => self.clamped = false,
+            // The other exponents are squares or lengths, of which no case makes a factor above 1.
+            Twist::Unclamped if ramp || (self.factor == Factor::Exp && self.length == Length::Planar) => {
+                self.clamped = false
+            }
             Twist::MixedTheWrongWay => self.mix = Mix::Turned,
             Twist::Added => self.mix = Mix::Added,
             Twist::NotApplied => self.mix = Mix::None,

@@ -2,7 +2,7 @@
 
 use super::blend;
 use super::body;
-use super::catalogue::{Fault, Step, instead};
+use super::catalogue::{Fault, Step};
 use super::fog;
 use super::lighting;
 use super::row::Arithmetic;
@@ -13,7 +13,7 @@ use crate::select::Member;
 /// A formula with mistakes: the same source is the f32 implementation that makes them, its value in f64, and the interval of
 /// what a renderer that makes them may legally answer.
 pub struct Variation<'a> {
-    member: &'a Member,
+    pub(super) member: &'a Member,
     /// What the mistakes are.
     pub faults: Vec<&'static Fault>,
     parts: Parts,
@@ -31,12 +31,12 @@ struct Parts {
     fog: Vec<fog::Twist>,
     blend: Vec<blend::Twist>,
     bodies: Vec<body::Body>,
-    instead: Vec<&'static [(&'static str, &'static str)]>,
+    instead: Vec<&'static Member>,
     after: Vec<super::change::After>,
 }
 
 impl Parts {
-    fn new(steps: impl Iterator<Item = Step>) -> Self {
+    fn new(spec: &Spec, steps: impl Iterator<Item = Step>) -> Self {
         let mut parts = Self::default();
         for step in steps {
             match step {
@@ -45,7 +45,7 @@ impl Parts {
                 Step::Fog(twist) => parts.fog.push(twist),
                 Step::Blend(twist) => parts.blend.push(twist),
                 Step::Body(body) => parts.bodies.push(body),
-                Step::Instead(pairs) => parts.instead.push(pairs),
+                Step::Instead(_) | Step::Naive => parts.instead.extend(step.instead(spec)),
                 Step::After(after) => parts.after.push(after),
             }
         }
@@ -77,16 +77,27 @@ impl<'a> Variation<'a> {
         for fault in faults {
             steps.extend_from_slice(fault.steps(spec)?);
         }
-        let parts = Parts::new(steps.into_iter());
+        let parts = Parts::new(spec, steps.into_iter());
         if !parts.fit_together(spec) || spec.input_len() > MOST_INPUTS {
             return None;
         }
         let (mut formula, mut kind): (&dyn AnyFormula, _) = (&*member.formula, spec.kind);
-        if let [pairs] = parts.instead[..] {
-            let other = instead(spec, pairs)?;
+        if let [other] = parts.instead[..] {
             (formula, kind) = (&*other.formula, other.spec.kind);
         }
         Some(Self { member, faults: faults.to_vec(), parts, formula, kind })
+    }
+
+    /// The formula without a mistake.
+    pub(super) fn right(member: &'a Member) -> Self {
+        let (formula, kind) = (&*member.formula, member.spec.kind);
+        Self { member, faults: vec![], parts: Parts::default(), formula, kind }
+    }
+
+    /// The mistakes in words, as the end of a sentence.
+    #[must_use]
+    pub fn says(&self) -> String {
+        self.faults.iter().map(|fault| fault.says).collect::<Vec<_>>().join(", and ")
     }
 
     /// The outputs for a row of inputs, in any arithmetic.
@@ -98,7 +109,8 @@ impl<'a> Variation<'a> {
         self.evaluate_row(&mut row[..inputs.len().min(MOST_INPUTS)], out);
     }
 
-    fn evaluate_row<R: Arithmetic>(&self, row: &mut [R], out: &mut [R]) {
+    /// The same of a row that is changed already.
+    pub(super) fn evaluate_row<R: Arithmetic>(&self, row: &mut [R], out: &mut [R]) {
         let (spec, parts) = (&self.member.spec, &self.parts);
         for before in &parts.before {
             before.apply(spec, row);

@@ -131,6 +131,8 @@ impl<'de> Deserialize<'de> for Values {
 /// What is wrong with it, in words.
 pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
     let text = std::str::from_utf8(line).map_err(|_| "it is not UTF-8".to_owned())?;
+    // A mark of the byte order, which some editors put first.
+    let text = text.trim_start_matches('\u{feff}');
     match serde_json::from_str::<Raw<'_>>(text) {
         Ok(raw) => told(raw),
         Err(error) => {
@@ -209,7 +211,7 @@ fn hello(text: &str) -> Option<Line<'_>> {
         return None;
     }
     let hello: Hello = serde_json::from_value(rest.into()).ok()?;
-    Some(Line::Hello(Box::new(Hello { renderer, ..hello })))
+    Some(Line::Hello(Box::new(Hello { renderer: clipped(&renderer), version: clipped(&hello.version), ..hello })))
 }
 
 /// The id of an answer, whatever else is wrong with it: the string behind the first `"id":`.
@@ -220,6 +222,20 @@ pub fn id(line: &[u8]) -> Option<Cow<'_, str>> {
     let rest = rest.trim_start().strip_prefix(':')?.trim_start().strip_prefix('"')?;
     // No id of a case has anything to escape.
     rest.split_once('"').map(|(id, _)| Cow::Borrowed(id))
+}
+
+/// Characters of a renderer's words that are told.
+const MOST_TOLD: usize = 300;
+
+/// A renderer's words, as far as they are told: without what moves a terminal's cursor, and not without end.
+#[must_use]
+pub fn clipped(words: &str) -> String {
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    let mut told: String = words.trim().chars().take(MOST_TOLD).map(plain).collect();
+    if words.trim().chars().nth(MOST_TOLD).is_some() {
+        told.push('…');
+    }
+    told
 }
 
 /// Why a line cannot be had.
@@ -299,6 +315,7 @@ mod tests {
             assert!(id == "NaN" && values[0].is_nan() && values[1..] == [f32::NEG_INFINITY, f32::INFINITY]);
             assert_eq!(super::id(bare).as_deref(), Some("NaN"));
         }
+        assert_eq!(read("\u{feff}{\"id\":\"a\",\"value\":[1]}".as_bytes()), Ok(value(&[1.0])));
         assert_eq!(super::id(br#"{"id":"a","value":[1,2"#).as_deref(), Some("a"));
         for (line, said) in [
             (&br#"{"id":"a","value":[1,2"#[..], "EOF"),
@@ -313,6 +330,13 @@ mod tests {
             let error = read(line).expect_err(said);
             assert!(error.contains(said), "{error}");
         }
+    }
+
+    #[test]
+    fn words_are_told_without_end_and_control() {
+        assert_eq!(clipped(" a\u{1b}[2Jb\nc "), "a [2Jb c");
+        let long = clipped(&"x".repeat(1 << 20));
+        assert!(long.chars().count() == MOST_TOLD + 1 && long.ends_with('…'));
     }
 
     #[test]

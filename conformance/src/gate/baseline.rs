@@ -1,13 +1,19 @@
 //! An earlier result, than which nothing may be worse.
 
+use super::known::expanded;
 use super::plan::Choice;
 use super::report::{Group, Report};
 use crate::image::file::whole;
 use serde::Deserialize;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// Errors up to this are no worse than others: half a step, half a ULP.
 const FLOOR: f64 = 0.5;
+/// The same of the mean of many errors.
+const MEAN_FLOOR: f64 = 0.05;
+/// Cases that are named, of each formula.
+const MOST_NAMED: usize = 8;
 
 /// What a baseline must have: a gate's JSON has it.
 #[derive(Debug, Deserialize)]
@@ -45,6 +51,14 @@ pub enum Error {
         path: PathBuf,
         /// Why.
         message: String,
+    },
+    /// The result is no standard to hold others to.
+    #[error("the baseline {} is left as it is: {why}", .path.display())]
+    Unfit {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the result.
+        why: &'static str,
     },
 }
 
@@ -103,35 +117,53 @@ fn compare(before: &Group, now: &Group, factor: f64) -> Vec<String> {
     if now.asked < before.asked {
         worse.push(format!("{id}: {} cases are asked, {} were: the renderer declares less", now.asked, before.asked));
     }
-    for (what, before, now) in [
-        ("fail", before.failed, now.failed),
-        ("are skipped", before.skipped, now.skipped),
-        ("are missing", before.missing, now.missing),
-    ] {
-        if now > before {
-            worse.push(format!("{id}: {now} cases {what}, {before} did"));
+    // A case that passed and does not; one that was answered or skipped and is missing.
+    for (what, spared) in [("failed", &["failed"][..]), ("skipped", &["skipped", "failed"]), ("missing", &["missing"])]
+    {
+        let known: HashSet<String> = (spared.iter().filter_map(|state| before.not_passed.get(*state)).flatten())
+            .flat_map(|text| expanded(text))
+            .collect();
+        let cases = now.not_passed.get(what).into_iter().flatten().flat_map(|text| expanded(text));
+        let new: Vec<String> = cases.filter(|case| !known.contains(case)).collect();
+        if !new.is_empty() {
+            let named = new.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
+            let more = if new.len() > MOST_NAMED { ", …" } else { "" };
+            worse.push(format!("{id}: {} {what} and did not before: {named}{more}", cases_of(new.len())));
         }
     }
     if now.indeterminate > before.indeterminate {
         worse.push(format!("{id}: {} verdicts permit anything, {} did", now.indeterminate, before.indeterminate));
     }
-    let (was, is) = (before.error_max.0, now.error_max.0);
-    // A NaN is worse than any number.
-    let limit = factor * was.max(FLOOR);
-    if crate::judge::is_worse(is, limit) {
-        worse.push(format!(
-            "{id}: errs by {} at most, by {} before: more than {factor} times that",
-            now.error_max, before.error_max
-        ));
+    for (what, before, now, floor) in [
+        ("errs by", before.error_max, now.error_max, FLOOR),
+        ("errs where it passes by", before.error_passing, now.error_passing, FLOOR),
+        ("errs where it passes, in the mean, by", before.error_mean, now.error_mean, MEAN_FLOOR),
+    ] {
+        // A NaN is worse than any number.
+        if crate::judge::is_worse(now.0, factor * before.0.max(floor)) {
+            worse.push(format!("{id}: {what} {now}, by {before} before: more than {factor} times that"));
+        }
     }
     worse
+}
+
+fn cases_of(count: usize) -> String {
+    super::report::cases(count as u64)
 }
 
 /// Writes a report as a baseline, whole or not at all.
 ///
 /// # Errors
-/// Where it cannot be written.
+/// Where it cannot be written, or the run was broken off, unstable or judged nothing.
 pub fn update(report: &Report, path: &Path) -> Result<(), Error> {
+    let why = [
+        (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
+        (report.totals.unstable > 0, "answers changed when they were asked once more"),
+        (!report.has_judged(), "nothing was judged"),
+    ];
+    if let Some((_, why)) = why.into_iter().find(|(is_so, _)| *is_so) {
+        return Err(Error::Unfit { path: path.into(), why });
+    }
     let failed = |message: String| Error::Write { path: path.into(), message };
     let text = serde_json::to_string_pretty(report).map_err(|error| failed(error.to_string()))? + "\n";
     whole(path, text.as_bytes()).map_err(|error| failed(error.to_string()))

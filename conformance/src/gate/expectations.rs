@@ -17,6 +17,12 @@ struct Written {
     renderer: Option<String>,
     /// The renderer's versions, as `>=0.150, <0.170`; any without it.
     version: Option<String>,
+    /// Whether the renderer ends or hangs at them: such a run is no broken one.
+    #[serde(default)]
+    crash: bool,
+    /// Whether they may pass: what fails on some machines, or in some cases of many.
+    #[serde(default)]
+    may_pass: bool,
 }
 
 #[derive(Deserialize)]
@@ -37,6 +43,10 @@ pub struct Expectation {
     pub failed: u64,
     /// Cases of it that passed.
     pub passed: u64,
+    /// Whether the renderer may end or hang at them.
+    pub crash: bool,
+    /// Whether they may pass.
+    pub may_pass: bool,
     #[serde(skip)]
     filter: Filter,
 }
@@ -51,7 +61,7 @@ impl Expectation {
     /// Whether its cases were asked and none failed: it is to be taken out.
     #[must_use]
     pub const fn passes_unexpectedly(&self) -> bool {
-        self.failed == 0 && self.passed > 0
+        self.failed == 0 && self.passed > 0 && !self.may_pass
     }
 }
 
@@ -97,6 +107,11 @@ impl Expectations {
         Ok(Self { written })
     }
 
+    /// The globs of cases.
+    pub fn ids(&self) -> impl Iterator<Item = &str> {
+        self.written.iter().map(|(written, ..)| written.id.as_str())
+    }
+
     /// Those of a renderer.
     #[must_use]
     pub fn of(&self, renderer: &str, version: &str) -> Vec<Expectation> {
@@ -110,6 +125,8 @@ impl Expectations {
             reason: written.reason.clone(),
             failed: 0,
             passed: 0,
+            crash: written.crash,
+            may_pass: written.may_pass,
             filter: filter.clone(),
         };
         self.written.iter().filter(concerns).map(of).collect()

@@ -1,93 +1,26 @@
-//! What was asked, what was answered, and what each answer is worth.
+//! What was asked, and what was answered: each answer judged as it comes.
 
-use super::answer::{self, Hello, Line};
+use super::answer::{self, Hello, Line, clipped};
 use super::expectations::{Expectation, Expectations};
+use super::known::{Known, State, Turn};
 use super::plan::{Place, Plan};
+use super::tally::Tally;
+use super::verdict::{self, Failure, Verdicts};
 use super::{pack, picture, process};
-use crate::arithmetic::{Accept, Profile};
-use crate::judge::{Outcome, Verdict, is_worse, judge, worse};
+use crate::arithmetic::Profile;
 use crate::report::Number;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::Path;
+use std::time::SystemTime;
 
-/// Failures that are kept with their numbers, of each formula.
-const KEPT: usize = 16;
-/// Rows that are kept of each formula for the diagnosis: failing ones, and passing ones.
-const KEPT_ROWS: [usize; 2] = [2048, 1024];
-/// Problems of each kind that are kept.
+/// Problems of each kind, and unstable cases, that are kept.
 const KEPT_PROBLEMS: usize = 32;
-
-/// What became of the cases of a formula, or of a scene.
-#[derive(Clone, Debug, Default)]
-pub struct Tally {
-    /// Cases that were asked for.
-    pub asked: u64,
-    /// Cases that were answered with values.
-    pub answered: u64,
-    /// Cases that the renderer does not do.
-    pub skipped: u64,
-    /// Cases that failed: a value outside, an answer of a wrong form, an error.
-    pub failed: u64,
-    /// Verdicts.
-    pub verdicts: u64,
-    /// Of them, those where anything is legal.
-    pub indeterminate: u64,
-    /// The largest error in ULP of binary32, of a scene in its target's.
-    pub error_max: f64,
-    /// The largest margin.
-    pub margin_max: f64,
-    /// The place of the case that it is of.
-    pub worst: Option<Place>,
-    /// The first failures.
-    pub failures: Vec<Failure>,
-    /// Why cases were skipped, each reason once.
-    pub reasons: Vec<String>,
-    /// Rows that fail and rows that do not, for the diagnosis.
-    pub rows: [Vec<Row>; 2],
-    /// Cases that were asked for and never answered.
-    pub missing: u64,
-    /// Failed cases whose answer could not be judged.
-    pub unjudged: u64,
-    /// Failed cases that are expected to.
-    pub expected: u64,
-    /// Verdicts on random cases, and of them those where anything is legal.
-    pub random: [u64; 2],
-    /// What explains the failures of a scene.
-    pub diagnosis: Option<String>,
-    /// Why nothing was asked of it.
-    pub undeclared: Option<String>,
-}
-
-/// Inputs and the values that were answered.
-#[derive(Clone, Debug)]
-pub struct Row {
-    /// The case's place.
-    pub case: usize,
-    /// What was answered.
-    pub values: Vec<f32>,
-}
-
-/// A case that failed.
-#[derive(Clone, Debug, Serialize)]
-pub struct Failure {
-    /// The case.
-    pub id: String,
-    /// Its inputs, row by row of the formula's description.
-    pub inputs: Vec<Number>,
-    /// What the reference has.
-    pub reference: Vec<Number>,
-    /// From where to where values are legal.
-    pub interval: Vec<[Number; 2]>,
-    /// What was answered.
-    pub value: Vec<Number>,
-    /// The largest error in ULP.
-    pub error_ulp: Number,
-    /// What is wrong, where it is not a value.
-    pub problem: Option<String>,
-}
+const KEPT_UNSTABLE: usize = 1000;
+/// Failing cases of each formula that are asked once more.
+const MOST_AGAIN: usize = 1024;
 
 /// Answers that are none.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -104,7 +37,7 @@ impl Problems {
         let count = self.counts.entry(kind).or_default();
         *count += 1;
         if *count <= KEPT_PROBLEMS as u64 {
-            self.first.push(what());
+            self.first.push(clipped(&what()));
         }
     }
 
@@ -119,67 +52,53 @@ impl Problems {
 pub struct Ledger<'a> {
     plan: &'a Plan,
     profile: Profile,
+    known: Known,
     /// Of each formula, and then of each scene.
     pub tallies: Vec<Tally>,
-    /// Of each case of each formula: what was answered, hashed; 0 where nothing was.
-    digests: Vec<Vec<u32>>,
-    /// The same of scenes.
-    scenes: Vec<u32>,
     /// Answers that are none.
     pub problems: Problems,
-    /// Cases whose second answer was another, by id.
+    /// Cases whose second answer was another, by id: the first of them.
     pub unstable: Vec<String>,
+    /// How many those are.
+    pub unstable_count: u64,
     /// Known failures of any renderer.
-    pub known: Expectations,
+    pub expected: Expectations,
     /// Those of this one.
     pub expectations: Vec<Expectation>,
     /// Whether the accuracy rules stay, whatever the renderer asks for.
     pub is_held_to: bool,
+    /// What lines are of, where there is more than one file: it stands before their numbers.
+    pub source: Option<String>,
+    /// When a scene was asked for, by its place: an image that is older is no answer.
+    pub(super) asked: HashMap<usize, SystemTime>,
 }
 
 /// What an answer comes to, before it is counted.
 enum Judged {
-    Hello,
     Problem(&'static str, String),
     Skip(Place, String),
     Error(Place, String),
-    Case {
-        formula: usize,
-        case: usize,
-        digest: u32,
-        verdicts: Verdicts,
-        values: Vec<f32>,
-        failure: Option<Box<Failure>>,
-    },
+    Case { formula: usize, case: usize, digest: u32, verdicts: Verdicts, values: Vec<f32>, inputs: Vec<f32> },
     Image(usize, String),
-}
-
-/// The verdicts of a case together.
-#[derive(Clone, Copy, Default)]
-struct Verdicts {
-    all: u64,
-    failed: u64,
-    indeterminate: u64,
-    error: f64,
-    margin: f64,
 }
 
 impl<'a> Ledger<'a> {
     /// Nothing is answered yet.
     #[must_use]
     pub fn new(plan: &'a Plan, profile: &Profile) -> Self {
-        let digests: Vec<Vec<u32>> = plan.formulas.iter().map(|formula| vec![0; formula.count()]).collect();
         Self {
             plan,
             profile: *profile,
+            known: Known::new(plan),
             tallies: vec![Tally::default(); plan.formulas.len() + plan.scenes.len()],
-            digests,
-            scenes: vec![0; plan.scenes.len()],
             problems: Problems::default(),
             unstable: vec![],
-            known: Expectations::default(),
+            unstable_count: 0,
+            expected: Expectations::default(),
             expectations: vec![],
             is_held_to: false,
+            source: None,
+            asked: HashMap::new(),
         }
     }
 
@@ -195,6 +114,12 @@ impl<'a> Ledger<'a> {
         self.plan
     }
 
+    /// What is known of each case.
+    #[must_use]
+    pub const fn known(&self) -> &Known {
+        &self.known
+    }
+
     /// Counts what was asked and never answered.
     pub fn close(&mut self) {
         for tally in &mut self.tallies {
@@ -202,32 +127,9 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    /// Whether a case has been answered, skipped or given up.
-    #[must_use]
-    pub fn is_done(&self, place: Place) -> bool {
-        match place {
-            Place::Case { formula, case } => self.digests[formula][case] != 0,
-            Place::Scene(scene) => self.scenes[scene] != 0,
-        }
-    }
-
-    fn digest(&mut self, place: Place) -> &mut u32 {
-        match place {
-            Place::Case { formula, case } => &mut self.digests[formula][case],
-            Place::Scene(scene) => &mut self.scenes[scene],
-        }
-    }
-
-    const fn place_of(&self, place: Place) -> usize {
-        match place {
-            Place::Case { formula, .. } => formula,
-            Place::Scene(scene) => self.digests.len() + scene,
-        }
-    }
-
     fn tally(&mut self, place: Place) -> &mut Tally {
-        let k = self.place_of(place);
-        &mut self.tallies[k]
+        let group = self.known.group(place);
+        &mut self.tallies[group]
     }
 
     /// The cases that are to be asked of who says hello, formulas first. What it does not declare is counted as not asked.
@@ -235,7 +137,7 @@ impl<'a> Ledger<'a> {
     /// # Errors
     /// Where what it declares cannot be read.
     pub fn begin(&mut self, hello: &Hello) -> Result<Vec<Place>, process::Error> {
-        self.expectations = self.known.of(&hello.renderer, &hello.version);
+        self.expectations = self.expected.of(&hello.renderer, &hello.version);
         if let Some(name) = hello.profile.as_ref().filter(|_| !self.is_held_to) {
             let profile = Profile::by_name(name).ok_or_else(|| process::Error::Profile(name.clone()))?;
             self.profile = *profile;
@@ -271,32 +173,49 @@ impl<'a> Ledger<'a> {
         Ok(asked)
     }
 
-    /// The cases that failed and whose failure is kept, to be asked once more.
-    #[must_use]
-    pub fn failing(&self) -> Vec<Place> {
-        let scenes = self.plan.formulas.len();
-        let of = |(k, tally): (usize, &Tally)| -> Vec<Place> {
-            if k >= scenes {
-                let is_failed = tally.failed > 0 && self.scenes[k - scenes] != FAILED;
-                return is_failed.then_some(Place::Scene(k - scenes)).into_iter().collect();
-            }
-            tally.rows[0].iter().take(KEPT).map(|row| Place::Case { formula: k, case: row.case }).collect()
-        };
-        self.tallies.iter().enumerate().flat_map(of).collect()
+    /// From here on every case may be answered once more, and must be answered the same.
+    pub fn begin_again(&mut self) {
+        self.known.begin_again();
     }
 
-    /// Judges lines that were read already.
-    pub(super) fn read(&mut self, lines: Vec<(u64, Line<'_>)>, folder: &Path, again: bool) {
-        let judged: Vec<Judged> =
-            self.profile.scope(|| lines.into_iter().map(|(number, line)| self.judge_line(number, line)).collect());
-        for judged in judged {
-            self.count(judged, folder, again);
+    /// What failed, to be asked once more: of each formula so many at most, evenly spread.
+    #[must_use]
+    pub fn failing(&self) -> Vec<Place> {
+        let of = |group: usize| {
+            let failing: Vec<Place> =
+                self.known.of(group, |state| matches!(state, State::Failed | State::Unjudged)).collect();
+            let stride = failing.len().div_ceil(MOST_AGAIN).max(1);
+            failing.into_iter().step_by(stride)
+        };
+        (0..self.tallies.len()).flat_map(of).collect()
+    }
+
+    /// What an earlier run answered and this one did not has changed.
+    pub fn end_again(&mut self) {
+        let left: Vec<Place> = self.known.unanswered_again().collect();
+        left.into_iter().for_each(|place| self.changed(place));
+    }
+
+    /// Notes that a case's answer has changed.
+    pub(super) fn changed(&mut self, place: Place) {
+        self.unstable_count += 1;
+        if self.unstable.len() < KEPT_UNSTABLE {
+            self.unstable.push(self.plan.id(place));
         }
     }
 
-    /// Judges lines, each with its number; images lie in the folder. A second answer to a case is a problem, unless
-    /// `again` says that it was asked for once more: then it must be the first.
-    pub fn lines(&mut self, lines: &[(u64, Vec<u8>)], folder: &Path, again: bool) {
+    /// Judges lines that were read already.
+    pub(super) fn read(&mut self, lines: Vec<(u64, Line<'_>)>, folder: &Path) {
+        let judged: Vec<Judged> =
+            self.profile.scope(|| lines.into_iter().map(|(number, line)| self.judge_line(number, line)).collect());
+        for judged in judged {
+            self.count(judged, folder);
+        }
+    }
+
+    /// Judges lines, each with its number; images lie in the folder. A second answer to a case is a problem, unless it is
+    /// asked for once more: then it must be the first.
+    pub fn lines(&mut self, lines: &[(u64, Vec<u8>)], folder: &Path) {
         let judged: Vec<Judged> = lines
             .par_chunks(256)
             .flat_map_iter(|lines| {
@@ -304,33 +223,39 @@ impl<'a> Ledger<'a> {
             })
             .collect();
         for judged in judged {
-            self.count(judged, folder, again);
+            self.count(judged, folder);
         }
+    }
+
+    /// A line's number, as it is told.
+    pub(super) fn line(&self, number: u64) -> String {
+        self.source.as_ref().map_or_else(|| format!("line {number}"), |source| format!("{source}, line {number}"))
     }
 
     fn judge(&self, number: u64, line: &[u8]) -> Judged {
         match answer::read(line) {
             Ok(line) => self.judge_line(number, line),
-            Err(message) => Judged::Problem("malformed", format!("line {number}: {message}")),
+            Err(message) => Judged::Problem("malformed", format!("{}: {message}", self.line(number))),
         }
     }
 
     fn judge_line(&self, number: u64, line: Line<'_>) -> Judged {
         let id = match &line {
-            Line::Hello(_) => return Judged::Hello,
+            Line::Hello(_) => {
+                let message = format!("{}: a hello, which is said once and first", self.line(number));
+                return Judged::Problem("malformed", message);
+            }
             Line::Value(id, _) | Line::Image(id, _) | Line::Skip(id, _) | Line::Error(id, _) => id,
         };
+        let unknown = |what: String| Judged::Problem("unknown", format!("{}: {what}", self.line(number)));
         let Some(place) = self.plan.find(id) else {
-            return Judged::Problem("unknown", format!("line {number}: no case `{id}` was asked for"));
+            return unknown(format!("no case `{}` was asked for", clipped(id)));
         };
-        if self.tallies[self.place_of(place)].undeclared.is_some() {
-            return Judged::Problem(
-                "unknown",
-                format!("line {number}: `{id}` is not among what the renderer declares"),
-            );
+        if self.tallies[self.known.group(place)].undeclared.is_some() {
+            return unknown(format!("`{id}` is not among what the renderer declares"));
         }
         match (line, place) {
-            (Line::Skip(_, reason), _) => Judged::Skip(place, reason.into_owned()),
+            (Line::Skip(_, reason), _) => Judged::Skip(place, clipped(&reason)),
             (Line::Error(_, reason), _) => Judged::Error(place, reason.into_owned()),
             (Line::Image(_, file), Place::Scene(scene)) => Judged::Image(scene, file.into_owned()),
             (Line::Value(_, values), Place::Case { formula, case }) => self.values(formula, case, values),
@@ -340,97 +265,46 @@ impl<'a> Ledger<'a> {
     }
 
     fn values(&self, formula: usize, case: usize, values: Vec<f32>) -> Judged {
-        let member = self.plan.member(formula);
-        let outputs = member.spec.output_len();
+        let spec = &self.plan.member(formula).spec;
+        let outputs = spec.output_len();
         if values.len() != outputs {
-            let names = member.spec.outputs.iter().map(|output| output.name).collect::<Vec<_>>().join(", ");
+            let names = spec.outputs.iter().map(|output| output.name).collect::<Vec<_>>().join(", ");
             let message = format!("{} numbers; expected {outputs}: {names}", values.len());
             return Judged::Error(Place::Case { formula, case }, message);
         }
-        let inputs = self.plan.inputs(formula, case);
-        let (mut reference, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
-        member.formula.reference(&inputs, &mut reference);
-        member.formula.promised_interval(member.spec.kind, &inputs, &self.profile, &mut legal);
-        let mut all = Verdicts::default();
-        let mut hasher = DefaultHasher::new();
-        for (k, value) in values.iter().enumerate() {
-            value.to_bits().hash(&mut hasher);
-            let Verdict { outcome, error_ulp, margin } = judge(value.to_bits(), reference[k], &legal[k]);
-            all.all += 1;
-            match outcome {
-                Outcome::Indeterminate => all.indeterminate += 1,
-                Outcome::Fail => all.failed += 1,
-                Outcome::Pass => {}
-            }
-            if outcome != Outcome::Indeterminate {
-                all.error = worse(all.error, error_ulp);
-                all.margin = worse(all.margin, margin);
-            }
-        }
-        let failure = (all.failed > 0).then(|| {
-            Box::new(Failure {
-                id: self.plan.id(Place::Case { formula, case }),
-                inputs: inputs.iter().map(|&x| Number(x.into())).collect(),
-                reference: reference.iter().map(|&x| Number(x)).collect(),
-                interval: legal.iter().map(|legal| [Number(legal.low()), Number(legal.high())]).collect(),
-                value: values.iter().map(|&x| Number(x.into())).collect(),
-                error_ulp: Number(all.error),
-                problem: None,
-            })
-        });
-        // 0 stands for nothing.
-        #[expect(clippy::cast_possible_truncation, reason = "a part of a hash")]
-        let digest = (hasher.finish() as u32).max(1);
-        Judged::Case { formula, case, digest, verdicts: all, values, failure }
+        let (verdicts, inputs) = verdict::values(self.plan, formula, case, &values, &self.profile);
+        let digest = digest(values.iter().map(|value| u64::from(value.to_bits())));
+        Judged::Case { formula, case, digest, verdicts, values, inputs }
     }
 
-    fn count(&mut self, judged: Judged, folder: &Path, again: bool) {
+    fn count(&mut self, judged: Judged, folder: &Path) {
         match judged {
-            Judged::Hello => {}
             Judged::Problem(kind, what) => self.problems.add(kind, || what),
             Judged::Skip(place, reason) => {
-                if self.is_first(place, SKIPPED, again) {
-                    let tally = self.tally(place);
-                    tally.skipped += 1;
-                    if !tally.reasons.contains(&reason) && tally.reasons.len() < KEPT {
-                        tally.reasons.push(reason);
-                    }
+                if self.is_first(place, State::Skipped, 0) {
+                    self.tally(place).skip(reason);
                 }
             }
-            Judged::Error(place, message) => {
-                if self.is_first(place, FAILED, again) {
-                    self.fail(place, message);
-                }
-            }
-            Judged::Case { formula, case, digest, verdicts, values, failure } => {
+            Judged::Error(place, message) => self.fail(place, State::Unjudged, &message),
+            Judged::Case { formula, case, digest, verdicts, values, inputs } => {
                 let place = Place::Case { formula, case };
-                if !self.is_first(place, digest, again) {
+                let has_failed = verdicts.failed > 0;
+                let state = if has_failed { State::Failed } else { State::Passed };
+                if !self.is_first(place, state, digest) {
                     return;
                 }
-                let is_expected = self.expect(place, verdicts.failed > 0);
-                let is_random = self.plan.formulas[formula].is_random(case);
+                let is_expected = self.expect(place, has_failed);
+                let (plan, profile) = (self.plan, self.profile);
+                let is_random = plan.formulas[formula].is_random(case);
                 let tally = self.tally(place);
-                tally.answered += 1;
-                tally.verdicts += verdicts.all;
-                tally.indeterminate += verdicts.indeterminate;
-                if is_random {
-                    tally.random = [tally.random[0] + verdicts.all, tally.random[1] + verdicts.indeterminate];
-                }
-                tally.failed += u64::from(verdicts.failed > 0);
+                tally.values(place, is_random, verdicts);
                 tally.expected += u64::from(is_expected);
-                tally.error_max = worse(tally.error_max, verdicts.error);
-                if tally.worst.is_none() || is_worse(verdicts.margin, tally.margin_max) {
-                    (tally.margin_max, tally.worst) = (verdicts.margin, Some(place));
+                if has_failed {
+                    tally.failure(|| Failure::of_values(plan, formula, case, &values, &profile));
                 }
-                let kind = usize::from(verdicts.failed == 0);
-                if tally.rows[kind].len() < KEPT_ROWS[kind] {
-                    tally.rows[kind].push(Row { case, values });
-                }
-                if let Some(failure) = failure.filter(|_| tally.failures.len() < KEPT) {
-                    tally.failures.push(*failure);
-                }
+                tally.keep(case, values, &inputs, has_failed);
             }
-            Judged::Image(scene, file) => self.image(scene, &file, folder, again),
+            Judged::Image(scene, file) => self.image(scene, &file, folder),
         }
     }
 
@@ -447,92 +321,98 @@ impl<'a> Ledger<'a> {
         fails
     }
 
+    /// Whether the renderer is expected to end or to hang at a case.
+    #[must_use]
+    pub fn expects_crash(&self, place: Place) -> bool {
+        let id = self.plan.id(place);
+        self.expectations.iter().find(|expected| expected.has(&id)).is_some_and(|expected| expected.crash)
+    }
+
     /// Notes what was answered; whether it is the first answer.
-    fn is_first(&mut self, place: Place, digest: u32, again: bool) -> bool {
-        let known = self.digest(place);
-        let before = *known;
-        if before == 0 {
-            *known = digest;
-            return true;
-        }
-        if !again {
-            let id = self.plan.id(place);
-            self.problems.add("duplicate", || format!("{id} is answered more than once"));
-        } else if before != digest {
-            self.unstable.push(self.plan.id(place));
+    fn is_first(&mut self, place: Place, state: State, digest: u32) -> bool {
+        match self.known.answer(place, state, digest) {
+            Turn::First => return true,
+            Turn::Same => {}
+            Turn::Changed => self.changed(place),
+            Turn::Twice => {
+                let id = self.plan.id(place);
+                let source = self.source.as_ref().map_or(String::new(), |source| format!("{source}: "));
+                self.problems.add("duplicate", || format!("{source}{id} is answered more than once"));
+            }
         }
         false
     }
 
-    /// Notes that a case could not be judged.
-    pub fn fail(&mut self, place: Place, message: String) {
+    /// Notes that a case could not be judged, or that the renderer ended at it.
+    pub fn fail(&mut self, place: Place, state: State, message: &str) {
+        if !self.is_first(place, state, 0) {
+            return;
+        }
         let id = self.plan.id(place);
-        *self.digest(place) = FAILED;
         let is_expected = self.expect(place, true);
         let tally = self.tally(place);
         tally.failed += 1;
         tally.unjudged += 1;
         tally.expected += u64::from(is_expected);
-        if tally.failures.len() < KEPT {
-            tally.failures.push(Failure {
-                id,
-                inputs: vec![],
-                reference: vec![],
-                interval: vec![],
-                value: vec![],
-                error_ulp: Number(f64::INFINITY),
-                problem: Some(message),
-            });
-        }
+        tally.failure(|| Failure::of_problem(id, clipped(message)));
     }
 
-    fn image(&mut self, scene: usize, file: &str, folder: &Path, again: bool) {
+    fn image(&mut self, scene: usize, file: &str, folder: &Path) {
         let place = Place::Scene(scene);
         let frame = match self.plan.frame(scene) {
             Ok((_, frame)) => frame,
-            Err(error) => return self.fail(place, error.to_string()),
+            Err(error) => return self.fail(place, State::Unjudged, &error.to_string()),
         };
-        match picture::read(folder, file, &frame) {
-            Err(message) => {
-                if self.is_first(place, FAILED, again) {
-                    self.fail(place, message);
-                }
-            }
-            Ok((image, digest)) => {
-                if self.is_first(place, digest, again) {
-                    let found = picture::judge(&image, &frame, &self.profile);
-                    let id = self.plan.id(place);
-                    let is_expected = self.expect(place, found.failed > 0);
-                    let tally = self.tally(place);
-                    tally.answered += 1;
-                    tally.expected += u64::from(is_expected);
-                    tally.verdicts += found.verdicts;
-                    tally.indeterminate += found.indeterminate;
-                    (tally.error_max, tally.margin_max) = (found.error_max, found.margin_max);
-                    tally.worst = Some(place);
-                    tally.diagnosis.clone_from(&found.diagnosis);
-                    if found.failed > 0 {
-                        tally.failed += 1;
-                        tally.failures.push(Failure {
-                            id: format!("{id}/{}", found.worst),
-                            inputs: vec![],
-                            reference: found.reference.map(Number).to_vec(),
-                            interval: found.interval.map(|ends| ends.map(Number)).to_vec(),
-                            value: found.value.map(Number).to_vec(),
-                            error_ulp: Number(found.error_max),
-                            problem: Some(format!(
-                                "{} of {} components of pixels are outside of what is legal",
-                                found.failed, found.verdicts
-                            )),
-                        });
-                    }
-                }
-            }
+        let (image, digest) = match picture::read(folder, file, &frame, self.asked.get(&scene).copied()) {
+            Err(message) => return self.fail(place, State::Unjudged, &message),
+            Ok(read) => read,
+        };
+        if self.known.is_again {
+            // The same pixels have the same verdict.
+            let state = self.known.state(place);
+            self.is_first(place, state, digest);
+            return;
         }
+        let found = picture::judge(&image, &frame, &self.profile);
+        let state = if found.failed > 0 { State::Failed } else { State::Passed };
+        if !self.is_first(place, state, digest) {
+            return;
+        }
+        let id = self.plan.id(place);
+        let is_expected = self.expect(place, found.failed > 0);
+        let tally = self.tally(place);
+        tally.answered += 1;
+        tally.expected += u64::from(is_expected);
+        tally.verdicts += found.verdicts;
+        tally.indeterminate += found.indeterminate;
+        (tally.error_max, tally.margin_max) = (found.error_max, found.margin_max);
+        tally.worst = Some(place);
+        tally.diagnosis.clone_from(&found.diagnosis);
+        if found.failed == 0 {
+            tally.error_passing = found.error_max;
+            return;
+        }
+        tally.failed += 1;
+        tally.failure(|| Failure {
+            id: format!("{id}/{}", found.worst),
+            inputs: vec![],
+            reference: found.reference.map(Number).to_vec(),
+            interval: found.interval.map(|ends| ends.map(Number)).to_vec(),
+            value: found.value.map(Number).to_vec(),
+            error_ulp: Number(found.error_max),
+            problem: Some(format!(
+                "{} of {} components of pixels are outside of what is legal",
+                found.failed, found.verdicts
+            )),
+        });
     }
 }
 
-/// In the place of what was answered: the renderer does not do it.
-const SKIPPED: u32 = u32::MAX;
-/// It was answered by something that cannot be judged, or not at all.
-const FAILED: u32 = u32::MAX - 1;
+/// A hash of numbers.
+pub(super) fn digest(numbers: impl Iterator<Item = u64>) -> u32 {
+    let mut hasher = DefaultHasher::new();
+    numbers.for_each(|number| number.hash(&mut hasher));
+    #[expect(clippy::cast_possible_truncation, reason = "a part of a hash")]
+    let digest = hasher.finish() as u32;
+    digest
+}

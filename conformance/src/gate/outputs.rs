@@ -1,7 +1,7 @@
 //! A gate's result for people, for CI servers and for GitHub.
 
-use super::ledger::Failure;
-use super::report::{Group, Report};
+use super::report::{Group, Report, cases};
+use super::verdict::Failure;
 use crate::report::Number;
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::fmt::{Result, Write};
@@ -28,8 +28,9 @@ pub fn text(report: &Report, out: &mut impl Write) -> Result {
     listed("changed when they were asked once more", &report.unstable, out)?;
     listed("are worse than in the baseline", &report.regressions, out)?;
     for one in report.expectations.iter().filter(|one| one.failed + one.passed > 0) {
-        let said = match one.failed {
-            0 => "PASSES: take it out",
+        let said = match (one.failed, one.passes_unexpectedly()) {
+            (0, true) => "PASSES: take it out",
+            (0, false) => "passes, as it may",
             _ => "fails as expected",
         };
         writeln!(
@@ -38,6 +39,7 @@ pub fn text(report: &Report, out: &mut impl Write) -> Result {
             one.id, one.failed, one.passed, one.reason
         )?;
     }
+    listed("crashes and hangs are expected", &report.expected_incidents, out)?;
     listed("went wrong with the process", &report.incidents, out)?;
     if !report.problems.is_empty() {
         let counts: Vec<String> =
@@ -46,10 +48,10 @@ pub fn text(report: &Report, out: &mut impl Write) -> Result {
         report.problems.first.iter().take(20).try_for_each(|what| writeln!(out, "  {what}"))?;
     }
     let totals = &report.totals;
-    write!(out, "\n{} of {} cases pass, {} fail", totals.passed, totals.asked, totals.failed)?;
+    write!(out, "\n{} of {} pass, {} fail", totals.passed, cases(totals.asked), totals.failed)?;
     for (count, what) in [
         (totals.expected_failures, "of them as expected"),
-        (totals.unexpected_passes, "expectations pass"),
+        (totals.unexpected_passes, "expected failures pass"),
         (totals.unstable, "are unstable"),
         (totals.missing, "were never answered"),
         (totals.skipped, "were skipped"),
@@ -103,9 +105,10 @@ fn short(x: f64) -> String {
 
 /// What fails in a group, what explains it, and the first failure.
 fn told(group: &Group, report: &Report, out: &mut impl Write) -> Result {
-    writeln!(out, "\n✗ {}: {} of {} cases fail", group.id, group.failed, group.asked)?;
+    writeln!(out, "\n✗ {}: {} of {} fail", group.id, group.failed, cases(group.asked))?;
     if group.missing > 0 {
-        writeln!(out, "  {} cases were never answered", group.missing)?;
+        let was = if group.missing == 1 { "was" } else { "were" };
+        writeln!(out, "  {} {was} never answered", cases(group.missing))?;
     }
     for what in group.diagnosis.iter().chain(&group.problem) {
         writeln!(out, "  {what}")?;
@@ -116,7 +119,10 @@ fn told(group: &Group, report: &Report, out: &mut impl Write) -> Result {
     };
     let of: Vec<&Failure> = report.failures.iter().filter(is_of).collect();
     let smallest = of.iter().find(|failure| group.smallest.as_ref() == Some(&failure.id));
-    if let Some(first) = smallest.or(of.first()) {
+    if let Some(smallest) = smallest {
+        writeln!(out, "  the smallest failing case:")?;
+        failure(smallest, out)?;
+    } else if let Some(first) = of.first() {
         failure(first, out)?;
     }
     Ok(())
@@ -152,9 +158,9 @@ fn listed(what: &str, all: &[String], out: &mut impl Write) -> Result {
 
 /// What is wrong with a group, on one line.
 fn sentence(group: &Group) -> String {
-    let mut said = format!("{} of {} cases fail", group.failed, group.asked);
+    let mut said = format!("{} of {} fail", group.failed, cases(group.asked));
     if group.missing > 0 {
-        said += &format!(", {} were never answered", group.missing);
+        said += &format!(", {} never answered", group.missing);
     }
     for more in group.diagnosis.iter().chain(&group.problem) {
         said += &format!("; {more}");
@@ -162,14 +168,23 @@ fn sentence(group: &Group) -> String {
     said
 }
 
+/// The smallest failing case of a group, on one line.
+fn smallest(group: &Group, report: &Report) -> Option<String> {
+    let id = group.smallest.as_ref()?;
+    let failure = report.failures.iter().find(|failure| failure.id == *id)?;
+    let list = |numbers: &[Number]| numbers.iter().map(Number::to_string).collect::<Vec<_>>().join(", ");
+    let legal: Vec<String> = failure.interval.iter().map(|[low, high]| format!("[{low}, {high}]")).collect();
+    let inputs = if failure.inputs.is_empty() { String::new() } else { format!(" of {}", list(&failure.inputs)) };
+    Some(format!("{id}: {}{inputs}; legal: {}", list(&failure.value), legal.join(", ")))
+}
+
 /// What is wrong with all of it, each on a line with its title.
 fn whole(report: &Report) -> Vec<(String, String)> {
     let mut said = vec![];
     said.extend(report.incidents.iter().map(|what| ("process".to_owned(), what.clone())));
     said.extend(report.problems.first.iter().map(|what| ("answers".to_owned(), what.clone())));
-    said.extend(
-        report.unstable.iter().map(|id| (id.clone(), "its answer changed when it was asked once more".to_owned())),
-    );
+    let changed = |id: &String| (id.clone(), "its answer changed when it was asked once more".to_owned());
+    said.extend(report.unstable.iter().take(MOST_TOLD).map(changed));
     said.extend(report.regressions.iter().map(|what| ("baseline".to_owned(), what.clone())));
     let passes = report.expectations.iter().filter(|one| one.passes_unexpectedly());
     said.extend(passes.map(|one| (one.id.clone(), format!("passes, and is expected to fail: {}", one.reason))));
@@ -216,7 +231,8 @@ pub fn github(report: &Report) -> String {
     let property = |text: &str| data(text).replace(':', "%3A").replace(',', "%2C");
     let mut out = String::new();
     for group in report.groups.iter().filter(|group| group.is_failed()) {
-        out += &format!("::error title={}::{}\n", property(&group.id), data(&sentence(group)));
+        let case = smallest(group, report).map_or_else(String::new, |case| format!("\nsmallest failing case {case}"));
+        out += &format!("::error title={}::{}\n", property(&group.id), data(&(sentence(group) + &case)));
     }
     for (title, what) in whole(report) {
         out += &format!("::error title={}::{}\n", property(&title), data(&what));
@@ -225,8 +241,11 @@ pub fn github(report: &Report) -> String {
     out += &format!(
         "::notice title=lightmeter::{}\n",
         data(&format!(
-            "{}: {} of {} cases pass, {} fail",
-            report.renderer.name, totals.passed, totals.asked, totals.failed
+            "{}: {} of {} pass, {} fail",
+            report.renderer.name,
+            totals.passed,
+            cases(totals.asked),
+            totals.failed
         ))
     );
     out

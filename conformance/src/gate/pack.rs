@@ -5,6 +5,7 @@ use super::frame;
 use super::ledger::Ledger;
 use super::picture::within;
 use super::plan::{Choice, Plan};
+use super::process;
 use crate::cases::{GENERATOR_VERSION, Shape};
 use crate::image::file::{Stored, whole};
 use crate::report::Number;
@@ -124,7 +125,7 @@ pub fn case(plan: &Plan, formula: usize, case: usize) -> Value {
     json!({ "id": plan.id(super::plan::Place::Case { formula, case }), "formula": spec.id, "inputs": inputs })
 }
 
-/// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack.
+/// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go.
 ///
 /// # Errors
 /// Where a file cannot be written, or the folder holds something else.
@@ -134,11 +135,11 @@ pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, Error> {
         move |error: std::io::Error| Error::Write { path, message: error.to_string() }
     };
     std::fs::create_dir_all(folder).map_err(failed(folder))?;
-    let mut entries = std::fs::read_dir(folder).map_err(failed(folder))?;
-    if entries.next().is_some() && !folder.join(MANIFEST).exists() {
-        let message = "it holds something else; expected a new or an empty folder, or one with a pack".into();
-        return Err(Error::Write { path: folder.into(), message });
-    }
+    clear(folder)?;
+    // A pack that is broken off is known as one, and is written over.
+    let path = folder.join(MANIFEST);
+    let begun = json!({ "schema": SCHEMA, "is_unfinished": true }).to_string();
+    whole(&path, begun.as_bytes()).map_err(|error| Error::Write { path, message: error.to_string() })?;
     let mut files = vec![];
     let path = folder.join(CASES);
     let mut out =
@@ -150,45 +151,101 @@ pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, Error> {
     }
     out.flush().map_err(failed(&path))?;
     files.push(out.listed(CASES));
-    let mut scenes = vec![];
     for scene in 0..plan.scenes.len() {
-        let (title, frame) = plan.frame(scene).map_err(|error| Error::Plan(error.to_string()))?;
-        let id = plan.id(super::plan::Place::Scene(scene));
-        let name = id.replacen("scene/", "scenes/", 1);
-        std::fs::create_dir_all(folder.join(&name)).map_err(failed(&folder.join(&name)))?;
-        let mut put = |file: String, bytes: Vec<u8>| -> Result<(), Error> {
-            let path = folder.join(&file);
+        for (name, bytes) in Drawn::new(plan, scene)?.files() {
+            let path = folder.join(&name);
+            let parent = path.parent().unwrap_or(folder);
+            std::fs::create_dir_all(parent).map_err(failed(parent))?;
             whole(&path, &bytes).map_err(|error| Error::Write { path, message: error.to_string() })?;
-            files.push(Listed { crc32: digits(&bytes), bytes: bytes.len() as u64, name: file });
-            Ok(())
-        };
-        put(format!("{name}/scene.json"), format!("{}\n", frame::to_json(&id, &title, &frame)).into_bytes())?;
-        for (k, mesh) in frame.meshes.iter().enumerate() {
-            put(format!("{name}/mesh-{k}.obj"), obj(mesh).into_bytes())?;
+            files.push(Listed { crc32: digits(&bytes), bytes: bytes.len() as u64, name });
         }
-        for (k, texture) in frame.textures.iter().enumerate() {
-            put(format!("{name}/texture-{k}.png"), png(texture))?;
-        }
-        let (width, height) = (frame.target.width, frame.target.height);
-        let format = frame.target.format.name();
-        let file = format!("{name}/scene.json");
-        scenes.push(
-            json!({ "id": id, "title": title, "file": file, "width": width, "height": height, "format": format }),
-        );
     }
-    let manifest = Manifest {
-        schema: SCHEMA.into(),
-        generator: GENERATOR_VERSION,
-        version: env!("CARGO_PKG_VERSION").into(),
-        choice: plan.choice.clone(),
-        formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
-        scenes,
-        files,
-    };
+    let manifest = Manifest { files, ..Manifest::of(plan)? };
     let path = folder.join(MANIFEST);
     let text = serde_json::to_string_pretty(&manifest).map_err(|error| Error::Plan(error.to_string()))? + "\n";
     whole(&path, text.as_bytes()).map_err(|error| Error::Write { path, message: error.to_string() })?;
     Ok(manifest)
+}
+
+/// Takes the files of an earlier pack out of a folder, and nothing else.
+fn clear(folder: &Path) -> Result<(), Error> {
+    let failed = |path: &Path, message: String| Error::Write { path: path.into(), message };
+    let mut entries = std::fs::read_dir(folder).map_err(|error| failed(folder, error.to_string()))?;
+    if entries.next().is_none() {
+        return Ok(());
+    }
+    let manifest = std::fs::read_to_string(folder.join(MANIFEST)).ok();
+    let manifest: Option<Value> = manifest.and_then(|text| serde_json::from_str(&text).ok());
+    let schema = manifest.as_ref().and_then(|manifest| manifest["schema"].as_str());
+    let Some(manifest) = manifest.as_ref().filter(|_| schema.is_some_and(|name| name.starts_with("lightmeter.pack/")))
+    else {
+        let expected = "expected a new or an empty folder, or one with a pack";
+        return Err(failed(folder, format!("it holds something else; {expected}")));
+    };
+    for file in manifest["files"].as_array().into_iter().flatten() {
+        // What leads out of the folder is no file of the pack.
+        if let Some(path) = file["name"].as_str().and_then(|name| within(folder, name).ok()) {
+            std::fs::remove_file(&path).map_err(|error| failed(&path, error.to_string()))?;
+        }
+    }
+    Ok(())
+}
+
+impl Manifest {
+    /// That of a plan, as yet without files.
+    fn of(plan: &Plan) -> Result<Self, Error> {
+        let scenes = (0..plan.scenes.len()).map(|scene| Ok(Drawn::new(plan, scene)?.listed()));
+        Ok(Self {
+            schema: SCHEMA.into(),
+            generator: GENERATOR_VERSION,
+            version: env!("CARGO_PKG_VERSION").into(),
+            choice: plan.choice.clone(),
+            formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
+            scenes: scenes.collect::<Result<_, Error>>()?,
+            files: vec![],
+        })
+    }
+}
+
+/// A scene of a pack.
+struct Drawn {
+    id: String,
+    title: String,
+    frame: Frame,
+}
+
+impl Drawn {
+    fn new(plan: &Plan, scene: usize) -> Result<Self, Error> {
+        let (title, frame) = plan.frame(scene).map_err(|error| Error::Plan(error.to_string()))?;
+        Ok(Self { id: plan.id(super::plan::Place::Scene(scene)), title, frame })
+    }
+
+    fn folder(&self) -> String {
+        self.id.replacen("scene/", "scenes/", 1)
+    }
+
+    /// As the manifest has it.
+    fn listed(&self) -> Value {
+        let target = &self.frame.target;
+        json!({
+            "id": self.id,
+            "title": self.title,
+            "file": format!("{}/scene.json", self.folder()),
+            "width": target.width,
+            "height": target.height,
+            "format": target.format.name(),
+        })
+    }
+
+    /// Its files, by their names.
+    fn files(&self) -> impl Iterator<Item = (String, Vec<u8>)> {
+        let (name, frame) = (self.folder(), &self.frame);
+        let scene = format!("{}\n", frame::to_json(&self.id, &self.title, frame));
+        let meshes = frame.meshes.iter().enumerate().map(|(k, mesh)| (format!("mesh-{k}.obj"), obj(mesh).into_bytes()));
+        let textures = frame.textures.iter().enumerate().map(|(k, texture)| (format!("texture-{k}.png"), png(texture)));
+        let scene = std::iter::once(("scene.json".to_owned(), scene.into_bytes()));
+        scene.chain(meshes).chain(textures).map(move |(file, bytes)| (format!("{name}/{file}"), bytes))
+    }
 }
 
 /// Counts and sums what is written.
@@ -254,11 +311,11 @@ fn png(texture: &Texture) -> Vec<u8> {
     image.encode(Path::new("texture.png")).unwrap_or_default()
 }
 
-/// Reads the manifest of a pack, and holds its files against it.
+/// Reads the manifest of a pack, holds its files against it, and gives the cases that it is of.
 ///
 /// # Errors
-/// Where it is damaged, another version's, or leads out of its folder.
-pub fn read(folder: &Path) -> Result<Manifest, Error> {
+/// Where it is damaged, another version's, not what this lightmeter would write, or leads out of its folder.
+pub fn read(folder: &Path) -> Result<Plan, Error> {
     let path = folder.join(MANIFEST);
     let text = std::fs::read_to_string(&path).map_err(|error| Error::Read {
         path: path.clone(),
@@ -272,6 +329,9 @@ pub fn read(folder: &Path) -> Result<Manifest, Error> {
             let found = found.map_or_else(|| "nothing".into(), |found| format!("`{found}`"));
             return Err(refused(format!("its schema is {found}; expected `{SCHEMA}`")));
         }
+    }
+    if value.get("is_unfinished").is_some() {
+        return Err(refused("it was not written to its end: write the pack again".into()));
     }
     let manifest: Manifest =
         serde_json::from_value(value).map_err(|error| refused(format!("it is damaged: {error}")))?;
@@ -298,7 +358,34 @@ pub fn read(folder: &Path) -> Result<Manifest, Error> {
             return Err(Error::Manifest { path: file, message });
         }
     }
-    Ok(manifest)
+    let plan = Plan::new(manifest.choice.clone()).map_err(|error| refused(error.to_string()))?;
+    manifest.is_of(&plan)?.map_or(Ok(plan), |what| {
+        Err(refused(format!(
+            "its {what} are not those that its `filter`, `cases`, `seed` and `size` choose: write the pack again"
+        )))
+    })
+}
+
+impl Manifest {
+    /// What is not as this lightmeter would write it for the plan. The cases themselves go by the generator's version.
+    fn is_of(&self, plan: &Plan) -> Result<Option<&'static str>, Error> {
+        let own = Self::of(plan)?;
+        if self.formulas != own.formulas {
+            return Ok(Some("formulas"));
+        }
+        if self.scenes != own.scenes {
+            return Ok(Some("scenes"));
+        }
+        let mut files: Vec<(String, Option<String>)> = vec![(CASES.into(), None)];
+        for scene in 0..plan.scenes.len() {
+            files.extend(Drawn::new(plan, scene)?.files().map(|(name, bytes)| (name, Some(digits(&bytes)))));
+        }
+        let is_same = |(listed, (name, sum)): (&Listed, &(String, Option<String>))| {
+            listed.name == *name && sum.as_ref().is_none_or(|sum| *sum == listed.crc32)
+        };
+        let are_same = files.len() == self.files.len() && self.files.iter().zip(&files).all(is_same);
+        Ok((!are_same).then_some("files"))
+    }
 }
 
 fn sum(path: &Path) -> std::io::Result<(u64, String)> {
@@ -318,7 +405,8 @@ fn sum(path: &Path) -> std::io::Result<(u64, String)> {
 
 /// A file of answers, or that of a folder.
 pub struct Answers {
-    path: PathBuf,
+    /// The file.
+    pub path: PathBuf,
     stream: BufReader<File>,
     /// Where images lie.
     folder: PathBuf,
@@ -365,11 +453,11 @@ impl Answers {
         }
     }
 
-    /// Judges all of it; `again` where the same cases have been answered before.
+    /// Judges all of it.
     ///
     /// # Errors
     /// Where the file cannot be read.
-    pub fn judge(mut self, ledger: &mut Ledger<'_>, again: bool, progress: &mut impl FnMut(u64)) -> Result<(), Error> {
+    fn judge(mut self, ledger: &mut Ledger<'_>, progress: &mut impl FnMut(u64)) -> Result<(), Error> {
         let mut lines = std::mem::take(&mut self.first);
         loop {
             let next = self.next()?;
@@ -377,13 +465,13 @@ impl Answers {
             match next {
                 Some(Ok(line)) => lines.push((self.number, line)),
                 Some(Err(error)) => {
-                    let number = self.number;
-                    ledger.problems.add("oversized", || format!("line {number}: {error}"));
+                    let line = ledger.line(self.number);
+                    ledger.problems.add("oversized", || format!("{line}: {error}"));
                 }
                 None => {}
             }
             if lines.len() == LINES || is_end {
-                ledger.lines(&lines, &self.folder, again);
+                ledger.lines(&lines, &self.folder);
                 progress(lines.len() as u64);
                 lines.clear();
             }
@@ -392,6 +480,38 @@ impl Answers {
             }
         }
     }
+}
+
+/// Judges files of answers: the first of each case, and that further files answer the same. Who answers is what the first says.
+///
+/// # Errors
+/// Where a file cannot be read, or what it declares.
+pub fn judge(
+    ledger: &mut Ledger<'_>,
+    all: Vec<Answers>,
+    progress: &mut impl FnMut(u64),
+) -> Result<Hello, process::Error> {
+    let mut who: Option<Hello> = None;
+    let is_one = all.len() == 1;
+    for mut answers in all {
+        let hello = answers.hello.take();
+        ledger.source = (!is_one).then(|| answers.path.display().to_string());
+        let Some(first) = &who else {
+            let first = hello.unwrap_or_else(Hello::everything);
+            ledger.begin(&first)?;
+            who = Some(first);
+            answers.judge(ledger, progress)?;
+            continue;
+        };
+        if hello.is_some_and(|hello| hello != *first) {
+            let what = format!("{}: another hello than that of the first file", ledger.line(1));
+            ledger.problems.add("malformed", || what);
+        }
+        ledger.begin_again();
+        answers.judge(ledger, progress)?;
+        ledger.end_again();
+    }
+    Ok(who.unwrap_or_default())
 }
 
 /// Whether a frame can be drawn by who answers, and why not.

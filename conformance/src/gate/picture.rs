@@ -1,5 +1,6 @@
 //! Images that renderers write: PNG of 8 or 16 bits, EXR, NPY.
 
+use super::ledger::digest;
 use crate::arithmetic::Profile;
 use crate::blend_unit::pixel;
 use crate::faults::scene::Trial;
@@ -9,9 +10,9 @@ use crate::image::judge;
 use image::{DynamicImage, ImageReader};
 use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io::Cursor;
 use std::path::{Component, Path, PathBuf};
+use std::time::SystemTime;
 
 /// Bytes of a file, at most: 8192² pixels of binary32, and a header.
 const MOST_BYTES: u64 = (1 << 30) + (1 << 20);
@@ -61,16 +62,19 @@ pub fn within(folder: &Path, file: &str) -> Result<PathBuf, String> {
     if real(&path)?.starts_with(real(folder)?) { Ok(path) } else { Err(leaves()) }
 }
 
-/// Reads an image of a frame's size, in the units of its target, with a hash of its file.
+/// Reads an image of a frame's size, in the units of its target, with a hash of its pixels. It is no older than `asked`.
 ///
 /// # Errors
-/// Where it lies elsewhere, is no image, or is of another size.
-pub fn read(folder: &Path, file: &str, frame: &Frame) -> Result<(Stored, u32), String> {
+/// Where it lies elsewhere, is no image, is of another size, or was there before.
+pub fn read(folder: &Path, file: &str, frame: &Frame, asked: Option<SystemTime>) -> Result<(Stored, u32), String> {
     let path = within(folder, file)?;
     let unread = |error: &dyn std::fmt::Display| format!("cannot read `{file}`: {error}");
     let metadata = path.metadata().map_err(|error| unread(&error))?;
     if !metadata.is_file() {
         return Err(format!("`{file}` is no file"));
+    }
+    if asked.zip(metadata.modified().ok()).is_some_and(|(asked, written)| written < asked) {
+        return Err(format!("`{file}` was there before the scene was asked for, and was not written since"));
     }
     let bytes = metadata.len();
     if bytes > MOST_BYTES {
@@ -86,10 +90,7 @@ pub fn read(folder: &Path, file: &str, frame: &Frame) -> Result<(Stored, u32), S
     };
     let values = if is_npy { npy(&bytes, file, &fits)? } else { decoded(&bytes, file, &fits)? };
     let image = Stored { width: width as usize, format: frame.target.format, pixels: values.units(frame) };
-    let mut hasher = DefaultHasher::new();
-    image.pixels.iter().flatten().for_each(|c| c.to_bits().hash(&mut hasher));
-    #[expect(clippy::cast_possible_truncation, reason = "a part of a hash")]
-    let digest = (hasher.finish() as u32).clamp(1, u32::MAX - 2);
+    let digest = digest(image.pixels.iter().flatten().map(|c| c.to_bits()));
     Ok((image, digest))
 }
 
@@ -209,5 +210,86 @@ pub fn judge(image: &Stored, frame: &Frame, profile: &Profile) -> Found {
         interval: std::array::from_fn(|k| [expected[pixel].low[k], expected[pixel].high[k]]),
         value: image.pixels[pixel],
         diagnosis: (failed > 0).then(|| Trial::new(frame, image, &expected, profile).diagnose().sentence),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::load;
+    use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+    use image::{ExtendedColorType, ImageEncoder as _};
+
+    /// The first built-in scene's frame, of 4 × 3 pixels, and a folder with some files.
+    fn given(test: &str, files: &[(&str, Vec<u8>)]) -> (PathBuf, Frame) {
+        let folder = std::env::temp_dir().join(format!("lightmeter-picture-{}-{test}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        for (name, bytes) in files {
+            std::fs::write(folder.join(name), bytes).expect("a file can be written");
+        }
+        let mut frame = load::scene("scene/flat").expect("it is built in").frame;
+        (frame.target.width, frame.target.height) = (4, 3);
+        (folder, frame)
+    }
+
+    fn png(width: u32, height: u32, compression: CompressionType) -> Vec<u8> {
+        let pixels: Vec<u8> = (0..width * height * 3).map(|k| u8::try_from(k % 251).unwrap_or(0)).collect();
+        let mut bytes = vec![];
+        let encoder = PngEncoder::new_with_quality(&mut bytes, compression, FilterType::NoFilter);
+        encoder.write_image(&pixels, width, height, ExtendedColorType::Rgb8).expect("it can be encoded");
+        bytes
+    }
+
+    /// The header of NumPy's format, and no data.
+    fn npy(shape: &str) -> Vec<u8> {
+        let mut header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}");
+        header += &" ".repeat(63 - (10 + header.len()) % 64);
+        header.push('\n');
+        let length = u16::try_from(header.len()).expect("it is short").to_le_bytes();
+        [b"\x93NUMPY\x01\x00", &length[..], header.as_bytes()].concat()
+    }
+
+    #[test]
+    fn what_is_of_another_size_is_not_decoded() {
+        // A header of 2 GiB of pixels; a shape of 10¹² numbers, none of which is there.
+        let mut huge = png(4, 3, CompressionType::Fast);
+        huge[16..24].copy_from_slice(&[0, 0, 0x60, 0, 0, 0, 0x60, 0]);
+        let crc = crc32fast::hash(&huge[12..29]).to_be_bytes();
+        huge[29..33].copy_from_slice(&crc);
+        let files = [
+            ("huge.png", huge),
+            ("other.png", png(3, 4, CompressionType::Fast)),
+            ("huge.npy", npy("(1000000, 1000000, 4)")),
+            ("flat.npy", npy("(3, 4)")),
+            ("short.npy", npy("(3, 4, 4)")),
+            ("none.png", vec![]),
+        ];
+        let (folder, frame) = given("sizes", &files);
+        for (name, said) in [
+            ("huge.png", "24576 × 24576; the scene is 4 × 3"),
+            ("other.png", "3 × 4; the scene is 4 × 3"),
+            ("huge.npy", "1000000 × 1000000; the scene is 4 × 3"),
+            ("flat.npy", "expected (height, width, 3 or 4)"),
+            ("short.npy", "cannot read `short.npy`"),
+            ("none.png", "cannot read `none.png`"),
+            ("absent.png", "cannot read `absent.png`"),
+        ] {
+            let error = read(&folder, name, &frame, None).expect_err(name);
+            assert!(error.contains(said), "{error}");
+        }
+        let _ = std::fs::remove_dir_all(folder);
+    }
+
+    #[test]
+    fn the_same_pixels_are_the_same_answer_however_they_are_packed() {
+        let files = [("a.png", png(4, 3, CompressionType::Fast)), ("b.png", png(4, 3, CompressionType::Best))];
+        assert_ne!(files[0].1, files[1].1);
+        let (folder, frame) = given("digest", &files);
+        let digest = |name: &str| read(&folder, name, &frame, None).expect("it can be read").1;
+        assert_eq!(digest("a.png"), digest("b.png"));
+        let later = SystemTime::now() + std::time::Duration::from_secs(1);
+        let error = read(&folder, "a.png", &frame, Some(later)).expect_err("it is older");
+        assert!(error.contains("was there before"), "{error}");
+        let _ = std::fs::remove_dir_all(folder);
     }
 }

@@ -62,7 +62,7 @@ pub fn ask(
             };
             lines.push((number, line));
         }
-        ledger.read(lines, folder, false);
+        ledger.read(lines, folder);
     }
     Ok(())
 }

@@ -1,12 +1,17 @@
 //! What became of a gate: `lightmeter.gate/1`.
 
+use super::answer::clipped;
 use super::expectations::Expectation;
-use super::ledger::{Failure, Ledger, Problems, Row, Tally};
+use super::ledger::{Ledger, Problems};
 use super::plan::{Choice, Place};
 use super::process::Outcome;
+use super::tally::{Row, Tally};
+use super::verdict::Failure;
 use crate::faults::{Answered, diagnose, group_verdict};
 use crate::report::Number;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The schema's name.
 pub const SCHEMA: &str = "lightmeter.gate/1";
@@ -40,13 +45,15 @@ pub struct Report {
     pub problems: Problems,
     /// What went wrong with the process.
     pub incidents: Vec<String>,
+    /// Crashes and hangs that are expected.
+    pub expected_incidents: Vec<String>,
     /// How often it was started.
     pub starts: u64,
     /// Formulas and scenes.
     pub groups: Vec<Group>,
     /// The first failures of each.
     pub failures: Vec<Failure>,
-    /// Cases whose answer changed.
+    /// Cases whose answer changed: the first 1,000 of them.
     pub unstable: Vec<String>,
     /// Known failures, and what became of them.
     pub expectations: Vec<Expectation>,
@@ -74,7 +81,7 @@ pub struct Totals {
     pub failed: u64,
     /// Failed as is expected.
     pub expected_failures: u64,
-    /// Expectations none of whose cases failed.
+    /// Expectations none of whose cases failed, though one was to.
     pub unexpected_passes: u64,
     /// Skipped by the renderer.
     pub skipped: u64,
@@ -111,10 +118,17 @@ pub struct Group {
     pub indeterminate: u64,
     /// The largest error in ULP of binary32; of a scene, in its target's ULP or steps.
     pub error_max: Number,
+    /// The largest error of a case that passes.
+    pub error_passing: Number,
+    /// The mean error of the cases that pass.
+    pub error_mean: Number,
     /// The largest margin.
     pub margin_max: Number,
     /// The case that it is of.
     pub worst: Option<String>,
+    /// The cases that were asked and did not pass, by `failed`, `skipped` and `missing`: each by the end of its id, cases in a row
+    /// as `random/000003..000017`.
+    pub not_passed: BTreeMap<String, Vec<String>>,
     /// Why it was not asked, or why its cases were skipped.
     pub reason: Option<String>,
     /// What is wrong with the whole, where no single case shows it.
@@ -139,10 +153,11 @@ impl Report {
     pub fn new(ledger: &mut Ledger<'_>, outcome: Outcome, command: String, seconds: f64) -> Self {
         ledger.close();
         let plan = ledger.plan();
-        let mut totals = Totals { unstable: ledger.unstable.len() as u64, ..Totals::default() };
+        let mut totals = Totals { unstable: ledger.unstable_count, ..Totals::default() };
         let (mut groups, mut failures) = (vec![], vec![]);
-        for (k, tally) in ledger.tallies.iter().enumerate() {
-            let group = group(ledger, k, tally);
+        let told: Vec<(Group, Option<Failure>)> =
+            ledger.tallies.par_iter().enumerate().map(|(k, tally)| group(ledger, k, tally)).collect();
+        for (k, (tally, (group, smallest))) in ledger.tallies.iter().zip(told).enumerate() {
             totals.asked += tally.asked;
             totals.failed += tally.failed;
             totals.expected_failures += tally.expected;
@@ -154,8 +169,10 @@ impl Report {
             if tally.undeclared.is_some() {
                 totals.not_asked += plan.formulas.get(k).map_or(1, |formula| formula.count() as u64);
             }
-            let room = MOST_FAILURES - failures.len();
-            failures.extend(tally.failures.iter().take(room).cloned());
+            // The smallest is there whatever else has no room.
+            let rest = tally.failures.iter().filter(|one| smallest.as_ref().is_none_or(|own| own.id != one.id));
+            let room = MOST_FAILURES.saturating_sub(failures.len());
+            failures.extend(smallest.iter().chain(rest.take(room)).cloned());
             groups.push(group);
         }
         let expectations = ledger.expectations.clone();
@@ -167,11 +184,12 @@ impl Report {
             choice: plan.choice.clone(),
             generator: crate::cases::GENERATOR_VERSION,
             profile: ledger.profile().name.into(),
-            renderer: Named { name: outcome.hello.renderer, version: outcome.hello.version },
+            renderer: Named { name: clipped(&outcome.hello.renderer), version: clipped(&outcome.hello.version) },
             seconds,
             totals,
             problems: ledger.problems.clone(),
             incidents: outcome.incidents,
+            expected_incidents: outcome.expected_incidents,
             starts: outcome.starts,
             groups,
             failures,
@@ -204,35 +222,58 @@ impl Report {
 }
 
 /// What explains the failures of a formula, what is wrong with all of its values, and its simplest failing case.
-fn diagnosed(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> [Option<String>; 3] {
-    let plan = ledger.plan();
-    if k >= plan.formulas.len() {
-        return [tally.diagnosis.clone(), None, None];
-    }
-    let member = plan.member(k);
-    let of = |is_wrong: bool, rows: &[Row]| -> Vec<(usize, Vec<f32>, Vec<f32>, bool)> {
-        rows.iter().map(|row| (row.case, plan.inputs(k, row.case), row.values.clone(), is_wrong)).collect()
-    };
-    let rows: Vec<_> = of(true, &tally.rows[0]).into_iter().chain(of(false, &tally.rows[1])).collect();
-    let answered: Vec<Answered<'_>> =
-        rows.iter().map(|(_, inputs, values, is_wrong)| Answered { inputs, values, is_wrong: *is_wrong }).collect();
-    if tally.rows[0].is_empty() {
-        // Hard cases are where formulas are steep, and say nothing of a parameter.
-        let random: Vec<Answered<'_>> = (rows.iter().zip(&answered))
-            .filter(|(row, _)| plan.formulas[k].is_random(row.0))
-            .map(|(_, answered)| *answered)
-            .collect();
-        let systematic = group_verdict(member, &random, ledger.profile());
-        return [None, systematic.map(|systematic| systematic.says), None];
-    }
-    let diagnosis = diagnose(member, &answered, ledger.profile());
-    let smallest = diagnosis.smallest.map(|place| plan.id(Place::Case { formula: k, case: rows[place].0 }));
-    [Some(diagnosis.sentence), None, smallest]
+#[derive(Default)]
+struct Told {
+    diagnosis: Option<String>,
+    systematic: Option<String>,
+    smallest: Option<Failure>,
 }
 
-fn group(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> Group {
+impl Told {
+    fn new(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> Self {
+        let plan = ledger.plan();
+        if k >= plan.formulas.len() {
+            return Self {
+                diagnosis: tally.diagnosis.clone(),
+                smallest: tally.failures.first().cloned(),
+                ..Self::default()
+            };
+        }
+        let member = plan.member(k);
+        let of = |is_wrong: bool, rows: &[Row]| -> Vec<(usize, Vec<f32>, Vec<f32>, bool)> {
+            rows.iter().map(|row| (row.case, plan.inputs(k, row.case), row.values.clone(), is_wrong)).collect()
+        };
+        let [failing, passing] = &tally.rows;
+        let rows: Vec<_> = of(true, &failing.rows).into_iter().chain(of(false, &passing.rows)).collect();
+        let answered: Vec<Answered<'_>> =
+            rows.iter().map(|(_, inputs, values, is_wrong)| Answered { inputs, values, is_wrong: *is_wrong }).collect();
+        let Some((_, smallest)) = &tally.smallest else {
+            // Hard cases are where formulas are steep, and say nothing of a parameter.
+            let random: Vec<Answered<'_>> = (rows.iter().zip(&answered))
+                .filter(|(row, _)| plan.formulas[k].is_random(row.0))
+                .map(|(_, answered)| *answered)
+                .collect();
+            let systematic = group_verdict(member, &random, ledger.profile()).map(|systematic| systematic.says);
+            return Self { systematic, ..Self::default() };
+        };
+        let mut diagnosis = diagnose(member, &answered, ledger.profile()).sentence_of(failing.seen);
+        if tally.unjudged > 0 {
+            diagnosis += &format!("; besides, {} were not answered by values", cases(tally.unjudged));
+        }
+        let smallest = Failure::of_values(plan, k, smallest.case, &smallest.values, ledger.profile());
+        Self { diagnosis: Some(diagnosis), smallest: Some(smallest), ..Self::default() }
+    }
+}
+
+/// So many cases, in words.
+#[must_use]
+pub(super) fn cases(count: u64) -> String {
+    if count == 1 { "1 case".into() } else { format!("{count} cases") }
+}
+
+fn group(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> (Group, Option<Failure>) {
     let plan = ledger.plan();
-    let [diagnosis, systematic, smallest] = diagnosed(ledger, k, tally);
+    let told = Told::new(ledger, k, tally);
     let id = if k < plan.formulas.len() {
         plan.member(k).spec.id.clone()
     } else {
@@ -240,13 +281,16 @@ fn group(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> Group {
     };
     let [random, indeterminate] = tally.random;
     #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
-    let share = indeterminate as f64 / (random as f64).max(1.0);
+    let ratio = |part: f64, whole: u64| if whole == 0 { 0.0 } else { part / whole as f64 };
+    #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
+    let share = ratio(indeterminate as f64, random);
     let problem = (share > MOST_INDETERMINATE).then(|| {
         let rules = ledger.profile().name;
         format!("{:.1} % of its random verdicts permit anything under the profile {rules}", 100.0 * share)
     });
     let reason = tally.undeclared.clone().or_else(|| (!tally.reasons.is_empty()).then(|| tally.reasons.join("; ")));
-    Group {
+    let not_passed = if tally.asked > 0 { ledger.known().not_passed(plan, k) } else { BTreeMap::new() };
+    let group = Group {
         id,
         asked: tally.asked,
         failed: tally.failed,
@@ -256,11 +300,15 @@ fn group(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> Group {
         verdicts: tally.verdicts,
         indeterminate: tally.indeterminate,
         error_max: Number(tally.error_max),
+        error_passing: Number(tally.error_passing),
+        error_mean: Number(ratio(tally.errors.0, tally.errors.1)),
         margin_max: Number(tally.margin_max),
         worst: tally.worst.map(|place| plan.id(place)),
+        not_passed,
         reason,
-        problem: problem.or(systematic),
-        diagnosis,
-        smallest,
-    }
+        problem: problem.or(told.systematic),
+        diagnosis: told.diagnosis,
+        smallest: told.smallest.as_ref().map(|failure| failure.id.clone()),
+    };
+    (group, told.smallest)
 }

@@ -7,6 +7,7 @@ mod depth;
 mod fog;
 mod interpolation;
 mod lighting;
+mod naive;
 mod output;
 mod vector;
 
@@ -21,6 +22,7 @@ use lightmeter_scene::blend::{Factor, WriteMask};
 /// All of them, in the order of tables.
 pub(super) fn all() -> impl Iterator<Item = &'static Fault> {
     [
+        naive::FAULTS,
         lighting::FAULTS,
         attenuation::FAULTS,
         fog::FAULTS,

@@ -41,6 +41,13 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("stored-in-8-bits", "the output is rounded to whole 255ths", &[&[After(Out::Round)]])
         .only(where_colors_are_drawn)
         .seen_in("answers read back from an 8-bit target"),
+    fault(
+        "all-stored-in-8-bits",
+        "every output is rounded to whole 255ths, colours and others",
+        &[&[After(Out::RoundAll)]],
+    )
+    .only(where_colors_are_drawn)
+    .seen_in("answers read back from an 8-bit target"),
     fault("premultiplied-output", "the output is multiplied by its alpha", &[&[After(Out::Premultiply)]])
         .only(where_alpha_varies)
         .seen_in("a browser's canvas"),

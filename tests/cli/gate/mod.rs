@@ -1,5 +1,7 @@
 //! `lightmeter pack` and `lightmeter gate`: other renderers, by their files and as processes, right ones and all sorts of wrong.
 
+mod process;
+
 use super::{code, command, lightmeter, stderr, stdout};
 use serde_json::Value;
 use std::io::Write as _;
@@ -42,9 +44,13 @@ fn report(output: &Output) -> (i32, Value) {
 }
 
 fn edit(answers: &Path, edit: impl Fn(usize, &str) -> String) -> PathBuf {
+    edit_as(answers, "edited", edit)
+}
+
+fn edit_as(answers: &Path, name: &str, edit: impl Fn(usize, &str) -> String) -> PathBuf {
     let before = std::fs::read_to_string(answers).expect("there are answers");
     let after: String = before.lines().enumerate().map(|(k, line)| edit(k, line)).collect();
-    let path = answers.with_extension("edited.jsonl");
+    let path = answers.with_extension(format!("{name}.jsonl"));
     std::fs::write(&path, after).expect("answers can be written");
     path
 }
@@ -54,19 +60,6 @@ fn at_the_end(line: &str) -> String {
     let mut answer: Value = serde_json::from_str(line).expect("it is JSON");
     answer["value"][1] = answer["high"][1].clone();
     format!("{answer}\n")
-}
-
-/// A gate over the example renderer, with something that goes wrong in it.
-fn process(filter: &[&str], fault: &str, more: &[&str]) -> Output {
-    let binary = Path::new(env!("CARGO_BIN_EXE_lightmeter"));
-    let renderer = binary.parent().expect("it lies in a folder").join("examples/renderer");
-    assert!(
-        renderer.exists(),
-        "it is built by `cargo test` of the whole workspace, and by `cargo build --example renderer`"
-    );
-    let exec = format!("'{}' {fault}", text(&renderer));
-    let args = [&["gate", "--exec", &exec, "--format", "json", "--cases", "64"], filter, more].concat();
-    lightmeter(&args)
 }
 
 fn count(report: &Value, of: &str) -> u64 {
@@ -160,60 +153,36 @@ fn a_second_run_must_answer_the_same() {
     assert_eq!((status, count(&report, "unstable")), (0, 0), "{report}");
     let (status, report) = judged(&pack, &answers, &[text(&again)]);
     assert_eq!((status, count(&report, "unstable")), (1, 1), "{report}");
-}
-
-#[test]
-fn a_process_that_fails_in_any_way_costs_that_case_alone() {
-    let case = "fog/exp/random/000017";
-    // The fault; the exit code; cases that fail, and that are never answered; what is said.
-    let rows: [(&str, i32, u64, &str); 9] = [
-        ("", 0, 0, ""),
-        ("crash-at", 4, 1, "it ended"),
-        ("hang-at", 4, 1, "longer"),
-        ("nan-at", 1, 1, ""),
-        ("truncated-at", 4, 0, "malformed"),
-        ("long-at", 4, 0, "oversized"),
-        ("unknown-at", 4, 0, "fog/none"),
-        ("twice-at", 4, 0, "more than once"),
-        ("short-at", 1, 1, "expected 4"),
-    ];
-    for (fault, status, failed, said) in rows {
-        let fault = format!("{fault}={case}");
-        let output = process(&["fog/exp", "vector"], &fault, &["--case-timeout", "1.5"]);
-        let (found, report) = report(&output);
-        assert_eq!((found, count(&report, "failed")), (status, failed), "{fault}: {report}");
-        assert_eq!(count(&report, "passed"), count(&report, "asked") - failed, "{fault}: {report}");
-        assert!(report.to_string().contains(said), "{fault}: {report}");
+    // What the second run leaves out, says twice, or alone says.
+    let fewer = edit(&answers, |k, line| if k == number { String::new() } else { line.to_owned() + "\n" });
+    for given in [[&answers, &fewer], [&fewer, &answers]] {
+        let (status, report) = judged(&pack, given[0], &[text(given[1])]);
+        assert!(status == 1 && count(&report, "unstable") == 1, "{report}");
     }
-    let (status, found) = report(&process(&["fog/exp"], "unstable-at=fog/exp/random/000003", &[]));
-    assert_eq!((status, count(&found, "unstable")), (1, 1), "{found}");
-    let dropped = process(&["fog/exp"], &format!("drop-at={case}"), &["--case-timeout", "1.5"]);
-    let (status, found) = report(&dropped);
-    assert_eq!((status, count(&found, "failed")), (4, 1), "{found}");
+    let twice = edit(&answers, |k, line| if k == 5 { format!("{line}\n{line}\n") } else { line.to_owned() + "\n" });
+    let (status, report) = judged(&pack, &answers, &[text(&twice)]);
+    assert!(status == 4 && report["problems"]["counts"]["duplicate"] == 1, "{report}");
+    assert!(report["problems"]["first"][0].as_str().is_some_and(|what| what.contains("edited.jsonl")), "{report}");
+    let other =
+        edit(&answers, |k, line| if k == 0 { "{\"renderer\": \"another\"}\n" } else { "" }.to_owned() + line + "\n");
+    let (status, report) = judged(&pack, &answers, &[text(&other)]);
+    // The first file says no name.
+    assert!(status == 4 && report.to_string().contains("another hello"), "{report}");
 }
 
 #[test]
-fn scenes_are_drawn_and_judged() {
-    let output = process(&["scene/phong-blinn", "scene/flat"], "", &[]);
-    let (status, found) = report(&output);
-    assert_eq!((status, count(&found, "passed")), (0, 2), "{found}");
-    for (fault, said) in [("half-at", "the scene is"), ("elsewhere-at", "leaves the folder")] {
-        let (status, found) = report(&process(&["scene/flat"], &format!("{fault}=scene/flat"), &[]));
-        assert_eq!((status, count(&found, "failed")), (1, 1), "{found}");
-        assert!(found.to_string().contains(said), "{found}");
-    }
-}
-
-#[test]
-fn a_renderer_that_never_starts_is_told() {
-    for (exec, said) in [
-        ("exit 3", "ended before its hello"),
-        ("echo what", "first; expected a hello"),
-        ("/no/such/renderer", "not found"),
-    ] {
-        let output = lightmeter(&["gate", "fog", "--exec", exec]);
-        assert_eq!(code(&output), 4, "{exec}: {}", stderr(&output));
-        assert!(stderr(&output).contains(said), "{exec}: {}", stderr(&output));
+fn the_smallest_failing_case_is_told_with_its_numbers() {
+    let (pack, answers) = answered("smallest", &["fog/exp"]);
+    let wrong = edit(&answers, |_, line| line.replacen("\"value\":[", "\"value\":[9", 1) + "\n");
+    let (status, report) = judged(&pack, &wrong, &[]);
+    let smallest = report["groups"][0]["smallest"].as_str().expect("something fails");
+    let failure = report["failures"].as_array().into_iter().flatten().find(|failure| failure["id"] == smallest);
+    let failure = failure.unwrap_or_else(|| panic!("no numbers of {smallest}"));
+    assert!(status == 1 && failure["inputs"].as_array().is_some_and(|inputs| inputs.len() == 10), "{failure}");
+    for format in ["text", "github", "junit"] {
+        let output = lightmeter(&["gate", text(&pack), text(&wrong), "--format", format]);
+        assert!(stdout(&output).contains("smallest failing case"), "{}", stdout(&output));
+        assert!(stdout(&output).contains(smallest), "{}", stdout(&output));
     }
 }
 
@@ -229,6 +198,12 @@ fn packs_that_are_damaged_or_of_another_kind_are_refused() {
         ("\"crc32\": \"", "\"crc32\": \"0", "not what was packed"),
         ("\"files\"", "\"", "damaged"),
         ("{", "", "damaged"),
+        ("\"cases\": 64", "\"cases\": 63", "its formulas are not those"),
+        ("\"seed\"", "\"is_unfinished\": true, \"seed\"", "not written to its end"),
+        ("\"cases\": 64", "\"cases\": 0", "expected 1 to"),
+        ("\"cases\": 64", "\"cases\": 999999999999", "expected 1 to"),
+        ("\"size\": null", "\"size\": 100000", "expected 1 to"),
+        ("\"id\": \"fog/exp\"", "\"id\": \"fog/linear\"", "its formulas are not those"),
     ];
     for (what, wrong, said) in rows {
         assert!(right.contains(what), "{what}");
@@ -236,6 +211,15 @@ fn packs_that_are_damaged_or_of_another_kind_are_refused() {
         let output = lightmeter(&["gate", text(&pack), text(&answers)]);
         assert_eq!(code(&output), 2, "{wrong}: {}", stdout(&output));
         assert!(stderr(&output).contains(said), "{wrong}: {}", stderr(&output));
+    }
+    // Lists that are emptied.
+    for list in ["files", "formulas"] {
+        let mut emptied: Value = serde_json::from_str(&right).expect("it is JSON");
+        emptied[list] = serde_json::json!([]);
+        std::fs::write(&manifest, emptied.to_string()).expect("it can be written");
+        let output = lightmeter(&["gate", text(&pack), text(&answers)]);
+        assert_eq!(code(&output), 2, "{list}: {}", stdout(&output));
+        assert!(stderr(&output).contains(&format!("its {list} are not those")), "{}", stderr(&output));
     }
     for (args, said) in [
         (&["gate"][..], "expected PACK ANSWERS"),
@@ -246,6 +230,50 @@ fn packs_that_are_damaged_or_of_another_kind_are_refused() {
     ] {
         let output = lightmeter(args);
         assert!(code(&output) >= 2 && stderr(&output).contains(said), "{args:?}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn another_failing_case_is_a_regression_though_they_are_as_many() {
+    let (pack, answers) = answered("regression", &["fog/exp", "fog/linear"]);
+    let file = pack.with_file_name("baseline.json");
+    let spoiled = |number: usize| {
+        edit(
+            &answers,
+            |k, line| if k == number { line.replacen("\"value\":[", "\"value\":[9", 1) } else { line.into() } + "\n",
+        )
+    };
+    let (status, _) = judged(&pack, &spoiled(40), &["--baseline", text(&file), "--update-baseline"]);
+    assert_eq!(status, 1);
+    let (status, report) = judged(&pack, &spoiled(40), &["--baseline", text(&file)]);
+    assert_eq!((status, report["regressions"].as_array().map(Vec::len)), (1, Some(0)), "{report}");
+    let (_, report) = judged(&pack, &spoiled(41), &["--baseline", text(&file)]);
+    let regressions = report["regressions"].to_string();
+    assert!(regressions.contains("1 case failed and did not before: "), "{regressions}");
+    // One that was answered and is not; what is skipped in its place.
+    let missing = edit(&answers, |k, line| if k == 40 { String::new() } else { line.to_owned() + "\n" });
+    let (_, report) = judged(&pack, &missing, &["--baseline", text(&file)]);
+    assert!(report["regressions"].to_string().contains("1 case missing and did not before"), "{report}");
+    let skipped = edit(&answers, |k, line| match k {
+        41 => line.split_once("\"value\"").map_or(String::new(), |(id, _)| format!("{id}\"skip\":\"no\"}}\n")),
+        _ => line.to_owned() + "\n",
+    });
+    let (_, report) = judged(&pack, &skipped, &["--baseline", text(&file)]);
+    assert!(report["regressions"].to_string().contains("1 case skipped and did not before"), "{report}");
+}
+
+#[test]
+fn a_run_that_broke_off_is_no_baseline() {
+    let (pack, answers) = answered("unfit", &["fog/exp"]);
+    let file = pack.with_file_name("baseline.json");
+    let twice = edit(&answers, |k, line| if k == 5 { format!("{line}\n{line}\n") } else { line.to_owned() + "\n" });
+    let other = edit_as(&answers, "other", |k, line| if k == 60 { at_the_end(line) } else { line.to_owned() + "\n" });
+    for (given, why) in [(&[text(&twice)][..], "no answer"), (&[text(&answers), text(&other)], "answers changed")] {
+        let args = [&["gate", text(&pack)], given, &["--baseline", text(&file), "--update-baseline"]].concat();
+        let output = lightmeter(&args);
+        assert!(code(&output) != 0 && !file.exists() && stderr(&output).contains(why), "{}", stderr(&output));
+        // The result is there all the same.
+        assert!(stdout(&output).contains("pass"), "{}", stdout(&output));
     }
 }
 
@@ -287,6 +315,84 @@ fn known_failures_are_expected_and_told_when_they_pass() {
     std::fs::write(&file, "[[expected]]\nid = \"fog/exp\"\n").expect("it can be written");
     let output = lightmeter(&["gate", text(&pack), text(&answers), "--expect", text(&file)]);
     assert!(code(&output) == 2 && stderr(&output).contains("missing field `reason`"), "{}", stderr(&output));
+}
+
+#[test]
+fn expectations_may_pass_where_they_say_so_and_must_match_something() {
+    let (pack, answers) = answered("may-pass", &["fog/exp"]);
+    let file = pack.with_file_name("expected.toml");
+    std::fs::write(&file, "[[expected]]\nid = \"fog/exp\"\nreason = \"at times\"\nmay_pass = true\n").expect("written");
+    let (status, report) = judged(&pack, &answers, &["--expect", text(&file)]);
+    assert_eq!((status, count(&report, "unexpected_passes")), (0, 0), "{report}");
+    for (id, is_one) in [
+        ("fog/exq", false),
+        ("fog/exp/random/000300", true),
+        ("fog/exp/random/xyz", false),
+        ("fog/*/hard", true),
+        ("scene/flat", true),
+        ("scene/flot", false),
+        ("fog/exp/at-the-ey", false),
+    ] {
+        std::fs::write(&file, format!("[[expected]]\nid = \"{id}\"\nreason = \"r\"\n")).expect("written");
+        let output = lightmeter(&["gate", text(&pack), text(&answers), "--expect", text(&file)]);
+        // What matches passes, where it was asked: that is not expected.
+        assert_eq!(code(&output) < 2, is_one, "{id}: {}", stderr(&output));
+        assert!(is_one || stderr(&output).contains("matches no case"), "{id}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn a_pack_is_written_over_a_pack_and_nothing_else() {
+    let folder = folder("over");
+    let pack = folder.join("pack");
+    let packed = |filter: &str| lightmeter(&["pack", text(&pack), filter, "--cases", "8", "--size", "16"]);
+    assert_eq!(code(&packed("scene/flat")), 0);
+    std::fs::write(pack.join("answers.jsonl"), "mine").expect("it can be written");
+    assert_eq!(code(&packed("fog/exp")), 0);
+    assert!(!pack.join("scenes/flat/scene.json").exists(), "an earlier pack's files go");
+    assert_eq!(std::fs::read_to_string(pack.join("answers.jsonl")).expect("what is no pack's stays"), "mine");
+    // One that was broken off is written over.
+    std::fs::write(pack.join("manifest.json"), "{\"schema\":\"lightmeter.pack/1\",\"is_unfinished\":true}")
+        .expect("written");
+    assert_eq!(code(&lightmeter(&["gate", text(&pack), text(&pack)])), 2);
+    assert_eq!(code(&packed("fog/exp")), 0);
+    // A web application's manifest, and one that would have files elsewhere removed.
+    std::fs::write(pack.join("manifest.json"), "{\"name\":\"my application\"}").expect("it can be written");
+    let output = packed("fog/exp");
+    assert!(code(&output) == 2 && stderr(&output).contains("it holds something else"), "{}", stderr(&output));
+    let outside = folder.join("outside.txt");
+    std::fs::write(&outside, "mine").expect("it can be written");
+    let manifest = "{\"schema\":\"lightmeter.pack/1\",\"files\":[{\"name\":\"../outside.txt\"}]}";
+    std::fs::write(pack.join("manifest.json"), manifest).expect("it can be written");
+    assert_eq!(code(&packed("fog/exp")), 0);
+    assert!(outside.exists());
+}
+
+#[test]
+fn a_result_that_is_there_stays_until_there_is_another() {
+    let (pack, answers) = answered("out", &["fog/exp"]);
+    let out = pack.with_file_name("result.json");
+    std::fs::write(&out, "before").expect("it can be written");
+    let nowhere = lightmeter(&["gate", text(&pack), "nowhere", "--out", text(&out)]);
+    assert_eq!((code(&nowhere), std::fs::read_to_string(&out).expect("it is there").as_str()), (2, "before"));
+    let output = lightmeter(&["gate", text(&pack), text(&answers), "--out", text(&out)]);
+    assert!(code(&output) == 0 && std::fs::read_to_string(&out).expect("it is there").contains("cases pass"));
+    let output = lightmeter(&["gate", text(&pack), text(&answers), "--out", "/dev/null/x"]);
+    assert!(code(&output) == 2 && stderr(&output).contains("cannot write /dev/null/x"), "{}", stderr(&output));
+}
+
+#[test]
+fn what_the_first_line_does_not_declare_is_unknown() {
+    let (pack, answers) = answered("undeclared", &["fog/exp", "fog/linear"]);
+    let hello = "{\"renderer\": \"half\", \"formulas\": [\"fog/exp\"]}\n";
+    let half = edit(&answers, |k, line| if k == 0 { hello } else { "" }.to_owned() + line + "\n");
+    let (status, report) = judged(&pack, &half, &[]);
+    assert!(status == 4 && report["problems"]["counts"]["unknown"].as_u64() > Some(60), "{report}");
+    assert_eq!(count(&report, "passed"), count(&report, "asked"), "{report}");
+    // A hello that is not the first line is told.
+    let late = edit(&answers, |k, line| if k == 5 { hello } else { "" }.to_owned() + line + "\n");
+    let (status, report) = judged(&pack, &late, &[]);
+    assert!(status == 4 && report.to_string().contains("a hello, which is said once and first"), "{report}");
 }
 
 #[test]

@@ -1,34 +1,34 @@
 //! A renderer in a process of its own, which speaks JSON lines on its standard input and output.
 //!
-//! It is started in a process group of its own, so that it ends with its children. What it was asked and has not answered is
+//! It is started in a process group of its own and with a mark in its environment, so that it ends with its children. What it was asked and has not answered is
 //! known at every moment: where it ends, hangs or floods, it is killed and started again, and asked what is open one case at a
 //! time until the one that it fails at is found; that case fails, and the rest goes on.
 
-use super::answer::{self, Hello, Line, PROTOCOL, Unread};
+mod running;
+
+use super::answer::{self, Hello, Line, PROTOCOL, Unread, clipped};
+use super::known::State;
 use super::ledger::Ledger;
 use super::pack;
 use super::plan::{Place, Plan};
-use rustix::process::{Pid, Signal, kill_process_group};
+use running::{Event, Running};
 use serde_json::json;
 use std::collections::{HashMap, VecDeque};
-use std::io::{BufReader, Read as _, Write as _};
-use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
-use std::sync::{Arc, Mutex};
+use std::process::ChildStdin;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::RecvTimeoutError;
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Cases that are asked at once, at first and at most: twice as many where they were answered in an eighth of what a case may take.
 const BATCH: [usize; 2] = [16, 1024];
 /// Lines that wait to be judged, and their bytes, at most.
 const WAITING: (usize, usize) = (4096, 8 << 20);
-/// Lines of a process that wait to be read.
-const UNREAD: usize = 64;
 /// Lines beyond one a case, in a batch, that end a process.
 const SURPLUS: usize = 10_000;
-/// Bytes of standard error that are kept.
-const KEPT: usize = 4096;
+/// How long a wait lasts before it is asked whether to stop.
+const MOMENT: Duration = Duration::from_millis(100);
 /// Failed starts in a row after which nothing more is asked.
 const MOST_STARTS: usize = 3;
 /// Crashes and hangs after which nothing more is asked.
@@ -87,119 +87,6 @@ pub enum Error {
     },
 }
 
-/// What comes from a process.
-enum Event {
-    Line(Vec<u8>),
-    TooLong,
-    End,
-}
-
-/// A running renderer.
-struct Running {
-    child: Child,
-    group: Option<Pid>,
-    input: Option<ChildStdin>,
-    events: Receiver<Event>,
-    complaint: Arc<Mutex<Vec<u8>>>,
-    /// Reads what it complains of, until its end.
-    listening: Option<std::thread::JoinHandle<()>>,
-}
-
-impl Running {
-    fn start(command: &str) -> Result<Self, String> {
-        let mut child = Command::new("sh")
-            .args(["-c", command])
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .process_group(0)
-            .spawn()
-            .map_err(|error| format!("cannot be started: {error}"))?;
-        let group = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
-        let (input, output, errors) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
-        // What is not taken waits in the pipe, so that memory stays flat.
-        let (send, events) = sync_channel(UNREAD);
-        if let Some(output) = output {
-            std::thread::spawn(move || listen(output, &send));
-        }
-        let complaint = Arc::new(Mutex::new(vec![]));
-        let listening = errors.map(|mut errors| {
-            let kept = complaint.clone();
-            std::thread::spawn(move || {
-                let mut part = [0; 1024];
-                while let Ok(count @ 1..) = errors.read(&mut part) {
-                    if let Ok(mut kept) = kept.lock() {
-                        kept.extend_from_slice(&part[..count]);
-                        let excess = kept.len().saturating_sub(KEPT);
-                        kept.drain(..excess);
-                    }
-                }
-            })
-        });
-        Ok(Self { child, group, input, events, complaint, listening })
-    }
-
-    /// Writes lines in a thread of its own, since a renderer may answer before it has read all.
-    fn send(&mut self, text: String) -> Option<std::thread::JoinHandle<Option<ChildStdin>>> {
-        let mut input = self.input.take()?;
-        Some(std::thread::spawn(move || {
-            let written = input.write_all(text.as_bytes()).and_then(|()| input.flush());
-            written.is_ok().then_some(input)
-        }))
-    }
-
-    /// Ends it with its children; how it ended, in words.
-    fn kill(mut self) -> String {
-        drop(self.input.take());
-        if let Some(group) = self.group {
-            let _ = kill_process_group(group, Signal::KILL);
-        }
-        let _ = self.child.kill();
-        let status = self.child.wait();
-        // A child that left the group may hold the pipe open: it is not waited for.
-        let until = Instant::now() + Duration::from_millis(200);
-        while self.listening.as_ref().is_some_and(|thread| !thread.is_finished()) && Instant::now() < until {
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        let said =
-            self.complaint.lock().map(|said| String::from_utf8_lossy(&said).trim().to_owned()).unwrap_or_default();
-        let status = status.map_or_else(|error| error.to_string(), |status| status.to_string());
-        let last: Vec<&str> = said.lines().rev().take(4).collect();
-        let last: Vec<&str> = last.into_iter().rev().collect();
-        if last.is_empty() { status } else { format!("{status}; it said: {}", last.join(" / ")) }
-    }
-
-    /// How it ended by itself, where it has.
-    fn has_ended(&mut self) -> bool {
-        // Its output may close a little before it ends.
-        for _ in 0..50 {
-            if matches!(self.child.try_wait(), Ok(Some(_))) {
-                return true;
-            }
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        false
-    }
-}
-
-fn listen(output: impl std::io::Read, send: &SyncSender<Event>) {
-    let mut stream = BufReader::with_capacity(1 << 16, output);
-    let mut line = vec![];
-    loop {
-        let event = match answer::next(&mut stream, &mut line) {
-            Ok(true) => Event::Line(std::mem::take(&mut line)),
-            Err(Unread::TooLong) => Event::TooLong,
-            Ok(false) | Err(Unread::Io(_)) => {
-                let _ = send.send(Event::End);
-                return;
-            }
-        };
-        if send.send(event).is_err() {
-            return;
-        }
-    }
-}
-
 /// What became of a process while it was asked.
 enum Ended {
     /// All is answered.
@@ -214,6 +101,8 @@ enum Ended {
     Deaf,
     /// Time for all is over.
     OutOfTime,
+    /// The gate was told to stop.
+    Stopped,
 }
 
 /// What a gate over a process came to, besides the ledger.
@@ -225,30 +114,41 @@ pub struct Outcome {
     pub starts: u64,
     /// What went wrong with the process, in words.
     pub incidents: Vec<String>,
-    /// Cases that were never asked, since it was given up.
-    pub given_up: u64,
+    /// Crashes and hangs that are expected.
+    pub expected_incidents: Vec<String>,
     /// Lines that it wrote after its hello.
     pub lines: u64,
 }
 
-/// Asks a renderer all that it declares, and what failed once more at the end.
+/// How a renderer is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Asking<'a> {
+    /// What starts it, by `sh -c`.
+    pub command: &'a str,
+    /// Where it writes images.
+    pub folder: &'a Path,
+    /// How long things may take.
+    pub limits: Limits,
+    /// How often all is asked. Of one run, what failed is asked once more.
+    pub runs: u64,
+    /// Whether to stop, which a signal says.
+    pub stop: &'a AtomicBool,
+}
+
+/// Asks a renderer all that it declares, and again: an answer that changes is no answer.
 ///
 /// # Errors
 /// Where it cannot be started, or says nothing of itself.
 pub fn ask(
     ledger: &mut Ledger<'_>,
     plan: &Plan,
-    command: &str,
-    folder: &Path,
-    limits: Limits,
+    asking: Asking<'_>,
     progress: &mut impl FnMut(u64),
 ) -> Result<Outcome, Error> {
     let mut session = Session {
         plan,
-        command,
-        folder,
-        limits,
-        deadline: limits.total.map(|total| Instant::now() + total),
+        asking,
+        deadline: asking.limits.total.map(|total| Instant::now() + total),
         running: None,
         outcome: Outcome::default(),
         number: 0,
@@ -257,25 +157,30 @@ pub fn ask(
     session.start()?;
     let hello = session.outcome.hello.clone();
     let asked = ledger.begin(&hello)?;
-    let out_of_time = session.all(ledger, asked, false, progress)?;
-    // What failed must fail again: an answer that changes is no answer.
-    if !out_of_time {
+    let mut is_whole = session.all(ledger, asked.clone(), progress)?;
+    for _ in 1..asking.runs {
+        if is_whole {
+            // What a process remembers must not matter.
+            session.finish();
+            ledger.begin_again();
+            is_whole = session.all(ledger, asked.clone(), progress)?;
+            if is_whole {
+                ledger.end_again();
+            }
+        }
+    }
+    if is_whole && asking.runs == 1 {
         let again = ledger.failing();
-        session.all(ledger, again, true, progress)?;
+        ledger.begin_again();
+        session.all(ledger, again, progress)?;
     }
-    if let Some(mut running) = session.running.take() {
-        drop(running.input.take());
-        running.has_ended();
-        running.kill();
-    }
+    session.finish();
     Ok(session.outcome)
 }
 
 struct Session<'a> {
     plan: &'a Plan,
-    command: &'a str,
-    folder: &'a Path,
-    limits: Limits,
+    asking: Asking<'a>,
     deadline: Option<Instant>,
     running: Option<Running>,
     outcome: Outcome,
@@ -285,17 +190,35 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
+    fn is_stopped(&self) -> bool {
+        self.asking.stop.load(Ordering::Relaxed)
+    }
+
+    /// Ends the process once it has nothing more to do; where it ends otherwise than well, that is told.
+    fn finish(&mut self) {
+        if let Some(running) = self.running.take() {
+            let stop = self.asking.stop;
+            let wrong = running.finish(self.asking.limits.case, || stop.load(Ordering::Relaxed));
+            self.outcome.incidents.extend(wrong);
+        }
+    }
+
     /// Starts the process and hears its hello.
     fn start(&mut self) -> Result<(), Error> {
-        let failed = |message: String| Error::Start { command: self.command.to_owned(), message };
-        let mut running = Running::start(self.command).map_err(&failed)?;
+        let failed = |message: String| Error::Start { command: self.asking.command.to_owned(), message };
+        let mut running = Running::start(self.asking.command).map_err(&failed)?;
         self.outcome.starts += 1;
-        let greeting = json!({ "hello": PROTOCOL, "version": env!("CARGO_PKG_VERSION"), "folder": self.folder });
+        let greeting = json!({ "hello": PROTOCOL, "version": env!("CARGO_PKG_VERSION"), "folder": self.asking.folder });
         let written = running.send(format!("{greeting}\n"));
-        let until = Instant::now() + self.limits.start;
+        let begun = Instant::now();
+        let until = begun + self.asking.limits.start;
         let until = self.deadline.map_or(until, |deadline| until.min(deadline));
         loop {
-            let event = running.events.recv_timeout(until.saturating_duration_since(Instant::now()));
+            let left = until.saturating_duration_since(Instant::now());
+            let event = running.events.recv_timeout(left.min(MOMENT));
+            if matches!(event, Err(RecvTimeoutError::Timeout)) && left > MOMENT && !self.is_stopped() {
+                continue;
+            }
             let message = match event {
                 Ok(Event::Line(line)) if line.iter().all(u8::is_ascii_whitespace) => continue,
                 Ok(Event::Line(line)) => match answer::read(&line) {
@@ -306,7 +229,7 @@ impl Session<'_> {
                         return Ok(());
                     }
                     _ => {
-                        let line = String::from_utf8_lossy(&line).chars().take(120).collect::<String>();
+                        let line = clipped(&String::from_utf8_lossy(&line));
                         format!(
                             "said `{line}` first; expected a hello such as {{\"hello\": \"{PROTOCOL}\", \"renderer\": …}}"
                         )
@@ -318,55 +241,49 @@ impl Session<'_> {
                     let how = running.kill();
                     return Err(failed(format!("ended before its hello: {how}")));
                 }
-                Err(RecvTimeoutError::Timeout) => format!("said nothing for {} s", self.limits.start.as_secs()),
+                Err(RecvTimeoutError::Timeout) if self.is_stopped() => "was stopped before its hello".into(),
+                Err(RecvTimeoutError::Timeout) => {
+                    format!("said nothing for {:.1} s", until.saturating_duration_since(begun).as_secs_f64())
+                }
             };
             let how = running.kill();
             return Err(failed(format!("{message} (killed: {how})")));
         }
     }
 
-    /// Asks cases until each is answered or has failed; whether time ran out.
+    /// Asks cases until each is answered or has failed; whether it came to the end.
     fn all(
         &mut self,
         ledger: &mut Ledger<'_>,
         asked: Vec<Place>,
-        again: bool,
         progress: &mut impl FnMut(u64),
     ) -> Result<bool, Error> {
         let mut open: VecDeque<Place> = asked.into();
         // Cases that are asked alone, to find the one that it fails at.
         let mut alone = 0;
+        // What was told of them, as long as the culprit is not found.
+        let mut untold = None;
         while !open.is_empty() {
-            if self.running.is_none() {
-                let mut started = self.start();
-                for _ in 1..MOST_STARTS {
-                    if started.is_err() {
-                        started = self.start();
-                    }
-                }
-                if let Err(error) = started {
-                    // It was there once, and is no more.
-                    self.outcome.incidents.push(error.to_string());
-                    self.outcome.given_up += open.len() as u64;
-                    return Ok(true);
-                }
+            if self.running.is_none() && !self.starts_again(open.len()) {
+                return Ok(false);
             }
             let count = if alone > 0 || matches!(open[0], Place::Scene(_)) { 1 } else { self.size };
             let is_case = |place: &&Place| matches!(place, Place::Case { .. });
             let count = if count == 1 { 1 } else { open.iter().take(count).take_while(is_case).count() };
             let batch: Vec<Place> = open.iter().take(count).copied().collect();
-            let (ended, rest) = self.batch(ledger, &batch, again)?;
+            let (ended, rest) = self.batch(ledger, &batch)?;
             let done = batch.len() - rest.len();
             progress(done as u64);
             open.drain(..batch.len());
             alone = if alone > 0 { alone - done.min(alone) } else { 0 };
             let message = match ended {
                 Ended::Answered => continue,
-                Ended::OutOfTime => {
-                    self.end("time for all is over");
-                    self.outcome.given_up += (open.len() + rest.len()) as u64;
-                    self.outcome.incidents.push("time for all is over".into());
-                    return Ok(true);
+                Ended::OutOfTime | Ended::Stopped => {
+                    let what = if matches!(ended, Ended::Stopped) { "it was stopped" } else { "time for all is over" };
+                    self.end(what);
+                    let left = open.len() + rest.len();
+                    self.outcome.incidents.push(format!("{what}: {left} cases were not asked or not answered"));
+                    return Ok(false);
                 }
                 Ended::Crashed => "it ended",
                 Ended::Hung => "it took longer than a case may",
@@ -375,22 +292,22 @@ impl Session<'_> {
             };
             let how = self.end(message);
             if let [culprit] = rest[..] {
-                let id = self.plan.id(culprit);
-                self.outcome.incidents.push(format!("{id}: {message}: {how}"));
-                if again {
-                    ledger.unstable.push(id);
-                } else {
-                    ledger.fail(culprit, format!("{message}: {how}"));
-                }
+                // It is known now: what was told of its batch is told of it.
+                alone = alone.saturating_sub(1);
+                let before = untold.take();
+                self.failed_at(ledger, culprit, &format!("{message}: {how}"), before);
                 progress(1);
                 if self.outcome.incidents.len() as u64 >= MOST_CRASHES {
-                    self.outcome.incidents.push(format!("{MOST_CRASHES} crashes and hangs: nothing more is asked"));
-                    self.outcome.given_up += open.len() as u64;
-                    return Ok(true);
+                    let left = open.len();
+                    let what =
+                        format!("{MOST_CRASHES} crashes and hangs: nothing more is asked, {left} cases are left");
+                    self.outcome.incidents.push(what);
+                    return Ok(false);
                 }
             } else {
                 // Nothing is retried into green: that it ended is told, whatever it answers afterwards.
                 let count = rest.len();
+                untold = Some(self.outcome.incidents.len());
                 self.outcome
                     .incidents
                     .push(format!("with {count} cases open {message}: {how}; they are asked one by one"));
@@ -399,7 +316,33 @@ impl Session<'_> {
                 rest.into_iter().rev().for_each(|place| open.push_front(place));
             }
         }
-        Ok(false)
+        Ok(true)
+    }
+
+    /// Starts the process once more, or tells that it will not.
+    fn starts_again(&mut self, left: usize) -> bool {
+        let mut started = self.start();
+        for _ in 1..MOST_STARTS {
+            if started.is_err() && !self.is_stopped() {
+                started = self.start();
+            }
+        }
+        let Err(error) = started else { return true };
+        // It was there once, and is no more.
+        self.outcome.incidents.push(format!("{error}; {left} cases are left"));
+        false
+    }
+
+    /// Notes the case that the process failed at, and what was told of its batch before, by its place among the incidents.
+    fn failed_at(&mut self, ledger: &mut Ledger<'_>, culprit: Place, message: &str, before: Option<usize>) {
+        let told = format!("{}: {message}", self.plan.id(culprit));
+        if ledger.expects_crash(culprit) {
+            let before = before.map(|place| self.outcome.incidents.remove(place));
+            self.outcome.expected_incidents.extend(before.into_iter().chain([told]));
+        } else {
+            self.outcome.incidents.push(told);
+        }
+        ledger.fail(culprit, State::Broken, message);
     }
 
     fn end(&mut self, message: &str) -> String {
@@ -415,17 +358,20 @@ impl Session<'_> {
     }
 
     /// Asks cases at once; how that ended, and what is left unanswered.
-    fn batch(&mut self, ledger: &mut Ledger<'_>, batch: &[Place], again: bool) -> Result<(Ended, Vec<Place>), Error> {
+    fn batch(&mut self, ledger: &mut Ledger<'_>, batch: &[Place]) -> Result<(Ended, Vec<Place>), Error> {
         let mut text = String::new();
         for &place in batch {
-            text += &self.request(place)?;
+            text += &self.request(ledger, place)?;
             text.push('\n');
         }
         self.number += 1;
         text += &format!("{{\"batch\": {}}}\n", self.number);
+        let stop = self.asking.stop;
+        let is_stopped = || stop.load(Ordering::Relaxed);
         let Some(running) = &mut self.running else { return Ok((Ended::Crashed, batch.to_vec())) };
         let mut writing = running.send(text);
-        let limit = if matches!(batch[0], Place::Scene(_)) { self.limits.scene } else { self.limits.case };
+        let limit =
+            if matches!(batch[0], Place::Scene(_)) { self.asking.limits.scene } else { self.asking.limits.case };
         let mut open: HashMap<String, Place> = batch.iter().map(|&place| (self.plan.id(place), place)).collect();
         let (mut lines, mut bytes, mut surplus) = (vec![], 0, 0);
         let start = Instant::now();
@@ -439,9 +385,12 @@ impl Session<'_> {
                 break Ended::Flooded;
             }
             if lines.len() >= WAITING.0 || bytes >= WAITING.1 {
-                ledger.lines(&lines, self.folder, again);
+                ledger.lines(&lines, self.asking.folder);
                 lines.clear();
                 bytes = 0;
+            }
+            if is_stopped() {
+                break Ended::Stopped;
             }
             let over = self.deadline.map_or(until, |deadline| until.min(deadline));
             let wait = over.saturating_duration_since(Instant::now());
@@ -449,7 +398,7 @@ impl Session<'_> {
                 let is_over = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
                 break if is_over { Ended::OutOfTime } else { Ended::Hung };
             }
-            match running.events.recv_timeout(wait) {
+            match running.events.recv_timeout(wait.min(MOMENT)) {
                 Ok(Event::Line(line)) => {
                     if line.iter().all(u8::is_ascii_whitespace) {
                         surplus += 1;
@@ -475,13 +424,13 @@ impl Session<'_> {
                 Err(RecvTimeoutError::Timeout) => {}
             }
         };
-        ledger.lines(&lines, self.folder, again);
+        ledger.lines(&lines, self.asking.folder);
         let mut ended = ended;
         if matches!(ended, Ended::Answered) {
             let is_written =
-                |thread: &Option<std::thread::JoinHandle<_>>| thread.as_ref().is_none_or(|one| one.is_finished());
+                |thread: &Option<JoinHandle<Option<ChildStdin>>>| thread.as_ref().is_none_or(JoinHandle::is_finished);
             let over = self.deadline.map_or(until, |deadline| until.min(deadline));
-            while !is_written(&writing) && Instant::now() < over {
+            while !is_written(&writing) && Instant::now() < over && !is_stopped() {
                 std::thread::sleep(Duration::from_millis(1));
             }
             if is_written(&writing) {
@@ -497,16 +446,19 @@ impl Session<'_> {
         Ok((ended, left))
     }
 
-    fn request(&self, place: Place) -> Result<String, Error> {
+    fn request(&self, ledger: &mut Ledger<'_>, place: Place) -> Result<String, Error> {
         Ok(match place {
             Place::Case { formula, case } => pack::case(self.plan, formula, case).to_string(),
             Place::Scene(scene) => {
                 let (title, frame) = self.plan.frame(scene)?;
                 let id = self.plan.id(place);
-                let path = self.folder.join(format!("{}.json", id.replace('/', "-")));
+                let path = self.asking.folder.join(format!("{}.json", id.replace('/', "-")));
                 let text = super::frame::to_json(&id, &title, &frame).to_string();
-                std::fs::write(&path, text)
-                    .map_err(|error| Error::Folder { path: path.clone(), message: error.to_string() })?;
+                let failed = |error: std::io::Error| Error::Folder { path: path.clone(), message: error.to_string() };
+                std::fs::write(&path, text).map_err(failed)?;
+                // By the same clock that an image gets its time from.
+                let asked = path.metadata().and_then(|metadata| metadata.modified()).map_err(failed)?;
+                ledger.asked.insert(scene, asked);
                 let (width, height) = (frame.target.width, frame.target.height);
                 let format = frame.target.format.name();
                 json!({ "id": id, "scene": path, "width": width, "height": height, "format": format }).to_string()

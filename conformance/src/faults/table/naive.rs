@@ -1,0 +1,17 @@
+//! Forms that lose what a stable one keeps.
+
+use super::super::catalogue::Fault;
+use super::super::catalogue::Step::Naive;
+use super::fault;
+use crate::cases::Spec;
+
+pub(super) const FAULTS: &[Fault] =
+    &[fault("naive-form", "the formula is evaluated in the naive form that it is the stable one of", &[&[Naive]])
+        .only(is_wrong)];
+
+/// Elsewhere the accuracy rules permit what the naive form gives: that the stable one is better is its own claim.
+fn is_wrong(spec: &Spec) -> bool {
+    let permitted =
+        ["fog/exp2-document", "fog/exp2-opengl", "interpolation/edge-compensated", "blend/subtract-compensated"];
+    !permitted.contains(&spec.id.as_str())
+}

@@ -1,0 +1,185 @@
+//! A running renderer: its pipes, and its end with all that it started.
+
+use super::super::answer::{self, Unread, clipped};
+use rustix::process::{Pid, Signal, kill_process, kill_process_group};
+use std::io::{BufReader, Read as _, Write as _};
+use std::os::unix::process::CommandExt as _;
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// Lines of a process that wait to be read.
+const UNREAD: usize = 64;
+/// Bytes of standard error that are kept.
+const KEPT: usize = 4096;
+/// The variable that marks a renderer and its descendants.
+const MARK: &str = "LIGHTMETER_GATE";
+
+/// What comes from a process.
+pub(super) enum Event {
+    Line(Vec<u8>),
+    TooLong,
+    End,
+}
+
+/// A running renderer.
+pub(super) struct Running {
+    child: Child,
+    group: Option<Pid>,
+    /// Its standard input, but while something is written to it.
+    pub(super) input: Option<ChildStdin>,
+    /// What it writes.
+    pub(super) events: Receiver<Event>,
+    /// A word in its environment, which its descendants inherit.
+    mark: String,
+    complaint: Arc<Mutex<Vec<u8>>>,
+    /// Reads what it complains of, until its end.
+    listening: Option<std::thread::JoinHandle<()>>,
+}
+
+impl Running {
+    pub(super) fn start(command: &str) -> Result<Self, String> {
+        static STARTED: AtomicU64 = AtomicU64::new(0);
+        let mark = format!("{}-{}", std::process::id(), STARTED.fetch_add(1, Ordering::Relaxed));
+        let mut child = Command::new("sh")
+            .args(["-c", command])
+            .env(MARK, &mark)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .process_group(0)
+            .spawn()
+            .map_err(|error| format!("cannot be started: {error}"))?;
+        let group = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
+        let (input, output, errors) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
+        // What is not taken waits in the pipe, so that memory stays flat.
+        let (send, events) = sync_channel(UNREAD);
+        if let Some(output) = output {
+            std::thread::spawn(move || listen(output, &send));
+        }
+        let complaint = Arc::new(Mutex::new(vec![]));
+        let listening = errors.map(|mut errors| {
+            let kept = complaint.clone();
+            std::thread::spawn(move || {
+                let mut part = [0; 1024];
+                while let Ok(count @ 1..) = errors.read(&mut part) {
+                    if let Ok(mut kept) = kept.lock() {
+                        kept.extend_from_slice(&part[..count]);
+                        let excess = kept.len().saturating_sub(KEPT);
+                        kept.drain(..excess);
+                    }
+                }
+            })
+        });
+        Ok(Self { child, group, input, events, mark, complaint, listening })
+    }
+
+    /// Writes lines in a thread of its own, since a renderer may answer before it has read all.
+    pub(super) fn send(&mut self, text: String) -> Option<std::thread::JoinHandle<Option<ChildStdin>>> {
+        let mut input = self.input.take()?;
+        Some(std::thread::spawn(move || {
+            let written = input.write_all(text.as_bytes()).and_then(|()| input.flush());
+            written.is_ok().then_some(input)
+        }))
+    }
+
+    /// Ends it with its children; how it ended, in words.
+    pub(super) fn kill(mut self) -> String {
+        drop(self.input.take());
+        if let Some(group) = self.group {
+            let _ = kill_process_group(group, Signal::KILL);
+        }
+        let _ = self.child.kill();
+        let status = self.child.wait();
+        kill_marked(&self.mark);
+        // What left the group and cleared its environment may hold the pipe open: it is not waited for.
+        let until = Instant::now() + Duration::from_millis(200);
+        while self.listening.as_ref().is_some_and(|thread| !thread.is_finished()) && Instant::now() < until {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let said =
+            self.complaint.lock().map(|said| String::from_utf8_lossy(&said).trim().to_owned()).unwrap_or_default();
+        let status = status.map_or_else(|error| error.to_string(), |status| status.to_string());
+        let last: Vec<&str> = said.lines().rev().take(4).collect();
+        let last: Vec<&str> = last.into_iter().rev().collect();
+        if last.is_empty() { status } else { format!("{status}; it said: {}", clipped(&last.join(" / "))) }
+    }
+
+    /// Closes its input and waits until it ends; what is wrong with how it does, in words.
+    pub(super) fn finish(mut self, limit: Duration, is_stopped: impl Fn() -> bool) -> Option<String> {
+        drop(self.input.take());
+        let until = Instant::now() + limit;
+        let status = loop {
+            match self.child.try_wait() {
+                Ok(Some(status)) => break Some(status),
+                Ok(None) if Instant::now() < until && !is_stopped() => {}
+                _ => break None,
+            }
+            // What it still writes is not read.
+            while self.events.try_recv().is_ok() {}
+            std::thread::sleep(Duration::from_millis(2));
+        };
+        let how = self.kill();
+        match status {
+            None if is_stopped() => None,
+            None => Some(format!("it did not end within {} s of its input's end", limit.as_secs_f64())),
+            Some(status) if status.success() => None,
+            Some(_) => Some(format!("all was answered, and it ended with {how}")),
+        }
+    }
+
+    /// Whether it has ended by itself.
+    pub(super) fn has_ended(&mut self) -> bool {
+        // Its output may close a little before it ends.
+        for _ in 0..50 {
+            if matches!(self.child.try_wait(), Ok(Some(_))) {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        false
+    }
+}
+
+/// Kills what has the mark in its environment: descendants that left the process group. Where there is no /proc, none is found.
+fn kill_marked(mark: &str) {
+    let wanted = format!("{MARK}={mark}");
+    let is_marked = |environment: &[u8]| environment.split(|&byte| byte == 0).any(|one| one == wanted.as_bytes());
+    // One that is being forked as the list is read is found the next time.
+    for _ in 0..3 {
+        let Ok(entries) = std::fs::read_dir("/proc") else { return };
+        let mut found = false;
+        for entry in entries.flatten() {
+            let Some(pid) = entry.file_name().to_str().and_then(|name| name.parse().ok()).and_then(Pid::from_raw)
+            else {
+                continue;
+            };
+            if std::fs::read(entry.path().join("environ")).is_ok_and(|environment| is_marked(&environment)) {
+                found |= kill_process(pid, Signal::KILL).is_ok();
+            }
+        }
+        if !found {
+            return;
+        }
+    }
+}
+
+fn listen(output: impl std::io::Read, send: &SyncSender<Event>) {
+    let mut stream = BufReader::with_capacity(1 << 16, output);
+    let mut line = vec![];
+    loop {
+        let event = match answer::next(&mut stream, &mut line) {
+            Ok(true) => Event::Line(std::mem::take(&mut line)),
+            Err(Unread::TooLong) => Event::TooLong,
+            Ok(false) | Err(Unread::Io(_)) => {
+                let _ = send.send(Event::End);
+                return;
+            }
+        };
+        if send.send(event).is_err() {
+            return;
+        }
+    }
+}

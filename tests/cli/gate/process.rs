@@ -1,0 +1,253 @@
+//! A renderer in a process of its own: how it fails, and what is left of it.
+
+use super::{count, folder, report, text};
+use crate::{code, command, lightmeter, stderr};
+use rustix::process::{Pid, Signal, kill_process, test_kill_process};
+use std::path::Path;
+use std::process::{Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// The command of the example renderer.
+fn renderer() -> String {
+    let binary = Path::new(env!("CARGO_BIN_EXE_lightmeter"));
+    let renderer = binary.parent().expect("it lies in a folder").join("examples/renderer");
+    assert!(
+        renderer.exists(),
+        "it is built by `cargo test` of the whole workspace, and by `cargo build --example renderer`"
+    );
+    format!("'{}'", text(&renderer))
+}
+
+/// A gate over the example renderer, with something that goes wrong in it.
+fn process(filter: &[&str], fault: &str, more: &[&str]) -> Output {
+    gate(filter, &format!("{} {fault}", renderer()), more)
+}
+
+fn gate(filter: &[&str], exec: &str, more: &[&str]) -> Output {
+    lightmeter(&[&["gate", "--exec", exec, "--format", "json", "--cases", "64"], filter, more].concat())
+}
+
+/// Whether a process whose number a file has runs, once it has had time to end.
+fn runs(file: &Path) -> bool {
+    let number = std::fs::read_to_string(file).expect("the process wrote its number");
+    let pid = number.trim().parse().ok().and_then(Pid::from_raw).expect("a number");
+    let state = || std::fs::read_to_string(format!("/proc/{}/stat", number.trim())).unwrap_or_default();
+    let until = Instant::now() + Duration::from_secs(5);
+    // One that has ended and whose parent does not ask is a zombie.
+    while test_kill_process(pid).is_ok() && !state().contains(") Z") {
+        if Instant::now() > until {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    false
+}
+
+#[test]
+fn a_process_that_fails_in_any_way_costs_that_case_alone() {
+    let case = "fog/exp/random/000017";
+    // The fault; the exit code; cases that fail, and that are never answered; what is said.
+    let rows: [(&str, i32, u64, &str); 9] = [
+        ("", 0, 0, ""),
+        ("crash-at", 4, 1, "it ended"),
+        ("hang-at", 4, 1, "longer"),
+        ("nan-at", 1, 1, ""),
+        ("truncated-at", 4, 0, "malformed"),
+        ("long-at", 4, 0, "oversized"),
+        ("unknown-at", 4, 0, "fog/none"),
+        ("twice-at", 4, 0, "more than once"),
+        ("short-at", 1, 1, "expected 4"),
+    ];
+    for (fault, status, failed, said) in rows {
+        let fault = format!("{fault}={case}");
+        let output = process(&["fog/exp", "vector"], &fault, &["--case-timeout", "1.5"]);
+        let (found, report) = report(&output);
+        assert_eq!((found, count(&report, "failed")), (status, failed), "{fault}: {report}");
+        assert_eq!(count(&report, "passed"), count(&report, "asked") - failed, "{fault}: {report}");
+        assert!(report.to_string().contains(said), "{fault}: {report}");
+    }
+    let (status, found) = report(&process(&["fog/exp"], "unstable-at=fog/exp/random/000003", &[]));
+    assert_eq!((status, count(&found, "unstable")), (1, 1), "{found}");
+    let dropped = process(&["fog/exp"], &format!("drop-at={case}"), &["--case-timeout", "1.5"]);
+    let (status, found) = report(&dropped);
+    assert_eq!((status, count(&found, "failed")), (4, 1), "{found}");
+}
+
+#[test]
+fn scenes_are_drawn_and_judged() {
+    let output = process(&["scene/phong-blinn", "scene/flat"], "", &[]);
+    let (status, found) = report(&output);
+    assert_eq!((status, count(&found, "passed")), (0, 2), "{found}");
+    for (fault, said) in [("half-at", "the scene is"), ("elsewhere-at", "leaves the folder")] {
+        let (status, found) = report(&process(&["scene/flat"], &format!("{fault}=scene/flat"), &[]));
+        assert_eq!((status, count(&found, "failed")), (1, 1), "{found}");
+        assert!(found.to_string().contains(said), "{found}");
+    }
+}
+
+#[test]
+fn a_renderer_that_never_starts_is_told() {
+    for (exec, said) in [
+        ("exit 3", "ended before its hello"),
+        ("echo what", "first; expected a hello"),
+        ("/no/such/renderer", "not found"),
+    ] {
+        let output = lightmeter(&["gate", "fog", "--exec", exec]);
+        assert_eq!(code(&output), 4, "{exec}: {}", stderr(&output));
+        assert!(stderr(&output).contains(said), "{exec}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn what_is_written_without_end_or_use_ends_the_process_and_not_the_gate() {
+    let case = "fog/exp/random/000017";
+    for (fault, said) in [("flood-at", "many lines that answer nothing"), ("trickle-at", "longer than a case may")] {
+        let output = process(&["fog/exp"], &format!("{fault}={case}"), &["--case-timeout", "1.5"]);
+        let (status, found) = report(&output);
+        assert!(status == 4 && found["incidents"].to_string().contains(said), "{fault}: {found}");
+        assert_eq!(count(&found, "passed"), count(&found, "asked") - 1, "{fault}: {found}");
+    }
+    let (status, found) = report(&process(&["fog/exp"], &format!("hello-at={case}"), &[]));
+    assert!(status == 4 && found.to_string().contains("said once and first"), "{found}");
+}
+
+#[test]
+fn a_renderer_that_answers_without_reading_is_told() {
+    let folder = folder("deaf");
+    let hello = "{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"deaf\",\"formulas\":[\"fog/exp\"]}\n";
+    let answers = (0..4000).map(|k| format!("{{\"id\":\"fog/exp/random/{k:06}\",\"value\":[0,0,0,0]}}\n"));
+    let file = folder.join("answers.jsonl");
+    std::fs::write(&file, hello.to_owned() + &answers.collect::<String>()).expect("it can be written");
+    let exec = format!("cat '{}'; sleep 600", text(&file));
+    let args =
+        ["gate", "--exec", &exec, "--format", "json", "--cases", "4000", "fog/exp/random", "--case-timeout", "1"];
+    let (status, found) = report(&lightmeter(&args));
+    assert!(status == 4 && found["incidents"].to_string().contains("did not read what it was asked"), "{found}");
+}
+
+#[test]
+fn nothing_that_a_renderer_started_outlives_it() {
+    let folder = folder("orphans");
+    let file = folder.join("pid");
+    // In a session, and so a process group, of its own, and started by a shell that has ended.
+    let orphan = format!("(setsid sh -c 'echo $$ > \"{}\"; exec sleep 600' &)", text(&file));
+    for fault in ["", "crash-at=fog/exp/random/000017", "hang-at=fog/exp/random/000017"] {
+        let _ = std::fs::remove_file(&file);
+        let exec = format!("{orphan}; {} {fault}", renderer());
+        let output = gate(&["fog/exp"], &exec, &["--case-timeout", "1"]);
+        assert_eq!(code(&output), if fault.is_empty() { 0 } else { 4 }, "{}", stderr(&output));
+        assert!(!runs(&file), "{fault}: what it started runs on");
+    }
+}
+
+#[test]
+fn a_gate_that_is_told_to_stop_reports_and_leaves_nothing() {
+    let folder = folder("stopped");
+    let file = folder.join("pid");
+    let temporary = folder.join("tmp");
+    std::fs::create_dir_all(&temporary).expect("a folder can be made");
+    let exec = format!("echo $$ > '{}'; exec {} hang-at=fog/exp/random/000050", text(&file), renderer());
+    let gate =
+        command(&["gate", "fog/exp", "scene/flat", "--exec", &exec, "--format", "json", "--case-timeout", "600"])
+            .env("TMPDIR", &temporary)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the binary starts");
+    let until = Instant::now() + Duration::from_secs(60);
+    while !file.exists() && Instant::now() < until {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(Duration::from_secs(2));
+    let pid = i32::try_from(gate.id()).ok().and_then(Pid::from_raw).expect("a number");
+    kill_process(pid, Signal::TERM).expect("it runs");
+    let (status, found) = report(&gate.wait_with_output().expect("it ends"));
+    assert!(status == 4 && found["incidents"].to_string().contains("it was stopped"), "{found}");
+    assert!(count(&found, "passed") > 0, "what was answered is judged: {found}");
+    assert!(!runs(&file), "the renderer runs on");
+    assert_eq!(std::fs::read_dir(&temporary).expect("it is there").count(), 0, "its folder for images is left");
+}
+
+#[test]
+fn how_a_renderer_ends_is_told_though_it_answered_all() {
+    for (fault, said) in [("exit=3", "exit status: 3"), ("lingers=all", "did not end")] {
+        let (status, found) = report(&process(&["fog/exp"], fault, &["--case-timeout", "1"]));
+        assert!(status == 4 && found["incidents"].to_string().contains(said), "{fault}: {found}");
+        assert_eq!(count(&found, "passed"), count(&found, "asked"), "{found}");
+    }
+}
+
+#[test]
+fn an_image_of_an_earlier_run_is_no_answer() {
+    let images = folder("stale");
+    let more = ["--images", text(&images)];
+    let (status, found) = report(&process(&["scene/flat"], "", &more));
+    assert_eq!((status, count(&found, "passed")), (0, 1), "{found}");
+    // A file is written by a clock of some milliseconds.
+    std::thread::sleep(Duration::from_millis(50));
+    let (status, found) = report(&process(&["scene/flat"], "stale-at=scene/flat", &more));
+    assert!(status == 1 && found.to_string().contains("was there before the scene was asked for"), "{found}");
+    let (status, found) = report(&process(&["scene/flat"], "", &more));
+    assert_eq!((status, count(&found, "passed")), (0, 1), "{found}");
+}
+
+#[test]
+fn an_image_that_is_no_file_is_not_waited_for() {
+    let folder = folder("fifo");
+    let hello = "{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"fifo\",\"scenes\":[\"scene/flat\"]}";
+    let answer = "{\"id\":\"scene/flat\",\"image\":\"pipe.png\"}";
+    let exec = format!(
+        "mkfifo '{}/pipe.png'; echo '{hello}'; while read -r line; do case $line in *batch*) echo '{answer}';; esac; done",
+        text(&folder)
+    );
+    let (status, found) = report(&gate(&["scene/flat"], &exec, &["--images", text(&folder), "--size", "16"]));
+    assert!(status == 1 && found.to_string().contains("is no file"), "{found}");
+}
+
+#[test]
+fn time_for_all_ends_a_renderer_that_never_says_hello() {
+    let output = lightmeter(&["gate", "fog", "--exec", "sleep 600", "--timeout", "0.5"]);
+    assert!(code(&output) == 4 && stderr(&output).contains("said nothing for 0.5 s"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_crash_that_is_expected_breaks_nothing() {
+    let folder = folder("expected-crash");
+    let file = folder.join("expected.toml");
+    let case = "fog/exp/random/000017";
+    let write = |more: &str| {
+        let text = format!("[[expected]]\nid = \"{case}\"\nreason = \"it divides by 0\"\n{more}");
+        std::fs::write(&file, text).expect("it can be written");
+    };
+    let gate = || report(&process(&["fog/exp"], &format!("crash-at={case}"), &["--expect", text(&file)]));
+    write("");
+    let (status, found) = gate();
+    assert!(status == 4 && count(&found, "expected_failures") == 1, "{found}");
+    write("crash = true\n");
+    let (status, found) = gate();
+    assert_eq!((status, count(&found, "failed")), (0, 1), "{found}");
+    assert_eq!(found["expected_incidents"].as_array().map(Vec::len), Some(2), "{found}");
+    // Another crash is not excused.
+    let both = format!("crash-at={case}");
+    let elsewhere =
+        report(&process(&["fog/exp", "fog/linear"], &both.replace("exp/", "linear/"), &["--expect", text(&file)]));
+    assert_eq!(elsewhere.0, 4, "{}", elsewhere.1);
+}
+
+#[test]
+fn all_is_asked_as_often_as_is_said() {
+    let fault = "unstable-at=fog/exp/random/000003";
+    let (status, found) = report(&process(&["fog/exp"], "", &["--runs", "3"]));
+    assert_eq!((status, found["starts"].as_u64()), (0, Some(3)), "{found}");
+    // An answer that is another each time, legal or not, is found by runs; a process of the same history gives the same.
+    let flag = folder("runs").join("flag");
+    let exec = format!(
+        "if [ -e '{0}' ]; then exec {1} wrong-at=fog/exp/random/000009; else touch '{0}'; exec {1}; fi",
+        text(&flag),
+        renderer()
+    );
+    let (status, found) = report(&gate(&["fog/exp"], &exec, &["--runs", "2"]));
+    assert!(status == 1 && found["unstable"] == serde_json::json!(["fog/exp/random/000009"]), "{found}");
+    let (status, found) = report(&process(&["fog/exp"], fault, &[]));
+    assert_eq!((status, count(&found, "unstable")), (1, 1), "{found}");
+}
