@@ -435,6 +435,65 @@ mod tests {
     }
 
     #[test]
+    fn a_mistake_and_a_wrong_parameter_are_told_together() {
+        let (found, _) = diagnosis("fog/exp", |member, inputs, out| {
+            let mut row = inputs.to_vec();
+            row[member.spec.place("density").expect("density")].iter_mut().for_each(|x| *x *= 1.7);
+            making(&["fog-radial"])(member, &row, out);
+        });
+        let n = found.failing;
+        let says = "fog uses radial distance, and as if density were 1.70 times what was asked";
+        assert_eq!(found.sentence, format!("{n} of {n} failing cases are explained by: {says}"));
+    }
+
+    #[test]
+    fn parameters_that_nothing_tells_apart_are_told_together() {
+        let (found, _) = diagnosis("lighting/diffuse-toward", |member, inputs, out| {
+            member.formula.embedded(inputs, out);
+            out.iter_mut().for_each(|x| *x *= 3.0);
+        });
+        assert!(found.sentence.contains("(nothing tells which) were 3.00 times"), "{}", found.sentence);
+    }
+
+    #[test]
+    fn a_naive_form_is_told_and_no_number_is_explained_by_what_leaves_all_open() {
+        let member = formulas().iter().find(|member| member.spec.id == "lighting/blinn-stable").expect("it is there");
+        let naive = formulas().iter().find(|member| member.spec.id == "lighting/blinn").expect("it is there");
+        let outputs = member.spec.output_len();
+        let cases = (0..member.spec.hard.len()).map(CaseRef::Hard);
+        let inputs: Vec<Vec<f32>> = cases
+            .map(|case| {
+                let mut row = vec![];
+                member.inputs(case, 1, &mut row);
+                row
+            })
+            .collect();
+        let diagnosis = |answer: &dyn Fn(&[f32], &mut [f32])| {
+            let values: Vec<Vec<f32>> = (inputs.iter())
+                .map(|row| {
+                    let mut out = vec![0.0; outputs];
+                    answer(row, &mut out);
+                    out
+                })
+                .collect();
+            let is_wrong = |row: &[f32], values: &[f32]| {
+                let (mut reference, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
+                member.formula.reference(row, &mut reference);
+                member.formula.interval(row, &mut legal);
+                (0..outputs).any(|k| judge(values[k].to_bits(), reference[k], &legal[k]).outcome == Outcome::Fail)
+            };
+            let rows = inputs.iter().zip(&values);
+            let rows: Vec<Answered<'_>> =
+                rows.map(|(inputs, values)| Answered { inputs, values, is_wrong: is_wrong(inputs, values) }).collect();
+            diagnose(member, &rows, &WGSL)
+        };
+        let found = diagnosis(&|row, out| naive.formula.embedded(row, out));
+        assert!(found.failing > 1 && found.explanations[0].faults == ["naive-form"], "{}", found.sentence);
+        let found = diagnosis(&|_, out| out.fill(f32::INFINITY));
+        assert!(found.failing > 1 && found.explanations.is_empty(), "{}", found.sentence);
+    }
+
+    #[test]
     fn what_nothing_explains_is_said_to_be_so() {
         let (found, _) = diagnosis("lighting/blinn", |_, inputs, out| {
             out.iter_mut().zip(inputs).for_each(|(out, x)| *out = (x * 1000.0).sin() * 7.0);
