@@ -23,6 +23,7 @@ pub mod algebra;
 pub mod attenuation;
 pub mod blend;
 pub mod color;
+pub mod departure;
 pub mod depth;
 pub mod fog;
 pub mod interpolation;

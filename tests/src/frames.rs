@@ -86,6 +86,7 @@ pub fn frame(seed: u64) -> Frame {
         projection: if n.once_in(4) { orthographic(reversed) } else { perspective(reversed) },
         ambient: n.color(),
         ambient_form: n.of(&[Ambient::Product, Ambient::Constant]),
+        departures: lightmeter_scene::frame::Departures::default(),
         light_ambient: n.of(&[LightAmbient::Documents, LightAmbient::OpenGl]),
         lights: vec![],
         fog: None,

@@ -8,11 +8,12 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::filter::Filter;
+use lightmeter::gate::answers::{self, Answers};
 use lightmeter::gate::baseline::{self, Baseline};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::ledger::Ledger;
 use lightmeter::gate::outputs;
-use lightmeter::gate::pack::{self, Answers};
+use lightmeter::gate::pack;
 use lightmeter::gate::plan::{Choice, Place, Plan};
 use lightmeter::gate::process::{self, Asking, Limits, Outcome};
 use lightmeter::gate::report::Report;
@@ -112,7 +113,7 @@ impl Gate {
             Some(command) => self.process(&mut ledger, &plan, command, expectations, &bar),
             None => {
                 ledger.expected = expectations;
-                let hello = pack::judge(&mut ledger, answers, &mut |count| bar.inc(count));
+                let hello = answers::judge(&mut ledger, answers, &mut |count| bar.inc(count));
                 hello.map(|hello| Outcome { hello, ..Outcome::default() }).map_err(Into::into)
             }
         };
@@ -141,8 +142,8 @@ impl Gate {
             bail!("expected PACK ANSWERS: a file of JSON lines, or a folder with answers.jsonl");
         }
         let plan = pack::read(Path::new(folder))?;
-        let answers = answers.iter().map(|path| Answers::open(Path::new(path)));
-        Ok((plan, answers.collect::<Result<_, _>>()?))
+        let opened = answers.iter().map(|path| Answers::open(Path::new(path)));
+        Ok((plan, opened.collect::<Result<_, _>>()?))
     }
 
     fn process(

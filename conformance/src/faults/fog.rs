@@ -1,8 +1,8 @@
 //! Fog with mistakes: distance, factor and mix, each of which can be wrong. Without a mistake it computes what the formula does.
 
-use super::lighting::smoothstep;
 use super::row::{Row, put};
 use crate::cases::Spec;
+use lightmeter_reference::departure::smoothstep;
 use lightmeter_reference::fog::{self, Distance};
 use lightmeter_reference::{Real, Vec3};
 
@@ -174,26 +174,12 @@ pub(super) fn evaluate<R: Real>(spec: &Spec, twists: &[Twist], numbers: &[R], ou
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::faults::catalogue::formulas;
-    use crate::select::CaseRef;
+    use crate::faults::agrees_with_formulas;
 
     #[test]
     fn without_a_mistake_the_model_is_the_formula() {
-        let mut seen = 0;
-        for member in formulas().iter().filter(|member| right(&member.spec.id).is_some()) {
-            for k in 0..256 {
-                let mut row = vec![];
-                member.inputs(CaseRef::Random(k), 1, &mut row);
-                let wide: Vec<f64> = row.iter().map(|&x| x.into()).collect();
-                let (mut model, mut formula) = ([f64::NAN; 4], [0.0; 4]);
-                evaluate(&member.spec, &[], &wide, &mut model).expect("a model");
-                member.formula.reference(&row, &mut formula);
-                for (a, b) in model.iter().zip(&formula) {
-                    assert!((a - b).abs() <= 1e-9, "{} {k}: {a} for {b}", member.spec.id);
-                }
-                seen += 1;
-            }
-        }
+        let seen =
+            agrees_with_formulas(|spec| right(&spec.id).is_some(), |spec, row, out| evaluate(spec, &[], row, out));
         assert!(seen == 12 * 256, "{seen}");
     }
 }

@@ -31,3 +31,28 @@ pub use variation::Variation;
 pub(crate) fn percent(part: usize, whole: usize) -> f64 {
     if whole == 0 { 100.0 } else { 100.0 * diagnose::share(part, whole) }
 }
+
+/// Holds a model without a mistake against the formulas that it is of; how many cases that were.
+#[cfg(test)]
+pub(crate) fn agrees_with_formulas(
+    is_of: impl Fn(&crate::cases::Spec) -> bool,
+    evaluate: impl Fn(&crate::cases::Spec, &[f64], &mut [f64]) -> Option<()>,
+) -> usize {
+    let mut seen = 0;
+    for member in catalogue::formulas().iter().filter(|member| is_of(&member.spec)) {
+        for k in 0..256 {
+            let mut row = vec![];
+            member.inputs(crate::select::CaseRef::Random(k), 1, &mut row);
+            let wide: Vec<f64> = row.iter().map(|&x| x.into()).collect();
+            let outputs = member.spec.output_len();
+            let (mut model, mut formula) = (vec![f64::NAN; outputs], vec![0.0; outputs]);
+            evaluate(&member.spec, &wide, &mut model).expect("a model");
+            member.formula.reference(&row, &mut formula);
+            for (a, b) in model.iter().zip(&formula) {
+                assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{} {k}: {a} for {b}", member.spec.id);
+            }
+            seen += 1;
+        }
+    }
+    seen
+}

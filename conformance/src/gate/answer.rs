@@ -1,6 +1,8 @@
 //! A line that a renderer writes.
 
+use super::frame;
 use crate::filter::Filter;
+use lightmeter_scene::frame::Frame;
 use serde::de::{Deserializer, Visitor};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -47,6 +49,19 @@ impl Hello {
         // No glob matches everything in a filter, and nothing in a declaration.
         let read = |globs: &[String]| (!globs.is_empty()).then(|| Filter::new(globs)).transpose();
         Ok([read(&self.formulas)?, read(&self.scenes)?])
+    }
+
+    /// Why it does not draw a frame; `None` where it does.
+    #[must_use]
+    pub fn lacks(&self, frame: &Frame) -> Option<String> {
+        let format = frame.target.format.name();
+        if self.formats.as_ref().is_some_and(|formats| !formats.iter().any(|own| own == format)) {
+            return Some(format!("it does not draw on {format}"));
+        }
+        let has = self.effects.as_ref()?;
+        let missing: Vec<&str> =
+            frame::called(frame).into_iter().filter(|name| !has.iter().any(|own| own == name)).collect();
+        (!missing.is_empty()).then(|| format!("it has no {}", missing.join(", ")))
     }
 }
 

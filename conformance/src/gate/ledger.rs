@@ -6,7 +6,7 @@ use super::known::{Known, State, Turn};
 use super::plan::{Place, Plan};
 use super::tally::Tally;
 use super::verdict::{self, Failure, Verdicts};
-use super::{pack, picture, process};
+use super::{picture, process};
 use crate::arithmetic::Profile;
 use crate::report::Number;
 use rayon::prelude::*;
@@ -86,11 +86,16 @@ impl<'a> Ledger<'a> {
     /// Nothing is answered yet.
     #[must_use]
     pub fn new(plan: &'a Plan, profile: &Profile) -> Self {
+        let outputs = |formula: usize| plan.member(formula).spec.output_len();
         Self {
             plan,
             profile: *profile,
             known: Known::new(plan),
-            tallies: vec![Tally::default(); plan.formulas.len() + plan.scenes.len()],
+            tallies: (0..plan.formulas.len())
+                .map(outputs)
+                .chain(plan.scenes.iter().map(|_| 0))
+                .map(Tally::new)
+                .collect(),
             problems: Problems::default(),
             unstable: vec![],
             unstable_count: 0,
@@ -158,7 +163,7 @@ impl<'a> Ledger<'a> {
             let place = Place::Scene(scene);
             let (id, (_, frame)) = (self.plan.id(place), self.plan.frame(scene)?);
             let lacks = if scenes.as_ref().is_some_and(|filter| filter.selects(&id)) {
-                pack::lacks(hello, &frame)
+                hello.lacks(&frame)
             } else {
                 Some("not among the scenes that it declares".into())
             };
@@ -302,7 +307,7 @@ impl<'a> Ledger<'a> {
                 if has_failed {
                     tally.failure(|| Failure::of_values(plan, formula, case, &values, &profile));
                 }
-                tally.keep(case, values, &inputs, has_failed);
+                tally.keep(case, &values, &inputs, has_failed);
             }
             Judged::Image(scene, file) => self.image(scene, &file, folder),
         }

@@ -4,6 +4,7 @@
 //! [`renderer::Renderer`]; a [`ledger::Ledger`] judges its answers as they come, and a [`report`] says what became of them.
 
 pub mod answer;
+pub mod answers;
 pub mod baseline;
 pub mod expectations;
 pub mod frame;

@@ -40,7 +40,7 @@ pub fn ask(
     folder: &Path,
 ) -> Result<(), super::process::Error> {
     let hello = renderer.hello();
-    for batch in ledger.begin(&hello)?.chunks(super::pack::LINES) {
+    for batch in ledger.begin(&hello)?.chunks(super::answers::LINES) {
         let mut lines = vec![];
         for (number, &place) in (1..).zip(batch) {
             let id = plan.id(place);

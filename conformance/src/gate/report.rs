@@ -5,7 +5,7 @@ use super::expectations::Expectation;
 use super::ledger::{Ledger, Problems};
 use super::plan::{Choice, Place};
 use super::process::Outcome;
-use super::tally::{Row, Tally};
+use super::tally::{Sample, Tally};
 use super::verdict::Failure;
 use crate::faults::{Answered, diagnose, group_verdict};
 use crate::report::Number;
@@ -240,11 +240,11 @@ impl Told {
             };
         }
         let member = plan.member(k);
-        let of = |is_wrong: bool, rows: &[Row]| -> Vec<(usize, Vec<f32>, Vec<f32>, bool)> {
-            rows.iter().map(|row| (row.case, plan.inputs(k, row.case), row.values.clone(), is_wrong)).collect()
+        let of = |is_wrong: bool, sample: &Sample| -> Vec<(usize, Vec<f32>, Vec<f32>, bool)> {
+            sample.rows().map(|(case, values)| (case, plan.inputs(k, case), values.to_vec(), is_wrong)).collect()
         };
         let [failing, passing] = &tally.rows;
-        let rows: Vec<_> = of(true, &failing.rows).into_iter().chain(of(false, &passing.rows)).collect();
+        let rows: Vec<_> = of(true, failing).into_iter().chain(of(false, passing)).collect();
         let answered: Vec<Answered<'_>> =
             rows.iter().map(|(_, inputs, values, is_wrong)| Answered { inputs, values, is_wrong: *is_wrong }).collect();
         let Some((_, smallest)) = &tally.smallest else {

@@ -2,18 +2,20 @@
 
 use super::plan::Place;
 use super::verdict::{Failure, Verdicts};
-use crate::faults::simplicity;
+use crate::faults::{LEAST_VALUES, simplicity};
 use crate::judge::{is_worse, worse};
 
 /// Failures that are kept with their numbers, of each formula.
 const KEPT: usize = 16;
-/// Rows that are kept of each formula for the diagnosis: failing ones, and passing ones.
-const KEPT_ROWS: [usize; 2] = [2048, 1024];
+/// Failing rows that are kept of each formula, for the diagnosis.
+const KEPT_FAILING: usize = 2048;
+/// Values that are kept of passing rows, for the group verdict. Half as many are left where the sample gets thinner.
+const KEPT_PASSING: usize = 2 * LEAST_VALUES;
 /// Reasons of skips that are kept.
 const KEPT_REASONS: usize = 16;
 
 /// Counts of cases, but for the verdicts, which are of scalars.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Tally {
     /// Cases that were asked for.
     pub asked: u64,
@@ -59,35 +61,17 @@ pub struct Tally {
     pub undeclared: Option<String>,
 }
 
-impl Default for Tally {
-    fn default() -> Self {
-        Self {
-            asked: 0,
-            answered: 0,
-            skipped: 0,
-            failed: 0,
-            verdicts: 0,
-            indeterminate: 0,
-            error_max: 0.0,
-            error_passing: 0.0,
-            errors: (0.0, 0),
-            margin_max: 0.0,
-            worst: None,
-            failures: vec![],
-            reasons: vec![],
-            rows: KEPT_ROWS.map(Sample::new),
-            smallest: None,
-            missing: 0,
-            unjudged: 0,
-            expected: 0,
-            random: [0; 2],
-            diagnosis: None,
-            undeclared: None,
-        }
+impl Tally {
+    /// Nothing is answered, of so many outputs.
+    #[must_use]
+    pub fn new(outputs: usize) -> Self {
+        let outputs = outputs.max(1);
+        let rows = [KEPT_FAILING, KEPT_PASSING / outputs].map(|most| Sample::new(outputs, most));
+        Self { rows, ..Self::default() }
     }
 }
 
-/// Inputs and the values that were answered.
+/// A case and the values that were answered.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The case's place.
@@ -97,10 +81,12 @@ pub struct Row {
 }
 
 /// So many rows at most, evenly spread over all that came.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Sample {
-    /// The rows.
-    pub rows: Vec<Row>,
+    cases: Vec<usize>,
+    /// The rows' values, one after the other.
+    values: Vec<f32>,
+    outputs: usize,
     /// How many came.
     pub seen: usize,
     stride: usize,
@@ -108,22 +94,32 @@ pub struct Sample {
 }
 
 impl Sample {
-    const fn new(most: usize) -> Self {
-        Self { rows: vec![], seen: 0, stride: 1, most }
+    const fn new(outputs: usize, most: usize) -> Self {
+        Self { cases: vec![], values: vec![], outputs, seen: 0, stride: 1, most }
     }
 
-    fn push(&mut self, row: impl FnOnce() -> Row) {
+    /// The cases' places and what was answered to each.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &[f32])> {
+        self.cases.iter().copied().zip(self.values.chunks_exact(self.outputs.max(1)))
+    }
+
+    fn push(&mut self, case: usize, values: &[f32]) {
         if self.seen.is_multiple_of(self.stride) {
-            if self.rows.len() == self.most {
-                let mut number = 0;
-                self.rows.retain(|_| {
-                    number += 1;
-                    number % 2 == 1
-                });
+            if self.cases.len() == self.most {
+                // Every other one.
+                let kept = self.cases.len().div_ceil(2);
+                for k in 0..kept {
+                    self.cases[k] = self.cases[2 * k];
+                    let from = 2 * k * self.outputs;
+                    self.values.copy_within(from..from + self.outputs, k * self.outputs);
+                }
+                self.cases.truncate(kept);
+                self.values.truncate(kept * self.outputs);
                 self.stride *= 2;
             }
             if self.seen.is_multiple_of(self.stride) {
-                self.rows.push(row());
+                self.cases.push(case);
+                self.values.extend_from_slice(values);
             }
         }
         self.seen += 1;
@@ -152,14 +148,14 @@ impl Tally {
     }
 
     /// Keeps a row for the diagnosis.
-    pub(super) fn keep(&mut self, case: usize, values: Vec<f32>, inputs: &[f32], has_failed: bool) {
+    pub(super) fn keep(&mut self, case: usize, values: &[f32], inputs: &[f32], has_failed: bool) {
         if has_failed {
             let simple = simplicity(inputs);
             if self.smallest.as_ref().is_none_or(|(least, _)| simple < *least) {
-                self.smallest = Some((simple, Row { case, values: values.clone() }));
+                self.smallest = Some((simple, Row { case, values: values.to_vec() }));
             }
         }
-        self.rows[usize::from(!has_failed)].push(|| Row { case, values });
+        self.rows[usize::from(!has_failed)].push(case, values);
     }
 
     /// Keeps a failure, where there is room.
@@ -185,10 +181,12 @@ mod tests {
     #[test]
     fn a_sample_is_spread_over_all_that_came() {
         for count in [0, 5, 8, 9, 100, 12_345] {
-            let mut sample = Sample::new(8);
-            (0..count).for_each(|case| sample.push(|| Row { case, values: vec![] }));
-            let cases: Vec<usize> = sample.rows.iter().map(|row| row.case).collect();
+            let mut sample = Sample::new(2, 8);
+            let value = |case: usize| f32::from(u16::try_from(case).expect("it is small"));
+            (0..count).for_each(|case| sample.push(case, &[value(case), -1.0]));
+            let cases: Vec<usize> = sample.rows().map(|(case, _)| case).collect();
             assert_eq!(sample.seen, count);
+            assert!(sample.rows().all(|(case, values)| values == [value(case), -1.0]));
             assert!(cases.len() == count.min(8) || (4..=8).contains(&cases.len()), "{cases:?}");
             assert!(cases.windows(2).all(|pair| pair[1] - pair[0] == sample.stride), "{cases:?}");
             assert!(cases.last().is_none_or(|last| last + sample.stride >= count), "{cases:?} of {count}");

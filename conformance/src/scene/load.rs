@@ -151,6 +151,7 @@ pub fn frame(scene: &Scene, files: &Files<'_>) -> Result<Frame, Error> {
         projection,
         ambient: At::Scene.field("ambient").field("color").numbers(scene.ambient.color)?,
         ambient_form: scene.ambient.form.into(),
+        departures: lightmeter_scene::frame::Departures::default(),
         light_ambient: scene.light_ambient.into(),
         lights,
         fog: scene.fog.as_ref().map(lights::fog).transpose()?,

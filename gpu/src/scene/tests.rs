@@ -91,6 +91,7 @@ fn frame() -> Frame {
         projection,
         ambient: [0.2, 0.3, 0.4],
         ambient_form: Ambient::Product,
+        departures: lightmeter_scene::frame::Departures::default(),
         light_ambient: LightAmbient::OpenGl,
         lights: vec![
             light(Place::Directional { toward: [0.5, 0.5, 2.0], unit: false }),

@@ -43,6 +43,20 @@ pub struct Frame {
     pub textures: Vec<Texture>,
     /// What is drawn, in this order.
     pub draws: Vec<Draw>,
+    /// What is drawn otherwise than any scene asks for.
+    pub departures: Departures,
+}
+
+/// What some renderers draw that no scene asks for: mistakes, to be tried as explanations of an image. A scene has none, and the
+/// GPU's shaders know none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Departures {
+    /// The highlight is Blinn's normalised lobe with Schlick's Fresnel term, times n·l.
+    pub fresnel_highlight: bool,
+    /// Linear fog follows smoothstep.
+    pub smoothstep_fog: bool,
+    /// Textures and lightmaps multiply what is diffuse, and the highlight is added afterwards.
+    pub highlight_over_texture: bool,
 }
 
 /// An image's size and format.

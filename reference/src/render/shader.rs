@@ -7,6 +7,7 @@
 
 use super::attributes::{Attributes, LIT};
 use crate::algebra::{Mat4, Rgb, Rgba, Vec3, Vec4, Vector};
+use crate::departure::{FresnelHighlight, smoothstep};
 use crate::lighting::{self, Material};
 use crate::real::Real;
 use crate::{attenuation, color, fog, texture, vector};
@@ -242,7 +243,11 @@ impl<'a, R: Real> Shader<'a, R> {
         }
         let none = Vector::splat(R::literal(0.0));
         let of = |terms: &[Rgb<R>]| Vector(std::array::from_fn(|k| R::sum_over(terms.iter().map(|term| term[k]))));
-        let (without, highlights) = if self.stages { (of(diffuse), of(specular)) } else { (none, none) };
+        let (without, highlights) = if self.stages || self.frame.departures.highlight_over_texture {
+            (of(diffuse), of(specular))
+        } else {
+            (none, none)
+        };
         diffuse.append(specular);
         Lit { color: of(diffuse), diffuse: without, specular: highlights }
     }
@@ -289,6 +294,14 @@ impl<'a, R: Real> Shader<'a, R> {
         }
         let gated = shading.gate == Gate::OpenGl;
         if self.has_specular() && !is_dark && !(gated && is_turned_away) {
+            if self.frame.departures.fresnel_highlight {
+                let fresnel = FresnelHighlight::new(n, l, v, fi, material.shininess);
+                let factors = |light: R, material: R| {
+                    R::product([light, fresnel.tinted(material), fresnel.density, fresnel.incidence, cone, atten])
+                };
+                specular.push(zip(colors.specular, material.specular, factors));
+                return;
+            }
             let fs = || lighting::highlight(shading.specular, n, l, v, material.shininess);
             let fs = match shading.gate {
                 Gate::OpenGl => R::if_ge(R::literal(0.0), l.dot(n), || R::literal(0.0), fs),
@@ -308,7 +321,7 @@ impl<'a, R: Real> Shader<'a, R> {
         let (zero, one, at) = (R::literal(0.0), R::literal(1.0), &self.attributes);
         let three = |start: usize| Vector([attributes[start], attributes[start + 1], attributes[start + 2]]);
         let p = at.p.map_or(Vector::splat(zero), three);
-        let f = self.fog.zip(self.frame.fog.as_ref()).map(|(color, fog)| (color, factor(fog, p)));
+        let f = self.fog.zip(self.frame.fog.as_ref()).map(|(color, fog)| (color, self.factor(fog, p)));
         // Where nothing but fog is seen, what is under it need not be lit.
         let is_hidden = !self.stages && f.is_some_and(|(_, f)| f.is_at_most(0.0));
         let (mut n, dark) = (Vector::splat(zero), Vector::splat(zero));
@@ -330,7 +343,13 @@ impl<'a, R: Real> Shader<'a, R> {
                 Lit { color: three(start), diffuse: three(start + 3), specular: three(start + 6) }
             }
         };
-        let surface = self.surface(lit.color.extend(R::input(self.draw.alpha)), attributes);
+        let highlight = lit.specular;
+        let is_over = self.frame.departures.highlight_over_texture;
+        let under = if is_over { lit.diffuse } else { lit.color };
+        let mut surface = self.surface(under.extend(R::input(self.draw.alpha)), attributes);
+        if is_over {
+            surface = (surface.xyz() + highlight).extend(surface.w());
+        }
         let kept = match self.draw.cutout.filter(|_| self.has(Effect::Cutout)) {
             Some(threshold) => R::if_ge(surface.w(), R::input(threshold), || one, || zero),
             None => one,
@@ -340,6 +359,20 @@ impl<'a, R: Real> Shader<'a, R> {
             None => surface,
         };
         Fragment { p, n, diffuse: lit.diffuse, specular: lit.specular, surface, color, kept }
+    }
+
+    fn factor(&self, fog: &frame::Fog, p: Vec3<R>) -> R {
+        let distance = fog::distance(p, fog.distance);
+        match fog.form {
+            FogForm::Linear { dmin, dmax } => {
+                let f = fog::linear(distance, R::input(dmin), R::input(dmax));
+                let is_smooth = self.frame.departures.smoothstep_fog;
+                if is_smooth { smoothstep(R::literal(0.0), R::literal(1.0), f) } else { f }
+            }
+            FogForm::Exp { density } => fog::exp(distance, R::input(density)),
+            FogForm::Exp2Document { density } => fog::exp2_document(distance, R::input(density)),
+            FogForm::Exp2OpenGl { density } => fog::exp2_opengl(distance, R::input(density)),
+        }
     }
 
     /// Vertex colours, texture and lightmap.
@@ -365,16 +398,6 @@ impl<'a, R: Real> Shader<'a, R> {
             surface = color::modulate(texture::sample(lightmap, sampled.filter, sampled.wrap, uv(start)), surface);
         }
         surface
-    }
-}
-
-fn factor<R: Real>(fog: &frame::Fog, p: Vec3<R>) -> R {
-    let distance = fog::distance(p, fog.distance);
-    match fog.form {
-        FogForm::Linear { dmin, dmax } => fog::linear(distance, R::input(dmin), R::input(dmax)),
-        FogForm::Exp { density } => fog::exp(distance, R::input(density)),
-        FogForm::Exp2Document { density } => fog::exp2_document(distance, R::input(density)),
-        FogForm::Exp2OpenGl { density } => fog::exp2_opengl(distance, R::input(density)),
     }
 }
 

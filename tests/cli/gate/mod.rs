@@ -22,11 +22,20 @@ fn text(path: &Path) -> &str {
 
 /// Packs cases and answers them by the reference, as `eval` does.
 fn answered(test: &str, filter: &[&str]) -> (PathBuf, PathBuf) {
+    answered_as(test, filter, 64, |line| line.to_owned())
+}
+
+/// The same of so many cases, each of which is taken for another one.
+fn answered_as(test: &str, filter: &[&str], cases: u32, edit: impl Fn(&str) -> String) -> (PathBuf, PathBuf) {
     let folder = folder(test);
     let (pack, answers) = (folder.join("pack"), folder.join("answers.jsonl"));
-    let output = lightmeter(&[&["pack", text(&pack)], filter, &["--cases", "64"]].concat());
+    let output = lightmeter(&[&["pack", text(&pack)], filter, &["--cases", &cases.to_string()]].concat());
     assert_eq!(code(&output), 0, "{}", stderr(&output));
-    let cases = std::fs::File::open(pack.join("cases.jsonl")).expect("there are cases");
+    let given = std::fs::read_to_string(pack.join("cases.jsonl")).expect("there are cases");
+    let taken = folder.join("taken.jsonl");
+    let lines: String = given.lines().map(|line| edit(line) + "\n").collect();
+    std::fs::write(&taken, lines).expect("cases can be written");
+    let cases = std::fs::File::open(taken).expect("there are cases");
     let output = command(&["eval"]).stdin(cases).output().expect("the binary starts");
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     std::fs::write(&answers, &output.stdout).expect("answers can be written");
@@ -168,6 +177,22 @@ fn a_second_run_must_answer_the_same() {
     let (status, report) = judged(&pack, &answers, &[text(&other)]);
     // The first file says no name.
     assert!(status == 4 && report.to_string().contains("another hello"), "{report}");
+}
+
+#[test]
+fn a_parameter_that_is_off_by_less_than_any_answer_shows_is_named() {
+    let off = |line: &str| {
+        let mut case: Value = serde_json::from_str(line).expect("it is JSON");
+        let density = case["inputs"]["density"].as_f64().expect("it has a density");
+        // The least that f32 can tell, and three times that.
+        case["inputs"]["density"] = (density * 1.000_000_36).into();
+        case.to_string()
+    };
+    let (pack, answers) = answered_as("systematic", &["fog/exp/random"], 4096, off);
+    let (status, report) = judged(&pack, &answers, &[]);
+    let problem = report["groups"][0]["problem"].to_string();
+    assert_eq!((status, count(&report, "failed")), (1, 0), "{report}");
+    assert!(problem.contains("as if density were") && problem.contains("larger"), "{problem}");
 }
 
 #[test]
@@ -357,9 +382,11 @@ fn a_pack_is_written_over_a_pack_and_nothing_else() {
     assert_eq!(code(&lightmeter(&["gate", text(&pack), text(&pack)])), 2);
     assert_eq!(code(&packed("fog/exp")), 0);
     // A web application's manifest, and one that would have files elsewhere removed.
-    std::fs::write(pack.join("manifest.json"), "{\"name\":\"my application\"}").expect("it can be written");
-    let output = packed("fog/exp");
-    assert!(code(&output) == 2 && stderr(&output).contains("it holds something else"), "{}", stderr(&output));
+    for other in ["{\"name\":\"my application\"}", "{\"schema\":\"other/1\"}", "[]", "{"] {
+        std::fs::write(pack.join("manifest.json"), other).expect("it can be written");
+        let output = packed("fog/exp");
+        assert!(code(&output) == 2 && stderr(&output).contains("it holds something else"), "{}", stderr(&output));
+    }
     let outside = folder.join("outside.txt");
     std::fs::write(&outside, "mine").expect("it can be written");
     let manifest = "{\"schema\":\"lightmeter.pack/1\",\"files\":[{\"name\":\"../outside.txt\"}]}";
@@ -373,8 +400,11 @@ fn a_result_that_is_there_stays_until_there_is_another() {
     let (pack, answers) = answered("out", &["fog/exp"]);
     let out = pack.with_file_name("result.json");
     std::fs::write(&out, "before").expect("it can be written");
-    let nowhere = lightmeter(&["gate", text(&pack), "nowhere", "--out", text(&out)]);
-    assert_eq!((code(&nowhere), std::fs::read_to_string(&out).expect("it is there").as_str()), (2, "before"));
+    for (args, status) in [(&[text(&pack), "nowhere"][..], 2), (&["fog", "--exec", "exit 3"], 4)] {
+        let output = lightmeter(&[&["gate", "--out", text(&out)], args].concat());
+        let there = std::fs::read_to_string(&out).expect("it is there");
+        assert_eq!((code(&output), there.as_str()), (status, "before"), "{}", stderr(&output));
+    }
     let output = lightmeter(&["gate", text(&pack), text(&answers), "--out", text(&out)]);
     assert!(code(&output) == 0 && std::fs::read_to_string(&out).expect("it is there").contains("cases pass"));
     let output = lightmeter(&["gate", text(&pack), text(&answers), "--out", "/dev/null/x"]);

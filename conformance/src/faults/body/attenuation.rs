@@ -1,8 +1,8 @@
 //! Attenuation and spotlights with a step wrong.
 
-use super::super::lighting::smoothstep;
 use super::super::row::Row;
 use super::Body;
+use lightmeter_reference::departure::smoothstep;
 use lightmeter_reference::{Real, attenuation};
 
 pub(super) fn falloff<R: Real>(body: Body, x: &Row<'_, R>) -> Option<R> {

@@ -9,7 +9,6 @@ use crate::cases::Spec;
 use lightmeter_reference::Real;
 pub(super) use model::Twist;
 use model::right;
-pub(super) use shade::smoothstep;
 
 /// Whether the formula has these steps, and each makes a difference to it.
 pub(super) fn concerns(spec: &Spec, twists: &[Twist]) -> bool {
@@ -28,27 +27,12 @@ pub(super) fn evaluate<R: Real>(spec: &Spec, twists: &[Twist], numbers: &[R], ou
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::faults::catalogue::formulas;
-    use crate::select::CaseRef;
+    use crate::faults::agrees_with_formulas;
 
     #[test]
     fn without_a_mistake_the_model_is_the_formula() {
-        let mut seen = 0;
-        for member in formulas().iter().filter(|member| right(&member.spec.id).is_some()) {
-            for k in 0..256 {
-                let mut row = vec![];
-                member.inputs(CaseRef::Random(k), 1, &mut row);
-                let wide: Vec<f64> = row.iter().map(|&x| x.into()).collect();
-                let (mut model, mut formula) =
-                    (vec![f64::NAN; member.spec.output_len()], vec![0.0; member.spec.output_len()]);
-                evaluate(&member.spec, &[], &wide, &mut model).expect("a model");
-                member.formula.reference(&row, &mut formula);
-                for (a, b) in model.iter().zip(&formula) {
-                    assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{} {k}: {a} for {b}", member.spec.id);
-                }
-                seen += 1;
-            }
-        }
+        let seen =
+            agrees_with_formulas(|spec| right(&spec.id).is_some(), |spec, row, out| evaluate(spec, &[], row, out));
         assert!(seen > 20 * 256, "{seen}");
     }
 }

@@ -5,6 +5,7 @@ use super::model::{
     Arrangement, Attenuation, Cone, Cosine, Edge, Incidence, LitAt, Lobe, Mirror, Model, Source, Strength, View,
 };
 use lightmeter_reference::attenuation::{polynomial, spot_exponent};
+use lightmeter_reference::departure::{FresnelHighlight, smoothstep};
 use lightmeter_reference::lighting::{cosine_power_by_chord, cosine_power_by_schlick};
 use lightmeter_reference::vector::{face_normal, halfway, halfway_unnormalised, reflect};
 use lightmeter_reference::{Real, Vec3, Vector};
@@ -91,15 +92,9 @@ impl Model {
             Strength::Plain | Strength::EnergyConserving => material.scale(gated()),
             Strength::TimesIncidence => material.scale(gated() * incidence()),
             Strength::NormalisedWithFresnel => {
-                let h = halfway(v, l);
-                // Schlick's fresnel with the exponential that engines have taken from Karis 2013.
-                let cosine = v.dot(h).max(zero);
-                let exponent = (R::literal(-5.55473) * cosine - R::literal(6.98316)) * cosine;
-                let fresnel = exponent.exp2();
-                let lobe = n.dot(h).lobe(shininess);
-                let density = (shininess * R::literal(0.5) + one) * lobe * R::literal(0.25);
+                let fresnel = FresnelHighlight::new(n, l, v, incidence(), shininess);
                 let pi = if self.over_pi { R::literal(FRAC_1_PI) } else { one };
-                material.map(|f0| R::product([f0 * (one - fresnel) + fresnel, density, incidence(), pi]))
+                material.map(|f0| R::product([fresnel.tinted(f0), fresnel.density, fresnel.incidence, pi]))
             }
         }
     }
@@ -284,10 +279,4 @@ fn cone_of<R: Real>(cone: Cone, l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R, exp
         Cone::None | Cone::Ignored => one,
         Cone::Right => spot_exponent(l, axis, cutoff_cosine, exponent),
     }
-}
-
-/// The shading languages' smoothstep.
-pub(in crate::faults) fn smoothstep<R: Real>(low: R, high: R, x: R) -> R {
-    let t = ((x - low) / (high - low)).clamp(R::literal(0.0), R::literal(1.0));
-    R::product([t, t, R::literal(3.0) - R::literal(2.0) * t])
 }

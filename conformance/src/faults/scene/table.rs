@@ -108,6 +108,12 @@ faults! {
     Frame "blinn-for-phong" "the highlight is Blinn's in the place of Phong's" |frame| each_shading(frame, |shading| if shading.specular == Specular::Phong { shading.specular = Specular::Blinn });
     Frame "phong-for-blinn" "the highlight is Phong's in the place of Blinn's" |frame| each_shading(frame, |shading| if shading.specular == Specular::Blinn { shading.specular = Specular::Phong });
     Frame "half-vector-not-normalised" "the half vector is not normalised" |frame| each_shading(frame, |shading| if shading.specular == Specular::Blinn { shading.specular = Specular::BlinnUnnormalised });
+    Frame "normalised-highlight" "the highlight is Blinn's normalised lobe with Schlick's Fresnel term, times n·l" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) {
+        frame.departures.fresnel_highlight = true;
+    };
+    Frame "highlight-over-texture" "a texture multiplies what is diffuse, and the highlight is added afterwards" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some() && (draw.texture.is_some() || draw.lightmap.is_some())) {
+        frame.departures.highlight_over_texture = true;
+    };
     Frame "gate" "the highlight on what is turned away from the light is of the other dialect" |frame| each_shading(frame, |shading| shading.gate = match shading.gate {
         Gate::Documents => Gate::OpenGl,
         Gate::OpenGl => Gate::Documents,
@@ -135,6 +141,9 @@ faults! {
     Frame "fog-exp2-for-exp" "fog is of the distance's square in the place of the distance" |frame| each_fog(frame, |fog| if let FogForm::Exp { density } = fog.form {
         fog.form = FogForm::Exp2OpenGl { density };
     });
+    Frame "fog-smoothstep" "linear fog follows smoothstep" |frame| if matches!(frame.fog, Some(Fog { form: FogForm::Linear { .. }, .. })) {
+        frame.departures.smoothstep_fog = true;
+    };
     Frame "fog-ends-swapped" "where linear fog begins and where it ends are swapped" |frame| each_fog(frame, |fog| if let FogForm::Linear { dmin, dmax } = &mut fog.form {
         std::mem::swap(dmin, dmax);
     });

@@ -17,6 +17,16 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::{Result, Write};
 
+/// A JSON document of a schema, which is expected to be what the words say.
+fn document(json: &str, schema: &str, expected: &str) -> std::result::Result<serde_json::Value, String> {
+    let value: serde_json::Value = serde_json::from_str(json).map_err(|error| format!("not {expected}: {error}"))?;
+    if value["schema"] != schema {
+        let found = value["schema"].as_str().unwrap_or("none");
+        return Err(format!("schema `{found}`; expected {schema}, {expected}"));
+    }
+    Ok(value)
+}
+
 /// What the page needs of a run's JSON.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Run {

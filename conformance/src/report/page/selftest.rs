@@ -36,12 +36,7 @@ impl Run {
     /// Where it is another document, of the blend unit alone, or of mistakes that this version does not have.
     pub fn read(json: &str) -> Result<Self, String> {
         const EXPECTED: &str = "the JSON of `lightmeter selftest --format json`";
-        let value: serde_json::Value =
-            serde_json::from_str(json).map_err(|error| format!("not {EXPECTED}: {error}"))?;
-        if value["schema"] != "lightmeter.selftest/1" {
-            let schema = value["schema"].as_str().unwrap_or("none");
-            return Err(format!("schema `{schema}`; expected lightmeter.selftest/1, {EXPECTED}"));
-        }
+        let value = super::document(json, "lightmeter.selftest/1", EXPECTED)?;
         if value["kills"].is_null() {
             return Err("it is of the blend unit alone; expected formulas too".into());
         }

@@ -34,12 +34,7 @@ impl Run {
     /// Where it is another document, or of probes that this version does not have.
     pub fn read(json: &str) -> Result<Self, String> {
         const EXPECTED: &str = "the JSON of `lightmeter special --format json`";
-        let value: serde_json::Value =
-            serde_json::from_str(json).map_err(|error| format!("not {EXPECTED}: {error}"))?;
-        if value["schema"] != "lightmeter.special/1" {
-            let schema = value["schema"].as_str().unwrap_or("none");
-            return Err(format!("schema `{schema}`; expected lightmeter.special/1, {EXPECTED}"));
-        }
+        let value = super::document(json, "lightmeter.special/1", EXPECTED)?;
         let run: Self = serde_json::from_value(value).map_err(|error| format!("not {EXPECTED}: {error}"))?;
         let unknown = run.outcomes.iter().find(|outcome| Probe::by_name(&outcome.probe).is_none());
         match unknown {
