@@ -259,12 +259,21 @@ class Surfaces:
             self.spread([c.pa, c.pb], [[-1, 0], [1, 0]])
             # By 256ths of a pixel, to which the rasteriser snaps anyway.
             glViewportIndexedf(0, 0.5 - round(float(c.t) * length * 256) / 256, 0, length, 1)
-            glBegin(GL_LINES)
-            for p, normal in ((c.pa, c.na), (c.pb, c.nb)):
-                glNormal3fv(normal)
-                glVertex3fv(p)
-            glEnd()
-            values.append(self.target.read(0, 0, 1, 1)[0, 0, 0])
+            ends = ((c.pa, c.na), (c.pb, c.nb))
+            # A line's last pixel is not drawn: it is the first one of the line from there.
+            for way in (ends, reversed(ends)):
+                self.target.clear()
+                glBegin(GL_LINES)
+                for p, normal in way:
+                    glNormal3fv(normal)
+                    glVertex3fv(p)
+                glEnd()
+                pixel = self.target.read(0, 0, 1, 1)[0, 0]
+                if pixel[3]:
+                    break
+            else:
+                raise Skip("the line does not cover the pixel")
+            values.append(pixel[0])
 
         glEnable(GL_SCISSOR_TEST)
         glScissor(0, 0, 1, 1)

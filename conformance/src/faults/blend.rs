@@ -35,6 +35,8 @@ pub(super) enum Twist {
     ColorForAlpha,
     /// The source drawn as if it were premultiplied: factor ONE for SRC_ALPHA.
     AsPremultiplied,
+    /// DST_COLOR and ONE_MINUS_SRC_ALPHA for DST_COLOR and ZERO.
+    MultipliedByCoverage,
     /// SRC_ALPHA_SATURATE as SRC_ALPHA.
     NotSaturated,
     /// SRC_ALPHA_SATURATE by the source's own alpha.
@@ -136,6 +138,14 @@ impl Model {
             Twist::DestinationForSource => self.factors(destination_for_source),
             Twist::AlphaForColor => self.color_factors(alpha_for_color),
             Twist::ColorForAlpha => self.color_factors(color_for_alpha),
+            Twist::MultipliedByCoverage => {
+                if matches!(self.program, Program::WithoutAlpha(_)) {
+                    self.each(|s| match (s.equation, s.src, s.dst) {
+                        (Equation::Add, Factor::DstColor, Factor::Zero) => State { dst: Factor::OneMinusSrcAlpha, ..s },
+                        _ => s,
+                    });
+                }
+            }
             Twist::AsPremultiplied => {
                 self.each(|s| if s.src == Factor::SrcAlpha { State { src: Factor::One, ..s } } else { s })
             }

@@ -1,6 +1,7 @@
 //! What a mistake does to a formula's inputs before it, and to its outputs after it.
 
 use crate::cases::{Shape, Spec};
+use lightmeter_gpu::TARGET_SIZE;
 use lightmeter_reference::Real;
 use lightmeter_reference::color::{srgb_decode, srgb_encode};
 use std::ops::Range;
@@ -30,6 +31,8 @@ pub(super) enum Before {
     HalfAngle(&'static str),
     /// A cosine → that of twice its angle.
     DoubleAngle(&'static str),
+    /// x → max(x, bound).
+    AtLeast(&'static str, f64),
     /// The last number first.
     Rotate(&'static str),
     /// Columns taken for rows.
@@ -56,6 +59,7 @@ impl Before {
             Self::Negate(x)
             | Self::Scale(x, _)
             | Self::Offset(x, _)
+            | Self::AtLeast(x, _)
             | Self::Set(x, _)
             | Self::Square(x)
             | Self::Reciprocal(x)
@@ -77,6 +81,7 @@ impl Before {
             Self::Negate(name) => each(name, &|x| -x),
             Self::Scale(name, factor) => each(name, &|x| x * R::literal(factor)),
             Self::Offset(name, offset) => each(name, &|x| x + R::literal(offset)),
+            Self::AtLeast(name, bound) => each(name, &|x| x.max(R::literal(bound))),
             Self::Set(name, value) => each(name, &|_| R::literal(value)),
             Self::Square(name) => each(name, &|x| x * x),
             Self::Reciprocal(name) => each(name, &|x| one / x),
@@ -147,6 +152,8 @@ pub(super) enum After {
     Truncate,
     /// Colours rounded to whole 255ths.
     Round,
+    /// A pixel's y counted from below.
+    FromBelow,
     /// Every output limited to [0, 1] and rounded to whole 255ths.
     RoundAll,
     /// Red, green and blue times alpha.
@@ -178,6 +185,7 @@ impl After {
         };
         match self {
             Self::Gamma | Self::Srgb | Self::Decode | Self::Clamp | Self::Truncate | Self::Round => color(|_| true),
+            Self::FromBelow => spec.id == "interpolation/raster-position",
             Self::RoundAll => color(|_| true) && spec.outputs.iter().any(|output| output.unit != "color"),
             Self::RedBlue => color(|shape| shape != Shape::Scalar),
             Self::Premultiply | Self::Opaque => color(|shape| shape == Shape::Vec4),
@@ -214,6 +222,11 @@ impl After {
             Self::Clamp => colors(spec, out, 4, unit),
             Self::Truncate => colors(spec, out, 4, |c| (byte * unit(c)).floor_then(|n| R::literal(n) / byte)),
             Self::Round => colors(spec, out, 4, |c| (byte * unit(c)).round() / byte),
+            Self::FromBelow => {
+                if let [_, y, ..] = out {
+                    *y = R::literal(f64::from(TARGET_SIZE)) - *y;
+                }
+            }
             Self::RoundAll => out.iter_mut().for_each(|x| *x = (byte * unit(*x)).round() / byte),
             Self::RedBlue => each_color(spec, out, |color| {
                 if color.len() > 2 {

@@ -65,7 +65,8 @@ impl Diagnosis {
 
 /// Explanations that are kept.
 const MOST_EXPLANATIONS: usize = 5;
-/// The share of the failing cases that makes an explanation of them all; below, it is told as one of a part.
+/// The share of the failing cases that makes an explanation of them all; below, it is told as one of a part. Of the passing ones
+/// so many must not contradict it.
 const WHOLE: f64 = 0.9;
 /// The share below which it is told as none.
 const PART: f64 = 0.5;
@@ -320,10 +321,11 @@ impl Trial<'_> {
         for row in self.passing {
             consistent += usize::from(held(row) != Fit::Outside);
         }
-        // What may give anything explains nothing by that alone.
-        let failing = self.failing.len();
-        if share(explained + open, failing) >= PART && share(explained, failing) >= LEAST {
-            let openness = openness / share(failing + self.passing.len(), 1);
+        // What may give anything explains nothing by that alone, and what answers that pass contradict is not what was done.
+        let (failing, passing) = (self.failing.len(), self.passing.len());
+        let is_borne_out = passing == 0 || share(consistent, passing) >= WHOLE;
+        if is_borne_out && share(explained + open, failing) >= PART && share(explained, failing) >= LEAST {
+            let openness = openness / share(failing + passing, 1);
             let faults = tried.faults();
             self.found.push(Explanation { faults, says, parameter, explained, open, consistent, openness });
         }

@@ -38,6 +38,8 @@ const ROUGH_OCTAVES: i32 = 5;
 const ROUGH_STEPS: i32 = 2;
 const FEW_ROWS: usize = 6;
 const NEAREST: usize = 12;
+/// What is left of the cost of the parameter as it was asked, at most.
+const MOST_COST: f64 = 0.9;
 
 impl Scaled {
     const fn one(name: &'static str, range: Range<usize>, is_output: bool) -> Self {
@@ -250,6 +252,10 @@ fn search(variation: &Variation<'_>, rows: &[Row], mut scaled: Scaled) -> Option
         if !moved || stride.abs() < 1e-9 * factor {
             break;
         }
+    }
+    // A parameter that makes no difference explains none.
+    if least > MOST_COST * cost(&all(&scaled, 1.0)) {
+        return None;
     }
     // Nothing wrong with this parameter.
     let is_one = (factor - 1.0).abs() <= scaled.uncertainty;

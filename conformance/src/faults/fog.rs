@@ -26,6 +26,8 @@ pub(super) enum Twist {
     /// 1 − f.
     Inverted,
     Unclamped,
+    /// 1 − (1 − f): what is small is lost in the rounding of 1.
+    ByComplement,
     /// Fog and surface exchanged in the mix.
     MixedTheWrongWay,
     /// The fog's colour added.
@@ -66,6 +68,7 @@ struct Model {
     base_two: bool,
     inverted: bool,
     clamped: bool,
+    by_complement: bool,
     mix: Mix,
 }
 
@@ -79,7 +82,15 @@ fn right(id: &str) -> Option<Model> {
         _ => return None,
     };
     let length = if id.contains("radial") { Length::Radial } else { Length::Planar };
-    Some(Model { length, factor, base_two: false, inverted: false, clamped: true, mix: Mix::Right })
+    Some(Model {
+        length,
+        factor,
+        base_two: false,
+        inverted: false,
+        clamped: true,
+        by_complement: false,
+        mix: Mix::Right,
+    })
 }
 
 impl Model {
@@ -101,6 +112,7 @@ impl Model {
             Twist::Unclamped if ramp || (self.factor == Factor::Exp && self.length == Length::Planar) => {
                 self.clamped = false
             }
+            Twist::ByComplement if !ramp => self.by_complement = true,
             Twist::MixedTheWrongWay => self.mix = Mix::Turned,
             Twist::Added => self.mix = Mix::Added,
             Twist::NotApplied => self.mix = Mix::None,
@@ -134,6 +146,7 @@ impl Model {
             }
         };
         let f = if self.clamped { f.clamp(R::literal(0.0), one) } else { f };
+        let f = if self.by_complement { one - (one - f) } else { f };
         Some(if self.inverted { one - f } else { f })
     }
 }

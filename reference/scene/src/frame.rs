@@ -55,6 +55,8 @@ pub struct Departures {
     pub fresnel_highlight: bool,
     /// Linear fog follows smoothstep.
     pub smoothstep_fog: bool,
+    /// Normals keep the length that the modelview leaves them, until a fragment normalises them.
+    pub normals_at_length: bool,
     /// Textures and lightmaps multiply what is diffuse, and the highlight is added afterwards.
     pub highlight_over_texture: bool,
 }

@@ -207,11 +207,11 @@ impl<'a, R: Real> Shader<'a, R> {
 
     fn normal(&self, shading: Shading, given: Vec3<R>) -> Vec3<R> {
         let modelview = self.modelview.upper3();
-        match shading.normals {
+        let n = match shading.normals {
             Normals::InverseTranspose => vector::normal_inverse_transpose(&modelview, given),
             Normals::Modelview => vector::normal_modelview(&modelview, given),
-        }
-        .normalize()
+        };
+        if self.frame.departures.normals_at_length { n } else { n.normalize() }
     }
 
     /// `CE + CA + Σᵢ(CAᵢ + CDᵢ + CSᵢ)` at a point with a unit normal.

@@ -4,6 +4,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::faults) enum Twist {
     NormalNotNormalised,
+    /// Alpha is the diffuse material's.
+    AlphaOfTheMaterial,
     LightNotNormalised,
     LightReversed,
     PositionAsDirection,
@@ -176,6 +178,8 @@ pub(super) struct Model {
     pub(super) gated: bool,
     pub(super) strength: Strength,
     pub(super) over_pi: bool,
+    /// Alpha is not summed up.
+    pub(super) alpha_of_material: bool,
     pub(super) ambient: u8,
     pub(super) diffuse: bool,
     pub(super) specular: bool,
@@ -243,6 +247,7 @@ pub(super) fn right(id: &str) -> Option<Model> {
         gated: is(&["phong-gated", "point-opengl", "blinn-stable"]),
         strength: Strength::Plain,
         over_pi: false,
+        alpha_of_material: false,
         ambient: 1,
         diffuse: true,
         specular: true,
@@ -336,6 +341,9 @@ impl Model {
             Twist::VectorsAtTheVertices => self.edge(&[Edge::Phong, Edge::Interpolated], Edge::UnitVectors),
             Twist::LitAtTheLastVertex if matches!(self.arrangement, Arrangement::Face) => self.lit_at = LitAt::Last,
             Twist::LitAtTheMiddle if matches!(self.arrangement, Arrangement::Face) => self.lit_at = LitAt::Middle,
+            Twist::AlphaOfTheMaterial if matches!(self.arrangement, Arrangement::TwoLights) => {
+                self.alpha_of_material = true
+            }
             Twist::OneLightAlone if matches!(self.arrangement, Arrangement::TwoLights) => self.both_lights = false,
             _ => {}
         }

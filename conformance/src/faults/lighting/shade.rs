@@ -204,7 +204,7 @@ impl Model {
         let [_, d1, s1] = lit("color1", Source::Position, "position", Vector::splat(R::literal(0.0)))?;
         let sum =
             if self.both_lights { Vector::sum([ambient, d0, s0, d1, s1]) } else { Vector::sum([ambient, d0, s0]) };
-        put(out, 0, sum);
+        put(out, 0, if self.alpha_of_material { sum.xyz().extend(x.vector::<4>("diffuse")?.w()) } else { sum });
         Some(())
     }
 

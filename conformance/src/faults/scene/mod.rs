@@ -27,6 +27,8 @@ const OTHERS: usize = 24;
 const PART: f64 = 0.5;
 /// The part that makes it one of all of them.
 const WHOLE: f64 = 0.9;
+/// How far from a whole step a value may be that is one.
+const STEP_ERROR: f64 = 1e-6;
 /// Explanations that are tried with all that is legal.
 const MOST_TRIED: usize = 5;
 
@@ -138,7 +140,11 @@ impl<'a> Trial<'a> {
         let key = |one: &SceneExplanation| (Reverse(one.explained), Reverse(one.consistent), one.faults.len());
         found.sort_by(|a, b| key(a).cmp(&key(b)).then(a.distance.total_cmp(&b.distance)));
         #[expect(clippy::cast_precision_loss, reason = "counts of components")]
-        found.retain(|one| one.explained as f64 >= PART * self.failing.len() as f64);
+        let has = |count: usize, share: f64, all: usize| count as f64 >= share * all as f64;
+        // What pixels that pass contradict is not what was done.
+        found.retain(|one| {
+            has(one.explained, PART, self.failing.len()) && has(one.consistent, WHOLE, self.passing.len())
+        });
         let sentence = self.sentence(found.first());
         SceneDiagnosis { failing: self.failing.len(), explanations: found, sentence }
     }
@@ -204,10 +210,15 @@ impl<'a> Trial<'a> {
         let changes_image = faults.iter().any(|fault| !fault.is_of_frame());
         let is_legal = |number: &usize| {
             let (pixel, k) = (number / 4, number % 4);
-            let value = self.image.pixels[pixel][k];
-            // The legal values of a frame are all that may be stored; those of a changed image were changed after that.
-            let slack = if changes_image { slack(format, value) } else { 0.0 };
-            low[pixel][k] - slack <= value && value <= high[pixel][k] + slack
+            let (low, high, value) = (low[pixel][k], high[pixel][k], self.image.pixels[pixel][k]);
+            // The legal values of a frame are all that may be stored; those of a changed image were changed after that, and are
+            // stored now: on steps, at either neighbour.
+            let [low, high] = match format.encoding() {
+                _ if !changes_image => [low, high],
+                Encoding::Unorm8 | Encoding::Srgb8 => [(low + STEP_ERROR).floor(), (high - STEP_ERROR).ceil()],
+                Encoding::Float16 | Encoding::Float32 => [low - slack(format, value), high + slack(format, value)],
+            };
+            low <= value && value <= high
         };
         let count = |of: &[usize]| of.iter().filter(|number| is_legal(number)).count();
         SceneExplanation { explained: count(&self.failing), consistent: count(&self.passing), faults, distance }

@@ -123,6 +123,9 @@ faults! {
         Viewer::NonLocal => Viewer::Local,
     });
     Frame "normals-by-modelview" "normals are brought to eye space by the modelview" |frame| each_shading(frame, |shading| shading.normals = Normals::Modelview);
+    Frame "normals-not-normalised" "normals keep the length that the modelview leaves them" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) {
+        frame.departures.normals_at_length = true;
+    };
     Frame "normals-reversed" "normals point inward" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.normals).for_each(negate);
     // Fog.
     Frame "fog-left-out" "fog is left out" |frame| frame.fog = None;

@@ -58,6 +58,20 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("attenuation-at-most-one", "attenuation is limited to 1", &[&[After(Out::AtMostOne("atten"))]])
         .only(|spec| spec.id != "attenuation/constant"),
     fault(
+        "linear-divisor-floored",
+        "the distance that light is divided by is held above 0.01",
+        &[&[Before(In::AtLeast("d", 0.01))]],
+    )
+    .only(|spec| spec.id == "attenuation/linear")
+    .seen_in("three.js, decay 1"),
+    fault(
+        "square-divisor-floored",
+        "the squared distance that light is divided by is held above 0.01",
+        &[&[Before(In::AtLeast("d", 0.1))]],
+    )
+    .only(|spec| spec.id == "attenuation/square")
+    .seen_in("three.js, decay 2"),
+    fault(
         "not-attenuated",
         "the light is not attenuated",
         &[&[lit(Lit::NotAttenuated)], &[After(Out::Set("atten", 1.0))]],

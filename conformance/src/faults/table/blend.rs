@@ -80,6 +80,12 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[Before(In::Premultiply("src"))]],
     )
     .only(where_source_color_counts),
+    fault(
+        "multiplied-by-coverage",
+        "what is multiplied by shows through as far as the source's alpha is below 1",
+        &[&[Before(In::Premultiply("src")), blended(Blended::MultipliedByCoverage)]],
+    )
+    .seen_in("three.js, MultiplyBlending"),
     fault("saturate-not-saturated", "SRC_ALPHA_SATURATE is SRC_ALPHA", &[&[blended(Blended::NotSaturated)]]),
     fault(
         "saturate-by-source-alpha",

@@ -43,6 +43,12 @@ pub(super) const FAULTS: &[Fault] = &[
     .only(|spec| spec.family() == "fog"),
     fault("fog-unclamped", "the fog factor is not clamped", &[&[fogged(Fogged::Unclamped)]]),
     fault(
+        "fog-by-complement",
+        "the fog factor is 1 − (1 − f), which loses a small one",
+        &[&[fogged(Fogged::ByComplement)]],
+    )
+    .seen_in("three.js, FogExp2"),
+    fault(
         "fog-mixed-the-wrong-way",
         "fog and surface are exchanged in the mix",
         &[&[fogged(Fogged::MixedTheWrongWay)]],

@@ -76,6 +76,8 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("always-front", "every triangle is front facing", &[&[Body(Wrong::FrontAlways)]]),
     fault("image-upside-down", "the image is upside down", &[&[Body(Wrong::UpsideDown)]])
         .seen_in("OpenGL's origin for WebGPU's"),
+    fault("position-from-below", "a fragment's position counts from the lower edge", &[&[After(Out::FromBelow)]])
+        .seen_in("gl_FragCoord"),
     fault("depth-range", "depth is taken from [−1, 1] for [0, 1], or the reverse", &[&[Body(Wrong::DepthRange)]])
         .seen_in("OpenGL's clip space in WebGPU, and the reverse"),
     fault(

@@ -268,6 +268,12 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("lit-at-the-last-vertex", "a flat face is lit at its last vertex", &[&[lit(Lit::LitAtTheLastVertex)]])
         .seen_in("OpenGL's provoking vertex"),
     fault("lit-at-the-middle", "a flat face is lit at its middle", &[&[lit(Lit::LitAtTheMiddle)]]),
+    fault(
+        "alpha-of-the-material",
+        "alpha is the diffuse material's, not the sum of all terms",
+        &[&[lit(Lit::AlphaOfTheMaterial)]],
+    )
+    .seen_in("OpenGL's fixed function"),
 ];
 
 /// Powers of cosines, spotlights apart.

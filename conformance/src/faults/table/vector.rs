@@ -66,6 +66,15 @@ pub(super) const FAULTS: &[Fault] = &[
         .seen_in("clockwise meshes; a mirrored projection"),
     fault("face-normal-not-normalised", "the normal of a face is not normalised", &[&[Body(Wrong::FaceNotNormalised)]])
         .seen_in("normals weighted by area"),
+    fault(
+        "zero-normalised",
+        "a vector without length is normalised like any other",
+        &[&[Instead(&[
+            ("vector/normalize", "vector/normalize-unguarded"),
+            ("vector/halfway", "vector/halfway-unguarded"),
+        ])]],
+    )
+    .seen_in("GLSL's normalize"),
     fault("normalised-by-sum", "vectors are divided by the sum of their components", &[&[Body(Wrong::NormalizeBySum)]]),
     fault(
         "normalised-by-largest",
