@@ -35,7 +35,7 @@ fn main() -> anyhow::Result<()> {
     let faults = Faults::read();
     let catalogue = catalogue();
     let by_id: HashMap<&str, &Member> = catalogue.iter().map(|member| (member.spec.id.as_str(), member)).collect();
-    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    let mut out = std::io::BufWriter::with_capacity(1 << 20, std::io::stdout().lock());
     let (mut folder, mut answered) = (PathBuf::new(), 0_u32);
     for line in std::io::stdin().lock().lines() {
         let request: Value = serde_json::from_str(&line?)?;
@@ -86,6 +86,9 @@ fn main() -> anyhow::Result<()> {
             }
             if faults.has("hello-at", id) {
                 writeln!(out, "{}", json!({ "hello": "lightmeter.protocol/1", "renderer": "another" }))?;
+            }
+            if faults.0.get("slow-at").is_some_and(|formula| id.strip_prefix(formula.as_str()).is_some()) {
+                std::thread::sleep(std::time::Duration::from_millis(10));
             }
             // Lines that answer nothing: without end, or one now and then for ever.
             while faults.has("flood-at", id) {

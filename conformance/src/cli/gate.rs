@@ -105,6 +105,9 @@ impl Gate {
         matches_something(&expectations)?;
         let start = Instant::now();
         let (plan, answers) = self.asked()?;
+        if let Some((path, known)) = &known {
+            known.is_of(&plan.choice, None, path)?;
+        }
         writable(self.out.as_deref())?;
         let mut ledger = Ledger::new(&plan, self.profile.unwrap_or(&WGSL));
         ledger.is_held_to = self.profile.is_some();
@@ -119,13 +122,18 @@ impl Gate {
         };
         bar.finish_and_clear();
         let mut report = Report::new(&mut ledger, outcome?, command(), start.elapsed().as_secs_f64());
-        if let Some((path, known)) = &known {
-            report.regressions = known.compare(&report, self.growth, path)?;
-        }
+        // What was asked is told, even where the baseline turns out to be of other accuracy rules.
+        let regressions = known.as_ref().map(|(path, known)| known.compare(&report, self.growth, path)).transpose();
+        report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
         emit(&self.write(&report)?, self.out.as_deref())?;
+        regressions?;
         if let Some(path) = self.baseline.as_ref().filter(|_| self.update_baseline) {
-            baseline::update(&report, path)?;
-            eprintln!("the baseline {} is this result now", path.display());
+            match baseline::update(&report, path) {
+                Ok(()) => eprintln!("the baseline {} is this result now", path.display()),
+                // The result itself says how the gate ends.
+                Err(error @ baseline::Error::Unfit { .. }) => eprintln!("{error}"),
+                Err(error) => return Err(error.into()),
+            }
         }
         Ok(status(&report))
     }

@@ -120,6 +120,10 @@ impl<'de> Deserialize<'de> for Float {
             fn visit_u64<E>(self, x: u64) -> Result<f32, E> {
                 Ok(x as f32)
             }
+            // What JavaScript writes for NaN.
+            fn visit_unit<E>(self) -> Result<f32, E> {
+                Ok(f32::NAN)
+            }
             fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<f32, E> {
                 match text {
                     "NaN" => Ok(f32::NAN),
@@ -151,10 +155,10 @@ pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
     match serde_json::from_str::<Raw<'_>>(text) {
         Ok(raw) => told(raw),
         Err(error) => {
-            if let Some(hello) = hello(text) {
-                return Ok(hello);
+            if is_hello(line) {
+                return hello(text);
             }
-            if text.contains("NaN") || text.contains("Infinity") {
+            if BARE.iter().any(|(word, _)| text.contains(word)) {
                 let words = quoted(text);
                 if let Ok(raw) = serde_json::from_str::<Raw<'_>>(&words) {
                     return told(raw).map(Line::into_owned);
@@ -165,14 +169,25 @@ pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
     }
 }
 
+/// What Python, and C's printf, write for numbers that JSON has not; longer ones first.
+const BARE: [(&str, &str); 8] = [
+    ("-Infinity", "\"-Inf\""),
+    ("Infinity", "\"Inf\""),
+    ("NaN", "\"NaN\""),
+    ("-nan(ind)", "\"NaN\""),
+    ("-nan", "\"NaN\""),
+    ("nan", "\"NaN\""),
+    ("-inf", "\"-Inf\""),
+    ("inf", "\"Inf\""),
+];
+
 /// Bare words for numbers that JSON has not, as strings.
 fn quoted(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 16);
     let mut is_string = false;
     let mut rest = text;
     while let Some(c) = rest.chars().next() {
-        let word = [("NaN", "\"NaN\""), ("-Infinity", "\"-Inf\""), ("Infinity", "\"Inf\"")];
-        if let Some((word, string)) = word.into_iter().find(|(word, _)| !is_string && rest.starts_with(word)) {
+        if let Some((word, string)) = BARE.into_iter().find(|(word, _)| !is_string && rest.starts_with(word)) {
             out.push_str(string);
             rest = &rest[word.len()..];
             continue;
@@ -212,7 +227,14 @@ impl Line<'_> {
 
 const EXPECTED: &str = "an answer such as {\"id\": \"fog/exp/random/000017\", \"value\": [0.5, 1, 2, 3]}";
 
-fn hello(text: &str) -> Option<Line<'_>> {
+/// Whether a line is meant to say who answers: it has the words, and no id.
+#[must_use]
+pub fn is_hello(line: &[u8]) -> bool {
+    serde_json::from_slice::<serde_json::Value>(line.trim_ascii())
+        .is_ok_and(|value| value["id"].is_null() && (value["hello"].is_string() || value["renderer"].is_string()))
+}
+
+fn hello(text: &str) -> Result<Line<'_>, String> {
     #[derive(Deserialize)]
     struct Greeting {
         /// The protocol; a file of answers may leave it out.
@@ -221,22 +243,40 @@ fn hello(text: &str) -> Option<Line<'_>> {
         #[serde(flatten)]
         rest: serde_json::Map<String, serde_json::Value>,
     }
-    let Greeting { hello, renderer, rest } = serde_json::from_str(text).ok()?;
-    if hello.is_some_and(|protocol| protocol != PROTOCOL) {
-        return None;
+    let wrong = |error: serde_json::Error| format!("its hello: {error}");
+    let Greeting { hello, renderer, rest } = serde_json::from_str(text).map_err(wrong)?;
+    if let Some(protocol) = hello.filter(|protocol| protocol != PROTOCOL) {
+        return Err(format!("its hello is of `{}`; expected `{PROTOCOL}`", clipped(&protocol)));
     }
-    let hello: Hello = serde_json::from_value(rest.into()).ok()?;
-    Some(Line::Hello(Box::new(Hello { renderer: clipped(&renderer), version: clipped(&hello.version), ..hello })))
+    for (name, value) in &rest {
+        let is_list = matches!(name.as_str(), "formulas" | "scenes" | "formats" | "effects");
+        if is_list && !value.is_array() && !value.is_null() {
+            return Err(format!("its hello: `{name}` is no list; expected such as [\"fog/*\", \"lighting/blinn\"]"));
+        }
+        if name == "version" && !value.is_string() {
+            return Err("its hello: `version` is no string; expected such as \"1.2\"".into());
+        }
+    }
+    let hello: Hello = serde_json::from_value(rest.into()).map_err(wrong)?;
+    Ok(Line::Hello(Box::new(Hello { renderer: clipped(&renderer), version: clipped(&hello.version), ..hello })))
 }
 
-/// The id of an answer, whatever else is wrong with it: the string behind the first `"id":`.
+/// The id of an answer, whatever else is wrong with it: where it is no JSON, the string behind the first `"id":`.
 #[must_use]
 pub fn id(line: &[u8]) -> Option<Cow<'_, str>> {
-    let text = std::str::from_utf8(line).ok()?;
+    #[derive(Deserialize)]
+    struct Id<'a> {
+        #[serde(borrow)]
+        id: Cow<'a, str>,
+    }
+    let text = std::str::from_utf8(line).ok()?.trim_start_matches('\u{feff}');
+    if let Ok(Id { id }) = serde_json::from_str(text) {
+        return Some(id);
+    }
     let (_, rest) = text.split_once("\"id\"")?;
     let rest = rest.trim_start().strip_prefix(':')?.trim_start().strip_prefix('"')?;
-    // No id of a case has anything to escape.
-    rest.split_once('"').map(|(id, _)| Cow::Borrowed(id))
+    // Some writers escape a slash, of which ids have some, and nothing else in them is to be escaped.
+    rest.split_once('"').map(|(id, _)| Cow::Owned(id.replace("\\/", "/")))
 }
 
 /// Characters of a renderer's words that are told.
@@ -331,6 +371,20 @@ mod tests {
             assert_eq!(super::id(bare).as_deref(), Some("NaN"));
         }
         assert_eq!(read("\u{feff}{\"id\":\"a\",\"value\":[1]}".as_bytes()), Ok(value(&[1.0])));
+        for bare in
+            [&br#"{"id":"a","value":[nan,-nan,inf,-inf]}"#[..], br#"{"id":"a","value":[null,null,"Inf","-Inf"]}"#]
+        {
+            let Ok(Line::Value(_, values)) = read(bare) else { panic!("bare words are read") };
+            assert!(values[0].is_nan() && values[1].is_nan() && values[2..] == [f32::INFINITY, f32::NEG_INFINITY]);
+        }
+        for (line, id) in [
+            (&br#"{"id":"fog\/exp","value":[1]}"#[..], "fog/exp"),
+            (br#"{"id":"fog\/exp","value":[nan]}"#, "fog/exp"),
+            (br#"{"meta":{"id":5},"id":"fog/exp","value":[1]}"#, "fog/exp"),
+        ] {
+            assert_eq!(super::id(line).as_deref(), Some(id));
+            assert!(matches!(read(line), Ok(Line::Value(read, _)) if read == id));
+        }
         assert_eq!(super::id(br#"{"id":"a","value":[1,2"#).as_deref(), Some("a"));
         for (line, said) in [
             (&br#"{"id":"a","value":[1,2"#[..], "EOF"),
@@ -340,7 +394,9 @@ mod tests {
             (br#"{"id":"a","values":[1]}"#, "none, or more than one"),
             (br#"[1]"#, "expected an answer"),
             (b"\xff", "UTF-8"),
-            (br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#, "expected an answer"),
+            (br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#, "expected `lightmeter.protocol/1`"),
+            (br#"{"renderer":"r","formulas":"fog"}"#, "`formulas` is no list"),
+            (br#"{"renderer":"r","version":1.2}"#, "`version` is no string"),
         ] {
             let error = read(line).expect_err(said);
             assert!(error.contains(said), "{error}");

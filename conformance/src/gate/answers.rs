@@ -42,6 +42,9 @@ impl Answers {
         if let Some(Ok(line)) = opened.next()? {
             match answer::read(&line) {
                 Ok(answer::Line::Hello(hello)) => opened.hello = Some(*hello),
+                Err(message) if answer::is_hello(&line) => {
+                    return Err(pack::Error::Manifest { path: opened.path, message: format!("line 1: {message}") });
+                }
                 _ => opened.first.push((opened.number, line)),
             }
         }

@@ -3,6 +3,7 @@
 use super::known::expanded;
 use super::plan::Choice;
 use super::report::{Group, Report};
+use crate::cases::GENERATOR_VERSION;
 use crate::image::file::whole;
 use serde::Deserialize;
 use std::collections::HashSet;
@@ -84,22 +85,7 @@ impl Baseline {
     /// # Errors
     /// Where the cases are others.
     pub fn compare(&self, report: &Report, factor: f64, path: &Path) -> Result<Vec<String>, Error> {
-        let mut differences = vec![];
-        let mut differs = |what: &str, before: String, now: String| {
-            if before != now {
-                differences.push(format!("{what} {before} there, {now} here"));
-            }
-        };
-        let (before, now) = (&self.choice, &report.choice);
-        differs("filter", format!("{:?}", before.filter), format!("{:?}", now.filter));
-        differs("cases", before.cases.to_string(), now.cases.to_string());
-        differs("seed", before.seed.to_string(), now.seed.to_string());
-        differs("size", format!("{:?}", before.size), format!("{:?}", now.size));
-        differs("generator", self.generator.to_string(), report.generator.to_string());
-        differs("profile", self.profile.clone(), report.profile.clone());
-        if !differences.is_empty() {
-            return Err(Error::Others { path: path.into(), differences });
-        }
+        self.is_of(&report.choice, Some(&report.profile), path)?;
         let mut worse = vec![];
         for before in &self.groups {
             match report.groups.iter().find(|group| group.id == before.id) {
@@ -108,6 +94,29 @@ impl Baseline {
             }
         }
         Ok(worse)
+    }
+
+    /// Whether it is of the cases that are chosen, and of the accuracy rules where those are known.
+    ///
+    /// # Errors
+    /// What differs.
+    pub fn is_of(&self, now: &Choice, profile: Option<&String>, path: &Path) -> Result<(), Error> {
+        let mut differences = vec![];
+        let mut differs = |what: &str, before: String, now: String| {
+            if before != now {
+                differences.push(format!("{what} {before} there, {now} here"));
+            }
+        };
+        let before = &self.choice;
+        differs("filter", format!("{:?}", before.filter), format!("{:?}", now.filter));
+        differs("cases", before.cases.to_string(), now.cases.to_string());
+        differs("seed", before.seed.to_string(), now.seed.to_string());
+        differs("size", format!("{:?}", before.size), format!("{:?}", now.size));
+        differs("generator", self.generator.to_string(), GENERATOR_VERSION.to_string());
+        if let Some(profile) = profile {
+            differs("profile", self.profile.clone(), profile.clone());
+        }
+        if differences.is_empty() { Ok(()) } else { Err(Error::Others { path: path.into(), differences }) }
     }
 }
 

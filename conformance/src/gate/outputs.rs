@@ -6,6 +6,8 @@ use crate::report::Number;
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::fmt::{Result, Write};
 
+/// Missing cases, or rows of them, that are named.
+const MOST_NAMED: usize = 8;
 /// Groups that fail, of which all is told.
 const MOST_TOLD: usize = 24;
 
@@ -108,7 +110,7 @@ fn told(group: &Group, report: &Report, out: &mut impl Write) -> Result {
     writeln!(out, "\n✗ {}: {} of {} fail", group.id, group.failed, cases(group.asked))?;
     if group.missing > 0 {
         let was = if group.missing == 1 { "was" } else { "were" };
-        writeln!(out, "  {} {was} never answered", cases(group.missing))?;
+        writeln!(out, "  {} {was} never answered: {}", cases(group.missing), missing(group))?;
     }
     for what in group.diagnosis.iter().chain(&group.problem) {
         writeln!(out, "  {what}")?;
@@ -126,6 +128,13 @@ fn told(group: &Group, report: &Report, out: &mut impl Write) -> Result {
         failure(first, out)?;
     }
     Ok(())
+}
+
+/// The cases of a group that were never answered: the first of them, by the end of their ids.
+fn missing(group: &Group) -> String {
+    let all = group.not_passed.get("missing").map_or(&[][..], Vec::as_slice);
+    let named = all.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
+    if all.len() > MOST_NAMED { named + ", …" } else { named }
 }
 
 /// A failure.
@@ -160,7 +169,7 @@ fn listed(what: &str, all: &[String], out: &mut impl Write) -> Result {
 fn sentence(group: &Group) -> String {
     let mut said = format!("{} of {} fail", group.failed, cases(group.asked));
     if group.missing > 0 {
-        said += &format!(", {} never answered", group.missing);
+        said += &format!(", {} never answered: {}", group.missing, missing(group));
     }
     for more in group.diagnosis.iter().chain(&group.problem) {
         said += &format!("; {more}");

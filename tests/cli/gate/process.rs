@@ -226,12 +226,85 @@ fn a_crash_that_is_expected_breaks_nothing() {
     write("crash = true\n");
     let (status, found) = gate();
     assert_eq!((status, count(&found, "failed")), (0, 1), "{found}");
-    assert_eq!(found["expected_incidents"].as_array().map(Vec::len), Some(2), "{found}");
+    assert_eq!(found["expected_incidents"].as_array().map(Vec::len), Some(3), "{found}");
     // Another crash is not excused.
     let both = format!("crash-at={case}");
     let elsewhere =
         report(&process(&["fog/exp", "fog/linear"], &both.replace("exp/", "linear/"), &["--expect", text(&file)]));
     assert_eq!(elsewhere.0, 4, "{}", elsewhere.1);
+}
+
+/// A renderer in shell, of `fog/exp`: `answered` is run for each case, with its id in `$id`; it answers at once.
+fn in_shell(folder: &Path, before: &str, answered: &str) -> String {
+    let script = folder.join("renderer.sh");
+    let text_of = format!(
+        "{before}\necho '{{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"shell\",\"formulas\":[\"fog/exp\"],\"scenes\":[]}}'\n\
+         while read -r line; do case $line in *'\"inputs\"'*) id=${{line#*'\"id\":\"'}}; id=${{id%%'\"'*}};\n{answered}\n;; esac; done\n"
+    );
+    std::fs::write(&script, text_of).expect("it can be written");
+    format!("sh '{}'", text(&script))
+}
+
+const ZEROS: &str = "echo \"{\\\"id\\\":\\\"$id\\\",\\\"value\\\":[0,0,0,0]}\"";
+
+#[test]
+fn a_process_that_ends_after_an_answer_spoils_no_other_case() {
+    let folder = folder("after");
+    // It ends of the case that it has just answered, each time.
+    let answered = format!("{ZEROS}; case $id in */000017) sleep 0.05; exit 9;; esac");
+    let exec = in_shell(&folder, "", &answered);
+    let (status, found) = report(&gate(&["fog/exp"], &exec, &["--seed", "3"]));
+    assert_eq!(status, 4, "{found}");
+    let problems: Vec<&str> =
+        found["failures"].as_array().into_iter().flatten().filter_map(|failure| failure["problem"].as_str()).collect();
+    assert!(problems.is_empty() && count(&found, "missing") == 0, "every answer is judged: {problems:?}");
+}
+
+#[test]
+fn what_takes_long_together_is_no_hang() {
+    let folder = folder("slow");
+    // It answers at the end of a batch, as buffered output does: 10 ms a case, and 256 of them take longer than one may.
+    let exec = format!("{} slow-at=fog/exp2-opengl", renderer());
+    let args = ["fog/exp", "fog/linear", "fog/exp2-opengl", "--case-timeout", "1", "--seed", "2"];
+    let _ = folder;
+    let (status, found) =
+        report(&lightmeter(&[&["gate", "--exec", &exec, "--format", "json", "--cases", "400"], &args[..]].concat()));
+    assert!(status == 0 && found["starts"].as_u64() > Some(1), "{found}");
+}
+
+#[test]
+fn another_crash_is_not_excused_by_one_that_is_expected() {
+    let folder = folder("flaky");
+    let (flag, file) = (folder.join("flag"), folder.join("expected.toml"));
+    std::fs::write(&file, "[[expected]]\nid = \"scene/flat\"\nreason = \"known\"\ncrash = true\n").expect("written");
+    // The first process ends of a case that later ones answer.
+    let exec = format!(
+        "if [ -e '{0}' ]; then exec {1} crash-at=scene/flat; else touch '{0}'; exec {1} crash-at=fog/exp/random/000003; fi",
+        text(&flag),
+        renderer()
+    );
+    let (status, found) = report(&gate(&["fog/exp", "scene/flat"], &exec, &["--expect", text(&file)]));
+    assert!(status == 4 && found["incidents"].as_array().map(Vec::len) == Some(1), "{found}");
+}
+
+#[test]
+fn a_process_that_says_another_hello_is_given_up() {
+    let folder = folder("another-hello");
+    let flag = folder.join("flag");
+    let before = format!("name=first; [ -e '{0}' ] && name=second; touch '{0}'", text(&flag));
+    let exec = in_shell(&folder, &before, ZEROS);
+    let script = folder.join("renderer.sh");
+    let named = std::fs::read_to_string(&script).expect("it is there").replace("\"shell\"", "\"'$name'\"");
+    std::fs::write(&script, named).expect("it can be written");
+    let (status, found) = report(&gate(&["fog/exp"], &exec, &["--runs", "2"]));
+    assert!(status == 4 && found["incidents"].to_string().contains("says another hello"), "{found}");
+    for (hello, said) in [
+        ("{\"hello\":\"lightmeter.protocol/2\",\"renderer\":\"r\"}", "expected `lightmeter.protocol/1`"),
+        ("{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"r\",\"formulas\":\"fog\"}", "`formulas` is no list"),
+    ] {
+        let output = lightmeter(&["gate", "fog", "--exec", &format!("echo '{hello}'; sleep 600")]);
+        assert!(code(&output) == 4 && stderr(&output).contains(said), "{}", stderr(&output));
+    }
 }
 
 #[test]

@@ -153,6 +153,8 @@ pub fn ask(
         outcome: Outcome::default(),
         number: 0,
         size: BATCH[0],
+        answered: 0,
+        culprits: 0,
     };
     session.start()?;
     let hello = session.outcome.hello.clone();
@@ -187,6 +189,10 @@ struct Session<'a> {
     number: u64,
     /// Cases that are asked at once.
     size: usize,
+    /// Cases that the process has answered since it was started.
+    answered: usize,
+    /// Cases that it failed at.
+    culprits: u64,
 }
 
 impl Session<'_> {
@@ -222,12 +228,17 @@ impl Session<'_> {
             let message = match event {
                 Ok(Event::Line(line)) if line.iter().all(u8::is_ascii_whitespace) => continue,
                 Ok(Event::Line(line)) => match answer::read(&line) {
+                    Ok(Line::Hello(hello)) if self.outcome.starts > 1 && *hello != self.outcome.hello => {
+                        "says another hello than when it was started first".into()
+                    }
                     Ok(Line::Hello(hello)) => {
+                        self.answered = 0;
                         self.outcome.hello = *hello;
                         running.input = written.and_then(|thread| thread.join().ok().flatten());
                         self.running = Some(running);
                         return Ok(());
                     }
+                    Err(message) if answer::is_hello(&line) => message,
                     _ => {
                         let line = clipped(&String::from_utf8_lossy(&line));
                         format!(
@@ -261,8 +272,9 @@ impl Session<'_> {
         let mut open: VecDeque<Place> = asked.into();
         // Cases that are asked alone, to find the one that it fails at.
         let mut alone = 0;
-        // What was told of them, as long as the culprit is not found.
-        let mut untold = None;
+        // What was told of them, by its places among the incidents, as long as the culprit is not found; and since when they are
+        // asked so, where it was said to take too long.
+        let (mut untold, mut since): (Vec<usize>, Option<Instant>) = (vec![], None);
         while !open.is_empty() {
             if self.running.is_none() && !self.starts_again(open.len()) {
                 return Ok(false);
@@ -273,11 +285,22 @@ impl Session<'_> {
             let batch: Vec<Place> = open.iter().take(count).copied().collect();
             let (ended, rest) = self.batch(ledger, &batch)?;
             let done = batch.len() - rest.len();
+            self.answered += done;
             progress(done as u64);
             open.drain(..batch.len());
             alone = if alone > 0 { alone - done.min(alone) } else { 0 };
             let message = match ended {
-                Ended::Answered => continue,
+                Ended::Answered => {
+                    if alone == 0 {
+                        // There is no culprit. Together they may take longer than one of them may: that is no hang.
+                        let limit = self.asking.limits.case;
+                        if since.take().is_some_and(|since| since.elapsed() * 2 >= limit) {
+                            untold.drain(..).rev().for_each(|place| drop(self.outcome.incidents.remove(place)));
+                        }
+                        untold.clear();
+                    }
+                    continue;
+                }
                 Ended::OutOfTime | Ended::Stopped => {
                     let what = if matches!(ended, Ended::Stopped) { "it was stopped" } else { "time for all is over" };
                     self.end(what);
@@ -291,13 +314,24 @@ impl Session<'_> {
                 Ended::Deaf => "it answered, and did not read what it was asked",
             };
             let how = self.end(message);
+            let is_hung = matches!(ended, Ended::Hung);
             if let [culprit] = rest[..] {
+                if matches!(ended, Ended::Crashed) && self.answered > 0 {
+                    // It may be an earlier case that it ended of: one that it is asked first is the culprit.
+                    untold.push(self.outcome.incidents.len());
+                    let id = self.plan.id(culprit);
+                    self.outcome.incidents.push(format!("before it answered {id} {message}: {how}; it is asked again"));
+                    alone = alone.max(1);
+                    open.push_front(culprit);
+                    continue;
+                }
                 // It is known now: what was told of its batch is told of it.
                 alone = alone.saturating_sub(1);
-                let before = untold.take();
-                self.failed_at(ledger, culprit, &format!("{message}: {how}"), before);
+                since = None;
+                self.failed_at(ledger, culprit, &format!("{message}: {how}"), std::mem::take(&mut untold));
+                self.culprits += 1;
                 progress(1);
-                if self.outcome.incidents.len() as u64 >= MOST_CRASHES {
+                if self.culprits >= MOST_CRASHES {
                     let left = open.len();
                     let what =
                         format!("{MOST_CRASHES} crashes and hangs: nothing more is asked, {left} cases are left");
@@ -307,7 +341,8 @@ impl Session<'_> {
             } else {
                 // Nothing is retried into green: that it ended is told, whatever it answers afterwards.
                 let count = rest.len();
-                untold = Some(self.outcome.incidents.len());
+                untold = vec![self.outcome.incidents.len()];
+                since = is_hung.then(Instant::now);
                 self.outcome
                     .incidents
                     .push(format!("with {count} cases open {message}: {how}; they are asked one by one"));
@@ -333,11 +368,13 @@ impl Session<'_> {
         false
     }
 
-    /// Notes the case that the process failed at, and what was told of its batch before, by its place among the incidents.
-    fn failed_at(&mut self, ledger: &mut Ledger<'_>, culprit: Place, message: &str, before: Option<usize>) {
+    /// Notes the case that the process failed at, and what was told of its batch before, by places among the incidents.
+    fn failed_at(&mut self, ledger: &mut Ledger<'_>, culprit: Place, message: &str, before: Vec<usize>) {
         let told = format!("{}: {message}", self.plan.id(culprit));
         if ledger.expects_crash(culprit) {
-            let before = before.map(|place| self.outcome.incidents.remove(place));
+            let mut before: Vec<String> =
+                before.into_iter().rev().map(|place| self.outcome.incidents.remove(place)).collect();
+            before.reverse();
             self.outcome.expected_incidents.extend(before.into_iter().chain([told]));
         } else {
             self.outcome.incidents.push(told);
