@@ -3,18 +3,23 @@
 
 mod workload;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use divan::Bencher;
+use divan::counter::ItemsCount;
 
-fn workloads(c: &mut Criterion) {
+fn main() {
     workload::on_one_thread();
-    for mut work in workload::all() {
-        let (group, name) = work.name.rsplit_once('/').expect("a name has a group");
-        let mut group = c.benchmark_group(group);
-        group.throughput(Throughput::Elements(work.items));
-        group.bench_function(format!("{name} of a {}", work.item), |b| b.iter(|| work.round()));
-        group.finish();
-    }
+    divan::main();
 }
 
-criterion_group!(benches, workloads);
-criterion_main!(benches);
+/// The pieces of work, each with the item that is counted.
+fn names() -> Vec<String> {
+    workload::all().into_iter().map(|work| format!("{} of a {}", work.name, work.item)).collect()
+}
+
+#[divan::bench(args = names())]
+fn work(bencher: Bencher<'_, '_>, name: &str) {
+    let is_it =
+        |work: &workload::Workload| name.strip_prefix(&work.name).is_some_and(|rest| rest.starts_with(" of a "));
+    let mut work = workload::all().into_iter().find(is_it).expect("the name is of a piece of work");
+    bencher.counter(ItemsCount::new(work.items)).bench_local(|| work.round());
+}

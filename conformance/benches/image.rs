@@ -1,13 +1,13 @@
 //! The reference renderer and the legal values of every pixel, in lit fragments a second: a sphere under one light, lit at
 //! every fragment, on 512 × 512 pixels.
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::image::expect;
-use lightmeter::scene::load;
+use lightmeter::scene::{Loaded, load};
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::effects;
-use std::hint::black_box;
 
 /// The light is put in.
 const SCENE: &str = r#"{
@@ -19,25 +19,30 @@ const SCENE: &str = r#"{
   "objects": [{ "mesh": "ball", "material": "plain", "cull": "back" }]
 }"#;
 
-const LIGHTS: [(&str, &str); 2] = [
-    ("directional", r#"{ "kind": "directional", "color": [1, 0.9, 0.8], "toward": [2, 3, 4] }"#),
-    ("point", r#"{ "kind": "point", "color": [1, 0.9, 0.8], "position": [2, 3, 4], "falloff": [1, 0.1, 0.01] }"#),
-];
+const DIRECTIONAL: &str = r#"{ "kind": "directional", "color": [1, 0.9, 0.8], "toward": [2, 3, 4] }"#;
+const POINT: &str = r#"{ "kind": "point", "color": [1, 0.9, 0.8], "position": [2, 3, 4], "falloff": [1, 0.1, 0.01] }"#;
 
-fn images(c: &mut Criterion) {
-    let none = |name: &str| Err(std::io::Error::other(name.to_owned()));
-    for (name, light) in LIGHTS {
-        let loaded = load::text(name, &SCENE.replace("LIGHT", light), &none).expect("the scene is valid");
-        let frame = &loaded.frame;
-        let called = effects(frame);
-        let mut group = c.benchmark_group(format!("one {name} light"));
-        group.sample_size(20);
-        group.throughput(Throughput::Elements(render::<f64>(frame, None, None).fragments));
-        group.bench_function("reference f64", |b| b.iter(|| render::<f64>(black_box(frame), Some(&called), None)));
-        group.bench_function("legal values", |b| b.iter(|| expect(black_box(frame), Some(&called), None, &WGSL)));
-        group.finish();
-    }
+fn main() {
+    divan::main();
 }
 
-criterion_group!(benches, images);
-criterion_main!(benches);
+fn scene(light: &str) -> Loaded {
+    let none = |name: &str| Err(std::io::Error::other(name.to_owned()));
+    load::text("light", &SCENE.replace("LIGHT", light), &none).expect("the scene is valid")
+}
+
+#[divan::bench(args = [DIRECTIONAL, POINT], sample_count = 20)]
+fn reference_f64(bencher: Bencher<'_, '_>, light: &str) {
+    let loaded = scene(light);
+    let (frame, called) = (&loaded.frame, effects(&loaded.frame));
+    let lit = render::<f64>(frame, None, None).fragments;
+    bencher.counter(ItemsCount::new(lit)).bench_local(|| render::<f64>(black_box(frame), Some(&called), None));
+}
+
+#[divan::bench(args = [DIRECTIONAL, POINT], sample_count = 20)]
+fn legal_values(bencher: Bencher<'_, '_>, light: &str) {
+    let loaded = scene(light);
+    let (frame, called) = (&loaded.frame, effects(&loaded.frame));
+    let lit = render::<f64>(frame, None, None).fragments;
+    bencher.counter(ItemsCount::new(lit)).bench_local(|| expect(black_box(frame), Some(&called), None, &WGSL));
+}

@@ -81,5 +81,5 @@ run_gate() {
         exec "$LIGHTMETER" gate $options "$@"
     fi
     # shellcheck disable=SC2086
-    exec cargo run --quiet --manifest-path "$renderers/../../Cargo.toml" -p lightmeter -- gate $options "$@"
+    exec cargo run --quiet --manifest-path "$renderers/../../Cargo.toml" --bin lightmeter -- gate $options "$@"
 }
