@@ -149,6 +149,9 @@ pub struct BlendDeviation {
     pub from: f64,
     /// … are granted a NaN.
     pub becomes_nan: bool,
+    /// A case in which the driver is seen to do so.
+    #[serde(skip)]
+    pub witness: &'static str,
 }
 
 /// Every known departure of a blend unit.
@@ -160,6 +163,7 @@ pub const BLEND_DEVIATIONS: &[BlendDeviation] = &[BlendDeviation {
     // The least that does not round to 65504.
     from: 65_520.0,
     becomes_nan: true,
+    witness: "blend/add/hard/beyond-half",
 }];
 
 impl BlendDeviation {

@@ -67,6 +67,18 @@ pub(crate) fn margin(value: f64, reference: f64, low: f64, high: f64) -> f64 {
     if margin.is_nan() { 1.0 } else { margin }
 }
 
+/// How much inputs take to write down: the fewer, the simpler a case.
+#[must_use]
+pub fn simplicity(inputs: &[f32]) -> u32 {
+    let digits = |x: f32| match x.abs() {
+        0.0 => 0,
+        1.0 => 1,
+        x if x.is_finite() => 26 - x.to_bits().trailing_zeros().min(23),
+        _ => 64,
+    };
+    inputs.iter().map(|&x| digits(x)).sum()
+}
+
 /// Whether a margin or an error is worse than another: a NaN is worse than every number, so that no maximum loses one.
 pub(crate) fn is_worse(a: f64, than: f64) -> bool {
     !than.is_nan() && (a.is_nan() || a > than)

@@ -1,5 +1,6 @@
 //! The suite: cases, acceptance, verdicts, the runner and its reports, as a library for the `lightmeter` binary and others.
 
+pub mod adapters;
 pub mod arithmetic;
 pub mod bench;
 pub mod blend_unit;
@@ -11,12 +12,15 @@ pub mod filter;
 pub mod gate;
 pub mod image;
 pub mod judge;
+pub mod options;
 pub mod report;
 pub mod run;
 pub mod scene;
 pub mod select;
+pub mod selection;
 pub mod special;
 pub mod stability;
 pub mod subject;
 pub mod sweep;
 pub mod tally;
+pub mod witness;

@@ -6,21 +6,22 @@
 use crate::arithmetic::{Accept, Profile};
 use crate::blend_unit;
 use crate::cases::Kind;
-use crate::cases::blend::{self, Samples};
+use crate::cases::blend;
 use crate::evaluate::kernel;
-use crate::filter::Filter;
 use crate::image;
-use crate::judge::{Outcome, judge};
-use crate::report::{DeviationUse, Group, Interrupted, Number, Report, Timing, Totals};
-use crate::select::{CaseRef, Member, Selected, Shard, catalogue_of, select};
-use crate::stability;
+use crate::image::select::Chosen;
+use crate::options::{Options, Progress};
+use crate::report::{Group, Interrupted, Number, Report, Totals};
+use crate::select::{CaseRef, Member, Selected};
+use crate::selection::Selection;
+use crate::special::verdict::Table;
 use crate::subject::{Compiled, Rows, Subject};
-use crate::tally::{Tally, judge_chunk};
-use lightmeter_gpu::{Error, Shaders};
+use crate::tally::{Tally, judge_chunk, reported};
+use crate::witness;
+use crate::{special, stability};
+use lightmeter_gpu::Error;
 use lightmeter_scene::blend::Equation;
-use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
-use std::path::PathBuf;
 use std::time::Instant;
 
 /// Cases of a chunk.
@@ -30,101 +31,33 @@ pub(crate) const TASK: usize = 512;
 /// The share of indeterminate verdicts, hard cases apart, above which a group fails.
 const MOST_INDETERMINATE: f64 = 0.01;
 
-/// What to run.
-pub struct Options {
-    /// Which cases.
-    pub filter: Filter,
-    /// Random cases for each formula.
-    pub cases: u64,
-    /// The seed.
-    pub seed: u64,
-    /// Which part.
-    pub shard: Shard,
-    /// The formats that are blended on.
-    pub targets: Vec<TargetFormat>,
-    /// Which states with another one for alpha are judged.
-    pub samples: Samples,
-    /// Pixels of the longer side of every scene; `None` for the scenes' own, or for a quarter of the pixels in a run of all.
-    pub size: Option<u32>,
-    /// Where the images of scenes that fail are written; `None` for nowhere.
-    pub images: Option<PathBuf>,
-    /// Whether what takes time is measured apart: the blend unit draws everything once more with its pipelines compiled, and
-    /// stable forms are timed beside naive ones.
-    pub again: bool,
-    /// The accuracy rules.
-    pub profile: &'static Profile,
-    /// The shaders.
-    pub shaders: Shaders,
-    /// What to add to a command that runs one case again.
-    pub rerun: String,
-}
-
-/// Is told how far a run has come.
-pub trait Progress {
-    /// So many cases in all are about to be run.
-    fn start(&mut self, cases: u64);
-    /// A group begins.
-    fn group(&mut self, id: &str);
-    /// So many more cases are done.
-    fn advance(&mut self, cases: u64);
-}
-
-/// Nobody looks.
-pub struct Silent;
-
-impl Progress for Silent {
-    fn start(&mut self, _cases: u64) {}
-    fn group(&mut self, _id: &str) {}
-    fn advance(&mut self, _cases: u64) {}
-}
-
 /// Runs what the options select on every subject. Where a device fails, what was judged until then is the report, which says
 /// what was under way.
 ///
 /// # Errors
 /// Where a shader is invalid, or a device fails before anything ran.
-///
-/// # Panics
-/// Where a built-in scene is refused, which a test rules out.
 pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Progress) -> Result<Report, Error> {
+    run_selection(&Selection::of(options), subjects, options, progress)
+}
+
+/// Runs a selection, or a part of one, on every subject. Where a device fails, what was judged until then is the report, which
+/// says what was under way.
+///
+/// # Errors
+/// Where a shader is invalid, or a device fails before anything ran.
+pub fn run_selection(
+    selection: &Selection,
+    subjects: &mut [Subject],
+    options: &Options,
+    progress: &mut impl Progress,
+) -> Result<Report, Error> {
     let started = Instant::now();
-    let catalogue = catalogue_of(&options.samples);
-    let selected = select(&catalogue, &options.filter, options.cases, options.shard);
-    let size = image::select::size(&options.filter, options.size);
-    let scenes = image::select::select(&options.filter, options.shard, size);
-    let rows: u64 = selected.iter().map(|chosen| work(&catalogue[chosen.member], chosen, subjects, options)).sum();
-    progress.start(rows + scenes.iter().map(|chosen| chosen.work() * subjects.len() as u64).sum::<u64>());
-    let mut report = empty(subjects, options);
-    if !selected.is_empty() || !scenes.is_empty() {
-        probe_deviations(subjects, options, &mut report)?;
+    progress.start(work(selection, subjects, options));
+    let mut report = Report::empty(subjects, options);
+    for &deviation in &selection.deviations {
+        witness::ask(deviation, &selection.catalogue, subjects, options, &mut report)?;
     }
-    for group in selected.chunk_by(|a, b| catalogue[a.member].spec.group() == catalogue[b.member].spec.group()) {
-        let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
-        progress.group(members[0].spec.group());
-        let judged = judge_group(&members, group, subjects, options, &mut report, progress);
-        match judged {
-            Err(error @ (Error::Device(_) | Error::Timeout(_))) => {
-                let under_way = members[0].spec.group().into();
-                report.interrupted.get_or_insert(Interrupted { under_way, message: error.to_string() });
-                break;
-            }
-            judged => judged?,
-        }
-    }
-    for chosen in scenes {
-        if report.interrupted.is_some() {
-            break;
-        }
-        let id = image::select::scene_id(chosen.place);
-        progress.group(&id);
-        let loaded = image::select::builtin(chosen.place, size).expect("a test loads every scene that is built in");
-        match image::run::run_scene(&loaded, &chosen, subjects, options, &mut report, progress) {
-            Err(error @ (Error::Device(_) | Error::Timeout(_))) => {
-                report.interrupted = Some(Interrupted { under_way: id, message: error.to_string() });
-            }
-            judged => judged?,
-        }
-    }
+    judge_in_turn(selection, subjects, options, &mut report, progress)?;
     for group in &report.groups {
         report.totals.add(&group.totals);
     }
@@ -138,14 +71,75 @@ pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Prog
     Ok(report)
 }
 
-/// Cases of a formula, counted once for its stages that take rows, and once for each target of each blend unit.
-fn work(member: &Member, chosen: &Selected, subjects: &[Subject], options: &Options) -> u64 {
-    let unit = match member.spec.kind {
-        Kind::Blend(_) => blend_unit::run::targets_of(member, &options.targets).len() * subjects.len(),
-        _ => 0,
+/// Tables of special values, formulas and scenes, one after the other, until a device fails.
+fn judge_in_turn(
+    selection: &Selection,
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut Report,
+    progress: &mut impl Progress,
+) -> Result<(), Error> {
+    // First: Mesa 22.3's lavapipe no longer flushes subnormals in fragments once it has drawn certain scenes.
+    for table in &selection.tables {
+        let id = table.id();
+        progress.group(&id);
+        let judged = special::verdict::run_table(table, subjects, options, report, progress);
+        if is_interrupted(judged, &id, report)? {
+            return Ok(());
+        }
+    }
+    let catalogue = &selection.catalogue;
+    for group in
+        selection.formulas.chunk_by(|a, b| catalogue[a.member].spec.group() == catalogue[b.member].spec.group())
+    {
+        let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
+        let id = members[0].spec.group();
+        progress.group(id);
+        let judged = judge_group(&members, group, subjects, options, report, progress);
+        if is_interrupted(judged, id, report)? {
+            return Ok(());
+        }
+    }
+    let size = image::select::size(&options.filter, options.size);
+    for chosen in &selection.scenes {
+        let id = image::select::scene_id(chosen.place);
+        progress.group(&id);
+        let loaded = image::select::builtin(chosen.place, size).expect("a test loads every scene that is built in");
+        let judged = image::run::run_scene(&loaded, chosen, subjects, options, report, progress);
+        if is_interrupted(judged, &id, report)? {
+            return Ok(());
+        }
+    }
+    Ok(())
+}
+
+/// Whether a device failed while something was judged, which is noted then.
+fn is_interrupted(judged: Result<(), Error>, under_way: &str, report: &mut Report) -> Result<bool, Error> {
+    match judged {
+        Err(error @ (Error::Device(_) | Error::Timeout(_))) => {
+            let (under_way, message) = (under_way.to_owned(), error.to_string());
+            report.interrupted.get_or_insert(Interrupted { under_way, message });
+            Ok(true)
+        }
+        judged => judged.map(|()| false),
+    }
+}
+
+/// Cases that are to be judged, for the progress: those of a formula once for its stages that take rows, and once for each
+/// target of each blend unit; results of tables and pixels of scenes on each subject.
+fn work(selection: &Selection, subjects: &[Subject], options: &Options) -> u64 {
+    let of_formula = |chosen: &Selected| {
+        let member = &selection.catalogue[chosen.member];
+        let unit = match member.spec.kind {
+            Kind::Blend(_) => blend_unit::run::targets_of(member, &options.targets).len() * subjects.len(),
+            _ => 0,
+        };
+        let rows = if member.spec.row_stages().is_empty() { 0 } else { chosen.rows(member).count() };
+        chosen.count() * unit as u64 + rows
     };
-    let rows = if member.spec.row_stages().is_empty() { 0 } else { chosen.rows(member).count() };
-    chosen.count() * unit as u64 + rows
+    let formulas: u64 = selection.formulas.iter().map(of_formula).sum();
+    let others: u64 = selection.tables.iter().map(Table::work).chain(selection.scenes.iter().map(Chosen::work)).sum();
+    formulas + others * subjects.len() as u64
 }
 
 /// Judges a group in the blend unit, if that draws it, and in the stages that take rows.
@@ -178,31 +172,6 @@ fn judge_group(
     Ok(())
 }
 
-/// A report of nothing yet.
-#[must_use]
-pub fn empty(subjects: &[Subject], options: &Options) -> Report {
-    Report {
-        schema: "lightmeter.run/1",
-        seed: options.seed,
-        seconds: 0.0,
-        profile: options.profile.name,
-        filter: options.filter.globs().map(str::to_owned).collect(),
-        adapters: subjects.iter().map(|subject| subject.identity.clone()).collect(),
-        totals: Totals::default(),
-        aliases: 0,
-        routes: serde_json::Map::new(),
-        timing: Timing::default(),
-        deviations: vec![],
-        groups: vec![],
-        blend_states: vec![],
-        special: vec![],
-        stability: vec![],
-        stable_costs: vec![],
-        interrupted: None,
-        failures: vec![],
-    }
-}
-
 /// How the distinct states of the 15 × 15 × 5 reached a blend unit: states by route, on any adapter and target.
 fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
     let mut routes = std::collections::BTreeMap::<&str, std::collections::BTreeSet<&str>>::new();
@@ -215,34 +184,6 @@ fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
         }
     }
     routes.into_iter().map(|(route, states)| (route.into(), states.len().into())).collect()
-}
-
-/// Evaluates the witness of each deviation in force: where the driver is inside the promised bound there, the deviation is
-/// no longer needed, which fails the run.
-fn probe_deviations(subjects: &[Subject], options: &Options, report: &mut Report) -> Result<(), Error> {
-    // The driver is asked, not the shaders under test.
-    let shaders = Shaders::built_in()?;
-    for subject in subjects {
-        for deviation in &subject.known.deviations {
-            let Some(bits) = subject.probe(&shaders, deviation.builtin.probe(), deviation.witness)? else {
-                continue;
-            };
-            let interval = options.profile.scope(|| deviation.builtin.interval(deviation.witness));
-            let granted = deviation.grant(*options.profile).scope(|| deviation.builtin.interval(deviation.witness));
-            let exact = deviation.builtin.exact(deviation.witness);
-            let outcome = |legal| judge(bits, exact, legal).outcome;
-            // Wronger than what is granted is another mistake, which the cases will show.
-            let still_needed = outcome(&interval) == Outcome::Fail && outcome(&granted) == Outcome::Pass;
-            report.deviations.push(DeviationUse {
-                name: deviation.name,
-                adapter: subject.identity.name.clone(),
-                reason: deviation.reason,
-                still_needed,
-                excused: 0,
-            });
-        }
-    }
-    Ok(())
 }
 
 /// A chunk of a group's cases, with everything about them that does not depend on a subject.
@@ -346,30 +287,19 @@ fn run_rows(
     for ((subject, compiled), tallies) in subjects.iter().zip(compiled).zip(tallies) {
         for ((stage, work), tally) in compiled.stages.into_iter().zip(tallies) {
             for (name, excused) in &tally.excused {
-                let uses = report.deviations.iter_mut().find(|d| d.name == *name && d.adapter == subject.identity.name);
-                if let Some(uses) = uses {
-                    uses.excused += excused;
-                }
+                report.excuse(name, &subject.identity.name, *excused);
             }
-            report.failures.extend(tally.failures);
+            report.failures.extend(reported(tally.simplest, tally.failures));
             let problem = problem(tally.random, tally.totals.verdicts, tally.totals.indeterminate);
             report.groups.push(Group {
-                id: spec.group().into(),
-                adapter: subject.identity.name.clone(),
-                stage: stage.name(),
-                target: None,
-                tiers: None,
-                store: None,
                 totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
                 error_ulp_max: Number(tally.error_ulp_max),
                 margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
                 seconds: tally.seconds,
-                seconds_warm: None,
-                explanation: None,
-                image: None,
                 worst: tally.worst.map(|(_, id)| id),
                 skip_reason: work.err(),
                 problem,
+                ..Group::new(spec.group().into(), subject.identity.name.clone(), stage.name())
             });
         }
     }

@@ -2,9 +2,10 @@
 
 use crate::arithmetic::{Accept, Profile};
 use crate::cases::{Kind, Stage};
-use crate::judge::{Outcome, is_worse, judge, worse};
+use crate::judge::{Outcome, is_worse, judge, simplicity, worse};
+use crate::options::Options;
 use crate::report::{Failure, Number, Totals};
-use crate::run::{Chunk, Options, TASK};
+use crate::run::{Chunk, TASK};
 use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
 use rayon::prelude::*;
@@ -20,7 +21,10 @@ pub(crate) struct Tally {
     pub(crate) random: (u64, u64),
     pub(crate) error_ulp_max: f64,
     pub(crate) worst: Option<(f64, String)>,
+    /// The first failures.
     pub(crate) failures: Vec<Failure>,
+    /// The failure of the simplest inputs, and how simple they are.
+    pub(crate) simplest: Option<(u32, Failure)>,
     pub(crate) excused: Vec<(&'static str, u64)>,
     pub(crate) seconds: f64,
 }
@@ -40,6 +44,7 @@ impl Tally {
         }
         self.failures.extend(other.failures);
         self.failures.truncate(KEPT_FAILURES);
+        keep_simplest(&mut self.simplest, other.simplest);
         for (name, count) in other.excused {
             self.excuse(name, count);
         }
@@ -52,6 +57,25 @@ impl Tally {
             None => self.excused.push((name, count)),
         }
     }
+}
+
+/// Keeps the failure of the simpler inputs, of equally simple ones the first.
+pub(crate) fn keep_simplest(simplest: &mut Option<(u32, Failure)>, other: Option<(u32, Failure)>) {
+    if let Some((simple, _)) = &other
+        && simplest.as_ref().is_none_or(|(least, _)| simple < least)
+    {
+        *simplest = other;
+    }
+}
+
+/// The failures that are reported of a group: the one of the simplest inputs, which explains most, then the first.
+pub(crate) fn reported(simplest: Option<(u32, Failure)>, first: Vec<Failure>) -> impl Iterator<Item = Failure> {
+    let simplest = simplest.map(|(_, failure)| failure);
+    let is_other = {
+        let key = simplest.as_ref().map(|one| (one.id.clone(), one.output.clone()));
+        move |one: &Failure| key.as_ref().is_none_or(|(id, output)| (id, output) != (&one.id, &one.output))
+    };
+    simplest.into_iter().chain(first.into_iter().filter(is_other)).take(KEPT_FAILURES)
 }
 
 pub(crate) fn judge_chunk(
@@ -140,11 +164,17 @@ fn judge_case(
                     tally.excuse(name, 1);
                 } else {
                     tally.totals.failed += 1;
-                    if tally.failures.len() < KEPT_FAILURES {
-                        let inputs = chunk.inputs_of(case);
+                    let inputs = chunk.inputs_of(case);
+                    let simple = simplicity(inputs);
+                    let is_simplest = tally.simplest.as_ref().is_none_or(|(least, _)| simple < *least);
+                    if is_simplest || tally.failures.len() < KEPT_FAILURES {
                         let id = member.case_id(chunk.cases[case]);
                         let seen = Seen { bits, reference, interval: legal[output], error_ulp: verdict.error_ulp };
-                        tally.failures.push(failure(member, id, inputs, output, stage, subject, options, &seen));
+                        let failure = failure(member, id, inputs, output, stage, subject, options, &seen);
+                        if tally.failures.len() < KEPT_FAILURES {
+                            tally.failures.push(failure.clone());
+                        }
+                        keep_simplest(&mut tally.simplest, Some((simple, failure)));
                     }
                 }
             }
@@ -207,6 +237,7 @@ fn failure(
         inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
         reference: Number(seen.reference),
         interval: [Number(seen.interval.low()), Number(seen.interval.high())],
+        promise: None,
         value: Number(f32::from_bits(seen.bits).into()),
         value_hex: format!("0x{:08x}", seen.bits),
         unwritten: seen.bits == lightmeter_gpu::SENTINEL,
@@ -238,10 +269,8 @@ pub fn by_name(
 mod tests {
     use super::*;
     use crate::arithmetic::profile::WGSL;
-    use crate::cases::blend::Samples;
-    use crate::filter::Filter;
     use crate::run::{draw, refer};
-    use crate::select::{Shard, catalogue};
+    use crate::select::catalogue;
     use lightmeter_gpu::Shaders;
 
     /// Quiet, negative, signalling, every bit set, and with a payload.
@@ -250,20 +279,8 @@ mod tests {
     const CASES: usize = 2 * TASK + 77;
 
     fn options() -> Options {
-        Options {
-            filter: Filter::new::<&str>(&[]).expect("nothing is a filter"),
-            cases: CASES as u64,
-            seed: 1,
-            shard: Shard::WHOLE,
-            targets: vec![],
-            samples: Samples::default(),
-            size: None,
-            images: None,
-            again: false,
-            profile: &WGSL,
-            shaders: Shaders::built_in().expect("the built-in shaders are valid"),
-            rerun: String::new(),
-        }
+        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+        Options { cases: CASES as u64, ..Options::new(shaders) }
     }
 
     /// A chunk of random cases and the right words for them, handed on with the number of outputs of a case.

@@ -90,6 +90,64 @@ fn a_nan_in_the_place_of_a_number_breaks_the_promise() {
     assert!(text.contains("BROKEN round-two-and-a-half on lavapipe, fragment") && text.contains("NaN 0x7f"), "{text}");
 }
 
+/// The tables are groups of a run, and count what the command of their own does.
+#[test]
+fn a_run_judges_the_tables() {
+    let special = json(&["special", "--format", "json"]);
+    let count = |verdict: &str| {
+        special["outcomes"].as_array().expect("outcomes").iter().filter(|outcome| outcome["verdict"] == verdict).count()
+    };
+    let report = json(&["run", "special", "--format", "json"]);
+    let totals = ["passed", "failed", "indeterminate"].map(|total| report["totals"][total].as_u64().expect("a count"));
+    assert_eq!(totals, ["kept", "broken", "indeterminate"].map(|verdict| count(verdict) as u64));
+    let groups: Vec<&str> =
+        report["groups"].as_array().expect("groups").iter().filter_map(|g| g["id"].as_str()).collect();
+    for table in ["special/nan", "special/infinity", "special/subnormal", "special/signed-zero", "special/rounding"] {
+        assert!(groups.contains(&table), "{table} in {groups:?}");
+    }
+    let one = json(&["run", "special/signed-zero/step-minus-zero", "--format", "json"]);
+    assert_eq!(one["totals"]["cases"], 2, "{}", one["totals"]);
+    assert_eq!(code(&lightmeter(&["run", "special/signed-zero/no-such-probe"])), 3);
+    // The embedded implementation has no shading language.
+    let embedded = lightmeter(&["run", "special", "--adapter", "cpu"]);
+    assert!(code(&embedded) == 3 && stdout(&embedded).contains("skipped special/nan on cpu"), "{}", stdout(&embedded));
+}
+
+#[test]
+fn a_broken_promise_fails_a_run_with_its_operands() {
+    let dir = edited("special-run", "special.wgsl", |text| {
+        text.replace("return step(edge, x);", "return 1.0 - step(edge, x);")
+    });
+    let output = lightmeter(&["run", "special/signed-zero", "--shaders", dir.to_str().expect("UTF-8")]);
+    let text = stdout(&output);
+    assert_eq!(code(&output), 1, "{text}");
+    for part in [
+        "✗ special/signed-zero on lavapipe, compute: ",
+        "FAIL special/signed-zero/step-minus-zero on lavapipe, compute: step(0, −0)",
+        "0x80000000",
+        "legal          1, by WGSL",
+        "again          lightmeter run 'special/signed-zero/step-minus-zero' --adapter lavapipe",
+    ] {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+}
+
+#[test]
+fn probes_are_listed_and_shown_by_their_ids() {
+    let list = stdout(&lightmeter(&["list", "special"]));
+    assert!(list.contains("signed-zero") && list.contains("step-minus-zero"), "{list}");
+    let list = json(&["list", "special/nan", "--format", "json"]);
+    assert_eq!(list["cases"][0]["table"], "special/nan");
+    let shown = stdout(&lightmeter(&["show", "special/signed-zero/step-minus-zero"]));
+    for part in ["step(0, −0)", "promised  1", "compute", "kept", "WGSL"] {
+        assert!(shown.contains(part), "no `{part}` in {shown}");
+    }
+    let shown = json(&["show", "special/nan/keep-nan", "--format", "json"]);
+    assert_eq!(shown["answers"][0]["bits"], "0x7fc00000");
+    let none = lightmeter(&["show", "special/nan/nothing"]);
+    assert!(code(&none) == 2 && stderr(&none).contains("see `lightmeter list special`"), "{}", stderr(&none));
+}
+
 #[test]
 fn bad_usage_of_special_is_told() {
     let rows: [(&[&str], i32, &str); 3] = [

@@ -2,12 +2,11 @@
 //! adapter there is; a stable form that is the naive one is found out.
 
 use lightmeter::arithmetic::Accept;
-use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::cases::blend::Samples;
 use lightmeter::cases::{FAMILIES, Formula, Kind, Reader, Spec, Visitor, Writer, visit};
 use lightmeter::filter::Filter;
-use lightmeter::run::{Options, Silent, run};
-use lightmeter::select::{CaseRef, Member, Shard, catalogue};
+use lightmeter::options::{Options, Silent};
+use lightmeter::run::run;
+use lightmeter::select::{CaseRef, Member, catalogue};
 use lightmeter::stability::{Conditioning, Standing, roundings};
 use lightmeter::subject::Subject;
 use lightmeter_gpu::{Adapter, FILES, Shaders};
@@ -35,20 +34,7 @@ fn stable(catalogue: &[Member]) -> impl Iterator<Item = &Member> {
 }
 
 fn options(shaders: Shaders) -> Options {
-    Options {
-        filter: Filter::new(&["*/*/hard"]).expect("a glob"),
-        cases: 1,
-        seed: 1,
-        shard: Shard::WHOLE,
-        targets: vec![],
-        samples: Samples::default(),
-        size: None,
-        images: None,
-        again: false,
-        profile: &WGSL,
-        shaders,
-        rerun: String::new(),
-    }
+    Options { filter: Filter::new(&["*/*/hard"]).expect("a glob"), cases: 1, targets: vec![], ..Options::new(shaders) }
 }
 
 fn subjects() -> Vec<Subject> {

@@ -3,6 +3,7 @@
 pub mod certificate;
 pub mod exact;
 pub mod frames;
+pub mod harness;
 pub mod running;
 
 use lightmeter::arithmetic::Accept;

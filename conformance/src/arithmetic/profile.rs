@@ -102,6 +102,15 @@ impl Profile {
         PROFILES.into_iter().find(|profile| profile.name == name)
     }
 
+    /// The profile of that name.
+    ///
+    /// # Errors
+    /// Where there is none: says which there are.
+    pub fn named(name: &str) -> Result<&'static Self, String> {
+        let names: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
+        Self::by_name(name).ok_or_else(|| format!("no such profile; expected one of {}", names.join(", ")))
+    }
+
     /// Runs `f` with this profile as the one that intervals on this thread are computed by.
     pub fn scope<T>(&self, f: impl FnOnce() -> T) -> T {
         struct Restore(Profile);

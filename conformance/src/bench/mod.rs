@@ -24,7 +24,7 @@ pub mod turns;
 
 use crate::arithmetic::Profile;
 use crate::filter::Filter;
-use crate::run::Progress;
+use crate::options::Progress;
 use crate::scene::Loaded;
 use crate::select::{Member, catalogue};
 use crate::subject::Subject;

@@ -19,7 +19,7 @@ use super::turns::{self, Effort, Entry};
 use crate::arithmetic::Profile;
 use crate::image::file::Stored;
 use crate::image::select::{builtin, scene_id};
-use crate::run::Progress;
+use crate::options::Progress;
 use crate::scene::library::SCENES;
 use crate::subject::Subject;
 use drawing::{Drawer, Plan, Standard};
@@ -228,7 +228,7 @@ mod tests {
     use super::*;
     use crate::arithmetic::profile::WGSL;
     use crate::bench::document::Standing;
-    use crate::run::Silent;
+    use crate::options::Silent;
     use lightmeter_gpu::adapters;
 
     #[test]

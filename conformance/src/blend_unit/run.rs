@@ -3,8 +3,8 @@
 use super::draw::{Piece, draw};
 use super::standing::Standing;
 use crate::cases::Kind;
+use crate::options::{Options, Progress};
 use crate::report::{Interrupted, Report};
-use crate::run::{Options, Progress};
 use crate::select::{CaseRef, Member, Selected};
 use crate::subject::Subject;
 use lightmeter_gpu::{Error, Route, Shaders, routes};

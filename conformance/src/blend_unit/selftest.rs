@@ -3,13 +3,11 @@
 
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::run::run_group;
-use crate::arithmetic::profile::WGSL;
 use crate::cases::Kind;
 use crate::cases::blend::{Program, Samples, every_state};
-use crate::filter::Filter;
+use crate::options::{Options, Silent};
 use crate::report::{Group, Report};
-use crate::run::{Options, Silent, empty};
-use crate::select::{Member, Random, Selected, Shard, catalogue_of};
+use crate::select::{Member, Random, Selected, catalogue_of};
 use crate::subject::Subject;
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::{Separate, State};
@@ -111,24 +109,11 @@ fn groups() -> Vec<Vec<Member>> {
 }
 
 fn options(target: TargetFormat, cases: u64) -> Result<Options, Error> {
-    Ok(Options {
-        filter: Filter::new::<&str>(&[]).unwrap_or_else(|_| unreachable!("no glob is no wrong glob")),
-        cases,
-        seed: 1,
-        shard: Shard::WHOLE,
-        targets: vec![target],
-        samples: Samples::default(),
-        size: None,
-        images: None,
-        again: false,
-        profile: &WGSL,
-        shaders: Shaders::built_in()?,
-        rerun: String::new(),
-    })
+    Ok(Options { cases, targets: vec![target], ..Options::new(Shaders::built_in()?) })
 }
 
 fn empty_report(target: TargetFormat) -> Result<Report, Error> {
-    Ok(empty(&[], &options(target, 0)?))
+    Ok(Report::empty(&[], &options(target, 0)?))
 }
 
 /// The states that share a state's equation and source factor.
@@ -144,7 +129,7 @@ fn beside(state: State) -> Vec<Member> {
 fn judge(groups: &[Vec<Member>], target: TargetFormat, rules: Rules, cases: u64) -> Result<Report, Error> {
     let options = options(target, cases)?;
     let mut subjects = [Subject::faulty(rules)];
-    let mut report = empty(&subjects, &options);
+    let mut report = Report::empty(&subjects, &options);
     for group in groups {
         let members: Vec<&Member> = group.iter().collect();
         // As many values as a run has where a group has few states.

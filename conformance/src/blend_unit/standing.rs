@@ -10,11 +10,11 @@ use super::store::{ENOUGH, StoreCounts};
 use super::tally::{Drawn, Outcome, Sample, Tally, explain};
 use crate::cases::Stage;
 use crate::judge::{is_worse, worse};
-use crate::report::{BlendState, DeviationUse, Failure, Group, Number, Report, SpecialUse, StoreUse, Tiers, Totals};
-use crate::run::Options;
+use crate::options::Options;
+use crate::report::{BlendState, Failure, Group, Number, Report, SpecialUse, StoreUse, Tiers, Totals};
 use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
-use crate::tally::{KEPT_FAILURES, by_name};
+use crate::tally::{KEPT_FAILURES, by_name, keep_simplest, reported};
 use lightmeter_gpu::Error;
 use lightmeter_scene::target::{Encoding, TargetFormat};
 use rayon::prelude::*;
@@ -32,6 +32,7 @@ pub(super) struct Standing {
     worst: Option<(f64, String)>,
     departure: Option<String>,
     failures: Vec<Failure>,
+    simplest: Option<(u32, Failure)>,
     samples: Vec<Sample>,
     rows: Vec<BlendState>,
     /// For each row, what its values say of how they are stored.
@@ -58,6 +59,7 @@ impl Standing {
             worst: None,
             departure: None,
             failures: vec![],
+            simplest: None,
             samples: vec![],
             rows: vec![],
             stores: vec![],
@@ -189,18 +191,14 @@ impl Standing {
             }));
         }
         let drawn = Drawn { program: piece.program, route: piece.route, target: self.target };
+        let told =
+            |place: usize| failure(member, &id(place), piece, place, pixels[place], drawn.target, subject, options);
+        if let Some((simple, place)) = tally.simplest {
+            keep_simplest(&mut self.simplest, Some((simple, told(place))));
+        }
         for &place in &tally.failures {
             if self.failures.len() < KEPT_FAILURES {
-                self.failures.push(failure(
-                    member,
-                    &id(place),
-                    piece,
-                    place,
-                    pixels[place],
-                    self.target,
-                    subject,
-                    options,
-                ));
+                self.failures.push(told(place));
             }
             if self.samples.len() < SAMPLES {
                 self.samples.push(Sample { drawn, case: piece.case(place), pixel: pixels[place] });
@@ -220,10 +218,8 @@ impl Standing {
         let problem =
             self.problem(subject).or_else(|| crate::run::problem(self.random, tally.verdicts, tally.indeterminate));
         let is_unorm = self.target.is_unorm() && tally.cases > 0;
+        let stage = Stage::FixedFunction.name();
         report.groups.push(Group {
-            id: member.spec.group().into(),
-            adapter: subject.identity.name.clone(),
-            stage: Stage::FixedFunction.name(),
             target: Some(self.target.name()),
             tiers: is_unorm.then_some(tally.tiers),
             store: self.store(subject).filter(|_| is_unorm),
@@ -245,11 +241,11 @@ impl Standing {
             worst: self.worst.map(|(_, id)| id),
             skip_reason: self.lacks,
             explanation,
-            image: None,
             problem,
+            ..Group::new(member.spec.group().into(), subject.identity.name.clone(), stage)
         });
         report.special.extend(self.special);
-        report.failures.extend(self.failures);
+        report.failures.extend(reported(self.simplest, self.failures));
         report.blend_states.extend(self.rows);
     }
 
@@ -313,26 +309,10 @@ impl Standing {
     }
 }
 
-/// Notes which named deviations a target's values needed. One that nothing in a run needs is an unexpected pass.
+/// Counts what the named deviations of a target's values excused.
 fn use_deviations(subject: &Subject, target: TargetFormat, tally: &Tally, report: &mut Report) {
-    if tally.expected_failures + tally.not_deviating == 0 {
-        return;
-    }
     for deviation in subject.known.blend_deviations.iter().filter(|deviation| deviation.target == target) {
-        let adapter = &subject.identity.name;
-        let same = |known: &&mut DeviationUse| known.name == deviation.name && known.adapter == *adapter;
-        if let Some(known) = report.deviations.iter_mut().find(same) {
-            known.excused += tally.expected_failures;
-            known.still_needed |= tally.expected_failures > 0;
-            continue;
-        }
-        report.deviations.push(DeviationUse {
-            name: deviation.name,
-            adapter: adapter.clone(),
-            reason: deviation.reason,
-            still_needed: tally.expected_failures > 0,
-            excused: tally.expected_failures,
-        });
+        report.excuse(deviation.name, &subject.identity.name, tally.expected_failures);
     }
 }
 
@@ -371,6 +351,7 @@ fn failure(
         inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
         reference: Number(expected.reference[k]),
         interval: [Number(expected.low[k]), Number(expected.high[k])],
+        promise: None,
         value: Number(pixel[k]),
         value_hex: format!("pixel bytes {hex}"),
         unwritten: false,

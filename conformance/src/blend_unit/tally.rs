@@ -8,7 +8,7 @@ use super::store::{NEAR, StoreCounts};
 use crate::arithmetic::{F16, F32, Format as _};
 use crate::cases::blend::{Program, UnitCase};
 use crate::devices::{BlendDeviation, Known};
-use crate::judge::{is_worse, margin, worse};
+use crate::judge::{is_worse, margin, simplicity, worse};
 use crate::report::Tiers;
 use lightmeter_gpu::Route;
 use lightmeter_scene::blend::Separate;
@@ -119,6 +119,8 @@ pub struct Tally {
     pub worst: Option<(f64, usize)>,
     /// The first pixels with a component that fails, by the place of their cases.
     pub failures: Vec<usize>,
+    /// The place of the failing case of the simplest inputs, and how simple they are.
+    pub simplest: Option<(u32, usize)>,
     /// The first pixel that departs from the model.
     pub departure: Option<usize>,
 }
@@ -176,8 +178,15 @@ impl Tally {
                 }
             }
         }
-        if fails && self.failures.len() < KEPT {
-            self.failures.push(place);
+        if fails {
+            let simple =
+                case.sources[..case.layers].iter().chain([&case.dst, &case.constant]).map(|x| simplicity(x)).sum();
+            if self.simplest.is_none_or(|(least, _)| simple < least) {
+                self.simplest = Some((simple, place));
+            }
+            if self.failures.len() < KEPT {
+                self.failures.push(place);
+            }
         }
         if let Some(model) = known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8) {
             let predicted = model.predict(program, route, case, super::pixel::stored(target, case.dst));

@@ -1,15 +1,16 @@
 //! `lightmeter bench`.
 
-use super::options::{Choice, shaders, subjects};
+use super::options::{Choice, shaders};
 use super::{NothingToRun, Status, emit, writable};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
 use lightmeter::bench::document::Document;
 use lightmeter::bench::recommend::{self, Inputs, Limit, recommend};
 use lightmeter::bench::{Options, bench, page, text};
 use lightmeter::filter::Filter;
-use lightmeter::run::Progress;
+use lightmeter::options::Progress;
 use lightmeter::scene::load;
 use lightmeter::select::catalogue;
 use lightmeter_gpu::ClockKind;
@@ -111,7 +112,7 @@ impl Bench {
             anyhow::bail!("a recommendation is written as text or json");
         }
         writable(self.out.as_deref())?;
-        let subjects = subjects(&self.adapter)?;
+        let subjects = adapters::open(&self.adapter)?;
         if self.adapter == ["cpu"] && !self.measures_formulas(&options.filter) {
             let message = "the embedded implementation has no shaders: formulas alone are measured of it";
             return Err(NothingToRun(message.into()).into());

@@ -14,6 +14,8 @@ use lightmeter::report::text::thousands;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load::{self, Loaded};
 use lightmeter::select::{CaseRef, Member, Random, Selected, catalogue_of, select};
+use lightmeter::special::verdict::{self, Table};
+use lightmeter::special::{FAMILY, Probe};
 use lightmeter::stability;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -45,7 +47,9 @@ impl List {
         let filter = matching(&self.filter, self.amount.cases, &samples, None)?;
         let catalogue = catalogue_of(&samples);
         let selected = select(&catalogue, &filter, self.amount.cases, self.amount.shard.0);
-        let scenes = if self.formulas { vec![] } else { image::select::select(&filter, self.amount.shard.0, None) };
+        let shard = self.amount.shard.0;
+        let scenes = if self.formulas { vec![] } else { image::select::select(&filter, shard, None) };
+        let tables = if self.formulas { vec![] } else { verdict::select(&filter, shard) };
         let text = match (self.format, self.formulas) {
             (Format::Junit, _) => bail!("a list is written as text or json"),
             (Format::Json, _) => {
@@ -62,6 +66,7 @@ impl List {
                         if self.formulas { formula(member, aliases) } else { cases(member, chosen, aliases) }
                     })
                     .collect();
+                entries.extend(tables.iter().map(table));
                 for chosen in &scenes {
                     let loaded = load::builtin(SCENES[chosen.place].0)?;
                     let pixels = chosen.pixels.as_ref().map_or_else(|| pixels(&loaded), |some| some.len() as u64);
@@ -72,7 +77,7 @@ impl List {
                 serde_json::to_string_pretty(&json!({ "schema": format!("lightmeter.{key}/1"), key: entries }))? + "\n"
             }
             (Format::Text, true) => signatures(&catalogue, &selected)?,
-            (Format::Text, false) => tree(&catalogue, &selected, &scenes)?,
+            (Format::Text, false) => tree(&catalogue, &selected, &tables, &scenes)?,
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
@@ -147,7 +152,19 @@ fn pixels(loaded: &Loaded) -> u64 {
     u64::from(loaded.frame.target.width) * u64::from(loaded.frame.target.height)
 }
 
-fn tree(catalogue: &[Member], selected: &[Selected], scenes: &[Chosen]) -> anyhow::Result<String> {
+/// A table of special values with its probes.
+fn table(table: &Table) -> Value {
+    let probe = |probe: &&Probe| {
+        json!({
+            "id": probe.id(), "computes": probe.what, "promise": probe.promise.words(probe.gives),
+            "source": probe.source.section(),
+        })
+    };
+    let probes: Vec<Value> = table.probes.iter().map(probe).collect();
+    json!({ "table": table.id(), "title": table.class.title(), "probes": probes })
+}
+
+fn tree(catalogue: &[Member], selected: &[Selected], tables: &[Table], scenes: &[Chosen]) -> anyhow::Result<String> {
     let mut text = String::new();
     let mut family = "";
     let mut total = 0;
@@ -172,6 +189,17 @@ fn tree(catalogue: &[Member], selected: &[Selected], scenes: &[Chosen]) -> anyho
                     writeln!(text, "    {:<33} fails: {}, {}", "", naive.formula, naive.fails)?;
                 }
             }
+        }
+    }
+    if !tables.is_empty() {
+        writeln!(text, "{FAMILY}")?;
+    }
+    for table in tables {
+        let count = table.probes.len() as u64;
+        total += count;
+        writeln!(text, "  {:<32} {:>9}  {}", table.class.name(), thousands(count), table.class.title())?;
+        for probe in &table.probes {
+            writeln!(text, "    {:<33} {}; promised: {}", probe.name, probe.what, probe.promise.words(probe.gives))?;
         }
     }
     if !scenes.is_empty() {

@@ -19,6 +19,7 @@ mod special;
 mod sweep;
 
 use clap::{Parser, Subcommand};
+use lightmeter::adapters::AdapterError;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -130,7 +131,13 @@ impl Status {
         if let Some(lightmeter::gate::process::Error::Start { .. }) = error.downcast_ref() {
             return Self::Device;
         }
-        match error.downcast_ref::<lightmeter_gpu::Error>() {
+        let device = match error.downcast_ref::<AdapterError>() {
+            Some(AdapterError::NoDriver(_)) => return Self::Nothing,
+            Some(AdapterError::Unknown { .. }) => return Self::BadInput,
+            Some(AdapterError::Device(error)) => Some(error),
+            None => error.downcast_ref::<lightmeter_gpu::Error>(),
+        };
+        match device {
             Some(lightmeter_gpu::Error::Device(_) | lightmeter_gpu::Error::Timeout(_)) => Self::Device,
             Some(lightmeter_gpu::Error::Open { .. }) => Self::Nothing,
             _ => Self::BadInput,

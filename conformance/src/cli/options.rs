@@ -1,23 +1,17 @@
 //! Options that several commands share, read into what the library takes.
 
-use super::NothingToRun;
-use anyhow::{Context as _, bail};
 use clap::Args;
+use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
-use lightmeter::arithmetic::profile::PROFILES;
-use lightmeter::cases::blend::Samples;
 use lightmeter::filter::Filter;
-use lightmeter::run::Options;
+use lightmeter::options::{DEFAULT_CASES, DEFAULT_TARGETS, MOST_CASES, Options};
 use lightmeter::select::Shard;
 use lightmeter::subject::Subject;
-use lightmeter_gpu::{Adapter, Shaders};
+use lightmeter_gpu::Shaders;
 use lightmeter_scene::target::TargetFormat;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-
-/// One format of floats and one of 8 bits.
-const DEFAULT_TARGETS: [TargetFormat; 2] = [TargetFormat::Rgba32Float, TargetFormat::Rgba8Unorm];
 
 /// What `--target` names: one format, or all.
 #[derive(Clone, Debug)]
@@ -69,7 +63,7 @@ pub(crate) struct Choice {
 #[derive(Debug, Args)]
 pub(crate) struct Amount {
     /// Random cases for each formula, and pairs for each blend state; a sixteenth of them for a state in a shader
-    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_CASES, value_parser = clap::value_parser!(u64).range(1..=MOST_CASES))]
     pub(crate) cases: u64,
     /// Only a part of the cases: the I-th of N
     #[arg(long, value_name = "I/N", default_value = "1/1")]
@@ -103,8 +97,7 @@ impl std::fmt::Display for ShardArgument {
 impl Choice {
     /// The profile of that name.
     pub(crate) fn profile(name: &str) -> Result<&'static Profile, String> {
-        let names: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
-        Profile::by_name(name).ok_or_else(|| format!("no such profile; expected one of {}", names.join(", ")))
+        Profile::named(name)
     }
 
     /// The format of that name, or all.
@@ -129,36 +122,13 @@ impl Choice {
 
     /// The library's options for a filter.
     pub(crate) fn options(&self, filter: Filter, cases: u64, shard: Shard) -> anyhow::Result<Options> {
-        let mut rerun = String::new();
-        if self.seed != 1 {
-            rerun += &format!(" --seed {}", self.seed);
-        }
-        if self.profile.name != "wgsl" {
-            rerun += &format!(" --profile {}", self.profile.name);
-        }
-        if let Some(dir) = &self.shaders {
-            let dir = dir.display().to_string().replace('\'', r"'\''");
-            rerun += &format!(" --shaders '{dir}'");
-        }
-        Ok(Options {
-            filter,
-            cases,
-            seed: self.seed,
-            shard,
-            targets: self.targets(),
-            samples: Samples { seed: self.seed, ..Samples::default() },
-            size: self.size,
-            images: None,
-            again: false,
-            profile: self.profile,
-            shaders: self.shaders()?,
-            rerun,
-        })
+        let options = Options::by(self.shaders.as_deref(), self.seed, self.profile)?;
+        Ok(Options { filter, cases, shard, targets: self.targets(), size: self.size, ..options })
     }
 
     /// The subjects that were asked for, opened.
     pub(crate) fn subjects(&self) -> anyhow::Result<Vec<Subject>> {
-        subjects(&self.adapter)
+        Ok(adapters::open(&self.adapter)?)
     }
 }
 
@@ -168,55 +138,4 @@ pub(crate) fn shaders(dir: Option<&Path>) -> anyhow::Result<Shaders> {
         Some(dir) => Shaders::from_dir(dir)?,
         None => Shaders::built_in()?,
     })
-}
-
-/// The adapters of those names, opened; without any, lavapipe or the first there is.
-pub(crate) fn subjects(asked: &[String]) -> anyhow::Result<Vec<Subject>> {
-    if asked.is_empty() {
-        let found = lightmeter_gpu::vulkan_adapters();
-        let found = if found.is_empty() { lightmeter_gpu::adapters() } else { found };
-        let Some(first) = found.first() else { return Err(no_adapter().into()) };
-        return Ok(vec![Subject::open(first)?]);
-    }
-    let only_cpu = asked.iter().all(|name| name == "cpu");
-    let mut found = if only_cpu { vec![] } else { lightmeter_gpu::vulkan_adapters() };
-    let known = |found: &[Adapter], name: &String| name == "cpu" || found.iter().any(|a| a.name == *name);
-    if !asked.iter().all(|name| known(&found, name)) {
-        found = lightmeter_gpu::adapters();
-    }
-    let mut subjects = vec![];
-    for name in asked {
-        match name.as_str() {
-            "cpu" => subjects.push(Subject::embedded()),
-            "all" => {
-                for adapter in &found {
-                    subjects.push(Subject::open(adapter)?);
-                }
-                if found.is_empty() {
-                    return Err(no_adapter().into());
-                }
-            }
-            name => {
-                let Some(adapter) = found.iter().find(|adapter| adapter.name == name) else {
-                    if found.is_empty() {
-                        return Err(no_adapter()).context(format!("adapter `{name}` is not here"));
-                    }
-                    let names: Vec<&str> = found.iter().map(|adapter| adapter.name.as_str()).collect();
-                    bail!("no adapter `{name}`; there are {}, cpu and all", names.join(", "));
-                };
-                subjects.push(Subject::open(adapter)?);
-            }
-        }
-    }
-    let mut seen = std::collections::HashSet::new();
-    subjects.retain(|subject| seen.insert(subject.identity.name.clone()));
-    Ok(subjects)
-}
-
-fn no_adapter() -> NothingToRun {
-    NothingToRun(
-        "no Vulkan or OpenGL driver is here. `./x run` installs lavapipe, a driver that needs no GPU; or run on the \
-         embedded implementation with `--adapter cpu`"
-            .into(),
-    )
 }

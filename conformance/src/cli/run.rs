@@ -6,8 +6,9 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::filter::Filter;
+use lightmeter::options::Progress;
 use lightmeter::report::{Interrupted, Report, junit, text};
-use lightmeter::run::{Progress, run};
+use lightmeter::run::run;
 use lightmeter::select::{catalogue_of, select};
 use std::path::PathBuf;
 
@@ -108,8 +109,9 @@ pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples, size: Op
         let filter = Filter::new(std::slice::from_ref(glob))?;
         let whole = lightmeter::select::Shard::WHOLE;
         let scenes = lightmeter::image::select::select(&filter, whole, size);
-        if scenes.is_empty() && select(&catalogue, &filter, cases, whole).is_empty() {
-            let families = lightmeter::cases::FAMILIES.join(", ") + ", scene";
+        let tables = lightmeter::special::verdict::select(&filter, whole);
+        if scenes.is_empty() && tables.is_empty() && select(&catalogue, &filter, cases, whole).is_empty() {
+            let families = lightmeter::cases::FAMILIES.join(", ") + ", special, scene";
             return Err(NothingToRun(format!(
                 "no case matches `{glob}`; ids begin with a family ({families}), as `fog/linear/random/000017`: see \
                  `lightmeter list`"
@@ -147,9 +149,7 @@ impl Progress for Bar {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter::arithmetic::profile::WGSL;
-    use lightmeter::run::Options;
-    use lightmeter::select::Shard;
+    use lightmeter::options::Options;
     use lightmeter::subject::Subject;
     use lightmeter_gpu::{Shaders, vulkan_adapters};
     use lightmeter_scene::target::TargetFormat;
@@ -176,16 +176,8 @@ mod tests {
         let options = Options {
             filter: Filter::new(&[filter]).expect("the glob is valid"),
             cases: 64,
-            seed: 1,
-            shard: Shard::WHOLE,
             targets: vec![TargetFormat::Rgba8Unorm],
-            samples: Samples::default(),
-            size: None,
-            images: None,
-            again: false,
-            profile: &WGSL,
-            shaders,
-            rerun: String::new(),
+            ..Options::new(shaders)
         };
         run(&mut [subject], &options, &mut LoseAt(group, lose)).expect("there is a report")
     }

@@ -1,9 +1,10 @@
 //! `lightmeter special`.
 
-use super::options::{Format, shaders, subjects};
+use super::options::{Format, shaders};
 use super::{NothingToRun, Status, emit};
 use anyhow::{Context as _, bail};
 use clap::Args;
+use lightmeter::adapters;
 use lightmeter::report::special;
 use lightmeter::special::run::{Report, run};
 use std::path::{Path, PathBuf};
@@ -35,7 +36,7 @@ impl Special {
             bail!("probes are written as text or json");
         }
         let shaders = shaders(self.shaders.as_deref())?;
-        let subjects = subjects(&self.adapter)?;
+        let subjects = adapters::open(&self.adapter)?;
         let report = run(&subjects, &shaders)?;
         if report.outcomes.is_empty() {
             let message = "nothing could be probed: the embedded implementation has no shading language";

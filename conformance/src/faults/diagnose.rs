@@ -165,18 +165,6 @@ pub(super) fn share(part: usize, whole: usize) -> f64 {
     part as f64 / whole as f64
 }
 
-/// How much inputs take to write down: the fewer, the simpler a case.
-#[must_use]
-pub fn simplicity(inputs: &[f32]) -> u32 {
-    let digits = |x: f32| match x.abs() {
-        0.0 => 0,
-        1.0 => 1,
-        x if x.is_finite() => 26 - x.to_bits().trailing_zeros().min(23),
-        _ => 64,
-    };
-    inputs.iter().map(|&x| digits(x)).sum()
-}
-
 /// What a row's answer says of the intervals of its outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fit {

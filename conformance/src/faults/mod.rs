@@ -20,7 +20,7 @@ mod table;
 mod variation;
 
 pub use catalogue::{Fault, concerning, faults};
-pub use diagnose::{Answered, Diagnosis, Explanation, diagnose, simplicity};
+pub use diagnose::{Answered, Diagnosis, Explanation, diagnose};
 pub use factor::Scaled;
 pub use group::{Error, LEAST_SHARE, LEAST_VALUES, LEAST_Z, Systematic, group_verdict};
 pub use row::Arithmetic;

@@ -2,8 +2,8 @@
 
 use super::plan::Place;
 use super::verdict::{Failure, Verdicts};
-use crate::faults::{LEAST_VALUES, simplicity};
-use crate::judge::{is_worse, worse};
+use crate::faults::LEAST_VALUES;
+use crate::judge::{is_worse, simplicity, worse};
 
 /// Failures that are kept with their numbers, of each formula.
 const KEPT: usize = 16;

@@ -11,8 +11,9 @@ use super::select::{Chosen, pixel_id, scene_id, size};
 use crate::arithmetic::Profile;
 use crate::devices::Deviation;
 use crate::judge::is_worse;
+use crate::options::{Options, Progress};
 use crate::report::{Failure, Group, ImageUse, Number, Report, Totals};
-use crate::run::{Options, Progress, problem};
+use crate::run::problem;
 use crate::scene::Loaded;
 use crate::subject::Subject;
 use crate::tally::KEPT_FAILURES;
@@ -211,22 +212,9 @@ impl<'a> Scene<'a> {
 
     fn group(&self, subject: &Subject, shader: Shader, totals: Totals) -> Group {
         Group {
-            id: self.id.clone(),
-            adapter: subject.identity.name.clone(),
-            stage: stage(shader),
             target: Some(self.frame.target.format.name()),
-            tiers: None,
-            store: None,
             totals,
-            error_ulp_max: Number(0.0),
-            margin_max: Number(0.0),
-            seconds: 0.0,
-            seconds_warm: None,
-            worst: None,
-            skip_reason: None,
-            explanation: None,
-            problem: None,
-            image: None,
+            ..Group::new(self.id.clone(), subject.identity.name.clone(), stage(shader))
         }
     }
 
@@ -308,11 +296,7 @@ impl<'a> Scene<'a> {
             }
             let count = excuse(judged, image, self.frame, deviation, profile);
             excused += count;
-            let adapter = &subject.identity.name;
-            if let Some(uses) = report.deviations.iter_mut().find(|d| d.name == deviation.name && d.adapter == *adapter)
-            {
-                uses.excused += count;
-            }
+            report.excuse(deviation.name, &subject.identity.name, count);
         }
         excused
     }
@@ -389,6 +373,7 @@ impl<'a> Scene<'a> {
             inputs_hex: serde_json::Map::new(),
             reference: Number(exact),
             interval: [Number(expected[pixel].low[k]), Number(expected[pixel].high[k])],
+            promise: None,
             value: Number(value),
             value_hex: format!("0x{bits:08x}"),
             unwritten: false,

@@ -6,8 +6,9 @@ pub mod selftest;
 pub mod special;
 pub mod text;
 
+use crate::options::Options;
 use crate::stability::{Cost, Examined};
-use crate::subject::Identity;
+use crate::subject::{Identity, Subject};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A number that may be NaN or infinite, which JSON writes as a string.
@@ -262,6 +263,29 @@ pub struct ImageUse {
 }
 
 impl Group {
+    /// A group of nothing yet.
+    #[must_use]
+    pub fn new(id: String, adapter: String, stage: &'static str) -> Self {
+        Self {
+            id,
+            adapter,
+            stage,
+            target: None,
+            tiers: None,
+            store: None,
+            totals: Totals::default(),
+            error_ulp_max: Number(0.0),
+            margin_max: Number(0.0),
+            seconds: 0.0,
+            seconds_warm: None,
+            worst: None,
+            skip_reason: None,
+            explanation: None,
+            problem: None,
+            image: None,
+        }
+    }
+
     /// The stage, and for a blend unit the target.
     #[must_use]
     pub fn place(&self) -> String {
@@ -307,6 +331,9 @@ pub struct Failure {
     pub reference: Number,
     /// The least and the greatest legal value.
     pub interval: [Number; 2],
+    /// What is legal in words, where an interval does not say it: of a special value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub promise: Option<String>,
     /// What came out.
     pub value: Number,
     /// Its bits.
@@ -406,6 +433,39 @@ pub struct Report {
 }
 
 impl Report {
+    /// A report of nothing yet.
+    #[must_use]
+    pub fn empty(subjects: &[Subject], options: &Options) -> Self {
+        Self {
+            schema: "lightmeter.run/1",
+            seed: options.seed,
+            seconds: 0.0,
+            profile: options.profile.name,
+            filter: options.filter.globs().map(str::to_owned).collect(),
+            adapters: subjects.iter().map(|subject| subject.identity.clone()).collect(),
+            totals: Totals::default(),
+            aliases: 0,
+            routes: serde_json::Map::new(),
+            timing: Timing::default(),
+            deviations: vec![],
+            groups: vec![],
+            blend_states: vec![],
+            special: vec![],
+            stability: vec![],
+            stable_costs: vec![],
+            interrupted: None,
+            failures: vec![],
+        }
+    }
+
+    /// Counts verdicts that a named deviation of an adapter excused.
+    pub(crate) fn excuse(&mut self, deviation: &str, adapter: &str, verdicts: u64) {
+        let is_it = |known: &&mut DeviationUse| known.name == deviation && known.adapter == adapter;
+        if let Some(known) = self.deviations.iter_mut().find(is_it) {
+            known.excused += verdicts;
+        }
+    }
+
     /// Whether all went as expected.
     #[must_use]
     pub fn is_success(&self) -> bool {

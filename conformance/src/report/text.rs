@@ -1,6 +1,6 @@
 //! A run's result for people to read.
 
-use super::{Failure, Group, Number, Report, Tiers, Totals};
+use super::{DeviationUse, Failure, Group, Number, Report, Tiers, Totals};
 use crate::judge::{is_worse, worse};
 use lightmeter_gpu::Route;
 use lightmeter_scene::target::TargetFormat;
@@ -29,6 +29,30 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
         Detail::Groups => report.groups.iter().map(Row::of).collect(),
     };
     table(&rows, out)?;
+    failures(report, out)?;
+    writeln!(out)?;
+    notes(report, out)?;
+    if timing {
+        let t = report.timing;
+        blend_timing(report, out)?;
+        writeln!(
+            out,
+            "time: devices {:.2} s (their compilers included), pipelines {:.2} s, reference {:.2} s, inputs {:.2} s, \
+             judging {:.2} s",
+            t.devices, t.compile, t.reference, t.generate, t.judge
+        )?;
+    }
+    if let Some(interrupted) = &report.interrupted {
+        writeln!(out, "interrupted: {} was under way: {}", interrupted.under_way, interrupted.message)?;
+    }
+    verdict(report, out)
+}
+
+/// Writes each group that fails, with what explains it, and of each formula on an adapter one failing case.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn failures(report: &Report, out: &mut impl Write) -> Result {
     for group in report.groups.iter().filter(|group| group.totals.failed > 0 || group.problem.is_some()) {
         let (failed, verdicts) = (thousands(group.totals.failed), thousands(group.totals.verdicts));
         write!(out, "\n✗ {} on {}, {}: {failed} of {verdicts} failed", group.id, group.adapter, group.place())?;
@@ -52,22 +76,7 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
             self::failure(failure, out)?;
         }
     }
-    writeln!(out)?;
-    notes(report, out)?;
-    if timing {
-        let t = report.timing;
-        blend_timing(report, out)?;
-        writeln!(
-            out,
-            "time: devices {:.2} s (their compilers included), pipelines {:.2} s, reference {:.2} s, inputs {:.2} s, \
-             judging {:.2} s",
-            t.devices, t.compile, t.reference, t.generate, t.judge
-        )?;
-    }
-    if let Some(interrupted) = &report.interrupted {
-        writeln!(out, "interrupted: {} was under way: {}", interrupted.under_way, interrupted.message)?;
-    }
-    verdict(report, out)
+    Ok(())
 }
 
 /// What the first drawing of the blend states costs, and the second, by adapter: the product of factors and equations, and
@@ -128,18 +137,7 @@ fn stability(report: &Report, out: &mut impl Write) -> Result {
 
 fn notes(report: &Report, out: &mut impl Write) -> Result {
     for deviation in &report.deviations {
-        let state = if deviation.still_needed {
-            "still seen, so it is granted".to_owned()
-        } else {
-            format!("no longer seen: take it out ({})", deviation.reason)
-        };
-        writeln!(
-            out,
-            "deviation {} on {}: {state}; {} verdicts excused",
-            deviation.name,
-            deviation.adapter,
-            thousands(deviation.excused)
-        )?;
+        self::deviation(deviation, out)?;
     }
     for group in report.groups.iter().filter(|group| group.skip_reason.is_some()) {
         let reason = group.skip_reason.unwrap_or_default();
@@ -184,6 +182,20 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
         )?;
     }
     Ok(())
+}
+
+/// Whether a named deviation is still needed, and what it excused.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn deviation(deviation: &DeviationUse, out: &mut impl Write) -> Result {
+    let DeviationUse { name, adapter, reason, .. } = deviation;
+    let state = if deviation.still_needed {
+        "still seen, so it is granted".to_owned()
+    } else {
+        format!("no longer seen: take it out ({reason})")
+    };
+    writeln!(out, "deviation {name} on {adapter}: {state}; {} verdicts excused", thousands(deviation.excused))
 }
 
 /// Of scenes, by adapter: how many pixels are marked, whether both kinds of shader draw alike, and what all effects cost.
@@ -249,14 +261,21 @@ fn stores(report: &Report, out: &mut impl Write) -> Result {
 }
 
 fn verdict(report: &Report, out: &mut impl Write) -> Result {
-    let t = &report.totals;
+    totals(&report.totals, report.is_success(), report.seconds, out)
+}
+
+/// Writes the last line of a run: how many verdicts there are of which outcome.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn totals(t: &Totals, is_success: bool, seconds: f64, out: &mut impl Write) -> Result {
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     let share = 100.0 * t.indeterminate as f64 / t.verdicts.max(1) as f64;
     writeln!(
         out,
         "{} {} verdicts on {} cases: {} passed, {} failed, {} indeterminate ({share:.3} %), {} expected failures, \
          {} unexpected passes, {} cases skipped, in {:.1} s",
-        if report.is_success() { "✓" } else { "✗" },
+        if is_success { "✓" } else { "✗" },
         thousands(t.verdicts),
         thousands(t.cases),
         thousands(t.passed),
@@ -265,7 +284,7 @@ fn verdict(report: &Report, out: &mut impl Write) -> Result {
         thousands(t.expected_failures),
         thousands(t.unexpected_passes),
         thousands(t.skipped),
-        report.seconds
+        seconds
     )
 }
 
@@ -363,10 +382,17 @@ pub fn failure(failure: &Failure, out: &mut impl Write) -> Result {
     for ((name, value), bits) in failure.inputs.iter().zip(failure.inputs_hex.values()) {
         writeln!(out, "  {name:<14} {}  {}", plain(value), plain(bits))?;
     }
-    writeln!(out, "  {:<14} {}", "reference", failure.reference)?;
-    writeln!(out, "  {:<14} {} to {}", "legal", failure.interval[0], failure.interval[1])?;
+    match &failure.promise {
+        Some(promise) => writeln!(out, "  {:<14} {promise}", "legal")?,
+        None => {
+            writeln!(out, "  {:<14} {}", "reference", failure.reference)?;
+            writeln!(out, "  {:<14} {} to {}", "legal", failure.interval[0], failure.interval[1])?;
+        }
+    }
     if failure.unwritten {
         writeln!(out, "  {:<14} never written", "value")?;
+    } else if failure.promise.is_some() {
+        writeln!(out, "  {:<14} {}  {}", "value", failure.value, failure.value_hex)?;
     } else {
         let (value, bits, error) = (failure.value, &failure.value_hex, short(failure.error_ulp.0));
         writeln!(out, "  {:<14} {value}  {bits}, {error} {unit} from the reference", "value")?;

@@ -8,11 +8,15 @@
 pub mod record;
 pub mod run;
 mod table;
+pub mod verdict;
 
 pub use table::PROBES;
 
 use crate::report::Number;
 use lightmeter_gpu::SENTINEL;
+
+/// The first segment of the ids.
+pub const FAMILY: &str = "special";
 
 /// What a probe is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -33,6 +37,18 @@ pub enum Class {
 impl Class {
     /// All of them, in the order of reports.
     pub const ALL: [Self; 5] = [Self::Nan, Self::Infinity, Self::Subnormal, Self::SignedZero, Self::Rounding];
+
+    /// The name in ids: `special/nan/nan-plus-one`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Nan => "nan",
+            Self::Infinity => "infinity",
+            Self::Subnormal => "subnormal",
+            Self::SignedZero => "signed-zero",
+            Self::Rounding => "rounding",
+        }
+    }
 
     /// The heading in reports.
     #[must_use]
@@ -164,6 +180,30 @@ impl Promise {
             }
     }
 
+    /// The value that a result is compared with, and the least and the greatest that is promised: numbers of a float, words of
+    /// another type. Where nothing is promised there is no such value, and anything lies between.
+    #[must_use]
+    pub fn bounds(self, gives: Gives) -> (f64, [f64; 2]) {
+        let number = |bits: u32| gives.number(bits);
+        match self {
+            Self::Exactly(bits) => (number(bits), [number(bits); 2]),
+            Self::OneOf(all) => {
+                let ends = all
+                    .iter()
+                    .map(|&bits| number(bits))
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+                (all.first().map_or(f64::NAN, |&bits| number(bits)), ends)
+            }
+            Self::KeptOrFlushed(bits) => (number(bits), [number(bits).min(0.0), number(bits).max(0.0)]),
+            Self::NearOrFlushed(low, high) => {
+                let [low, high] = [f64::from(low), f64::from(high)];
+                (f64::midpoint(low, high), [low.min(0.0), high.max(0.0)])
+            }
+            Self::EitherZero => (0.0, [0.0; 2]),
+            Self::Indeterminate => (f64::NAN, [f64::NEG_INFINITY, f64::INFINITY]),
+        }
+    }
+
     /// In words, for a result of the type given.
     #[must_use]
     pub fn words(self, gives: Gives) -> String {
@@ -207,6 +247,12 @@ pub enum Gives {
 }
 
 impl Gives {
+    /// A result as a number: of a float its value, of another type the word.
+    #[must_use]
+    pub fn number(self, bits: u32) -> f64 {
+        if self == Self::Float { f32::from_bits(bits).into() } else { bits.into() }
+    }
+
     /// A result in few letters.
     #[must_use]
     pub fn word(self, bits: u32) -> String {
@@ -279,6 +325,18 @@ pub struct Probe {
 }
 
 impl Probe {
+    /// Its id: `special/nan/nan-plus-one`.
+    #[must_use]
+    pub fn id(&self) -> String {
+        format!("{FAMILY}/{}/{}", self.class.name(), self.name)
+    }
+
+    /// The probe of that id.
+    #[must_use]
+    pub fn by_id(id: &str) -> Option<&'static Self> {
+        PROBES.iter().find(|probe| probe.id() == id)
+    }
+
     /// The probe of that name.
     #[must_use]
     pub fn by_name(name: &str) -> Option<&'static Self> {

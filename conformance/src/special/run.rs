@@ -41,6 +41,18 @@ impl Verdict {
         }
     }
 
+    /// The name in JSON and reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Kept => "kept",
+            Self::Broken => "broken",
+            Self::Indeterminate => "indeterminate",
+            Self::Changed => "changed",
+            Self::Deviates => "deviates",
+        }
+    }
+
     /// Whether it fails.
     #[must_use]
     pub const fn is_failure(self) -> bool {
@@ -178,37 +190,65 @@ pub fn run(subjects: &[Subject], shaders: &Shaders) -> Result<Report, Error> {
         skipped: vec![],
         outcomes: vec![],
     };
-    let kernels = functions()
-        .into_iter()
-        .map(|function| Ok((function, Kernel::new(shaders, FILE, function)?)))
-        .collect::<Result<Vec<_>, Error>>()?;
+    let probes: Vec<&'static Probe> = PROBES.iter().collect();
     for subject in subjects {
-        let Some(gpu) = subject.gpu() else { continue };
-        let on_record = OnRecord::of(&subject.identity);
-        let mut sink = Sink { adapter: &subject.identity, on_record, report: &mut report };
-        for (stage, name) in [(Stage::Compute, "compute"), (Stage::Fragment, "fragment")] {
-            for (function, kernel) in &kernels {
-                evaluate(gpu, kernel, function, (stage, name), &mut sink)?;
-            }
-        }
-        for flat in [false, true] {
-            carry(gpu, shaders, flat, &mut sink)?;
-        }
+        let Some(results) = evaluate(subject, shaders, &probes)? else { continue };
         report.adapters.push(subject.identity.clone());
-        if let Some(on_record) = on_record {
-            let (adapter, of) = (subject.identity.name.clone(), on_record.record().whose());
-            report.records.push(RecordUse { adapter, of, binds: on_record.binds });
-        }
+        report.outcomes.extend(results.outcomes);
+        report.skipped.extend(results.skipped);
+        report.records.extend(results.record);
     }
     let place = |outcome: &Outcome| PROBES.iter().position(|probe| probe.name == outcome.probe);
     report.outcomes.sort_by_key(place);
     Ok(report)
 }
 
-/// Each function once.
-fn functions() -> Vec<&'static str> {
+/// What became of some probes on one subject.
+pub struct Results {
+    /// The results, stage by stage.
+    pub outcomes: Vec<Outcome>,
+    /// Stages that the subject lacks.
+    pub skipped: Vec<Skipped>,
+    /// What is on record for its driver.
+    pub record: Option<RecordUse>,
+}
+
+/// Evaluates some probes on a subject; `None` for the embedded implementation, which has no shading language.
+///
+/// # Errors
+/// Where a shader is invalid, or the device fails.
+pub fn evaluate(subject: &Subject, shaders: &Shaders, probes: &[&'static Probe]) -> Result<Option<Results>, Error> {
+    let Some(gpu) = subject.gpu() else { return Ok(None) };
+    let kernels = functions(probes)
+        .into_iter()
+        .map(|function| Ok((function, Kernel::new(shaders, FILE, function)?)))
+        .collect::<Result<Vec<_>, Error>>()?;
+    let on_record = OnRecord::of(&subject.identity);
+    let record = on_record.map(|on_record| {
+        let (adapter, of) = (subject.identity.name.clone(), on_record.record().whose());
+        RecordUse { adapter, of, binds: on_record.binds }
+    });
+    let mut sink =
+        Sink { adapter: &subject.identity, on_record, results: Results { outcomes: vec![], skipped: vec![], record } };
+    for (stage, name) in [(Stage::Compute, "compute"), (Stage::Fragment, "fragment")] {
+        for (function, kernel) in &kernels {
+            shade(gpu, kernel, &of_function(probes, function), (stage, name), &mut sink)?;
+        }
+    }
+    for flat in [false, true] {
+        let carried: Vec<&'static Probe> =
+            probes.iter().copied().filter(|probe| probe.way == Way::Varying { flat }).collect();
+        if !carried.is_empty() {
+            carry(gpu, shaders, flat, &carried, &mut sink)?;
+        }
+    }
+    Ok(Some(sink.results))
+}
+
+/// The functions that some probes call, each once.
+fn functions(probes: &[&Probe]) -> Vec<&'static str> {
     let mut functions = vec![];
-    for probe in PROBES {
+    for probe in probes {
         if let Way::Function(function) = probe.way
             && !functions.contains(&function)
         {
@@ -218,11 +258,15 @@ fn functions() -> Vec<&'static str> {
     functions
 }
 
+fn of_function(probes: &[&'static Probe], function: &str) -> Vec<&'static Probe> {
+    probes.iter().copied().filter(|probe| matches!(probe.way, Way::Function(name) if name == function)).collect()
+}
+
 /// Where the results of one adapter go.
 struct Sink<'a> {
     adapter: &'a Identity,
     on_record: Option<OnRecord>,
-    report: &'a mut Report,
+    results: Results,
 }
 
 impl Sink<'_> {
@@ -230,7 +274,7 @@ impl Sink<'_> {
         let recorded = self.on_record.and_then(|of| of.record().get(probe, stage));
         let binding = recorded.filter(|_| self.on_record.is_some_and(|of| of.binds));
         let deviation = Deviation::of(probe, self.adapter.backend);
-        self.report.outcomes.push(Outcome {
+        self.results.outcomes.push(Outcome {
             probe: probe.name,
             adapter: self.adapter.name.clone(),
             stage,
@@ -243,21 +287,20 @@ impl Sink<'_> {
 
     fn skip(&mut self, stage: &'static str, reason: &'static str) {
         let skipped = Skipped { adapter: self.adapter.name.clone(), stage, reason };
-        if !self.report.skipped.contains(&skipped) {
-            self.report.skipped.push(skipped);
+        if !self.results.skipped.contains(&skipped) {
+            self.results.skipped.push(skipped);
         }
     }
 }
 
 /// The probes of one function in one stage.
-fn evaluate(
+fn shade(
     gpu: &Gpu,
     kernel: &Kernel,
-    function: &'static str,
+    probes: &[&'static Probe],
     (stage, name): (Stage, &'static str),
     sink: &mut Sink<'_>,
 ) -> Result<(), Error> {
-    let probes: Vec<&'static Probe> = PROBES.iter().filter(|probe| probe.way == Way::Function(function)).collect();
     let rows: Vec<f32> = probes.iter().flat_map(|probe| probe.inputs).map(|bits| f32::from_bits(*bits)).collect();
     let pipeline = match ArithmeticPipeline::new(gpu, kernel, stage)? {
         Ok(pipeline) => pipeline,
@@ -274,7 +317,13 @@ fn evaluate(
 }
 
 /// The probes of an attribute: every vertex has the value, and the pixel in the primitive's middle is read.
-fn carry(gpu: &Gpu, shaders: &Shaders, flat: bool, sink: &mut Sink<'_>) -> Result<(), Error> {
+fn carry(
+    gpu: &Gpu,
+    shaders: &Shaders,
+    flat: bool,
+    probes: &[&'static Probe],
+    sink: &mut Sink<'_>,
+) -> Result<(), Error> {
     const STAGE: &str = "raster";
     let kind = if flat {
         Raster::Flat { topology: Topology::TriangleList, provoking: Provoking::Last }
@@ -288,7 +337,7 @@ fn carry(gpu: &Gpu, shaders: &Shaders, flat: bool, sink: &mut Sink<'_>) -> Resul
             return Ok(());
         }
     };
-    for probe in PROBES.iter().filter(|probe| probe.way == Way::Varying { flat }) {
+    for probe in probes {
         let value = f32::from_bits(probe.inputs[0]);
         let row = if flat {
             // Six attributes, the primitive that is looked at, the pixel.

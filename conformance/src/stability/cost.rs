@@ -1,7 +1,7 @@
 //! What stable forms cost beside naive ones.
 
 use crate::evaluate::kernel;
-use crate::run::Options;
+use crate::options::Options;
 use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
 use lightmeter_gpu::{Clock, Error, RepeatPipeline, Rung};

@@ -12,8 +12,8 @@ pub use cost::Cost;
 
 use crate::cases::{Naive, Stable};
 use crate::evaluate::Evaluator;
+use crate::options::Options;
 use crate::report::{Number, Report};
-use crate::run::Options;
 use crate::select::{CaseRef, Member, catalogue};
 use crate::subject::Subject;
 use lightmeter_gpu::Error;

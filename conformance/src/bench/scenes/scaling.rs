@@ -5,7 +5,7 @@ use super::{On, Setting, frames};
 use crate::bench::document::{Scaling, ScalingPoint};
 use crate::bench::fit::fit;
 use crate::bench::turns::{self, Effort, Entry, Laps};
-use crate::run::Progress;
+use crate::options::Progress;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, Error};

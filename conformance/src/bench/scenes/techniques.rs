@@ -3,7 +3,7 @@
 use super::drawing::{Drawer, Plan, Standard, side, sized};
 use super::{On, Setting, frames};
 use crate::bench::document::{Group, GroupKind};
-use crate::run::Progress;
+use crate::options::Progress;
 use lightmeter_gpu::compose::{Recipe, Shader, Technique};
 use lightmeter_gpu::{Error, Rung};
 use lightmeter_scene::frame::Frame;

@@ -1,6 +1,7 @@
 //! `lightmeter show`.
 
 mod pixel;
+mod special;
 mod unit;
 
 use super::options::{Choice, Format};
@@ -13,8 +14,7 @@ use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::evaluate::Evaluator;
 use lightmeter::filter::Filter;
 use lightmeter::judge::{Outcome, judge};
-use lightmeter::report::Number;
-use lightmeter::run;
+use lightmeter::report::{Number, Report};
 use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
 use lightmeter::stability::{self, Conditioning, Examined, Standing};
 use lightmeter::subject::Subject;
@@ -57,11 +57,15 @@ struct Known {
 
 impl Show {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let as_json = match self.format {
+            Format::Junit => bail!("a case is written as text or json"),
+            format => format == Format::Json,
+        };
+        if let Some(probe) = special::find(&self.id)? {
+            emit(&special::show(probe, &self.choice, &self.subjects()?, as_json)?, self.out.as_deref())?;
+            return Ok(Status::Success);
+        }
         if let Some(found) = pixel::find(&self.id, self.choice.size)? {
-            let as_json = match self.format {
-                Format::Junit => bail!("a case is written as text or json"),
-                format => format == Format::Json,
-            };
             let text = pixel::show(&self.id, &found, &self.choice, &self.subjects()?, as_json)?;
             emit(&text, self.out.as_deref())?;
             return Ok(Status::Success);
@@ -84,12 +88,10 @@ impl Show {
         let known = Known { inputs, outputs, steps, condition, conditioning };
         let (answers, unit) = self.answers(member, &known.inputs)?;
         let forms = self.forms(member, case)?;
-        let text = match self.format {
-            Format::Junit => bail!("a case is written as text or json"),
-            Format::Json => {
-                serde_json::to_string_pretty(&as_json(member, case, &known, &answers, &unit, &forms))? + "\n"
-            }
-            Format::Text => as_text(member, case, &known, &answers)? + &unit_text(&unit)? + &forms_text(&forms)?,
+        let text = if as_json {
+            serde_json::to_string_pretty(&json_of(member, case, &known, &answers, &unit, &forms))? + "\n"
+        } else {
+            as_text(member, case, &known, &answers)? + &unit_text(&unit)? + &forms_text(&forms)?
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
@@ -106,7 +108,7 @@ impl Show {
         let (CaseRef::Hard(place) | CaseRef::Near(place, _)) = case else { return Ok(vec![]) };
         let mut subjects = self.subjects()?;
         let options = self.choice.options(Filter::default(), 1, Shard::WHOLE)?;
-        let mut report = run::empty(&subjects, &options);
+        let mut report = Report::empty(&subjects, &options);
         stability::examine(member, &[place], &mut subjects, &options, &mut report)?;
         Ok(report.stability)
     }
@@ -290,7 +292,7 @@ fn range(interval: &Accept) -> String {
     }
 }
 
-fn as_json(
+fn json_of(
     member: &Member,
     case: CaseRef,
     known: &Known,

@@ -1,0 +1,107 @@
+//! What a run is asked for, and who is told how far it has come.
+
+use crate::arithmetic::Profile;
+use crate::arithmetic::profile::PROFILES;
+use crate::cases::blend::Samples;
+use crate::filter::Filter;
+use crate::select::Shard;
+use lightmeter_gpu::{Error, Shaders};
+use lightmeter_scene::target::TargetFormat;
+use std::path::{Path, PathBuf};
+
+/// One format of floats and one of 8 bits.
+pub const DEFAULT_TARGETS: [TargetFormat; 2] = [TargetFormat::Rgba32Float, TargetFormat::Rgba8Unorm];
+/// Random cases of each formula where no other number is asked for.
+pub const DEFAULT_CASES: u64 = 4096;
+/// The most cases of each formula that can be asked for.
+pub const MOST_CASES: u64 = 1_000_000_000_000;
+
+/// What to run.
+#[derive(Clone)]
+pub struct Options {
+    /// Which cases.
+    pub filter: Filter,
+    /// Random cases for each formula.
+    pub cases: u64,
+    /// The seed.
+    pub seed: u64,
+    /// Which part.
+    pub shard: Shard,
+    /// The formats that are blended on.
+    pub targets: Vec<TargetFormat>,
+    /// Which states with another one for alpha are judged.
+    pub samples: Samples,
+    /// Pixels of the longer side of every scene; `None` for the scenes' own, or for a quarter of the pixels in a run of all.
+    pub size: Option<u32>,
+    /// Where the images of scenes that fail are written; `None` for nowhere.
+    pub images: Option<PathBuf>,
+    /// Whether what takes time is measured apart: the blend unit draws everything once more with its pipelines compiled, and
+    /// stable forms are timed beside naive ones.
+    pub again: bool,
+    /// The accuracy rules.
+    pub profile: &'static Profile,
+    /// The shaders.
+    pub shaders: Shaders,
+    /// What to add to a command that runs one case again.
+    pub rerun: String,
+}
+
+impl Options {
+    /// A run of everything as it is without any option, by these shaders.
+    #[must_use]
+    pub fn new(shaders: Shaders) -> Self {
+        Self {
+            filter: Filter::default(),
+            cases: DEFAULT_CASES,
+            seed: 1,
+            shard: Shard::WHOLE,
+            targets: DEFAULT_TARGETS.to_vec(),
+            samples: Samples::default(),
+            size: None,
+            images: None,
+            again: false,
+            profile: PROFILES[0],
+            shaders,
+            rerun: String::new(),
+        }
+    }
+
+    /// The same with the shaders of a folder, or the built-in ones, a seed and a profile, which a command that runs a case again
+    /// is to name.
+    ///
+    /// # Errors
+    /// Where the folder cannot be read, or holds no shader of the suite.
+    pub fn by(shaders: Option<&Path>, seed: u64, profile: &'static Profile) -> Result<Self, Error> {
+        let mut rerun = String::new();
+        if seed != 1 {
+            rerun += &format!(" --seed {seed}");
+        }
+        if profile.name != PROFILES[0].name {
+            rerun += &format!(" --profile {}", profile.name);
+        }
+        if let Some(dir) = shaders {
+            rerun += &format!(" --shaders '{}'", dir.display().to_string().replace('\'', r"'\''"));
+        }
+        let shaders = shaders.map_or_else(Shaders::built_in, Shaders::from_dir)?;
+        Ok(Self { seed, samples: Samples { seed, ..Samples::default() }, profile, rerun, ..Self::new(shaders) })
+    }
+}
+
+/// Is told how far a run has come.
+pub trait Progress {
+    /// So many cases in all are about to be run.
+    fn start(&mut self, cases: u64);
+    /// A group begins.
+    fn group(&mut self, id: &str);
+    /// So many more cases are done.
+    fn advance(&mut self, cases: u64);
+}
+
+/// Nobody looks.
+pub struct Silent;
+
+impl Progress for Silent {
+    fn start(&mut self, _cases: u64) {}
+    fn group(&mut self, _id: &str) {}
+    fn advance(&mut self, _cases: u64) {}
+}

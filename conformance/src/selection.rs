@@ -1,0 +1,137 @@
+//! Everything that a run judges, and the parts that it falls into, each of which is judged and reported by itself.
+
+use crate::cases::blend::Program;
+use crate::cases::{Kind, Spec};
+use crate::image;
+use crate::image::select::{Chosen, SIZE_AMONG_ALL};
+use crate::options::Options;
+use crate::select::{Member, Selected, catalogue_of, select};
+use crate::special::verdict::{self, Table};
+use crate::witness::NamedDeviation;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// States of a group that are judged as one part; a group of more falls into parts by its source factor.
+const MOST_STATES: usize = 16;
+
+/// What a run judges.
+#[derive(Clone)]
+pub struct Selection {
+    /// Every formula; parts of a selection share it.
+    pub catalogue: Arc<[Member]>,
+    /// Cases of formulas, in the order of the catalogue.
+    pub formulas: Vec<Selected>,
+    /// Tables of special values.
+    pub tables: Vec<Table>,
+    /// Scenes.
+    pub scenes: Vec<Chosen>,
+    /// Deviations whose witnesses are asked.
+    pub deviations: Vec<NamedDeviation>,
+}
+
+/// A part of a selection.
+pub struct Part {
+    /// Its path in the tree of cases: `fog/linear`, `blend/add/src-alpha`, `scene/teapot`, `deviation/llvmpipe-exp`.
+    pub path: String,
+    /// The filter that selects it; none for a deviation, whose witness is asked in every run.
+    pub filter: Option<String>,
+    /// What it judges.
+    pub selection: Selection,
+}
+
+impl Part {
+    /// The command that runs it alone on an adapter, as it is in a run of everything.
+    #[must_use]
+    pub fn command(&self, adapter: &str) -> String {
+        let filter = self.filter.as_ref().map(|filter| format!(" '{filter}'")).unwrap_or_default();
+        let is_scene = !self.selection.scenes.is_empty();
+        let size = if is_scene { format!(" --size {SIZE_AMONG_ALL}") } else { String::new() };
+        format!("lightmeter run{filter} --adapter {adapter}{size}")
+    }
+}
+
+impl Selection {
+    /// What the options select. The witnesses of all deviations are asked, unless nothing else is selected.
+    #[must_use]
+    pub fn of(options: &Options) -> Self {
+        let catalogue: Arc<[Member]> = catalogue_of(&options.samples).into();
+        let formulas = select(&catalogue, &options.filter, options.cases, options.shard);
+        let tables = verdict::select(&options.filter, options.shard);
+        let size = image::select::size(&options.filter, options.size);
+        let scenes = image::select::select(&options.filter, options.shard, size);
+        let is_empty = formulas.is_empty() && tables.is_empty() && scenes.is_empty();
+        let deviations = if is_empty { vec![] } else { NamedDeviation::all() };
+        Self { catalogue, formulas, tables, scenes, deviations }
+    }
+
+    /// Whether there is no case.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.formulas.is_empty() && self.tables.is_empty() && self.scenes.is_empty() && self.deviations.is_empty()
+    }
+
+    /// Its parts, in the order of reports: each formula, group of blend states, depth test, table of special values, scene and
+    /// deviation. Together they judge what the whole does, each case once.
+    #[must_use]
+    pub fn parts(&self) -> Vec<Part> {
+        let nothing = Self { formulas: vec![], tables: vec![], scenes: vec![], deviations: vec![], ..self.clone() };
+        let mut parts = Parts { nothing, parts: vec![], places: HashMap::new() };
+        for deviation in &self.deviations {
+            parts.of(format!("deviation/{}", deviation.name()), None).deviations.push(*deviation);
+        }
+        for table in &self.tables {
+            parts.of(table.id(), Some(table.id())).tables.push(table.clone());
+        }
+        let mut formulas_of: HashMap<&str, usize> = HashMap::new();
+        for member in &*self.catalogue {
+            *formulas_of.entry(member.spec.group()).or_default() += 1;
+        }
+        for chosen in &self.formulas {
+            let spec = &self.catalogue[chosen.member].spec;
+            let (path, filter) = path(spec, formulas_of[spec.group()]);
+            parts.of(path, Some(filter)).formulas.push(chosen.clone());
+        }
+        for scene in &self.scenes {
+            let id = image::select::scene_id(scene.place);
+            parts.of(id.clone(), Some(id)).scenes.push(scene.clone());
+        }
+        parts.parts
+    }
+}
+
+/// The parts found so far.
+struct Parts {
+    /// A selection of nothing.
+    nothing: Selection,
+    parts: Vec<Part>,
+    places: HashMap<String, usize>,
+}
+
+impl Parts {
+    /// What the part of a path judges.
+    fn of(&mut self, path: String, filter: Option<String>) -> &mut Selection {
+        let place = *self.places.entry(path.clone()).or_insert_with(|| {
+            self.parts.push(Part { path, filter, selection: self.nothing.clone() });
+            self.parts.len() - 1
+        });
+        &mut self.parts[place].selection
+    }
+}
+
+/// The path of the part that a formula belongs to, whose group has `formulas` formulas, and the filter that selects the part.
+fn path(spec: &Spec, formulas: usize) -> (String, String) {
+    let same = |path: &str| (path.to_owned(), path.to_owned());
+    match spec.kind {
+        Kind::Depth(_) => same(&spec.id),
+        Kind::Blend(Program::Draw(..)) if formulas > MOST_STATES => {
+            let end = spec.id.match_indices('/').nth(2).map_or(spec.id.len(), |(at, _)| at);
+            let states = &spec.id[..end];
+            // Of states with another one for alpha, as `blend/separate/add.src-alpha.one`, the source factor is not the end.
+            match states.match_indices('.').nth(1) {
+                Some((end, _)) => (states[..end].to_owned(), format!("{}.*", &states[..end])),
+                None => same(states),
+            }
+        }
+        _ => same(spec.group()),
+    }
+}

@@ -1,0 +1,162 @@
+//! The tables of special values as groups of a run: `special/nan`, `special/infinity`, …, a case for each probe.
+
+use super::run::{Outcome, Results, Skipped, Verdict, evaluate};
+use super::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
+use crate::filter::Filter;
+use crate::options::{Options, Progress};
+use crate::report::{Failure, Group, Number, Report, Totals};
+use crate::select::Shard;
+use crate::subject::Subject;
+use crate::tally::KEPT_FAILURES;
+use lightmeter_gpu::{Error, SENTINEL};
+use std::time::Instant;
+
+/// The operands' names, as the functions of `special.wgsl` have them.
+const OPERANDS: [&str; 3] = ["x", "y", "z"];
+/// The stages that a probe may be evaluated in, in the order of reports.
+const STAGES: [&str; 3] = ["compute", "fragment", "raster"];
+
+/// A table, or some of its probes.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// What the probes are about.
+    pub class: Class,
+    /// The probes, in the table's order.
+    pub probes: Vec<&'static Probe>,
+}
+
+impl Table {
+    /// The id: `special/nan`.
+    #[must_use]
+    pub fn id(&self) -> String {
+        format!("{FAMILY}/{}", self.class.name())
+    }
+
+    /// How many results there are on each subject: one for each probe and stage.
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        STAGES.iter().map(|stage| self.in_stage(stage)).sum()
+    }
+
+    /// Probes that a stage evaluates.
+    fn in_stage(&self, stage: &str) -> u64 {
+        let is_raster = stage == "raster";
+        self.probes.iter().filter(|probe| matches!(probe.way, Way::Varying { .. }) == is_raster).count() as u64
+    }
+}
+
+/// The tables that a filter and a shard select, with the probes that they select of them.
+#[must_use]
+pub fn select(filter: &Filter, shard: Shard) -> Vec<Table> {
+    let chosen = |place: usize, probe: &Probe| shard.has(place as u64) && filter.selects(&probe.id());
+    let table = |class: Class| {
+        let probes = PROBES.iter().enumerate().filter(|&(place, probe)| probe.class == class && chosen(place, probe));
+        Table { class, probes: probes.map(|(_, probe)| probe).collect() }
+    };
+    Class::ALL.into_iter().map(table).filter(|table| !table.probes.is_empty()).collect()
+}
+
+/// Judges a table on every subject.
+///
+/// # Errors
+/// Where a shader is invalid, or a device fails.
+pub(crate) fn run_table(
+    table: &Table,
+    subjects: &[Subject],
+    options: &Options,
+    report: &mut Report,
+    progress: &mut impl Progress,
+) -> Result<(), Error> {
+    for subject in subjects {
+        let clock = Instant::now();
+        let results = evaluate(subject, &options.shaders, &table.probes)?;
+        let seconds = clock.elapsed().as_secs_f64();
+        report.timing.devices += seconds;
+        match results {
+            None => {
+                let group = Group { stage: STAGES[0], ..table.group(subject) };
+                let cases = table.probes.len() as u64;
+                report.groups.push(skipped(group, cases, "the embedded implementation has no shading language"));
+            }
+            Some(results) => table.judge(&results, subject, seconds, options, report),
+        }
+        progress.advance(table.work());
+    }
+    Ok(())
+}
+
+fn skipped(group: Group, cases: u64, reason: &'static str) -> Group {
+    Group { skip_reason: Some(reason), totals: Totals { cases, skipped: cases, ..Totals::default() }, ..group }
+}
+
+impl Table {
+    fn group(&self, subject: &Subject) -> Group {
+        Group::new(self.id(), subject.identity.name.clone(), STAGES[0])
+    }
+
+    fn judge(&self, results: &Results, subject: &Subject, seconds: f64, options: &Options, report: &mut Report) {
+        for stage in STAGES.into_iter().filter(|stage| self.in_stage(stage) > 0) {
+            let group = Group { stage, ..self.group(subject) };
+            if let Some(Skipped { reason, .. }) = results.skipped.iter().find(|skipped| skipped.stage == stage) {
+                report.groups.push(skipped(group, self.in_stage(stage), reason));
+                continue;
+            }
+            let of_stage: Vec<&Outcome> = results.outcomes.iter().filter(|outcome| outcome.stage == stage).collect();
+            let mut totals =
+                Totals { cases: of_stage.len() as u64, verdicts: of_stage.len() as u64, ..Totals::default() };
+            for outcome in &of_stage {
+                match outcome.verdict {
+                    Verdict::Kept => totals.passed += 1,
+                    Verdict::Broken | Verdict::Changed => totals.failed += 1,
+                    Verdict::Indeterminate => totals.indeterminate += 1,
+                    Verdict::Deviates => {
+                        totals.expected_failures += 1;
+                        let probe = Probe::by_name(outcome.probe);
+                        let deviation = probe.and_then(|probe| Deviation::of(probe, subject.identity.backend));
+                        report.excuse(deviation.map_or("", |deviation| deviation.name), &subject.identity.name, 1);
+                    }
+                }
+            }
+            let failing = of_stage.into_iter().filter(|outcome| outcome.verdict.is_failure());
+            let failures = failing.filter_map(|outcome| failure(outcome, results, subject, options));
+            report.failures.extend(failures.take(KEPT_FAILURES));
+            #[expect(clippy::cast_precision_loss, reason = "a share of a short time")]
+            let share = totals.verdicts as f64 / results.outcomes.len().max(1) as f64;
+            report.groups.push(Group { totals, seconds: seconds * share, ..group });
+        }
+    }
+}
+
+/// What is known of a result that fails.
+fn failure(outcome: &Outcome, results: &Results, subject: &Subject, options: &Options) -> Option<Failure> {
+    let probe = Probe::by_name(outcome.probe)?;
+    let (reference, interval) = probe.promise.bounds(probe.gives);
+    let legal = match (outcome.verdict, outcome.recorded) {
+        (Verdict::Changed, Some(recorded)) => {
+            let whose = results.record.as_ref().map_or("the driver", |record| &record.of);
+            format!("{}, by the record of {whose}", probe.gives.word(recorded))
+        }
+        _ => format!("{}, by {}", probe.promise.words(probe.gives), probe.source.section()),
+    };
+    let named = |value: &dyn Fn(u32) -> serde_json::Value| {
+        OPERANDS.iter().zip(probe.inputs).map(|(name, &bits)| ((*name).to_owned(), value(bits))).collect()
+    };
+    Some(Failure {
+        rerun: format!("lightmeter run '{}' --adapter {}{}", probe.id(), subject.identity.name, options.rerun),
+        id: probe.id(),
+        adapter: subject.identity.name.clone(),
+        stage: outcome.stage,
+        target: None,
+        route: None,
+        output: probe.what.into(),
+        inputs: named(&|bits| serde_json::to_value(Number(Gives::Float.number(bits))).unwrap_or_default()),
+        inputs_hex: named(&|bits| format!("0x{bits:08x}").into()),
+        reference: Number(reference),
+        interval: interval.map(Number),
+        promise: Some(legal),
+        value: Number(probe.gives.number(outcome.bits)),
+        value_hex: format!("0x{:08x}", outcome.bits),
+        unwritten: outcome.bits == SENTINEL,
+        error_ulp: Number(f64::INFINITY),
+    })
+}

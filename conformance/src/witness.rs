@@ -1,0 +1,189 @@
+//! Named deviations of drivers, whatever they concern, and their witnesses: where a driver that a deviation concerns no longer
+//! shows it, the deviation is no longer needed.
+
+use crate::blend_unit;
+use crate::devices::{self, BlendDeviation};
+use crate::judge::{Outcome, judge};
+use crate::options::{Options, Silent};
+use crate::report::{self, Totals};
+use crate::select::{CaseRef, Member, Random, Selected};
+use crate::special::{self, Probe};
+use crate::subject::Subject;
+use lightmeter_gpu::{Error, Shaders};
+
+/// A named deviation.
+#[derive(Clone, Copy, Debug)]
+pub enum NamedDeviation {
+    /// Of the accuracy of a built-in function.
+    Accuracy(&'static devices::Deviation),
+    /// Of a blend unit.
+    Blend(&'static BlendDeviation),
+    /// Of what is promised of NaN, infinity, subnormals and signed zero.
+    Special(&'static special::Deviation),
+}
+
+impl NamedDeviation {
+    /// All of them, in the order of reports.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let accuracy = devices::DEVIATIONS.iter().map(Self::Accuracy);
+        let blend = devices::BLEND_DEVIATIONS.iter().map(Self::Blend);
+        accuracy.chain(blend).chain(special::DEVIATIONS.iter().map(Self::Special)).collect()
+    }
+
+    /// Its name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Accuracy(deviation) => deviation.name,
+            Self::Blend(deviation) => deviation.name,
+            Self::Special(deviation) => deviation.name,
+        }
+    }
+
+    /// Why it is granted.
+    #[must_use]
+    pub const fn reason(self) -> &'static str {
+        match self {
+            Self::Accuracy(deviation) => deviation.reason,
+            Self::Blend(deviation) => deviation.reason,
+            Self::Special(deviation) => deviation.reason,
+        }
+    }
+
+    /// Whether its witness still shows it on a subject; `None` where it does not concern the subject, or the subject cannot
+    /// evaluate the witness. The driver is asked, by the built-in shaders, not the shaders under test.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn is_still_seen(
+        self,
+        subject: &mut Subject,
+        catalogue: &[Member],
+        options: &Options,
+    ) -> Result<Option<bool>, Error> {
+        let shaders = Shaders::built_in()?;
+        match self {
+            Self::Accuracy(deviation) => accuracy(deviation, subject, &shaders, options),
+            Self::Blend(deviation) => blend(deviation, subject, catalogue, Options { shaders, ..options.clone() }),
+            Self::Special(deviation) => special(deviation, subject, &shaders),
+        }
+    }
+}
+
+/// The function at the witness: outside of what is promised, and inside of what is granted. Wronger than that is another
+/// mistake, which the cases will show.
+fn accuracy(
+    deviation: &devices::Deviation,
+    subject: &Subject,
+    shaders: &Shaders,
+    options: &Options,
+) -> Result<Option<bool>, Error> {
+    if !subject.known.deviations.iter().any(|known| known.name == deviation.name) {
+        return Ok(None);
+    }
+    let Some(bits) = subject.probe(shaders, deviation.builtin.probe(), deviation.witness)? else { return Ok(None) };
+    let promised = options.profile.scope(|| deviation.builtin.interval(deviation.witness));
+    let granted = deviation.grant(*options.profile).scope(|| deviation.builtin.interval(deviation.witness));
+    let exact = deviation.builtin.exact(deviation.witness);
+    let outcome = |legal| judge(bits, exact, legal).outcome;
+    Ok(Some(outcome(&promised) == Outcome::Fail && outcome(&granted) == Outcome::Pass))
+}
+
+/// The case that is the witness, on the target that the deviation is of.
+fn blend(
+    deviation: &BlendDeviation,
+    subject: &mut Subject,
+    catalogue: &[Member],
+    options: Options,
+) -> Result<Option<bool>, Error> {
+    if !subject.known.blend_deviations.iter().any(|known| known.name == deviation.name) {
+        return Ok(None);
+    }
+    let found = catalogue.iter().enumerate().find_map(|(place, member)| Some((place, member.case(deviation.witness)?)));
+    let Some((place, CaseRef::Hard(hard))) = found else {
+        unreachable!("a test finds the witness of {} among the hard cases", deviation.name)
+    };
+    let mut selected = Selected::whole(place, Random::Some(vec![]));
+    selected.hard.push(hard);
+    let options = Options { targets: vec![deviation.target], again: false, ..options };
+    let mut report = report::Report::empty(std::slice::from_ref(subject), &options);
+    let subjects = std::slice::from_mut(subject);
+    blend_unit::run::run_group(&[&catalogue[place]], &[selected], subjects, &options, &mut report, &mut Silent)?;
+    let mut totals = Totals::default();
+    report.groups.iter().for_each(|group| totals.add(&group.totals));
+    let is_drawn = totals.verdicts > 0;
+    Ok(is_drawn.then_some(totals.expected_failures > 0 && totals.failed == 0))
+}
+
+/// Each of the probes. It is asked for where a record binds the driver: elsewhere it is granted, not required.
+fn special(deviation: &special::Deviation, subject: &Subject, shaders: &Shaders) -> Result<Option<bool>, Error> {
+    if subject.identity.backend != deviation.backend {
+        return Ok(None);
+    }
+    let probes: Vec<&'static Probe> = deviation.probes.iter().filter_map(|name| Probe::by_name(name)).collect();
+    let results = special::run::evaluate(subject, shaders, &probes)?;
+    let Some(results) = results.filter(|results| results.record.as_ref().is_some_and(|record| record.binds)) else {
+        return Ok(None);
+    };
+    let deviates = |probe: &&Probe| {
+        let of_probe = |outcome: &&special::run::Outcome| outcome.probe == probe.name;
+        results.outcomes.iter().filter(of_probe).any(|outcome| !probe.promise.allows(outcome.bits))
+    };
+    Ok(Some(probes.iter().all(deviates)))
+}
+
+/// Asks the witness of a deviation on every subject that it concerns, and notes what it shows.
+///
+/// # Errors
+/// Where a device fails.
+pub(crate) fn ask(
+    deviation: NamedDeviation,
+    catalogue: &[Member],
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut report::Report,
+) -> Result<(), Error> {
+    for subject in subjects {
+        let Some(still_needed) = deviation.is_still_seen(subject, catalogue, options)? else { continue };
+        report.deviations.push(report::DeviationUse {
+            name: deviation.name(),
+            adapter: subject.identity.name.clone(),
+            reason: deviation.reason(),
+            still_needed,
+            excused: 0,
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::select::catalogue;
+
+    #[test]
+    fn every_witness_is_there() {
+        let catalogue = catalogue();
+        for deviation in NamedDeviation::all() {
+            match deviation {
+                NamedDeviation::Accuracy(_) => {}
+                NamedDeviation::Blend(BlendDeviation { name, witness, .. }) => {
+                    let case = catalogue.iter().find_map(|member| member.case(witness));
+                    assert!(matches!(case, Some(CaseRef::Hard(_))), "{name}: {witness}");
+                }
+                NamedDeviation::Special(special::Deviation { name, probes, .. }) => {
+                    let missing: Vec<_> = probes.iter().filter(|probe| Probe::by_name(probe).is_none()).collect();
+                    assert!(!probes.is_empty() && missing.is_empty(), "{name}: {missing:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_unique() {
+        let names: std::collections::BTreeSet<&str> =
+            NamedDeviation::all().into_iter().map(NamedDeviation::name).collect();
+        assert_eq!(names.len(), NamedDeviation::all().len());
+    }
+}

@@ -1,0 +1,294 @@
+//! The conformance tests themselves: their names, their sum, what they print and how they end, whatever the environment.
+
+use lightmeter::adapters;
+use lightmeter::options::{Options, Silent};
+use lightmeter::report::Totals;
+use lightmeter::run::{run, run_selection};
+use lightmeter::select::catalogue;
+use lightmeter::selection::Selection;
+use lightmeter::special::Class;
+use lightmeter::subject::Subject;
+use lightmeter::witness::NamedDeviation;
+use lightmeter_gpu::{FILES, Shaders};
+use lightmeter_tests::harness::{Suite, Variables};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The trials' names without any variable.
+fn names() -> BTreeSet<String> {
+    let suite = Suite::new(Variables::default().settings());
+    let trials = suite.trials();
+    let names: BTreeSet<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
+    assert_eq!(names.len(), trials.len(), "a name stands twice");
+    names
+}
+
+/// The program with some variables, and none of the caller's.
+fn harness(variables: &[(&str, &str)], arguments: &[&str]) -> (i32, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_conformance-harness"));
+    for (name, _) in std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with("LIGHTMETER_")) {
+        command.env_remove(name);
+    }
+    let Output { status, stdout, stderr } =
+        command.envs(variables.iter().copied()).args(arguments).output().expect("the program starts");
+    let text = [stdout, stderr].map(|bytes| String::from_utf8(bytes).expect("output is UTF-8")).concat();
+    assert!(!text.contains("panicked"), "{variables:?} {arguments:?}: {text}");
+    (status.code().expect("the program ends by itself"), text)
+}
+
+/// The names of the trials that an output tells to have ended so.
+fn ended<'a>(text: &'a str, how: &str) -> BTreeSet<&'a str> {
+    let lines = text.lines().filter_map(|line| line.strip_prefix("test ")?.split_once(" ... "));
+    lines.filter(|(_, end)| end.starts_with(how)).map(|(name, _)| name.trim()).collect()
+}
+
+/// A folder with a copy of a shader, one of whose functions is edited.
+fn edited(test: &str, file: &str, function: &str, right: &str, wrong: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("harness-{test}"));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder for shaders can be made");
+    let (_, text) = FILES.into_iter().find(|(name, _)| *name == file).expect("the shader is built in");
+    let start = text.find(&format!("fn {function}(")).expect("the function is in the file");
+    let (before, body) = text.split_at(start);
+    let end = body.find("\n}").expect("a function ends");
+    assert!(body[..end].contains(right), "`{right}` no longer stands in {function}");
+    let text = before.to_owned() + &body.replacen(right, wrong, 1);
+    std::fs::write(folder.join(file), text).expect("a shader can be written");
+    folder
+}
+
+#[test]
+fn every_formula_table_scene_and_deviation_has_its_trial() {
+    let names = names();
+    assert!(names.len() >= 200, "{}", names.len());
+    let path = |id: &str| format!("conformance::{}", id.replace('/', "::"));
+    for member in catalogue() {
+        let id = path(&member.spec.id);
+        let has_trial = names.iter().any(|name| {
+            id.strip_prefix(name.as_str())
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with("::") || rest.starts_with('.'))
+        });
+        assert!(has_trial, "{} has no trial", member.spec.id);
+    }
+    let tables = Class::ALL.into_iter().map(|class| format!("special/{}", class.name()));
+    let scenes = lightmeter::scene::library::SCENES.iter().map(|(name, _)| format!("scene/{name}"));
+    let deviations = NamedDeviation::all().into_iter().map(|deviation| format!("deviation/{}", deviation.name()));
+    for id in tables.chain(scenes).chain(deviations) {
+        assert!(names.contains(&path(&id)), "{id} has no trial");
+    }
+}
+
+/// The whole and the sum of its parts, by the embedded implementation and on devices.
+#[test]
+fn the_trials_judge_together_what_a_run_does() {
+    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+    let options = Options { cases: 16, ..Options::new(shaders) };
+    let parts = Selection::of(&options).parts();
+    let embedded = || vec![Subject::embedded()];
+    let device = || adapters::open(&[]).unwrap_or_else(|error| panic!("{error}"));
+    for open in [&embedded as &dyn Fn() -> Vec<Subject>, &device] {
+        let whole = run(&mut open(), &options, &mut Silent).expect("the run ends").totals;
+        let (mut subjects, mut sum) = (open(), Totals::default());
+        for part in &parts {
+            let judged = run_selection(&part.selection, &mut subjects, &options, &mut Silent);
+            sum.add(&judged.expect("the part ends").totals);
+        }
+        assert_eq!(sum, whole, "{}", subjects[0].identity.name);
+        assert!(whole.verdicts > 100_000 && whole.failed == 0, "{whole:?}");
+    }
+}
+
+/// The shader functions that call one, themselves or by others, and the one itself.
+fn callers(function: &str) -> BTreeSet<&'static str> {
+    let mut bodies = BTreeMap::new();
+    for (_, text) in FILES {
+        for part in text.split("\nfn ").skip(1) {
+            let (name, body) = part.split_once('(').expect("a function has parameters");
+            bodies.insert(name, body);
+        }
+    }
+    let mut found: BTreeSet<&str> = bodies.keys().copied().filter(|name| *name == function).collect();
+    assert!(!found.is_empty(), "no function {function}");
+    loop {
+        let calls = |body: &str| found.iter().any(|name| body.contains(&format!("{name}(")));
+        let more: Vec<&str> = bodies.iter().filter(|(_, body)| calls(body)).map(|(name, _)| *name).collect();
+        let before = found.len();
+        found.extend(more);
+        if found.len() == before {
+            return found;
+        }
+    }
+}
+
+/// A mistake: the file, the function that it is made in, what stands there, what is put in its place, a trial that must fail.
+const MISTAKES: [(&str, &str, &str, &str, &str); 10] = [
+    ("fog.wgsl", "fog_radial_distance", "return length(p);", "return abs(p.z);", "fog::exp-radial"),
+    ("fog.wgsl", "fog_exp2_opengl_factor", "let t = density * distance;", "let t = density;", "fog::exp2-opengl"),
+    ("vector.wgsl", "vector_reflect", "return i - 2.0", "return i + 2.0", "vector::reflect"),
+    ("vector.wgsl", "vector_halfway", "vector_normalize(v + l)", "(v + l)", "vector::halfway"),
+    ("attenuation.wgsl", "attenuation_polynomial", "d * (kl + d * kq)", "d * (kq + d * kl)", "attenuation::polynomial"),
+    ("color.wgsl", "color_to_unorm8", "round(255.0", "floor(255.0", "color::to-unorm8"),
+    (
+        "lighting.wgsl",
+        "lighting_incidence",
+        "return max(dot(l, n), 0.0);",
+        "return dot(l, n);",
+        "lighting::diffuse-toward",
+    ),
+    (
+        "interpolation.wgsl",
+        "interpolation_line",
+        "weights.x * a + weights.y * b",
+        "weights.y * a + weights.x * b",
+        "interpolation::line",
+    ),
+    ("depth.wgsl", "depth_recovered", "far * (z - near)", "far * (z + near)", "depth::recovered"),
+    (
+        "blend.wgsl",
+        "blend_saturation",
+        "min(src.a, 1.0 - dst.a)",
+        "min(src.a, 1.0 - src.a)",
+        "blend::add::src-alpha-saturate",
+    ),
+];
+
+#[test]
+fn mistakes_fail_the_trials_of_the_formulas_that_they_concern() {
+    let functions: BTreeMap<String, Vec<String>> = {
+        let selection = Selection::of(&Options::new(Shaders::built_in().expect("the built-in shaders are valid")));
+        let functions_of = |part: &Selection| {
+            part.formulas.iter().map(|chosen| part.catalogue[chosen.member].spec.function.to_owned()).collect()
+        };
+        let name = |path: &str| format!("conformance::{}", path.replace('/', "::"));
+        selection.parts().iter().map(|part| (name(&part.path), functions_of(&part.selection))).collect()
+    };
+    for (number, (file, function, right, wrong, trial)) in MISTAKES.into_iter().enumerate() {
+        let folder = edited(&format!("mistake-{number}"), file, function, right, wrong);
+        let variables = [("LIGHTMETER_SHADERS", folder.to_str().expect("UTF-8")), ("LIGHTMETER_CASES", "64")];
+        let (code, text) = harness(&variables, &["--skip", "conformance::scene"]);
+        let failed = ended(&text, "FAILED");
+        let trial = format!("conformance::{trial}");
+        assert!(code == 101 && failed.contains(trial.as_str()), "{function}: {trial} in {failed:?}\n{text}");
+        let concerned = callers(function);
+        for name in failed {
+            let functions = &functions[name];
+            assert!(functions.iter().any(|function| concerned.contains(function.as_str())), "{function}: {name}");
+        }
+        // What run prints: counts, a case with its inputs, and the command that runs it alone.
+        for part in [" failed", "FAIL ", "  reference ", "  legal ", "  again          lightmeter run '", "--shaders '"]
+        {
+            assert!(text.contains(part), "{function}: no `{part}` in {text}");
+        }
+    }
+}
+
+#[test]
+fn a_bad_variable_fails_every_selected_trial_and_says_what_is_right() {
+    let rows = [
+        ("LIGHTMETER_ADAPTER", "vodoo", "no adapter `vodoo`; there are"),
+        ("LIGHTMETER_ADAPTER", ",", "no list of names, such as lavapipe,swiftshader"),
+        ("LIGHTMETER_CASES", "many", "`many` is not a whole number from 1 to 1000000000000"),
+        ("LIGHTMETER_CASES", "0", "`0` is not a whole number"),
+        ("LIGHTMETER_SEED", "-1", "`-1` is not a whole number from 0"),
+        ("LIGHTMETER_PROFILE", "exact", "no such profile; expected one of wgsl, vulkan, opengl"),
+        ("LIGHTMETER_SHADERS", "/nowhere", "cannot read shaders from /nowhere"),
+        ("LIGHTMETER_ADAPTOR", "cpu", "is no variable of the conformance tests; there are LIGHTMETER_ADAPTER"),
+    ];
+    let fog = names().iter().filter(|name| name.contains("::fog::")).count();
+    for (name, value, message) in rows {
+        let line = format!("conformance: {name}={value}\n");
+        for (arguments, trials) in [(&["::fog::"][..], fog), (&["--exact", "conformance::fog::linear"], 1)] {
+            let (code, text) = harness(&[(name, value)], arguments);
+            assert_eq!((code, ended(&text, "FAILED").len()), (101, trials), "{name}={value}: {text}");
+            assert!(text.starts_with(&line) && text.contains(message), "{name}={value}: {text}");
+        }
+        // Names that these variables would have given may be filtered by, too.
+        let (code, text) = harness(&[(name, value)], &["no-such-trial"]);
+        let is_known = value == "vodoo";
+        assert!(is_known && code == 0 || code == 101 && text.contains(message), "{name}={value}: {text}");
+    }
+}
+
+#[test]
+fn without_a_driver_every_selected_trial_fails_and_says_what_to_do() {
+    const NOWHERE: [(&str, &str); 4] = [
+        ("VK_DRIVER_FILES", "/nowhere"),
+        ("VK_ADD_DRIVER_FILES", ""),
+        ("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere"),
+        ("LIBGL_DRIVERS_PATH", "/nowhere"),
+    ];
+    let all = names().len();
+    for (arguments, trials) in
+        [(&[][..], all), (&["::fog::linear"], 3), (&["--exact", "conformance::scene::teapot"], 1)]
+    {
+        let (code, text) = harness(&NOWHERE, arguments);
+        assert_eq!(code, 101, "{text}");
+        assert!(ended(&text, "ok").is_empty() && ended(&text, "FAILED").len() >= trials, "{text}");
+        assert!(text.contains("`./x test` install lavapipe"), "{text}");
+    }
+    let every = [&NOWHERE[..], &[("LIGHTMETER_ADAPTER", "all")]].concat();
+    for arguments in [&["lavapipe"][..], &["--exact", "conformance::fog::linear::lavapipe"], &["::fog::"]] {
+        let (code, text) = harness(&every, arguments);
+        assert!(code == 101 && text.contains("no Vulkan or OpenGL driver is here"), "{arguments:?}: {text}");
+    }
+    // The embedded implementation needs none.
+    let (code, text) = harness(&[&NOWHERE[..], &[("LIGHTMETER_ADAPTER", "cpu")]].concat(), &["::fog::linear"]);
+    assert!(code == 0 && ended(&text, "FAILED").is_empty(), "{text}");
+}
+
+#[test]
+fn filters_work_as_for_any_test_and_never_select_nothing_in_green() {
+    const CPU: [(&str, &str); 2] = [("LIGHTMETER_ADAPTER", "cpu"), ("LIGHTMETER_CASES", "16")];
+    let selected = |arguments: &[&str]| {
+        let (code, text) = harness(&CPU, arguments);
+        assert_eq!(code, 0, "{text}");
+        ended(&text, "ok").into_iter().map(str::to_owned).collect::<Vec<String>>()
+    };
+    assert_eq!(selected(&["--exact", "conformance::fog::linear"]), ["conformance::fog::linear"]);
+    let linear = selected(&["::fog::linear"]);
+    assert!(linear.len() > 1 && linear.iter().all(|name| name.starts_with("conformance::fog::linear")), "{linear:?}");
+    assert_eq!(selected(&["::fog::linear", "--skip", "linear-", "--test-threads", "2"]), ["conformance::fog::linear"]);
+    let (code, text) = harness(&CPU, &["conformance::fgo"]);
+    assert!(code == 101 && text.contains("no trial's name has `conformance::fgo` in it"), "{text}");
+    // A test of another target.
+    let (code, text) = harness(&CPU, &["the_gpu_agrees"]);
+    assert!(code == 0 && text.contains("0 passed"), "{text}");
+}
+
+#[test]
+fn the_list_needs_no_driver_and_is_what_nextest_reads() {
+    let (code, text) = harness(&[("VK_DRIVER_FILES", "/nowhere")], &["--list", "--format", "terse"]);
+    assert_eq!(code, 0);
+    let listed: BTreeSet<&str> = text.lines().map(|line| line.strip_suffix(": test").expect(line)).collect();
+    assert_eq!(listed, names().iter().map(String::as_str).collect());
+    let (_, ignored) = harness(&[], &["--list", "--format", "terse", "--ignored"]);
+    assert_eq!(ignored, "");
+}
+
+#[test]
+fn several_adapters_are_parts_of_the_names() {
+    let variables = [("LIGHTMETER_ADAPTER", "cpu, lavapipe"), ("LIGHTMETER_CASES", "16")];
+    let (code, text) = harness(&variables, &["::fog::linear::"]);
+    let expected = ["conformance::fog::linear::cpu", "conformance::fog::linear::lavapipe"];
+    assert_eq!((code, ended(&text, "ok")), (0, expected.into()), "{text}");
+    assert!(text.contains("conformance: ✓ "), "{text}");
+}
+
+#[test]
+fn an_invalid_shader_fails_its_trials_with_its_line() {
+    let folder = edited("invalid", "fog.wgsl", "fog_planar_distance", "return abs(p.z);", "return abs(p.z;");
+    let variables = [("LIGHTMETER_SHADERS", folder.to_str().expect("UTF-8")), ("LIGHTMETER_CASES", "16")];
+    let (code, text) = harness(&variables, &["::linear"]);
+    let failed = ended(&text, "FAILED");
+    assert!(code == 101 && failed.contains("conformance::fog::linear"), "{text}");
+    assert!(!failed.contains("conformance::interpolation::linear"), "{text}");
+    assert!(text.contains("fog.wgsl:"), "{text}");
+}
+
+#[test]
+fn what_a_driver_is_not_concerned_by_is_ignored_and_says_so() {
+    let (code, text) = harness(&[("LIGHTMETER_ADAPTER", "cpu")], &["conformance::deviation"]);
+    assert_eq!((code, ended(&text, "ignored").len()), (0, NamedDeviation::all().len()), "{text}");
+    assert!(text.contains("it does not concern this driver"), "{text}");
+}

@@ -1,0 +1,64 @@
+//! The one device of each adapter in a process, which all trials on that adapter share.
+
+use lightmeter::adapters;
+use lightmeter::options::{Options, Silent};
+use lightmeter::report::Report;
+use lightmeter::run::run_selection;
+use lightmeter::selection::Selection;
+use lightmeter::subject::Subject;
+use lightmeter_gpu::Error;
+use std::sync::{Mutex, PoisonError};
+
+/// The device of an adapter, opened when the first trial needs it.
+pub(super) struct Device {
+    /// The adapter's name; `None` for the one that `run` takes.
+    pub(super) adapter: Option<String>,
+    state: Mutex<State>,
+}
+
+enum State {
+    Unopened,
+    Open(Box<Subject>),
+    /// It cannot be opened, and why.
+    Unavailable(String),
+}
+
+impl Device {
+    pub(super) const fn new(adapter: Option<String>) -> Self {
+        Self { adapter, state: Mutex::new(State::Unopened) }
+    }
+
+    /// Judges a part of a run on the device.
+    pub(super) fn judge(&self, selection: &Selection, options: &Options) -> Result<Report, String> {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let subject = state.open(self.adapter.as_ref())?;
+        let judged = run_selection(selection, std::slice::from_mut(subject), options, &mut Silent);
+        let is_lost = match &judged {
+            Ok(report) => report.interrupted.is_some(),
+            Err(error) => matches!(error, Error::Device(_) | Error::Timeout(_)),
+        };
+        if is_lost {
+            // The next trial has a fresh device. Closing one that hangs would hang as well.
+            std::mem::forget(std::mem::replace(&mut *state, State::Unopened));
+        }
+        judged.map_err(|error| error.to_string())
+    }
+}
+
+impl State {
+    fn open(&mut self, adapter: Option<&String>) -> Result<&mut Subject, String> {
+        if let Self::Unopened = self {
+            let asked: Vec<String> = adapter.into_iter().cloned().collect();
+            *self = match adapters::open(&asked) {
+                Ok(mut subjects) if subjects.len() == 1 => Self::Open(Box::new(subjects.remove(0))),
+                Ok(subjects) => Self::Unavailable(format!("{asked:?} names {} adapters, not one", subjects.len())),
+                Err(error) => Self::Unavailable(error.to_string()),
+            };
+        }
+        match self {
+            Self::Open(subject) => Ok(subject),
+            Self::Unavailable(message) => Err(message.clone()),
+            Self::Unopened => unreachable!("it was opened above"),
+        }
+    }
+}
