@@ -57,8 +57,11 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
     for name in asked {
         match name.as_str() {
             EMBEDDED => subjects.push(Subject::embedded()),
-            ALL if found.is_empty() => return Err(AdapterError::no_driver()),
             ALL => {
+                drivers_named(&found)?;
+                if found.is_empty() {
+                    return Err(AdapterError::no_driver());
+                }
                 for adapter in &found {
                     subjects.push(Subject::open(adapter)?);
                 }
@@ -77,6 +80,7 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
 /// Where there is no driver.
 pub fn names() -> Result<Vec<String>, AdapterError> {
     let found = lightmeter_gpu::adapters();
+    drivers_named(&found)?;
     if found.is_empty() {
         return Err(AdapterError::no_driver());
     }
@@ -88,13 +92,22 @@ fn first() -> Result<Adapter, AdapterError> {
     if let Some(adapter) = vulkan_adapters().into_iter().next() {
         return Ok(adapter);
     }
+    drivers_named(&[])?;
+    lightmeter_gpu::adapters().into_iter().next().ok_or_else(AdapterError::no_driver)
+}
+
+/// Whether the Vulkan drivers that the user names, if any, are among the adapters found.
+fn drivers_named(found: &[Adapter]) -> Result<(), AdapterError> {
+    if found.iter().any(|adapter| adapter.backend == "vulkan") {
+        return Ok(());
+    }
     for variable in DRIVER_VARIABLES {
         if let Some(value) = std::env::var_os(variable).filter(|value| !value.is_empty()) {
             let value = value.to_string_lossy().into_owned();
             return Err(AdapterError::NoDriver(format!("{variable} names no Vulkan driver that is here: `{value}`")));
         }
     }
-    lightmeter_gpu::adapters().into_iter().next().ok_or_else(AdapterError::no_driver)
+    Ok(())
 }
 
 fn named<'a>(found: &'a [Adapter], name: &str) -> Result<&'a Adapter, AdapterError> {
@@ -102,7 +115,11 @@ fn named<'a>(found: &'a [Adapter], name: &str) -> Result<&'a Adapter, AdapterErr
         let message = format!("adapter `{name}` is not here: no Vulkan or OpenGL driver is");
         return Err(AdapterError::NoDriver(message));
     }
-    found.iter().find(|adapter| adapter.name == name).ok_or_else(|| {
+    if let Some(adapter) = found.iter().find(|adapter| adapter.name == name) {
+        return Ok(adapter);
+    }
+    drivers_named(found)?;
+    Err({
         let there: Vec<&str> = found.iter().map(|adapter| adapter.name.as_str()).collect();
         AdapterError::Unknown { name: name.into(), there: there.join(", ") }
     })

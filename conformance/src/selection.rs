@@ -2,10 +2,11 @@
 
 use crate::cases::blend::Program;
 use crate::cases::{Kind, Spec};
+use crate::filter::Filter;
 use crate::image;
 use crate::image::select::{Chosen, SIZE_AMONG_ALL};
 use crate::options::Options;
-use crate::select::{Member, Selected, catalogue_of, select};
+use crate::select::{CaseRef, Member, Selected, catalogue_of, select};
 use crate::special::verdict::{self, Table};
 use crate::witness::NamedDeviation;
 use std::collections::HashMap;
@@ -33,20 +34,35 @@ pub struct Selection {
 pub struct Part {
     /// Its path in the tree of cases: `fog/linear`, `blend/add/src-alpha`, `scene/teapot`, `deviation/llvmpipe-exp`.
     pub path: String,
-    /// The filter that selects it; none for a deviation, whose witness is asked in every run.
-    pub filter: Option<String>,
+    /// The filters that select it; none for a deviation, whose witness is asked in every run.
+    pub filters: Vec<String>,
     /// What it judges.
     pub selection: Selection,
 }
 
 impl Part {
-    /// The command that runs it alone on an adapter, as it is in a run of everything.
+    /// The command that runs it alone on an adapter, as it is in a run of everything; none for a deviation.
     #[must_use]
-    pub fn command(&self, adapter: &str) -> String {
-        let filter = self.filter.as_ref().map(|filter| format!(" '{filter}'")).unwrap_or_default();
+    pub fn command(&self, adapter: &str) -> Option<String> {
+        if self.filters.is_empty() {
+            return None;
+        }
+        let filter: String = self.filters.iter().map(|filter| format!(" '{filter}'")).collect();
         let is_scene = !self.selection.scenes.is_empty();
         let size = if is_scene { format!(" --size {SIZE_AMONG_ALL}") } else { String::new() };
-        format!("lightmeter run{filter} --adapter {adapter}{size}")
+        Some(format!("lightmeter run{filter} --adapter {adapter}{size}"))
+    }
+
+    /// A hard case has its group's id, not its formula's: where the part is less than a group, the filter does not select it.
+    fn add_hard_cases(&mut self) {
+        let Ok(filter) = Filter::new(&self.filters) else { unreachable!("ids are globs") };
+        let catalogue = &self.selection.catalogue;
+        let hard = |chosen: &Selected| {
+            let member = &catalogue[chosen.member];
+            chosen.hard.iter().map(|&place| member.case_id(CaseRef::Hard(place))).collect::<Vec<String>>()
+        };
+        let ids = self.selection.formulas.iter().flat_map(hard).filter(|id| !filter.selects(id));
+        self.filters.extend(ids);
     }
 }
 
@@ -77,23 +93,26 @@ impl Selection {
         let nothing = Self { formulas: vec![], tables: vec![], scenes: vec![], deviations: vec![], ..self.clone() };
         let mut parts = Parts { nothing, parts: vec![], places: HashMap::new() };
         for deviation in &self.deviations {
-            parts.of(format!("deviation/{}", deviation.name()), None).deviations.push(*deviation);
+            parts.of(format!("deviation/{}", deviation.name()), vec![]).deviations.push(*deviation);
         }
         for table in &self.tables {
-            parts.of(table.id(), Some(table.id())).tables.push(table.clone());
+            parts.of(table.id(), vec![table.id()]).tables.push(table.clone());
         }
         let mut formulas_of: HashMap<&str, usize> = HashMap::new();
         for member in &*self.catalogue {
             *formulas_of.entry(member.spec.group()).or_default() += 1;
         }
         for chosen in &self.formulas {
-            let spec = &self.catalogue[chosen.member].spec;
-            let (path, filter) = path(spec, formulas_of[spec.group()]);
-            parts.of(path, Some(filter)).formulas.push(chosen.clone());
+            let member = &self.catalogue[chosen.member];
+            let (path, filter) = path(&member.spec, formulas_of[member.spec.group()]);
+            parts.of(path, vec![filter]).formulas.push(chosen.clone());
         }
         for scene in &self.scenes {
             let id = image::select::scene_id(scene.place);
-            parts.of(id.clone(), Some(id)).scenes.push(scene.clone());
+            parts.of(id.clone(), vec![id]).scenes.push(scene.clone());
+        }
+        for part in &mut parts.parts {
+            part.add_hard_cases();
         }
         parts.parts
     }
@@ -109,9 +128,9 @@ struct Parts {
 
 impl Parts {
     /// What the part of a path judges.
-    fn of(&mut self, path: String, filter: Option<String>) -> &mut Selection {
+    fn of(&mut self, path: String, filters: Vec<String>) -> &mut Selection {
         let place = *self.places.entry(path.clone()).or_insert_with(|| {
-            self.parts.push(Part { path, filter, selection: self.nothing.clone() });
+            self.parts.push(Part { path, filters, selection: self.nothing.clone() });
             self.parts.len() - 1
         });
         &mut self.parts[place].selection

@@ -116,7 +116,8 @@ fn blend(
     Ok(is_drawn.then_some(totals.expected_failures > 0 && totals.failed == 0))
 }
 
-/// Each of the probes. It is asked for where a record binds the driver: elsewhere it is granted, not required.
+/// Each result that breaks its promise on record. The witness is asked for where a record binds the driver: elsewhere the deviation is
+/// granted, not required.
 fn special(deviation: &special::Deviation, subject: &Subject, shaders: &Shaders) -> Result<Option<bool>, Error> {
     if subject.identity.backend != deviation.backend {
         return Ok(None);
@@ -126,11 +127,12 @@ fn special(deviation: &special::Deviation, subject: &Subject, shaders: &Shaders)
     let Some(results) = results.filter(|results| results.record.as_ref().is_some_and(|record| record.binds)) else {
         return Ok(None);
     };
-    let deviates = |probe: &&Probe| {
-        let of_probe = |outcome: &&special::run::Outcome| outcome.probe == probe.name;
-        results.outcomes.iter().filter(of_probe).any(|outcome| !probe.promise.allows(outcome.bits))
+    let breaks = |outcome: &special::run::Outcome, bits: u32| {
+        Probe::by_name(outcome.probe).is_some_and(|probe| !probe.promise.allows(bits))
     };
-    Ok(Some(probes.iter().all(deviates)))
+    let known = |outcome: &&special::run::Outcome| outcome.recorded.is_some_and(|recorded| breaks(outcome, recorded));
+    let mut known = results.outcomes.iter().filter(known).peekable();
+    Ok(Some(known.peek().is_some() && known.all(|outcome| breaks(outcome, outcome.bits))))
 }
 
 /// Asks the witness of a deviation on every subject that it concerns, and notes what it shows.

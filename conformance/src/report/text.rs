@@ -69,7 +69,8 @@ pub fn failures(report: &Report, out: &mut impl Write) -> Result {
     // One failure a formula and adapter explains more than many; the JSON has the first of every stage.
     let mut told: Vec<(&str, &str)> = vec![];
     for failure in &report.failures {
-        let formula = failure.id.rsplit_once('/').map_or(failure.id.as_str(), |(formula, _)| formula);
+        let path = failure.id.rsplit_once('/').map_or(failure.id.as_str(), |(path, _)| path);
+        let formula = path.split("/hard").next().unwrap_or(path).trim_end_matches("/random");
         if !told.contains(&(formula, &failure.adapter)) {
             told.push((formula, &failure.adapter));
             writeln!(out)?;

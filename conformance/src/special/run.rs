@@ -92,6 +92,17 @@ pub struct Skipped {
     pub reason: &'static str,
 }
 
+impl Skipped {
+    /// The embedded implementation has no shading language, and so no stage that a probe is of.
+    #[must_use]
+    pub fn embedded(adapter: &str) -> Self {
+        Self { adapter: adapter.into(), stage: "compute", reason: EMBEDDED }
+    }
+}
+
+/// Why the embedded implementation is skipped.
+pub const EMBEDDED: &str = "the embedded implementation has no shading language";
+
 /// What is on record for an adapter.
 #[derive(Clone, Debug, Serialize)]
 pub struct RecordUse {

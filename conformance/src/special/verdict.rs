@@ -1,10 +1,11 @@
 //! The tables of special values as groups of a run: `special/nan`, `special/infinity`, …, a case for each probe.
 
-use super::run::{Outcome, Results, Skipped, Verdict, evaluate};
+use super::run::{EMBEDDED, Outcome, Results, Skipped, Verdict, evaluate};
 use super::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
 use crate::filter::Filter;
+use crate::judge::simplicity;
 use crate::options::{Options, Progress};
-use crate::report::{Failure, Group, Number, Report, Totals};
+use crate::report::{DeviationUse, Failure, Group, Number, Report, Totals};
 use crate::select::Shard;
 use crate::subject::Subject;
 use crate::tally::KEPT_FAILURES;
@@ -76,7 +77,7 @@ pub(crate) fn run_table(
             None => {
                 let group = Group { stage: STAGES[0], ..table.group(subject) };
                 let cases = table.probes.len() as u64;
-                report.groups.push(skipped(group, cases, "the embedded implementation has no shading language"));
+                report.groups.push(skipped(group, cases, EMBEDDED));
             }
             Some(results) => table.judge(&results, subject, seconds, options, report),
         }
@@ -113,13 +114,17 @@ impl Table {
                         totals.expected_failures += 1;
                         let probe = Probe::by_name(outcome.probe);
                         let deviation = probe.and_then(|probe| Deviation::of(probe, subject.identity.backend));
-                        report.excuse(deviation.map_or("", |deviation| deviation.name), &subject.identity.name, 1);
+                        if let Some(deviation) = deviation {
+                            granted(deviation, &subject.identity.name, report);
+                        }
                     }
                 }
             }
             let failing = of_stage.into_iter().filter(|outcome| outcome.verdict.is_failure());
-            let failures = failing.filter_map(|outcome| failure(outcome, results, subject, options));
-            report.failures.extend(failures.take(KEPT_FAILURES));
+            let mut failures: Vec<(u32, Failure)> =
+                failing.filter_map(|outcome| failure(outcome, results, subject, options)).collect();
+            failures.sort_by_key(|(simple, _)| *simple);
+            report.failures.extend(failures.into_iter().map(|(_, failure)| failure).take(KEPT_FAILURES));
             #[expect(clippy::cast_precision_loss, reason = "a share of a short time")]
             let share = totals.verdicts as f64 / results.outcomes.len().max(1) as f64;
             report.groups.push(Group { totals, seconds: seconds * share, ..group });
@@ -127,8 +132,22 @@ impl Table {
     }
 }
 
-/// What is known of a result that fails.
-fn failure(outcome: &Outcome, results: &Results, subject: &Subject, options: &Options) -> Option<Failure> {
+/// Counts a verdict that a deviation excused. Where no witness is asked, the verdict alone says that the deviation is needed.
+fn granted(deviation: &Deviation, adapter: &str, report: &mut Report) {
+    if !report.deviations.iter().any(|known| known.name == deviation.name && known.adapter == adapter) {
+        report.deviations.push(DeviationUse {
+            name: deviation.name,
+            adapter: adapter.into(),
+            reason: deviation.reason,
+            still_needed: true,
+            excused: 0,
+        });
+    }
+    report.excuse(deviation.name, adapter, 1);
+}
+
+/// What is known of a result that fails, and how simple its operands are.
+fn failure(outcome: &Outcome, results: &Results, subject: &Subject, options: &Options) -> Option<(u32, Failure)> {
     let probe = Probe::by_name(outcome.probe)?;
     let (reference, interval) = probe.promise.bounds(probe.gives);
     let legal = match (outcome.verdict, outcome.recorded) {
@@ -141,7 +160,8 @@ fn failure(outcome: &Outcome, results: &Results, subject: &Subject, options: &Op
     let named = |value: &dyn Fn(u32) -> serde_json::Value| {
         OPERANDS.iter().zip(probe.inputs).map(|(name, &bits)| ((*name).to_owned(), value(bits))).collect()
     };
-    Some(Failure {
+    let operands: Vec<f32> = probe.inputs.iter().map(|&bits| f32::from_bits(bits)).collect();
+    let told = Failure {
         rerun: format!("lightmeter run '{}' --adapter {}{}", probe.id(), subject.identity.name, options.rerun),
         id: probe.id(),
         adapter: subject.identity.name.clone(),
@@ -158,5 +178,6 @@ fn failure(outcome: &Outcome, results: &Results, subject: &Subject, options: &Op
         value_hex: format!("0x{:08x}", outcome.bits),
         unwritten: outcome.bits == SENTINEL,
         error_ulp: Number(f64::INFINITY),
-    })
+    };
+    Some((simplicity(&operands), told))
 }

@@ -29,6 +29,8 @@ pub struct Variables(BTreeMap<String, OsString>);
 pub struct Settings {
     /// The adapters by name; none for the one that `run` takes.
     pub adapters: Vec<String>,
+    /// Whether the adapter is a part of the names: several were asked for, or all there are.
+    pub adapter_in_names: bool,
     /// The options of the run that the trials are parts of.
     pub options: Options,
 }
@@ -37,6 +39,11 @@ pub struct Settings {
 fn from_where_called(path: &Path) -> PathBuf {
     let meant = std::env::var_os("PWD").map(|folder| Path::new(&folder).join(path));
     meant.filter(|meant| meant.exists()).unwrap_or_else(|| path.to_owned())
+}
+
+/// The names of a list.
+fn names(text: &str) -> impl Iterator<Item = &str> {
+    text.split(',').map(str::trim)
 }
 
 impl Variables {
@@ -77,7 +84,11 @@ impl Variables {
         let shaders = self.0.get("LIGHTMETER_SHADERS").map(|folder| from_where_called(Path::new(folder)));
         let options = Options::by(shaders.as_deref(), seed, profile);
         let options = options.map_err(|error| format!("LIGHTMETER_SHADERS: {error}"))?;
-        Ok(Settings { adapters: self.adapters()?, options: Options { cases, ..options } })
+        let adapters = self.adapters()?;
+        let asks_for_all =
+            self.text("LIGHTMETER_ADAPTER")?.is_some_and(|text| names(text).any(|name| name == adapters::ALL));
+        let adapter_in_names = asks_for_all || adapters.len() > 1;
+        Ok(Settings { adapters, adapter_in_names, options: Options { cases, ..options } })
     }
 
     fn text(&self, name: &str) -> Result<Option<&str>, String> {
@@ -94,8 +105,8 @@ impl Variables {
     /// The adapters asked for, each once. `all` is spelled out by their names, which needs a driver and no device.
     fn adapters(&self) -> Result<Vec<String>, String> {
         let Some(text) = self.text("LIGHTMETER_ADAPTER")? else { return Ok(vec![]) };
-        let mut names: Vec<String> = vec![];
-        for name in text.split(',').map(str::trim) {
+        let mut found: Vec<String> = vec![];
+        for name in names(text) {
             if name.is_empty() {
                 return Err(format!("LIGHTMETER_ADAPTER: `{text}` is no list of names, such as lavapipe,swiftshader"));
             }
@@ -104,10 +115,10 @@ impl Variables {
             } else {
                 vec![name.to_owned()]
             };
-            names.extend(meant);
+            found.extend(meant);
         }
         let mut seen = std::collections::BTreeSet::new();
-        names.retain(|name| seen.insert(name.clone()));
-        Ok(names)
+        found.retain(|name| seen.insert(name.clone()));
+        Ok(found)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::super::options::Choice;
 use lightmeter::report::Number;
-use lightmeter::special::run::{Outcome, Results, evaluate};
+use lightmeter::special::run::{Outcome, Results, Skipped, evaluate};
 use lightmeter::special::{FAMILY, Gives, Probe};
 use lightmeter::subject::Subject;
 use serde_json::{Value, json};
@@ -29,9 +29,12 @@ pub(super) fn show(
     let shaders = choice.shaders()?;
     let mut results = vec![];
     for subject in subjects {
-        if let Some(found) = evaluate(subject, &shaders, &[probe])? {
-            results.push((subject, found));
-        }
+        let found = evaluate(subject, &shaders, &[probe])?.unwrap_or_else(|| Results {
+            outcomes: vec![],
+            skipped: vec![Skipped::embedded(&subject.identity.name)],
+            record: None,
+        });
+        results.push((subject, found));
     }
     if as_json {
         return Ok(serde_json::to_string_pretty(&json(probe, &results))? + "\n");
@@ -65,8 +68,10 @@ fn json(probe: &Probe, results: &[(&Subject, Results)]) -> Value {
     let inputs: Vec<Value> = probe.inputs.iter().map(|&bits| json!(Number(f32::from_bits(bits).into()))).collect();
     let hex: Vec<String> = probe.inputs.iter().map(|bits| format!("0x{bits:08x}")).collect();
     let answers: Vec<Value> = results.iter().flat_map(|(_, found)| &found.outcomes).map(|one| json!(one)).collect();
+    let skipped: Vec<Value> = results.iter().flat_map(|(_, found)| &found.skipped).map(|one| json!(one)).collect();
     json!({
         "schema": "lightmeter.show/1", "id": probe.id(), "formula": probe.what, "source": probe.source.section(),
         "inputs": inputs, "inputs_hex": hex, "promise": probe.promise.words(probe.gives), "answers": answers,
+        "skipped": skipped,
     })
 }
