@@ -231,7 +231,7 @@ fn without_a_driver_every_selected_trial_fails_and_says_what_to_do() {
     let every = [&NOWHERE[..], &[("LIGHTMETER_ADAPTER", "all")]].concat();
     for arguments in [&["lavapipe"][..], &["--exact", "conformance::fog::linear::lavapipe"], &["::fog::"]] {
         let (code, text) = harness(&every, arguments);
-        assert!(code == 101 && text.contains("no Vulkan or OpenGL driver is here"), "{arguments:?}: {text}");
+        assert!(code == 101 && text.contains("VK_DRIVER_FILES names no Vulkan driver"), "{arguments:?}: {text}");
     }
     // The embedded implementation needs none.
     let (code, text) = harness(&[&NOWHERE[..], &[("LIGHTMETER_ADAPTER", "cpu")]].concat(), &["::fog::linear"]);
@@ -291,4 +291,19 @@ fn deviations_of_other_drivers_are_ignored_with_the_reason() {
     let (code, text) = harness(&[("LIGHTMETER_ADAPTER", "cpu")], &["conformance::deviation"]);
     assert_eq!((code, ended(&text, "ignored").len()), (0, NamedDeviation::all().len()), "{text}");
     assert!(text.contains("it does not concern this driver"), "{text}");
+}
+
+/// On every adapter there is, software OpenGL and SwiftShader among them where they are installed.
+#[test]
+fn witnesses_are_still_seen_on_every_adapter_that_they_concern() {
+    let options = Options::new(Shaders::built_in().expect("the built-in shaders are valid"));
+    let mut seen = BTreeSet::new();
+    for mut subject in adapters::open(&[adapters::ALL.to_owned()]).unwrap_or_else(|error| panic!("{error}")) {
+        for deviation in NamedDeviation::all() {
+            let still = deviation.is_still_seen(&mut subject, &catalogue(), &options).expect("the witness is judged");
+            assert_ne!(still, Some(false), "{} on {}", deviation.name(), subject.identity.name);
+            seen.extend(still.map(|_| deviation.name()));
+        }
+    }
+    assert!(seen.contains("llvmpipe-exp") || lightmeter_gpu::vulkan_adapters()[0].name != "lavapipe", "{seen:?}");
 }
