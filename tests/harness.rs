@@ -1,5 +1,8 @@
 //! The conformance tests themselves: their names, their sum, what they print and how they end, whatever the environment.
 
+#[path = "cli/mistakes.rs"]
+mod mistakes;
+
 use lightmeter::adapters;
 use lightmeter::options::{Options, Silent};
 use lightmeter::report::Totals;
@@ -11,6 +14,7 @@ use lightmeter::subject::Subject;
 use lightmeter::witness::NamedDeviation;
 use lightmeter_gpu::{FILES, Shaders};
 use lightmeter_tests::harness::{Suite, Variables};
+use mistakes::MISTAKES;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -43,18 +47,14 @@ fn ended<'a>(text: &'a str, how: &str) -> BTreeSet<&'a str> {
     lines.filter(|(_, end)| end.starts_with(how)).map(|(name, _)| name.trim()).collect()
 }
 
-/// A folder with a copy of a shader, one of whose functions is edited.
-fn edited(test: &str, file: &str, function: &str, right: &str, wrong: &str) -> PathBuf {
+/// A folder with a copy of a shader, edited.
+fn edited(test: &str, file: &str, right: &str, wrong: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("harness-{test}"));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder for shaders can be made");
     let (_, text) = FILES.into_iter().find(|(name, _)| *name == file).expect("the shader is built in");
-    let start = text.find(&format!("fn {function}(")).expect("the function is in the file");
-    let (before, body) = text.split_at(start);
-    let end = body.find("\n}").expect("a function ends");
-    assert!(body[..end].contains(right), "`{right}` no longer stands in {function}");
-    let text = before.to_owned() + &body.replacen(right, wrong, 1);
-    std::fs::write(folder.join(file), text).expect("a shader can be written");
+    assert!(text.contains(right), "`{right}` no longer stands in {file}");
+    std::fs::write(folder.join(file), text.replace(right, wrong)).expect("a shader can be written");
     folder
 }
 
@@ -99,20 +99,21 @@ fn the_trials_judge_together_what_a_run_does() {
     }
 }
 
-/// The shader functions that call one, themselves or by others, and the one itself.
-fn callers(function: &str) -> BTreeSet<&'static str> {
-    let mut bodies = BTreeMap::new();
-    for (_, text) in FILES {
-        for part in text.split("\nfn ").skip(1) {
-            let (name, body) = part.split_once('(').expect("a function has parameters");
-            bodies.insert(name, body);
-        }
-    }
-    let mut found: BTreeSet<&str> = bodies.keys().copied().filter(|name| *name == function).collect();
-    assert!(!found.is_empty(), "no function {function}");
+/// The functions of a shader file, each with its text.
+fn functions(text: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    text.split("\nfn ").skip(1).map(|part| part.split_once('(').expect("a function has parameters"))
+}
+
+/// The shader functions in which a text of a file stands, and all that call them, themselves or by others.
+fn concerned(file: &str, right: &str) -> BTreeSet<&'static str> {
+    let of_file = FILES.into_iter().filter(|(name, _)| *name == file);
+    let has_it = of_file.flat_map(|(_, text)| functions(text)).filter(|(_, body)| body.contains(right));
+    let mut found: BTreeSet<&str> = has_it.map(|(name, _)| name).collect();
+    assert!(!found.is_empty(), "`{right}` stands in no function of {file}");
+    let all: BTreeMap<&str, &str> = FILES.into_iter().flat_map(|(_, text)| functions(text)).collect();
     loop {
         let calls = |body: &str| found.iter().any(|name| body.contains(&format!("{name}(")));
-        let more: Vec<&str> = bodies.iter().filter(|(_, body)| calls(body)).map(|(name, _)| *name).collect();
+        let more: Vec<&str> = all.iter().filter(|(_, body)| calls(body)).map(|(name, _)| *name).collect();
         let before = found.len();
         found.extend(more);
         if found.len() == before {
@@ -121,38 +122,7 @@ fn callers(function: &str) -> BTreeSet<&'static str> {
     }
 }
 
-/// A mistake: the file, the function that it is made in, what stands there, what is put in its place, a trial that must fail.
-const MISTAKES: [(&str, &str, &str, &str, &str); 10] = [
-    ("fog.wgsl", "fog_radial_distance", "return length(p);", "return abs(p.z);", "fog::exp-radial"),
-    ("fog.wgsl", "fog_exp2_opengl_factor", "let t = density * distance;", "let t = density;", "fog::exp2-opengl"),
-    ("vector.wgsl", "vector_reflect", "return i - 2.0", "return i + 2.0", "vector::reflect"),
-    ("vector.wgsl", "vector_halfway", "vector_normalize(v + l)", "(v + l)", "vector::halfway"),
-    ("attenuation.wgsl", "attenuation_polynomial", "d * (kl + d * kq)", "d * (kq + d * kl)", "attenuation::polynomial"),
-    ("color.wgsl", "color_to_unorm8", "round(255.0", "floor(255.0", "color::to-unorm8"),
-    (
-        "lighting.wgsl",
-        "lighting_incidence",
-        "return max(dot(l, n), 0.0);",
-        "return dot(l, n);",
-        "lighting::diffuse-toward",
-    ),
-    (
-        "interpolation.wgsl",
-        "interpolation_line",
-        "weights.x * a + weights.y * b",
-        "weights.y * a + weights.x * b",
-        "interpolation::line",
-    ),
-    ("depth.wgsl", "depth_recovered", "far * (z - near)", "far * (z + near)", "depth::recovered"),
-    (
-        "blend.wgsl",
-        "blend_saturation",
-        "min(src.a, 1.0 - dst.a)",
-        "min(src.a, 1.0 - src.a)",
-        "blend::add::src-alpha-saturate",
-    ),
-];
-
+/// Ten of the mistakes that a run must find, in every file of formulas that has one.
 #[test]
 fn mistakes_fail_the_trials_of_the_formulas_that_they_concern() {
     let functions: BTreeMap<String, Vec<String>> = {
@@ -163,22 +133,29 @@ fn mistakes_fail_the_trials_of_the_formulas_that_they_concern() {
         let name = |path: &str| format!("conformance::{}", path.replace('/', "::"));
         selection.parts().iter().map(|part| (name(&part.path), functions_of(&part.selection))).collect()
     };
-    for (number, (file, function, right, wrong, trial)) in MISTAKES.into_iter().enumerate() {
-        let folder = edited(&format!("mistake-{number}"), file, function, right, wrong);
-        let variables = [("LIGHTMETER_SHADERS", folder.to_str().expect("UTF-8")), ("LIGHTMETER_CASES", "64")];
+    let of_formulas =
+        |file: &str| file.strip_suffix(".wgsl").is_some_and(|family| lightmeter::cases::FAMILIES.contains(&family));
+    let mut chosen: Vec<_> = MISTAKES.iter().filter(|(_, file, ..)| of_formulas(file)).collect();
+    // One of each file first.
+    let mut seen = BTreeSet::new();
+    chosen.sort_by_cached_key(|(_, file, ..)| !seen.insert(*file));
+    assert!(chosen.len() >= 10, "{}", chosen.len());
+    for (number, (mistake, file, right, wrong, filter)) in chosen.into_iter().take(10).enumerate() {
+        let folder = edited(&format!("mistake-{number}"), file, right, wrong);
+        let variables = [("LIGHTMETER_SHADERS", folder.to_str().expect("UTF-8")), ("LIGHTMETER_CASES", "256")];
         let (code, text) = harness(&variables, &["--skip", "conformance::scene"]);
         let failed = ended(&text, "FAILED");
-        let trial = format!("conformance::{trial}");
-        assert!(code == 101 && failed.contains(trial.as_str()), "{function}: {trial} in {failed:?}\n{text}");
-        let concerned = callers(function);
+        let family = format!("conformance::{}::", filter.split('/').next().expect("a family"));
+        assert!(code == 101 && failed.iter().any(|name| name.starts_with(&family)), "{mistake}: {failed:?}\n{text}");
+        let concerned = concerned(file, right);
         for name in failed {
             let functions = &functions[name];
-            assert!(functions.iter().any(|function| concerned.contains(function.as_str())), "{function}: {name}");
+            assert!(functions.iter().any(|function| concerned.contains(function.as_str())), "{mistake}: {name}");
         }
         // What run prints: counts, a case with its inputs, and the command that runs it alone.
         for part in [" failed", "FAIL ", "  reference ", "  legal ", "  again          lightmeter run '", "--shaders '"]
         {
-            assert!(text.contains(part), "{function}: no `{part}` in {text}");
+            assert!(text.contains(part), "{mistake}: no `{part}` in {text}");
         }
     }
 }
@@ -278,7 +255,7 @@ fn several_adapters_are_parts_of_the_names() {
 
 #[test]
 fn an_invalid_shader_fails_every_selected_trial_with_its_line() {
-    let folder = edited("invalid", "fog.wgsl", "fog_planar_distance", "return abs(p.z);", "return abs(p.z;");
+    let folder = edited("invalid", "fog.wgsl", "return abs(p.z);", "return abs(p.z;");
     let variables = [("LIGHTMETER_SHADERS", folder.to_str().expect("UTF-8")), ("LIGHTMETER_CASES", "16")];
     let (code, text) = harness(&variables, &["conformance::interpolation"]);
     let failed = ended(&text, "FAILED");

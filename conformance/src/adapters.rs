@@ -119,8 +119,6 @@ fn named<'a>(found: &'a [Adapter], name: &str) -> Result<&'a Adapter, AdapterErr
         return Ok(adapter);
     }
     drivers_named(found)?;
-    Err({
-        let there: Vec<&str> = found.iter().map(|adapter| adapter.name.as_str()).collect();
-        AdapterError::Unknown { name: name.into(), there: there.join(", ") }
-    })
+    let there: Vec<&str> = found.iter().map(|adapter| adapter.name.as_str()).collect();
+    Err(AdapterError::Unknown { name: name.into(), there: there.join(", ") })
 }

@@ -34,23 +34,20 @@ pub struct Selection {
 pub struct Part {
     /// Its path in the tree of cases: `fog/linear`, `blend/add/src-alpha`, `scene/teapot`, `deviation/llvmpipe-exp`.
     pub path: String,
-    /// The filters that select it; none for a deviation, whose witness is asked in every run.
+    /// The filters that select it.
     pub filters: Vec<String>,
     /// What it judges.
     pub selection: Selection,
 }
 
 impl Part {
-    /// The command that runs it alone on an adapter, as it is in a run of everything; none for a deviation.
+    /// The command that runs it alone on an adapter, as it is in a run of everything.
     #[must_use]
-    pub fn command(&self, adapter: &str) -> Option<String> {
-        if self.filters.is_empty() {
-            return None;
-        }
+    pub fn command(&self, adapter: &str) -> String {
         let filter: String = self.filters.iter().map(|filter| format!(" '{filter}'")).collect();
         let is_scene = !self.selection.scenes.is_empty();
         let size = if is_scene { format!(" --size {SIZE_AMONG_ALL}") } else { String::new() };
-        Some(format!("lightmeter run{filter} --adapter {adapter}{size}"))
+        format!("lightmeter run{filter} --adapter {adapter}{size}")
     }
 
     /// A hard case has its group's id, not its formula's: where the part is less than a group, the filter does not select it.
@@ -67,7 +64,7 @@ impl Part {
 }
 
 impl Selection {
-    /// What the options select. The witnesses of all deviations are asked, unless nothing else is selected.
+    /// What the options select. With any case the witnesses of all deviations are asked; without, those that the filter names.
     #[must_use]
     pub fn of(options: &Options) -> Self {
         let catalogue: Arc<[Member]> = catalogue_of(&options.samples).into();
@@ -75,8 +72,8 @@ impl Selection {
         let tables = verdict::select(&options.filter, options.shard);
         let size = image::select::size(&options.filter, options.size);
         let scenes = image::select::select(&options.filter, options.shard, size);
-        let is_empty = formulas.is_empty() && tables.is_empty() && scenes.is_empty();
-        let deviations = if is_empty { vec![] } else { NamedDeviation::all() };
+        let has_cases = !(formulas.is_empty() && tables.is_empty() && scenes.is_empty());
+        let deviations = if has_cases { NamedDeviation::all() } else { NamedDeviation::named(&options.filter) };
         Self { catalogue, formulas, tables, scenes, deviations }
     }
 
@@ -93,7 +90,7 @@ impl Selection {
         let nothing = Self { formulas: vec![], tables: vec![], scenes: vec![], deviations: vec![], ..self.clone() };
         let mut parts = Parts { nothing, parts: vec![], places: HashMap::new() };
         for deviation in &self.deviations {
-            parts.of(format!("deviation/{}", deviation.name()), vec![]).deviations.push(*deviation);
+            parts.of(deviation.id(), vec![deviation.id()]).deviations.push(*deviation);
         }
         for table in &self.tables {
             parts.of(table.id(), vec![table.id()]).tables.push(table.clone());

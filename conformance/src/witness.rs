@@ -3,6 +3,7 @@
 
 use crate::blend_unit;
 use crate::devices::{self, BlendDeviation};
+use crate::filter::Filter;
 use crate::judge::{Outcome, judge};
 use crate::options::{Options, Silent};
 use crate::report::{self, Totals};
@@ -10,6 +11,9 @@ use crate::select::{CaseRef, Member, Random, Selected};
 use crate::special::{self, Probe};
 use crate::subject::Subject;
 use lightmeter_gpu::{Error, Shaders};
+
+/// The first segment of the ids.
+pub const FAMILY: &str = "deviation";
 
 /// A named deviation.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +33,18 @@ impl NamedDeviation {
         let accuracy = devices::DEVIATIONS.iter().map(Self::Accuracy);
         let blend = devices::BLEND_DEVIATIONS.iter().map(Self::Blend);
         accuracy.chain(blend).chain(special::DEVIATIONS.iter().map(Self::Special)).collect()
+    }
+
+    /// Those that a filter selects by their ids.
+    #[must_use]
+    pub fn named(filter: &Filter) -> Vec<Self> {
+        Self::all().into_iter().filter(|deviation| filter.selects(&deviation.id())).collect()
+    }
+
+    /// Its id: `deviation/llvmpipe-exp`.
+    #[must_use]
+    pub fn id(self) -> String {
+        format!("{FAMILY}/{}", self.name())
     }
 
     /// Its name in reports.

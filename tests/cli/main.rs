@@ -7,11 +7,13 @@ mod blend;
 mod gate;
 mod hard;
 mod images;
+mod mistakes;
 mod scene;
 mod selftest;
 mod special;
 mod sweep;
 
+use mistakes::MISTAKES;
 use serde_json::Value;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -55,100 +57,6 @@ fn edited(test: &str, file: &str, edit: impl Fn(&str) -> String) -> PathBuf {
     std::fs::write(dir.join(file), edit(text)).expect("a shader can be written");
     dir
 }
-
-/// A mistake: the file, what stands there, what is put in its place, and the filter of what must fail.
-const MISTAKES: &[(&str, &str, &str, &str, &str)] = &[
-    ("a normalize dropped", "lighting.wgsl", "let n = vector_normalize(normal);", "let n = normal;", "lighting"),
-    ("reflect with its sign flipped", "vector.wgsl", "return i - 2.0", "return i + 2.0", "vector"),
-    ("v + l not normalised", "vector.wgsl", "vector_normalize(v + l)", "(v + l)", "vector"),
-    ("kl and kq swapped", "attenuation.wgsl", "d * (kl + d * kq)", "d * (kq + d * kl)", "attenuation"),
-    ("|z| for length(p)", "fog.wgsl", "return length(p);", "return abs(p.z);", "fog"),
-    (
-        "min(As, 1 − As)",
-        "blend.wgsl",
-        "min(src.a, 1.0 - dst.a)",
-        "min(src.a, 1.0 - src.a)",
-        "blend/add/src-alpha-saturate/one",
-    ),
-    ("1 − As read as As", "blend.wgsl", "vec4f(1.0 - src.a)", "vec4f(src.a)", "blend/add/one-minus-src-alpha/one"),
-    ("max dropped in the diffuse term", "lighting.wgsl", "max(dot(l, n), 0.0)", "dot(l, n)", "lighting"),
-    ("shininess + 1 %", "vector.wgsl", "pow(cosine, exponent)", "pow(cosine, 1.01 * exponent)", "lighting"),
-    ("shininess − 1 %", "vector.wgsl", "pow(cosine, exponent)", "pow(cosine, 0.99 * exponent)", "lighting"),
-    ("a truncated 8-bit conversion", "color.wgsl", "round(255.0", "floor(255.0", "color"),
-    ("provoking vertex first for last", "raster.wgsl", "(drawn + 2u) % 3u", "drawn % 3u", "interpolation"),
-    (
-        "weights α and β swapped",
-        "interpolation.wgsl",
-        "let alpha = weights.x;\n    let beta = weights.y;",
-        "let alpha = weights.y;\n    let beta = weights.x;",
-        "interpolation",
-    ),
-    (
-        "the inverse transpose without shear",
-        "vector.wgsl",
-        "return (mat3x3f(bc, ca, ab) * n) / dot(modelview[0], bc);",
-        "let m = modelview; return m * (n / vec3f(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2])));",
-        "vector",
-    ),
-    (
-        "divided by the untransformed w",
-        "vector.wgsl",
-        "return vector_dehomogenise(modelview * position);",
-        "return (modelview * position).xyz / position.w;",
-        "vector",
-    ),
-    ("a highlight edge on", "lighting.wgsl", "dot(l, n) <= 0.0", "dot(l, n) < 0.0", "lighting"),
-    ("the near plane left out", "interpolation.wgsl", "clip.z >= 0.0", "clip.z > 0.0", "interpolation"),
-    ("a steep ramp as a step", "fog.wgsl", "dmin == dmax", "abs(dmin - dmax) < 1e-5", "fog"),
-    (
-        "exponential fog not clamped",
-        "fog.wgsl",
-        "clamp(exp(-(density * distance)), 0.0, 1.0)",
-        "exp(-(density * distance))",
-        "fog",
-    ),
-    (
-        "nothing drawn by the blend unit",
-        "blend_unit.wgsl",
-        "return colored.color;",
-        "discard; return colored.color;",
-        "blend/mode-*",
-    ),
-    ("equal taken for greater", "depth.wgsl", "if drawn == stored {", "if false {", "depth"),
-    ("less taken for equal", "depth.wgsl", "drawn == stored", "drawn <= stored", "depth"),
-    ("a depth compared unclamped", "depth.wgsl", "saturate(new_depth)", "new_depth", "depth"),
-    (
-        "another depth than was asked for",
-        "depth_unit.wgsl",
-        "Written(2u, in.depth)",
-        "Written(2u, 0.5 * in.depth)",
-        "depth",
-    ),
-    (
-        "a source folded unclamped",
-        "blend_unit.wgsl",
-        "color = saturate(color);",
-        "",
-        "blend/add/constant-color/constant-alpha",
-    ),
-    (
-        "the constant's alpha for its colour",
-        "blend_unit.wgsl",
-        "select(fold.constant.rgb, fold.constant.aaa, fold.factor >= 12u)",
-        "fold.constant.aaa",
-        "blend/add/constant-color/constant-alpha",
-    ),
-    (
-        "a second source that is the first",
-        "blend_unit_dual.wgsl",
-        "TwoColors(colored.color, colored.constant)",
-        "TwoColors(colored.color, colored.color)",
-        "blend/add/constant-color/constant-alpha",
-    ),
-    ("a strip's winding lost", "raster.wgsl", "corner = 1u - corner;", "corner = 0u + corner;", "interpolation"),
-    ("perspective for linear", "raster.wgsl", "@interpolate(linear)", "@interpolate(perspective)", "interpolation"),
-    ("linear for perspective", "raster.wgsl", "@interpolate(perspective)", "@interpolate(linear)", "interpolation"),
-];
 
 #[test]
 fn each_mistake_in_a_shader_fails_by_family() {
@@ -242,6 +150,30 @@ fn every_profile_passes_on_a_right_driver() {
         let output = lightmeter(&["run", "fog", "lighting", "--cases", "1000", "--profile", profile]);
         assert_eq!(code(&output), 0, "{profile}: {}", stdout(&output));
     }
+}
+
+#[test]
+fn the_witness_of_a_deviation_is_asked_by_its_name() {
+    let list = stdout(&lightmeter(&["list", "deviation"]));
+    assert!(list.starts_with("deviation\n  llvmpipe-exp ") && list.contains("exp is exp2(x"), "{list}");
+    let listed = json(&["list", "deviation/llvmpipe-exp2", "--format", "json"]);
+    assert_eq!(listed["cases"][0]["deviation"], "deviation/llvmpipe-exp2");
+    let adapters = json(&["adapters", "--format", "json"]);
+    let known = adapters["adapters"][0]["deviations"].as_array().expect("deviations");
+    let concerns = known.iter().any(|deviation| deviation["name"] == "llvmpipe-exp");
+    let output = lightmeter(&["run", "deviation/llvmpipe-exp"]);
+    let text = stdout(&output);
+    assert_eq!(code(&output), if concerns { 0 } else { 3 }, "{text}");
+    assert_eq!(text.matches("deviation llvmpipe-exp on ").count(), usize::from(concerns), "{text}");
+    assert!(!text.contains("llvmpipe-exp2"), "{text}");
+    let embedded = lightmeter(&["run", "deviation", "--adapter", "cpu"]);
+    assert!(
+        code(&embedded) == 3 && stderr(&embedded).contains("no deviation concerns the adapter"),
+        "{}",
+        stderr(&embedded)
+    );
+    let formulas = lightmeter(&["list", "special", "--formulas"]);
+    assert!(code(&formulas) == 2 && stderr(&formulas).contains("no formula matches"), "{}", stderr(&formulas));
 }
 
 #[test]

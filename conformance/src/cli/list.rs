@@ -17,6 +17,7 @@ use lightmeter::select::{CaseRef, Member, Random, Selected, catalogue_of, select
 use lightmeter::special::verdict::{self, Table};
 use lightmeter::special::{FAMILY, Probe};
 use lightmeter::stability;
+use lightmeter::witness::{self, NamedDeviation};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -50,6 +51,12 @@ impl List {
         let shard = self.amount.shard.0;
         let scenes = if self.formulas { vec![] } else { image::select::select(&filter, shard, None) };
         let tables = if self.formulas { vec![] } else { verdict::select(&filter, shard) };
+        let deviations = if self.formulas { vec![] } else { NamedDeviation::named(&filter) };
+        if self.formulas && selected.is_empty() {
+            bail!(
+                "no formula matches the filter: special values, scenes and deviations are listed without `--formulas`"
+            );
+        }
         let text = match (self.format, self.formulas) {
             (Format::Junit, _) => bail!("a list is written as text or json"),
             (Format::Json, _) => {
@@ -74,10 +81,11 @@ impl List {
                     entries
                         .push(json!({ "scene": id, "title": loaded.title, "shows": loaded.shows, "pixels": pixels }));
                 }
+                entries.extend(deviations.iter().map(|one| json!({ "deviation": one.id(), "reason": one.reason() })));
                 serde_json::to_string_pretty(&json!({ "schema": format!("lightmeter.{key}/1"), key: entries }))? + "\n"
             }
             (Format::Text, true) => signatures(&catalogue, &selected)?,
-            (Format::Text, false) => tree(&catalogue, &selected, &tables, &scenes)?,
+            (Format::Text, false) => tree(&catalogue, &selected, &tables, &scenes, &deviations)?,
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
@@ -152,6 +160,18 @@ fn pixels(loaded: &Loaded) -> u64 {
     u64::from(loaded.frame.target.width) * u64::from(loaded.frame.target.height)
 }
 
+/// Deviations, whose witnesses every run asks.
+fn witnesses(deviations: &[NamedDeviation]) -> anyhow::Result<String> {
+    let mut text = String::new();
+    if !deviations.is_empty() {
+        writeln!(text, "{}", witness::FAMILY)?;
+    }
+    for deviation in deviations {
+        writeln!(text, "  {:<32} {}", deviation.name(), deviation.reason())?;
+    }
+    Ok(text)
+}
+
 /// A table of special values with its probes.
 fn table(table: &Table) -> Value {
     let probe = |probe: &&Probe| {
@@ -164,7 +184,13 @@ fn table(table: &Table) -> Value {
     json!({ "table": table.id(), "title": table.class.title(), "probes": probes })
 }
 
-fn tree(catalogue: &[Member], selected: &[Selected], tables: &[Table], scenes: &[Chosen]) -> anyhow::Result<String> {
+fn tree(
+    catalogue: &[Member],
+    selected: &[Selected],
+    tables: &[Table],
+    scenes: &[Chosen],
+    deviations: &[NamedDeviation],
+) -> anyhow::Result<String> {
     let mut text = String::new();
     let mut family = "";
     let mut total = 0;
@@ -211,6 +237,7 @@ fn tree(catalogue: &[Member], selected: &[Selected], tables: &[Table], scenes: &
         total += count;
         writeln!(text, "  {:<32} {:>9}  {}", loaded.name, thousands(count), loaded.title)?;
     }
+    text += &witnesses(deviations)?;
     writeln!(text, "{} cases", thousands(total))?;
     Ok(text)
 }

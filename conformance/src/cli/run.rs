@@ -10,6 +10,7 @@ use lightmeter::options::Progress;
 use lightmeter::report::{Interrupted, Report, junit, text};
 use lightmeter::run::run;
 use lightmeter::select::{catalogue_of, select};
+use lightmeter::witness::NamedDeviation;
 use std::path::PathBuf;
 
 /// Judge the wgpu implementation on an adapter.
@@ -95,8 +96,14 @@ fn status(report: &Report) -> Status {
         return Status::Failed;
     }
     let totals = &report.totals;
-    if totals.passed + totals.expected_failures == 0 {
-        eprintln!("error: nothing was judged: every case was skipped or indeterminate");
+    let only_witnesses = totals.cases == 0 && !report.deviations.is_empty();
+    if totals.passed + totals.expected_failures == 0 && !only_witnesses {
+        let why = if totals.cases == 0 {
+            "no deviation concerns the adapter"
+        } else {
+            "every case was skipped or indeterminate"
+        };
+        eprintln!("error: nothing was judged: {why}");
         return Status::Nothing;
     }
     Status::Success
@@ -110,8 +117,9 @@ pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples, size: Op
         let whole = lightmeter::select::Shard::WHOLE;
         let scenes = lightmeter::image::select::select(&filter, whole, size);
         let tables = lightmeter::special::verdict::select(&filter, whole);
-        if scenes.is_empty() && tables.is_empty() && select(&catalogue, &filter, cases, whole).is_empty() {
-            let families = lightmeter::cases::FAMILIES.join(", ") + ", special, scene";
+        let others = scenes.is_empty() && tables.is_empty() && NamedDeviation::named(&filter).is_empty();
+        if others && select(&catalogue, &filter, cases, whole).is_empty() {
+            let families = lightmeter::cases::FAMILIES.join(", ") + ", special, scene, deviation";
             return Err(NothingToRun(format!(
                 "no case matches `{glob}`; ids begin with a family ({families}), as `fog/linear/random/000017`: see \
                  `lightmeter list`"
