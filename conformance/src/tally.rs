@@ -350,6 +350,19 @@ mod tests {
     }
 
     #[test]
+    fn the_failure_of_the_simplest_inputs_is_reported_first_and_once() {
+        with_chunk("vector/reflect", |chunk, right, _| {
+            let simple = |case: usize| simplicity(chunk.inputs_of(case));
+            let simplest = (0..CASES).min_by_key(|&case| simple(case)).expect("there are cases");
+            assert!(simplest >= KEPT_FAILURES, "a case beyond the first failures is to be found");
+            let tally = judged(chunk, &vec![NANS[0]; right.len()]);
+            let reported: Vec<Failure> = reported(tally.simplest, tally.failures).collect();
+            assert_eq!(reported[0].id, format!("vector/reflect/random/{simplest:06}"));
+            assert_eq!((reported.len(), reported[1].id.as_str()), (KEPT_FAILURES, "vector/reflect/random/000000"));
+        });
+    }
+
+    #[test]
     fn nothing_but_nan_passes_nothing() {
         with_chunk("vector/reflect", |chunk, right, _| {
             for nan in NANS {
