@@ -138,7 +138,10 @@ fn what_cannot_be_drawn_is_refused() {
     for args in [&["run", "scene/teapots"][..], &["run", "scene/viewer/3-3", "scene/teapot/300-300", "--size", "16"]] {
         let nothing = lightmeter(args);
         assert_eq!(code(&nothing), 3, "{args:?}: {}", stderr(&nothing));
-        assert!(stderr(&nothing).contains("no case matches `scene/teapot") && stderr(&nothing).contains(", scene)"));
+        assert!(
+            stderr(&nothing).contains("no case matches `scene/teapot")
+                && stderr(&nothing).contains(", special, scene, deviation)")
+        );
     }
 }
 
