@@ -2,7 +2,7 @@
 
 use crate::arithmetic::format::error_ulp;
 use crate::arithmetic::{Accept, F32};
-use lightmeter_gpu::SENTINEL;
+use lightmeter_scene::target::SENTINEL;
 
 /// What became of one scalar output of one case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,6 @@
 //! The suite: cases, acceptance, verdicts, the runner and its reports, as a library for the `lightmeter` binary and others.
 
 pub mod adapters;
-pub mod arithmetic;
 pub mod bench;
 pub mod blend_unit;
 pub mod cases;
@@ -24,3 +23,5 @@ pub mod subject;
 pub mod sweep;
 pub mod tally;
 pub mod witness;
+
+pub use lightmeter_arithmetic as arithmetic;

@@ -5,8 +5,9 @@ use crate::cases::{Kind, Spec, Stage};
 use crate::devices::{Known, known};
 use crate::select::Member;
 use lightmeter_gpu::{
-    Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Route, Shaders,
+    Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Shaders,
 };
+use lightmeter_scene::blend::Route;
 use lightmeter_scene::depth::DepthTest;
 use lightmeter_scene::target::TargetFormat;
 use serde::Serialize;

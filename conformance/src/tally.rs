@@ -240,7 +240,7 @@ fn failure(
         promise: None,
         value: Number(f32::from_bits(seen.bits).into()),
         value_hex: format!("0x{:08x}", seen.bits),
-        unwritten: seen.bits == lightmeter_gpu::SENTINEL,
+        unwritten: seen.bits == lightmeter_scene::target::SENTINEL,
         error_ulp: Number(seen.error_ulp),
     }
 }

@@ -3,7 +3,8 @@
 use crate::device::Gpu;
 use crate::error::Error;
 use crate::kernel::Kernel;
-use crate::readback::{Pending, SENTINEL, copy_target, sentinel_color, staging};
+use crate::readback::{Pending, copy_target, sentinel_color, staging};
+use lightmeter_scene::target::SENTINEL;
 
 /// Pixels of a row of the fragment stage's target.
 pub(crate) const FRAGMENT_WIDTH: u32 = 256;

@@ -1,10 +1,10 @@
 //! A WGSL function as something to evaluate on rows of numbers: its signature read by naga, its entry points written here.
 
 use crate::error::Error;
-use crate::readback::SENTINEL;
 use crate::rung::{Asked, Dialect, Lowered, Rung, Shape, lower, rung_struct};
 use crate::shaders::{Shaders, validate, validate_lowered};
 use crate::sweep::{SWEEP_GROUP, SWEEP_WIDTH};
+use lightmeter_scene::target::SENTINEL;
 use naga::{Handle, Module, ScalarKind, Type, TypeInner};
 use std::fmt::Write as _;
 

@@ -7,120 +7,12 @@ use crate::error::Error;
 use crate::readback::Pending;
 use crate::shaders::Shaders;
 use lightmeter_scene::depth::Compare;
-use lightmeter_scene::raster::{Provoking, Topology};
-
-/// Width and height of the target in pixels; the viewport is all of it.
-pub const TARGET_SIZE: u32 = 256;
+use lightmeter_scene::raster::{Provoking, Raster, TARGET_SIZE, Topology};
 
 const BITS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 const COUNTS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const FILE: &str = "raster.wgsl";
-
-/// What is drawn and looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Raster {
-    /// A triangle's attribute, perspective-correct and linear.
-    TriangleAttributes,
-    /// A triangle's fragment position: x, y, z, 1/w.
-    TrianglePosition,
-    /// A line's attribute, perspective-correct and linear.
-    LineAttributes,
-    /// How many of two triangles that share an edge cover the pixel.
-    Quad,
-    /// The depth that a fragment writes for itself, as it is stored.
-    OwnDepth,
-    /// Whether the triangle is seen from its front.
-    Facing,
-    /// Whether the triangle covers the pixel once it is clipped.
-    Clipped,
-    /// Whether the triangle covers the pixel with this face culled, counter-clockwise triangles or the others being front.
-    Culled {
-        /// Back faces, or front faces.
-        back: bool,
-        /// Whether counter-clockwise triangles are front faces.
-        front_is_ccw: bool,
-    },
-    /// Which of two fragments is seen, 1 or 2, where the same triangle is drawn twice, the second time by a depth test.
-    SameDepth(Compare),
-    /// A flat attribute.
-    Flat {
-        /// The topology that is drawn.
-        topology: Topology,
-        /// The vertex that it is taken from.
-        provoking: Provoking,
-    },
-}
-
-impl Raster {
-    /// Numbers in a row, the pixel's x and y last.
-    #[must_use]
-    pub const fn inputs(self) -> usize {
-        match self {
-            Self::TriangleAttributes
-            | Self::TrianglePosition
-            | Self::Facing
-            | Self::Clipped
-            | Self::Culled { .. }
-            | Self::SameDepth(_) => 17,
-            Self::LineAttributes => 12,
-            Self::Quad => 10,
-            Self::OwnDepth => 3,
-            Self::Flat { .. } => 9,
-        }
-    }
-
-    /// Numbers that come out.
-    #[must_use]
-    pub const fn outputs(self) -> usize {
-        match self {
-            Self::TrianglePosition => 4,
-            Self::TriangleAttributes | Self::LineAttributes => 2,
-            _ => 1,
-        }
-    }
-
-    const fn entries(self) -> (&'static str, &'static str) {
-        match self {
-            Self::TriangleAttributes => ("raster_triangle_vertex", "raster_attributes"),
-            Self::TrianglePosition => ("raster_triangle_vertex", "raster_position"),
-            Self::LineAttributes => ("raster_line_vertex", "raster_attributes"),
-            Self::Quad => ("raster_quad_vertex", "raster_count"),
-            Self::OwnDepth => ("raster_depth_vertex", "raster_own_depth"),
-            Self::Facing => ("raster_triangle_vertex", "raster_facing"),
-            Self::Clipped | Self::Culled { .. } | Self::SameDepth(_) => ("raster_triangle_vertex", "raster_covered"),
-            Self::Flat { provoking: Provoking::First, .. } => ("raster_flat_first_vertex", "raster_flat_fragment"),
-            Self::Flat { provoking: Provoking::Last, .. } => ("raster_flat_last_vertex", "raster_flat_fragment"),
-        }
-    }
-
-    /// The topology given to the hardware, and the vertices of a case.
-    fn drawn(self, native_last: bool) -> (wgpu::PrimitiveTopology, u32) {
-        use wgpu::PrimitiveTopology as P;
-        match self {
-            Self::LineAttributes => (P::LineList, 2),
-            Self::Quad => (P::TriangleList, 6),
-            Self::Flat { topology, provoking } => {
-                let as_given = provoking == Provoking::First || native_last;
-                match (topology, as_given) {
-                    (Topology::Points, _) => (P::PointList, 6),
-                    (Topology::LineList, _) => (P::LineList, 6),
-                    (Topology::TriangleList, _) => (P::TriangleList, 6),
-                    (Topology::LineStrip, true) => (P::LineStrip, 6),
-                    (Topology::LineStrip, false) => (P::LineList, 10),
-                    (Topology::TriangleStrip, true) => (P::TriangleStrip, 6),
-                    (Topology::TriangleStrip, false) => (P::TriangleList, 12),
-                }
-            }
-            _ => (P::TriangleList, 3),
-        }
-    }
-
-    /// Whether an uncovered pixel is an answer, 0, rather than a failure to write.
-    const fn counts_uncovered(self) -> bool {
-        matches!(self, Self::Quad | Self::Clipped | Self::Culled { .. })
-    }
-}
 
 /// A raster case compiled for a device.
 #[derive(Debug)]
@@ -144,7 +36,7 @@ impl RasterPipeline {
         if let Some(reason) = gpu.lacks_storage(true) {
             return Ok(Err(reason));
         }
-        let (mut entries, mut source) = (kind.entries(), shaders.source(FILE));
+        let (mut entries, mut source) = (entries(kind), shaders.source(FILE));
         if gpu.is_gl {
             // GLSL cannot choose the provoking vertex; OpenGL's own is the last.
             match kind {
@@ -159,7 +51,7 @@ impl RasterPipeline {
             source = source.replace("@interpolate(flat, first)", "@interpolate(flat, either)");
         }
         let module = gpu.module(FILE, source);
-        let (topology, vertices) = kind.drawn(gpu.is_gl);
+        let (topology, vertices) = drawn(kind, gpu.is_gl);
         let once = pipeline(gpu, &module, kind, entries, topology, Compare::Always);
         let again = match kind {
             Raster::SameDepth(compare) => {
@@ -242,7 +134,7 @@ impl RasterPipeline {
 
     fn attachment<'a>(&self, view: &'a wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'a> {
         let mut attachment = cleared(view);
-        if self.kind.counts_uncovered() {
+        if counts_uncovered(self.kind) {
             attachment.ops.load = wgpu::LoadOp::Clear(wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 0.0 });
         }
         attachment
@@ -415,4 +307,46 @@ pub(crate) fn texture_group(
         layout,
         entries: &[wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }],
     })
+}
+
+/// The entry points of a vertex and of a fragment.
+const fn entries(kind: Raster) -> (&'static str, &'static str) {
+    match kind {
+        Raster::TriangleAttributes => ("raster_triangle_vertex", "raster_attributes"),
+        Raster::TrianglePosition => ("raster_triangle_vertex", "raster_position"),
+        Raster::LineAttributes => ("raster_line_vertex", "raster_attributes"),
+        Raster::Quad => ("raster_quad_vertex", "raster_count"),
+        Raster::OwnDepth => ("raster_depth_vertex", "raster_own_depth"),
+        Raster::Facing => ("raster_triangle_vertex", "raster_facing"),
+        Raster::Clipped | Raster::Culled { .. } | Raster::SameDepth(_) => ("raster_triangle_vertex", "raster_covered"),
+        Raster::Flat { provoking: Provoking::First, .. } => ("raster_flat_first_vertex", "raster_flat_fragment"),
+        Raster::Flat { provoking: Provoking::Last, .. } => ("raster_flat_last_vertex", "raster_flat_fragment"),
+    }
+}
+
+/// The topology given to the hardware, and the vertices of a case.
+fn drawn(kind: Raster, native_last: bool) -> (wgpu::PrimitiveTopology, u32) {
+    use wgpu::PrimitiveTopology as P;
+    match kind {
+        Raster::LineAttributes => (P::LineList, 2),
+        Raster::Quad => (P::TriangleList, 6),
+        Raster::Flat { topology, provoking } => {
+            let as_given = provoking == Provoking::First || native_last;
+            match (topology, as_given) {
+                (Topology::Points, _) => (P::PointList, 6),
+                (Topology::LineList, _) => (P::LineList, 6),
+                (Topology::TriangleList, _) => (P::TriangleList, 6),
+                (Topology::LineStrip, true) => (P::LineStrip, 6),
+                (Topology::LineStrip, false) => (P::LineList, 10),
+                (Topology::TriangleStrip, true) => (P::TriangleStrip, 6),
+                (Topology::TriangleStrip, false) => (P::TriangleList, 12),
+            }
+        }
+        _ => (P::TriangleList, 3),
+    }
+}
+
+/// Whether an uncovered pixel is an answer, 0, rather than a failure to write.
+const fn counts_uncovered(kind: Raster) -> bool {
+    matches!(kind, Raster::Quad | Raster::Clipped | Raster::Culled { .. })
 }

@@ -4,9 +4,6 @@ use crate::device::Gpu;
 use crate::error::Error;
 use std::sync::mpsc;
 
-/// What outputs hold before anything is written: a NaN that no formula gives, so that "wrote 0" and "never wrote" differ.
-pub const SENTINEL: u32 = 0x7fc5_e171;
-
 /// A result that the device is still working on.
 #[derive(Debug)]
 pub struct Pending {
@@ -95,6 +92,6 @@ pub(crate) fn copy_target(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target:
 
 /// A clear value that fills an integer target with the sentinel.
 pub(crate) fn sentinel_color() -> wgpu::Color {
-    let word = f64::from(SENTINEL);
+    let word = f64::from(lightmeter_scene::target::SENTINEL);
     wgpu::Color { r: word, g: word, b: word, a: word }
 }

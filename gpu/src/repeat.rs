@@ -7,9 +7,10 @@ use crate::clock::{Clock, Reading};
 use crate::device::Gpu;
 use crate::error::Error;
 use crate::kernel::Kernel;
-use crate::readback::{Pending, SENTINEL, staging};
+use crate::readback::{Pending, staging};
 use crate::rung::Rung;
 use crate::shaders::Shaders;
+use lightmeter_scene::target::SENTINEL;
 
 /// Evaluations of one invocation.
 pub(crate) const TIMES: u32 = 32;

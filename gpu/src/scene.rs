@@ -7,7 +7,7 @@ mod geometry;
 mod pipeline;
 mod uniforms;
 
-use crate::blend_unit::{Route, format};
+use crate::blend_unit::format;
 use crate::clock::{Clock, Reading};
 use crate::compose::{Composer, MOST_TOWARD, Recipe, Shader, Stage, Technique, live};
 use crate::device::Gpu;

@@ -2,7 +2,7 @@
 
 use super::pixel::Units;
 use crate::cases::blend::{Program, UnitCase};
-use lightmeter_gpu::Route;
+use lightmeter_scene::blend::Route;
 use lightmeter_scene::blend::{Equation, Factor, State};
 
 /// A model of a blend unit on targets of 8 linear bits.

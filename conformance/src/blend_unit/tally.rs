@@ -10,7 +10,7 @@ use crate::cases::blend::{Program, UnitCase};
 use crate::devices::{BlendDeviation, Known};
 use crate::judge::{is_worse, margin, simplicity, worse};
 use crate::report::Tiers;
-use lightmeter_gpu::Route;
+use lightmeter_scene::blend::Route;
 use lightmeter_scene::blend::Separate;
 use lightmeter_scene::target::{Encoding, TargetFormat};
 

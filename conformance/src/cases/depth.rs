@@ -4,10 +4,10 @@ use super::formula::{Formula, formula};
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
 use super::{Visitor, raster};
-use lightmeter_gpu::Raster;
 use lightmeter_reference::Real;
 use lightmeter_reference::depth::{passes, recovered, recovered_reversed, test};
 use lightmeter_scene::depth::{Compare, DepthTest};
+use lightmeter_scene::raster::Raster;
 
 /// A fragment over another.
 #[derive(Clone, Copy, Debug)]

@@ -4,8 +4,9 @@ use super::raster;
 use super::rows::{Reader, Writer};
 use super::spec::{Kind, Spec};
 use crate::arithmetic::{Accept, Draw, Dual, Profile, Trace, dual};
-use lightmeter_gpu::{Along, Raster};
 use lightmeter_reference::Real;
+use lightmeter_scene::along::Along;
+use lightmeter_scene::raster::Raster;
 
 /// A formula over any arithmetic.
 pub trait Formula: Send + Sync + 'static {

@@ -1,8 +1,8 @@
 //! The description of a formula: what goes in, what comes out, where it is from, and its hard cases.
 
 use super::blend::Program;
-use lightmeter_gpu::Raster;
 use lightmeter_scene::depth::DepthTest;
+use lightmeter_scene::raster::Raster;
 use serde::Serialize;
 
 /// Where a formula is evaluated on a renderer.

@@ -1,9 +1,9 @@
 //! What a mistake does to a formula's inputs before it, and to its outputs after it.
 
 use crate::cases::{Shape, Spec};
-use lightmeter_gpu::TARGET_SIZE;
 use lightmeter_reference::Real;
 use lightmeter_reference::color::{srgb_decode, srgb_encode};
+use lightmeter_scene::raster::TARGET_SIZE;
 use std::ops::Range;
 
 /// A change to the inputs, which are addressed by name.

@@ -2,7 +2,7 @@
 
 use super::{DeviationUse, Failure, Group, Number, Report, Tiers, Totals};
 use crate::judge::{is_worse, worse};
-use lightmeter_gpu::Route;
+use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
 use std::fmt::{Result, Write};
 

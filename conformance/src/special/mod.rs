@@ -13,7 +13,7 @@ pub mod verdict;
 pub use table::PROBES;
 
 use crate::report::Number;
-use lightmeter_gpu::SENTINEL;
+use lightmeter_scene::target::SENTINEL;
 
 /// The first segment of the ids.
 pub const FAMILY: &str = "special";

@@ -3,8 +3,10 @@
 use super::record::{OnRecord, Record};
 use super::{Deviation, PROBES, Probe, Promise, Way};
 use crate::subject::{Identity, Subject};
-use lightmeter_gpu::{ArithmeticPipeline, Error, Gpu, Kernel, Raster, RasterPipeline, SENTINEL, Shaders, Stage};
+use lightmeter_gpu::{ArithmeticPipeline, Error, Gpu, Kernel, RasterPipeline, Shaders, Stage};
+use lightmeter_scene::raster::Raster;
 use lightmeter_scene::raster::{Provoking, Topology};
+use lightmeter_scene::target::SENTINEL;
 use serde::{Serialize, Serializer};
 
 /// The shader file of the functions.

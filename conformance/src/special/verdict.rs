@@ -9,7 +9,8 @@ use crate::report::{DeviationUse, Failure, Group, Number, Report, Totals};
 use crate::select::Shard;
 use crate::subject::Subject;
 use crate::tally::KEPT_FAILURES;
-use lightmeter_gpu::{Error, SENTINEL};
+use lightmeter_gpu::Error;
+use lightmeter_scene::target::SENTINEL;
 use std::time::Instant;
 
 /// The operands' names, as the functions of `special.wgsl` have them.

@@ -15,7 +15,8 @@ use crate::cases::Kind;
 use crate::cases::blend::Program;
 use crate::report::Number;
 use crate::subject::Subject;
-use lightmeter_gpu::{Error, Route, Shaders};
+use lightmeter_gpu::{Error, Shaders};
+use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
 

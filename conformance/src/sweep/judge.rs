@@ -17,7 +17,7 @@ use crate::cases::AnyFormula;
 use crate::devices::Deviation;
 use crate::judge::{Outcome, judge};
 use crate::report::Number;
-use lightmeter_gpu::{Along, float_of};
+use lightmeter_scene::along::{Along, float_of};
 use rayon::prelude::*;
 
 /// Inputs of a run, for which one interval tells whether anything is promised.
@@ -185,7 +185,7 @@ mod tests {
     use crate::arithmetic::profile::WGSL;
     use crate::cases::Kind;
     use crate::select::{CaseRef, Member, catalogue};
-    use lightmeter_gpu::key_of;
+    use lightmeter_scene::along::key_of;
 
     fn swept() -> Vec<Member> {
         // One function evaluates all of the many blend states: every 37th stands for them.
@@ -308,7 +308,7 @@ mod tests {
                     .map(|(k, value): (u32, f32)| match k % 61 {
                         0..40 => value.to_bits(),
                         58 => f32::NAN.to_bits(),
-                        59 => lightmeter_gpu::SENTINEL,
+                        59 => lightmeter_scene::target::SENTINEL,
                         60 => f32::INFINITY.to_bits(),
                         off => value.to_bits().wrapping_add(1 << (off - 40)),
                     })

@@ -5,7 +5,7 @@ use super::span::Span;
 use super::statistics::Exact;
 use crate::cases::{Domain, Kind, Spec, Stage};
 use crate::select::Member;
-use lightmeter_gpu::{float_of, key_of};
+use lightmeter_scene::along::{float_of, key_of};
 
 /// What was asked for; what is missing is the preset's, or follows from the formula.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,7 +4,7 @@
 use super::histogram::Histogram;
 use crate::blend_unit::store::StoreCounts;
 use crate::report::{Number, Tiers};
-use lightmeter_gpu::key_of;
+use lightmeter_scene::along::key_of;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

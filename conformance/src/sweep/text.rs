@@ -100,7 +100,7 @@ pub fn write(document: &Document, text: &str, rerun: &str, out: &mut impl Write)
 fn write_seen(document: &Document, seen: &Seen, rerun: &str, out: &mut impl Write) -> Result {
     let sweep = &document.sweep;
     let Exact(value) = seen.value;
-    let unwritten = if value.to_bits() == lightmeter_gpu::SENTINEL { ", never written" } else { "" };
+    let unwritten = if value.to_bits() == lightmeter_scene::target::SENTINEL { ", never written" } else { "" };
     writeln!(out, "  input      {}", place(&sweep.over, seen.input))?;
     if sweep.from.is_some() {
         writeln!(out, "  value      {}  0x{:08x}{unwritten}", Number(value.into()), value.to_bits())?;

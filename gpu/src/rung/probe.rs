@@ -6,7 +6,8 @@ use super::dialect::Prelude;
 use crate::arithmetic::bind;
 use crate::device::Gpu;
 use crate::error::Error;
-use crate::readback::{Pending, SENTINEL, staging};
+use crate::readback::{Pending, staging};
+use lightmeter_scene::target::SENTINEL;
 
 /// What is wrong with what came of two numbers.
 type Judge = fn(f64, f64, &[f32]) -> Option<&'static str>;

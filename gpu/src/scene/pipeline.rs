@@ -1,11 +1,12 @@
 //! Pipelines, shared by draws that differ in numbers alone.
 
 use super::geometry::Input;
-use super::{Effects, Error, Gpu, Recipe, Route, Shader, Stage};
-use crate::blend_unit::{self, routes};
+use super::{Effects, Error, Gpu, Recipe, Shader, Stage};
+use crate::blend_unit;
 use crate::compose::{Composer, Composition, live};
 use crate::depth_unit::compare_function;
 use lightmeter_scene::blend::WriteMask;
+use lightmeter_scene::blend::{Route, routes};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::frame::{Blend, Cull, Draw};
 use std::collections::HashMap;

@@ -281,6 +281,54 @@ impl fmt::Display for WriteMask {
     }
 }
 
+/// How a state reaches a blend unit, which in WebGPU has no factor of the constant's alpha.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Route {
+    /// The unit's own factors.
+    Native,
+    /// The constant's alpha given as all four components of the constant.
+    ConstantReplicated,
+    /// The source's colour multiplied by its constant factor in the shader, and ONE in the unit: one side reads the
+    /// constant's colour and the other its alpha. On a unorm target the source is clamped first, as the unit would have.
+    FoldedIntoSource,
+    /// The same states with the constant's alpha as the alpha of a second source colour.
+    DualSource,
+}
+
+impl Route {
+    /// All, in the order of reports.
+    pub const ALL: [Self; 4] = [Self::Native, Self::ConstantReplicated, Self::FoldedIntoSource, Self::DualSource];
+
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Native => "native",
+            Self::ConstantReplicated => "constant-replicated",
+            Self::FoldedIntoSource => "folded-into-source",
+            Self::DualSource => "dual-source",
+        }
+    }
+}
+
+/// The routes of a state, the first of which every adapter has.
+///
+/// The alpha component's constant factors all read the constant's alpha, so only the colour's decide.
+#[must_use]
+pub const fn routes(state: Separate) -> &'static [Route] {
+    let State { equation, src, dst } = state.color;
+    if equation.ignores_factors() {
+        return &[Route::Native];
+    }
+    let alpha = src.reads_constant_alpha() || dst.reads_constant_alpha();
+    let color = src.reads_constant_color() || dst.reads_constant_color();
+    match (alpha, color) {
+        (false, _) => &[Route::Native],
+        (true, false) => &[Route::ConstantReplicated],
+        (true, true) => &[Route::FoldedIntoSource, Route::DualSource],
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,6 +3,7 @@
 //! There is no formula here and no I/O: a blend state is a name, not what it computes. Both sides of a comparison may
 //! therefore depend on this crate without sharing any arithmetic.
 
+pub mod along;
 pub mod blend;
 pub mod depth;
 pub mod effects;

@@ -84,3 +84,6 @@ impl TargetFormat {
         }
     }
 }
+
+/// What outputs hold before anything is written: a NaN that no formula gives, so that "wrote 0" and "never wrote" differ.
+pub const SENTINEL: u32 = 0x7fc5_e171;

@@ -16,9 +16,9 @@
 
 use super::target as viewport;
 use crate::arithmetic::{Accept, F32};
-use lightmeter_gpu::Raster;
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::{Real, Vec2, Vec4, Vector};
+use lightmeter_scene::raster::Raster;
 
 /// The interval of each output of a raster case.
 pub(in crate::cases) fn interval(kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]) {

@@ -2,7 +2,7 @@
 //! case's pixel.
 
 use crate::cases::draw::narrow;
-use lightmeter_gpu::TARGET_SIZE;
+use lightmeter_scene::raster::TARGET_SIZE;
 
 /// From raw numbers between 0 and 1 to a vertex in clip coordinates at that angle about the pixel.
 fn place(raw: &mut [f32], pixel: [f64; 2], angle: f64) {

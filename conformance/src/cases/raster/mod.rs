@@ -12,10 +12,10 @@ use super::spec::{Domain, Input, Kind, Output, Shape, Spec};
 pub(super) use bound::interval;
 pub(super) use layout::triangle_around_the_pixel;
 use layout::{line_through_the_pixel, quad_around_the_pixel, quad_on_the_grid, triangle_across_the_volume};
-use lightmeter_gpu::{Raster, TARGET_SIZE};
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::{Real, Vec2, Vector};
 use lightmeter_scene::raster::{Provoking, Topology};
+use lightmeter_scene::raster::{Raster, TARGET_SIZE};
 
 /// The whole target, depth from 0 to 1.
 fn target<R: Real>() -> Viewport<R> {

@@ -10,8 +10,8 @@ pub mod sweep;
 pub use picture::svg;
 
 use crate::blend_unit::policy::PROMISES;
-use lightmeter_gpu::{Route, routes};
 use lightmeter_scene::blend::{Equation, Factor, State};
+use lightmeter_scene::blend::{Route, routes};
 use lightmeter_scene::target::TargetFormat;
 use serde::Deserialize;
 use std::collections::BTreeMap;

@@ -87,7 +87,7 @@ pub(super) fn whole<T>(first: f64, last: f64, then: impl Fn(f64) -> T, hull: imp
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::Accept;
+    use crate::Accept;
     use lightmeter_reference::Real;
 
     fn outcomes(mut evaluate: impl FnMut() -> Accept) -> Vec<(f64, f64)> {

@@ -137,7 +137,7 @@ pub(crate) fn current<T>(figure: impl FnOnce(&Profile) -> T) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::Accept;
+    use crate::Accept;
     use lightmeter_reference::Real as _;
 
     #[test]
