@@ -4,8 +4,8 @@
 mod mistakes;
 
 use lightmeter::adapters;
+use lightmeter::document::run::Totals;
 use lightmeter::options::{Options, Silent};
-use lightmeter::report::Totals;
 use lightmeter::run::{run, run_selection};
 use lightmeter::select::catalogue;
 use lightmeter::selection::Selection;

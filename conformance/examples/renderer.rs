@@ -7,8 +7,8 @@
 //! lightmeter gate fog --exec 'target/debug/examples/renderer crash-at=fog/exp/random/000017'
 //! ```
 
+use lightmeter::document::Number;
 use lightmeter::image::file::Stored;
-use lightmeter::report::Number;
 use lightmeter::scene::load;
 use lightmeter::select::{Member, catalogue};
 use lightmeter_reference::render::render;

@@ -35,14 +35,14 @@ impl Builtin {
         }
     }
 
-    /// What is legal at x.
+    /// What a profile makes legal at x.
     #[must_use]
-    pub fn interval(self, x: f32) -> Accept {
+    pub fn interval(self, x: f32, profile: &Profile) -> Accept {
         let x: Accept = Accept::input(x);
-        match self {
+        profile.scope(|| match self {
             Self::Exp => x.exp(),
             Self::Exp2 => x.exp2(),
-        }
+        })
     }
 
     /// The exact value at x, correctly rounded to f64.
@@ -214,6 +214,15 @@ pub struct Known {
     pub special_record: Option<(&'static str, bool)>,
     /// Those of its blend unit.
     pub blend_deviations: Vec<&'static BlendDeviation>,
+}
+
+impl Known {
+    /// The profile with the subpixel bits that the rasteriser is known to have. The embedded implementation snaps nothing, but has
+    /// to keep no less than the promise.
+    #[must_use]
+    pub fn profile(&self, profile: &Profile) -> Profile {
+        Profile { subpixel_bits: self.subpixel_bits.unwrap_or(profile.subpixel_bits), ..*profile }
+    }
 }
 
 /// What is known of an adapter.

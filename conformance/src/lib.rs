@@ -25,3 +25,4 @@ pub mod tally;
 pub mod witness;
 
 pub use lightmeter_arithmetic as arithmetic;
+pub use lightmeter_document as document;

@@ -5,6 +5,8 @@ use crate::arithmetic::profile::PROFILES;
 use crate::cases::blend::Samples;
 use crate::filter::Filter;
 use crate::select::Shard;
+use crate::subject::Subject;
+use lightmeter_document::run::Report;
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::target::TargetFormat;
 use std::path::{Path, PathBuf};
@@ -47,6 +49,14 @@ pub struct Options {
 }
 
 impl Options {
+    /// A report on these subjects, of nothing yet.
+    #[must_use]
+    pub fn report(&self, subjects: &[Subject]) -> Report {
+        let filter = self.filter.globs().map(str::to_owned).collect();
+        let adapters = subjects.iter().map(|subject| subject.identity.clone()).collect();
+        Report::empty(self.seed, self.profile.name.into(), filter, adapters)
+    }
+
     /// A run of everything as it is without any option, by these shaders.
     #[must_use]
     pub fn new(shaders: Shaders) -> Self {

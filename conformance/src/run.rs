@@ -11,7 +11,6 @@ use crate::evaluate::kernel;
 use crate::image;
 use crate::image::select::Chosen;
 use crate::options::{Options, Progress};
-use crate::report::{Group, Interrupted, Number, Report, Totals};
 use crate::select::{CaseRef, Member, Selected};
 use crate::selection::Selection;
 use crate::special::verdict::Table;
@@ -19,6 +18,8 @@ use crate::subject::{Compiled, Rows, Subject};
 use crate::tally::{Tally, judge_chunk, reported};
 use crate::witness;
 use crate::{special, stability};
+use lightmeter_document::Number;
+use lightmeter_document::run::{Group, Interrupted, Report, Totals};
 use lightmeter_gpu::Error;
 use lightmeter_scene::blend::Equation;
 use rayon::prelude::*;
@@ -53,7 +54,7 @@ pub fn run_selection(
 ) -> Result<Report, Error> {
     let started = Instant::now();
     progress.start(work(selection, subjects, options));
-    let mut report = Report::empty(subjects, options);
+    let mut report = options.report(subjects);
     for &deviation in &selection.deviations {
         witness::ask(deviation, &selection.catalogue, subjects, options, &mut report)?;
     }
@@ -163,7 +164,7 @@ fn judge_group(
         stability::examine(member, &chosen.hard, subjects, options, report)?;
     }
     for group in &mut report.groups[first..] {
-        if let Some(unstable) = stability::problem(&report.stability, &group.id, &group.adapter, group.stage) {
+        if let Some(unstable) = stability::problem(&report.stability, &group.id, &group.adapter, &group.stage) {
             group.problem =
                 Some(group.problem.take().map_or(unstable.clone(), |problem| format!("{problem}; {unstable}")));
             group.totals.failed_groups = 1;
@@ -180,7 +181,7 @@ fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
         |name: &str| report.adapters.iter().any(|adapter| adapter.name == name && adapter.backend != "embedded");
     for state in report.blend_states.iter().filter(|state| state.is_drawn() && on_device(&state.adapter)) {
         if is_state(&state.id) {
-            routes.entry(state.route).or_default().insert(&state.id);
+            routes.entry(&state.route).or_default().insert(&state.id);
         }
     }
     routes.into_iter().map(|(route, states)| (route.into(), states.len().into())).collect()
@@ -297,7 +298,7 @@ fn run_rows(
                 margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
                 seconds: tally.seconds,
                 worst: tally.worst.map(|(_, id)| id),
-                skip_reason: work.err(),
+                skip_reason: work.err().map(Into::into),
                 problem,
                 ..Group::new(spec.group().into(), subject.identity.name.clone(), stage.name())
             });
@@ -350,19 +351,26 @@ pub(crate) fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], se
 
 /// Reference values and intervals, on all cores.
 pub(crate) fn refer(chunk: &mut Chunk<'_>, profile: &Profile) {
-    let outputs = chunk.members[0].spec.output_len();
+    let spec = &chunk.members[0].spec;
+    let (stride, outputs) = (spec.input_len(), spec.output_len());
     let mut references = vec![0.0; chunk.cases.len() * outputs];
     let mut intervals = vec![Accept::ANY; chunk.cases.len() * outputs];
     references.par_chunks_mut(TASK * outputs).zip(intervals.par_chunks_mut(TASK * outputs)).enumerate().for_each(
         |(task, (references, intervals))| {
-            profile.scope(|| {
-                let rows = references.chunks_exact_mut(outputs).zip(intervals.chunks_exact_mut(outputs));
-                for (case, (reference, interval)) in (task * TASK..).zip(rows) {
-                    let formula = &chunk.members[chunk.of[case]].formula;
-                    formula.reference(chunk.inputs_of(case), reference);
-                    formula.interval(chunk.inputs_of(case), interval);
+            let first = task * TASK;
+            let mut done = 0;
+            for of in chunk.of[first..first + references.len() / outputs].chunk_by(|a, b| a == b) {
+                let formula = &chunk.members[of[0]].formula;
+                let cases = done..done + of.len();
+                let rows = &chunk.inputs[(first + cases.start) * stride..(first + cases.end) * stride];
+                let out = cases.start * outputs..cases.end * outputs;
+                for (row, reference) in rows.chunks_exact(stride).zip(references[out.clone()].chunks_exact_mut(outputs))
+                {
+                    formula.reference(row, reference);
                 }
-            });
+                formula.intervals(rows, stride, profile, &mut intervals[out]);
+                done = cases.end;
+            }
         },
     );
     chunk.references = references;

@@ -4,26 +4,13 @@ use crate::blend_unit::rules::Rules;
 use crate::cases::{Kind, Spec, Stage};
 use crate::devices::{Known, known};
 use crate::select::Member;
+use lightmeter_document::run::Identity;
 use lightmeter_gpu::{
     Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Shaders,
 };
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::depth::DepthTest;
 use lightmeter_scene::target::TargetFormat;
-use serde::Serialize;
-
-/// How a subject is named in reports.
-#[derive(Clone, Debug, Serialize)]
-pub struct Identity {
-    /// The short name.
-    pub name: String,
-    /// The device as the driver names it.
-    pub device: String,
-    /// `vulkan`, `gl` or `embedded`.
-    pub backend: &'static str,
-    /// The driver and its version.
-    pub driver: String,
-}
 
 /// An implementation under test.
 pub struct Subject {
@@ -110,7 +97,7 @@ impl Subject {
         let identity = Identity {
             name: adapter.name.clone(),
             device: adapter.device.clone(),
-            backend: adapter.backend,
+            backend: adapter.backend.into(),
             driver: adapter.driver.clone(),
         };
         let gpu = Some(Device { gpu: adapter.open()?, blend: None, depth: None });
@@ -123,7 +110,7 @@ impl Subject {
         let identity = Identity {
             name: "cpu".into(),
             device: "the reference's formulas in f32".into(),
-            backend: "embedded",
+            backend: "embedded".into(),
             driver: concat!("lightmeter ", env!("CARGO_PKG_VERSION")).into(),
         };
         Self { identity, known: Known::default(), gpu: None, rules: Rules::RIGHT }

@@ -4,10 +4,11 @@ use crate::arithmetic::{Accept, Profile};
 use crate::cases::{Kind, Stage};
 use crate::judge::{Outcome, is_worse, judge, simplicity, worse};
 use crate::options::Options;
-use crate::report::{Failure, Number, Totals};
 use crate::run::{Chunk, TASK};
 use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
+use lightmeter_document::Number;
+use lightmeter_document::run::{Failure, Totals};
 use rayon::prelude::*;
 
 /// Failures that are kept for each group.
@@ -88,14 +89,12 @@ pub(crate) fn judge_chunk(
     let tallies: Vec<Tally> = (0..chunk.cases.len().div_ceil(TASK))
         .into_par_iter()
         .map(|task| {
-            options.profile.scope(|| {
-                let cases = task * TASK..chunk.cases.len().min((task + 1) * TASK);
-                let mut tally = Tally::default();
-                for case in cases {
-                    judge_case(chunk, words, case, stage, subject, options, &mut tally);
-                }
-                tally
-            })
+            let cases = task * TASK..chunk.cases.len().min((task + 1) * TASK);
+            let mut tally = Tally::default();
+            for case in cases {
+                judge_case(chunk, words, case, stage, subject, options, &mut tally);
+            }
+            tally
         })
         .collect();
     let mut sum = Tally::default();
@@ -105,7 +104,7 @@ pub(crate) fn judge_chunk(
     sum
 }
 
-/// The intervals of one case as they hold for a stage of a subject, by the profile given, which is the one in force.
+/// The intervals of one case as a profile makes them for a stage of a subject.
 pub fn intervals(
     member: &Member,
     inputs: &[f32],
@@ -116,10 +115,9 @@ pub fn intervals(
 ) {
     match member.spec.kind {
         Kind::Raster(kind) if stage == Stage::Raster => {
-            let subpixel_bits = subject.known.subpixel_bits.unwrap_or(profile.subpixel_bits);
-            member.formula.raster_interval(kind, inputs, subpixel_bits, out);
+            member.formula.raster_interval(kind, inputs, &subject.known.profile(profile), out);
         }
-        _ => member.formula.interval(inputs, out),
+        _ => member.formula.interval(inputs, profile, out),
     }
 }
 
@@ -199,9 +197,8 @@ fn excuse(
     let member = chunk.members[chunk.of[case]];
     subject.known.deviations.iter().find_map(|deviation| {
         let mut legal = vec![Accept::ANY; member.spec.output_len()];
-        deviation
-            .grant(*options.profile)
-            .scope(|| intervals(member, chunk.inputs_of(case), stage, subject, options.profile, &mut legal));
+        let granted = deviation.grant(*options.profile);
+        intervals(member, chunk.inputs_of(case), stage, subject, &granted, &mut legal);
         let reference = chunk.references[case * legal.len() + output];
         (judge(bits, reference, &legal[output]).outcome == Outcome::Pass).then_some(deviation.name)
     })
@@ -229,7 +226,7 @@ fn failure(
         rerun: format!("lightmeter run '{id}' --adapter {}{}", subject.identity.name, options.rerun),
         id,
         adapter: subject.identity.name.clone(),
-        stage: stage.name(),
+        stage: stage.name().into(),
         target: None,
         route: None,
         output: member.spec.output_name(output),

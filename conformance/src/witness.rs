@@ -6,10 +6,11 @@ use crate::devices::{self, BlendDeviation};
 use crate::filter::Filter;
 use crate::judge::{Outcome, judge};
 use crate::options::{Options, Silent};
-use crate::report::{self, Totals};
+
 use crate::select::{CaseRef, Member, Random, Selected};
 use crate::special::{self, Probe};
 use crate::subject::Subject;
+use lightmeter_document::run::{DeviationUse, Report, Totals};
 use lightmeter_gpu::{Error, Shaders};
 
 /// The first segment of the ids.
@@ -99,8 +100,8 @@ fn accuracy(
         return Ok(None);
     }
     let Some(bits) = subject.probe(shaders, deviation.builtin.probe(), deviation.witness)? else { return Ok(None) };
-    let promised = options.profile.scope(|| deviation.builtin.interval(deviation.witness));
-    let granted = deviation.grant(*options.profile).scope(|| deviation.builtin.interval(deviation.witness));
+    let promised = deviation.builtin.interval(deviation.witness, options.profile);
+    let granted = deviation.builtin.interval(deviation.witness, &deviation.grant(*options.profile));
     let exact = deviation.builtin.exact(deviation.witness);
     let outcome = |legal| judge(bits, exact, legal).outcome;
     Ok(Some(outcome(&promised) == Outcome::Fail && outcome(&granted) == Outcome::Pass))
@@ -123,7 +124,7 @@ fn blend(
     let mut selected = Selected::whole(place, Random::Some(vec![]));
     selected.hard.push(hard);
     let options = Options { targets: vec![deviation.target], again: false, ..options };
-    let mut report = report::Report::empty(std::slice::from_ref(subject), &options);
+    let mut report = options.report(std::slice::from_ref(subject));
     let subjects = std::slice::from_mut(subject);
     blend_unit::run::run_group(&[&catalogue[place]], &[selected], subjects, &options, &mut report, &mut Silent)?;
     let mut totals = Totals::default();
@@ -160,14 +161,14 @@ pub(crate) fn ask(
     catalogue: &[Member],
     subjects: &mut [Subject],
     options: &Options,
-    report: &mut report::Report,
+    report: &mut Report,
 ) -> Result<(), Error> {
     for subject in subjects {
         let Some(still_needed) = deviation.is_still_seen(subject, catalogue, options)? else { continue };
-        report.deviations.push(report::DeviationUse {
-            name: deviation.name(),
+        report.deviations.push(DeviationUse {
+            name: deviation.name().into(),
             adapter: subject.identity.name.clone(),
-            reason: deviation.reason(),
+            reason: deviation.reason().into(),
             still_needed,
             excused: 0,
         });

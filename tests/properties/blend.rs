@@ -1,6 +1,7 @@
 //! Laws of blending.
 
 use crate::family;
+use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::blend_unit::draw::{Piece, draw};
 use lightmeter::blend_unit::embedded;
 use lightmeter::blend_unit::expect::expect;
@@ -188,7 +189,7 @@ fn the_blend_unit_agrees_on_every_target() {
         let drawn = draw(&mut subject, &shaders, target, &pieces.iter().collect::<Vec<_>>(), false).expect("a drawing");
         for (piece, pixels) in pieces.iter().zip(&drawn.pieces) {
             for (place, pixel) in pixels.iter().enumerate() {
-                let expected = expect(piece.program, target, &piece.case(place), &Rules::RIGHT);
+                let expected = expect(piece.program, target, &piece.case(place), &Rules::RIGHT, &WGSL);
                 for k in 0..4 {
                     let verdict = expected.judge(target, k, pixel[k]);
                     assert_eq!(
@@ -226,7 +227,7 @@ fn every_legal_unit_lies_inside() {
         for place in 0..piece.count() {
             let case = piece.case(place);
             for target in TargetFormat::ALL {
-                let expected = expect(piece.program, target, &case, &Rules::RIGHT);
+                let expected = expect(piece.program, target, &case, &Rules::RIGHT, &WGSL);
                 let inside =
                     |pixel: Units| (0..4).all(|k| expected.judge(target, k, pixel[k]).outcome == Outcome::Pass);
                 let wide = embedded::blend(piece.program, target, &case, &Rules::RIGHT);
@@ -262,7 +263,7 @@ fn wrong_pixels_fail() {
     let rows = proptest::collection::vec(unit_row(), 4).new_tree(&mut runner).expect("rows").current();
     for piece in pieces(&rows) {
         for target in TargetFormat::ALL {
-            let expected = expect(piece.program, target, &piece.case(3), &Rules::RIGHT);
+            let expected = expect(piece.program, target, &piece.case(3), &Rules::RIGHT, &WGSL);
             for k in 0..4 {
                 let outcome = |value: f64| expected.judge(target, k, value).outcome;
                 let step = if target.is_unorm() { 1.0 } else { 1e-3 };
@@ -281,7 +282,7 @@ fn tally(rules: &Rules, known: &Known, target: TargetFormat) -> Tally {
     let rows = proptest::collection::vec(unit_row(), 24).new_tree(&mut runner).expect("rows").current();
     let mut tally = Tally::default();
     for piece in pieces(&rows) {
-        let drawn = Drawn { program: piece.program, route: piece.route, target };
+        let drawn = Drawn { program: piece.program, route: piece.route, target, profile: &WGSL };
         for place in 0..piece.count() {
             let case = piece.case(place);
             tally.pixel(drawn, known, place, &case, embedded::blend(piece.program, target, &case, rules));
@@ -327,7 +328,7 @@ fn layers_blend_in_order_and_masks_hold() {
     let mut reversed = case;
     reversed.sources[..3].reverse();
     for target in TargetFormat::ALL {
-        let expected = expect(program, target, &case, &Rules::RIGHT);
+        let expected = expect(program, target, &case, &Rules::RIGHT, &WGSL);
         let passes = |pixel: Units| (0..4).all(|k| expected.judge(target, k, pixel[k]).outcome == Outcome::Pass);
         assert!(passes(embedded::blend(program, target, &case, &Rules::RIGHT)), "{}", target.name());
         assert!(
@@ -336,7 +337,7 @@ fn layers_blend_in_order_and_masks_hold() {
             target.name()
         );
         let masked = Program::Draw(Mode::Alpha.state().into(), WriteMask([true, false, true, false]));
-        let expected = expect(masked, target, &case, &Rules::RIGHT);
+        let expected = expect(masked, target, &case, &Rules::RIGHT, &WGSL);
         let kept = stored(target, case.dst);
         assert_eq!((expected.low[1], expected.high[3]), (kept[1], kept[3]), "{}", target.name());
         let unmasked =
@@ -355,7 +356,7 @@ fn half_overflow_has_two_outcomes() {
     let add =
         Program::Draw(State { equation: Equation::Add, src: Factor::One, dst: Factor::One }.into(), WriteMask::ALL);
     let case = add.case(&[60000.0, -60000.0, 1.0, 1.0, 60000.0, -60000.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
-    let expected = expect(add, TargetFormat::Rgba16Float, &case, &Rules::RIGHT);
+    let expected = expect(add, TargetFormat::Rgba16Float, &case, &Rules::RIGHT, &WGSL);
     let outcome = |k: usize, value: f64| expected.judge(TargetFormat::Rgba16Float, k, value).outcome;
     for legal in [65504.0, f64::INFINITY] {
         assert_eq!((outcome(0, legal), outcome(1, -legal)), (Outcome::Pass, Outcome::Pass));
@@ -363,7 +364,7 @@ fn half_overflow_has_two_outcomes() {
     for wrong in [65472.0, 0.0, f64::NEG_INFINITY, f64::NAN] {
         assert_eq!(outcome(0, wrong), Outcome::Fail, "{wrong}");
     }
-    let single = expect(add, TargetFormat::Rgba32Float, &case, &Rules::RIGHT);
+    let single = expect(add, TargetFormat::Rgba32Float, &case, &Rules::RIGHT, &WGSL);
     assert_eq!(single.judge(TargetFormat::Rgba32Float, 0, f64::INFINITY).outcome, Outcome::Fail);
 }
 
@@ -376,7 +377,7 @@ fn the_bound_on_8_bits_is_no_wider_than_it_must() {
     let (mut widest, mut values, mut wider) = (0.0_f64, 0_u32, 0_u32);
     for piece in pieces(&rows) {
         for place in 0..piece.count() {
-            let expected = expect(piece.program, TargetFormat::Rgba8Unorm, &piece.case(place), &Rules::RIGHT);
+            let expected = expect(piece.program, TargetFormat::Rgba8Unorm, &piece.case(place), &Rules::RIGHT, &WGSL);
             for k in 0..4 {
                 let most = (expected.high[k] - expected.reference[k]).max(expected.reference[k] - expected.low[k]);
                 assert!(most <= 2.5 + 2.0 / 510.0 + 1e-6, "{piece:?} {place}: {expected:?}");

@@ -2,6 +2,7 @@
 //! adapter there is; a stable form that is the naive one is found out.
 
 use lightmeter::arithmetic::Accept;
+use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::cases::{FAMILIES, Formula, Kind, Reader, Spec, Visitor, Writer, visit};
 use lightmeter::filter::Filter;
 use lightmeter::options::{Options, Silent};
@@ -264,7 +265,7 @@ fn a_stable_form_computes_what_its_naive_form_means() {
 
 fn conditioning(member: &Member, row: &[f32]) -> Conditioning {
     let mut legal = vec![Accept::ANY; member.spec.output_len()];
-    member.formula.interval(row, &mut legal);
+    member.formula.interval(row, &WGSL, &mut legal);
     Conditioning::of(member, row, &legal, &[])
 }
 
@@ -348,7 +349,7 @@ fn ill_conditioned_unstable_and_singular_are_told_apart() {
         };
         let near: Vec<Vec<f32>> = (0..member.near()).map(near).collect();
         let mut legal = vec![Accept::ANY; member.spec.output_len()];
-        member.formula.interval(&row, &mut legal);
+        member.formula.interval(&row, &WGSL, &mut legal);
         Conditioning::of(member, &row, &legal, &near).standing
     };
     assert_eq!(standing("vector/halfway/hard/half-vector-of-nothing"), Standing::Singular);

@@ -178,7 +178,7 @@ fn verdict(member: &Member, row: &[f32], stage: Stage, subject: &Subject, words:
     for deviation in &subject.known.deviations {
         profile = deviation.grant(profile);
     }
-    profile.scope(|| intervals(member, row, stage, subject, &WGSL, &mut legal));
+    intervals(member, row, stage, subject, &profile, &mut legal);
     for (output, &bits) in words.iter().enumerate() {
         if judge(bits, reference[output], &legal[output]).outcome == Outcome::Fail {
             let hex: Vec<String> = row.iter().map(|x| format!("0x{:08x}", x.to_bits())).collect();
@@ -219,8 +219,8 @@ fn control_row(member: &Member, row: &[f32]) {
     formula.reference(row, &mut reference);
     let mut legal = vec![Accept::ANY; outputs];
     match member.spec.kind {
-        Kind::Raster(kind) => formula.raster_interval(kind, row, WGSL.subpixel_bits, &mut legal),
-        Kind::Arithmetic | Kind::Blend(_) | Kind::Depth(_) => formula.interval(row, &mut legal),
+        Kind::Raster(kind) => formula.raster_interval(kind, row, &WGSL, &mut legal),
+        Kind::Arithmetic | Kind::Blend(_) | Kind::Depth(_) => formula.interval(row, &WGSL, &mut legal),
     }
     for (reference, legal) in reference.iter().zip(&legal).filter(|(_, legal)| !legal.is_any()) {
         control_value(&member.spec.id, *reference, legal);

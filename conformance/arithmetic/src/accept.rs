@@ -16,7 +16,7 @@
 
 use super::format::{F32, Format};
 use super::paths;
-use super::profile::{Excess, GrowingUlp, current};
+use super::profile::{Excess, GrowingUlp, assert_in_force, current};
 use lightmeter_reference::{Components, Real};
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -106,7 +106,8 @@ impl<F: Format> Accept<F> {
     #[inline]
     fn rounded(low: f64, high: f64) -> Self {
         let relative = current(|p| p.relative);
-        if relative > 0.0 {
+        if relative != 0.0 {
+            assert_in_force(relative);
             return Self::seal(low - relative * low.abs(), high + relative * high.abs());
         }
         Self::seal(low, high)
@@ -172,6 +173,7 @@ impl<F: Format> Accept<F> {
     /// stated relative error below [`F64_SLACK`], are given. For a point the ULP is that of the value; within a wide
     /// interval a value just past a power of two has twice the ULP of one just before, so the relative bound stands in.
     fn widen(point: bool, low: f64, high: f64, ulps: f64) -> Self {
+        assert_in_force(ulps);
         let error = |x: f64| {
             let ulp = if point { F::ulp(x) } else { (x.abs() * F::EPSILON).max(F::MIN_SUBNORMAL) };
             ulps * ulp + x.abs() * F64_SLACK
@@ -190,6 +192,7 @@ impl<F: Format> Accept<F> {
             return Self::ANY;
         }
         let mut ulps = bound.slope.mul_add(self.magnitude(), bound.base);
+        assert_in_force(bound.base);
         if let Some(excess) = excess
             && self.high >= excess.from
             && self.low <= excess.to
@@ -266,7 +269,14 @@ fn chain_error<F: Format>(n: usize) -> f64 {
 
 /// How far an addition or a multiplication may be off, relatively: a rounding up or down, or what the profile says.
 fn epsilon<F: Format>() -> f64 {
-    F::EPSILON.max(current(|p| p.relative))
+    F::EPSILON.max(relative())
+}
+
+/// How far `+ − ×` may be off by the profile, relatively.
+fn relative() -> f64 {
+    let relative = current(|p| p.relative);
+    assert_in_force(relative);
+    relative
 }
 
 impl<F: Format> Add for Accept<F> {
@@ -393,6 +403,7 @@ impl<F: Format> Real for Accept<F> {
             return Self::ANY;
         }
         let (absolute, ulps) = current(|p| (p.log2_absolute, p.log2_ulp));
+        assert_in_force(absolute);
         let touches_middle = self.low <= 2.0 && self.high >= 0.5;
         let low = core_math::log2(self.low);
         let high = if self.is_point() { low } else { core_math::log2(self.high) };
@@ -558,7 +569,7 @@ impl<F: Format> Real for Accept<F> {
         if any_zero {
             return Self::exactly(0.0);
         }
-        let mut error = if rounded > 2 { chain_error::<F>(rounded) } else { current(|p| p.relative) };
+        let mut error = if rounded > 2 { chain_error::<F>(rounded) } else { relative() };
         if rounded <= 2 && least >= F::MIN_NORMAL {
             return Self::rounded(range.0, range.1);
         }

@@ -111,27 +111,58 @@ impl Profile {
         Self::by_name(name).ok_or_else(|| format!("no such profile; expected one of {}", names.join(", ")))
     }
 
-    /// Runs `f` with this profile as the one that intervals on this thread are computed by.
+    /// Evaluates `f` by the figures of this profile: the one way in which a profile reaches the operators of `Accept` and `Draw`.
+    ///
+    /// Functions that evaluate take the profile as an argument and call this around the evaluation of a formula. Outside of it
+    /// there is no profile at all, and an operation that asks for one panics.
     pub fn scope<T>(&self, f: impl FnOnce() -> T) -> T {
-        struct Restore(Profile);
+        struct Restore(Profile, usize);
         impl Drop for Restore {
             fn drop(&mut self) {
                 CURRENT.set(self.0);
+                IN_FORCE.set(self.1);
             }
         }
-        let _restore = Restore(CURRENT.replace(*self));
+        // While a scope is open its profile is borrowed, so that what lies at the same address is the same profile.
+        let address = std::ptr::from_ref(self).addr();
+        if IN_FORCE.get() == address {
+            return f();
+        }
+        let _restore = Restore(CURRENT.replace(*self), IN_FORCE.replace(address));
         f()
     }
 }
 
+/// No profile: its figures are no numbers.
+const NONE: Profile = Profile {
+    name: "none",
+    source: "",
+    relative: f64::NAN,
+    divide_ulp: f64::NAN,
+    inverse_sqrt_ulp: f64::NAN,
+    exp_ulp: GrowingUlp { base: f64::NAN, slope: f64::NAN },
+    exp2_ulp: GrowingUlp { base: f64::NAN, slope: f64::NAN },
+    log2_absolute: f64::NAN,
+    log2_ulp: f64::NAN,
+    ..WGSL
+};
+
 thread_local! {
-    static CURRENT: Cell<Profile> = const { Cell::new(WGSL) };
+    static CURRENT: Cell<Profile> = const { Cell::new(NONE) };
+    /// Where the profile in force lies; 0 for none.
+    static IN_FORCE: Cell<usize> = const { Cell::new(0) };
 }
 
 /// One figure of the profile in force on this thread.
 #[inline]
 pub(crate) fn current<T>(figure: impl FnOnce(&Profile) -> T) -> T {
     figure(&CURRENT.get())
+}
+
+/// Panics where a figure is of no profile.
+#[inline]
+pub(crate) fn assert_in_force(figure: f64) {
+    assert!(!figure.is_nan(), "an interval was asked for outside of `Profile::scope`, by no profile");
 }
 
 #[cfg(test)]

@@ -152,7 +152,7 @@ fn values(member: &Member) -> Workload {
         let of = case * outputs..(case + 1) * outputs;
         member.formula.embedded(row, &mut embedded[of.clone()]);
         member.formula.reference(row, &mut references[of.clone()]);
-        member.formula.interval(row, &mut legal[of]);
+        member.formula.interval(row, &WGSL, &mut legal[of]);
     }
     Workload::new("judge/value".into(), "value", embedded.len(), move || {
         for ((value, reference), legal) in embedded.iter().zip(&references).zip(&legal) {
@@ -214,7 +214,7 @@ fn blend_unit(member: &Member, target: TargetFormat, cases: &Rc<[UnitCase]>) -> 
     let name = |what: &str| format!("blend-unit/{}/{what}", target.name());
     let blend = move |case: &UnitCase| embedded::blend(program, target, case, &Rules::RIGHT);
     let pixels: Vec<Units> = cases.iter().map(blend).collect();
-    let drawn = Drawn { program, route: Route::Native, target };
+    let drawn = Drawn { program, route: Route::Native, target, profile: &WGSL };
     let (blended, judged) = (Rc::clone(cases), Rc::clone(cases));
     let verdict = move || {
         let mut tally = Tally::default();

@@ -1,7 +1,7 @@
 //! What the documents claim of cost and quality, held against what was measured.
 
 use super::document::{Claim, Errors, Group, Row, Standing};
-use crate::report::Number;
+use lightmeter_document::Number;
 
 /// A claim: its words, and the rows that it is about.
 struct Claimed {

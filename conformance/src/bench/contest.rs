@@ -102,7 +102,7 @@ impl<'a> Sample<'a> {
 
     fn intervals(&self, formula: Option<&Member>, profile: &Profile) -> Vec<Accept> {
         self.evaluated(formula, Accept::ANY, |member, row, out| {
-            profile.scope(|| member.formula.interval(row, out));
+            member.formula.interval(row, profile, out);
         })
     }
 }
@@ -389,7 +389,7 @@ fn time_rows(
         match (contender.on, &compiled[k], bench.gpu) {
             (On::Device(_), Some(compiled), Some(gpu)) => entries.push(device_entry(gpu, clock, &compiled.pipeline)),
             (On::Processor(arithmetic), ..) if rows[k].unavailable.is_none() => {
-                entries.push(processor_entry(sample, contender.formula, arithmetic));
+                entries.push(processor_entry(sample, contender.formula, arithmetic, &bench.profile));
             }
             _ => continue,
         }
@@ -434,7 +434,12 @@ fn device_entry<'a>(gpu: &'a Gpu, clock: &'a Clock, pipeline: &'a RepeatPipeline
     Entry::new(clock.kind().name(), units, MOST_GROUPS, move |groups| pipeline.time(gpu, clock, groups))
 }
 
-fn processor_entry<'a>(sample: &'a Sample<'_>, formula: Option<&'a Member>, arithmetic: Arithmetic) -> Entry<'a> {
+fn processor_entry<'a>(
+    sample: &'a Sample<'_>,
+    formula: Option<&'a Member>,
+    arithmetic: Arithmetic,
+    profile: &'a Profile,
+) -> Entry<'a> {
     let count = sample.random.min(TIMED_ROWS);
     let outputs = sample.of[0].spec.output_len();
     #[expect(clippy::cast_precision_loss, reason = "a thousand rows")]
@@ -448,7 +453,7 @@ fn processor_entry<'a>(sample: &'a Sample<'_>, formula: Option<&'a Member>, arit
                 match arithmetic {
                     Arithmetic::F32 => formula.embedded(row, black_box(&mut f32s)),
                     Arithmetic::F64 => formula.reference(row, black_box(&mut f64s)),
-                    Arithmetic::Accept => formula.interval(row, black_box(&mut intervals)),
+                    Arithmetic::Accept => formula.interval(row, profile, black_box(&mut intervals)),
                 }
             }
         }

@@ -3,7 +3,7 @@
 use super::document::{Errors, Spread};
 use crate::arithmetic::F32;
 use crate::arithmetic::format::Format as _;
-use crate::report::Number;
+use lightmeter_document::Number;
 
 /// Gathers errors.
 #[derive(Clone, Debug, Default)]

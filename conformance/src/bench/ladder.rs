@@ -2,7 +2,7 @@
 
 use super::document::{Errors, Family, FamilyRung, Group, Row};
 use super::pareto::{self, Point, is_processor};
-use crate::report::Number;
+use lightmeter_document::Number;
 
 /// A rung over many groups.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use super::figures::{digits, error, time};
 use super::pareto::refusal;
 use super::text::wrapped;
 use crate::filter::Filter;
-use crate::report::Number;
+use lightmeter_document::Number;
 use serde::Serialize;
 use std::fmt::{Display, Formatter, Result as Written, Write};
 use std::str::FromStr;

@@ -3,7 +3,7 @@
 use super::document::*;
 use super::ladder::family;
 use super::pareto::front_of;
-use crate::report::Number;
+use lightmeter_document::Number;
 
 /// SplitMix64.
 pub(crate) struct Draw(u64);

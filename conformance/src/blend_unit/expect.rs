@@ -12,7 +12,7 @@ use super::pixel::{self, Units};
 use super::policy::promises_nothing;
 use super::rules::{Clamp, Rules};
 use crate::arithmetic::fixed::{Narrow, Unit, Wide};
-use crate::arithmetic::{Accept, F16, F32, Fixed, Format, Hardware};
+use crate::arithmetic::{Accept, F16, F32, Fixed, Format, Hardware, Profile};
 use crate::cases::blend::{Program, UnitCase};
 use lightmeter_reference::blend::{Operands, masked};
 use lightmeter_reference::{Real, Rgba, Vector};
@@ -38,15 +38,15 @@ const DECODING: f64 = 0.5;
 /// How far a binary32 unit may err in encoding, in steps: a power of relative error 2⁻²⁰ or so.
 const ENCODING: f64 = 1.0 / 1024.0;
 
-/// What a case should give on a target, by rules that may be faulty.
+/// What a case should give on a target, by rules that may be faulty, and what a profile makes legal there.
 #[must_use]
-pub fn expect(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules) -> Expected {
+pub fn expect(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules, profile: &Profile) -> Expected {
     let (case, target) = (&rules.case(case), rules.target(target));
     let start = pixel::stored(target, case.dst);
     let reference = reference(program, target, case, rules, start);
     let (low, high) = match target.encoding() {
-        Encoding::Float32 => legal_on_floats::<F32>(program, case, rules, start),
-        Encoding::Float16 => legal_on_floats::<F16>(program, case, rules, start),
+        Encoding::Float32 => profile.scope(|| legal_on_floats::<F32>(program, case, rules, start)),
+        Encoding::Float16 => profile.scope(|| legal_on_floats::<F16>(program, case, rules, start)),
         Encoding::Unorm8 | Encoding::Srgb8 => legal_in_steps(program, target, case, rules, start),
     };
     let mut expected = Expected { reference, low, high };
@@ -76,7 +76,8 @@ fn reference(program: Program, target: TargetFormat, case: &UnitCase, rules: &Ru
 
 /// What a pixel of the target may hold after a draw, in the target's units: from the source's and from what was there.
 ///
-/// `None` for no blending: the source is stored, which is a conversion alone.
+/// `None` for no blending: the source is stored, which is a conversion alone. Floats are blended by the profile in force: call
+/// this inside [`Profile::scope`].
 #[must_use]
 pub fn over(
     target: TargetFormat,

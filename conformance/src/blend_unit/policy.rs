@@ -60,7 +60,7 @@ pub fn promises_nothing(case: &UnitCase, component: usize) -> bool {
 /// What a pixel's colour holds, in a word where its components are alike: `NaN`, `Inf`, `-Inf` or a number.
 #[must_use]
 pub fn observed([r, g, b, _]: Units) -> String {
-    let words = [r, g, b].map(|c| crate::report::Number(c).to_string());
+    let words = [r, g, b].map(|c| lightmeter_document::Number(c).to_string());
     let [first, rest @ ..] = &words;
     if rest.iter().all(|word| word == first) { first.clone() } else { words.join(" ") }
 }

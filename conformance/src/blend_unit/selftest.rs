@@ -6,9 +6,9 @@ use super::run::run_group;
 use crate::cases::Kind;
 use crate::cases::blend::{Program, Samples, every_state};
 use crate::options::{Options, Silent};
-use crate::report::{Group, Report};
 use crate::select::{Member, Random, Selected, catalogue_of};
 use crate::subject::Subject;
+use lightmeter_document::run::{Group, Report};
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::{Separate, State};
 use lightmeter_scene::target::TargetFormat;
@@ -113,7 +113,7 @@ fn options(target: TargetFormat, cases: u64) -> Result<Options, Error> {
 }
 
 fn empty_report(target: TargetFormat) -> Result<Report, Error> {
-    Ok(Report::empty(&[], &options(target, 0)?))
+    Ok(options(target, 0)?.report(&[]))
 }
 
 /// The states that share a state's equation and source factor.
@@ -129,7 +129,7 @@ fn beside(state: State) -> Vec<Member> {
 fn judge(groups: &[Vec<Member>], target: TargetFormat, rules: Rules, cases: u64) -> Result<Report, Error> {
     let options = options(target, cases)?;
     let mut subjects = [Subject::faulty(rules)];
-    let mut report = Report::empty(&subjects, &options);
+    let mut report = options.report(&subjects);
     for group in groups {
         let members: Vec<&Member> = group.iter().collect();
         // As many values as a run has where a group has few states.

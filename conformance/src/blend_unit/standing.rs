@@ -11,10 +11,11 @@ use super::tally::{Drawn, Outcome, Sample, Tally, explain};
 use crate::cases::Stage;
 use crate::judge::{is_worse, worse};
 use crate::options::Options;
-use crate::report::{BlendState, Failure, Group, Number, Report, SpecialUse, StoreUse, Tiers, Totals};
 use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
 use crate::tally::{KEPT_FAILURES, by_name, keep_simplest, reported};
+use lightmeter_document::Number;
+use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Totals};
 use lightmeter_gpu::Error;
 use lightmeter_scene::target::{Encoding, TargetFormat};
 use rayon::prelude::*;
@@ -101,7 +102,7 @@ impl Standing {
             .par_iter()
             .zip(&drawn.pieces)
             .map(|(piece, pixels)| {
-                let drawn = Drawn { program: piece.program, route: piece.route, target };
+                let drawn = Drawn { program: piece.program, route: piece.route, target, profile: options.profile };
                 let mut tally = Tally::default();
                 for (place, pixel) in pixels.iter().enumerate() {
                     tally.pixel(drawn, known, place, &piece.case(place), *pixel);
@@ -141,13 +142,13 @@ impl Standing {
         self.rows.push(BlendState {
             id: id.clone(),
             adapter: subject.identity.name.clone(),
-            target: self.target.name(),
-            route,
+            target: self.target.name().into(),
+            route: route.into(),
             cases: 0,
             failed: 0,
             error_max: Number(0.0),
             tiers: None,
-            skip_reason,
+            skip_reason: skip_reason.map(Into::into),
         });
         self.stores.push(<[StoreCounts; 4]>::default());
         self.rows.len() - 1
@@ -182,15 +183,15 @@ impl Standing {
                 let id = member.case_id(*case);
                 let name = id.rsplit('/').next().unwrap_or_default();
                 SpecialUse {
-                    recorded: on_record(name),
+                    recorded: on_record(name).map(Into::into),
                     id,
                     adapter: subject.identity.name.clone(),
-                    target: self.target.name(),
+                    target: self.target.name().into(),
                     seen: policy::observed(*pixel),
                 }
             }));
         }
-        let drawn = Drawn { program: piece.program, route: piece.route, target: self.target };
+        let drawn = Drawn { program: piece.program, route: piece.route, target: self.target, profile: options.profile };
         let told =
             |place: usize| failure(member, &id(place), piece, place, pixels[place], drawn.target, subject, options);
         if let Some((simple, place)) = tally.simplest {
@@ -220,7 +221,7 @@ impl Standing {
         let is_unorm = self.target.is_unorm() && tally.cases > 0;
         let stage = Stage::FixedFunction.name();
         report.groups.push(Group {
-            target: Some(self.target.name()),
+            target: Some(self.target.name().into()),
             tiers: is_unorm.then_some(tally.tiers),
             store: self.store(subject).filter(|_| is_unorm),
             totals: Totals {
@@ -239,7 +240,7 @@ impl Standing {
             seconds: self.seconds,
             seconds_warm: self.seconds_warm,
             worst: self.worst.map(|(_, id)| id),
-            skip_reason: self.lacks,
+            skip_reason: self.lacks.map(Into::into),
             explanation,
             problem,
             ..Group::new(member.spec.group().into(), subject.identity.name.clone(), stage)
@@ -258,10 +259,10 @@ impl Standing {
             && tally.model.0 > 0
             && tally.model.1 == 0
         {
-            return Some(StoreUse { identified: model.name(), share: 1.0, of: tally.model.0, bias: all.bias() });
+            return Some(StoreUse { identified: model.name().into(), share: 1.0, of: tally.model.0, bias: all.bias() });
         }
         let (store, share) = all.likeliest();
-        (all.of >= ENOUGH).then(|| StoreUse { identified: store.name(), share, of: all.of, bias: all.bias() })
+        (all.of >= ENOUGH).then(|| StoreUse { identified: store.name().into(), share, of: all.of, bias: all.bias() })
     }
 
     /// What is wrong with how values are stored: of a component in all states, or of one in some.
@@ -294,7 +295,7 @@ impl Standing {
         if subject.known.special_record.is_some_and(|(_, this_version)| this_version)
             && let Some(other) = self.special.iter().find(|special| !special.is_as_recorded())
         {
-            let recorded = other.recorded.unwrap_or_default();
+            let recorded = other.recorded.as_deref().unwrap_or_default();
             return Some(format!("{} gives {}, where {recorded} is on record for this driver", other.id, other.seen));
         }
         let (of, others) = tally.model;
@@ -327,7 +328,7 @@ fn failure(
     subject: &Subject,
     options: &Options,
 ) -> Failure {
-    let expected = super::expect::expect(piece.program, target, &piece.case(place), &Rules::RIGHT);
+    let expected = super::expect::expect(piece.program, target, &piece.case(place), &Rules::RIGHT, options.profile);
     let verdict = |k: usize| expected.judge(target, k, pixel[k]);
     let k = (0..4).find(|&k| verdict(k).outcome == Outcome::Fail).unwrap_or_default();
     let inputs = &piece.inputs[place * piece.stride..(place + 1) * piece.stride];
@@ -343,9 +344,9 @@ fn failure(
         ),
         id: id.into(),
         adapter: subject.identity.name.clone(),
-        stage: Stage::FixedFunction.name(),
-        target: Some(target.name()),
-        route: Some(piece.route.name()),
+        stage: Stage::FixedFunction.name().into(),
+        target: Some(target.name().into()),
+        route: Some(piece.route.name().into()),
         output: format!("color.{}", ["r", "g", "b", "a"][k]),
         inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
@@ -356,19 +357,5 @@ fn failure(
         value_hex: format!("pixel bytes {hex}"),
         unwritten: false,
         error_ulp: Number(verdict(k).error),
-    }
-}
-
-impl BlendState {
-    /// Whether it was drawn.
-    #[must_use]
-    pub const fn is_drawn(&self) -> bool {
-        self.skip_reason.is_none()
-    }
-
-    /// Its tiers, none where it was not drawn on a target of 8 bits.
-    #[must_use]
-    pub fn tiers(&self) -> Tiers {
-        self.tiers.unwrap_or_default()
     }
 }

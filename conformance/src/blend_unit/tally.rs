@@ -5,16 +5,16 @@ use super::expect::{Expected, expect};
 use super::pixel::Units;
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::store::{NEAR, StoreCounts};
-use crate::arithmetic::{F16, F32, Format as _};
+use crate::arithmetic::{F16, F32, Format as _, Profile};
 use crate::cases::blend::{Program, UnitCase};
 use crate::devices::{BlendDeviation, Known};
 use crate::judge::{is_worse, margin, simplicity, worse};
-use crate::report::Tiers;
+use lightmeter_document::run::Tiers;
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::blend::Separate;
 use lightmeter_scene::target::{Encoding, TargetFormat};
 
-/// A state by one of its routes on a target.
+/// A state by one of its routes on a target, and the profile that its pixels are judged by.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn {
     /// What is drawn.
@@ -23,6 +23,8 @@ pub struct Drawn {
     pub route: Route,
     /// On what.
     pub target: TargetFormat,
+    /// By which accuracy rules.
+    pub profile: &'static Profile,
 }
 
 /// What became of one component.
@@ -135,8 +137,8 @@ const KEPT: usize = 16;
 impl Tally {
     /// Judges a pixel, the `place`-th.
     pub fn pixel(&mut self, drawn: Drawn, known: &Known, place: usize, case: &UnitCase, pixel: Units) {
-        let Drawn { program, route, target } = drawn;
-        let expected = expect(program, target, case, &Rules::RIGHT);
+        let Drawn { program, route, target, profile } = drawn;
+        let expected = expect(program, target, case, &Rules::RIGHT, profile);
         self.cases += 1;
         let (state, mask) = program.layer(0);
         let tells = tells_stores(state, case);
@@ -242,12 +244,12 @@ pub struct Sample {
 impl Sample {
     /// Whether a fault would have left what was left: a value that its rules allow, or the very step that a store gives.
     fn is_as_by(&self, fault: &Fault) -> bool {
-        let Drawn { program, target, .. } = self.drawn;
+        let Drawn { program, target, profile, .. } = self.drawn;
         if fault.rules.store != Store::Nearest {
             let stored = embedded::blend(program, target, &self.case, &fault.rules);
             return (0..4).all(|k| stored[k].to_bits() == self.pixel[k].to_bits());
         }
-        let expected = expect(program, target, &self.case, &fault.rules);
+        let expected = expect(program, target, &self.case, &fault.rules, profile);
         (0..4).all(|k| expected.judge(target, k, self.pixel[k]).outcome == Outcome::Pass)
     }
 }
@@ -283,7 +285,8 @@ mod tests {
     }
 
     fn tally(target: TargetFormat, case: &UnitCase, pixels: &[Units]) -> Tally {
-        let drawn = Drawn { program: one_plus_one(), route: Route::Native, target };
+        let drawn =
+            Drawn { program: one_plus_one(), route: Route::Native, target, profile: &crate::arithmetic::profile::WGSL };
         let mut tally = Tally::default();
         for (place, pixel) in pixels.iter().enumerate() {
             tally.pixel(drawn, &Known::default(), place, case, *pixel);
@@ -320,7 +323,7 @@ mod tests {
         for (src, dst) in [(f32::NAN, 0.5), (0.5, f32::NEG_INFINITY)] {
             let target = TargetFormat::Rgba32Float;
             let program = Program::Special(State { equation: Equation::Add, src: Factor::One, dst: Factor::One });
-            let drawn = Drawn { program, route: Route::Native, target };
+            let drawn = Drawn { program, route: Route::Native, target, profile: &crate::arithmetic::profile::WGSL };
             let mut tally = Tally::default();
             tally.pixel(drawn, &Known::default(), 0, &case(src, dst), [f64::NAN; 4]);
             assert_eq!((tally.passed, tally.failed, tally.indeterminate), (0, 0, 4));

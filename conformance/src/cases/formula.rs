@@ -34,8 +34,11 @@ pub trait AnyFormula: Send + Sync {
     /// The embedded implementation in f32.
     fn embedded(&self, inputs: &[f32], out: &mut [f32]);
 
-    /// The values that are legal in the programmable stages.
-    fn interval(&self, inputs: &[f32], out: &mut [Accept]);
+    /// The values that a profile makes legal in the programmable stages.
+    fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
+
+    /// The same for many rows of inputs, `stride` numbers each.
+    fn intervals(&self, rows: &[f32], stride: usize, profile: &Profile, out: &mut [Accept]);
 
     /// The outputs for a row of inputs of f64.
     fn on_f64(&self, inputs: &[f64], out: &mut [f64]);
@@ -43,25 +46,25 @@ pub trait AnyFormula: Send + Sync {
     /// The same of f32.
     fn on_f32(&self, inputs: &[f32], out: &mut [f32]);
 
-    /// The same of intervals.
+    /// The same of intervals, inside [`Profile::scope`].
     fn on_accept(&self, inputs: &[Accept], out: &mut [Accept]);
 
-    /// The same of legal evaluations drawn at random.
+    /// The same of legal evaluations drawn at random, inside [`Profile::scope`].
     fn on_draw(&self, inputs: &[Draw], out: &mut [Draw]);
 
-    /// The values that are legal as they leave a rasteriser that snaps positions to so many bits after the point.
-    fn raster_interval(&self, kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]);
+    /// The values that a profile makes legal as they leave a rasteriser, which snaps positions to the profile's subpixel bits.
+    fn raster_interval(&self, kind: Raster, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
 
-    /// The values that are legal where only the profile's promise is known: of a raster formula those of a rasteriser.
+    /// The values that a profile makes legal where nothing else is known: of a raster formula those of a rasteriser.
     fn promised_interval(&self, kind: Kind, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
         match kind {
-            Kind::Raster(raster) => self.raster_interval(raster, inputs, profile.subpixel_bits, out),
-            Kind::Arithmetic | Kind::Blend(_) | Kind::Depth(_) => self.interval(inputs, out),
+            Kind::Raster(raster) => self.raster_interval(raster, inputs, profile, out),
+            Kind::Arithmetic | Kind::Blend(_) | Kind::Depth(_) => self.interval(inputs, profile, out),
         }
     }
 
     /// The reference and the interval of each output, with the steps that lead to them.
-    fn trace(&self, inputs: &[f32], out: &mut [Trace]);
+    fn trace(&self, inputs: &[f32], profile: &Profile, out: &mut [Trace]);
 
     /// The outputs with their derivatives with respect to each input in turn.
     fn derivatives(&self, inputs: &[f32]) -> Vec<Vec<Dual>>;
@@ -79,11 +82,11 @@ pub trait AnyFormula: Send + Sync {
     /// The same of the embedded implementation.
     fn embedded_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f32]);
 
-    /// The values of that output that are legal in the programmable stages.
-    fn interval_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [Accept]);
+    /// The values of that output that a profile makes legal in the programmable stages.
+    fn interval_along(&self, along: &Along<'_>, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
 
     /// What is legal of that output somewhere while the free number goes from `first` to `last`.
-    fn interval_between(&self, along: &Along<'_>, first: f32, last: f32) -> Accept;
+    fn interval_between(&self, along: &Along<'_>, first: f32, last: f32, profile: &Profile) -> Accept;
 }
 
 /// Room for the inputs of any formula, so that a row is widened without an allocation.
@@ -127,8 +130,17 @@ impl<F: Formula> AnyFormula for F {
         self.on_f32(inputs, out);
     }
 
-    fn interval(&self, inputs: &[f32], out: &mut [Accept]) {
-        run(inputs, |row| self.on_accept(row, out));
+    fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+        profile.scope(|| run(inputs, |row| self.on_accept(row, out)));
+    }
+
+    fn intervals(&self, rows: &[f32], stride: usize, profile: &Profile, out: &mut [Accept]) {
+        let outputs = out.len() / (rows.len() / stride);
+        profile.scope(|| {
+            for (inputs, out) in rows.chunks_exact(stride).zip(out.chunks_exact_mut(outputs)) {
+                run(inputs, |row| self.on_accept(row, out));
+            }
+        });
     }
 
     #[inline(never)]
@@ -151,15 +163,15 @@ impl<F: Formula> AnyFormula for F {
         self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
     }
 
-    fn raster_interval(&self, kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]) {
+    fn raster_interval(&self, kind: Raster, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
         match kind {
-            Raster::Flat { .. } | Raster::SameDepth(_) => self.interval(inputs, out),
-            _ => raster::interval(kind, inputs, subpixel_bits, out),
+            Raster::Flat { .. } | Raster::SameDepth(_) => self.interval(inputs, profile, out),
+            _ => profile.scope(|| raster::interval(kind, inputs, profile.subpixel_bits, out)),
         }
     }
 
-    fn trace(&self, inputs: &[f32], out: &mut [Trace]) {
-        run(inputs, |row| self.evaluate(&mut Reader::new(row), &mut Writer::new(out)));
+    fn trace(&self, inputs: &[f32], profile: &Profile, out: &mut [Trace]) {
+        profile.scope(|| run(inputs, |row| self.evaluate(&mut Reader::new(row), &mut Writer::new(out))));
     }
 
     fn derivatives(&self, inputs: &[f32]) -> Vec<Vec<Dual>> {
@@ -185,13 +197,14 @@ impl<F: Formula> AnyFormula for F {
         run_along(self, along, inputs.iter().copied(), out);
     }
 
-    fn interval_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [Accept]) {
-        run_along(self, along, inputs.iter().map(|&x| Accept::input(x)), out);
+    fn interval_along(&self, along: &Along<'_>, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+        profile.scope(|| run_along(self, along, inputs.iter().map(|&x| Accept::input(x)), out));
     }
 
-    fn interval_between(&self, along: &Along<'_>, first: f32, last: f32) -> Accept {
+    fn interval_between(&self, along: &Along<'_>, first: f32, last: f32, profile: &Profile) -> Accept {
         let mut out = [Accept::ANY];
-        run_along(self, along, std::iter::once(Accept::from_bounds(first.into(), last.into())), &mut out);
+        let range = std::iter::once(Accept::from_bounds(first.into(), last.into()));
+        profile.scope(|| run_along(self, along, range, &mut out));
         out[0]
     }
 }

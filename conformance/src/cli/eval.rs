@@ -7,7 +7,7 @@ use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile};
 use lightmeter::cases::Input;
 use lightmeter::cases::blend::{aliases, separate_of};
-use lightmeter::report::Number;
+use lightmeter::document::Number;
 use lightmeter::select::{Member, catalogue, separate_member};
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
@@ -76,7 +76,7 @@ impl Eval {
         let (mut value, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
         member.formula.reference(&inputs, &mut value);
         let kind = member.spec.kind;
-        self.profile.scope(|| member.formula.promised_interval(kind, &inputs, self.profile, &mut legal));
+        member.formula.promised_interval(kind, &inputs, self.profile, &mut legal);
         let condition = member
             .formula
             .condition(&inputs)

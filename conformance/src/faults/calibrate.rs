@@ -88,13 +88,11 @@ impl<'a> Scale<'a> {
         let outputs = spec.output_len();
         let mut reference = vec![0.0; inputs.len() * outputs];
         let mut legal = vec![Accept::ANY; inputs.len() * outputs];
-        profile.scope(|| {
-            let rows = reference.chunks_exact_mut(outputs).zip(legal.chunks_exact_mut(outputs));
-            for (inputs, (reference, legal)) in inputs.iter().zip(rows) {
-                member.formula.reference(inputs, reference);
-                member.formula.promised_interval(spec.kind, inputs, profile, legal);
-            }
-        });
+        let rows = reference.chunks_exact_mut(outputs).zip(legal.chunks_exact_mut(outputs));
+        for (inputs, (reference, legal)) in inputs.iter().zip(rows) {
+            member.formula.reference(inputs, reference);
+            member.formula.promised_interval(spec.kind, inputs, profile, legal);
+        }
         let mut right = vec![0.0; inputs.len() * outputs];
         for (inputs, out) in inputs.iter().zip(right.chunks_exact_mut(outputs)) {
             member.formula.embedded(inputs, out);

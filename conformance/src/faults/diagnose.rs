@@ -377,7 +377,7 @@ mod tests {
             implementation(member, &row, &mut out);
             let (mut reference, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
             member.formula.reference(&row, &mut reference);
-            member.formula.interval(&row, &mut legal);
+            member.formula.interval(&row, &WGSL, &mut legal);
             let fails = |k: usize| judge(out[k].to_bits(), reference[k], &legal[k]).outcome == Outcome::Fail;
             wrong.push((0..outputs).any(fails));
             inputs.push(row);
@@ -469,7 +469,7 @@ mod tests {
             let is_wrong = |row: &[f32], values: &[f32]| {
                 let (mut reference, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
                 member.formula.reference(row, &mut reference);
-                member.formula.interval(row, &mut legal);
+                member.formula.interval(row, &WGSL, &mut legal);
                 (0..outputs).any(|k| judge(values[k].to_bits(), reference[k], &legal[k]).outcome == Outcome::Fail)
             };
             let rows = inputs.iter().zip(&values);

@@ -171,7 +171,7 @@ struct Row {
 impl Row {
     fn new(member: &Member, row: &Answered<'_>, profile: &Profile) -> Option<Self> {
         let mut legal = vec![Accept::ANY; member.spec.output_len()];
-        profile.scope(|| member.formula.interval(row.inputs, &mut legal));
+        member.formula.interval(row.inputs, profile, &mut legal);
         let tolerance = legal.iter().zip(row.values).map(|(legal, &value)| {
             let half = if legal.is_any() { f64::INFINITY } else { legal.width() * 0.5 };
             half.max(F32::ulp(f64::from(value).abs().max(1e-6)))

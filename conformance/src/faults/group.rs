@@ -148,7 +148,7 @@ impl Design {
         let mut reference = vec![0.0; outputs];
         for row in rows {
             member.formula.reference(row, &mut reference);
-            profile.scope(|| member.formula.promised_interval(spec.kind, row, profile, &mut legal));
+            member.formula.promised_interval(spec.kind, row, profile, &mut legal);
             let slopes = member.formula.derivatives(row);
             let start = design.reference.len();
             for (&reference, legal) in reference.iter().zip(&legal) {
@@ -395,7 +395,7 @@ mod tests {
             let answer = |row: &Vec<f32>| {
                 let inputs: Vec<Draw> = row.iter().map(|&x| Draw::input(x)).collect();
                 let mut out = vec![Draw::of(0.0); member.spec.output_len()];
-                member.formula.on_draw(&inputs, &mut out);
+                WGSL.scope(|| member.formula.on_draw(&inputs, &mut out));
                 #[expect(clippy::cast_possible_truncation, reason = "a draw is an f32")]
                 out.iter().map(|x| x.value as f32).collect::<Vec<f32>>()
             };

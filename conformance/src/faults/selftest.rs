@@ -167,13 +167,11 @@ impl<'a> Bench<'a> {
         let outputs = spec.output_len();
         let mut reference = vec![0.0; cases.len() * outputs];
         let mut legal = vec![Accept::ANY; cases.len() * outputs];
-        options.profile.scope(|| {
-            let rows = reference.chunks_exact_mut(outputs).zip(legal.chunks_exact_mut(outputs));
-            for (inputs, (reference, legal)) in inputs.iter().zip(rows) {
-                member.formula.reference(inputs, reference);
-                member.formula.promised_interval(spec.kind, inputs, options.profile, legal);
-            }
-        });
+        let rows = reference.chunks_exact_mut(outputs).zip(legal.chunks_exact_mut(outputs));
+        for (inputs, (reference, legal)) in inputs.iter().zip(rows) {
+            member.formula.reference(inputs, reference);
+            member.formula.promised_interval(spec.kind, inputs, options.profile, legal);
+        }
         Self { member, options, cases, inputs, reference, legal }
     }
 

@@ -8,7 +8,7 @@ use super::tally::Tally;
 use super::verdict::{self, Failure, Verdicts};
 use super::{picture, process};
 use crate::arithmetic::Profile;
-use crate::report::Number;
+use lightmeter_document::Number;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
@@ -211,8 +211,7 @@ impl<'a> Ledger<'a> {
 
     /// Judges lines that were read already.
     pub(super) fn read(&mut self, lines: Vec<(u64, Line<'_>)>, folder: &Path) {
-        let judged: Vec<Judged> =
-            self.profile.scope(|| lines.into_iter().map(|(number, line)| self.judge_line(number, line)).collect());
+        let judged: Vec<Judged> = lines.into_iter().map(|(number, line)| self.judge_line(number, line)).collect();
         for judged in judged {
             self.count(judged, folder);
         }
@@ -223,9 +222,7 @@ impl<'a> Ledger<'a> {
     pub fn lines(&mut self, lines: &[(u64, Vec<u8>)], folder: &Path) {
         let judged: Vec<Judged> = lines
             .par_chunks(256)
-            .flat_map_iter(|lines| {
-                self.profile.scope(|| lines.iter().map(|(number, line)| self.judge(*number, line)).collect::<Vec<_>>())
-            })
+            .flat_map_iter(|lines| lines.iter().map(|(number, line)| self.judge(*number, line)).collect::<Vec<_>>())
             .collect();
         for judged in judged {
             self.count(judged, folder);

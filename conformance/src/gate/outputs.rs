@@ -2,7 +2,7 @@
 
 use super::report::{Group, Report, cases};
 use super::verdict::Failure;
-use crate::report::Number;
+use lightmeter_document::Number;
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::fmt::{Result, Write};
 

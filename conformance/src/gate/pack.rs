@@ -5,7 +5,7 @@ use super::picture::within;
 use super::plan::{Choice, Plan};
 use crate::cases::{GENERATOR_VERSION, Shape};
 use crate::image::file::{Stored, whole};
-use crate::report::Number;
+use lightmeter_document::Number;
 use lightmeter_scene::frame::{Frame, Mesh, Texture};
 use lightmeter_scene::target::TargetFormat;
 use serde::{Deserialize, Serialize};

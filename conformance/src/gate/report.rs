@@ -8,7 +8,7 @@ use super::process::Outcome;
 use super::tally::{Sample, Tally};
 use super::verdict::Failure;
 use crate::faults::{Answered, diagnose, group_verdict};
-use crate::report::Number;
+use lightmeter_document::Number;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

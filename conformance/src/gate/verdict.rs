@@ -3,7 +3,7 @@
 use super::plan::{Place, Plan};
 use crate::arithmetic::{Accept, Profile};
 use crate::judge::{Outcome, Verdict, judge, worse};
-use crate::report::Number;
+use lightmeter_document::Number;
 use serde::Serialize;
 
 /// The verdicts of a case together.

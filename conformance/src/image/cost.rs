@@ -1,7 +1,7 @@
 //! What effects cost that a scene does not call for: composed shaders against the one with all effects.
 
-use crate::report::EffectsCost;
 use crate::subject::Subject;
+use lightmeter_document::run::EffectsCost;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, Error, Shaders};

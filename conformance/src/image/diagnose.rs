@@ -45,9 +45,9 @@ pub fn departure(
     let pixels = &pixels[..pixels.len().min(LOOKED_AT)];
     for stage in Stage::ALL {
         let image = intermediate(subject, shaders, frame, sets, stage)?;
-        let expectation = profile.scope(|| Expectation::new(frame, None, Some(stage), profile));
+        let expectation = Expectation::new(frame, None, Some(stage), profile);
         let departs = |&&pixel: &&usize| {
-            let legal = expectation.pixel(pixel % image.width, pixel / image.width, profile);
+            let legal = expectation.pixel(pixel % image.width, pixel / image.width);
             let of_pixel = image.pixels[pixel];
             (0..4).any(|k| !(legal.low[k] <= of_pixel[k] && of_pixel[k] <= legal.high[k]) && legal.low[k].is_finite())
         };

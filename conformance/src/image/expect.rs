@@ -34,6 +34,7 @@ pub struct Expected {
 pub struct Expectation<'a> {
     frame: &'a Frame,
     stage: Option<Stage>,
+    profile: Profile,
     draws: Vec<Prepared<'a>>,
     bins: Vec<Vec<(u32, u32)>>,
     columns: usize,
@@ -51,10 +52,14 @@ pub(super) struct Prepared<'a> {
 }
 
 impl<'a> Expectation<'a> {
-    /// Prepares a frame, by the accuracy rules in force on this thread: everything that it names, or what is called for
+    /// Prepares a frame to be judged by a profile: everything that it names, or what is called for
     /// only; its colours, or an intermediate result.
     #[must_use]
     pub fn new(frame: &'a Frame, only: Option<&'a [Called]>, stage: Option<Stage>, profile: &Profile) -> Self {
+        profile.scope(|| Self::prepared(frame, only, stage, profile))
+    }
+
+    fn prepared(frame: &'a Frame, only: Option<&'a [Called]>, stage: Option<Stage>, profile: &Profile) -> Self {
         let steps = f64::from(2.0_f32).powi(-i32::try_from(profile.subpixel_bits).unwrap_or(0));
         let mut draws: Vec<Prepared<'a>> = vec![];
         for number in 0..frame.draws.len() {
@@ -67,7 +72,7 @@ impl<'a> Expectation<'a> {
             draws.push(prepared);
         }
         let (columns, bins) = bins(&draws, [frame.target.width, frame.target.height]);
-        Self { frame, stage, draws, bins, columns }
+        Self { frame, stage, profile: *profile, draws, bins, columns }
     }
 
     /// The format of the image.
@@ -76,12 +81,12 @@ impl<'a> Expectation<'a> {
         if self.stage.is_some() { TargetFormat::Rgba32Float } else { self.frame.target.format }
     }
 
-    /// Every pixel, row after row, by the same rules.
+    /// Every pixel, row after row.
     #[must_use]
-    pub fn pixels(&self, profile: &Profile) -> Vec<Expected> {
+    pub fn pixels(&self) -> Vec<Expected> {
         let (width, height) = (self.frame.target.width as usize, self.frame.target.height as usize);
         let tiles: Vec<Vec<Expected>> =
-            (0..self.bins.len()).into_par_iter().map(|tile| profile.scope(|| self.tile(tile))).collect();
+            (0..self.bins.len()).into_par_iter().map(|tile| self.profile.scope(|| self.tile(tile))).collect();
         let blank = Expected { low: [0.0; 4], high: [0.0; 4], is_marked: false };
         let mut pixels = vec![blank; width * height];
         for (number, tile) in tiles.iter().enumerate() {
@@ -97,8 +102,8 @@ impl<'a> Expectation<'a> {
 
     /// One pixel.
     #[must_use]
-    pub fn pixel(&self, x: usize, y: usize, profile: &Profile) -> Expected {
-        profile.scope(|| {
+    pub fn pixel(&self, x: usize, y: usize) -> Expected {
+        self.profile.scope(|| {
             let bin = &self.bins[y / TILE * self.columns + x / TILE];
             let mut candidates = vec![];
             for &of in bin {
@@ -151,10 +156,10 @@ impl<'a> Expectation<'a> {
     }
 }
 
-/// The legal values of every pixel of a frame, by accuracy rules.
+/// The legal values of every pixel of a frame, by a profile.
 #[must_use]
 pub fn expect(frame: &Frame, only: Option<&[Called]>, stage: Option<Stage>, profile: &Profile) -> Vec<Expected> {
-    profile.scope(|| Expectation::new(frame, only, stage, profile)).pixels(profile)
+    Expectation::new(frame, only, stage, profile).pixels()
 }
 
 fn middle(pixel: usize) -> f64 {

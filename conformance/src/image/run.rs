@@ -12,11 +12,12 @@ use crate::arithmetic::Profile;
 use crate::devices::Deviation;
 use crate::judge::is_worse;
 use crate::options::{Options, Progress};
-use crate::report::{Failure, Group, ImageUse, Number, Report, Totals};
 use crate::run::problem;
 use crate::scene::Loaded;
 use crate::subject::Subject;
 use crate::tally::KEPT_FAILURES;
+use lightmeter_document::Number;
+use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Error, Pending};
@@ -164,11 +165,11 @@ pub(crate) fn excuse(
     profile: &Profile,
 ) -> u64 {
     let granted = deviation.grant(*profile);
-    let expectation = granted.scope(|| Expectation::new(frame, None, None, &granted));
+    let expectation = Expectation::new(frame, None, None, &granted);
     let before = judged.misses.len();
     judged.misses.retain(|miss| {
         let (x, y) = (miss.pixel % image.width, miss.pixel / image.width);
-        let legal = expectation.pixel(x, y, &granted);
+        let legal = expectation.pixel(x, y);
         let value = image.pixels[miss.pixel][miss.component];
         !(legal.low[miss.component] <= value && value <= legal.high[miss.component])
     });
@@ -178,8 +179,7 @@ pub(crate) fn excuse(
 /// The accuracy rules for a subject: the profile's, with the subpixel bits that its rasteriser is known to have.
 #[must_use]
 pub fn profile_of(subject: &Subject, profile: &Profile) -> Profile {
-    // The embedded implementation snaps nothing, but is held to no less than the promise.
-    Profile { subpixel_bits: subject.known.subpixel_bits.unwrap_or(profile.subpixel_bits), ..*profile }
+    subject.known.profile(profile)
 }
 
 impl<'a> Scene<'a> {
@@ -205,14 +205,14 @@ impl<'a> Scene<'a> {
     fn skipped(&self, subject: &Subject, shader: Shader, reason: &'static str) -> Group {
         let cases = self.pixels.len() as u64;
         Group {
-            skip_reason: Some(reason),
+            skip_reason: Some(reason.into()),
             ..self.group(subject, shader, Totals { cases, skipped: cases, ..Totals::default() })
         }
     }
 
     fn group(&self, subject: &Subject, shader: Shader, totals: Totals) -> Group {
         Group {
-            target: Some(self.frame.target.format.name()),
+            target: Some(self.frame.target.format.name().into()),
             totals,
             ..Group::new(self.id.clone(), subject.identity.name.clone(), stage(shader))
         }
@@ -257,7 +257,7 @@ impl<'a> Scene<'a> {
             judged.misses.iter().copied().reduce(|a, b| if is_worse(b.margin, a.margin) { b } else { a })
         {
             let departure = self.departure(subject, options, &profile, &judged)?;
-            used.departs_in = Some(departure.stage);
+            used.departs_in = Some(departure.stage.into());
             used.files = self.write(image, expected, subject, shader, options);
             let pixels = judged.pixels().len();
             let command = self.rerun("show", subject, options, worst.pixel);
@@ -365,8 +365,8 @@ impl<'a> Scene<'a> {
             rerun: self.rerun("run", subject, options, pixel),
             id: pixel_id(&self.id, image.width, pixel),
             adapter: subject.identity.name.clone(),
-            stage: stage(shader),
-            target: Some(self.frame.target.format.name()),
+            stage: stage(shader).into(),
+            target: Some(self.frame.target.format.name().into()),
             route: None,
             output: ["r", "g", "b", "a"][k].into(),
             inputs,

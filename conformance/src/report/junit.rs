@@ -1,6 +1,7 @@
 //! A run's result as JUnit XML: a suite for each adapter, a test for each group and stage.
 
-use super::{Group, Report, text};
+use super::text;
+use lightmeter_document::run::{Group, Report};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;
 
@@ -31,7 +32,7 @@ pub fn to_string(report: &Report) -> Result<String, SerializeError> {
 }
 
 fn status(group: &Group, report: &Report) -> TestCaseStatus {
-    if let Some(reason) = group.skip_reason {
+    if let Some(reason) = group.skip_reason.as_deref() {
         let mut status = TestCaseStatus::skipped();
         status.set_message(reason);
         return status;

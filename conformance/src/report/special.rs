@@ -2,7 +2,7 @@
 
 use crate::special::run::{Outcome, Report, Verdict, failure};
 use crate::special::{Class, DEVIATIONS, Deviation, PROBES, Probe, Source};
-use crate::subject::Identity;
+use lightmeter_document::run::Identity;
 use std::fmt::{Result, Write};
 
 /// Writes the report: a row for each probe, a column for each adapter.

@@ -1,7 +1,8 @@
 //! A run's result for people to read.
 
-use super::{DeviationUse, Failure, Group, Number, Report, Tiers, Totals};
 use crate::judge::{is_worse, worse};
+use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, ImageUse, Report, Tiers, Totals};
+use lightmeter_document::{Number, Word};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
 use std::fmt::{Result, Write};
@@ -141,18 +142,20 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
         self::deviation(deviation, out)?;
     }
     for group in report.groups.iter().filter(|group| group.skip_reason.is_some()) {
-        let reason = group.skip_reason.unwrap_or_default();
+        let reason = group.skip_reason.as_deref().unwrap_or_default();
         writeln!(out, "skipped {} on {}, {}: {reason}", group.id, group.adapter, group.place())?;
     }
     let mut routes = std::collections::BTreeMap::<_, u64>::new();
-    let on_targets = |state: &&super::BlendState| {
-        let group =
-            report.groups.iter().find(|group| group.adapter == state.adapter && group.target == Some(state.target));
+    let on_targets = |state: &&BlendState| {
+        let group = report
+            .groups
+            .iter()
+            .find(|group| group.adapter == state.adapter && group.target.as_ref() == Some(&state.target));
         group.is_some_and(|group| group.skip_reason.is_none())
     };
     for state in report.blend_states.iter().filter(on_targets) {
-        if let Some(reason) = state.skip_reason {
-            *routes.entry((&state.adapter, state.target, state.route, reason)).or_default() += 1;
+        if let Some(reason) = &state.skip_reason {
+            *routes.entry((&state.adapter, &state.target, &state.route, reason)).or_default() += 1;
         }
     }
     for ((adapter, target, route, reason), states) in routes {
@@ -162,7 +165,7 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
     images(report, out)?;
     stability(report, out)?;
     for special in report.special.iter().filter(|special| !special.is_as_recorded()) {
-        let (seen, recorded) = (&special.seen, special.recorded.unwrap_or_default());
+        let (seen, recorded) = (&special.seen, special.recorded.as_deref().unwrap_or_default());
         writeln!(
             out,
             "{} on {}, {}: {seen}, where {recorded} is on record",
@@ -205,9 +208,8 @@ fn images(report: &Report, out: &mut impl Write) -> Result {
         let of_adapter = report.groups.iter().filter(|group| group.adapter == adapter.name);
         let images: Vec<_> = of_adapter.filter_map(|group| Some((group, group.image.as_ref()?))).collect();
         #[expect(clippy::cast_precision_loss, reason = "a share")]
-        let share = |(group, image): &(&Group, &super::ImageUse)| {
-            100.0 * image.marked as f64 / group.totals.cases.max(1) as f64
-        };
+        let share =
+            |(group, image): &(&Group, &ImageUse)| 100.0 * image.marked as f64 / group.totals.cases.max(1) as f64;
         let Some(most) = images.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else { continue };
         write!(out, "images of {}: at most {:.3} % of the pixels marked ({})", adapter.name, share(most), most.0.id)?;
         let differing: Vec<u64> = images.iter().filter_map(|(_, image)| image.differs_from_composed).collect();
@@ -239,7 +241,8 @@ fn stores(report: &Report, out: &mut impl Write) -> Result {
     for adapter in &report.adapters {
         for target in TargetFormat::ALL {
             let groups = || {
-                let of = |group: &&Group| group.adapter == adapter.name && group.target == Some(target.name());
+                let of =
+                    |group: &&Group| group.adapter == adapter.name && group.target.as_deref() == Some(target.name());
                 report.groups.iter().filter(of)
             };
             let mut tiers = Tiers::default();
@@ -251,7 +254,7 @@ fn stores(report: &Report, out: &mut impl Write) -> Result {
             #[expect(clippy::cast_precision_loss, reason = "a share")]
             let share = |count: u64| 100.0 * count as f64 / all as f64;
             let shares = tiers.named().map(|(name, count)| format!("{name} {:.2} %", share(count)));
-            let mut stores: Vec<&str> = groups().filter_map(|group| Some(group.store.as_ref()?.identified)).collect();
+            let mut stores: Vec<&str> = groups().filter_map(|group| Some(&*group.store.as_ref()?.identified)).collect();
             stores.sort_unstable();
             stores.dedup();
             let stores = if stores.is_empty() { "too few values to tell".into() } else { stores.join(", ") };
@@ -293,7 +296,7 @@ pub fn totals(t: &Totals, is_success: bool, seconds: f64, out: &mut impl Write) 
 struct Row {
     id: String,
     adapter: String,
-    stage: &'static str,
+    stage: Word,
     groups: usize,
     totals: Totals,
     error_ulp_max: f64,
@@ -308,7 +311,7 @@ impl Row {
             id: group.id.clone(),
             adapter: group.adapter.clone(),
             // A blend unit is told by its target.
-            stage: if group.image.is_some() { group.stage } else { group.target.unwrap_or(group.stage) },
+            stage: group.target.as_ref().filter(|_| group.image.is_none()).unwrap_or(&group.stage).clone(),
             groups: 1,
             totals: group.totals,
             error_ulp_max: group.error_ulp_max.0,
@@ -376,9 +379,9 @@ fn table(rows: &[Row], out: &mut impl Write) -> Result {
 /// Where the writer fails.
 pub fn failure(failure: &Failure, out: &mut impl Write) -> Result {
     let Failure { id, adapter, stage, output, .. } = failure;
-    let is_unorm = failure.target.and_then(TargetFormat::by_name).is_some_and(TargetFormat::is_unorm);
+    let is_unorm = failure.target.as_deref().and_then(TargetFormat::by_name).is_some_and(TargetFormat::is_unorm);
     let unit = if is_unorm { "steps" } else { "ULP" };
-    let target = failure.target.map(|target| format!(" on {target}")).unwrap_or_default();
+    let target = failure.target.as_ref().map(|target| format!(" on {target}")).unwrap_or_default();
     writeln!(out, "FAIL {id} on {adapter}, {stage}{target}: {output}")?;
     for ((name, value), bits) in failure.inputs.iter().zip(failure.inputs_hex.values()) {
         writeln!(out, "  {name:<14} {}  {}", plain(value), plain(bits))?;

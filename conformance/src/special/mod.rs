@@ -12,7 +12,7 @@ pub mod verdict;
 
 pub use table::PROBES;
 
-use crate::report::Number;
+use lightmeter_document::Number;
 use lightmeter_scene::target::SENTINEL;
 
 /// The first segment of the ids.
@@ -348,6 +348,7 @@ impl Probe {
 mod tests {
     use super::*;
     use crate::arithmetic::Accept;
+    use crate::arithmetic::profile::WGSL;
     use lightmeter_gpu::{Kernel, Shaders};
     use lightmeter_reference::Real;
     use std::collections::BTreeSet;
@@ -434,20 +435,23 @@ mod tests {
                 continue;
             }
             let x: Vec<Accept> = probe.inputs.iter().map(|bits| Accept::input(f32::from_bits(*bits))).collect();
-            let interval: Accept = match function {
-                "special_add" => x[0] + x[1],
-                "special_subtract" => x[0] - x[1],
-                "special_multiply" => x[0] * x[1],
-                "special_divide" => x[0] / x[1],
-                "special_multiply_add" => x[0] * x[1] + x[2],
-                "special_sqrt" => x[0].sqrt(),
-                "special_inverse_sqrt" => x[0].inverse_sqrt(),
-                "special_exp" => x[0].exp(),
-                "special_exp2" => x[0].exp2(),
-                "special_pow" => x[0].pow(x[1]),
-                "special_mix" => Accept::mix(x[0], x[1], x[2]),
-                _ => continue,
-            };
+            let interval = WGSL.scope(|| {
+                Some(match function {
+                    "special_add" => x[0] + x[1],
+                    "special_subtract" => x[0] - x[1],
+                    "special_multiply" => x[0] * x[1],
+                    "special_divide" => x[0] / x[1],
+                    "special_multiply_add" => x[0] * x[1] + x[2],
+                    "special_sqrt" => x[0].sqrt(),
+                    "special_inverse_sqrt" => x[0].inverse_sqrt(),
+                    "special_exp" => x[0].exp(),
+                    "special_exp2" => x[0].exp2(),
+                    "special_pow" => x[0].pow(x[1]),
+                    "special_mix" => Accept::mix(x[0], x[1], x[2]),
+                    _ => return None,
+                })
+            });
+            let Some(interval): Option<Accept> = interval else { continue };
             compared += 1;
             let name = probe.name;
             assert_eq!(interval.is_any(), !probe.promise.is_definite(), "{name}: {interval:?}");

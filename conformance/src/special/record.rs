@@ -5,7 +5,7 @@
 
 use super::Probe;
 use crate::devices::version;
-use crate::subject::Identity;
+use lightmeter_document::run::Identity;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -60,7 +60,7 @@ impl Record {
             schema: SCHEMA.into(),
             name: identity.name.clone(),
             device: identity.device.clone(),
-            backend: identity.backend.into(),
+            backend: identity.backend.to_string(),
             driver: identity.driver.clone(),
             processor: std::env::consts::ARCH.into(),
             results: BTreeMap::new(),
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     fn identity(device: &str, driver: &str) -> Identity {
-        Identity { name: "lavapipe".into(), device: device.into(), backend: "vulkan", driver: driver.into() }
+        Identity { name: "lavapipe".into(), device: device.into(), backend: "vulkan".into(), driver: driver.into() }
     }
 
     fn one(identity: &Identity) -> &'static [Record] {
@@ -146,7 +146,7 @@ mod tests {
         assert_eq!(binds(&identity("llvmpipe (128 bits)", "llvmpipe, Mesa 22.3.6"), here), Some(false));
         let other = Identity { name: "radv".into(), ..identity("a card", "radv, Mesa 25.0.0") };
         assert_eq!(binds(&other, here), None);
-        assert_eq!(binds(&Identity { backend: "gl", ..mesa.clone() }, here), None);
+        assert_eq!(binds(&Identity { backend: "gl".into(), ..mesa.clone() }, here), None);
     }
 
     #[test]

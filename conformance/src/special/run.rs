@@ -2,7 +2,8 @@
 
 use super::record::{OnRecord, Record};
 use super::{Deviation, PROBES, Probe, Promise, Way};
-use crate::subject::{Identity, Subject};
+use crate::subject::Subject;
+use lightmeter_document::run::Identity;
 use lightmeter_gpu::{ArithmeticPipeline, Error, Gpu, Kernel, RasterPipeline, Shaders, Stage};
 use lightmeter_scene::raster::Raster;
 use lightmeter_scene::raster::{Provoking, Topology};
@@ -286,7 +287,7 @@ impl Sink<'_> {
     fn put(&mut self, probe: &'static Probe, stage: &'static str, bits: u32) {
         let recorded = self.on_record.and_then(|of| of.record().get(probe, stage));
         let binding = recorded.filter(|_| self.on_record.is_some_and(|of| of.binds));
-        let deviation = Deviation::of(probe, self.adapter.backend);
+        let deviation = Deviation::of(probe, &self.adapter.backend);
         self.results.outcomes.push(Outcome {
             probe: probe.name,
             adapter: self.adapter.name.clone(),

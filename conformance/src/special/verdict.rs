@@ -5,10 +5,11 @@ use super::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
 use crate::filter::Filter;
 use crate::judge::simplicity;
 use crate::options::{Options, Progress};
-use crate::report::{DeviationUse, Failure, Group, Number, Report, Totals};
 use crate::select::Shard;
 use crate::subject::Subject;
 use crate::tally::KEPT_FAILURES;
+use lightmeter_document::Number;
+use lightmeter_document::run::{DeviationUse, Failure, Group, Report, Totals};
 use lightmeter_gpu::Error;
 use lightmeter_scene::target::SENTINEL;
 use std::time::Instant;
@@ -76,7 +77,7 @@ pub(crate) fn run_table(
         report.timing.devices += seconds;
         match results {
             None => {
-                let group = Group { stage: STAGES[0], ..table.group(subject) };
+                let group = Group { stage: STAGES[0].into(), ..table.group(subject) };
                 let cases = table.probes.len() as u64;
                 report.groups.push(skipped(group, cases, EMBEDDED));
             }
@@ -88,7 +89,7 @@ pub(crate) fn run_table(
 }
 
 fn skipped(group: Group, cases: u64, reason: &'static str) -> Group {
-    Group { skip_reason: Some(reason), totals: Totals { cases, skipped: cases, ..Totals::default() }, ..group }
+    Group { skip_reason: Some(reason.into()), totals: Totals { cases, skipped: cases, ..Totals::default() }, ..group }
 }
 
 impl Table {
@@ -98,7 +99,7 @@ impl Table {
 
     fn judge(&self, results: &Results, subject: &Subject, seconds: f64, options: &Options, report: &mut Report) {
         for stage in STAGES.into_iter().filter(|stage| self.in_stage(stage) > 0) {
-            let group = Group { stage, ..self.group(subject) };
+            let group = Group { stage: stage.into(), ..self.group(subject) };
             if let Some(Skipped { reason, .. }) = results.skipped.iter().find(|skipped| skipped.stage == stage) {
                 report.groups.push(skipped(group, self.in_stage(stage), reason));
                 continue;
@@ -114,7 +115,7 @@ impl Table {
                     Verdict::Deviates => {
                         totals.expected_failures += 1;
                         let probe = Probe::by_name(outcome.probe);
-                        let deviation = probe.and_then(|probe| Deviation::of(probe, subject.identity.backend));
+                        let deviation = probe.and_then(|probe| Deviation::of(probe, &subject.identity.backend));
                         if let Some(deviation) = deviation {
                             granted(deviation, &subject.identity.name, report);
                         }
@@ -137,9 +138,9 @@ impl Table {
 fn granted(deviation: &Deviation, adapter: &str, report: &mut Report) {
     if !report.deviations.iter().any(|known| known.name == deviation.name && known.adapter == adapter) {
         report.deviations.push(DeviationUse {
-            name: deviation.name,
+            name: deviation.name.into(),
             adapter: adapter.into(),
-            reason: deviation.reason,
+            reason: deviation.reason.into(),
             still_needed: true,
             excused: 0,
         });
@@ -166,7 +167,7 @@ fn failure(outcome: &Outcome, results: &Results, subject: &Subject, options: &Op
         rerun: format!("lightmeter run '{}' --adapter {}{}", probe.id(), subject.identity.name, options.rerun),
         id: probe.id(),
         adapter: subject.identity.name.clone(),
-        stage: outcome.stage,
+        stage: outcome.stage.into(),
         target: None,
         route: None,
         output: probe.what.into(),

@@ -2,8 +2,8 @@
 
 use crate::arithmetic::Accept;
 use crate::cases::{AnyFormula, Size, Spec};
-use crate::report::Number;
 use crate::select::Member;
+use lightmeter_document::Number;
 use serde::Serialize;
 
 /// A rounding to nearest of a number near 1, at most.

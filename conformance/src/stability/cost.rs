@@ -4,31 +4,9 @@ use crate::evaluate::kernel;
 use crate::options::Options;
 use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
+use lightmeter_document::run::Cost;
 use lightmeter_gpu::{Clock, Error, RepeatPipeline, Rung};
-use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// What a stable form takes beside a naive one, in the compute stage: nanoseconds of wall time for an evaluation, medians of
-/// turns in which each is measured, less what reading the inputs takes.
-#[derive(Clone, Debug, Serialize)]
-pub struct Cost {
-    /// The stable formula.
-    pub formula: String,
-    /// The naive one.
-    pub naive: &'static str,
-    /// The adapter's short name.
-    pub adapter: String,
-    /// Of the stable form.
-    pub stable_ns: f64,
-    /// Of the naive form.
-    pub naive_ns: f64,
-    /// Of reading the inputs, which is in neither.
-    pub idle_ns: f64,
-    /// Median of the stable form's time over the naive one's, turn by turn, reading included in both.
-    pub ratio: f64,
-    /// Its lower and upper quartile.
-    pub quartiles: [f64; 2],
-}
 
 /// Turns that a cost is the median of.
 const TURNS: usize = 15;
@@ -77,7 +55,7 @@ pub(super) fn cost(
         let ratios = sorted(&|[_, stable, naive]| stable / naive);
         costs.push(Cost {
             formula: member.spec.id.clone(),
-            naive: id,
+            naive: (*id).into(),
             adapter: subject.identity.name.clone(),
             stable_ns: median_ns(&|[idle, stable, _]| stable - idle),
             naive_ns: median_ns(&|[idle, _, naive]| naive - idle),

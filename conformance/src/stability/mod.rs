@@ -8,61 +8,17 @@ mod conditioning;
 mod cost;
 
 pub use conditioning::{Conditioning, ILL_CONDITIONED, ROUNDING, Standing, UNSTABLE, condition, roundings, size};
-pub use cost::Cost;
 
 use crate::cases::{Naive, Stable};
 use crate::evaluate::Evaluator;
 use crate::options::Options;
-use crate::report::{Number, Report};
 use crate::select::{CaseRef, Member, catalogue};
 use crate::subject::Subject;
+use lightmeter_document::Number;
+use lightmeter_document::run::Examined;
+use lightmeter_document::run::Report;
 use lightmeter_gpu::Error;
-use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// A hard case by its stable and its naive form, on an adapter in a stage. Errors are in roundings, the greatest at the case
-/// and within a few ULP of it; infinite where a value is NaN or infinite.
-#[derive(Clone, Debug, Serialize)]
-pub struct Examined {
-    /// The case, of the stable formula.
-    pub id: String,
-    /// The adapter's short name.
-    pub adapter: String,
-    /// The stage's name.
-    pub stage: &'static str,
-    /// How much the result amplifies the inputs' errors at the case itself.
-    pub condition: Number,
-    /// What the stable form claims.
-    pub bound: f64,
-    /// The stable form's error.
-    pub stable: Number,
-    /// The case near by where that is.
-    pub stable_at: String,
-    /// The naive formula.
-    pub naive_formula: &'static str,
-    /// What goes wrong with it.
-    pub fails: &'static str,
-    /// By how much at least.
-    pub naive_at_least: Number,
-    /// The naive form's error.
-    pub naive: Number,
-    /// Its error against its own exact value: where that is far less, it computes another function.
-    pub naive_rounding: Number,
-}
-
-impl Examined {
-    /// Whether the stable form keeps its claim.
-    #[must_use]
-    pub fn is_stable(&self) -> bool {
-        self.stable.0 <= self.bound
-    }
-
-    /// Whether the naive form fails as it is said to.
-    #[must_use]
-    pub fn naive_fails(&self) -> bool {
-        self.naive.0 >= self.naive_at_least.0
-    }
-}
 
 /// The rows of a hard case: itself, and those near it.
 struct Rows {
@@ -144,13 +100,13 @@ pub fn examine(
                 report.stability.push(Examined {
                     id: member.case_id(CaseRef::Hard(place)),
                     adapter: subject.identity.name.clone(),
-                    stage,
+                    stage: stage.into(),
                     condition: Number(conditions[&place]),
                     bound: stable.bound,
                     stable: Number(error),
                     stable_at: member.case_id(at),
-                    naive_formula: naive.formula,
-                    fails: naive.fails,
+                    naive_formula: naive.formula.into(),
+                    fails: naive.fails.into(),
                     naive_at_least: Number(naive.at_least),
                     naive: Number(error_of_naive),
                     naive_rounding: Number(rounding),

@@ -6,6 +6,7 @@
 use super::plan::Plan;
 use super::run::Work;
 use super::statistics::{Exact, Place, Seen, Statistics, Stored};
+use crate::arithmetic::Profile;
 use crate::blend_unit::draw::{Piece, draw};
 use crate::blend_unit::expect::expect;
 use crate::blend_unit::pixel::{self, Units};
@@ -13,8 +14,8 @@ use crate::blend_unit::rules::Rules;
 use crate::blend_unit::tally::{Outcome, count_tier};
 use crate::cases::Kind;
 use crate::cases::blend::Program;
-use crate::report::Number;
 use crate::subject::Subject;
+use lightmeter_document::Number;
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
@@ -34,16 +35,22 @@ pub(super) struct BytesWork<'a> {
     shaders: &'a Shaders,
     program: Program,
     stride: usize,
+    profile: &'static Profile,
 }
 
 impl<'a> BytesWork<'a> {
     /// The unit of a subject; `Err` says what it lacks.
-    pub(super) fn new(plan: &Plan<'_>, subject: &'a mut Subject, shaders: &'a Shaders) -> Result<Self, &'static str> {
+    pub(super) fn new(
+        plan: &Plan<'_>,
+        subject: &'a mut Subject,
+        shaders: &'a Shaders,
+        profile: &'static Profile,
+    ) -> Result<Self, &'static str> {
         if let Some(reason) = subject.lacks_blending(TARGET) {
             return Err(reason);
         }
         let Kind::Blend(program) = plan.member.spec.kind else { return Err("it is no blend state") };
-        Ok(Self { subject, shaders, program, stride: plan.member.spec.input_len() })
+        Ok(Self { subject, shaders, program, stride: plan.member.spec.input_len(), profile })
     }
 
     /// Inputs from one number to another, of one alpha, three to a pixel; the last pixel may repeat its last one.
@@ -66,7 +73,7 @@ impl<'a> BytesWork<'a> {
         let (_, mask) = self.program.layer(0);
         for (place, (first, pixel)) in (from..to).step_by(COMPONENTS).zip(pixels).enumerate() {
             let case = piece.case(place);
-            let expected = expect(self.program, TARGET, &case, &Rules::RIGHT);
+            let expected = expect(self.program, TARGET, &case, &Rules::RIGHT, self.profile);
             let model = self.subject.known.blend_model;
             let predicted =
                 model.map(|model| model.predict(self.program, piece.route, &case, pixel::stored(TARGET, case.dst)));

@@ -16,7 +16,7 @@ use crate::arithmetic::{Accept, F32, Format as _, Profile};
 use crate::cases::AnyFormula;
 use crate::devices::Deviation;
 use crate::judge::{Outcome, judge};
-use crate::report::Number;
+use lightmeter_document::Number;
 use lightmeter_scene::along::{Along, float_of};
 use rayon::prelude::*;
 
@@ -53,7 +53,7 @@ impl Judge<'_> {
         let tasks: Vec<Statistics> = words
             .par_chunks(TASK)
             .zip((0..words.len()).into_par_iter().step_by(TASK))
-            .map(|(words, done)| self.profile.scope(|| self.task(first + small(done), words)))
+            .map(|(words, done)| self.task(first + small(done), words))
             .collect();
         let mut sum = Statistics::default();
         tasks.into_iter().for_each(|task| sum.add(task));
@@ -82,7 +82,8 @@ impl Judge<'_> {
         let count = words.len();
         let (inputs, references) = (&run.inputs[..count], &mut run.references[..count]);
         self.formula.reference_along(&self.along, inputs, references);
-        let is_promised = !self.formula.interval_between(&self.along, inputs[0], inputs[count - 1]).is_any();
+        let is_promised =
+            !self.formula.interval_between(&self.along, inputs[0], inputs[count - 1], self.profile).is_any();
 
         run.asked.clear();
         run.asked_inputs.clear();
@@ -105,14 +106,14 @@ impl Judge<'_> {
         sum.passed += near.iter().sum::<u64>();
         if most >= 0.0 && sum.worst.is_none_or(|seen| most > seen.error.0) {
             let mut interval = [Accept::ANY];
-            self.formula.interval_along(&self.along, &inputs[worst..=worst], &mut interval);
+            self.formula.interval_along(&self.along, &inputs[worst..=worst], self.profile, &mut interval);
             sum.see_error(seen(inputs[worst], words[worst], references[worst], &interval[0]));
         }
         if run.asked.is_empty() {
             return;
         }
         let intervals = &mut run.intervals[..run.asked.len()];
-        self.formula.interval_along(&self.along, &run.asked_inputs, intervals);
+        self.formula.interval_along(&self.along, &run.asked_inputs, self.profile, intervals);
         for (&k, interval) in run.asked.iter().zip(intervals) {
             self.verdict(inputs[k], words[k], references[k], interval, sum);
         }
@@ -148,7 +149,7 @@ impl Judge<'_> {
     fn excuse(&self, input: f32, bits: u32, reference: f64) -> Option<&'static str> {
         self.deviations.iter().find_map(|deviation| {
             let mut interval = [Accept::ANY];
-            deviation.grant(*self.profile).scope(|| self.formula.interval_along(&self.along, &[input], &mut interval));
+            self.formula.interval_along(&self.along, &[input], &deviation.grant(*self.profile), &mut interval);
             (judge(bits, reference, &interval[0]).outcome == Outcome::Pass).then_some(deviation.name)
         })
     }
@@ -225,7 +226,7 @@ mod tests {
                     row[free] = input;
                     let (mut references, mut intervals) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
                     member.formula.reference(&row, &mut references);
-                    member.formula.interval(&row, &mut intervals);
+                    member.formula.interval(&row, &WGSL, &mut intervals);
                     for (&reference, interval) in references.iter().zip(&intervals) {
                         let nearest = narrow(reference);
                         let around = [nearest.next_down(), nearest, nearest.next_up()];
@@ -259,8 +260,8 @@ mod tests {
                     let first = key_of(input);
                     let inputs: Vec<f32> = (first..).take(RUN).map(float_of).collect();
                     let mut each = [Accept::ANY; RUN];
-                    member.formula.interval_along(&along, &inputs, &mut each);
-                    let hull = member.formula.interval_between(&along, inputs[0], inputs[RUN - 1]);
+                    member.formula.interval_along(&along, &inputs, &WGSL, &mut each);
+                    let hull = member.formula.interval_between(&along, inputs[0], inputs[RUN - 1], &WGSL);
                     if hull.is_any() {
                         open += 1;
                         continue;
@@ -282,7 +283,7 @@ mod tests {
             row[judge.along.free] = input;
             let (mut references, mut intervals) = ([0.0; 16], [Accept::ANY; 16]);
             judge.formula.reference(&row, &mut references);
-            judge.formula.interval(&row, &mut intervals);
+            judge.formula.interval(&row, &WGSL, &mut intervals);
             let output = judge.along.output;
             judge.verdict(input, bits, references[output], &intervals[output], &mut sum);
         }

@@ -69,7 +69,7 @@ pub fn sweep(
     let lacks = |reason| SweepError::Lacks { adapter: adapter.clone(), reason };
     match &plan.over {
         Over::Bytes => {
-            let mut work = BytesWork::new(plan, subject, shaders).map_err(&lacks)?;
+            let mut work = BytesWork::new(plan, subject, shaders, profile).map_err(&lacks)?;
             drive(&mut work, document, last, tell)
         }
         Over::Number { free, row, from, output, .. } => {

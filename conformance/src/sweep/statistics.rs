@@ -3,7 +3,8 @@
 
 use super::histogram::Histogram;
 use crate::blend_unit::store::StoreCounts;
-use crate::report::{Number, Tiers};
+use lightmeter_document::Number;
+use lightmeter_document::run::Tiers;
 use lightmeter_scene::along::key_of;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -2,8 +2,8 @@
 
 use super::document::Document;
 use super::statistics::{Exact, Place, Seen};
-use crate::report::Number;
 use crate::report::text::thousands;
+use lightmeter_document::Number;
 use std::fmt::{Result, Write};
 
 /// Characters of the longest bar.

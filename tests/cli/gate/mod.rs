@@ -211,6 +211,30 @@ fn the_smallest_failing_case_is_told_with_its_numbers() {
 }
 
 #[test]
+fn failures_tell_the_interval_of_the_profile_that_they_were_judged_by() {
+    let (pack, answers) = answered("profile", &["fog", "lighting/blinn"]);
+    let wrong = edit(&answers, |_, line| line.replacen("\"value\":[", "\"value\":[9", 1) + "\n");
+    for profile in ["wgsl", "opengl"] {
+        let (status, report) = judged(&pack, &wrong, &["--profile", profile]);
+        assert_eq!((status, &report["profile"]), (1, &Value::from(profile)));
+        let given = std::fs::File::open(pack.join("cases.jsonl")).expect("there are cases");
+        let legal = command(&["eval", "--profile", profile]).stdin(given).output().expect("the binary starts");
+        let legal = stdout(&legal);
+        let legal = legal.lines().map(|line| serde_json::from_str::<Value>(line).expect("it is JSON"));
+        let legal: std::collections::HashMap<String, Value> =
+            legal.map(|line| (line["id"].as_str().expect("it has an id").to_owned(), line)).collect();
+        let failures = report["failures"].as_array().expect("something fails");
+        assert!(failures.len() > 16, "{report}");
+        for failure in failures {
+            let legal = &legal[failure["id"].as_str().expect("it has an id")];
+            let ends = |k: usize| failure["interval"].as_array().into_iter().flatten().map(move |of| of[k].clone());
+            assert_eq!(Value::from_iter(ends(0)), legal["low"], "{profile}: {failure}");
+            assert_eq!(Value::from_iter(ends(1)), legal["high"], "{profile}: {failure}");
+        }
+    }
+}
+
+#[test]
 fn packs_that_are_damaged_or_of_another_kind_are_refused() {
     let (pack, answers) = answered("damaged", &["fog/exp"]);
     let manifest = pack.join("manifest.json");

@@ -1,8 +1,8 @@
 //! The one device of each adapter in a process, which all trials on that adapter share.
 
 use lightmeter::adapters;
+use lightmeter::document::run::Report;
 use lightmeter::options::{Options, Silent};
-use lightmeter::report::Report;
 use lightmeter::run::run_selection;
 use lightmeter::selection::Selection;
 use lightmeter::subject::Subject;

@@ -12,9 +12,9 @@ pub use settings::{Settings, Variables};
 
 use device::Device;
 use libtest_mimic::{Arguments, Completion, Failed, FormatSetting, Trial};
+use lightmeter::document::run::{Report, Totals};
 use lightmeter::options::{DEFAULT_CASES, Options};
 use lightmeter::report::text::{self, thousands};
-use lightmeter::report::{Report, Totals};
 use lightmeter::selection::{Part, Selection};
 use lightmeter_gpu::Shaders;
 use std::fmt::Write as _;
@@ -175,7 +175,7 @@ fn verdict(part: &Part, report: &Report, options: &Options) -> Result<Completion
     if passed + expected_failures > 0 || !report.deviations.is_empty() {
         return Ok(Completion::Completed);
     }
-    let reason = report.groups.iter().find_map(|group| group.skip_reason);
+    let reason = report.groups.iter().find_map(|group| group.skip_reason.clone());
     Ok(Completion::ignored_with(match reason {
         Some(reason) if indeterminate == 0 => format!("{} cases skipped: {reason}", thousands(skipped)),
         _ => format!("{} verdicts, all indeterminate: nothing is promised of them", thousands(indeterminate)),
@@ -204,7 +204,7 @@ fn message(part: &Part, report: &Report, options: &Options) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter::report::DeviationUse;
+    use lightmeter::document::run::DeviationUse;
     use lightmeter::subject::Subject;
 
     fn part(path: &str) -> (Part, Options) {
@@ -216,11 +216,11 @@ mod tests {
     #[test]
     fn a_deviation_that_is_no_longer_seen_fails_its_trial() {
         let (part, options) = part("deviation/llvmpipe-exp");
-        let mut report = Report::empty(&[Subject::embedded()], &options);
+        let mut report = options.report(&[Subject::embedded()]);
         let mut seen = DeviationUse {
-            name: "llvmpipe-exp",
+            name: "llvmpipe-exp".into(),
             adapter: "lavapipe".into(),
-            reason: "why",
+            reason: "why".into(),
             still_needed: true,
             excused: 0,
         };
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn nothing_judged_is_ignored_and_never_passes() {
         let (part, options) = part("fog/linear");
-        let mut report = Report::empty(&[Subject::embedded()], &options);
+        let mut report = options.report(&[Subject::embedded()]);
         assert!(matches!(verdict(&part, &report, &options), Ok(Completion::Ignored { .. })));
         report.totals.indeterminate = 5;
         assert!(matches!(verdict(&part, &report, &options), Ok(Completion::Ignored { .. })));

@@ -11,12 +11,14 @@ use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::{Samples, separate_of};
+use lightmeter::document::Number;
+use lightmeter::document::run::Examined;
 use lightmeter::evaluate::Evaluator;
 use lightmeter::filter::Filter;
 use lightmeter::judge::{Outcome, judge};
-use lightmeter::report::{Number, Report};
 use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
-use lightmeter::stability::{self, Conditioning, Examined, Standing};
+use lightmeter::stability;
+use lightmeter::stability::{Conditioning, Standing};
 use lightmeter::subject::Subject;
 use lightmeter::tally::{by_name, intervals};
 use serde_json::{Value, json};
@@ -76,7 +78,7 @@ impl Show {
         let mut inputs = vec![];
         member.inputs(case, self.choice.seed, &mut inputs);
         let mut outputs = vec![Trace { value: 0.0, interval: Accept::ANY }; member.spec.output_len()];
-        let ((), steps) = self.choice.profile.scope(|| trace::record(|| member.formula.trace(&inputs, &mut outputs)));
+        let ((), steps) = trace::record(|| member.formula.trace(&inputs, self.choice.profile, &mut outputs));
         legal_outputs(member, &inputs, self.choice.profile, &mut outputs);
         let condition = member.formula.condition(&inputs);
         let legal: Vec<Accept> = outputs.iter().map(|output| output.interval).collect();
@@ -84,7 +86,7 @@ impl Show {
             CaseRef::Hard(place) => (0..member.near()).map(|k| self.row(member, CaseRef::Near(place, k))).collect(),
             CaseRef::Near(..) | CaseRef::Random(_) => vec![],
         };
-        let conditioning = self.choice.profile.scope(|| Conditioning::of(member, &inputs, &legal, &near));
+        let conditioning = Conditioning::of(member, &inputs, &legal, &near);
         let known = Known { inputs, outputs, steps, condition, conditioning };
         let (answers, unit) = self.answers(member, &known.inputs)?;
         let forms = self.forms(member, case)?;
@@ -108,7 +110,7 @@ impl Show {
         let (CaseRef::Hard(place) | CaseRef::Near(place, _)) = case else { return Ok(vec![]) };
         let mut subjects = self.subjects()?;
         let options = self.choice.options(Filter::default(), 1, Shard::WHOLE)?;
-        let mut report = Report::empty(&subjects, &options);
+        let mut report = options.report(&subjects);
         stability::examine(member, &[place], &mut subjects, &options, &mut report)?;
         Ok(report.stability)
     }
@@ -129,7 +131,15 @@ impl Show {
         let (mut answers, mut unit, members) = (vec![], vec![], [member]);
         for mut subject in subjects {
             if let Kind::Blend(program) = member.spec.kind {
-                unit.extend(drawn(&self.choice.targets(), &mut subject, &shaders, member, program, inputs)?);
+                unit.extend(drawn(
+                    &self.choice.targets(),
+                    &mut subject,
+                    &shaders,
+                    member,
+                    program,
+                    inputs,
+                    self.choice.profile,
+                )?);
             }
             if member.spec.row_stages().is_empty() {
                 continue;
@@ -138,7 +148,7 @@ impl Show {
             for (stage, words) in evaluator.run(&mut subject, &[0], inputs)? {
                 let mut legal = vec![Accept::ANY; member.spec.output_len()];
                 let profile = self.choice.profile;
-                profile.scope(|| intervals(member, inputs, stage, &subject, profile, &mut legal));
+                intervals(member, inputs, stage, &subject, profile, &mut legal);
                 let values = words.map(|words| words.into_iter().zip(legal).collect());
                 answers.push(Answer { adapter: subject.identity.name.clone(), stage: stage.name(), values });
             }
@@ -150,7 +160,7 @@ impl Show {
 /// What a rasteriser may give is not what its formula in f32 may: where no device is known, by the profile's promise.
 fn legal_outputs(member: &Member, inputs: &[f32], profile: &Profile, outputs: &mut [Trace]) {
     let mut legal = vec![Accept::ANY; outputs.len()];
-    profile.scope(|| member.formula.promised_interval(member.spec.kind, inputs, profile, &mut legal));
+    member.formula.promised_interval(member.spec.kind, inputs, profile, &mut legal);
     for (output, legal) in outputs.iter_mut().zip(legal) {
         output.interval = legal;
     }

@@ -3,13 +3,13 @@
 use super::super::options::Choice;
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::pixel::Units;
+use lightmeter::document::Number;
 use lightmeter::image::drawn::intermediate;
 use lightmeter::image::expect::Expectation;
 use lightmeter::image::file::Stored;
 use lightmeter::image::run::profile_of;
 use lightmeter::image::select::{builtin, pixel_of, scene_id};
 use lightmeter::image::{self, Expected};
-use lightmeter::report::Number;
 use lightmeter::scene::Loaded;
 use lightmeter::scene::library::SCENES;
 use lightmeter::subject::Subject;
@@ -66,8 +66,8 @@ fn rows(
             let format = stage.map_or(frame.target.format, |_| TargetFormat::Rgba32Float);
             let reference = Stored::unrounded(&render::<f64>(frame, None, stage), format).pixels[pixel];
             let legal = |profile: &Profile| {
-                let expectation = profile.scope(|| Expectation::new(frame, None, stage, profile));
-                expectation.pixel(pixel % width, pixel / width, profile)
+                let expectation = Expectation::new(frame, None, stage, profile);
+                expectation.pixel(pixel % width, pixel / width)
             };
             let mut seen = vec![];
             for subject in subjects {

@@ -1,7 +1,7 @@
 //! A probe of a special value: what is promised of it, and what adapters give.
 
 use super::super::options::Choice;
-use lightmeter::report::Number;
+use lightmeter::document::Number;
 use lightmeter::special::run::{Outcome, Results, Skipped, evaluate};
 use lightmeter::special::{FAMILY, Gives, Probe};
 use lightmeter::subject::Subject;

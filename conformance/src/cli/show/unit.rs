@@ -1,5 +1,6 @@
 //! What a blend unit makes of a case.
 
+use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::draw::{Piece, draw};
 use lightmeter::blend_unit::expect::{Expected, expect};
 use lightmeter::blend_unit::pixel::Units;
@@ -8,7 +9,7 @@ use lightmeter::blend_unit::run::targets_of;
 use lightmeter::blend_unit::tally::Outcome;
 use lightmeter::cases::Stage;
 use lightmeter::cases::blend::Program;
-use lightmeter::report::Number;
+use lightmeter::document::Number;
 use lightmeter::select::Member;
 use lightmeter::subject::Subject;
 use lightmeter_gpu::Shaders;
@@ -33,6 +34,7 @@ pub(super) fn drawn(
     member: &Member,
     program: Program,
     inputs: &[f32],
+    profile: &Profile,
 ) -> anyhow::Result<Vec<UnitAnswer>> {
     let mut answers = vec![];
     for target in targets_of(member, targets) {
@@ -43,7 +45,7 @@ pub(super) fn drawn(
                 Some(reason) => Err(reason),
                 None => {
                     let pixel = draw(subject, shaders, target, &[&piece], false)?.pieces[0][0];
-                    Ok((pixel, expect(program, target, &piece.case(0), &Rules::RIGHT)))
+                    Ok((pixel, expect(program, target, &piece.case(0), &Rules::RIGHT, profile)))
                 }
             };
             answers.push(UnitAnswer { adapter: subject.identity.name.clone(), target, route, pixel });

@@ -2,9 +2,9 @@
 //! claim and cost, and a picture of both errors against the condition.
 
 use crate::cases::Stable;
-use crate::report::Number;
 use crate::select::{Member, catalogue};
 use crate::stability::UNSTABLE;
+use lightmeter_document::Number;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};

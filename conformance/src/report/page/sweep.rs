@@ -1,10 +1,10 @@
 //! The page on sweeps, made from their results.
 
-use crate::report::Number;
 use crate::report::text::thousands;
 use crate::select::catalogue;
 use crate::sweep::text::{bars, error, margin, rate};
 use crate::sweep::{Asked, Document, Exact, PRESETS, Place, Plan, Seen};
+use lightmeter_document::Number;
 use std::fmt::{Result, Write};
 
 /// The page in Markdown.

@@ -1,0 +1,45 @@
+//! Numbers in JSON.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A number that may be NaN or infinite, which JSON writes as a string.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Number(pub f64);
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if self.0.is_finite() { serializer.serialize_f64(self.0) } else { serializer.serialize_str(&self.to_string()) }
+    }
+}
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Written {
+            Number(f64),
+            Name(String),
+        }
+        match Written::deserialize(deserializer)? {
+            Written::Number(number) => Ok(Self(number)),
+            Written::Name(name) => match name.as_str() {
+                "NaN" => Ok(Self(f64::NAN)),
+                "Inf" => Ok(Self(f64::INFINITY)),
+                "-Inf" => Ok(Self(f64::NEG_INFINITY)),
+                _ => Err(serde::de::Error::custom(format!("expected a number, NaN, Inf or -Inf, not {name:?}"))),
+            },
+        }
+    }
+}
+
+impl std::fmt::Display for Number {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0 {
+            x if x.is_nan() => f.write_str("NaN"),
+            x if x == f64::INFINITY => f.write_str("Inf"),
+            x if x == f64::NEG_INFINITY => f.write_str("-Inf"),
+            x if x == 0.0 || (1e-4..1e7).contains(&x.abs()) => write!(f, "{x}"),
+            x => write!(f, "{x:e}"),
+        }
+    }
+}

@@ -1,0 +1,523 @@
+//! The JSON of `run`.
+
+use crate::{Number, Word};
+use serde::{Deserialize, Serialize};
+
+/// The schema of [`Report`].
+pub const SCHEMA: &str = "lightmeter.run/1";
+
+/// How a subject is named in reports.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Identity {
+    /// The short name.
+    pub name: String,
+    /// The device as the driver names it.
+    pub device: String,
+    /// `vulkan`, `gl` or `embedded`.
+    pub backend: Word,
+    /// The driver and its version.
+    pub driver: String,
+}
+
+/// Counts of verdicts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Totals {
+    /// Cases, each counted once for an adapter and stage.
+    pub cases: u64,
+    /// Scalar outputs judged.
+    pub verdicts: u64,
+    /// Inside the interval.
+    pub passed: u64,
+    /// Outside.
+    pub failed: u64,
+    /// Outside, as a named deviation says.
+    pub expected_failures: u64,
+    /// Inside at the witness of a named deviation, which is no longer needed.
+    pub unexpected_passes: u64,
+    /// Cases that the adapter cannot evaluate.
+    pub skipped: u64,
+    /// Where the rules permit anything.
+    pub indeterminate: u64,
+    /// Groups that fail as a whole, although each verdict is legal.
+    pub failed_groups: u64,
+}
+
+impl Totals {
+    /// The sum.
+    pub fn add(&mut self, other: &Self) {
+        self.cases += other.cases;
+        self.verdicts += other.verdicts;
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.expected_failures += other.expected_failures;
+        self.unexpected_passes += other.unexpected_passes;
+        self.skipped += other.skipped;
+        self.indeterminate += other.indeterminate;
+        self.failed_groups += other.failed_groups;
+    }
+}
+
+/// Values on a target of 8 bits by how near they come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tiers {
+    /// The formula gives a whole step, and it came out.
+    pub exact: u64,
+    /// The nearest step.
+    pub nearest: u64,
+    /// The other neighbour.
+    pub neighbour: u64,
+    /// Farther, but within the format's bound.
+    pub bound: u64,
+    /// Outside.
+    pub outside: u64,
+}
+
+impl Tiers {
+    /// The sum.
+    pub fn add(&mut self, other: &Self) {
+        self.exact += other.exact;
+        self.nearest += other.nearest;
+        self.neighbour += other.neighbour;
+        self.bound += other.bound;
+        self.outside += other.outside;
+    }
+
+    /// Each with its name.
+    #[must_use]
+    pub const fn named(&self) -> [(&'static str, u64); 5] {
+        [
+            ("exact", self.exact),
+            ("nearest", self.nearest),
+            ("neighbour", self.neighbour),
+            ("bound", self.bound),
+            ("outside", self.outside),
+        ]
+    }
+}
+
+/// How a target's values are stored, told from many of them together.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct StoreUse {
+    /// The store that most values speak for, or the model that all of them follow.
+    pub identified: Word,
+    /// The share of the values that are as it would have them.
+    pub share: f64,
+    /// Values that tell stores apart.
+    pub of: u64,
+    /// Their mean error with its sign, in steps.
+    pub bias: f64,
+}
+
+/// A blend state by one route on a target.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct BlendState {
+    /// The state's id.
+    pub id: String,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The target's format.
+    pub target: Word,
+    /// How the state reached the unit.
+    pub route: Word,
+    /// Pixels.
+    pub cases: u64,
+    /// Components outside what is legal.
+    pub failed: u64,
+    /// The greatest error: ULP on float targets, steps on those of 8 bits.
+    pub error_max: Number,
+    /// On targets of 8 bits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tiers: Option<Tiers>,
+    /// Why it was not drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skip_reason: Option<Word>,
+}
+
+impl BlendState {
+    /// Whether it was drawn.
+    #[must_use]
+    pub const fn is_drawn(&self) -> bool {
+        self.skip_reason.is_none()
+    }
+
+    /// Its tiers, none where it was not drawn on a target of 8 bits.
+    #[must_use]
+    pub fn tiers(&self) -> Tiers {
+        self.tiers.unwrap_or_default()
+    }
+}
+
+/// NaN or infinity in a blend unit.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SpecialUse {
+    /// The case.
+    pub id: String,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The target's format.
+    pub target: Word,
+    /// What was left of the colour.
+    pub seen: String,
+    /// What is on record for the driver.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<Word>,
+}
+
+impl SpecialUse {
+    /// Whether it is what is on record, if anything is.
+    #[must_use]
+    pub fn is_as_recorded(&self) -> bool {
+        self.recorded.as_ref().is_none_or(|recorded| *recorded == self.seen)
+    }
+}
+
+/// A group on an adapter in a stage.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Group {
+    /// `family/formula`.
+    pub id: String,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The stage's name.
+    pub stage: Word,
+    /// The format that the blend unit worked on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<Word>,
+    /// Values by how near they come, on a target of 8 bits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tiers: Option<Tiers>,
+    /// How values are stored, on a target of 8 bits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub store: Option<StoreUse>,
+    /// The counts.
+    #[serde(flatten)]
+    pub totals: Totals,
+    /// The greatest error of a verdict that is not indeterminate, in ULP of the output's format or in its steps.
+    pub error_ulp_max: Number,
+    /// The greatest margin.
+    pub margin_max: Number,
+    /// Time spent on the group on this adapter in this stage.
+    pub seconds: f64,
+    /// Time that drawing it takes once every pipeline is compiled, where that was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds_warm: Option<f64>,
+    /// The case of the greatest margin.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worst: Option<String>,
+    /// Why the group is skipped.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skip_reason: Option<Word>,
+    /// The mistake that explains what failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explanation: Option<String>,
+    /// Why the group fails as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+    /// Of a scene's image.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub image: Option<ImageUse>,
+}
+
+/// An image of a scene.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ImageUse {
+    /// Pixels.
+    pub width: usize,
+    /// Pixels.
+    pub height: usize,
+    /// Judged pixels of which several outcomes are legal that differ by more than twice the widest of them.
+    pub marked: u64,
+    /// Of the shader with all effects: pixels that are not, bit for bit, those of the composed shaders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub differs_from_composed: Option<u64>,
+    /// Of the shader with all effects: what they cost, where that was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost: Option<EffectsCost>,
+    /// The first intermediate result in which a wrong image departs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub departs_in: Option<Word>,
+    /// Reference, result and error map of a wrong image.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<String>,
+}
+
+impl Group {
+    /// A group of nothing yet.
+    #[must_use]
+    pub fn new(id: String, adapter: String, stage: impl Into<Word>) -> Self {
+        Self {
+            id,
+            adapter,
+            stage: stage.into(),
+            target: None,
+            tiers: None,
+            store: None,
+            totals: Totals::default(),
+            error_ulp_max: Number(0.0),
+            margin_max: Number(0.0),
+            seconds: 0.0,
+            seconds_warm: None,
+            worst: None,
+            skip_reason: None,
+            explanation: None,
+            problem: None,
+            image: None,
+        }
+    }
+
+    /// The stage, and for a blend unit the target.
+    #[must_use]
+    pub fn place(&self) -> String {
+        self.target.as_ref().map_or(self.stage.to_string(), |target| format!("{} on {target}", self.stage))
+    }
+}
+
+/// What drawing a scene takes by composed shaders, and by the one with all effects, in turns.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct EffectsCost {
+    /// Median of one drawing by composed shaders.
+    pub composed_ms: f64,
+    /// The same by the shader with all effects.
+    pub full_ms: f64,
+    /// Median of the second over the first, turn by turn.
+    pub ratio: f64,
+    /// Its lower and upper quartile.
+    pub quartiles: [f64; 2],
+}
+
+/// A value outside its interval.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Failure {
+    /// The case.
+    pub id: String,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The stage's name.
+    pub stage: Word,
+    /// The format that the blend unit worked on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<Word>,
+    /// How the state reached the blend unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub route: Option<Word>,
+    /// The scalar output's name.
+    pub output: String,
+    /// The inputs by name.
+    pub inputs: serde_json::Map<String, serde_json::Value>,
+    /// Their bits.
+    pub inputs_hex: serde_json::Map<String, serde_json::Value>,
+    /// The f64 reference.
+    pub reference: Number,
+    /// The least and the greatest legal value.
+    pub interval: [Number; 2],
+    /// What is legal in words, where an interval does not say it: of a special value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub promise: Option<String>,
+    /// What came out.
+    pub value: Number,
+    /// Its bits.
+    pub value_hex: String,
+    /// Whether it was never written.
+    pub unwritten: bool,
+    /// The error in ULP of the output's format, or in its steps.
+    pub error_ulp: Number,
+    /// The command that runs the case alone.
+    pub rerun: String,
+}
+
+/// A named deviation that was granted or asked for.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct DeviationUse {
+    /// The deviation's name.
+    pub name: Word,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// Why it is granted.
+    pub reason: Word,
+    /// Whether its witness still shows it; where not, the deviation is no longer needed.
+    pub still_needed: bool,
+    /// Verdicts that it excused, the witness apart.
+    pub excused: u64,
+}
+
+/// Where the time of a run went, in seconds of this process.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct Timing {
+    /// Drawing inputs.
+    pub generate: f64,
+    /// Shaders parsed and pipelines made.
+    pub compile: f64,
+    /// Reference values and intervals.
+    pub reference: f64,
+    /// Handing work to devices, and waiting for it: drivers compile at the first use of a pipeline.
+    pub devices: f64,
+    /// Verdicts.
+    pub judge: f64,
+}
+
+/// A run that ended before its time.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Interrupted {
+    /// What was under way.
+    pub under_way: String,
+    /// What the device said.
+    pub message: String,
+}
+
+/// The JSON of `run`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Report {
+    /// `lightmeter.run/1`.
+    pub schema: Word,
+    /// The seed of random cases.
+    pub seed: u64,
+    /// Wall time.
+    pub seconds: f64,
+    /// The accuracy profile.
+    pub profile: Word,
+    /// The globs that cases were chosen by; none for all.
+    pub filter: Vec<String>,
+    /// What was judged.
+    pub adapters: Vec<Identity>,
+    /// The sum over the groups.
+    pub totals: Totals,
+    /// States judged under another's name: how many of the selected.
+    pub aliases: u64,
+    /// How blend states reached the blend unit: states by route.
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
+    pub routes: serde_json::Map<String, serde_json::Value>,
+    /// Where the time went.
+    pub timing: Timing,
+    /// Named deviations in force.
+    pub deviations: Vec<DeviationUse>,
+    /// The groups.
+    pub groups: Vec<Group>,
+    /// Each blend state on each target.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blend_states: Vec<BlendState>,
+    /// What blend units left of NaN and infinity, of which nothing is promised.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub special: Vec<SpecialUse>,
+    /// Hard cases by their stable and their naive form.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stability: Vec<Examined>,
+    /// What stable forms take beside naive ones, where that was measured.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stable_costs: Vec<Cost>,
+    /// What was under way when a device failed, which ended the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interrupted: Option<Interrupted>,
+    /// Failures, the first of each group.
+    pub failures: Vec<Failure>,
+}
+
+impl Report {
+    /// A report of nothing yet.
+    #[must_use]
+    pub fn empty(seed: u64, profile: Word, filter: Vec<String>, adapters: Vec<Identity>) -> Self {
+        Self {
+            schema: SCHEMA.into(),
+            seed,
+            seconds: 0.0,
+            profile,
+            filter,
+            adapters,
+            totals: Totals::default(),
+            aliases: 0,
+            routes: serde_json::Map::new(),
+            timing: Timing::default(),
+            deviations: vec![],
+            groups: vec![],
+            blend_states: vec![],
+            special: vec![],
+            stability: vec![],
+            stable_costs: vec![],
+            interrupted: None,
+            failures: vec![],
+        }
+    }
+
+    /// Counts verdicts that a named deviation of an adapter excused.
+    pub fn excuse(&mut self, deviation: &str, adapter: &str, verdicts: u64) {
+        let is_it = |known: &&mut DeviationUse| known.name == deviation && known.adapter == adapter;
+        if let Some(known) = self.deviations.iter_mut().find(is_it) {
+            known.excused += verdicts;
+        }
+    }
+
+    /// Whether all went as expected.
+    #[must_use]
+    pub fn is_success(&self) -> bool {
+        self.interrupted.is_none()
+            && self.totals.failed == 0
+            && self.totals.unexpected_passes == 0
+            && self.totals.failed_groups == 0
+    }
+}
+
+/// A hard case by its stable and its naive form, on an adapter in a stage. Errors are in roundings, the greatest at the case
+/// and within a few ULP of it; infinite where a value is NaN or infinite.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Examined {
+    /// The case, of the stable formula.
+    pub id: String,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The stage's name.
+    pub stage: Word,
+    /// How much the result amplifies the inputs' errors at the case itself.
+    pub condition: Number,
+    /// What the stable form claims.
+    pub bound: f64,
+    /// The stable form's error.
+    pub stable: Number,
+    /// The case near by where that is.
+    pub stable_at: String,
+    /// The naive formula.
+    pub naive_formula: Word,
+    /// What goes wrong with it.
+    pub fails: Word,
+    /// By how much at least.
+    pub naive_at_least: Number,
+    /// The naive form's error.
+    pub naive: Number,
+    /// Its error against its own exact value: where that is far less, it computes another function.
+    pub naive_rounding: Number,
+}
+
+impl Examined {
+    /// Whether the stable form keeps its claim.
+    #[must_use]
+    pub fn is_stable(&self) -> bool {
+        self.stable.0 <= self.bound
+    }
+
+    /// Whether the naive form fails as it is said to.
+    #[must_use]
+    pub fn naive_fails(&self) -> bool {
+        self.naive.0 >= self.naive_at_least.0
+    }
+}
+
+/// What a stable form takes beside a naive one, in the compute stage: nanoseconds of wall time for an evaluation, medians of
+/// turns in which each is measured, less what reading the inputs takes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Cost {
+    /// The stable formula.
+    pub formula: String,
+    /// The naive one.
+    pub naive: Word,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// Of the stable form.
+    pub stable_ns: f64,
+    /// Of the naive form.
+    pub naive_ns: f64,
+    /// Of reading the inputs, which is in neither.
+    pub idle_ns: f64,
+    /// Median of the stable form's time over the naive one's, turn by turn, reading included in both.
+    pub ratio: f64,
+    /// Its lower and upper quartile.
+    pub quartiles: [f64; 2],
+}
