@@ -4,9 +4,9 @@
 //! A deviation is scoped by driver and by version range. Within its range it is granted, and the run fails when its
 //! witness shows that it is no longer needed; outside it is neither granted nor asked for.
 
-use crate::arithmetic::profile::Excess;
-use crate::arithmetic::{Accept, Profile};
 use crate::blend_unit::model::Model;
+use lightmeter_arithmetic::profile::Excess;
+use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_gpu::Adapter;
 use lightmeter_reference::Real;
 use lightmeter_scene::target::TargetFormat;

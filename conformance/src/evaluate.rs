@@ -1,8 +1,8 @@
 //! Formulas evaluated by a subject on rows of inputs from anywhere, apart from a run.
 
-use crate::cases::Stage;
-use crate::select::Member;
 use crate::subject::{Compiled, Rows, Subject};
+use lightmeter_catalogue::cases::Stage;
+use lightmeter_catalogue::select::Member;
 use lightmeter_gpu::{Error, Kernel, Shaders};
 
 /// A group of formulas compiled for one subject, for rows of inputs from anywhere.

@@ -1,7 +1,7 @@
 //! One verdict: a value against the reference and the interval of legal values.
 
-use crate::arithmetic::format::error_ulp;
-use crate::arithmetic::{Accept, F32};
+use lightmeter_arithmetic::format::error_ulp;
+use lightmeter_arithmetic::{Accept, F32};
 use lightmeter_scene::target::SENTINEL;
 
 /// What became of one scalar output of one case.

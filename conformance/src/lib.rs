@@ -3,19 +3,15 @@
 pub mod adapters;
 pub mod bench;
 pub mod blend_unit;
-pub mod cases;
 pub mod devices;
 pub mod evaluate;
 pub mod faults;
-pub mod filter;
 pub mod gate;
 pub mod image;
 pub mod judge;
 pub mod options;
 pub mod report;
 pub mod run;
-pub mod scene;
-pub mod select;
 pub mod selection;
 pub mod special;
 pub mod stability;
@@ -25,4 +21,5 @@ pub mod tally;
 pub mod witness;
 
 pub use lightmeter_arithmetic as arithmetic;
+pub use lightmeter_catalogue::{cases, filter, scene, select};
 pub use lightmeter_document as document;

@@ -1,11 +1,11 @@
 //! What a run is asked for, and who is told how far it has come.
 
-use crate::arithmetic::Profile;
-use crate::arithmetic::profile::PROFILES;
-use crate::cases::blend::Samples;
-use crate::filter::Filter;
-use crate::select::Shard;
 use crate::subject::Subject;
+use lightmeter_arithmetic::Profile;
+use lightmeter_arithmetic::profile::PROFILES;
+use lightmeter_catalogue::cases::blend::Samples;
+use lightmeter_catalogue::filter::Filter;
+use lightmeter_catalogue::select::Shard;
 use lightmeter_document::run::Report;
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::target::TargetFormat;

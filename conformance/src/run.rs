@@ -3,21 +3,21 @@
 //! Work goes group by group and chunk by chunk, so that memory stays flat however many cases there are. A chunk's inputs
 //! are handed to every stage of every subject before the reference is computed on all cores; then the results are read.
 
-use crate::arithmetic::{Accept, Profile};
 use crate::blend_unit;
-use crate::cases::Kind;
-use crate::cases::blend;
 use crate::evaluate::kernel;
 use crate::image;
-use crate::image::select::Chosen;
 use crate::options::{Options, Progress};
-use crate::select::{CaseRef, Member, Selected};
 use crate::selection::Selection;
 use crate::special::verdict::Table;
 use crate::subject::{Compiled, Rows, Subject};
 use crate::tally::{Tally, judge_chunk, reported};
 use crate::witness;
 use crate::{special, stability};
+use lightmeter_arithmetic::{Accept, Profile};
+use lightmeter_catalogue::cases::Kind;
+use lightmeter_catalogue::cases::blend;
+use lightmeter_catalogue::scene::select::Chosen;
+use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::Number;
 use lightmeter_document::run::{Group, Interrupted, Report, Totals};
 use lightmeter_gpu::Error;
@@ -101,11 +101,12 @@ fn judge_in_turn(
             return Ok(());
         }
     }
-    let size = image::select::size(&options.filter, options.size);
+    let size = lightmeter_catalogue::scene::select::size(&options.filter, options.size);
     for chosen in &selection.scenes {
-        let id = image::select::scene_id(chosen.place);
+        let id = lightmeter_catalogue::scene::select::scene_id(chosen.place);
         progress.group(&id);
-        let loaded = image::select::builtin(chosen.place, size).expect("a test loads every scene that is built in");
+        let loaded = lightmeter_catalogue::scene::select::builtin(chosen.place, size)
+            .expect("a test loads every scene that is built in");
         let judged = image::run::run_scene(&loaded, chosen, subjects, options, report, progress);
         if is_interrupted(judged, &id, report)? {
             return Ok(());

@@ -1,14 +1,13 @@
 //! Everything that a run judges, and the parts that it falls into, each of which is judged and reported by itself.
 
-use crate::cases::blend::Program;
-use crate::cases::{Kind, Spec};
-use crate::filter::Filter;
-use crate::image;
-use crate::image::select::{Chosen, SIZE_AMONG_ALL};
 use crate::options::Options;
-use crate::select::{CaseRef, Member, Selected, catalogue_of, select};
 use crate::special::verdict::{self, Table};
 use crate::witness::NamedDeviation;
+use lightmeter_catalogue::cases::blend::Program;
+use lightmeter_catalogue::cases::{Kind, Spec};
+use lightmeter_catalogue::filter::Filter;
+use lightmeter_catalogue::scene::select::{Chosen, SIZE_AMONG_ALL};
+use lightmeter_catalogue::select::{CaseRef, Member, Selected, catalogue_of, select};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -70,8 +69,8 @@ impl Selection {
         let catalogue: Arc<[Member]> = catalogue_of(&options.samples).into();
         let formulas = select(&catalogue, &options.filter, options.cases, options.shard);
         let tables = verdict::select(&options.filter, options.shard);
-        let size = image::select::size(&options.filter, options.size);
-        let scenes = image::select::select(&options.filter, options.shard, size);
+        let size = lightmeter_catalogue::scene::select::size(&options.filter, options.size);
+        let scenes = lightmeter_catalogue::scene::select::select(&options.filter, options.shard, size);
         let has_cases = !(formulas.is_empty() && tables.is_empty() && scenes.is_empty());
         let deviations = if has_cases { NamedDeviation::all() } else { NamedDeviation::named(&options.filter) };
         Self { catalogue, formulas, tables, scenes, deviations }
@@ -105,7 +104,7 @@ impl Selection {
             parts.of(path, vec![filter]).formulas.push(chosen.clone());
         }
         for scene in &self.scenes {
-            let id = image::select::scene_id(scene.place);
+            let id = lightmeter_catalogue::scene::select::scene_id(scene.place);
             parts.of(id.clone(), vec![id]).scenes.push(scene.clone());
         }
         for part in &mut parts.parts {

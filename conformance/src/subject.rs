@@ -1,9 +1,9 @@
 //! What is judged: an adapter, or the embedded implementation, and how each of its stages evaluates a group of formulas.
 
 use crate::blend_unit::rules::Rules;
-use crate::cases::{Kind, Spec, Stage};
 use crate::devices::{Known, known};
-use crate::select::Member;
+use lightmeter_catalogue::cases::{Kind, Spec, Stage};
+use lightmeter_catalogue::select::Member;
 use lightmeter_document::run::Identity;
 use lightmeter_gpu::{
     Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Shaders,

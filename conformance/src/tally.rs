@@ -1,12 +1,12 @@
 //! Verdicts on a chunk of a group's cases, and what they come to.
 
-use crate::arithmetic::{Accept, Profile};
-use crate::cases::{Kind, Stage};
 use crate::judge::{Outcome, is_worse, judge, simplicity, worse};
 use crate::options::Options;
 use crate::run::{Chunk, TASK};
-use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
+use lightmeter_arithmetic::{Accept, Profile};
+use lightmeter_catalogue::cases::{Kind, Stage};
+use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
 use lightmeter_document::run::{Failure, Totals};
 use rayon::prelude::*;
@@ -265,9 +265,9 @@ pub fn by_name(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::profile::WGSL;
     use crate::run::{draw, refer};
-    use crate::select::catalogue;
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::select::catalogue;
     use lightmeter_gpu::Shaders;
 
     /// Quiet, negative, signalling, every bit set, and with a payload.

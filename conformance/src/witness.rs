@@ -3,13 +3,13 @@
 
 use crate::blend_unit;
 use crate::devices::{self, BlendDeviation};
-use crate::filter::Filter;
 use crate::judge::{Outcome, judge};
 use crate::options::{Options, Silent};
+use lightmeter_catalogue::filter::Filter;
 
-use crate::select::{CaseRef, Member, Random, Selected};
 use crate::special::{self, Probe};
 use crate::subject::Subject;
+use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected};
 use lightmeter_document::run::{DeviationUse, Report, Totals};
 use lightmeter_gpu::{Error, Shaders};
 
@@ -179,7 +179,7 @@ pub(crate) fn ask(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::select::catalogue;
+    use lightmeter_catalogue::select::catalogue;
 
     #[test]
     fn every_witness_is_there() {

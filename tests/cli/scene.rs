@@ -239,7 +239,7 @@ fn what_never_ends_is_not_read() {
 
 #[test]
 fn every_file_among_the_scenes_is_built_in_and_loads() {
-    let folder = root().join("conformance/scenes");
+    let folder = root().join("conformance/catalogue/scenes");
     let mut files: Vec<String> = std::fs::read_dir(folder)
         .expect("the folder of scenes")
         .map(|entry| entry.expect("an entry").path())
@@ -250,7 +250,8 @@ fn every_file_among_the_scenes_is_built_in_and_loads() {
     assert_eq!(SCENES.map(|(name, _)| name).to_vec(), files);
     for name in files {
         let built_in = load::builtin(&name).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let file = load::file(&root().join(format!("conformance/scenes/{name}.json"))).expect("the file loads");
+        let file =
+            load::file(&root().join(format!("conformance/catalogue/scenes/{name}.json"))).expect("the file loads");
         assert_eq!(built_in, file, "{name}");
         assert!(built_in.shows.ends_with('.') && built_in.shows.len() > 40, "{name}");
     }
@@ -273,7 +274,7 @@ fn effects_are_told_light_by_light() {
     for part in ["teapot: phong", "specular_blinn", "light `directional`", "not called for", "attenuation"] {
         assert!(text.contains(part), "{part}: {text}");
     }
-    let file = root().join("conformance/scenes/teapot.json");
+    let file = root().join("conformance/catalogue/scenes/teapot.json");
     let told = json(&["effects", file.to_str().expect("UTF-8"), "--format", "json"]);
     assert_eq!((told["schema"].as_str(), told["scene"].as_str()), (Some("lightmeter.effects/1"), Some("teapot")));
     assert_eq!(told["draws"][1]["lights"], json!(["directional", "point"]));

@@ -1,8 +1,8 @@
 //! Errors of many values against their exact ones.
 
 use super::document::{Errors, Spread};
-use crate::arithmetic::F32;
-use crate::arithmetic::format::Format as _;
+use lightmeter_arithmetic::F32;
+use lightmeter_arithmetic::format::Format as _;
 use lightmeter_document::Number;
 
 /// Gathers errors.

@@ -3,9 +3,9 @@
 use super::Bench;
 use super::contest::{Arithmetic, Contender, On, Sample, contest};
 use super::document::{Group, GroupKind, RungUse};
-use crate::cases::Kind;
-use crate::cases::blend::Program;
-use crate::select::Member;
+use lightmeter_catalogue::cases::Kind;
+use lightmeter_catalogue::cases::blend::Program;
+use lightmeter_catalogue::select::Member;
 use lightmeter_gpu::{Error, Rung};
 
 /// What a rung is, in a line.
@@ -107,7 +107,7 @@ pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Resul
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::select::catalogue;
+    use lightmeter_catalogue::select::catalogue;
     use std::collections::BTreeSet;
 
     #[test]

@@ -4,7 +4,7 @@ use super::contest::timed;
 use super::document::{Scaling, ScalingPoint};
 use super::turns::{self, Effort, Entry};
 use super::{Bench, fit};
-use crate::select::catalogue;
+use lightmeter_catalogue::select::catalogue;
 use lightmeter_gpu::{Error, RepeatPipeline};
 
 /// The formula that is evaluated.

@@ -22,13 +22,13 @@ mod techniques;
 pub mod text;
 pub mod turns;
 
-use crate::arithmetic::Profile;
-use crate::filter::Filter;
 use crate::options::Progress;
-use crate::scene::Loaded;
-use crate::select::{Member, catalogue};
 use crate::subject::Subject;
 use document::{ClockUse, Document, Family, Group, GroupKind, Measured, SCHEMA, Scaling};
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::filter::Filter;
+use lightmeter_catalogue::scene::Loaded;
+use lightmeter_catalogue::select::{Member, catalogue};
 use lightmeter_gpu::{Clock, ClockKind, Error, Gpu, Rung, Shaders};
 use std::time::Instant;
 use turns::Effort;

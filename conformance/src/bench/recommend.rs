@@ -4,7 +4,7 @@ use super::document::{Document, Errors, Group, Row};
 use super::figures::{digits, error, time};
 use super::pareto::refusal;
 use super::text::wrapped;
-use crate::filter::Filter;
+use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::Number;
 use serde::Serialize;
 use std::fmt::{Display, Formatter, Result as Written, Write};

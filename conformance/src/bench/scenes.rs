@@ -16,13 +16,13 @@ use super::Setting;
 use super::document::{Group, GroupKind, Row};
 use super::errors::Gathered;
 use super::turns::{self, Effort, Entry};
-use crate::arithmetic::Profile;
 use crate::image::file::Stored;
-use crate::image::select::{builtin, scene_id};
 use crate::options::Progress;
-use crate::scene::library::SCENES;
 use crate::subject::Subject;
 use drawing::{Drawer, Plan, Standard};
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::scene::library::SCENES;
+use lightmeter_catalogue::scene::select::{builtin, scene_id};
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, Error, Gpu, Reading, Rung, Shaders};
@@ -226,9 +226,9 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::profile::WGSL;
     use crate::bench::document::Standing;
     use crate::options::Silent;
+    use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_gpu::adapters;
 
     #[test]

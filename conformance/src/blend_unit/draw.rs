@@ -2,8 +2,8 @@
 
 use super::embedded;
 use super::pixel::{self, Units};
-use crate::cases::blend::{Program, UnitCase};
 use crate::subject::Subject;
+use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_gpu::{Batch, BlendUnit, Draw, Error, Shaders};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;

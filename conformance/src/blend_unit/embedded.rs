@@ -4,8 +4,8 @@
 
 use super::pixel::{self, Units};
 use super::rules::{Clamp, Rules, Store};
-use crate::cases::blend::{Program, UnitCase};
 use half::f16;
+use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_reference::blend::{Operands, masked};
 use lightmeter_reference::color::{srgb_decode, srgb_encode};
 use lightmeter_reference::{Rgba, Vector};

@@ -2,7 +2,7 @@
 //!
 //! *Float targets.* One ULP of the format for each conversion, factor, product and sum, in acceptance intervals of
 //! [`Hardware`]. *Targets of 8 bits.* Source, constant and result are clamped to [0, 1]; what a unit that computes wide and
-//! what one that computes narrow may give ([`crate::arithmetic::fixed`]), rounded to either neighbour. *sRGB.* The
+//! what one that computes narrow may give ([`lightmeter_arithmetic::fixed`]), rounded to either neighbour. *sRGB.* The
 //! destination is decoded to half an encoded step, blended wide, and either neighbour stored; what passes through stays what it
 //! was; alpha is linear.
 //!
@@ -11,9 +11,9 @@
 use super::pixel::{self, Units};
 use super::policy::promises_nothing;
 use super::rules::{Clamp, Rules};
-use crate::arithmetic::fixed::{Narrow, Unit, Wide};
-use crate::arithmetic::{Accept, F16, F32, Fixed, Format, Hardware, Profile};
-use crate::cases::blend::{Program, UnitCase};
+use lightmeter_arithmetic::fixed::{Narrow, Unit, Wide};
+use lightmeter_arithmetic::{Accept, F16, F32, Fixed, Format, Hardware, Profile};
+use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_reference::blend::{Operands, masked};
 use lightmeter_reference::{Real, Rgba, Vector};
 use lightmeter_scene::blend::{Separate, WriteMask};

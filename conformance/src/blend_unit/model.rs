@@ -1,7 +1,7 @@
 //! Integer models of blend units on 8 bits: what a driver is known to compute, bit for bit.
 
 use super::pixel::Units;
-use crate::cases::blend::{Program, UnitCase};
+use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::blend::{Equation, Factor, State};
 

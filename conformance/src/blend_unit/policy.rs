@@ -4,7 +4,7 @@
 //! anything. What drivers do is recorded as data all the same: a renderer that depends on it should know when it changes.
 
 use super::pixel::Units;
-use crate::cases::blend::UnitCase;
+use lightmeter_catalogue::cases::blend::UnitCase;
 use lightmeter_scene::target::TargetFormat;
 
 /// What an interface promises.

@@ -1,6 +1,6 @@
 //! The rules that a blend unit follows, and the faulty ones that tell which mistake was made.
 
-use crate::cases::blend::UnitCase;
+use lightmeter_catalogue::cases::blend::UnitCase;
 use lightmeter_reference::blend::{Operands, Saturate, blend_separate, factor};
 use lightmeter_reference::{Real, Rgba};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};

@@ -2,10 +2,10 @@
 
 use super::draw::{Piece, draw};
 use super::standing::Standing;
-use crate::cases::Kind;
 use crate::options::{Options, Progress};
-use crate::select::{CaseRef, Member, Selected};
 use crate::subject::Subject;
+use lightmeter_catalogue::cases::Kind;
+use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::run::{Interrupted, Report};
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::{Route, routes};

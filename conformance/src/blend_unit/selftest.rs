@@ -3,11 +3,11 @@
 
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::run::run_group;
-use crate::cases::Kind;
-use crate::cases::blend::{Program, Samples, every_state};
 use crate::options::{Options, Silent};
-use crate::select::{Member, Random, Selected, catalogue_of};
 use crate::subject::Subject;
+use lightmeter_catalogue::cases::Kind;
+use lightmeter_catalogue::cases::blend::{Program, Samples, every_state};
+use lightmeter_catalogue::select::{Member, Random, Selected, catalogue_of};
 use lightmeter_document::run::{Group, Report};
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::{Separate, State};

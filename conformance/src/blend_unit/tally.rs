@@ -5,10 +5,10 @@ use super::expect::{Expected, expect};
 use super::pixel::Units;
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::store::{NEAR, StoreCounts};
-use crate::arithmetic::{F16, F32, Format as _, Profile};
-use crate::cases::blend::{Program, UnitCase};
 use crate::devices::{BlendDeviation, Known};
 use crate::judge::{is_worse, margin, simplicity, worse};
+use lightmeter_arithmetic::{F16, F32, Format as _, Profile};
+use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_document::run::Tiers;
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::blend::Separate;
@@ -270,7 +270,7 @@ pub fn explain(samples: &[Sample]) -> Option<(String, usize, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::blend::MOST_LAYERS;
+    use lightmeter_catalogue::cases::blend::MOST_LAYERS;
     use lightmeter_scene::blend::{Equation, Factor, State, WriteMask};
 
     const PIXELS: usize = 1000;
@@ -285,8 +285,12 @@ mod tests {
     }
 
     fn tally(target: TargetFormat, case: &UnitCase, pixels: &[Units]) -> Tally {
-        let drawn =
-            Drawn { program: one_plus_one(), route: Route::Native, target, profile: &crate::arithmetic::profile::WGSL };
+        let drawn = Drawn {
+            program: one_plus_one(),
+            route: Route::Native,
+            target,
+            profile: &lightmeter_arithmetic::profile::WGSL,
+        };
         let mut tally = Tally::default();
         for (place, pixel) in pixels.iter().enumerate() {
             tally.pixel(drawn, &Known::default(), place, case, *pixel);
@@ -323,7 +327,7 @@ mod tests {
         for (src, dst) in [(f32::NAN, 0.5), (0.5, f32::NEG_INFINITY)] {
             let target = TargetFormat::Rgba32Float;
             let program = Program::Special(State { equation: Equation::Add, src: Factor::One, dst: Factor::One });
-            let drawn = Drawn { program, route: Route::Native, target, profile: &crate::arithmetic::profile::WGSL };
+            let drawn = Drawn { program, route: Route::Native, target, profile: &lightmeter_arithmetic::profile::WGSL };
             let mut tally = Tally::default();
             tally.pixel(drawn, &Known::default(), 0, &case(src, dst), [f64::NAN; 4]);
             assert_eq!((tally.passed, tally.failed, tally.indeterminate), (0, 0, 4));

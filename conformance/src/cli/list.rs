@@ -8,11 +8,10 @@ use clap::Args;
 use lightmeter::cases::blend::{Samples, aliases, separate_of};
 use lightmeter::cases::{Kind, Naive};
 use lightmeter::document::Number;
-use lightmeter::image;
-use lightmeter::image::select::Chosen;
 use lightmeter::report::text::thousands;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load::{self, Loaded};
+use lightmeter::scene::select::Chosen;
 use lightmeter::select::{CaseRef, Member, Random, Selected, catalogue_of, select};
 use lightmeter::special::verdict::{self, Table};
 use lightmeter::special::{FAMILY, Probe};
@@ -49,7 +48,7 @@ impl List {
         let catalogue = catalogue_of(&samples);
         let selected = select(&catalogue, &filter, self.amount.cases, self.amount.shard.0);
         let shard = self.amount.shard.0;
-        let scenes = if self.formulas { vec![] } else { image::select::select(&filter, shard, None) };
+        let scenes = if self.formulas { vec![] } else { lightmeter::scene::select::select(&filter, shard, None) };
         let tables = if self.formulas { vec![] } else { verdict::select(&filter, shard) };
         let deviations = if self.formulas { vec![] } else { NamedDeviation::named(&filter) };
         if self.formulas && selected.is_empty() {
@@ -77,7 +76,7 @@ impl List {
                 for chosen in &scenes {
                     let loaded = load::builtin(SCENES[chosen.place].0)?;
                     let pixels = chosen.pixels.as_ref().map_or_else(|| pixels(&loaded), |some| some.len() as u64);
-                    let id = image::select::scene_id(chosen.place);
+                    let id = lightmeter::scene::select::scene_id(chosen.place);
                     entries
                         .push(json!({ "scene": id, "title": loaded.title, "shows": loaded.shows, "pixels": pixels }));
                 }

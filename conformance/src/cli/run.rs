@@ -116,7 +116,7 @@ pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples, size: Op
     for glob in globs {
         let filter = Filter::new(std::slice::from_ref(glob))?;
         let whole = lightmeter::select::Shard::WHOLE;
-        let scenes = lightmeter::image::select::select(&filter, whole, size);
+        let scenes = lightmeter::scene::select::select(&filter, whole, size);
         let tables = lightmeter::special::verdict::select(&filter, whole);
         let others = scenes.is_empty() && tables.is_empty() && NamedDeviation::named(&filter).is_empty();
         if others && select(&catalogue, &filter, cases, whole).is_empty() {

@@ -2,8 +2,8 @@
 
 use super::change::{After, Before};
 use super::row::{Row, put};
-use crate::cases::blend::{MOST_LAYERS, Program};
-use crate::cases::{Domain, Input, Kind, Spec};
+use lightmeter_catalogue::cases::blend::{MOST_LAYERS, Program};
+use lightmeter_catalogue::cases::{Domain, Input, Kind, Spec};
 use lightmeter_reference::blend::{Mode, Operands, Saturate, blend, blend_separate, masked};
 use lightmeter_reference::{Real, Vec4, Vector};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State};

@@ -6,9 +6,9 @@ use super::change::{After, Before};
 use super::fog;
 use super::lighting;
 use super::table;
-use crate::cases::blend::Samples;
-use crate::cases::{Kind, Spec};
-use crate::select::{Member, catalogue_of};
+use lightmeter_catalogue::cases::blend::Samples;
+use lightmeter_catalogue::cases::{Kind, Spec};
+use lightmeter_catalogue::select::{Member, catalogue_of};
 use std::sync::LazyLock;
 
 /// A named mistake that renderers make.
@@ -145,7 +145,7 @@ pub(super) fn formulas() -> &'static [Member] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::FAMILIES;
+    use lightmeter_catalogue::cases::FAMILIES;
     use std::collections::BTreeSet;
 
     #[test]

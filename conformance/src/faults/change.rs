@@ -1,6 +1,6 @@
 //! What a mistake does to a formula's inputs before it, and to its outputs after it.
 
-use crate::cases::{Shape, Spec};
+use lightmeter_catalogue::cases::{Shape, Spec};
 use lightmeter_reference::Real;
 use lightmeter_reference::color::{srgb_decode, srgb_encode};
 use lightmeter_scene::raster::TARGET_SIZE;

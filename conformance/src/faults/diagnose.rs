@@ -3,9 +3,9 @@
 use super::catalogue::{Fault, concerning};
 use super::factor::{self, Scaled};
 use super::variation::Variation;
-use crate::arithmetic::{Accept, F32, Format as _, Profile};
-use crate::cases::Kind;
-use crate::select::Member;
+use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
+use lightmeter_catalogue::cases::Kind;
+use lightmeter_catalogue::select::Member;
 use serde::Serialize;
 use std::cmp::Ordering;
 
@@ -361,10 +361,10 @@ impl Wrong for (&Variation<'_>, &Scaled) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::profile::WGSL;
     use crate::faults::catalogue::formulas;
     use crate::judge::{Outcome, judge};
-    use crate::select::CaseRef;
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::select::CaseRef;
 
     /// The diagnosis of an implementation of a formula, of 256 cases.
     fn diagnosis(id: &str, implementation: impl Fn(&Member, &[f32], &mut [f32])) -> (Diagnosis, Vec<Vec<f32>>) {

@@ -4,9 +4,9 @@
 use super::diagnose::Answered;
 use super::row::Arithmetic;
 use super::variation::Variation;
-use crate::arithmetic::{Accept, F32, Format as _, Profile};
-use crate::cases::{Domain, Spec};
-use crate::select::Member;
+use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
+use lightmeter_catalogue::cases::{Domain, Spec};
+use lightmeter_catalogue::select::Member;
 use lightmeter_reference::Real as _;
 use serde::Serialize;
 use std::ops::Range;

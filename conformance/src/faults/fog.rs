@@ -1,7 +1,7 @@
 //! Fog with mistakes: distance, factor and mix, each of which can be wrong. Without a mistake it computes what the formula does.
 
 use super::row::{Row, put};
-use crate::cases::Spec;
+use lightmeter_catalogue::cases::Spec;
 use lightmeter_reference::departure::smoothstep;
 use lightmeter_reference::fog::{self, Distance};
 use lightmeter_reference::{Real, Vec3};

@@ -3,9 +3,9 @@
 
 use super::diagnose::Answered;
 use super::factor::digits;
-use crate::arithmetic::{Accept, Profile};
-use crate::cases::{Kind, Spec};
-use crate::select::Member;
+use lightmeter_arithmetic::{Accept, Profile};
+use lightmeter_catalogue::cases::{Kind, Spec};
+use lightmeter_catalogue::select::Member;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -345,11 +345,11 @@ pub fn group_verdict(member: &Member, rows: &[Answered<'_>], profile: &Profile) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::Draw;
-    use crate::arithmetic::profile::WGSL;
-    use crate::arithmetic::random::seed;
     use crate::faults::catalogue::formulas;
-    use crate::select::CaseRef;
+    use lightmeter_arithmetic::Draw;
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_arithmetic::random::seed;
+    use lightmeter_catalogue::select::CaseRef;
     use lightmeter_reference::Real as _;
 
     fn rows_of(member: &Member, cases: u64) -> Vec<Vec<f32>> {

@@ -35,14 +35,14 @@ pub(crate) fn percent(part: usize, whole: usize) -> f64 {
 /// Holds a model without a mistake against the formulas that it is of; how many cases that were.
 #[cfg(test)]
 pub(crate) fn agrees_with_formulas(
-    is_of: impl Fn(&crate::cases::Spec) -> bool,
-    evaluate: impl Fn(&crate::cases::Spec, &[f64], &mut [f64]) -> Option<()>,
+    is_of: impl Fn(&lightmeter_catalogue::cases::Spec) -> bool,
+    evaluate: impl Fn(&lightmeter_catalogue::cases::Spec, &[f64], &mut [f64]) -> Option<()>,
 ) -> usize {
     let mut seen = 0;
     for member in catalogue::formulas().iter().filter(|member| is_of(&member.spec)) {
         for k in 0..256 {
             let mut row = vec![];
-            member.inputs(crate::select::CaseRef::Random(k), 1, &mut row);
+            member.inputs(lightmeter_catalogue::select::CaseRef::Random(k), 1, &mut row);
             let wide: Vec<f64> = row.iter().map(|&x| x.into()).collect();
             let outputs = member.spec.output_len();
             let (mut model, mut formula) = (vec![f64::NAN; outputs], vec![0.0; outputs]);

@@ -1,7 +1,7 @@
 //! A row of inputs by name, in any arithmetic.
 
-use crate::arithmetic::{Accept, Draw};
-use crate::cases::{AnyFormula, Spec};
+use lightmeter_arithmetic::{Accept, Draw};
+use lightmeter_catalogue::cases::{AnyFormula, Spec};
 use lightmeter_reference::{Mat3, Mat4, Real, Vector};
 
 /// An arithmetic that the formulas of the catalogue can be evaluated in once their types are forgotten.

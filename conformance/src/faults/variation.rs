@@ -6,9 +6,9 @@ use super::catalogue::{Fault, Step};
 use super::fog;
 use super::lighting;
 use super::row::Arithmetic;
-use crate::arithmetic::{Accept, Profile};
-use crate::cases::{AnyFormula, Kind, Spec};
-use crate::select::Member;
+use lightmeter_arithmetic::{Accept, Profile};
+use lightmeter_catalogue::cases::{AnyFormula, Kind, Spec};
+use lightmeter_catalogue::select::Member;
 
 /// A formula with mistakes: the same source is the f32 implementation that makes them, its value in f64, and the interval of
 /// what a renderer that makes them may legally answer.

@@ -1,7 +1,7 @@
 //! A line that a renderer writes.
 
 use super::frame;
-use crate::filter::Filter;
+use lightmeter_catalogue::filter::Filter;
 use lightmeter_scene::frame::Frame;
 use serde::de::{Deserializer, Visitor};
 use serde::{Deserialize, Serialize};
@@ -45,7 +45,7 @@ impl Hello {
     ///
     /// # Errors
     /// Where a glob cannot be read.
-    pub fn filters(&self) -> Result<[Option<Filter>; 2], crate::filter::FilterError> {
+    pub fn filters(&self) -> Result<[Option<Filter>; 2], lightmeter_catalogue::filter::FilterError> {
         // No glob matches everything in a filter, and nothing in a declaration.
         let read = |globs: &[String]| (!globs.is_empty()).then(|| Filter::new(globs)).transpose();
         Ok([read(&self.formulas)?, read(&self.scenes)?])

@@ -3,8 +3,8 @@
 use super::known::expanded;
 use super::plan::Choice;
 use super::report::{Group, Report};
-use crate::cases::GENERATOR_VERSION;
 use crate::image::file::whole;
+use lightmeter_catalogue::cases::GENERATOR_VERSION;
 use serde::Deserialize;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};

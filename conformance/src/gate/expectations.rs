@@ -1,6 +1,6 @@
 //! Known failures, written down with their reason: they do not fail a gate, and it says so when they pass.
 
-use crate::filter::Filter;
+use lightmeter_catalogue::filter::Filter;
 use semver::{Version, VersionReq};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

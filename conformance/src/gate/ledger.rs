@@ -7,7 +7,7 @@ use super::plan::{Place, Plan};
 use super::tally::Tally;
 use super::verdict::{self, Failure, Verdicts};
 use super::{picture, process};
-use crate::arithmetic::Profile;
+use lightmeter_arithmetic::Profile;
 use lightmeter_document::Number;
 use rayon::prelude::*;
 use serde::Serialize;

@@ -3,8 +3,8 @@
 use super::frame;
 use super::picture::within;
 use super::plan::{Choice, Plan};
-use crate::cases::{GENERATOR_VERSION, Shape};
 use crate::image::file::{Stored, whole};
+use lightmeter_catalogue::cases::{GENERATOR_VERSION, Shape};
 use lightmeter_document::Number;
 use lightmeter_scene::frame::{Frame, Mesh, Texture};
 use lightmeter_scene::target::TargetFormat;

@@ -1,13 +1,13 @@
 //! Images that renderers write: PNG of 8 or 16 bits, EXR, NPY.
 
 use super::ledger::digest;
-use crate::arithmetic::Profile;
 use crate::blend_unit::pixel;
 use crate::faults::scene::Trial;
 use crate::image::expect;
 use crate::image::file::Stored;
 use crate::image::judge;
 use image::{DynamicImage, ImageReader};
+use lightmeter_arithmetic::Profile;
 use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;
 use std::io::Cursor;
@@ -216,9 +216,9 @@ pub fn judge(image: &Stored, frame: &Frame, profile: &Profile) -> Found {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::load;
     use image::codecs::png::{CompressionType, FilterType, PngEncoder};
     use image::{ExtendedColorType, ImageEncoder as _};
+    use lightmeter_catalogue::scene::load;
 
     /// The first built-in scene's frame, of 4 × 3 pixels, and a folder with some files.
     fn given(test: &str, files: &[(&str, Vec<u8>)]) -> (PathBuf, Frame) {

@@ -1,11 +1,11 @@
 //! Which cases another renderer is asked, and where each stands.
 
-use crate::cases::Kind;
-use crate::cases::blend::Program;
-use crate::filter::{Filter, FilterError};
-use crate::image::select::{builtin, scene_id};
-use crate::scene::library::SCENES;
-use crate::select::{CaseRef, Member, Random, Selected, Shard, catalogue, select};
+use lightmeter_catalogue::cases::Kind;
+use lightmeter_catalogue::cases::blend::Program;
+use lightmeter_catalogue::filter::{Filter, FilterError};
+use lightmeter_catalogue::scene::library::SCENES;
+use lightmeter_catalogue::scene::select::{builtin, scene_id};
+use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected, Shard, catalogue, select};
 use lightmeter_scene::frame::Frame;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -152,7 +152,7 @@ impl Plan {
     ///
     /// # Errors
     /// Where it is refused, which a test rules out.
-    pub fn frame(&self, scene: usize) -> Result<(String, Frame), crate::scene::Error> {
+    pub fn frame(&self, scene: usize) -> Result<(String, Frame), lightmeter_catalogue::scene::Error> {
         let loaded = builtin(self.scenes[scene], self.choice.size)?;
         Ok((loaded.title, loaded.frame))
     }

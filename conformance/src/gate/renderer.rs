@@ -3,7 +3,7 @@
 use super::answer::{Hello, Line};
 use super::ledger::Ledger;
 use super::plan::{Place, Plan};
-use crate::cases::Spec;
+use lightmeter_catalogue::cases::Spec;
 use lightmeter_scene::frame::Frame;
 use std::borrow::Cow;
 use std::path::Path;
@@ -73,10 +73,10 @@ mod tests {
     use super::super::process::Outcome;
     use super::super::report::Report;
     use super::*;
-    use crate::arithmetic::profile::WGSL;
     use crate::faults::scene::{SCENE_FAULTS, draw};
     use crate::faults::{Variation, concerning};
-    use crate::select::{Member, catalogue};
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::select::{Member, catalogue};
 
     /// The formulas in f32, one of them with a mistake; scenes with another.
     struct Wrong {

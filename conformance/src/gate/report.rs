@@ -182,7 +182,7 @@ impl Report {
             command,
             version: env!("CARGO_PKG_VERSION"),
             choice: plan.choice.clone(),
-            generator: crate::cases::GENERATOR_VERSION,
+            generator: lightmeter_catalogue::cases::GENERATOR_VERSION,
             profile: ledger.profile().name.into(),
             renderer: Named { name: clipped(&outcome.hello.renderer), version: clipped(&outcome.hello.version) },
             seconds,

@@ -1,8 +1,8 @@
 //! What an answer to a case is worth.
 
 use super::plan::{Place, Plan};
-use crate::arithmetic::{Accept, Profile};
 use crate::judge::{Outcome, Verdict, judge, worse};
+use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_document::Number;
 use serde::Serialize;
 

@@ -18,7 +18,7 @@
 //!   these, t is off by `Δt = (Δₐ + Δ_b)/(|dₐ − d_b| − Δₐ − Δ_b)`, which moves everything by Δt of the whole edge. A vertex
 //!   that lies on the plane within its error leaves open whether its triangle is seen at all.
 
-use crate::arithmetic::{Accept, F32, Format};
+use lightmeter_arithmetic::{Accept, F32, Format};
 use lightmeter_reference::render::{Attributes, Geometry, Triangle};
 
 const EPSILON: f64 = F32::EPSILON;

@@ -2,8 +2,8 @@
 
 use super::drawn::intermediate;
 use super::expect::Expectation;
-use crate::arithmetic::Profile;
 use crate::subject::Subject;
+use lightmeter_arithmetic::Profile;
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;

@@ -2,8 +2,8 @@
 
 use super::bound::{Bound, VertexErrors};
 use super::pixel::{Candidate, Painter};
-use crate::arithmetic::{Accept, Profile};
 use crate::blend_unit::pixel::Units;
+use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::render::{Geometry, Scratch, Shader};
 use lightmeter_reference::{Vec4, Vector};

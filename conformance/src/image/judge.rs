@@ -2,9 +2,9 @@
 
 use super::expect::Expected;
 use super::file::Stored;
-use crate::arithmetic::format::error_ulp;
-use crate::arithmetic::{F16, F32};
 use crate::judge::{is_worse, margin, worse};
+use lightmeter_arithmetic::format::error_ulp;
+use lightmeter_arithmetic::{F16, F32};
 use lightmeter_scene::target::{Encoding, TargetFormat};
 use rayon::prelude::*;
 

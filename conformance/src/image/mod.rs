@@ -14,6 +14,5 @@ pub mod file;
 pub mod judge;
 mod pixel;
 pub mod run;
-pub mod select;
 
 pub use expect::{Expected, expect};

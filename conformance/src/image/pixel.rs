@@ -5,9 +5,9 @@
 //! are followed. Each way gives an interval of its own; what is legal is the hull of all.
 
 use super::expect::{Expected, Prepared};
-use crate::arithmetic::{Accept, paths};
 use crate::blend_unit::expect::over;
 use crate::blend_unit::pixel::Units;
+use lightmeter_arithmetic::{Accept, paths};
 use lightmeter_reference::Rgba;
 use lightmeter_reference::render::Scratch;
 use lightmeter_scene::depth::Compare;

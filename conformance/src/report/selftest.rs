@@ -1,9 +1,9 @@
 //! The self-test of formulas as text.
 
-use crate::cases::FAMILIES;
 use crate::faults::calibrate::Resolution;
 use crate::faults::faults;
 use crate::faults::selftest::{Finding, Kill, Record};
+use lightmeter_catalogue::cases::FAMILIES;
 use std::fmt::{Result, Write};
 
 /// The kill matrix by mistake, what went wrong, and the resolution where it was measured.

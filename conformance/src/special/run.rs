@@ -393,6 +393,8 @@ fn maybe_hex<S: Serializer>(bits: &Option<u32>, serializer: S) -> Result<S::Ok, 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lightmeter_catalogue::special::Class;
+    use std::collections::BTreeSet;
 
     const NAN: u32 = 0x7fc0_0000;
 
@@ -415,6 +417,36 @@ mod tests {
         ];
         for (promise, bits, recorded, deviates, verdict) in rows {
             assert_eq!(Verdict::of(promise, bits, recorded, deviates), verdict, "{promise:?} {bits:x} {recorded:?}");
+        }
+    }
+
+    #[test]
+    fn probes_are_well_formed() {
+        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+        let mut names = BTreeSet::new();
+        for probe in PROBES {
+            assert!(names.insert(probe.name), "{} stands twice", probe.name);
+            assert!(probe.name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'));
+            assert!(!probe.inputs.contains(&SENTINEL), "{}", probe.name);
+            match probe.way {
+                Way::Function(function) => {
+                    let kernel = Kernel::new(&shaders, FILE, function).unwrap_or_else(|error| panic!("{error}"));
+                    assert_eq!((kernel.inputs, kernel.outputs), (probe.inputs.len(), 1), "{}", probe.name);
+                }
+                Way::Varying { .. } => assert_eq!(probe.inputs.len(), 1, "{}", probe.name),
+            }
+        }
+        for class in Class::ALL {
+            assert!(PROBES.iter().any(|probe| probe.class == class), "{class:?} has no probe");
+        }
+    }
+
+    #[test]
+    fn every_function_has_a_probe() {
+        let (_, text) = lightmeter_gpu::FILES.into_iter().find(|(name, _)| *name == FILE).expect("it is built in");
+        for line in text.lines().filter_map(|line| line.strip_prefix("fn ")) {
+            let function = line.split('(').next().unwrap_or_default();
+            assert!(PROBES.iter().any(|probe| probe.way == Way::Function(function)), "{function} has no probe");
         }
     }
 }

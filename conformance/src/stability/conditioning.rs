@@ -1,8 +1,8 @@
 //! Errors in roundings, condition numbers, and what they say together: whether a case is ill-conditioned or a form unstable.
 
-use crate::arithmetic::Accept;
-use crate::cases::{AnyFormula, Size, Spec};
-use crate::select::Member;
+use lightmeter_arithmetic::Accept;
+use lightmeter_catalogue::cases::{AnyFormula, Size, Spec};
+use lightmeter_catalogue::select::Member;
 use lightmeter_document::Number;
 use serde::Serialize;
 

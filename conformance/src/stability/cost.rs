@@ -2,8 +2,8 @@
 
 use crate::evaluate::kernel;
 use crate::options::Options;
-use crate::select::{CaseRef, Member};
 use crate::subject::Subject;
+use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::run::Cost;
 use lightmeter_gpu::{Clock, Error, RepeatPipeline, Rung};
 use std::collections::BTreeMap;

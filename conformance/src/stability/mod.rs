@@ -9,11 +9,11 @@ mod cost;
 
 pub use conditioning::{Conditioning, ILL_CONDITIONED, ROUNDING, Standing, UNSTABLE, condition, roundings, size};
 
-use crate::cases::{Naive, Stable};
 use crate::evaluate::Evaluator;
 use crate::options::Options;
-use crate::select::{CaseRef, Member, catalogue};
 use crate::subject::Subject;
+use lightmeter_catalogue::cases::{Naive, Stable};
+use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
 use lightmeter_document::Number;
 use lightmeter_document::run::Examined;
 use lightmeter_document::run::Report;

@@ -6,15 +6,15 @@
 use super::plan::Plan;
 use super::run::Work;
 use super::statistics::{Exact, Place, Seen, Statistics, Stored};
-use crate::arithmetic::Profile;
 use crate::blend_unit::draw::{Piece, draw};
 use crate::blend_unit::expect::expect;
 use crate::blend_unit::pixel::{self, Units};
 use crate::blend_unit::rules::Rules;
 use crate::blend_unit::tally::{Outcome, count_tier};
-use crate::cases::Kind;
-use crate::cases::blend::Program;
 use crate::subject::Subject;
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::cases::Kind;
+use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_document::Number;
 use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::Route;

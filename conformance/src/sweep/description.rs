@@ -3,7 +3,7 @@
 use super::plan::{Over, Plan};
 use super::span::Span;
 use super::statistics::Exact;
-use crate::arithmetic::Profile;
+use lightmeter_arithmetic::Profile;
 use lightmeter_document::run::Identity;
 use lightmeter_gpu::Shaders;
 use serde::{Deserialize, Serialize};

@@ -5,7 +5,7 @@
 use super::description::{Description, hash};
 use super::span::Span;
 use super::statistics::Statistics;
-use crate::select::Shard;
+use lightmeter_catalogue::select::Shard;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -274,10 +274,10 @@ fn shard_of(text: &str) -> Option<Shard> {
 mod tests {
     use super::super::statistics::tests::seen;
     use super::*;
-    use crate::arithmetic::profile::WGSL;
-    use crate::select::catalogue;
     use crate::subject::Subject;
     use crate::sweep::{Asked, Plan};
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::select::catalogue;
     use lightmeter_gpu::Shaders;
 
     /// Five blocks of fog, of which one input fails.

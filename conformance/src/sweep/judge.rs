@@ -11,11 +11,11 @@
 //! input's own is.
 
 use super::statistics::{Exact, Place, Seen, Statistics};
-use crate::arithmetic::format::error_ulp;
-use crate::arithmetic::{Accept, F32, Format as _, Profile};
-use crate::cases::AnyFormula;
 use crate::devices::Deviation;
 use crate::judge::{Outcome, judge};
+use lightmeter_arithmetic::format::error_ulp;
+use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
+use lightmeter_catalogue::cases::AnyFormula;
 use lightmeter_document::Number;
 use lightmeter_scene::along::{Along, float_of};
 use rayon::prelude::*;
@@ -183,9 +183,9 @@ fn seen(input: f32, bits: u32, reference: f64, interval: &Accept) -> Seen {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::profile::WGSL;
-    use crate::cases::Kind;
-    use crate::select::{CaseRef, Member, catalogue};
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::cases::Kind;
+    use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
     use lightmeter_scene::along::key_of;
 
     fn swept() -> Vec<Member> {

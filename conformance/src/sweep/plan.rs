@@ -3,8 +3,8 @@
 use super::preset::{Free, PRESETS, Preset};
 use super::span::Span;
 use super::statistics::Exact;
-use crate::cases::{Domain, Kind, Spec, Stage};
-use crate::select::Member;
+use lightmeter_catalogue::cases::{Domain, Kind, Spec, Stage};
+use lightmeter_catalogue::select::Member;
 use lightmeter_scene::along::{float_of, key_of};
 
 /// What was asked for; what is missing is the preset's, or follows from the formula.
@@ -260,7 +260,7 @@ pub(super) fn input(from: f32, number: u64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::select::catalogue;
+    use lightmeter_catalogue::select::catalogue;
 
     fn refusal(formula: &str, asked: &Asked) -> String {
         Plan::new(&catalogue(), formula, asked).err().map(|refused| refused.to_string()).unwrap_or_default()

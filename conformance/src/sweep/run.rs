@@ -5,10 +5,10 @@ use super::document::{Document, DocumentError};
 use super::judge::Judge;
 use super::plan::{Over, Plan, input};
 use super::statistics::Statistics;
-use crate::arithmetic::Profile;
-use crate::cases::Stage;
 use crate::evaluate::kernel;
 use crate::subject::Subject;
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::cases::Stage;
 use lightmeter_gpu::{Block, Error, Gpu, Shaders, Sweep};
 use lightmeter_scene::along::{Along, key_of};
 use rayon::prelude::*;
@@ -172,9 +172,9 @@ impl Work for Embedded<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::profile::WGSL;
-    use crate::select::{Shard, catalogue};
     use crate::sweep::{Asked, Description};
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::select::{Shard, catalogue};
 
     /// A device that is lost in its fourth block.
     struct Lost(u64);

@@ -1,6 +1,6 @@
 //! All inputs of a sweep as numbers, cut into blocks, and which blocks a shard has.
 
-use crate::select::Shard;
+use lightmeter_catalogue::select::Shard;
 
 /// The most inputs of a block: with so many a device has a fifth of a second to do.
 const MOST: u64 = 1 << 22;

@@ -1,7 +1,6 @@
 //! Rows that are drawn: compiled, drawn once, held against the reference, and timed in turns.
 
 use super::{Gathered, On, Row, Setting, TIMED};
-use crate::arithmetic::Profile;
 use crate::bench::document::Errors;
 use crate::bench::turns::{self, Effort, Entry};
 use crate::blend_unit::pixel::linear;
@@ -10,6 +9,7 @@ use crate::image::expect::{Expected, expect};
 use crate::image::file::Stored;
 use crate::image::judge::judge;
 use crate::image::run::{excuse, profile_of};
+use lightmeter_arithmetic::Profile;
 use lightmeter_gpu::compose::Recipe;
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, Error, Gpu, Shaders};
@@ -268,10 +268,10 @@ pub(super) const fn side(setting: &Setting, full: u32, quick: u32) -> u32 {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::arithmetic::profile::WGSL;
-    use crate::image::select::builtin;
-    use crate::scene::library::SCENES;
     use crate::subject::Subject;
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::scene::library::SCENES;
+    use lightmeter_catalogue::scene::select::builtin;
     use lightmeter_gpu::adapters;
     use lightmeter_gpu::compose::Shader;
 

@@ -1,6 +1,6 @@
 //! What techniques and scalings draw.
 
-use crate::scene::load;
+use lightmeter_catalogue::scene::load;
 use lightmeter_scene::frame::{Frame, Mesh};
 use std::fmt::Write as _;
 

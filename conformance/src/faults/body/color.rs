@@ -2,7 +2,7 @@
 
 use super::super::row::{Row, put};
 use super::Body;
-use crate::cases::Spec;
+use lightmeter_catalogue::cases::Spec;
 use lightmeter_reference::{Real, Vec4, Vector, color};
 
 pub(super) fn colors<R: Real>(spec: &Spec, body: Body, x: &Row<'_, R>, out: &mut [R]) -> Option<()> {

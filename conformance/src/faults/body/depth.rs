@@ -2,7 +2,7 @@
 
 use super::super::row::{Row, put};
 use super::Body;
-use crate::cases::{Kind, Spec};
+use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_reference::depth::passes;
 use lightmeter_reference::{Real, Vector, interpolation};
 use lightmeter_scene::depth::Compare;

@@ -7,7 +7,7 @@ mod interpolation;
 mod vector;
 
 use super::row::{Row, put};
-use crate::cases::{Kind, Spec};
+use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_reference::{Real, Vector};
 use lightmeter_scene::depth::Compare;
 

@@ -5,7 +5,7 @@ mod model;
 mod shade;
 
 use super::row::Row;
-use crate::cases::Spec;
+use lightmeter_catalogue::cases::Spec;
 use lightmeter_reference::Real;
 pub(super) use model::Twist;
 use model::right;

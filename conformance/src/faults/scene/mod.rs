@@ -4,11 +4,11 @@
 pub mod selftest;
 mod table;
 
-use crate::arithmetic::Profile;
 use crate::blend_unit::pixel;
 use crate::image::expect::Expected;
 use crate::image::file::Stored;
 use crate::image::{expect, judge};
+use lightmeter_arithmetic::Profile;
 use lightmeter_reference::Real;
 use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;

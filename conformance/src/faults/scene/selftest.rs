@@ -1,11 +1,11 @@
 //! Every mistake of a renderer in every scene that shows it: whether it is caught, and told by its name.
 
 use super::{SCENE_FAULTS, Trial, draw, fails};
-use crate::arithmetic::Profile;
 use crate::image::expect;
 use crate::image::file::Stored;
-use crate::image::select::{builtin, scene_id};
-use crate::scene::library::SCENES;
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::scene::library::SCENES;
+use lightmeter_catalogue::scene::select::{builtin, scene_id};
 use lightmeter_reference::render::render;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -85,7 +85,7 @@ pub fn selftest(
     size: u32,
     profile: &Profile,
     progress: &(impl Fn(&str) + Sync),
-) -> std::result::Result<Record, crate::scene::Error> {
+) -> std::result::Result<Record, lightmeter_catalogue::scene::Error> {
     let mut rows: Vec<SceneRow> = SCENE_FAULTS
         .iter()
         .map(|fault| SceneRow {
@@ -137,7 +137,7 @@ pub fn selftest(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::profile::WGSL;
+    use lightmeter_arithmetic::profile::WGSL;
 
     #[test]
     fn every_mistake_is_caught_and_nearly_all_are_named() {

@@ -5,8 +5,8 @@ use super::super::catalogue::Fault;
 use super::super::catalogue::Step::Before;
 use super::super::change::Before as In;
 use super::{blended, fault, where_colors_are_drawn};
-use crate::cases::blend::Program;
-use crate::cases::{Kind, Spec};
+use lightmeter_catalogue::cases::blend::Program;
+use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_scene::blend::{Factor, WriteMask};
 
 pub(super) const FAULTS: &[Fault] = &[

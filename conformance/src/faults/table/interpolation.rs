@@ -6,7 +6,7 @@ use super::super::catalogue::Step::{After, Before, Body, Instead};
 use super::super::change::After as Out;
 use super::super::change::Before as In;
 use super::fault;
-use crate::cases::{Kind, Spec};
+use lightmeter_catalogue::cases::{Kind, Spec};
 
 pub(super) const FAULTS: &[Fault] = &[
     fault(

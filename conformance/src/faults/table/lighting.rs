@@ -7,7 +7,7 @@ use super::super::change::After as Out;
 use super::super::change::Before as In;
 use super::super::lighting::Twist as Lit;
 use super::{fault, in_lighting, lit};
-use crate::cases::Spec;
+use lightmeter_catalogue::cases::Spec;
 
 pub(super) const FAULTS: &[Fault] = &[
     fault(

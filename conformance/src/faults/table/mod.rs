@@ -15,8 +15,8 @@ use super::blend::Twist as Blended;
 use super::catalogue::{Fault, Step};
 use super::fog::Twist as Fogged;
 use super::lighting::Twist as Lit;
-use crate::cases::blend::Program;
-use crate::cases::{Kind, Spec};
+use lightmeter_catalogue::cases::blend::Program;
+use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_scene::blend::{Factor, WriteMask};
 
 /// All of them, in the order of tables.

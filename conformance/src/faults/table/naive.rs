@@ -3,7 +3,7 @@
 use super::super::catalogue::Fault;
 use super::super::catalogue::Step::Naive;
 use super::fault;
-use crate::cases::Spec;
+use lightmeter_catalogue::cases::Spec;
 
 pub(super) const FAULTS: &[Fault] =
     &[fault("naive-form", "the formula is evaluated in the naive form that it is the stable one of", &[&[Naive]])

@@ -5,7 +5,7 @@ use super::super::catalogue::Step::{After, Before};
 use super::super::change::After as Out;
 use super::super::change::Before as In;
 use super::{fault, where_colors_are_drawn};
-use crate::cases::Spec;
+use lightmeter_catalogue::cases::Spec;
 
 pub(super) const FAULTS: &[Fault] = &[
     fault("gamma-encoded", "the output is gamma-encoded, c^(1/2.2)", &[&[After(Out::Gamma)]])

@@ -67,13 +67,13 @@ pub enum Error {
     },
     /// What it declares cannot be read.
     #[error("the renderer's hello: {0}")]
-    Hello(#[from] crate::filter::FilterError),
+    Hello(#[from] lightmeter_catalogue::filter::FilterError),
     /// It asks for accuracy rules that are unknown.
-    #[error("the renderer's hello: no profile `{0}`; expected {profiles}", profiles = crate::arithmetic::profile::PROFILES.map(|profile| profile.name).join(", "))]
+    #[error("the renderer's hello: no profile `{0}`; expected {profiles}", profiles = lightmeter_arithmetic::profile::PROFILES.map(|profile| profile.name).join(", "))]
     Profile(String),
     /// A scene is refused, which a test rules out.
     #[error("{0}")]
-    Scene(#[from] crate::scene::Error),
+    Scene(#[from] lightmeter_catalogue::scene::Error),
     /// A pack's or a scene's file cannot be written.
     #[error("{0}")]
     Pack(#[from] pack::Error),

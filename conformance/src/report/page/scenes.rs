@@ -2,9 +2,10 @@
 
 use crate::blend_unit::pixel::Units;
 use crate::image::file::Stored;
-use crate::scene::Error;
-use crate::scene::library::SCENES;
-use crate::scene::load::{self, Loaded};
+use lightmeter_catalogue::scene::Error;
+use lightmeter_catalogue::scene::library::SCENES;
+use lightmeter_catalogue::scene::load;
+use lightmeter_catalogue::scene::load::Loaded;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::effects;
 use lightmeter_scene::target::TargetFormat;
@@ -127,7 +128,10 @@ fn average(image: &Stored, at: [usize; 2]) -> Units {
 pub fn markdown(run: &Run, scenes: &[Loaded], picture: Option<&str>, out: &mut impl Write) -> Result {
     writeln!(out, "# Scenes\n")?;
     writeln!(out, "Made by `./x run 'scene/*' --adapter all --timing --format json --out RUN.json` and")?;
-    writeln!(out, "`./x page scenes RUN.json --out docs/scenes.md`. Each scene is a file in `conformance/scenes/`.\n")?;
+    writeln!(
+        out,
+        "`./x page scenes RUN.json --out docs/scenes.md`. Each scene is a file in `conformance/catalogue/scenes/`.\n"
+    )?;
     if let Some(picture) = picture {
         writeln!(out, "![Every scene by the reference, in the order of the table, {COLUMNS} in a row]({picture})\n")?;
     }

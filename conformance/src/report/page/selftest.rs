@@ -1,11 +1,11 @@
 //! The page on the self-test, made from the JSON of `lightmeter selftest`: the kill matrix, and the suite's resolution.
 
-use crate::cases::FAMILIES;
 use crate::faults::calibrate::{CASES, Resolution};
 use crate::faults::scene::selftest as scenes;
 use crate::faults::selftest::{Clean, Finding, Kill, Record};
 use crate::faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
 use crate::report::selftest::smallest;
+use lightmeter_catalogue::cases::FAMILIES;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};

@@ -1,9 +1,9 @@
 //! The page on hard cases, made from a run's JSON: naive against stable error with condition numbers, what stable forms
 //! claim and cost, and a picture of both errors against the condition.
 
-use crate::cases::Stable;
-use crate::select::{Member, catalogue};
 use crate::stability::UNSTABLE;
+use lightmeter_catalogue::cases::Stable;
+use lightmeter_catalogue::select::{Member, catalogue};
 use lightmeter_document::Number;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};

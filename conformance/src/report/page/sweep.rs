@@ -1,9 +1,9 @@
 //! The page on sweeps, made from their results.
 
 use crate::report::text::thousands;
-use crate::select::catalogue;
 use crate::sweep::text::{bars, error, margin, rate};
 use crate::sweep::{Asked, Document, Exact, PRESETS, Place, Plan, Seen};
+use lightmeter_catalogue::select::catalogue;
 use lightmeter_document::Number;
 use std::fmt::{Result, Write};
 

@@ -3,7 +3,7 @@
 use super::raster;
 use super::rows::{Reader, Writer};
 use super::spec::{Kind, Spec};
-use crate::arithmetic::{Accept, Draw, Dual, Profile, Trace, dual};
+use lightmeter_arithmetic::{Accept, Draw, Dual, Profile, Trace, dual};
 use lightmeter_reference::Real;
 use lightmeter_scene::along::Along;
 use lightmeter_scene::raster::Raster;
@@ -210,6 +210,7 @@ impl<F: Formula> AnyFormula for F {
 }
 
 /// Defines a formula of a fixed description.
+#[macro_export]
 macro_rules! formula {
     (
         $(#[$doc:meta])* $name:ident: $id:literal by $function:literal,
@@ -250,7 +251,7 @@ macro_rules! formula {
                 }
             }
 
-            fn evaluate<R: lightmeter_reference::Real>(
+            fn evaluate<R: $crate::Real>(
                 &self,
                 $x: &mut $crate::cases::Reader<'_, R>,
                 $out: &mut $crate::cases::Writer<'_, R>,
@@ -258,4 +259,4 @@ macro_rules! formula {
         }
     };
 }
-pub(crate) use formula;
+pub use formula;

@@ -14,6 +14,7 @@ mod mesh;
 mod normals;
 mod obj;
 mod objects;
+pub mod select;
 mod shapes;
 mod teapot;
 mod texture;

@@ -12,7 +12,7 @@ pub mod lighting;
 pub mod vector;
 
 mod draw;
-pub(crate) mod formula;
+pub mod formula;
 mod raster;
 mod rows;
 mod spec;

@@ -40,7 +40,7 @@ impl Input {
     }
 
     /// A value in the middle of the domain, for the inputs that a hard case leaves open.
-    pub(crate) fn middle(&self, row: &mut Vec<f32>) {
+    pub fn middle(&self, row: &mut Vec<f32>) {
         let middle = match self.domain {
             Domain::Uniform(low, high) | Domain::Halves(low, high) => low.midpoint(high),
             Domain::LogUniform(low, high) => (low * high).sqrt(),

@@ -15,7 +15,7 @@
 //! either way elsewhere.
 
 use super::target as viewport;
-use crate::arithmetic::{Accept, F32};
+use lightmeter_arithmetic::{Accept, F32};
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::{Real, Vec2, Vec4, Vector};
 use lightmeter_scene::raster::Raster;
