@@ -10,10 +10,8 @@ use crate::options::{Options, Progress};
 use crate::selection::Selection;
 use crate::special::verdict::Table;
 use crate::subject::{Compiled, Rows, Subject};
-use crate::tally::{Tally, judge_chunk, reported};
 use crate::witness;
 use crate::{special, stability};
-use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend;
 use lightmeter_catalogue::scene::select::Chosen;
@@ -21,17 +19,14 @@ use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::Number;
 use lightmeter_document::run::{Group, Interrupted, Report, Totals};
 use lightmeter_gpu::Error;
+use lightmeter_judge::chunk::{self, Chunk};
+use lightmeter_judge::tally;
+use lightmeter_judge::tally::{Tally, judge_chunk, reported};
 use lightmeter_scene::blend::Equation;
-use rayon::prelude::*;
 use std::time::Instant;
 
 /// Cases of a chunk.
 const CHUNK: usize = 1 << 16;
-/// Cases that a task of the pool takes at once.
-pub(crate) const TASK: usize = 512;
-/// The share of indeterminate verdicts, hard cases apart, above which a group fails.
-const MOST_INDETERMINATE: f64 = 0.01;
-
 /// Runs what the options select on every subject. Where a device fails, what was judged until then is the report, which says
 /// what was under way.
 ///
@@ -188,34 +183,6 @@ fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
     routes.into_iter().map(|(route, states)| (route.into(), states.len().into())).collect()
 }
 
-/// A chunk of a group's cases, with everything about them that does not depend on a subject.
-pub(crate) struct Chunk<'a> {
-    pub(crate) members: &'a [&'a Member],
-    pub(crate) cases: Vec<CaseRef>,
-    pub(crate) of: Vec<usize>,
-    pub(crate) inputs: Vec<f32>,
-    pub(crate) selected: Vec<f32>,
-    pub(crate) references: Vec<f64>,
-    pub(crate) intervals: Vec<Accept>,
-}
-
-impl Chunk<'_> {
-    fn rows(&self) -> Rows<'_> {
-        Rows {
-            members: self.members,
-            of: &self.of,
-            inputs: &self.inputs,
-            selected: &self.selected,
-            outputs: self.members[0].spec.output_len(),
-        }
-    }
-
-    pub(crate) fn inputs_of(&self, case: usize) -> &[f32] {
-        let stride = self.members[0].spec.input_len();
-        &self.inputs[case * stride..(case + 1) * stride]
-    }
-}
-
 fn run_rows(
     members: &[&Member],
     group: &[Selected],
@@ -247,7 +214,7 @@ fn run_rows(
             break;
         }
         let clock = Instant::now();
-        let mut chunk = draw(members, &next, options.seed);
+        let mut chunk = chunk::draw(members, &next, options.seed);
         report.timing.generate += clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
@@ -255,14 +222,14 @@ fn run_rows(
         for (subject, compiled) in subjects.iter_mut().zip(&compiled) {
             for (_, work) in &compiled.stages {
                 let clock = Instant::now();
-                let job = work.as_ref().ok().map(|work| subject.submit(work, &chunk.rows())).transpose()?;
+                let job = work.as_ref().ok().map(|work| subject.submit(work, &rows(&chunk))).transpose()?;
                 jobs.push((job, clock.elapsed().as_secs_f64()));
             }
         }
         report.timing.devices += clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
-        refer(&mut chunk, options.profile);
+        chunk::refer(&mut chunk, options.profile);
         report.timing.reference += clock.elapsed().as_secs_f64();
 
         let mut jobs = jobs.into_iter();
@@ -274,11 +241,11 @@ fn run_rows(
                     continue;
                 };
                 let clock = Instant::now();
-                let words = subject.finish(work, job, &chunk.rows())?;
+                let words = subject.finish(work, job, &rows(&chunk))?;
                 let waiting = clock.elapsed().as_secs_f64();
                 report.timing.devices += waiting;
                 let clock = Instant::now();
-                tally.merge(judge_chunk(&chunk, &words, *stage, subject, options));
+                tally.merge(judge_chunk(&chunk, &words, *stage, &subject.judging(options)));
                 report.timing.judge += clock.elapsed().as_secs_f64();
                 tally.seconds += submitting + waiting + clock.elapsed().as_secs_f64();
             }
@@ -292,7 +259,7 @@ fn run_rows(
                 report.excuse(name, &subject.identity.name, *excused);
             }
             report.failures.extend(reported(tally.simplest, tally.failures));
-            let problem = problem(tally.random, tally.totals.verdicts, tally.totals.indeterminate);
+            let problem = tally::problem(tally.random, tally.totals.verdicts, tally.totals.indeterminate);
             report.groups.push(Group {
                 totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
                 error_ulp_max: Number(tally.error_ulp_max),
@@ -308,72 +275,13 @@ fn run_rows(
     Ok(())
 }
 
-/// The group verdict on indeterminate values: more than 1 % of them, hard cases apart, make a run of little.
-pub(crate) fn problem(random: (u64, u64), verdicts: u64, indeterminate: u64) -> Option<String> {
-    #[expect(clippy::cast_precision_loss, reason = "a share")]
-    let share = random.1 as f64 / random.0.max(1) as f64;
-    if share > MOST_INDETERMINATE {
-        return Some(format!(
-            "{:.1} % of the verdicts are indeterminate, hard cases apart; at most 1 % may be",
-            100.0 * share
-        ));
+/// The rows of a chunk, as a stage takes them.
+fn rows<'a>(chunk: &'a Chunk<'_>) -> Rows<'a> {
+    Rows {
+        members: chunk.members,
+        of: &chunk.of,
+        inputs: &chunk.inputs,
+        selected: &chunk.selected,
+        outputs: chunk.members[0].spec.output_len(),
     }
-    (random.0 > 0 && indeterminate == verdicts).then(|| "nothing but indeterminate verdicts".into())
-}
-
-pub(crate) fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], seed: u64) -> Chunk<'a> {
-    let parts: Vec<(Vec<f32>, Vec<f32>)> = cases
-        .par_chunks(TASK)
-        .map(|cases| {
-            let (mut inputs, mut selected) = (vec![], vec![]);
-            for &(of, case) in cases {
-                let start = inputs.len();
-                members[of].inputs(case, seed, &mut inputs);
-                if !members[of].spec.selectors.is_empty() {
-                    selected.extend(members[of].spec.selectors.iter().map(|&code| f32::from_bits(code)));
-                    selected.extend_from_slice(&inputs[start..]);
-                }
-            }
-            (inputs, selected)
-        })
-        .collect();
-    let inputs = parts.iter().flat_map(|(inputs, _)| inputs).copied().collect::<Vec<f32>>();
-    let selected = parts.iter().flat_map(|(_, selected)| selected).copied().collect::<Vec<f32>>();
-    Chunk {
-        members,
-        cases: cases.iter().map(|(_, case)| *case).collect(),
-        of: cases.iter().map(|(of, _)| *of).collect(),
-        selected: if selected.is_empty() { inputs.clone() } else { selected },
-        inputs,
-        references: vec![],
-        intervals: vec![],
-    }
-}
-
-/// Reference values and intervals, on all cores.
-pub(crate) fn refer(chunk: &mut Chunk<'_>, profile: &Profile) {
-    let spec = &chunk.members[0].spec;
-    let (stride, outputs) = (spec.input_len(), spec.output_len());
-    let mut references = vec![0.0; chunk.cases.len() * outputs];
-    let mut intervals = vec![Accept::ANY; chunk.cases.len() * outputs];
-    references.par_chunks_mut(TASK * outputs).zip(intervals.par_chunks_mut(TASK * outputs)).enumerate().for_each(
-        |(task, (references, intervals))| {
-            let first = task * TASK;
-            let mut done = 0;
-            for of in chunk.of[first..first + references.len() / outputs].chunk_by(|a, b| a == b) {
-                let formula = &chunk.members[of[0]].formula;
-                let cases = done..done + of.len();
-                let rows = &chunk.inputs[(first + cases.start) * stride..(first + cases.end) * stride];
-                let out = cases.start * outputs..cases.end * outputs;
-                for (row, reference) in rows.chunks_exact(stride).zip(references[out.clone()].chunks_exact_mut(outputs))
-                {
-                    formula.reference(row, reference);
-                }
-                formula.intervals(rows, stride, profile, &mut intervals[out]);
-                done = cases.end;
-            }
-        },
-    );
-    chunk.references = references;
-    chunk.intervals = intervals;
 }

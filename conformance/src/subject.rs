@@ -1,13 +1,15 @@
 //! What is judged: an adapter, or the embedded implementation, and how each of its stages evaluates a group of formulas.
 
 use crate::blend_unit::rules::Rules;
-use crate::devices::{Known, known};
+use crate::options::Options;
 use lightmeter_catalogue::cases::{Kind, Spec, Stage};
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::run::Identity;
 use lightmeter_gpu::{
     Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Shaders,
 };
+use lightmeter_judge::devices::{Known, known};
+use lightmeter_judge::tally::Judging;
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::depth::DepthTest;
 use lightmeter_scene::target::TargetFormat;
@@ -101,7 +103,7 @@ impl Subject {
             driver: adapter.driver.clone(),
         };
         let gpu = Some(Device { gpu: adapter.open()?, blend: None, depth: None });
-        Ok(Self { identity, known: known(adapter), gpu, rules: Rules::RIGHT })
+        Ok(Self { identity, known: known(&adapter.device, &adapter.driver), gpu, rules: Rules::RIGHT })
     }
 
     /// The formulas themselves in f32, which need no driver. They prove nothing about the reference, which they share.
@@ -120,6 +122,12 @@ impl Subject {
     #[must_use]
     pub fn faulty(rules: Rules) -> Self {
         Self { rules, ..Self::embedded() }
+    }
+
+    /// Whose answers are judged, and by what.
+    #[must_use]
+    pub fn judging<'a>(&'a self, options: &'a Options) -> Judging<'a> {
+        Judging { adapter: &self.identity.name, known: &self.known, profile: options.profile, rerun: &options.rerun }
     }
 
     /// The device; `None` of the embedded implementation.

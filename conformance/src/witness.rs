@@ -2,10 +2,11 @@
 //! shows it, the deviation is no longer needed.
 
 use crate::blend_unit;
-use crate::devices::{self, BlendDeviation};
-use crate::judge::{Outcome, judge};
 use crate::options::{Options, Silent};
 use lightmeter_catalogue::filter::Filter;
+use lightmeter_judge::devices;
+use lightmeter_judge::devices::BlendDeviation;
+use lightmeter_judge::{Outcome, judge};
 
 use crate::special::{self, Probe};
 use crate::subject::Subject;

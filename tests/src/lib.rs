@@ -178,7 +178,7 @@ fn verdict(member: &Member, row: &[f32], stage: Stage, subject: &Subject, words:
     for deviation in &subject.known.deviations {
         profile = deviation.grant(profile);
     }
-    intervals(member, row, stage, subject, &profile, &mut legal);
+    intervals(member, row, stage, &subject.known, &profile, &mut legal);
     for (output, &bits) in words.iter().enumerate() {
         if judge(bits, reference[output], &legal[output]).outcome == Outcome::Fail {
             let hex: Vec<String> = row.iter().map(|x| format!("0x{:08x}", x.to_bits())).collect();

@@ -88,11 +88,12 @@ pub(super) fn whole<T>(first: f64, last: f64, then: impl Fn(f64) -> T, hull: imp
 mod tests {
     use super::*;
     use crate::Accept;
+    use crate::profile::WGSL;
     use lightmeter_reference::Real;
 
     fn outcomes(mut evaluate: impl FnMut() -> Accept) -> Vec<(f64, f64)> {
         let mut found = vec![];
-        each(&mut evaluate, |x| found.push((x.low(), x.high())));
+        WGSL.scope(|| each(&mut evaluate, |x| found.push((x.low(), x.high()))));
         found
     }
 

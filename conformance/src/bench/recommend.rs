@@ -216,7 +216,7 @@ fn candidate(row: &Row, limit: Limit, inputs: Inputs) -> Option<Candidate> {
     let error = match inputs {
         Inputs::Random => random?,
         Inputs::Hard => hard?,
-        Inputs::All => crate::judge::worse(random?, hard?),
+        Inputs::All => lightmeter_judge::worse(random?, hard?),
     };
     let time = row.time.as_ref().filter(|time| time.ns.is_finite())?;
     let (row, what) = (row.name.clone(), row.what.clone());

@@ -8,15 +8,15 @@ use super::rules::Rules;
 use super::run::Chunk;
 use super::store::{ENOUGH, StoreCounts};
 use super::tally::{Drawn, Outcome, Sample, Tally, explain};
-use crate::judge::{is_worse, worse};
 use crate::options::Options;
 use crate::subject::Subject;
-use crate::tally::{KEPT_FAILURES, by_name, keep_simplest, reported};
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
 use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Totals};
 use lightmeter_gpu::Error;
+use lightmeter_judge::tally::{KEPT_FAILURES, by_name, keep_simplest, reported};
+use lightmeter_judge::{is_worse, worse};
 use lightmeter_scene::target::{Encoding, TargetFormat};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -216,8 +216,9 @@ impl Standing {
             .map(|(says, count, of)| format!("{count} of {of} failing pixels are as if {says}"))
             .or_else(|| (!self.samples.is_empty()).then(|| "no mistake in the catalogue explains what failed".into()));
         use_deviations(subject, self.target, tally, report);
-        let problem =
-            self.problem(subject).or_else(|| crate::run::problem(self.random, tally.verdicts, tally.indeterminate));
+        let problem = self
+            .problem(subject)
+            .or_else(|| lightmeter_judge::tally::problem(self.random, tally.verdicts, tally.indeterminate));
         let is_unorm = self.target.is_unorm() && tally.cases > 0;
         let stage = Stage::FixedFunction.name();
         report.groups.push(Group {

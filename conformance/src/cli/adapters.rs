@@ -25,7 +25,7 @@ impl Adapters {
                 let adapters: Vec<serde_json::Value> = found
                     .iter()
                     .map(|a| {
-                        let known = known(a);
+                        let known = known(&a.device, &a.driver);
                         serde_json::json!({
                             "name": a.name, "device": a.device, "backend": a.backend, "driver": a.driver,
                             "is_cpu": a.is_cpu, "subpixel_bits": known.subpixel_bits, "deviations": known.deviations,
@@ -42,7 +42,7 @@ impl Adapters {
                 let mut text = String::new();
                 for a in &found {
                     writeln!(text, "{:<14} {:<7} {}  {}", a.name, a.backend, a.device, a.driver)?;
-                    let known = known(a);
+                    let known = known(&a.device, &a.driver);
                     let deviations = known.deviations.iter().map(|deviation| (deviation.name, deviation.reason));
                     let blending = known.blend_deviations.iter().map(|deviation| (deviation.name, deviation.reason));
                     for (name, reason) in deviations.chain(blending) {

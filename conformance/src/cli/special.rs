@@ -25,7 +25,7 @@ pub(crate) struct Special {
     /// Write it to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Write what each adapter gave to a record of its own in this folder, as conformance/records/special holds them
+    /// Write what each adapter gave to a record of its own in this folder, as conformance/judge/records/special holds them
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
 }

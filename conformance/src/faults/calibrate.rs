@@ -3,11 +3,11 @@
 
 use super::group::{Design, Error, Parameter};
 use super::selftest::Options;
-use crate::judge::{Outcome, judge};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::{CaseRef, Member, Shard, catalogue, select};
+use lightmeter_judge::{Outcome, judge};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

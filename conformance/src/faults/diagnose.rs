@@ -362,9 +362,9 @@ impl Wrong for (&Variation<'_>, &Scaled) {
 mod tests {
     use super::*;
     use crate::faults::catalogue::formulas;
-    use crate::judge::{Outcome, judge};
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::CaseRef;
+    use lightmeter_judge::{Outcome, judge};
 
     /// The diagnosis of an implementation of a formula, of 256 cases.
     fn diagnosis(id: &str, implementation: impl Fn(&Member, &[f32], &mut [f32])) -> (Diagnosis, Vec<Vec<f32>>) {

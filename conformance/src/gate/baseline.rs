@@ -149,7 +149,7 @@ fn compare(before: &Group, now: &Group, factor: f64) -> Vec<String> {
         ("errs where it passes, in the mean, by", before.error_mean, now.error_mean, MEAN_FLOOR),
     ] {
         // A NaN is worse than any number.
-        if crate::judge::is_worse(now.0, factor * before.0.max(floor)) {
+        if lightmeter_judge::is_worse(now.0, factor * before.0.max(floor)) {
             worse.push(format!("{id}: {what} {now}, by {before} before: more than {factor} times that"));
         }
     }

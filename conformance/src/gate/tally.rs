@@ -3,7 +3,7 @@
 use super::plan::Place;
 use super::verdict::{Failure, Verdicts};
 use crate::faults::LEAST_VALUES;
-use crate::judge::{is_worse, simplicity, worse};
+use lightmeter_judge::{is_worse, simplicity, worse};
 
 /// Failures that are kept with their numbers, of each formula.
 const KEPT: usize = 16;

@@ -1,9 +1,9 @@
 //! What an answer to a case is worth.
 
 use super::plan::{Place, Plan};
-use crate::judge::{Outcome, Verdict, judge, worse};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_document::Number;
+use lightmeter_judge::{Outcome, Verdict, judge, worse};
 use serde::Serialize;
 
 /// The verdicts of a case together.

@@ -1,8 +1,8 @@
 //! A run's result for people to read.
 
-use crate::judge::{is_worse, worse};
 use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, ImageUse, Report, Tiers, Totals};
 use lightmeter_document::{Number, Word};
+use lightmeter_judge::{is_worse, worse};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
 use std::fmt::{Result, Write};

@@ -1,7 +1,7 @@
 //! The probes of special values on adapters: what each gives, what is on record for its driver, and the verdicts.
 
-pub mod record;
 pub mod run;
 pub mod verdict;
 
 pub use lightmeter_catalogue::special::*;
+pub use lightmeter_judge::special::record;

@@ -2,15 +2,15 @@
 
 use super::run::{EMBEDDED, Outcome, Results, Skipped, Verdict, evaluate};
 use super::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
-use crate::judge::simplicity;
 use crate::options::{Options, Progress};
 use crate::subject::Subject;
-use crate::tally::KEPT_FAILURES;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
 use lightmeter_document::Number;
 use lightmeter_document::run::{DeviationUse, Failure, Group, Report, Totals};
 use lightmeter_gpu::Error;
+use lightmeter_judge::simplicity;
+use lightmeter_judge::tally::KEPT_FAILURES;
 use lightmeter_scene::target::SENTINEL;
 use std::time::Instant;
 

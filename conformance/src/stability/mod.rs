@@ -4,10 +4,11 @@
 //! vector. `exact` is the stable formula's f64 reference, which the certificate holds against many digits. What no method can
 //! do better than is the *condition*: so many roundings of the result come of one rounding of each input.
 
-mod conditioning;
 mod cost;
 
-pub use conditioning::{Conditioning, ILL_CONDITIONED, ROUNDING, Standing, UNSTABLE, condition, roundings, size};
+pub use lightmeter_judge::stability::{
+    Conditioning, ILL_CONDITIONED, ROUNDING, Standing, UNSTABLE, condition, roundings, size,
+};
 
 use crate::evaluate::Evaluator;
 use crate::options::Options;

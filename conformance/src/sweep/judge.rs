@@ -11,12 +11,12 @@
 //! input's own is.
 
 use super::statistics::{Exact, Place, Seen, Statistics};
-use crate::devices::Deviation;
-use crate::judge::{Outcome, judge};
 use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::AnyFormula;
 use lightmeter_document::Number;
+use lightmeter_judge::devices::Deviation;
+use lightmeter_judge::{Outcome, judge};
 use lightmeter_scene::along::{Along, float_of};
 use rayon::prelude::*;
 

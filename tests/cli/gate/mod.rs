@@ -213,7 +213,7 @@ fn the_smallest_failing_case_is_told_with_its_numbers() {
 #[test]
 fn failures_tell_the_interval_of_the_profile_that_they_were_judged_by() {
     let (pack, answers) = answered("profile", &["fog", "lighting/blinn"]);
-    let wrong = edit(&answers, |_, line| line.replacen("\"value\":[", "\"value\":[9", 1) + "\n");
+    let wrong = edit(&answers, |_, line| line.replacen("\"value\":[0", "\"value\":[90", 1) + "\n");
     for profile in ["wgsl", "opengl"] {
         let (status, report) = judged(&pack, &wrong, &["--profile", profile]);
         assert_eq!((status, &report["profile"]), (1, &Value::from(profile)));

@@ -148,7 +148,7 @@ impl Show {
             for (stage, words) in evaluator.run(&mut subject, &[0], inputs)? {
                 let mut legal = vec![Accept::ANY; member.spec.output_len()];
                 let profile = self.choice.profile;
-                intervals(member, inputs, stage, &subject, profile, &mut legal);
+                intervals(member, inputs, stage, &subject.known, profile, &mut legal);
                 let values = words.map(|words| words.into_iter().zip(legal).collect());
                 answers.push(Answer { adapter: subject.identity.name.clone(), stage: stage.name(), values });
             }

@@ -94,7 +94,7 @@ fn policy(out: &mut impl Write) -> Written {
     )?;
     writeln!(
         out,
-        "What each driver gave is on record in `conformance/records/special/`; where a driver tells its version, and it is the"
+        "What each driver gave is on record in `conformance/judge/records/special/`; where a driver tells its version, and it is the"
     )?;
     writeln!(out, "one on record, a result that changes fails by name.\n")?;
     for deviation in DEVIATIONS {

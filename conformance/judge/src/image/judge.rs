@@ -2,7 +2,7 @@
 
 use super::expect::Expected;
 use super::file::Stored;
-use crate::judge::{is_worse, margin, worse};
+use crate::{is_worse, margin, worse};
 use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{F16, F32};
 use lightmeter_scene::target::{Encoding, TargetFormat};

@@ -1,10 +1,10 @@
-//! What each driver was seen to make of the probes, a file a driver in `conformance/records/special/`.
+//! What each driver was seen to make of the probes, a file a driver in `conformance/judge/records/special/`.
 //!
 //! `lightmeter special --record DIR` writes them. A record *binds* a driver that tells its version, where device and driver
 //! are those of the record: another result than there is a failure. To others of the same name it is shown alone.
 
-use super::Probe;
 use crate::devices::version;
+use lightmeter_catalogue::special::Probe;
 use lightmeter_document::run::Identity;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -47,7 +47,7 @@ pub struct OnRecord {
 
 static RECORDS: LazyLock<Vec<Record>> = LazyLock::new(|| {
     let read = |(name, text): &(&str, &str)| {
-        serde_json::from_str(text).unwrap_or_else(|error| panic!("conformance/records/special/{name}: {error}"))
+        serde_json::from_str(text).unwrap_or_else(|error| panic!("conformance/judge/records/special/{name}: {error}"))
     };
     FILES.iter().map(read).collect()
 });
@@ -121,8 +121,8 @@ impl OnRecord {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Deviation, PROBES, Way};
     use super::*;
+    use lightmeter_catalogue::special::{Deviation, PROBES, Way};
 
     fn identity(device: &str, driver: &str) -> Identity {
         Identity { name: "lavapipe".into(), device: device.into(), backend: "vulkan".into(), driver: driver.into() }

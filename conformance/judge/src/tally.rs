@@ -1,9 +1,8 @@
 //! Verdicts on a chunk of a group's cases, and what they come to.
 
-use crate::judge::{Outcome, is_worse, judge, simplicity, worse};
-use crate::options::Options;
-use crate::run::{Chunk, TASK};
-use crate::subject::Subject;
+use crate::chunk::{Chunk, TASK};
+use crate::devices::Known;
+use crate::{Outcome, is_worse, judge, simplicity, worse};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member};
@@ -11,27 +10,46 @@ use lightmeter_document::Number;
 use lightmeter_document::run::{Failure, Totals};
 use rayon::prelude::*;
 
+/// Whose answers are judged, and by what.
+#[derive(Clone, Copy)]
+pub struct Judging<'a> {
+    /// The adapter's short name.
+    pub adapter: &'a str,
+    /// What is known of it.
+    pub known: &'a Known,
+    /// The accuracy rules.
+    pub profile: &'static Profile,
+    /// What to add to a command that runs one case again.
+    pub rerun: &'a str,
+}
+
 /// Failures that are kept for each group.
-pub(crate) const KEPT_FAILURES: usize = 5;
+pub const KEPT_FAILURES: usize = 5;
 
 /// What a group has come to on one subject in one stage.
 #[derive(Default)]
-pub(crate) struct Tally {
-    pub(crate) totals: Totals,
+pub struct Tally {
+    /// The counts.
+    pub totals: Totals,
     /// Verdicts of random cases, and the indeterminate ones among them.
-    pub(crate) random: (u64, u64),
-    pub(crate) error_ulp_max: f64,
-    pub(crate) worst: Option<(f64, String)>,
+    pub random: (u64, u64),
+    /// The greatest error, in ULP.
+    pub error_ulp_max: f64,
+    /// The greatest margin, and the id of its case.
+    pub worst: Option<(f64, String)>,
     /// The first failures.
-    pub(crate) failures: Vec<Failure>,
+    pub failures: Vec<Failure>,
     /// The failure of the simplest inputs, and how simple they are.
-    pub(crate) simplest: Option<(u32, Failure)>,
-    pub(crate) excused: Vec<(&'static str, u64)>,
-    pub(crate) seconds: f64,
+    pub simplest: Option<(u32, Failure)>,
+    /// Verdicts that each named deviation excused.
+    pub excused: Vec<(&'static str, u64)>,
+    /// Time spent on the group.
+    pub seconds: f64,
 }
 
 impl Tally {
-    pub(crate) fn merge(&mut self, other: Self) {
+    /// The sum of two.
+    pub fn merge(&mut self, other: Self) {
         self.totals.add(&other.totals);
         self.random.0 += other.random.0;
         self.random.1 += other.random.1;
@@ -61,7 +79,7 @@ impl Tally {
 }
 
 /// Keeps the failure of the simpler inputs, of equally simple ones the first.
-pub(crate) fn keep_simplest(simplest: &mut Option<(u32, Failure)>, other: Option<(u32, Failure)>) {
+pub fn keep_simplest(simplest: &mut Option<(u32, Failure)>, other: Option<(u32, Failure)>) {
     if let Some((simple, _)) = &other
         && simplest.as_ref().is_none_or(|(least, _)| simple < least)
     {
@@ -70,7 +88,7 @@ pub(crate) fn keep_simplest(simplest: &mut Option<(u32, Failure)>, other: Option
 }
 
 /// The failures that are reported of a group: the one of the simplest inputs, which explains most, then the first.
-pub(crate) fn reported(simplest: Option<(u32, Failure)>, first: Vec<Failure>) -> impl Iterator<Item = Failure> {
+pub fn reported(simplest: Option<(u32, Failure)>, first: Vec<Failure>) -> impl Iterator<Item = Failure> {
     let simplest = simplest.map(|(_, failure)| failure);
     let is_other = {
         let key = simplest.as_ref().map(|one| (one.id.clone(), one.output.clone()));
@@ -79,20 +97,16 @@ pub(crate) fn reported(simplest: Option<(u32, Failure)>, first: Vec<Failure>) ->
     simplest.into_iter().chain(first.into_iter().filter(is_other)).take(KEPT_FAILURES)
 }
 
-pub(crate) fn judge_chunk(
-    chunk: &Chunk<'_>,
-    words: &[u32],
-    stage: Stage,
-    subject: &Subject,
-    options: &Options,
-) -> Tally {
+/// Judges the words that a stage gave for a chunk, on all cores.
+#[must_use]
+pub fn judge_chunk(chunk: &Chunk<'_>, words: &[u32], stage: Stage, by: &Judging<'_>) -> Tally {
     let tallies: Vec<Tally> = (0..chunk.cases.len().div_ceil(TASK))
         .into_par_iter()
         .map(|task| {
             let cases = task * TASK..chunk.cases.len().min((task + 1) * TASK);
             let mut tally = Tally::default();
             for case in cases {
-                judge_case(chunk, words, case, stage, subject, options, &mut tally);
+                judge_case(chunk, words, case, stage, by, &mut tally);
             }
             tally
         })
@@ -105,31 +119,16 @@ pub(crate) fn judge_chunk(
 }
 
 /// The intervals of one case as a profile makes them for a stage of a subject.
-pub fn intervals(
-    member: &Member,
-    inputs: &[f32],
-    stage: Stage,
-    subject: &Subject,
-    profile: &Profile,
-    out: &mut [Accept],
-) {
+pub fn intervals(member: &Member, inputs: &[f32], stage: Stage, known: &Known, profile: &Profile, out: &mut [Accept]) {
     match member.spec.kind {
         Kind::Raster(kind) if stage == Stage::Raster => {
-            member.formula.raster_interval(kind, inputs, &subject.known.profile(profile), out);
+            member.formula.raster_interval(kind, inputs, &known.profile(profile), out);
         }
         _ => member.formula.interval(inputs, profile, out),
     }
 }
 
-fn judge_case(
-    chunk: &Chunk<'_>,
-    words: &[u32],
-    case: usize,
-    stage: Stage,
-    subject: &Subject,
-    options: &Options,
-    tally: &mut Tally,
-) {
+fn judge_case(chunk: &Chunk<'_>, words: &[u32], case: usize, stage: Stage, by: &Judging<'_>, tally: &mut Tally) {
     let (member, outputs) = (chunk.members[chunk.of[case]], chunk.members[0].spec.output_len());
     let range = case * outputs..(case + 1) * outputs;
     let mut own = [Accept::ANY; 16];
@@ -137,7 +136,7 @@ fn judge_case(
     let legal = if shared {
         &chunk.intervals[range.clone()]
     } else {
-        intervals(member, chunk.inputs_of(case), stage, subject, options.profile, &mut own[..outputs]);
+        intervals(member, chunk.inputs_of(case), stage, by.known, by.profile, &mut own[..outputs]);
         &own[..outputs]
     };
     let is_random = matches!(chunk.cases[case], CaseRef::Random(_));
@@ -157,7 +156,7 @@ fn judge_case(
             }
             Outcome::Pass => tally.totals.passed += 1,
             Outcome::Fail => {
-                if let Some(name) = excuse(chunk, case, output, bits, stage, subject, options) {
+                if let Some(name) = excuse(chunk, case, output, bits, stage, by) {
                     tally.totals.expected_failures += 1;
                     tally.excuse(name, 1);
                 } else {
@@ -168,7 +167,7 @@ fn judge_case(
                     if is_simplest || tally.failures.len() < KEPT_FAILURES {
                         let id = member.case_id(chunk.cases[case]);
                         let seen = Seen { bits, reference, interval: legal[output], error_ulp: verdict.error_ulp };
-                        let failure = failure(member, id, inputs, output, stage, subject, options, &seen);
+                        let failure = failure(member, id, inputs, output, stage, by, &seen);
                         if tally.failures.len() < KEPT_FAILURES {
                             tally.failures.push(failure.clone());
                         }
@@ -191,14 +190,13 @@ fn excuse(
     output: usize,
     bits: u32,
     stage: Stage,
-    subject: &Subject,
-    options: &Options,
+    by: &Judging<'_>,
 ) -> Option<&'static str> {
     let member = chunk.members[chunk.of[case]];
-    subject.known.deviations.iter().find_map(|deviation| {
+    by.known.deviations.iter().find_map(|deviation| {
         let mut legal = vec![Accept::ANY; member.spec.output_len()];
-        let granted = deviation.grant(*options.profile);
-        intervals(member, chunk.inputs_of(case), stage, subject, &granted, &mut legal);
+        let granted = deviation.grant(*by.profile);
+        intervals(member, chunk.inputs_of(case), stage, by.known, &granted, &mut legal);
         let reference = chunk.references[case * legal.len() + output];
         (judge(bits, reference, &legal[output]).outcome == Outcome::Pass).then_some(deviation.name)
     })
@@ -218,14 +216,13 @@ fn failure(
     inputs: &[f32],
     output: usize,
     stage: Stage,
-    subject: &Subject,
-    options: &Options,
+    by: &Judging<'_>,
     seen: &Seen,
 ) -> Failure {
     Failure {
-        rerun: format!("lightmeter run '{id}' --adapter {}{}", subject.identity.name, options.rerun),
+        rerun: format!("lightmeter run '{id}' --adapter {}{}", by.adapter, by.rerun),
         id,
-        adapter: subject.identity.name.clone(),
+        adapter: by.adapter.to_owned(),
         stage: stage.name().into(),
         target: None,
         route: None,
@@ -262,23 +259,33 @@ pub fn by_name(
     named.collect()
 }
 
+/// The share of indeterminate verdicts, hard cases apart, above which a group fails.
+const MOST_INDETERMINATE: f64 = 0.01;
+
+/// The group verdict on indeterminate values: more than 1 % of them, hard cases apart, make a run of little.
+pub fn problem(random: (u64, u64), verdicts: u64, indeterminate: u64) -> Option<String> {
+    #[expect(clippy::cast_precision_loss, reason = "a share")]
+    let share = random.1 as f64 / random.0.max(1) as f64;
+    if share > MOST_INDETERMINATE {
+        return Some(format!(
+            "{:.1} % of the verdicts are indeterminate, hard cases apart; at most 1 % may be",
+            100.0 * share
+        ));
+    }
+    (random.0 > 0 && indeterminate == verdicts).then(|| "nothing but indeterminate verdicts".into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::{draw, refer};
+    use crate::chunk::{draw, refer};
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::catalogue;
-    use lightmeter_gpu::Shaders;
 
     /// Quiet, negative, signalling, every bit set, and with a payload.
     const NANS: [u32; 5] = [0x7fc0_0000, 0xffc0_0000, 0x7fa0_0001, 0xffff_ffff, 0x7fc1_2345];
     /// More than two tasks of the pool.
     const CASES: usize = 2 * TASK + 77;
-
-    fn options() -> Options {
-        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
-        Options { cases: CASES as u64, ..Options::new(shaders) }
-    }
 
     /// A chunk of random cases and the right words for them, handed on with the number of outputs of a case.
     fn with_chunk(id: &str, test: impl Fn(&mut Chunk<'_>, &[u32], usize)) {
@@ -294,7 +301,9 @@ mod tests {
     }
 
     fn judged(chunk: &Chunk<'_>, words: &[u32]) -> Tally {
-        judge_chunk(chunk, words, Stage::Compute, &Subject::embedded(), &options())
+        let known = Known::default();
+        let by = Judging { adapter: "cpu", known: &known, profile: &WGSL, rerun: "" };
+        judge_chunk(chunk, words, Stage::Compute, &by)
     }
 
     /// The first, a middle and the last of so many.

@@ -7,7 +7,6 @@
 use crate::blend_unit::model::Model;
 use lightmeter_arithmetic::profile::Excess;
 use lightmeter_arithmetic::{Accept, Profile};
-use lightmeter_gpu::Adapter;
 use lightmeter_reference::Real;
 use lightmeter_scene::target::TargetFormat;
 use serde::Serialize;
@@ -225,12 +224,12 @@ impl Known {
     }
 }
 
-/// What is known of an adapter.
+/// What is known of an adapter, by the names that its driver gives to its device and to itself.
 #[must_use]
-pub fn known(adapter: &Adapter) -> Known {
+pub fn known(device: &str, driver: &str) -> Known {
     // Mesa's software rasteriser works in 1/256 pixel, by its Vulkan limit subPixelPrecisionBits and in its source.
-    let subpixel_bits = adapter.device.starts_with("llvmpipe").then_some(8);
-    let driver = format!("{} {}", adapter.device, adapter.driver);
+    let subpixel_bits = device.starts_with("llvmpipe").then_some(8);
+    let driver = format!("{device} {driver}");
     let llvmpipe = concerns(&driver, "llvmpipe", [22, 3, 0], [22, 4, 0]).then_some(("llvmpipe", true));
     Known {
         subpixel_bits,
@@ -243,7 +242,7 @@ pub fn known(adapter: &Adapter) -> Known {
 }
 
 /// The version behind the word `Mesa` in a driver's description.
-pub(crate) fn version(driver: &str) -> Option<Version> {
+pub fn version(driver: &str) -> Option<Version> {
     let words = driver.split("Mesa ").nth(1)?.split_whitespace().next()?;
     let mut numbers = words.split(['.', '-']).map(|part| part.parse().unwrap_or(0));
     Some(std::array::from_fn(|_| numbers.next().unwrap_or(0)))

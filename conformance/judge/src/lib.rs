@@ -1,5 +1,13 @@
 //! One verdict: a value against the reference and the interval of legal values.
 
+pub mod blend_unit;
+pub mod chunk;
+pub mod devices;
+pub mod image;
+pub mod special;
+pub mod stability;
+pub mod tally;
+
 use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{Accept, F32};
 use lightmeter_scene::target::SENTINEL;
@@ -45,7 +53,7 @@ pub fn judge(bits: u32, reference: f64, interval: &Accept) -> Verdict {
 
 /// The distance from the reference over the distance to the end of the interval on the value's side. It is never NaN: beside
 /// a NaN it is infinite, and 1 where the interval's end is infinite and the value is that.
-pub(crate) fn margin(value: f64, reference: f64, low: f64, high: f64) -> f64 {
+pub fn margin(value: f64, reference: f64, low: f64, high: f64) -> f64 {
     if value.is_nan() || reference.is_nan() {
         return f64::INFINITY;
     }
@@ -80,12 +88,12 @@ pub fn simplicity(inputs: &[f32]) -> u32 {
 }
 
 /// Whether a margin or an error is worse than another: a NaN is worse than every number, so that no maximum loses one.
-pub(crate) fn is_worse(a: f64, than: f64) -> bool {
+pub fn is_worse(a: f64, than: f64) -> bool {
     !than.is_nan() && (a.is_nan() || a > than)
 }
 
 /// The worse of two.
-pub(crate) fn worse(a: f64, b: f64) -> f64 {
+pub fn worse(a: f64, b: f64) -> f64 {
     if is_worse(b, a) { b } else { a }
 }
 

@@ -6,7 +6,7 @@ use super::pixel::Units;
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::store::{NEAR, StoreCounts};
 use crate::devices::{BlendDeviation, Known};
-use crate::judge::{is_worse, margin, simplicity, worse};
+use crate::{is_worse, margin, simplicity, worse};
 use lightmeter_arithmetic::{F16, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_document::run::Tiers;

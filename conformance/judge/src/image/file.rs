@@ -89,7 +89,11 @@ impl Stored {
         }
     }
 
-    pub(crate) fn encode(&self, path: &Path) -> Result<Vec<u8>, Error> {
+    /// The bytes of the file that the name asks for.
+    ///
+    /// # Errors
+    /// Where the format cannot hold the image.
+    pub fn encode(&self, path: &Path) -> Result<Vec<u8>, Error> {
         let format = Self::check_name(path)?;
         let failed = |message: String| Error::Encode { path: path.into(), message };
         let [width, height] = [self.width, self.pixels.len() / self.width]

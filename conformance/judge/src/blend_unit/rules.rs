@@ -32,9 +32,9 @@ pub struct Rules {
     alpha_encoded: bool,
     factors_exchanged: bool,
     /// What is clamped on unorm targets; [`Clamp::Result`] stands for float targets too.
-    pub(super) clamp: Clamp,
+    pub clamp: Clamp,
     /// How a result becomes one of the target's steps …
-    pub(super) store: Store,
+    pub store: Store,
     /// … where a wrong one is used: of alpha alone, …
     only_alpha: bool,
     /// … in one state alone.

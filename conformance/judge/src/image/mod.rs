@@ -1,0 +1,12 @@
+//! What each pixel of a frame may hold, and how an image compares.
+//!
+//! `bound` is what a rasteriser may make of a triangle's place and attributes, `pixel` the ways in which one pixel may come about,
+//! `expect` the legal values of all of them; `judge` compares an image with them, and `file` writes PNG and EXR.
+
+mod bound;
+pub mod expect;
+pub mod file;
+pub mod judge;
+mod pixel;
+
+pub use expect::{Expected, expect};

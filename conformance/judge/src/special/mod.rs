@@ -1,0 +1,3 @@
+//! What drivers were seen to make of special values.
+
+pub mod record;
