@@ -11,8 +11,9 @@ use lightmeter::select::catalogue;
 use lightmeter::selection::Selection;
 use lightmeter::special::Class;
 use lightmeter::subject::Subject;
+use lightmeter::subject_gpu::code_of;
 use lightmeter::witness::NamedDeviation;
-use lightmeter_gpu::{FILES, Shaders};
+use lightmeter_gpu::FILES;
 use lightmeter_tests::harness::{Suite, Variables};
 use mistakes::MISTAKES;
 use std::collections::{BTreeMap, BTreeSet};
@@ -82,8 +83,8 @@ fn every_formula_table_scene_and_deviation_has_its_trial() {
 /// The whole and the sum of its parts, by the embedded implementation and on devices.
 #[test]
 fn the_trials_judge_together_what_a_run_does() {
-    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
-    let options = Options { cases: 16, ..Options::new(shaders) };
+    let code = code_of(None).expect("the built-in shaders are valid");
+    let options = Options { cases: 16, ..Options::new(code) };
     let parts = Selection::of(&options).parts();
     let embedded = || vec![Subject::embedded()];
     let device = || adapters::open(&[]).unwrap_or_else(|error| panic!("{error}"));
@@ -126,7 +127,7 @@ fn concerned(file: &str, right: &str) -> BTreeSet<&'static str> {
 #[test]
 fn mistakes_fail_the_trials_of_the_formulas_that_they_concern() {
     let functions: BTreeMap<String, Vec<String>> = {
-        let selection = Selection::of(&Options::new(Shaders::built_in().expect("the built-in shaders are valid")));
+        let selection = Selection::of(&Options::new(code_of(None).expect("the built-in shaders are valid")));
         let functions_of = |part: &Selection| {
             part.formulas.iter().map(|chosen| part.catalogue[chosen.member].spec.function.to_owned()).collect()
         };
@@ -273,7 +274,7 @@ fn deviations_of_other_drivers_are_ignored_with_the_reason() {
 /// On every adapter there is, software OpenGL and SwiftShader among them where they are installed.
 #[test]
 fn witnesses_are_still_seen_on_every_adapter_that_they_concern() {
-    let options = Options::new(Shaders::built_in().expect("the built-in shaders are valid"));
+    let options = Options::new(code_of(None).expect("the built-in shaders are valid"));
     let mut seen = BTreeSet::new();
     for mut subject in adapters::open(&[adapters::ALL.to_owned()]).unwrap_or_else(|error| panic!("{error}")) {
         for deviation in NamedDeviation::all() {

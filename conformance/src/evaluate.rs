@@ -1,9 +1,9 @@
 //! Formulas evaluated by a subject on rows of inputs from anywhere, apart from a run.
 
+use crate::device::{Code, DeviceError};
 use crate::subject::{Compiled, Rows, Subject};
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::Member;
-use lightmeter_gpu::{Error, Kernel, Shaders};
 
 /// A group of formulas compiled for one subject, for rows of inputs from anywhere.
 pub struct Evaluator<'a> {
@@ -19,9 +19,8 @@ impl<'a> Evaluator<'a> {
     ///
     /// # Errors
     /// Where a shader is invalid or the device refuses it.
-    pub fn new(subject: &mut Subject, members: &'a [&'a Member], shaders: &Shaders) -> Result<Self, Error> {
-        let kernel = kernel(shaders, members[0])?;
-        let compiled = subject.compile(shaders, &members[0].spec, kernel.as_ref())?;
+    pub fn new(subject: &mut Subject, members: &'a [&'a Member], code: &Code) -> Result<Self, DeviceError> {
+        let compiled = subject.compile(code, members[0])?;
         Ok(Self { members, compiled })
     }
 
@@ -29,7 +28,7 @@ impl<'a> Evaluator<'a> {
     ///
     /// # Errors
     /// Where the device fails.
-    pub fn run(&self, subject: &mut Subject, of: &[usize], inputs: &[f32]) -> Result<Vec<StageOutputs>, Error> {
+    pub fn run(&self, subject: &mut Subject, of: &[usize], inputs: &[f32]) -> Result<Vec<StageOutputs>, DeviceError> {
         let (stride, mut selected) = (self.members[0].spec.input_len(), vec![]);
         for (&of, row) in of.iter().zip(inputs.chunks_exact(stride)) {
             selected.extend(self.members[of].spec.selectors.iter().map(|&code| f32::from_bits(code)));
@@ -46,22 +45,4 @@ impl<'a> Evaluator<'a> {
         });
         stages.collect()
     }
-}
-
-/// The shader function of a formula, held against the formula's description; `None` where no function evaluates it.
-pub(crate) fn kernel(shaders: &Shaders, member: &Member) -> Result<Option<Kernel>, Error> {
-    let (spec, function) = (&member.spec, member.spec.function);
-    if function.is_empty() {
-        return Ok(None);
-    }
-    let file = format!("{}.wgsl", spec.family());
-    let kernel = Kernel::new(shaders, &file, function)?;
-    let (selectors, outputs) = (spec.selectors.len(), spec.output_len());
-    let inputs = spec.input_len() + selectors;
-    if (kernel.inputs, kernel.outputs, kernel.selectors) != (inputs, outputs, selectors) {
-        let found =
-            format!("{} numbers to {}, where {} takes {inputs} to {outputs}", kernel.inputs, kernel.outputs, spec.id);
-        return Err(Error::Signature { file, function: function.into(), found });
-    }
-    Ok(Some(kernel))
 }

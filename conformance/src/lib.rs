@@ -1,8 +1,8 @@
 //! The suite: cases, acceptance, verdicts, the runner and its reports, as a library for the `lightmeter` binary and others.
 
-pub mod adapters;
 pub mod bench;
 pub mod blend_unit;
+pub mod device;
 pub mod evaluate;
 pub mod faults;
 pub mod gate;
@@ -14,6 +14,7 @@ pub mod selection;
 pub mod special;
 pub mod stability;
 pub mod subject;
+pub mod subject_gpu;
 pub mod sweep;
 pub mod witness;
 
@@ -22,3 +23,4 @@ pub use lightmeter_catalogue::{cases, filter, scene, select};
 pub use lightmeter_document as document;
 pub use lightmeter_judge as judge;
 pub use lightmeter_judge::{devices, tally};
+pub use subject_gpu::adapters;

@@ -1,5 +1,6 @@
 //! What a run is asked for, and who is told how far it has come.
 
+use crate::device::Code;
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
 use lightmeter_arithmetic::profile::PROFILES;
@@ -7,7 +8,6 @@ use lightmeter_catalogue::cases::blend::Samples;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
 use lightmeter_document::run::Report;
-use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::target::TargetFormat;
 use std::path::{Path, PathBuf};
 
@@ -42,8 +42,8 @@ pub struct Options {
     pub again: bool,
     /// The accuracy rules.
     pub profile: &'static Profile,
-    /// The shaders.
-    pub shaders: Shaders,
+    /// The code under test, for subjects on devices.
+    pub code: Code,
     /// What to add to a command that runs one case again.
     pub rerun: String,
 }
@@ -57,9 +57,9 @@ impl Options {
         Report::empty(self.seed, self.profile.name.into(), filter, adapters)
     }
 
-    /// A run of everything as it is without any option, by these shaders.
+    /// A run of everything as it is without any option.
     #[must_use]
-    pub fn new(shaders: Shaders) -> Self {
+    pub fn new(code: Code) -> Self {
         Self {
             filter: Filter::default(),
             cases: DEFAULT_CASES,
@@ -71,17 +71,14 @@ impl Options {
             images: None,
             again: false,
             profile: PROFILES[0],
-            shaders,
+            code,
             rerun: String::new(),
         }
     }
 
-    /// The same with the shaders of a folder, or the built-in ones, a seed and a profile, which a command that runs a case again
-    /// is to name.
-    ///
-    /// # Errors
-    /// Where the folder cannot be read, or holds no shader of the suite.
-    pub fn by(shaders: Option<&Path>, seed: u64, profile: &'static Profile) -> Result<Self, Error> {
+    /// The same with a seed, a profile and the folder that the code is of, which a command that runs a case again is to name.
+    #[must_use]
+    pub fn by(code: Code, folder: Option<&Path>, seed: u64, profile: &'static Profile) -> Self {
         let mut rerun = String::new();
         if seed != 1 {
             rerun += &format!(" --seed {seed}");
@@ -89,11 +86,10 @@ impl Options {
         if profile.name != PROFILES[0].name {
             rerun += &format!(" --profile {}", profile.name);
         }
-        if let Some(dir) = shaders {
+        if let Some(dir) = folder {
             rerun += &format!(" --shaders '{}'", dir.display().to_string().replace('\'', r"'\''"));
         }
-        let shaders = shaders.map_or_else(Shaders::built_in, Shaders::from_dir)?;
-        Ok(Self { seed, samples: Samples { seed, ..Samples::default() }, profile, rerun, ..Self::new(shaders) })
+        Self { seed, samples: Samples { seed, ..Samples::default() }, profile, rerun, ..Self::new(code) }
     }
 }
 

@@ -4,7 +4,7 @@
 //! are handed to every stage of every subject before the reference is computed on all cores; then the results are read.
 
 use crate::blend_unit;
-use crate::evaluate::kernel;
+use crate::device::DeviceError;
 use crate::image;
 use crate::options::{Options, Progress};
 use crate::selection::Selection;
@@ -18,7 +18,6 @@ use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::Number;
 use lightmeter_document::run::{Group, Interrupted, Report, Totals};
-use lightmeter_gpu::Error;
 use lightmeter_judge::chunk::{self, Chunk};
 use lightmeter_judge::tally;
 use lightmeter_judge::tally::{Tally, judge_chunk, reported};
@@ -32,7 +31,7 @@ const CHUNK: usize = 1 << 16;
 ///
 /// # Errors
 /// Where a shader is invalid, or a device fails before anything ran.
-pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Progress) -> Result<Report, Error> {
+pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Progress) -> Result<Report, DeviceError> {
     run_selection(&Selection::of(options), subjects, options, progress)
 }
 
@@ -46,7 +45,7 @@ pub fn run_selection(
     subjects: &mut [Subject],
     options: &Options,
     progress: &mut impl Progress,
-) -> Result<Report, Error> {
+) -> Result<Report, DeviceError> {
     let started = Instant::now();
     progress.start(work(selection, subjects, options));
     let mut report = options.report(subjects);
@@ -74,7 +73,7 @@ fn judge_in_turn(
     options: &Options,
     report: &mut Report,
     progress: &mut impl Progress,
-) -> Result<(), Error> {
+) -> Result<(), DeviceError> {
     // First: Mesa 22.3's lavapipe no longer flushes subnormals in fragments once it has drawn certain scenes.
     for table in &selection.tables {
         let id = table.id();
@@ -111,9 +110,9 @@ fn judge_in_turn(
 }
 
 /// Whether a device failed while something was judged, which is noted then.
-fn is_interrupted(judged: Result<(), Error>, under_way: &str, report: &mut Report) -> Result<bool, Error> {
+fn is_interrupted(judged: Result<(), DeviceError>, under_way: &str, report: &mut Report) -> Result<bool, DeviceError> {
     match judged {
-        Err(error @ (Error::Device(_) | Error::Timeout(_))) => {
+        Err(error) if error.is_of_device() => {
             let (under_way, message) = (under_way.to_owned(), error.to_string());
             report.interrupted.get_or_insert(Interrupted { under_way, message });
             Ok(true)
@@ -147,7 +146,7 @@ fn judge_group(
     options: &Options,
     report: &mut Report,
     progress: &mut impl Progress,
-) -> Result<(), Error> {
+) -> Result<(), DeviceError> {
     if matches!(members[0].spec.kind, Kind::Blend(_)) {
         blend_unit::run::run_group(members, group, subjects, options, report, progress)?;
     }
@@ -190,15 +189,14 @@ fn run_rows(
     options: &Options,
     report: &mut Report,
     progress: &mut impl Progress,
-) -> Result<(), Error> {
+) -> Result<(), DeviceError> {
     let group: Vec<Selected> = group.iter().zip(members).map(|(chosen, member)| chosen.rows(member)).collect();
     let spec = &members[0].spec;
     let clock = Instant::now();
-    let kernel = kernel(&options.shaders, members[0])?;
     let compiled: Vec<Compiled> = subjects
         .iter_mut()
-        .map(|subject| subject.compile(&options.shaders, spec, kernel.as_ref()))
-        .collect::<Result<_, Error>>()?;
+        .map(|subject| subject.compile(&options.code, members[0]))
+        .collect::<Result<_, DeviceError>>()?;
     let compiling = clock.elapsed().as_secs_f64();
     report.timing.compile += compiling;
 

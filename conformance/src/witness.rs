@@ -8,11 +8,11 @@ use lightmeter_judge::devices;
 use lightmeter_judge::devices::BlendDeviation;
 use lightmeter_judge::{Outcome, judge};
 
+use crate::device::{Code, DeviceError};
 use crate::special::{self, Probe};
 use crate::subject::Subject;
 use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected};
 use lightmeter_document::run::{DeviationUse, Report, Totals};
-use lightmeter_gpu::{Error, Shaders};
 
 /// The first segment of the ids.
 pub const FAMILY: &str = "deviation";
@@ -79,12 +79,13 @@ impl NamedDeviation {
         subject: &mut Subject,
         catalogue: &[Member],
         options: &Options,
-    ) -> Result<Option<bool>, Error> {
-        let shaders = Shaders::built_in()?;
+    ) -> Result<Option<bool>, DeviceError> {
+        let Some(device) = subject.device() else { return Ok(None) };
+        let code = device.built_in()?;
         match self {
-            Self::Accuracy(deviation) => accuracy(deviation, subject, &shaders, options),
-            Self::Blend(deviation) => blend(deviation, subject, catalogue, Options { shaders, ..options.clone() }),
-            Self::Special(deviation) => special(deviation, subject, &shaders),
+            Self::Accuracy(deviation) => accuracy(deviation, subject, &code, options),
+            Self::Blend(deviation) => blend(deviation, subject, catalogue, Options { code, ..options.clone() }),
+            Self::Special(deviation) => special(deviation, subject, &code),
         }
     }
 }
@@ -94,13 +95,14 @@ impl NamedDeviation {
 fn accuracy(
     deviation: &devices::Deviation,
     subject: &Subject,
-    shaders: &Shaders,
+    code: &Code,
     options: &Options,
-) -> Result<Option<bool>, Error> {
+) -> Result<Option<bool>, DeviceError> {
     if !subject.known.deviations.iter().any(|known| known.name == deviation.name) {
         return Ok(None);
     }
-    let Some(bits) = subject.probe(shaders, deviation.builtin.probe(), deviation.witness)? else { return Ok(None) };
+    let Some(device) = subject.device() else { return Ok(None) };
+    let Some(bits) = device.probe(code, deviation.builtin.probe(), deviation.witness)? else { return Ok(None) };
     let promised = deviation.builtin.interval(deviation.witness, options.profile);
     let granted = deviation.builtin.interval(deviation.witness, &deviation.grant(*options.profile));
     let exact = deviation.builtin.exact(deviation.witness);
@@ -114,7 +116,7 @@ fn blend(
     subject: &mut Subject,
     catalogue: &[Member],
     options: Options,
-) -> Result<Option<bool>, Error> {
+) -> Result<Option<bool>, DeviceError> {
     if !subject.known.blend_deviations.iter().any(|known| known.name == deviation.name) {
         return Ok(None);
     }
@@ -136,12 +138,12 @@ fn blend(
 
 /// Each result that breaks its promise on record. The witness is asked for where a record binds the driver: elsewhere the deviation is
 /// granted, not required.
-fn special(deviation: &special::Deviation, subject: &Subject, shaders: &Shaders) -> Result<Option<bool>, Error> {
+fn special(deviation: &special::Deviation, subject: &Subject, code: &Code) -> Result<Option<bool>, DeviceError> {
     if subject.identity.backend != deviation.backend {
         return Ok(None);
     }
     let probes: Vec<&'static Probe> = deviation.probes.iter().filter_map(|name| Probe::by_name(name)).collect();
-    let results = special::run::evaluate(subject, shaders, &probes)?;
+    let results = special::run::evaluate(subject, code, &probes)?;
     let Some(results) = results.filter(|results| results.record.as_ref().is_some_and(|record| record.binds)) else {
         return Ok(None);
     };
@@ -163,7 +165,7 @@ pub(crate) fn ask(
     subjects: &mut [Subject],
     options: &Options,
     report: &mut Report,
-) -> Result<(), Error> {
+) -> Result<(), DeviceError> {
     for subject in subjects {
         let Some(still_needed) = deviation.is_still_seen(subject, catalogue, options)? else { continue };
         report.deviations.push(DeviationUse {

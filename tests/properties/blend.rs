@@ -12,7 +12,7 @@ use lightmeter::blend_unit::store::StoreCounts;
 use lightmeter::blend_unit::tally::{Drawn, Outcome, Tally};
 use lightmeter::cases::blend::Program;
 use lightmeter::devices::Known;
-use lightmeter_gpu::Shaders;
+use lightmeter::subject_gpu::code_of;
 use lightmeter_reference::blend::{Mode, Operands, Saturate, alpha_clamped, blend, factor, without_alpha};
 use lightmeter_reference::{Rgba, Vector};
 use lightmeter_scene::blend::routes;
@@ -170,7 +170,7 @@ fn states() -> Vec<Separate> {
 
 #[test]
 fn the_blend_unit_agrees_on_every_target() {
-    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+    let code = code_of(None).expect("the built-in shaders are valid");
     let mut subject = lightmeter_tests::device();
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     for target in TargetFormat::ALL {
@@ -178,7 +178,7 @@ fn the_blend_unit_agrees_on_every_target() {
         let mut pieces = vec![];
         for state in states() {
             for &route in routes(state) {
-                if subject.lacks_route(&shaders, route).expect("a unit").is_none() {
+                if subject.lacks_route(&code, route).expect("a unit").is_none() {
                     let program = Program::Draw(state, WriteMask::ALL);
                     let constant = [1.25_f32, 0.25, -0.5, 0.75];
                     let inputs = rows.iter().flat_map(|row| row.iter().chain(&constant)).copied().collect();
@@ -186,7 +186,7 @@ fn the_blend_unit_agrees_on_every_target() {
                 }
             }
         }
-        let drawn = draw(&mut subject, &shaders, target, &pieces.iter().collect::<Vec<_>>(), false).expect("a drawing");
+        let drawn = draw(&mut subject, &code, target, &pieces.iter().collect::<Vec<_>>(), false).expect("a drawing");
         for (piece, pixels) in pieces.iter().zip(&drawn.pieces) {
             for (place, pixel) in pixels.iter().enumerate() {
                 let expected = expect(piece.program, target, &piece.case(place), &Rules::RIGHT, &WGSL);

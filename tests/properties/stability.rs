@@ -4,13 +4,15 @@
 use lightmeter::arithmetic::Accept;
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::cases::{FAMILIES, Formula, Kind, Reader, Spec, Visitor, Writer, visit};
+use lightmeter::device::Code;
 use lightmeter::filter::Filter;
 use lightmeter::options::{Options, Silent};
 use lightmeter::run::run;
 use lightmeter::select::{CaseRef, Member, catalogue};
 use lightmeter::stability::{Conditioning, Standing, roundings};
 use lightmeter::subject::Subject;
-use lightmeter_gpu::{Adapter, FILES, Shaders};
+use lightmeter::subject_gpu::{code_of, open_device};
+use lightmeter_gpu::{Adapter, FILES};
 use lightmeter_reference::Real as _;
 use lightmeter_tests::exact::{self, Exact};
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,14 +36,14 @@ fn stable(catalogue: &[Member]) -> impl Iterator<Item = &Member> {
     catalogue.iter().filter(|member| member.spec.stable.is_some())
 }
 
-fn options(shaders: Shaders) -> Options {
-    Options { filter: Filter::new(&["*/*/hard"]).expect("a glob"), cases: 1, targets: vec![], ..Options::new(shaders) }
+fn options(code: Code) -> Options {
+    Options { filter: Filter::new(&["*/*/hard"]).expect("a glob"), cases: 1, targets: vec![], ..Options::new(code) }
 }
 
 fn subjects() -> Vec<Subject> {
     let adapters = lightmeter_gpu::vulkan_adapters();
     assert!(!adapters.is_empty(), "no Vulkan driver is here: `./x test` installs lavapipe");
-    let open = |adapter: &Adapter| Subject::open(adapter).expect("the adapter gives a device");
+    let open = |adapter: &Adapter| open_device(adapter).expect("the adapter gives a device");
     adapters.iter().map(open).collect()
 }
 
@@ -140,7 +142,7 @@ fn cases_near_a_hard_one_are_a_few_ulp_away_on_both_sides() {
 #[test]
 fn stable_forms_keep_their_claims_and_naive_forms_fail_on_every_adapter() {
     let mut subjects = subjects();
-    let built_in = Shaders::built_in().expect("the built-in shaders are valid");
+    let built_in = code_of(None).expect("the built-in shaders are valid");
     let report = run(&mut subjects, &options(built_in), &mut Silent).expect("it runs");
     let broken: Vec<_> = report.stability.iter().filter(|one| !one.is_stable() || !one.naive_fails()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
@@ -151,7 +153,7 @@ fn stable_forms_keep_their_claims_and_naive_forms_fail_on_every_adapter() {
 }
 
 /// The built-in shaders with every stable form's function calling that of its naive form.
-fn naive_in_place() -> (Shaders, BTreeMap<String, &'static str>) {
+fn naive_in_place() -> (Code, BTreeMap<String, &'static str>) {
     let catalogue = catalogue();
     let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("naive-in-place");
     let _ = std::fs::remove_dir_all(&dir);
@@ -177,7 +179,7 @@ fn naive_in_place() -> (Shaders, BTreeMap<String, &'static str>) {
     for (name, text) in files {
         std::fs::write(dir.join(name), text).expect("a shader can be written");
     }
-    (Shaders::from_dir(&dir).unwrap_or_else(|error| panic!("{error}")), replaced)
+    (code_of(Some(&dir)).unwrap_or_else(|error| panic!("{error}")), replaced)
 }
 
 #[test]

@@ -13,8 +13,9 @@ use lightmeter::evaluate::Evaluator;
 use lightmeter::judge::{Outcome, judge};
 use lightmeter::select::{CaseRef, Member, catalogue};
 use lightmeter::subject::Subject;
+use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter::tally::intervals;
-use lightmeter_gpu::{Shaders, vulkan_adapters};
+use lightmeter_gpu::vulkan_adapters;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 use std::cell::RefCell;
@@ -122,7 +123,7 @@ pub fn device() -> MutexGuard<'static, Subject> {
     let open = || {
         let adapters = vulkan_adapters();
         let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
-        Mutex::new(Subject::open(adapter).expect("the adapter gives a device"))
+        Mutex::new(open_device(adapter).expect("the adapter gives a device"))
     };
     DEVICE.get_or_init(open).lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -134,9 +135,9 @@ pub fn device() -> MutexGuard<'static, Subject> {
 /// Where a value lies outside its interval.
 pub fn agree(group: &[Member], rows_at_most: usize) {
     let mut subject = device();
-    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+    let code = code_of(None).expect("the built-in shaders are valid");
     let members: Vec<&Member> = group.iter().collect();
-    let evaluator = Evaluator::new(&mut subject, &members, &shaders).expect("the group compiles");
+    let evaluator = Evaluator::new(&mut subject, &members, &code).expect("the group compiles");
     let row = (0..members.len()).prop_flat_map({
         let strategies: Vec<_> = members.iter().map(|member| rows(&member.spec)).collect();
         move |of| (Just(of), strategies[of].clone())

@@ -5,7 +5,7 @@ use super::Bench;
 use super::document::{Errors, Row};
 use super::errors::Gathered;
 use super::turns::{self, Entry, Laps};
-use crate::evaluate::kernel;
+use crate::subject_gpu::kernel;
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_gpu::{Clock, Error, Gpu, Kernel, Reading, RepeatPipeline, Rung};

@@ -163,7 +163,7 @@ fn measured(
         device: identity.device,
         backend: identity.backend.into(),
         driver: identity.driver,
-        is_cpu: subject.gpu().is_none_or(Gpu::is_cpu),
+        is_cpu: crate::subject_gpu::gpu(subject).is_none_or(Gpu::is_cpu),
         clock,
         rungs: formulas::rungs(&asked.ladder),
         families: families(&groups),
@@ -225,7 +225,7 @@ impl<'a> Asked<'a> {
     fn count(&self, subject: &Subject) -> u64 {
         let drawn = self.drawn.len() + self.scenes.len() + self.files.len() + self.scalings.len();
         let on_device = self.techniques.len() + self.stable.len() + drawn + usize::from(self.by_cases);
-        (self.formulas.len() + if subject.gpu().is_some() { on_device } else { 0 }) as u64
+        (self.formulas.len() + if crate::subject_gpu::gpu(subject).is_some() { on_device } else { 0 }) as u64
     }
 }
 
@@ -246,7 +246,7 @@ fn sitting(
 ) -> Result<Sitting, Error> {
     let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
     // What computes and what draws have devices of their own: Mesa 22.3's llvmpipe loses the time of a dispatch once it has drawn.
-    let [computes, draws] = [(); 2].map(|()| subject.gpu().map(Gpu::sibling).transpose());
+    let [computes, draws] = [(); 2].map(|()| crate::subject_gpu::gpu(subject).map(Gpu::sibling).transpose());
     let (computes, draws) = (computes?, draws?);
     let bench = Bench {
         gpu: computes.as_ref(),
@@ -324,7 +324,7 @@ fn clock(gpu: Option<&Gpu>, asked: Option<ClockKind>, use_wall: bool) -> Result<
 
 /// The rungs of a subject, each with the reason why it is not there.
 fn ladder_of(subject: &Subject) -> Result<Vec<(Rung, Option<String>)>, Error> {
-    let of = |rung: Rung| match subject.gpu() {
+    let of = |rung: Rung| match crate::subject_gpu::gpu(subject) {
         None => Ok((rung, Some("the embedded implementation has no shaders".into()))),
         Some(gpu) => Ok((rung, rung.unavailable(gpu)?)),
     };

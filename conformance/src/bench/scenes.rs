@@ -234,12 +234,18 @@ mod tests {
     #[test]
     fn a_scene_has_a_row_for_each_rung_and_for_the_processor() {
         let adapter = adapters().into_iter().next().expect("there is an adapter");
-        let subject = Subject::open(&adapter).unwrap_or_else(|error| panic!("{error}"));
+        let subject = crate::subject_gpu::open_device(&adapter).unwrap_or_else(|error| panic!("{error}"));
         let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
         let clock = Clock::wall(None);
         let setting = Setting::new(true, 1);
-        let on =
-            On { subject: &subject, gpu: subject.gpu(), shaders: &shaders, clock: &clock, profile: &WGSL, setting };
+        let on = On {
+            subject: &subject,
+            gpu: crate::subject_gpu::gpu(&subject),
+            shaders: &shaders,
+            clock: &clock,
+            profile: &WGSL,
+            setting,
+        };
         let ladder = [(Rung::F32, None), (Rung::F64, Some("a reason".to_owned()))];
         let made = scenes(&on, &ladder, &["gouraud"], &mut Silent).unwrap_or_else(|error| panic!("{error}"));
         let [group] = made.as_slice() else { panic!("{} groups", made.len()) };

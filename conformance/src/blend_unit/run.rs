@@ -2,12 +2,12 @@
 
 use super::draw::{Piece, draw};
 use super::standing::Standing;
+use crate::device::{Code, DeviceError};
 use crate::options::{Options, Progress};
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::run::{Interrupted, Report};
-use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::{Route, routes};
 use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ pub(crate) fn run_group(
     options: &Options,
     report: &mut Report,
     progress: &mut impl Progress,
-) -> Result<(), Error> {
+) -> Result<(), DeviceError> {
     let targets = targets_of(members[0], &options.targets);
     let mut standings: Vec<Vec<Standing>> = subjects
         .iter()
@@ -49,7 +49,7 @@ pub(crate) fn run_group(
             for standing in standings {
                 if let Err(error) = standing.judge(subject, &chunk, options, report) {
                     report.interrupted = Some(Interrupted {
-                        under_way: chunk.under_way(subject, standing, &options.shaders, &error),
+                        under_way: chunk.under_way(subject, standing, &options.code, &error),
                         message: error.to_string(),
                     });
                     result = Err(error);
@@ -61,9 +61,9 @@ pub(crate) fn run_group(
     }
     for (subject, standings) in subjects.iter_mut().zip(standings) {
         if result.is_ok()
-            && let Some(unit) = subject.blend_unit(&options.shaders)?
+            && let Some(device) = subject.device_mut()
         {
-            unit.forget_pipelines();
+            device.forget_pipelines();
         }
         for standing in standings {
             standing.finish(members[0], subject, report);
@@ -118,15 +118,17 @@ impl<'a> Chunk<'a> {
 
     /// What was under way when a device failed: the state that fails again alone on fresh devices, or all that were drawn
     /// together.
-    fn under_way(&self, subject: &mut Subject, standing: &Standing, shaders: &Shaders, error: &Error) -> String {
+    fn under_way(&self, subject: &mut Subject, standing: &Standing, code: &Code, error: &DeviceError) -> String {
         let target = standing.target;
         let place = format!("on {} of {}", target.name(), subject.identity.name);
         // What hangs would hang again for minutes.
-        let hangs = matches!(error, Error::Timeout(_));
+        let hangs = matches!(error, DeviceError::Hangs(_));
         for (member, piece) in self.members.iter().zip(&self.pieces).filter(|_| !hangs) {
-            subject.drop_blend_unit();
-            let is_drawn = matches!(subject.lacks_route(shaders, piece.route), Ok(None));
-            if is_drawn && draw(subject, shaders, target, &[piece], false).is_err() {
+            if let Some(device) = subject.device_mut() {
+                device.renew_blend_unit();
+            }
+            let is_drawn = matches!(subject.lacks_route(code, piece.route), Ok(None));
+            if is_drawn && draw(subject, code, target, &[piece], false).is_err() {
                 return format!("{} by {} {place}, which fails alone too,", member.spec.id, piece.route.name());
             }
         }

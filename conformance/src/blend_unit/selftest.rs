@@ -3,13 +3,13 @@
 
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::run::run_group;
+use crate::device::{Code, DeviceError};
 use crate::options::{Options, Silent};
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::{Program, Samples, every_state};
 use lightmeter_catalogue::select::{Member, Random, Selected, catalogue_of};
 use lightmeter_document::run::{Group, Report};
-use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::{Separate, State};
 use lightmeter_scene::target::TargetFormat;
 use serde::Serialize;
@@ -61,7 +61,11 @@ impl Finding {
 ///
 /// # Errors
 /// Where a built-in shader is invalid, which a test rules out.
-pub fn selftest(targets: &[TargetFormat], cases: u64, progress: &mut impl FnMut(&str)) -> Result<Vec<Row>, Error> {
+pub fn selftest(
+    targets: &[TargetFormat],
+    cases: u64,
+    progress: &mut impl FnMut(&str),
+) -> Result<Vec<Row>, DeviceError> {
     let groups = groups();
     let mut rows = vec![];
     for &target in targets {
@@ -108,11 +112,11 @@ fn groups() -> Vec<Vec<Member>> {
     groups
 }
 
-fn options(target: TargetFormat, cases: u64) -> Result<Options, Error> {
-    Ok(Options { cases, targets: vec![target], ..Options::new(Shaders::built_in()?) })
+fn options(target: TargetFormat, cases: u64) -> Result<Options, DeviceError> {
+    Ok(Options { cases, targets: vec![target], ..Options::new(Code::default()) })
 }
 
-fn empty_report(target: TargetFormat) -> Result<Report, Error> {
+fn empty_report(target: TargetFormat) -> Result<Report, DeviceError> {
     Ok(options(target, 0)?.report(&[]))
 }
 
@@ -126,7 +130,7 @@ fn beside(state: State) -> Vec<Member> {
     formulas.filter(|member| matches!(member.spec.kind, Kind::Blend(program) if shares(program))).collect()
 }
 
-fn judge(groups: &[Vec<Member>], target: TargetFormat, rules: Rules, cases: u64) -> Result<Report, Error> {
+fn judge(groups: &[Vec<Member>], target: TargetFormat, rules: Rules, cases: u64) -> Result<Report, DeviceError> {
     let options = options(target, cases)?;
     let mut subjects = [Subject::faulty(rules)];
     let mut report = options.report(&subjects);

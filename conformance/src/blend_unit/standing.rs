@@ -8,13 +8,13 @@ use super::rules::Rules;
 use super::run::Chunk;
 use super::store::{ENOUGH, StoreCounts};
 use super::tally::{Drawn, Outcome, Sample, Tally, explain};
+use crate::device::DeviceError;
 use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
 use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Totals};
-use lightmeter_gpu::Error;
 use lightmeter_judge::tally::{KEPT_FAILURES, by_name, keep_simplest, reported};
 use lightmeter_judge::{is_worse, worse};
 use lightmeter_scene::target::{Encoding, TargetFormat};
@@ -78,18 +78,18 @@ impl Standing {
         chunk: &Chunk<'_>,
         options: &Options,
         report: &mut Report,
-    ) -> Result<(), Error> {
+    ) -> Result<(), DeviceError> {
         let reasons: Vec<Option<&'static str>> = chunk
             .pieces
             .iter()
-            .map(|piece| Ok(self.lacks.or(subject.lacks_route(&options.shaders, piece.route)?)))
-            .collect::<Result<_, Error>>()?;
+            .map(|piece| Ok(self.lacks.or(subject.lacks_route(&options.code, piece.route)?)))
+            .collect::<Result<_, DeviceError>>()?;
         let live: Vec<usize> = (0..chunk.pieces.len()).filter(|&k| reasons[k].is_none()).collect();
         let pieces: Vec<&Piece> = live.iter().map(|&k| &chunk.pieces[k]).collect();
         let drawn = if pieces.is_empty() {
             Pixels { pieces: vec![], seconds: 0.0, seconds_warm: None }
         } else {
-            draw(subject, &options.shaders, self.target, &pieces, options.again)?
+            draw(subject, &options.code, self.target, &pieces, options.again)?
         };
         self.seconds += drawn.seconds;
         report.timing.devices += drawn.seconds + drawn.seconds_warm.unwrap_or(0.0);

@@ -1,6 +1,6 @@
 //! `lightmeter bench`.
 
-use super::options::{Choice, shaders};
+use super::options::Choice;
 use super::{NothingToRun, Status, emit, writable};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -14,6 +14,7 @@ use lightmeter::options::Progress;
 use lightmeter::scene::load;
 use lightmeter::select::catalogue;
 use lightmeter_gpu::ClockKind;
+use lightmeter_gpu::Shaders;
 use std::path::{Path, PathBuf};
 
 /// Measure what accuracy costs in time: each technique at each rung of the ladder, its error and its time.
@@ -97,7 +98,7 @@ impl Bench {
                 Clock::Wall => ClockKind::Wall,
             }),
             profile: self.profile,
-            shaders: shaders(self.shaders.as_deref())?,
+            shaders: self.shaders.as_deref().map_or_else(Shaders::built_in, Shaders::from_dir)?,
             command: self.command(),
         };
         let mut names: Vec<&str> = options.scenes.iter().map(|(name, _)| name.as_str()).collect();

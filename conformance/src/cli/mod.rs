@@ -20,6 +20,7 @@ mod sweep;
 
 use clap::{Parser, Subcommand};
 use lightmeter::adapters::AdapterError;
+use lightmeter::device::DeviceError;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -135,11 +136,11 @@ impl Status {
             Some(AdapterError::NoDriver(_)) => return Self::Nothing,
             Some(AdapterError::Unknown { .. }) => return Self::BadInput,
             Some(AdapterError::Device(error)) => Some(error),
-            None => error.downcast_ref::<lightmeter_gpu::Error>(),
+            None => error.downcast_ref::<DeviceError>(),
         };
         match device {
-            Some(lightmeter_gpu::Error::Device(_) | lightmeter_gpu::Error::Timeout(_)) => Self::Device,
-            Some(lightmeter_gpu::Error::Open { .. }) => Self::Nothing,
+            Some(error) if error.is_of_device() => Self::Device,
+            Some(DeviceError::Closed(_)) => Self::Nothing,
             _ => Self::BadInput,
         }
     }

@@ -3,14 +3,15 @@
 use clap::Args;
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
+use lightmeter::device::Code;
 use lightmeter::filter::Filter;
 use lightmeter::options::{DEFAULT_CASES, DEFAULT_TARGETS, MOST_CASES, Options};
 use lightmeter::select::Shard;
 use lightmeter::subject::Subject;
-use lightmeter_gpu::Shaders;
+use lightmeter::subject_gpu::code_of;
 use lightmeter_scene::target::TargetFormat;
 use std::num::NonZeroU64;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// What `--target` names: one format, or all.
@@ -116,13 +117,13 @@ impl Choice {
     }
 
     /// The shaders to judge.
-    pub(crate) fn shaders(&self) -> anyhow::Result<Shaders> {
-        shaders(self.shaders.as_deref())
+    pub(crate) fn code(&self) -> anyhow::Result<Code> {
+        Ok(code_of(self.shaders.as_deref())?)
     }
 
     /// The library's options for a filter.
     pub(crate) fn options(&self, filter: Filter, cases: u64, shard: Shard) -> anyhow::Result<Options> {
-        let options = Options::by(self.shaders.as_deref(), self.seed, self.profile)?;
+        let options = Options::by(self.code()?, self.shaders.as_deref(), self.seed, self.profile);
         Ok(Options { filter, cases, shard, targets: self.targets(), size: self.size, ..options })
     }
 
@@ -130,12 +131,4 @@ impl Choice {
     pub(crate) fn subjects(&self) -> anyhow::Result<Vec<Subject>> {
         Ok(adapters::open(&self.adapter)?)
     }
-}
-
-/// The shaders of a folder, or those that are built in.
-pub(crate) fn shaders(dir: Option<&Path>) -> anyhow::Result<Shaders> {
-    Ok(match dir {
-        Some(dir) => Shaders::from_dir(dir)?,
-        None => Shaders::built_in()?,
-    })
 }

@@ -5,10 +5,10 @@ use super::options::Choice;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::image::drawn::{drawn, intermediate};
+use lightmeter::device::Picture;
+use lightmeter::image::drawn::drawn;
 use lightmeter::image::file::Stored;
 use lightmeter::scene::load;
-use lightmeter_gpu::compose::Shader;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
@@ -87,14 +87,15 @@ impl Render {
             seed: 1,
             shaders: self.shaders.clone(),
         };
-        let shaders = choice.shaders()?;
+        let code = choice.code()?;
         let subjects = choice.subjects()?;
         let [subject] = subjects.as_slice() else { bail!("an image is drawn by one adapter") };
-        let (sets, shader) = if self.full { (named(frame), Shader::Full) } else { (effects(frame), Shader::Composed) };
-        if let Some(stage) = self.stage {
-            return Ok(intermediate(subject, &shaders, frame, &named(frame), stage)?);
-        }
-        drawn(subject, &shaders, frame, &sets, shader)?.map_err(|reason| {
+        let (sets, picture) = match self.stage {
+            Some(stage) => (named(frame), Picture::Intermediate(stage)),
+            None if self.full => (named(frame), Picture::Full),
+            None => (effects(frame), Picture::Composed),
+        };
+        drawn(subject, &code, frame, &sets, picture)?.map_err(|reason| {
             anyhow::anyhow!(reason).context(format!("{} cannot draw this scene", subject.identity.name))
         })
     }

@@ -60,7 +60,7 @@ impl Run {
         bar.0.finish_and_clear();
         let report = match report {
             // Closing a device that hangs would hang as well.
-            Err(error @ (lightmeter_gpu::Error::Device(_) | lightmeter_gpu::Error::Timeout(_))) => {
+            Err(error) if error.is_of_device() => {
                 std::mem::forget(subjects);
                 return Err(error.into());
             }
@@ -152,66 +152,5 @@ impl Progress for Bar {
     }
     fn advance(&mut self, cases: u64) {
         self.0.inc(cases);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use lightmeter::options::Options;
-    use lightmeter::subject::Subject;
-    use lightmeter_gpu::{Shaders, vulkan_adapters};
-    use lightmeter_scene::target::TargetFormat;
-
-    struct LoseAt<F>(&'static str, F);
-
-    impl<F: Fn()> Progress for LoseAt<F> {
-        fn start(&mut self, _cases: u64) {}
-        fn group(&mut self, id: &str) {
-            if id == self.0 {
-                (self.1)();
-            }
-        }
-        fn advance(&mut self, _cases: u64) {}
-    }
-
-    /// Loses the devices of the blend unit when a group begins.
-    fn lose_at(group: &'static str, filter: &str) -> Report {
-        let adapters = vulkan_adapters();
-        let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
-        let mut subject = Subject::open(adapter).expect("the adapter gives a device");
-        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
-        let lose = subject.blend_unit(&shaders).expect("a blend unit").expect("a device has one").breaker();
-        let options = Options {
-            filter: Filter::new(&[filter]).expect("the glob is valid"),
-            cases: 64,
-            targets: vec![TargetFormat::Rgba8Unorm],
-            ..Options::new(shaders)
-        };
-        run(&mut [subject], &options, &mut LoseAt(group, lose)).expect("there is a report")
-    }
-
-    #[test]
-    fn a_lost_device_ends_with_4_and_keeps_what_was_judged() {
-        let report = lose_at("blend/max", "blend/{min,max,write-mask}");
-        assert_eq!(status(&report), Status::Device);
-        let interrupted = report.interrupted.as_ref().expect("the run was interrupted");
-        assert!(interrupted.under_way.contains("blend/max") && interrupted.under_way.contains("rgba8unorm"));
-        assert!(interrupted.message.contains("the device failed"), "{interrupted:?}");
-        let judged: Vec<&str> = report.groups.iter().map(|group| group.id.as_str()).collect();
-        assert!(judged.contains(&"blend/min") && !judged.contains(&"blend/write-mask"), "{judged:?}");
-        let mut text = String::new();
-        text::write(&report, text::Detail::Families, false, &mut text).expect("a string takes it");
-        assert!(text.contains("interrupted: ") && text.contains("✗ "), "{text}");
-    }
-
-    #[test]
-    fn states_that_were_drawn_together_are_tried_alone() {
-        let report = lose_at("blend/subtract", "blend/{add,subtract}/dst-alpha");
-        let under_way = &report.interrupted.as_ref().expect("the run was interrupted").under_way;
-        assert!(under_way.contains("15 states from blend/subtract/dst-alpha/zero to"), "{under_way}");
-        assert!(under_way.contains("none fails alone"), "{under_way}");
-        assert!(report.blend_states.iter().all(|state| state.id.starts_with("blend/add/dst-alpha")));
-        assert_eq!(report.blend_states.len(), 15);
     }
 }

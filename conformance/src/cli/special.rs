@@ -1,12 +1,13 @@
 //! `lightmeter special`.
 
-use super::options::{Format, shaders};
+use super::options::Format;
 use super::{NothingToRun, Status, emit};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::adapters;
 use lightmeter::report::special;
 use lightmeter::special::run::{Report, run};
+use lightmeter::subject_gpu::code_of;
 use std::path::{Path, PathBuf};
 
 /// Show what becomes of NaN, infinity, subnormals and signed zero: what is promised, and what each adapter does.
@@ -35,9 +36,9 @@ impl Special {
         if self.format == Format::Junit {
             bail!("probes are written as text or json");
         }
-        let shaders = shaders(self.shaders.as_deref())?;
+        let code = code_of(self.shaders.as_deref())?;
         let subjects = adapters::open(&self.adapter)?;
-        let report = run(&subjects, &shaders)?;
+        let report = run(&subjects, &code)?;
         if report.outcomes.is_empty() {
             let message = "nothing could be probed: the embedded implementation has no shading language";
             return Err(NothingToRun(message.into()).into());

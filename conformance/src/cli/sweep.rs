@@ -100,12 +100,12 @@ impl Sweep {
             bail!("--out and --checkpoint name one file; expected two");
         }
         let choice = self.choice();
-        let shaders = choice.shaders()?;
+        let code = choice.code()?;
         let mut subjects = choice.subjects()?;
         let [subject] = subjects.as_mut_slice() else {
             bail!("a sweep is of one adapter; expected its name");
         };
-        let description = Description::new(&plan, &subject.identity, self.profile, &shaders);
+        let description = Description::new(&plan, subject, self.profile, &code);
         let resumed = self.checkpoint.as_deref().map(|path| Document::resume(path, &description, shard)).transpose()?;
         let mut document = resumed.flatten().unwrap_or_else(|| Document::new(description, shard));
         // Not after hours of work.
@@ -130,17 +130,15 @@ impl Sweep {
             }
             Ok(())
         };
-        let swept = sweep(&plan, subject, &shaders, self.profile, &mut document, self.blocks, &mut tell);
+        let swept = sweep(&plan, subject, &code, self.profile, &mut document, self.blocks, &mut tell);
         bar.finish_and_clear();
         if let Some(path) = &self.checkpoint {
             document.write(path)?;
         }
         match swept {
             Ok(()) => {}
-            Err(SweepError::Gpu(error)) => {
-                if let (Some(path), lightmeter_gpu::Error::Device(_) | lightmeter_gpu::Error::Timeout(_)) =
-                    (&self.checkpoint, &error)
-                {
+            Err(SweepError::Device(error)) => {
+                if let Some(path) = self.checkpoint.as_ref().filter(|_| error.is_of_device()) {
                     let (done, blocks) = (document.done, document.blocks);
                     eprintln!("{done} of {blocks} blocks were done, which are in {}", path.display());
                 }

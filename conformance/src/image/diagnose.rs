@@ -2,9 +2,9 @@
 
 use super::drawn::intermediate;
 use super::expect::Expectation;
+use crate::device::{Code, DeviceError};
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
-use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::stage::Stage;
@@ -34,17 +34,20 @@ impl fmt::Display for Departure {
 ///
 /// # Errors
 /// Where a shader is invalid or the device fails.
+///
+/// # Panics
+/// Where the subject cannot draw the frame.
 pub fn departure(
     subject: &Subject,
-    shaders: &Shaders,
+    code: &Code,
     frame: &Frame,
     sets: &[Called],
     profile: &Profile,
     pixels: &[usize],
-) -> Result<Departure, Error> {
+) -> Result<Departure, DeviceError> {
     let pixels = &pixels[..pixels.len().min(LOOKED_AT)];
     for stage in Stage::ALL {
-        let image = intermediate(subject, shaders, frame, sets, stage)?;
+        let image = intermediate(subject, code, frame, sets, stage)?.expect("the frame was drawn");
         let expectation = Expectation::new(frame, None, Some(stage), profile);
         let departs = |&&pixel: &&usize| {
             let legal = expectation.pixel(pixel % image.width, pixel / image.width);

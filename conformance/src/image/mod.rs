@@ -1,9 +1,7 @@
 //! Images under judgement: each scene as a subject draws it, against what is legal.
 //!
-//! `drawn` is one image by a subject, `diagnose` says where a wrong one first departs, `run` takes scenes through both, and `cost`
-//! measures what effects cost that are not called for.
+//! `drawn` is one image by a subject, `diagnose` says where a wrong one first departs, and `run` takes scenes through both.
 
-mod cost;
 pub mod diagnose;
 pub mod drawn;
 pub mod run;

@@ -2,11 +2,11 @@
 //! with all effects behind switches; every pixel of both must be legal by the full reference. A run of everything, which is
 //! to end within a minute, draws them smaller and by the composed shaders alone.
 
-use super::cost::cost;
 use super::diagnose::{self, Departure};
 use super::expect::{Expectation, Expected};
 use super::file::{self, Stored};
 use super::judge::{Judged, Miss, error, judge};
+use crate::device::{DeviceError, Own, Picture};
 use crate::options::{Options, Progress};
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
@@ -14,9 +14,6 @@ use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
 use lightmeter_document::Number;
 use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
-use lightmeter_gpu::compose::{Recipe, Shader};
-use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Error, Pending};
 use lightmeter_judge::devices::Deviation;
 use lightmeter_judge::is_worse;
 use lightmeter_judge::tally::KEPT_FAILURES;
@@ -28,10 +25,11 @@ use serde_json::json;
 use std::time::Instant;
 
 /// Which shader drew an image, as reports name it.
-const fn stage(shader: Shader) -> &'static str {
-    match shader {
-        Shader::Composed => "image",
-        Shader::Full => "image-full",
+const fn stage(picture: Picture) -> &'static str {
+    match picture {
+        Picture::Composed => "image",
+        Picture::Full => "image-full",
+        Picture::Intermediate(stage) => stage.name(),
     }
 }
 
@@ -57,21 +55,21 @@ pub(crate) fn run_scene(
     options: &Options,
     report: &mut Report,
     progress: &mut impl Progress,
-) -> Result<(), Error> {
+) -> Result<(), DeviceError> {
     let frame = &loaded.frame;
     let (called, named) = (effects(frame), named(frame));
     let mut work = vec![];
     for (number, subject) in subjects.iter().enumerate() {
         // The shader with all effects takes a compiler as long as everything else of a scene.
-        let shaders =
-            if options.filter.is_empty() { &[Shader::Composed][..] } else { &[Shader::Composed, Shader::Full] };
-        for &shader in shaders {
+        let pictures =
+            if options.filter.is_empty() { &[Picture::Composed][..] } else { &[Picture::Composed, Picture::Full] };
+        for &picture in pictures {
             let clock = Instant::now();
             let drawing =
-                start(subject, options, frame, if shader == Shader::Full { &named } else { &called }, shader)?;
+                start(subject, options, frame, if picture == Picture::Full { &named } else { &called }, picture)?;
             let seconds = clock.elapsed().as_secs_f64();
             report.timing.devices += seconds;
-            work.push((number, shader, drawing, seconds));
+            work.push((number, picture, drawing, seconds));
         }
     }
     let clock = Instant::now();
@@ -81,18 +79,17 @@ pub(crate) fn run_scene(
     }
     report.timing.reference += clock.elapsed().as_secs_f64();
     let mut composed: Vec<Option<Stored>> = vec![None; subjects.len()];
-    for (number, shader, drawing, seconds) in work {
+    for (number, picture, drawing, seconds) in work {
         let subject = &subjects[number];
         let clock = Instant::now();
         let image = match drawing {
             Drawing::Skipped(reason) => {
-                report.groups.push(scene.skipped(subject, shader, reason));
+                report.groups.push(scene.skipped(subject, picture, reason));
                 continue;
             }
-            Drawing::Embedded => embedded(frame, shader),
+            Drawing::Embedded => embedded(frame, picture),
             Drawing::Pending(pending) => {
-                let gpu = subject.gpu().expect("only a device has pending work");
-                let bytes = SceneRenderer::pixels(gpu, *pending)?;
+                let bytes = subject.device().expect("only a device has pending work").pixels(pending)?;
                 Some(Stored::read(frame.target.width as usize, frame.target.format, &bytes))
             }
         };
@@ -100,16 +97,18 @@ pub(crate) fn run_scene(
         report.timing.devices += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         let mut measuring = 0.0;
-        let mut group = scene.judge(&image, subject, shader, options, report)?;
-        match shader {
-            Shader::Composed => composed[number] = Some(image),
-            Shader::Full => {
+        let mut group = scene.judge(&image, subject, picture, options, report)?;
+        match picture {
+            Picture::Composed | Picture::Intermediate(_) => composed[number] = Some(image),
+            Picture::Full => {
                 let same = composed[number].as_ref().map(|composed| differing(composed, &image));
                 if let Some(used) = &mut group.image {
                     used.differs_from_composed = same;
-                    if options.again {
+                    if options.again
+                        && let Some(device) = subject.device()
+                    {
                         let clock = Instant::now();
-                        used.cost = cost(subject, &options.shaders, frame, &called)?;
+                        used.cost = Some(device.effects_cost(&options.code, frame, &called)?);
                         measuring = clock.elapsed().as_secs_f64();
                     }
                 }
@@ -133,7 +132,7 @@ fn differing(a: &Stored, b: &Stored) -> u64 {
 enum Drawing {
     Skipped(&'static str),
     Embedded,
-    Pending(Box<Pending>),
+    Pending(Own),
 }
 
 fn start(
@@ -141,19 +140,18 @@ fn start(
     options: &Options,
     frame: &Frame,
     sets: &[Called],
-    shader: Shader,
-) -> Result<Drawing, Error> {
-    let Some(gpu) = subject.gpu() else { return Ok(Drawing::Embedded) };
-    if let Some(reason) = SceneRenderer::lacks(gpu, frame) {
+    picture: Picture,
+) -> Result<Drawing, DeviceError> {
+    let Some(device) = subject.device() else { return Ok(Drawing::Embedded) };
+    if let Some(reason) = device.lacks_frame(frame) {
         return Ok(Drawing::Skipped(reason));
     }
-    let renderer = SceneRenderer::new(gpu, &options.shaders, frame, sets, Recipe::of(shader))?;
-    Ok(Drawing::Pending(Box::new(renderer.submit(gpu))))
+    device.draw(&options.code, frame, sets, picture).map(Drawing::Pending)
 }
 
 /// The formulas in f32, which have no shader with switches.
-fn embedded(frame: &Frame, shader: Shader) -> Option<Stored> {
-    (shader == Shader::Composed).then(|| Stored::of(&render::<f32>(frame, None, None), frame.target.format))
+fn embedded(frame: &Frame, picture: Picture) -> Option<Stored> {
+    (picture == Picture::Composed).then(|| Stored::of(&render::<f32>(frame, None, None), frame.target.format))
 }
 
 /// Takes the misses out that a named deviation makes legal; how many there are.
@@ -202,19 +200,19 @@ impl<'a> Scene<'a> {
         &found.expect("what is legal was worked out for every subject").1
     }
 
-    fn skipped(&self, subject: &Subject, shader: Shader, reason: &'static str) -> Group {
+    fn skipped(&self, subject: &Subject, picture: Picture, reason: &'static str) -> Group {
         let cases = self.pixels.len() as u64;
         Group {
             skip_reason: Some(reason.into()),
-            ..self.group(subject, shader, Totals { cases, skipped: cases, ..Totals::default() })
+            ..self.group(subject, picture, Totals { cases, skipped: cases, ..Totals::default() })
         }
     }
 
-    fn group(&self, subject: &Subject, shader: Shader, totals: Totals) -> Group {
+    fn group(&self, subject: &Subject, picture: Picture, totals: Totals) -> Group {
         Group {
             target: Some(self.frame.target.format.name().into()),
             totals,
-            ..Group::new(self.id.clone(), subject.identity.name.clone(), stage(shader))
+            ..Group::new(self.id.clone(), subject.identity.name.clone(), stage(picture))
         }
     }
 
@@ -222,10 +220,10 @@ impl<'a> Scene<'a> {
         &self,
         image: &Stored,
         subject: &Subject,
-        shader: Shader,
+        picture: Picture,
         options: &Options,
         report: &mut Report,
-    ) -> Result<Group, Error> {
+    ) -> Result<Group, DeviceError> {
         let profile = profile_of(subject, options.profile);
         let expected = self.expected(&profile);
         let mut judged = judge(image, &self.reference, expected, &self.pixels);
@@ -258,7 +256,7 @@ impl<'a> Scene<'a> {
         {
             let departure = self.departure(subject, options, &profile, &judged)?;
             used.departs_in = Some(departure.stage.into());
-            used.files = self.write(image, expected, subject, shader, options);
+            used.files = self.write(image, expected, subject, picture, options);
             let pixels = judged.pixels().len();
             let command = self.rerun("show", subject, options, worst.pixel);
             explanation =
@@ -266,7 +264,7 @@ impl<'a> Scene<'a> {
             let kept = judged.misses.iter().filter(|miss| miss.component == 0 || **miss != worst).take(KEPT_FAILURES);
             let failures: Vec<Miss> = std::iter::once(worst).chain(kept.copied()).take(KEPT_FAILURES).collect();
             for miss in failures {
-                report.failures.push(self.failure(miss, image, expected, subject, shader, options));
+                report.failures.push(self.failure(miss, image, expected, subject, picture, options));
             }
         }
         Ok(Group {
@@ -276,7 +274,7 @@ impl<'a> Scene<'a> {
             explanation,
             problem,
             image: Some(used),
-            ..self.group(subject, shader, totals)
+            ..self.group(subject, picture, totals)
         })
     }
 
@@ -307,9 +305,9 @@ impl<'a> Scene<'a> {
         options: &Options,
         profile: &Profile,
         judged: &Judged,
-    ) -> Result<Departure, Error> {
+    ) -> Result<Departure, DeviceError> {
         // What a texture replaces is an intermediate result all the same.
-        diagnose::departure(subject, &options.shaders, self.frame, &self.named, profile, &judged.pixels())
+        diagnose::departure(subject, &options.code, self.frame, &self.named, profile, &judged.pixels())
     }
 
     /// Reference, result and error map; nothing where files are not asked for or cannot be written.
@@ -318,14 +316,14 @@ impl<'a> Scene<'a> {
         image: &Stored,
         expected: &[Expected],
         subject: &Subject,
-        shader: Shader,
+        picture: Picture,
         options: &Options,
     ) -> Vec<String> {
         let Some(folder) = &options.images else { return vec![] };
         let rounded = Stored::of(&render::<f64>(self.frame, None, None), self.frame.target.format);
         let map = super::judge::error_map(image, &self.reference, expected);
         let name = self.id.replace('/', "-");
-        let place = format!("{name}-{}-{}", subject.identity.name, stage(shader));
+        let place = format!("{name}-{}-{}", subject.identity.name, stage(picture));
         let _ = std::fs::create_dir_all(folder);
         let mut files = vec![];
         for (what, image) in [("reference", &rounded), ("result", image), ("error", &map)] {
@@ -352,7 +350,7 @@ impl<'a> Scene<'a> {
         image: &Stored,
         expected: &[Expected],
         subject: &Subject,
-        shader: Shader,
+        picture: Picture,
         options: &Options,
     ) -> Failure {
         let (pixel, k) = (miss.pixel, miss.component);
@@ -365,7 +363,7 @@ impl<'a> Scene<'a> {
             rerun: self.rerun("run", subject, options, pixel),
             id: pixel_id(&self.id, image.width, pixel),
             adapter: subject.identity.name.clone(),
-            stage: stage(shader).into(),
+            stage: stage(picture).into(),
             target: Some(self.frame.target.format.name().into()),
             route: None,
             output: ["r", "g", "b", "a"][k].into(),

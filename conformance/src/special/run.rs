@@ -1,17 +1,12 @@
 //! The probes on adapters, and their verdicts.
 
 use super::record::{OnRecord, Record};
-use super::{Deviation, PROBES, Probe, Promise, Way};
+use super::{Deviation, PROBES, Probe, Promise};
+use crate::device::{Code, DeviceError, Probed};
 use crate::subject::Subject;
 use lightmeter_document::run::Identity;
-use lightmeter_gpu::{ArithmeticPipeline, Error, Gpu, Kernel, RasterPipeline, Shaders, Stage};
-use lightmeter_scene::raster::Raster;
-use lightmeter_scene::raster::{Provoking, Topology};
 use lightmeter_scene::target::SENTINEL;
 use serde::{Serialize, Serializer};
-
-/// The shader file of the functions.
-pub const FILE: &str = "special.wgsl";
 
 /// What became of a probe on an adapter in a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -195,7 +190,7 @@ pub fn failure(report: &Report, outcome: &Outcome) -> Option<String> {
 ///
 /// # Errors
 /// Where a shader is invalid, or a device fails.
-pub fn run(subjects: &[Subject], shaders: &Shaders) -> Result<Report, Error> {
+pub fn run(subjects: &[Subject], code: &Code) -> Result<Report, DeviceError> {
     let mut report = Report {
         schema: "lightmeter.special/1",
         adapters: vec![],
@@ -206,7 +201,7 @@ pub fn run(subjects: &[Subject], shaders: &Shaders) -> Result<Report, Error> {
     };
     let probes: Vec<&'static Probe> = PROBES.iter().collect();
     for subject in subjects {
-        let Some(results) = evaluate(subject, shaders, &probes)? else { continue };
+        let Some(results) = evaluate(subject, code, &probes)? else { continue };
         report.adapters.push(subject.identity.clone());
         report.outcomes.extend(results.outcomes);
         report.skipped.extend(results.skipped);
@@ -231,49 +226,22 @@ pub struct Results {
 ///
 /// # Errors
 /// Where a shader is invalid, or the device fails.
-pub fn evaluate(subject: &Subject, shaders: &Shaders, probes: &[&'static Probe]) -> Result<Option<Results>, Error> {
-    let Some(gpu) = subject.gpu() else { return Ok(None) };
-    let kernels = functions(probes)
-        .into_iter()
-        .map(|function| Ok((function, Kernel::new(shaders, FILE, function)?)))
-        .collect::<Result<Vec<_>, Error>>()?;
+pub fn evaluate(subject: &Subject, code: &Code, probes: &[&'static Probe]) -> Result<Option<Results>, DeviceError> {
+    let Some(device) = subject.device() else { return Ok(None) };
+    let Probed { words, skipped } = device.special(code, probes)?;
     let on_record = OnRecord::of(&subject.identity);
     let record = on_record.map(|on_record| {
         let (adapter, of) = (subject.identity.name.clone(), on_record.record().whose());
         RecordUse { adapter, of, binds: on_record.binds }
     });
-    let mut sink =
-        Sink { adapter: &subject.identity, on_record, results: Results { outcomes: vec![], skipped: vec![], record } };
-    for (stage, name) in [(Stage::Compute, "compute"), (Stage::Fragment, "fragment")] {
-        for (function, kernel) in &kernels {
-            shade(gpu, kernel, &of_function(probes, function), (stage, name), &mut sink)?;
-        }
-    }
-    for flat in [false, true] {
-        let carried: Vec<&'static Probe> =
-            probes.iter().copied().filter(|probe| probe.way == Way::Varying { flat }).collect();
-        if !carried.is_empty() {
-            carry(gpu, shaders, flat, &carried, &mut sink)?;
-        }
+    let adapter = &subject.identity.name;
+    let skip = |(stage, reason)| Skipped { adapter: adapter.clone(), stage, reason };
+    let results = Results { outcomes: vec![], skipped: skipped.into_iter().map(skip).collect(), record };
+    let mut sink = Sink { adapter: &subject.identity, on_record, results };
+    for (probe, stage, bits) in words {
+        sink.put(probe, stage, bits);
     }
     Ok(Some(sink.results))
-}
-
-/// The functions that some probes call, each once.
-fn functions(probes: &[&Probe]) -> Vec<&'static str> {
-    let mut functions = vec![];
-    for probe in probes {
-        if let Way::Function(function) = probe.way
-            && !functions.contains(&function)
-        {
-            functions.push(function);
-        }
-    }
-    functions
-}
-
-fn of_function(probes: &[&'static Probe], function: &str) -> Vec<&'static Probe> {
-    probes.iter().copied().filter(|probe| matches!(probe.way, Way::Function(name) if name == function)).collect()
 }
 
 /// Where the results of one adapter go.
@@ -298,73 +266,6 @@ impl Sink<'_> {
             recorded,
         });
     }
-
-    fn skip(&mut self, stage: &'static str, reason: &'static str) {
-        let skipped = Skipped { adapter: self.adapter.name.clone(), stage, reason };
-        if !self.results.skipped.contains(&skipped) {
-            self.results.skipped.push(skipped);
-        }
-    }
-}
-
-/// The probes of one function in one stage.
-fn shade(
-    gpu: &Gpu,
-    kernel: &Kernel,
-    probes: &[&'static Probe],
-    (stage, name): (Stage, &'static str),
-    sink: &mut Sink<'_>,
-) -> Result<(), Error> {
-    let rows: Vec<f32> = probes.iter().flat_map(|probe| probe.inputs).map(|bits| f32::from_bits(*bits)).collect();
-    let pipeline = match ArithmeticPipeline::new(gpu, kernel, stage)? {
-        Ok(pipeline) => pipeline,
-        Err(reason) => {
-            sink.skip(name, reason);
-            return Ok(());
-        }
-    };
-    let words = pipeline.submit(gpu, &rows).wait(gpu)?;
-    for (probe, bits) in probes.iter().zip(pipeline.outputs(words, probes.len())) {
-        sink.put(probe, name, bits);
-    }
-    Ok(())
-}
-
-/// The probes of an attribute: every vertex has the value, and the pixel in the primitive's middle is read.
-fn carry(
-    gpu: &Gpu,
-    shaders: &Shaders,
-    flat: bool,
-    probes: &[&'static Probe],
-    sink: &mut Sink<'_>,
-) -> Result<(), Error> {
-    const STAGE: &str = "raster";
-    let kind = if flat {
-        Raster::Flat { topology: Topology::TriangleList, provoking: Provoking::Last }
-    } else {
-        Raster::TriangleAttributes
-    };
-    let pipeline = match RasterPipeline::new(gpu, shaders, kind)? {
-        Ok(pipeline) => pipeline,
-        Err(reason) => {
-            sink.skip(STAGE, reason);
-            return Ok(());
-        }
-    };
-    for probe in probes {
-        let value = f32::from_bits(probe.inputs[0]);
-        let row = if flat {
-            // Six attributes, the primitive that is looked at, the pixel.
-            vec![value, value, value, value, value, value, 0.0, 128.0, 128.0]
-        } else {
-            let corners = [-1.0, -1.0, 0.5, 1.0, 3.0, -1.0, 0.5, 1.0, -1.0, 3.0, 0.5, 1.0];
-            [&corners[..], &[value; 3], &[128.0, 128.0]].concat()
-        };
-        let (count, pending) = pipeline.submit(gpu, &row);
-        let outputs = pipeline.outputs(&pending.wait(gpu)?, &row, count);
-        sink.put(probe, STAGE, outputs[0]);
-    }
-    Ok(())
 }
 
 impl Row {
@@ -393,8 +294,6 @@ fn maybe_hex<S: Serializer>(bits: &Option<u32>, serializer: S) -> Result<S::Ok, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter_catalogue::special::Class;
-    use std::collections::BTreeSet;
 
     const NAN: u32 = 0x7fc0_0000;
 
@@ -417,36 +316,6 @@ mod tests {
         ];
         for (promise, bits, recorded, deviates, verdict) in rows {
             assert_eq!(Verdict::of(promise, bits, recorded, deviates), verdict, "{promise:?} {bits:x} {recorded:?}");
-        }
-    }
-
-    #[test]
-    fn probes_are_well_formed() {
-        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
-        let mut names = BTreeSet::new();
-        for probe in PROBES {
-            assert!(names.insert(probe.name), "{} stands twice", probe.name);
-            assert!(probe.name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'));
-            assert!(!probe.inputs.contains(&SENTINEL), "{}", probe.name);
-            match probe.way {
-                Way::Function(function) => {
-                    let kernel = Kernel::new(&shaders, FILE, function).unwrap_or_else(|error| panic!("{error}"));
-                    assert_eq!((kernel.inputs, kernel.outputs), (probe.inputs.len(), 1), "{}", probe.name);
-                }
-                Way::Varying { .. } => assert_eq!(probe.inputs.len(), 1, "{}", probe.name),
-            }
-        }
-        for class in Class::ALL {
-            assert!(PROBES.iter().any(|probe| probe.class == class), "{class:?} has no probe");
-        }
-    }
-
-    #[test]
-    fn every_function_has_a_probe() {
-        let (_, text) = lightmeter_gpu::FILES.into_iter().find(|(name, _)| *name == FILE).expect("it is built in");
-        for line in text.lines().filter_map(|line| line.strip_prefix("fn ")) {
-            let function = line.split('(').next().unwrap_or_default();
-            assert!(PROBES.iter().any(|probe| probe.way == Way::Function(function)), "{function} has no probe");
         }
     }
 }

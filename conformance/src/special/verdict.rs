@@ -2,13 +2,13 @@
 
 use super::run::{EMBEDDED, Outcome, Results, Skipped, Verdict, evaluate};
 use super::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
+use crate::device::DeviceError;
 use crate::options::{Options, Progress};
 use crate::subject::Subject;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
 use lightmeter_document::Number;
 use lightmeter_document::run::{DeviationUse, Failure, Group, Report, Totals};
-use lightmeter_gpu::Error;
 use lightmeter_judge::simplicity;
 use lightmeter_judge::tally::KEPT_FAILURES;
 use lightmeter_scene::target::SENTINEL;
@@ -69,10 +69,10 @@ pub(crate) fn run_table(
     options: &Options,
     report: &mut Report,
     progress: &mut impl Progress,
-) -> Result<(), Error> {
+) -> Result<(), DeviceError> {
     for subject in subjects {
         let clock = Instant::now();
-        let results = evaluate(subject, &options.shaders, &table.probes)?;
+        let results = evaluate(subject, &options.code, &table.probes)?;
         let seconds = clock.elapsed().as_secs_f64();
         report.timing.devices += seconds;
         match results {

@@ -4,21 +4,19 @@
 //! vector. `exact` is the stable formula's f64 reference, which the certificate holds against many digits. What no method can
 //! do better than is the *condition*: so many roundings of the result come of one rounding of each input.
 
-mod cost;
-
 pub use lightmeter_judge::stability::{
     Conditioning, ILL_CONDITIONED, ROUNDING, Standing, UNSTABLE, condition, roundings, size,
 };
 
+use crate::device::DeviceError;
 use crate::evaluate::Evaluator;
 use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::{Naive, Stable};
 use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
 use lightmeter_document::Number;
-use lightmeter_document::run::Examined;
 use lightmeter_document::run::Report;
-use lightmeter_gpu::Error;
+use lightmeter_document::run::{Cost, Examined};
 use std::collections::BTreeMap;
 
 /// The rows of a hard case: itself, and those near it.
@@ -61,7 +59,7 @@ pub fn examine(
     subjects: &mut [Subject],
     options: &Options,
     report: &mut Report,
-) -> Result<(), Error> {
+) -> Result<(), DeviceError> {
     let Some(stable) = member.spec.stable else { return Ok(()) };
     let naive = |place: usize| member.spec.hard[place].naive;
     let places: Vec<usize> = hard.iter().copied().filter(|&place| naive(place).is_some()).collect();
@@ -87,7 +85,7 @@ pub fn examine(
             others.insert(*id, (against(&exact, subject)?, against(&own, subject)?));
         }
         if options.again {
-            report.stable_costs.extend(cost::cost(member, &rivals, subject, options)?);
+            report.stable_costs.extend(costs(member, &rivals, subject, options)?);
         }
         for (stage, worst) in own {
             for (&place, &(error, at)) in &worst {
@@ -118,6 +116,17 @@ pub fn examine(
     Ok(())
 }
 
+/// What the form costs beside naive ones on a subject's device.
+fn costs(
+    member: &Member,
+    rivals: &BTreeMap<&'static str, Member>,
+    subject: &Subject,
+    options: &Options,
+) -> Result<Vec<Cost>, DeviceError> {
+    let Some(device) = subject.device() else { return Ok(vec![]) };
+    device.stable_costs(&options.code, member, rivals, options.seed)
+}
+
 /// The naive formulas that some cases name.
 fn rivals(named: impl Iterator<Item = Naive>) -> BTreeMap<&'static str, Member> {
     let wanted: Vec<&'static str> = named.map(|naive| naive.formula).collect();
@@ -142,9 +151,9 @@ fn errors(
     exact: &[f64],
     subject: &mut Subject,
     options: &Options,
-) -> Result<Vec<(&'static str, Worst)>, Error> {
+) -> Result<Vec<(&'static str, Worst)>, DeviceError> {
     let (members, outputs) = ([form], form.spec.output_len());
-    let evaluator = Evaluator::new(subject, &members, &options.shaders)?;
+    let evaluator = Evaluator::new(subject, &members, &options.code)?;
     let mut found = vec![];
     for (stage, words) in evaluator.run(subject, &vec![0; rows.cases.len()], &rows.inputs)? {
         let Ok(words) = words else { continue };

@@ -11,12 +11,12 @@ use crate::blend_unit::expect::expect;
 use crate::blend_unit::pixel::{self, Units};
 use crate::blend_unit::rules::Rules;
 use crate::blend_unit::tally::{Outcome, count_tier};
+use crate::device::{Code, DeviceError};
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_document::Number;
-use lightmeter_gpu::{Error, Shaders};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
@@ -32,7 +32,7 @@ const COMPONENTS: usize = 3;
 /// The blend unit at work on a mode.
 pub(super) struct BytesWork<'a> {
     subject: &'a mut Subject,
-    shaders: &'a Shaders,
+    code: &'a Code,
     program: Program,
     stride: usize,
     profile: &'static Profile,
@@ -43,14 +43,14 @@ impl<'a> BytesWork<'a> {
     pub(super) fn new(
         plan: &Plan<'_>,
         subject: &'a mut Subject,
-        shaders: &'a Shaders,
+        code: &'a Code,
         profile: &'static Profile,
     ) -> Result<Self, &'static str> {
         if let Some(reason) = subject.lacks_blending(TARGET) {
             return Err(reason);
         }
         let Kind::Blend(program) = plan.member.spec.kind else { return Err("it is no blend state") };
-        Ok(Self { subject, shaders, program, stride: plan.member.spec.input_len(), profile })
+        Ok(Self { subject, code, program, stride: plan.member.spec.input_len(), profile })
     }
 
     /// Inputs from one number to another, of one alpha, three to a pixel; the last pixel may repeat its last one.
@@ -131,11 +131,11 @@ impl Work for BytesWork<'_> {
         (first, first + count)
     }
 
-    fn finish(&mut self, (first, end): Self::Job) -> Result<Statistics, Error> {
+    fn finish(&mut self, (first, end): Self::Job) -> Result<Statistics, DeviceError> {
         let planes: Vec<(u64, u64)> =
             (first / PLANE..end.div_ceil(PLANE)).map(|k| (first.max(k * PLANE), end.min((k + 1) * PLANE))).collect();
         let pieces: Vec<Piece> = planes.par_iter().map(|&(from, to)| self.piece(from, to)).collect();
-        let drawn = draw(self.subject, self.shaders, TARGET, &pieces.iter().collect::<Vec<_>>(), false)?;
+        let drawn = draw(self.subject, self.code, TARGET, &pieces.iter().collect::<Vec<_>>(), false)?;
         let of_planes = planes.par_iter().zip(&pieces).zip(&drawn.pieces);
         let parts: Vec<Statistics> =
             of_planes.map(|((&(from, to), piece), pixels)| self.judge(piece, pixels, from, to)).collect();

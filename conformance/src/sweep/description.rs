@@ -3,9 +3,10 @@
 use super::plan::{Over, Plan};
 use super::span::Span;
 use super::statistics::Exact;
+use crate::device::Code;
+use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::run::Identity;
-use lightmeter_gpu::Shaders;
 use serde::{Deserialize, Serialize};
 
 /// What is swept, on what, by which rules: files of the same sweep have the same.
@@ -66,14 +67,15 @@ impl From<&Identity> for Adapter {
 impl Description {
     /// What a plan sweeps on an adapter.
     #[must_use]
-    pub fn new(plan: &Plan<'_>, adapter: &Identity, profile: &Profile, shaders: &Shaders) -> Self {
+    pub fn new(plan: &Plan<'_>, subject: &Subject, profile: &Profile, code: &Code) -> Self {
         let (from, to, unit, file) = match plan.over {
             Over::Number { from, to, .. } => {
                 (Some(Exact(from)), Some(Exact(to)), "ULP", format!("{}.wgsl", plan.member.spec.family()))
             }
             Over::Bytes => (None, None, "step", super::blend::FILE.into()),
         };
-        let text = if adapter.backend == "embedded" { adapter.driver.clone() } else { shaders.source(&file) };
+        let adapter = &subject.identity;
+        let text = subject.device().map_or_else(|| adapter.driver.clone(), |device| device.source(code, &file));
         let Span { inputs, block } = plan.span();
         Self {
             formula: plan.member.spec.id.clone(),

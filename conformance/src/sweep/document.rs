@@ -274,19 +274,18 @@ fn shard_of(text: &str) -> Option<Shard> {
 mod tests {
     use super::super::statistics::tests::seen;
     use super::*;
+    use crate::device::Code;
     use crate::subject::Subject;
     use crate::sweep::{Asked, Plan};
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::catalogue;
-    use lightmeter_gpu::Shaders;
 
     /// Five blocks of fog, of which one input fails.
     fn document(shard: Shard) -> Document {
         let catalogue = catalogue();
         let asked = Asked { from: Some(1.0), to: Some(1.002), ..Asked::default() };
         let plan = Plan::new(&catalogue, "fog/exp", &asked).expect("a plan");
-        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
-        let sweep = Description::new(&plan, &Subject::embedded().identity, &WGSL, &shaders);
+        let sweep = Description::new(&plan, &Subject::embedded(), &WGSL, &Code::default());
         let mut document = Document::new(sweep, shard);
         document.done = document.blocks;
         let inputs = document.sweep.span().inputs_of(shard, document.done);

@@ -23,6 +23,6 @@ pub use histogram::Histogram;
 pub use judge::Judge;
 pub use plan::{Asked, Over, Plan, Refused};
 pub use preset::{Free, PRESETS, Preset};
-pub use run::{SweepError, sweep};
+pub use run::{SweepError, UNDER_WAY, sweep};
 pub use span::Span;
 pub use statistics::{Exact, Place, Seen, Statistics, Stored};

@@ -5,11 +5,9 @@ use super::document::{Document, DocumentError};
 use super::judge::Judge;
 use super::plan::{Over, Plan, input};
 use super::statistics::Statistics;
-use crate::evaluate::kernel;
+use crate::device::{Blocks, Code, DeviceError};
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
-use lightmeter_catalogue::cases::Stage;
-use lightmeter_gpu::{Block, Error, Gpu, Shaders, Sweep};
 use lightmeter_scene::along::{Along, key_of};
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -23,7 +21,7 @@ const TASK: usize = 1 << 12;
 pub enum SweepError {
     /// A shader or a device.
     #[error(transparent)]
-    Gpu(#[from] Error),
+    Device(#[from] DeviceError),
     /// The checkpoint.
     #[error(transparent)]
     Document(#[from] DocumentError),
@@ -44,7 +42,7 @@ pub(super) trait Work {
     /// Starts on so many inputs from the one of that number on.
     fn start(&mut self, first: u64, count: u64) -> Self::Job;
     /// What came of it.
-    fn finish(&mut self, job: Self::Job) -> Result<Statistics, Error>;
+    fn finish(&mut self, job: Self::Job) -> Result<Statistics, DeviceError>;
 }
 
 /// Sweeps on from where the document stands, at most so many blocks of its shard, and hands the document on after each.
@@ -55,7 +53,7 @@ pub(super) trait Work {
 pub fn sweep(
     plan: &Plan<'_>,
     subject: &mut Subject,
-    shaders: &Shaders,
+    code: &Code,
     profile: &'static Profile,
     document: &mut Document,
     part: Option<u64>,
@@ -69,31 +67,25 @@ pub fn sweep(
     let lacks = |reason| SweepError::Lacks { adapter: adapter.clone(), reason };
     match &plan.over {
         Over::Bytes => {
-            let mut work = BytesWork::new(plan, subject, shaders, profile).map_err(&lacks)?;
+            let mut work = BytesWork::new(plan, subject, code, profile).map_err(&lacks)?;
             drive(&mut work, document, last, tell)
         }
         Over::Number { free, row, from, output, .. } => {
             let along = Along { row, free: *free, output: *output };
             let known = subject.known.clone();
             let judge = Judge { formula: &*plan.member.formula, along, profile, deviations: &known.deviations };
-            let Some(gpu) = subject.gpu() else {
+            let Some(device) = subject.device() else {
                 return drive(&mut Embedded { judge, from: *from }, document, last, tell);
             };
-            let stage = match plan.stage {
-                Stage::Fragment => lightmeter_gpu::Stage::Fragment,
-                _ => lightmeter_gpu::Stage::Compute,
-            };
-            let kernel = kernel(shaders, plan.member)?.ok_or_else(|| lacks("no shader function evaluates it"))?;
-            let selectors = plan.member.spec.selectors.iter().map(|&code| f32::from_bits(code));
-            let selected: Vec<f32> = selectors.chain(row.iter().copied()).collect();
-            let along = Along { row: &selected, free: *free + plan.member.spec.selectors.len(), output: *output };
             let capacity = usize::try_from(plan.span().block).unwrap_or(usize::MAX);
-            let sweep = Sweep::new(gpu, shaders, &kernel, stage, along, capacity)?;
-            let sweep = sweep.map_err(&lacks)?;
-            drive(&mut OnDevice { gpu, sweep, judge, from: *from }, document, last, tell)
+            let blocks = device.sweep(code, plan.member, plan.stage, along, capacity)?.map_err(&lacks)?;
+            drive(&mut OnDevice { blocks, judge, from: *from }, document, last, tell)
         }
     }
 }
+
+/// Blocks that are under way at once.
+pub const UNDER_WAY: usize = 2;
 
 fn drive<W: Work>(
     work: &mut W,
@@ -106,7 +98,7 @@ fn drive<W: Work>(
     let mut under_way = VecDeque::new();
     let mut next = document.done;
     while document.done < last {
-        while next < last && under_way.len() < Sweep::UNDER_WAY {
+        while next < last && under_way.len() < UNDER_WAY {
             let (first, count) = span.block_of(shard, next);
             under_way.push_back(work.start(first, count));
             next += 1;
@@ -122,22 +114,24 @@ fn drive<W: Work>(
 
 /// A shader.
 struct OnDevice<'a> {
-    gpu: &'a Gpu,
-    sweep: Sweep,
+    blocks: Box<dyn Blocks + 'a>,
     judge: Judge<'a>,
     from: f32,
 }
 
 impl Work for OnDevice<'_> {
-    type Job = (u32, Block);
+    type Job = u32;
 
     fn start(&mut self, first: u64, count: u64) -> Self::Job {
         let key = key_of(input(self.from, first));
-        (key, self.sweep.submit(self.gpu, key, usize::try_from(count).unwrap_or(usize::MAX)))
+        self.blocks.start(key, usize::try_from(count).unwrap_or(usize::MAX));
+        key
     }
 
-    fn finish(&mut self, (key, block): Self::Job) -> Result<Statistics, Error> {
-        self.sweep.read(self.gpu, block, |words| self.judge.block(key, words))
+    fn finish(&mut self, key: Self::Job) -> Result<Statistics, DeviceError> {
+        let mut judged = Statistics::default();
+        self.blocks.finish(&mut |words| judged = self.judge.block(key, words))?;
+        Ok(judged)
     }
 }
 
@@ -154,7 +148,7 @@ impl Work for Embedded<'_> {
         (first, count)
     }
 
-    fn finish(&mut self, (first, count): Self::Job) -> Result<Statistics, Error> {
+    fn finish(&mut self, (first, count): Self::Job) -> Result<Statistics, DeviceError> {
         let mut words = vec![0; usize::try_from(count).unwrap_or(usize::MAX)];
         words.par_chunks_mut(TASK).enumerate().for_each(|(task, words)| {
             let first = first + (task * TASK) as u64;
@@ -186,10 +180,10 @@ mod tests {
             count
         }
 
-        fn finish(&mut self, count: u64) -> Result<Statistics, Error> {
+        fn finish(&mut self, count: u64) -> Result<Statistics, DeviceError> {
             self.0 += 1;
             if self.0 == 4 {
-                return Err(Error::Device("lost".into()));
+                return Err(DeviceError::Failed("lost".into()));
             }
             let mut part = Statistics { inputs: count, passed: count, ..Statistics::default() };
             part.histogram.count_near([count, 0, 0]);
@@ -202,8 +196,7 @@ mod tests {
         let catalogue = catalogue();
         let asked = Asked { from: Some(1.0), to: Some(1.125), ..Asked::default() };
         let plan = Plan::new(&catalogue, "fog/exp", &asked).expect("a plan");
-        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
-        let sweep = Description::new(&plan, &Subject::embedded().identity, &WGSL, &shaders);
+        let sweep = Description::new(&plan, &Subject::embedded(), &WGSL, &Code::default());
         let mut document = Document::new(sweep, Shard::WHOLE);
         let last = document.blocks;
         let mut told = 0;
@@ -211,7 +204,7 @@ mod tests {
             told += 1;
             Ok(())
         });
-        assert!(matches!(lost, Err(SweepError::Gpu(Error::Device(_)))), "{lost:?}");
+        assert!(matches!(lost, Err(SweepError::Device(DeviceError::Failed(_)))), "{lost:?}");
         assert_eq!((document.done, told), (3, 3));
         let text = document.to_json().expect("JSON");
         assert_eq!(Document::parse(&text).expect("it adds up").done, 3);

@@ -7,14 +7,11 @@ mod mistakes;
 mod split;
 
 use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::image::drawn::intermediate;
-use lightmeter::image::file::Stored;
+use lightmeter::device::Picture;
+use lightmeter::image::drawn::{drawn, intermediate};
 use lightmeter::image::run::profile_of;
 use lightmeter::image::{Expected, expect};
-use lightmeter::subject::Subject;
-use lightmeter_gpu::Shaders;
-use lightmeter_gpu::compose::{Recipe, Shader};
-use lightmeter_gpu::scene::SceneRenderer;
+use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_reference::render::{Image, render};
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
@@ -111,22 +108,19 @@ const FRAMES: u64 = 24;
 fn devices_draw_random_frames_within_what_is_legal() {
     let adapters = lightmeter_gpu::vulkan_adapters();
     let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
-    let subject = Subject::open(adapter).expect("the adapter gives a device");
-    let gpu = subject.gpu().expect("an adapter has a device");
-    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+    let subject = open_device(adapter).expect("the adapter gives a device");
+    let code = code_of(None).expect("the built-in shaders are valid");
     let profile = profile_of(&subject, &WGSL);
     let mut judged = 0;
     for seed in 0..FRAMES {
         let frame = frame(seed);
         let expected = expect(&frame, None, None, &profile);
-        for (shader, sets) in [(Shader::Composed, effects(&frame)), (Shader::Full, named(&frame))] {
-            let renderer = SceneRenderer::new(gpu, &shaders, &frame, &sets, Recipe::of(shader)).expect("it compiles");
-            let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu)).expect("it draws");
-            let image = Stored::read(48, frame.target.format, &bytes);
+        for (picture, sets) in [(Picture::Composed, effects(&frame)), (Picture::Full, named(&frame))] {
+            let image = drawn(&subject, &code, &frame, &sets, picture).expect("it draws").expect("it can be drawn");
             for (number, (pixel, legal)) in image.pixels.iter().zip(&expected).enumerate() {
                 let outside = (0..4).find(|&k| !(legal.low[k] <= pixel[k] && pixel[k] <= legal.high[k]));
                 let place = [number % 48, number / 48];
-                assert_eq!(outside, None, "seed {seed}, {shader:?}, pixel {place:?}: {pixel:?} is not in {legal:?}");
+                assert_eq!(outside, None, "seed {seed}, {picture:?}, pixel {place:?}: {pixel:?} is not in {legal:?}");
                 judged += 1;
             }
         }
@@ -139,8 +133,8 @@ fn devices_draw_random_frames_within_what_is_legal() {
 fn devices_draw_intermediate_results_within_what_is_legal() {
     let adapters = lightmeter_gpu::vulkan_adapters();
     let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
-    let subject = Subject::open(adapter).expect("the adapter gives a device");
-    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+    let subject = open_device(adapter).expect("the adapter gives a device");
+    let code = code_of(None).expect("the built-in shaders are valid");
     let profile = profile_of(&subject, &WGSL);
     let mut judged = 0;
     for seed in 0..FRAMES / 2 {
@@ -149,7 +143,8 @@ fn devices_draw_intermediate_results_within_what_is_legal() {
         let depths = expect(&frame, None, Some(Stage::Depth), &profile);
         for stage in Stage::ALL {
             let expected = expect(&frame, None, Some(stage), &profile);
-            let image = intermediate(&subject, &shaders, &frame, &sets, stage).expect("it draws");
+            let image =
+                intermediate(&subject, &code, &frame, &sets, stage).expect("it draws").expect("it can be drawn");
             for pixel in (0..expected.len()).filter(|&pixel| depths[pixel].low[3] > 0.0) {
                 let (legal, value) = (&expected[pixel], image.pixels[pixel]);
                 let outside = (0..4).find(|&k| !(legal.low[k] <= value[k] && value[k] <= legal.high[k]));

@@ -6,7 +6,6 @@ use lightmeter::options::{Options, Silent};
 use lightmeter::run::run_selection;
 use lightmeter::selection::Selection;
 use lightmeter::subject::Subject;
-use lightmeter_gpu::Error;
 use std::sync::{Mutex, PoisonError};
 
 /// The device of an adapter, opened when the first trial needs it.
@@ -45,7 +44,7 @@ impl Device {
         let judged = run_selection(selection, std::slice::from_mut(subject), options, &mut Silent);
         let is_lost = match &judged {
             Ok(report) => report.interrupted.is_some(),
-            Err(error) => matches!(error, Error::Device(_) | Error::Timeout(_)),
+            Err(error) => error.is_of_device(),
         };
         if is_lost {
             // The next trial has a fresh device. Closing one that hangs would hang as well.
@@ -78,12 +77,12 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter_gpu::Shaders;
+    use lightmeter::subject_gpu::code_of;
 
     /// On Mesa 22.3's lavapipe 25 results are not as on record where both use one device.
     #[test]
     fn tables_of_special_values_are_right_after_a_scene() {
-        let options = Options::new(Shaders::built_in().expect("the built-in shaders are valid"));
+        let options = Options::new(code_of(None).expect("the built-in shaders are valid"));
         let parts = Selection::of(&options).parts();
         let device = Device::new(None);
         for path in ["special/subnormal", "scene/phong-blinn", "special/subnormal"] {

@@ -12,11 +12,11 @@ pub use settings::{Settings, Variables};
 
 use device::Device;
 use libtest_mimic::{Arguments, Completion, Failed, FormatSetting, Trial};
+use lightmeter::device::Code;
 use lightmeter::document::run::{Report, Totals};
 use lightmeter::options::{DEFAULT_CASES, Options};
 use lightmeter::report::text::{self, thousands};
 use lightmeter::selection::{Part, Selection};
-use lightmeter_gpu::Shaders;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -83,10 +83,7 @@ impl Suite {
     pub fn new(settings: Result<Settings, String>) -> Self {
         let parts = match &settings {
             Ok(settings) => Selection::of(&settings.options).parts(),
-            Err(_) => {
-                let shaders = Shaders::built_in().expect("the built-in shaders are valid");
-                Selection::of(&Options::new(shaders)).parts()
-            }
+            Err(_) => Selection::of(&Options::new(Code::default())).parts(),
         };
         let parts = parts.into_iter().map(Arc::new).collect();
         Self { settings, parts, totals: Arc::default(), started: Instant::now() }
@@ -208,7 +205,7 @@ mod tests {
     use lightmeter::subject::Subject;
 
     fn part(path: &str) -> (Part, Options) {
-        let options = Options::new(Shaders::built_in().expect("the built-in shaders are valid"));
+        let options = Options::new(Code::default());
         let parts = Selection::of(&options).parts();
         (parts.into_iter().find(|part| part.path == path).expect("there is such a part"), options)
     }

@@ -4,6 +4,7 @@ use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::PROFILES;
 use lightmeter::options::{DEFAULT_CASES, MOST_CASES, Options};
+use lightmeter::subject_gpu::code_of;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -82,8 +83,8 @@ impl Variables {
             None => PROFILES[0],
         };
         let shaders = self.0.get("LIGHTMETER_SHADERS").map(|folder| from_where_called(Path::new(folder)));
-        let options = Options::by(shaders.as_deref(), seed, profile);
-        let options = options.map_err(|error| format!("LIGHTMETER_SHADERS: {error}"))?;
+        let code = code_of(shaders.as_deref()).map_err(|error| format!("LIGHTMETER_SHADERS: {error}"))?;
+        let options = Options::by(code, shaders.as_deref(), seed, profile);
         let adapters = self.adapters()?;
         let asks_for_all =
             self.text("LIGHTMETER_ADAPTER")?.is_some_and(|text| names(text).any(|name| name == adapters::ALL));

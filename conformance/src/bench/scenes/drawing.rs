@@ -268,7 +268,6 @@ pub(super) const fn side(setting: &Setting, full: u32, quick: u32) -> u32 {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::subject::Subject;
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::scene::library::SCENES;
     use lightmeter_catalogue::scene::select::builtin;
@@ -278,13 +277,19 @@ pub(super) mod tests {
     /// Checks on the first adapter.
     pub(in super::super) fn on_a_device(check: impl Fn(&Drawer<'_>)) {
         let adapter = adapters().into_iter().next().expect("there is an adapter");
-        let subject = Subject::open(&adapter).unwrap_or_else(|error| panic!("{error}"));
+        let subject = crate::subject_gpu::open_device(&adapter).unwrap_or_else(|error| panic!("{error}"));
         let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
-        let gpu = subject.gpu().expect("an adapter has a device");
+        let gpu = crate::subject_gpu::gpu(&subject).expect("an adapter has a device");
         let clock = Clock::new(gpu).unwrap_or_else(|error| panic!("{error}"));
         let setting = Setting::new(true, 1);
-        let on =
-            On { subject: &subject, gpu: subject.gpu(), shaders: &shaders, clock: &clock, profile: &WGSL, setting };
+        let on = On {
+            subject: &subject,
+            gpu: crate::subject_gpu::gpu(&subject),
+            shaders: &shaders,
+            clock: &clock,
+            profile: &WGSL,
+            setting,
+        };
         check(&Drawer::new(&on).expect("it has a device"));
     }
 

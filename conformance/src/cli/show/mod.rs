@@ -127,14 +127,14 @@ impl Show {
 
     /// Without an adapter that was asked for, a machine without a driver still shows the case.
     fn answers(&self, member: &Member, inputs: &[f32]) -> anyhow::Result<(Vec<Answer>, Vec<UnitAnswer>)> {
-        let (shaders, subjects) = (self.choice.shaders()?, self.subjects()?);
+        let (code, subjects) = (self.choice.code()?, self.subjects()?);
         let (mut answers, mut unit, members) = (vec![], vec![], [member]);
         for mut subject in subjects {
             if let Kind::Blend(program) = member.spec.kind {
                 unit.extend(drawn(
                     &self.choice.targets(),
                     &mut subject,
-                    &shaders,
+                    &code,
                     member,
                     program,
                     inputs,
@@ -144,7 +144,7 @@ impl Show {
             if member.spec.row_stages().is_empty() {
                 continue;
             }
-            let evaluator = Evaluator::new(&mut subject, &members, &shaders)?;
+            let evaluator = Evaluator::new(&mut subject, &members, &code)?;
             for (stage, words) in evaluator.run(&mut subject, &[0], inputs)? {
                 let mut legal = vec![Accept::ANY; member.spec.output_len()];
                 let profile = self.choice.profile;

@@ -3,8 +3,8 @@
 use super::super::options::Choice;
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::pixel::Units;
+use lightmeter::device::{Code, Picture};
 use lightmeter::document::Number;
-use lightmeter::image::drawn::intermediate;
 use lightmeter::image::expect::Expectation;
 use lightmeter::image::file::Stored;
 use lightmeter::image::run::profile_of;
@@ -13,8 +13,6 @@ use lightmeter::scene::Loaded;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::select::{builtin, pixel_of, scene_id};
 use lightmeter::subject::Subject;
-use lightmeter_gpu::Shaders;
-use lightmeter_gpu::compose::Shader;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
@@ -52,13 +50,7 @@ pub(super) fn find(id: &str, size: Option<u32>) -> anyhow::Result<Option<(Loaded
     Ok(None)
 }
 
-fn rows(
-    frame: &Frame,
-    pixel: usize,
-    profile: &Profile,
-    subjects: &[Subject],
-    shaders: &Shaders,
-) -> anyhow::Result<Vec<Row>> {
+fn rows(frame: &Frame, pixel: usize, profile: &Profile, subjects: &[Subject], code: &Code) -> anyhow::Result<Vec<Row>> {
     let width = frame.target.width as usize;
     let stages = Stage::ALL.map(Some).into_iter().chain([None]);
     stages
@@ -71,7 +63,7 @@ fn rows(
             };
             let mut seen = vec![];
             for subject in subjects {
-                let image = drawn(subject, shaders, frame, stage)?;
+                let image = drawn(subject, code, frame, stage)?;
                 let legal = legal(&profile_of(subject, profile));
                 seen.push((subject.identity.name.clone(), legal, image.map(|image| image.pixels[pixel])));
             }
@@ -83,11 +75,12 @@ fn rows(
         .collect()
 }
 
-fn drawn(subject: &Subject, shaders: &Shaders, frame: &Frame, stage: Option<Stage>) -> anyhow::Result<Option<Stored>> {
-    if let Some(stage) = stage {
-        return Ok(Some(intermediate(subject, shaders, frame, &named(frame), stage)?));
-    }
-    Ok(image::drawn::drawn(subject, shaders, frame, &effects(frame), Shader::Composed)?.ok())
+fn drawn(subject: &Subject, code: &Code, frame: &Frame, stage: Option<Stage>) -> anyhow::Result<Option<Stored>> {
+    let (sets, picture) = match stage {
+        Some(stage) => (named(frame), Picture::Intermediate(stage)),
+        None => (effects(frame), Picture::Composed),
+    };
+    Ok(image::drawn::drawn(subject, code, frame, &sets, picture)?.ok())
 }
 
 /// Everything about a pixel, as text or JSON.
@@ -99,7 +92,7 @@ pub(super) fn show(
     as_json: bool,
 ) -> anyhow::Result<String> {
     let frame = &loaded.frame;
-    let rows = rows(frame, *pixel, choice.profile, subjects, &choice.shaders()?)?;
+    let rows = rows(frame, *pixel, choice.profile, subjects, &choice.code()?)?;
     let width = frame.target.width as usize;
     if as_json {
         let stages: Vec<Value> = rows.iter().map(row_json).collect();

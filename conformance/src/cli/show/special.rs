@@ -26,10 +26,10 @@ pub(super) fn show(
     subjects: &[Subject],
     as_json: bool,
 ) -> anyhow::Result<String> {
-    let shaders = choice.shaders()?;
+    let code = choice.code()?;
     let mut results = vec![];
     for subject in subjects {
-        let found = evaluate(subject, &shaders, &[probe])?.unwrap_or_else(|| Results {
+        let found = evaluate(subject, &code, &[probe])?.unwrap_or_else(|| Results {
             outcomes: vec![],
             skipped: vec![Skipped::embedded(&subject.identity.name)],
             record: None,

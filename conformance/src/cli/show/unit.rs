@@ -9,10 +9,10 @@ use lightmeter::blend_unit::run::targets_of;
 use lightmeter::blend_unit::tally::Outcome;
 use lightmeter::cases::Stage;
 use lightmeter::cases::blend::Program;
+use lightmeter::device::Code;
 use lightmeter::document::Number;
 use lightmeter::select::Member;
 use lightmeter::subject::Subject;
-use lightmeter_gpu::Shaders;
 use lightmeter_scene::blend::{Route, routes};
 use lightmeter_scene::target::TargetFormat;
 use serde_json::{Value, json};
@@ -30,7 +30,7 @@ pub(super) struct UnitAnswer {
 pub(super) fn drawn(
     targets: &[TargetFormat],
     subject: &mut Subject,
-    shaders: &Shaders,
+    code: &Code,
     member: &Member,
     program: Program,
     inputs: &[f32],
@@ -40,11 +40,11 @@ pub(super) fn drawn(
     for target in targets_of(member, targets) {
         for &route in routes(program.layer(0).0) {
             let piece = Piece { program, route, inputs: inputs.to_vec(), stride: inputs.len() };
-            let lacks = subject.lacks_blending(target).or(subject.lacks_route(shaders, route)?);
+            let lacks = subject.lacks_blending(target).or(subject.lacks_route(code, route)?);
             let pixel = match lacks {
                 Some(reason) => Err(reason),
                 None => {
-                    let pixel = draw(subject, shaders, target, &[&piece], false)?.pieces[0][0];
+                    let pixel = draw(subject, code, target, &[&piece], false)?.pieces[0][0];
                     Ok((pixel, expect(program, target, &piece.case(0), &Rules::RIGHT, profile)))
                 }
             };

@@ -6,16 +6,16 @@ mod table;
 
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::device::{Code, Picture};
 use lightmeter::image::diagnose::{Departure, departure};
+use lightmeter::image::drawn::drawn;
 use lightmeter::image::file::Stored;
 use lightmeter::image::judge::{Judged, judge};
 use lightmeter::image::run::profile_of;
 use lightmeter::image::{Expected, expect};
 use lightmeter::scene::load;
 use lightmeter::subject::Subject;
-use lightmeter_gpu::Shaders;
-use lightmeter_gpu::compose::{Recipe, Shader};
-use lightmeter_gpu::scene::SceneRenderer;
+use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{Called, effects};
 use lightmeter_scene::frame::Frame;
@@ -48,18 +48,15 @@ impl Prepared {
     }
 
     /// Where it departs, of those pixels.
-    fn departure(&self, subject: &Subject, shaders: &Shaders, profile: &Profile, pixels: &[usize]) -> Departure {
-        let departure = departure(subject, shaders, &self.frame, &self.sets, profile, pixels);
+    fn departure(&self, subject: &Subject, code: &Code, profile: &Profile, pixels: &[usize]) -> Departure {
+        let departure = departure(subject, code, &self.frame, &self.sets, profile, pixels);
         departure.expect("intermediate results are drawn")
     }
 
     /// The scene as a device draws it by composed shaders, judged.
-    fn judged(&self, subject: &Subject, shaders: &Shaders) -> Judged {
-        let gpu = subject.gpu().expect("an adapter has a device");
-        let renderer = SceneRenderer::new(gpu, shaders, &self.frame, &self.sets, Recipe::of(Shader::Composed));
-        let renderer = renderer.expect("the mistakes compile");
-        let bytes = SceneRenderer::pixels(gpu, renderer.submit(gpu)).expect("it draws");
-        let image = Stored::read(self.reference.width, self.reference.format, &bytes);
+    fn judged(&self, subject: &Subject, code: &Code) -> Judged {
+        let image = drawn(subject, code, &self.frame, &self.sets, Picture::Composed).expect("the mistakes compile");
+        let image = image.expect("it can be drawn");
         judge(&image, &self.reference, &self.expected, &(0..image.pixels.len()).collect::<Vec<_>>())
     }
 }
@@ -68,11 +65,11 @@ impl Prepared {
 fn subject() -> Subject {
     let adapters = lightmeter_gpu::vulkan_adapters();
     let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
-    Subject::open(adapter).expect("the adapter gives a device")
+    open_device(adapter).expect("the adapter gives a device")
 }
 
 /// The built-in shaders, one of them edited, in a folder of its own.
-fn edited(place: usize, file: &str, edit: impl Fn(&str) -> String) -> Shaders {
+fn edited(place: usize, file: &str, edit: impl Fn(&str) -> String) -> Code {
     let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("scene-mistake-{place}"));
     let _ = std::fs::remove_dir_all(&dir);
     std::fs::create_dir_all(dir.join("effects")).expect("a folder for shaders can be made");
@@ -80,11 +77,11 @@ fn edited(place: usize, file: &str, edit: impl Fn(&str) -> String) -> Shaders {
         lightmeter_gpu::FILES.into_iter().chain(lightmeter_gpu::SCENE_FILES).chain(lightmeter_gpu::EFFECT_FILES);
     let (_, text) = files.find(|(name, _)| *name == file).expect("the shader is built in");
     std::fs::write(dir.join(file), edit(text)).expect("a shader can be written");
-    Shaders::from_dir(&dir).unwrap_or_else(|error| panic!("{file}: {error}"))
+    code_of(Some(&dir)).unwrap_or_else(|error| panic!("{file}: {error}"))
 }
 
 /// A scene with one of the shaders edited.
-fn with(place: usize, (mistake, file, what, by, ..): Mistake) -> Shaders {
+fn with(place: usize, (mistake, file, what, by, ..): Mistake) -> Code {
     edited(place, file, |text| {
         assert!(text.contains(what), "{mistake}: `{what}` no longer stands in {file}");
         text.replace(what, by)
@@ -95,7 +92,7 @@ fn with(place: usize, (mistake, file, what, by, ..): Mistake) -> Shaders {
 fn each_mistake_is_seen_and_said_to_be_where_it_was_made() {
     let subject = subject();
     let profile = profile_of(&subject, &WGSL);
-    let right = Shaders::built_in().expect("the built-in shaders are valid");
+    let right = code_of(None).expect("the built-in shaders are valid");
     let mut scenes: BTreeMap<&str, Prepared> = BTreeMap::new();
     let mut wrong = vec![];
     for (place, row) in MISTAKES.iter().enumerate() {
@@ -105,13 +102,13 @@ fn each_mistake_is_seen_and_said_to_be_where_it_was_made() {
             assert_eq!(prepared.judged(&subject, &right).misses, [], "{scene} with the built-in shaders");
             prepared
         });
-        let shaders = with(place, *row);
-        let pixels = prepared.judged(&subject, &shaders).pixels();
+        let code = with(place, *row);
+        let pixels = prepared.judged(&subject, &code).pixels();
         if pixels.is_empty() {
             wrong.push(format!("{mistake}: not seen in {scene}"));
             continue;
         }
-        let departure = prepared.departure(&subject, &shaders, &profile, &pixels);
+        let departure = prepared.departure(&subject, &code, &profile, &pixels);
         if departure.stage != stage {
             wrong.push(format!("{mistake}: {} pixels of {scene}, {departure}; expected {stage}", pixels.len()));
         }
@@ -126,9 +123,9 @@ fn intermediate_results_show_what_pixels_do_not() {
     for (place, row) in UNSEEN.iter().enumerate() {
         let &(mistake, .., scene, stage) = row;
         let prepared = Prepared::new(scene, &profile);
-        let shaders = with(MISTAKES.len() + place, *row);
-        assert_eq!(prepared.judged(&subject, &shaders).misses, [], "{mistake}: seen in {scene}");
-        let departure = prepared.departure(&subject, &shaders, &profile, &prepared.covered(&profile));
+        let code = with(MISTAKES.len() + place, *row);
+        assert_eq!(prepared.judged(&subject, &code).misses, [], "{mistake}: seen in {scene}");
+        let departure = prepared.departure(&subject, &code, &profile, &prepared.covered(&profile));
         assert_eq!(departure.stage, stage, "{mistake}: {scene} {departure}");
     }
 }
@@ -137,10 +134,10 @@ fn intermediate_results_show_what_pixels_do_not() {
 fn right_shaders_depart_nowhere() {
     let subject = subject();
     let profile = profile_of(&subject, &WGSL);
-    let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+    let code = code_of(None).expect("the built-in shaders are valid");
     for (scene, stage) in RIGHT {
         let prepared = Prepared::new(scene, &profile);
-        let departure = prepared.departure(&subject, &shaders, &profile, &prepared.covered(&profile));
+        let departure = prepared.departure(&subject, &code, &profile, &prepared.covered(&profile));
         assert_eq!(departure.stage, *stage, "{scene} {departure}");
     }
 }

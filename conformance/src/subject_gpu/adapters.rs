@@ -1,7 +1,9 @@
 //! Adapters by the names that users give them, opened as subjects.
 
+use super::open_device;
+use crate::device::DeviceError;
 use crate::subject::Subject;
-use lightmeter_gpu::{Adapter, Error, vulkan_adapters};
+use lightmeter_gpu::{Adapter, vulkan_adapters};
 
 /// The name of the embedded implementation, which needs no driver.
 pub const EMBEDDED: &str = "cpu";
@@ -30,7 +32,7 @@ pub enum AdapterError {
     },
     /// The driver gave no device, or the device failed.
     #[error(transparent)]
-    Device(#[from] Error),
+    Device(#[from] DeviceError),
 }
 
 impl AdapterError {
@@ -45,7 +47,7 @@ impl AdapterError {
 /// Where there is no driver, no adapter of a name, or an adapter that gives no device.
 pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
     if asked.is_empty() {
-        return Ok(vec![Subject::open(&first()?)?]);
+        return Ok(vec![open_device(&first()?)?]);
     }
     let only_embedded = asked.iter().all(|name| name == EMBEDDED);
     let mut found = if only_embedded { vec![] } else { vulkan_adapters() };
@@ -63,10 +65,10 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
                     return Err(AdapterError::no_driver());
                 }
                 for adapter in &found {
-                    subjects.push(Subject::open(adapter)?);
+                    subjects.push(open_device(adapter)?);
                 }
             }
-            name => subjects.push(Subject::open(named(&found, name)?)?),
+            name => subjects.push(open_device(named(&found, name)?)?),
         }
     }
     let mut seen = std::collections::HashSet::new();

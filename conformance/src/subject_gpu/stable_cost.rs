@@ -1,11 +1,9 @@
 //! What stable forms cost beside naive ones.
 
-use crate::evaluate::kernel;
-use crate::options::Options;
-use crate::subject::Subject;
+use super::kernel::kernel;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::run::Cost;
-use lightmeter_gpu::{Clock, Error, RepeatPipeline, Rung};
+use lightmeter_gpu::{Clock, Error, Gpu, RepeatPipeline, Rung, Shaders};
 use std::collections::BTreeMap;
 
 /// Turns that a cost is the median of.
@@ -16,21 +14,21 @@ const GROUPS: u32 = 2048;
 const COST_ROWS: u64 = 1024;
 
 /// Measures a stable form against its naive ones, in turns.
-pub(super) fn cost(
+pub(super) fn stable_costs(
     member: &Member,
     rivals: &BTreeMap<&'static str, Member>,
-    subject: &Subject,
-    options: &Options,
+    (gpu, adapter): (&Gpu, &str),
+    shaders: &Shaders,
+    seed: u64,
 ) -> Result<Vec<Cost>, Error> {
-    let Some(gpu) = subject.gpu() else { return Ok(vec![]) };
     let mut rows = vec![];
     for k in 0..COST_ROWS {
-        member.inputs(CaseRef::Random(k), options.seed, &mut rows);
+        member.inputs(CaseRef::Random(k), seed, &mut rows);
     }
-    let kernel_of = |member: &Member| Ok(kernel(&options.shaders, member)?.expect("arithmetic has a shader function"));
+    let kernel_of = |member: &Member| Ok(kernel(shaders, member)?.expect("arithmetic has a shader function"));
     let own = kernel_of(member)?;
     let Ok(idle) = RepeatPipeline::idle(gpu, &own, &rows)? else { return Ok(vec![]) };
-    let Ok(stable) = RepeatPipeline::new(gpu, &options.shaders, &own, Rung::F32, &rows)? else { return Ok(vec![]) };
+    let Ok(stable) = RepeatPipeline::new(gpu, shaders, &own, Rung::F32, &rows)? else { return Ok(vec![]) };
     let clock = Clock::wall(None);
     let time = |pipeline: &RepeatPipeline| {
         let reading = pipeline.time(gpu, &clock, GROUPS)?;
@@ -40,7 +38,7 @@ pub(super) fn cost(
     let mut costs = vec![];
     for (id, rival) in rivals {
         let rival = kernel_of(rival)?;
-        let Ok(naive) = RepeatPipeline::new(gpu, &options.shaders, &rival, Rung::F32, &rows)? else { continue };
+        let Ok(naive) = RepeatPipeline::new(gpu, shaders, &rival, Rung::F32, &rows)? else { continue };
         for warm in [&idle, &stable, &naive] {
             time(warm)?;
         }
@@ -56,7 +54,7 @@ pub(super) fn cost(
         costs.push(Cost {
             formula: member.spec.id.clone(),
             naive: (*id).into(),
-            adapter: subject.identity.name.clone(),
+            adapter: adapter.to_owned(),
             stable_ns: median_ns(&|[idle, stable, _]| stable - idle),
             naive_ns: median_ns(&|[idle, _, naive]| naive - idle),
             idle_ns: median_ns(&|[idle, ..]| *idle),

@@ -1,10 +1,9 @@
 //! What effects cost that a scene does not call for: composed shaders against the one with all effects.
 
-use crate::subject::Subject;
 use lightmeter_document::run::EffectsCost;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Clock, Error, Shaders};
+use lightmeter_gpu::{Clock, Error, Gpu, Shaders};
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
 
@@ -20,13 +19,12 @@ const SLOW: f64 = 0.05;
 ///
 /// # Errors
 /// Where a shader is invalid or the device fails.
-pub(super) fn cost(
-    subject: &Subject,
+pub(super) fn effects_cost(
+    gpu: &Gpu,
     shaders: &Shaders,
     frame: &Frame,
     called: &[Called],
-) -> Result<Option<EffectsCost>, Error> {
-    let Some(gpu) = subject.gpu() else { return Ok(None) };
+) -> Result<EffectsCost, Error> {
     let composed = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(Shader::Composed))?;
     let full = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(Shader::Full))?;
     let clock = Clock::wall(None);
@@ -56,10 +54,10 @@ pub(super) fn cost(
     };
     let milliseconds = |seconds: &[f64]| seconds[TURNS / 2] * 1e3 / f64::from(repeats);
     let ratios = sorted(&|(a, b)| b / a);
-    Ok(Some(EffectsCost {
+    Ok(EffectsCost {
         composed_ms: milliseconds(&sorted(&|(a, _)| *a)),
         full_ms: milliseconds(&sorted(&|(_, b)| *b)),
         ratio: ratios[TURNS / 2],
         quartiles: [ratios[TURNS / 4], ratios[TURNS - 1 - TURNS / 4]],
-    }))
+    })
 }
