@@ -5,7 +5,7 @@
 mod number;
 pub mod run;
 
-pub use number::Number;
+pub use number::{Number, thousands};
 
 /// A word that is written from a constant and read from a file.
 pub type Word = std::borrow::Cow<'static, str>;

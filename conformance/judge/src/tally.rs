@@ -209,7 +209,6 @@ struct Seen {
     error_ulp: f64,
 }
 
-#[expect(clippy::too_many_arguments, reason = "a failure tells everything about its verdict")]
 fn failure(
     member: &Member,
     id: String,

@@ -8,7 +8,7 @@ use clap::Args;
 use lightmeter::cases::blend::{Samples, aliases, separate_of};
 use lightmeter::cases::{Kind, Naive};
 use lightmeter::document::Number;
-use lightmeter::report::text::thousands;
+use lightmeter::document::thousands;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load::{self, Loaded};
 use lightmeter::scene::select::Chosen;

@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::cases::Stage;
-use lightmeter::report::text::thousands;
+use lightmeter::document::thousands;
 use lightmeter::select::{Shard, catalogue};
 use lightmeter::sweep::{
     Asked, Description, Document, Free, Over, PRESETS, Plan, SCHEMA, SweepError, name_of, sweep, text,

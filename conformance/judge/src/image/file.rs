@@ -93,6 +93,9 @@ impl Stored {
     ///
     /// # Errors
     /// Where the format cannot hold the image.
+    ///
+    /// # Panics
+    /// Where a side of the image does not fit 32 bits.
     pub fn encode(&self, path: &Path) -> Result<Vec<u8>, Error> {
         let format = Self::check_name(path)?;
         let failed = |message: String| Error::Encode { path: path.into(), message };

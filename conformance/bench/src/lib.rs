@@ -1,0 +1,345 @@
+//! What accuracy costs in time: techniques and rungs of the ladder, each with its error against the f64 reference and with the
+//! time that it takes.
+
+mod claims;
+mod contest;
+pub mod document;
+pub mod errors;
+mod figures;
+pub mod fit;
+mod formulas;
+mod growth;
+pub mod ladder;
+pub mod page;
+pub mod pareto;
+pub mod plot;
+pub mod recommend;
+pub mod scenes;
+mod sittings;
+#[cfg(test)]
+mod synthetic;
+mod techniques;
+pub mod text;
+pub mod turns;
+
+use document::{ClockUse, Document, Family, Group, GroupKind, Measured, SCHEMA, Scaling};
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::filter::Filter;
+use lightmeter_catalogue::scene::Loaded;
+use lightmeter_catalogue::select::{Member, catalogue};
+use lightmeter_engine::options::Progress;
+use lightmeter_engine::subject::Subject;
+use lightmeter_gpu::{Clock, ClockKind, Error, Gpu, Rung, Shaders};
+use std::time::Instant;
+use turns::Effort;
+
+/// What is measured, and how.
+pub struct Options {
+    /// Which groups, by their ids.
+    pub filter: Filter,
+    /// Scenes from files, by a name of their own; where there are some and no filter, nothing else is measured.
+    pub scenes: Vec<(String, Loaded)>,
+    /// Less of all, within a minute.
+    pub quick: bool,
+    /// What inputs are drawn from.
+    pub seed: u64,
+    /// The clock that is asked for; `None` for the device's where it has one.
+    pub clock: Option<ClockKind>,
+    /// The accuracy rules.
+    pub profile: &'static Profile,
+    /// The shaders.
+    pub shaders: Shaders,
+    /// The command that asks for it.
+    pub command: String,
+}
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// Sittings: each on devices of its own, with everything compiled anew.
+    pub sittings: usize,
+    /// Turns of a sitting, and their length.
+    pub effort: Effort,
+    /// Whether errors are told, too, as in the first sitting.
+    pub judges: bool,
+    /// Random cases of a group.
+    pub cases: u64,
+    /// What they are drawn from.
+    pub seed: u64,
+    /// Whether it is to be done within a minute.
+    pub quick: bool,
+}
+
+impl Setting {
+    /// As the options ask.
+    #[must_use]
+    pub const fn new(quick: bool, seed: u64) -> Self {
+        let (sittings, effort, cases) = if quick {
+            (2, Effort { turns: 2, readings: 2, seconds: 5e-4 }, 512)
+        } else {
+            (3, Effort { turns: 3, readings: 2, seconds: 1e-3 }, 2048)
+        };
+        Self { sittings, effort, judges: true, cases, seed, quick }
+    }
+}
+
+/// What measures on an adapter.
+struct Bench<'a> {
+    gpu: Option<&'a Gpu>,
+    clock: Clock,
+    shaders: &'a Shaders,
+    catalogue: &'a [Member],
+    /// The rungs, each with the reason why the adapter has it not.
+    ladder: &'a [(Rung, Option<String>)],
+    /// The rules that values are held to, the driver's known deviations granted.
+    profile: Profile,
+    setting: Setting,
+}
+
+/// What a quick bench measures of the formulas: one or two of each family.
+const QUICK: [&str; 12] = [
+    "interpolation/perspective",
+    "interpolation/triangle",
+    "color/srgb-encode",
+    "vector/normalize",
+    "vector/reflect",
+    "lighting/phong",
+    "lighting/blinn",
+    "attenuation/polynomial",
+    "fog/exp",
+    "fog/exp2-opengl",
+    "depth/recovered",
+    "blend/state",
+];
+
+/// Measures everything that is asked for.
+///
+/// # Errors
+/// Where a shader is invalid or a device fails.
+pub fn bench(subjects: &[Subject], options: &Options, progress: &mut impl Progress) -> Result<Document, Error> {
+    let start = Instant::now();
+    let setting = Setting::new(options.quick, options.seed);
+    let adapters =
+        subjects.iter().map(|subject| measured(subject, options, setting, progress)).collect::<Result<_, Error>>()?;
+    Ok(Document {
+        schema: SCHEMA.into(),
+        command: options.command.clone(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        quick: options.quick,
+        seed: options.seed,
+        seconds: start.elapsed().as_secs_f64(),
+        cores: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
+        adapters,
+    })
+}
+
+fn measured(
+    subject: &Subject,
+    options: &Options,
+    setting: Setting,
+    progress: &mut impl Progress,
+) -> Result<Measured, Error> {
+    let catalogue = catalogue();
+    let asked = Asked::new(options, &catalogue, ladder_of(subject)?);
+    progress.start(setting.sittings as u64 * asked.count(subject));
+    let mut all = vec![];
+    let mut use_wall = false;
+    while all.len() < setting.sittings {
+        let setting = Setting { judges: all.is_empty(), ..setting };
+        let sitting = sitting(subject, options, setting, &asked, use_wall, progress)?;
+        if all.is_empty() && !use_wall && options.clock.is_none() && sitting.clock.tells_nothing() {
+            use_wall = true;
+        } else {
+            all.push(sitting);
+        }
+    }
+    let Sitting { mut groups, scalings, clock } = sittings::together(all);
+    for group in &mut groups {
+        group.front = pareto::front_of(group);
+    }
+    let identity = subject.identity.clone();
+    Ok(Measured {
+        adapter: identity.name,
+        device: identity.device,
+        backend: identity.backend.into(),
+        driver: identity.driver,
+        is_cpu: lightmeter_subject_gpu::gpu(subject).is_none_or(Gpu::is_cpu),
+        clock,
+        rungs: formulas::rungs(&asked.ladder),
+        families: families(&groups),
+        claims: claims::claims(&groups),
+        groups,
+        scalings,
+    })
+}
+
+/// What is to be measured.
+struct Asked<'a> {
+    catalogue: &'a [Member],
+    /// The rungs, each with the reason why the adapter has it not.
+    ladder: Vec<(Rung, Option<String>)>,
+    formulas: Vec<(String, Vec<&'a Member>)>,
+    techniques: Vec<techniques::Techniques>,
+    stable: Vec<&'a Member>,
+    drawn: Vec<&'static str>,
+    scenes: Vec<&'static str>,
+    scalings: Vec<&'static str>,
+    by_cases: bool,
+    /// Scenes from files.
+    files: &'a [(String, Loaded)],
+}
+
+impl<'a> Asked<'a> {
+    fn new(options: &'a Options, catalogue: &'a [Member], ladder: Vec<(Rung, Option<String>)>) -> Self {
+        // What is asked for by name is measured in a quick bench, too.
+        let quick = options.quick && options.filter.is_empty() && options.scenes.is_empty();
+        let all = options.scenes.is_empty() || !options.filter.is_empty();
+        let wanted = |id: &str, is_quick: bool| all && options.filter.selects(id) && (!quick || is_quick);
+        let is_stable = |member: &&Member| {
+            let id = &member.spec.id;
+            member.spec.stable.is_some() && wanted(&format!("stable/{id}"), QUICK_STABLE.contains(&id.as_str()))
+        };
+        let mut formulas = formulas::groups(catalogue);
+        formulas.retain(|(id, _)| wanted(id, QUICK.contains(&id.as_str())));
+        let mut drawn = scenes::technique_ids();
+        drawn.retain(|id| wanted(id, true));
+        let mut named = scenes::all();
+        named.retain(|name| wanted(&format!("scene/{name}"), scenes::QUICK.contains(name)));
+        let mut scalings = scenes::SCALINGS.to_vec();
+        scalings.retain(|name| wanted(&format!("scaling/{name}"), true));
+        Self {
+            catalogue,
+            ladder,
+            formulas,
+            techniques: techniques::all().into_iter().filter(|group| wanted(group.id, true)).collect(),
+            stable: catalogue.iter().filter(is_stable).collect(),
+            drawn,
+            scenes: named,
+            scalings,
+            by_cases: wanted("scaling/cases", true),
+            files: &options.scenes,
+        }
+    }
+
+    /// Groups and scalings of a sitting; only formulas are measured without a device.
+    fn count(&self, subject: &Subject) -> u64 {
+        let drawn = self.drawn.len() + self.scenes.len() + self.files.len() + self.scalings.len();
+        let on_device = self.techniques.len() + self.stable.len() + drawn + usize::from(self.by_cases);
+        (self.formulas.len() + if lightmeter_subject_gpu::gpu(subject).is_some() { on_device } else { 0 }) as u64
+    }
+}
+
+/// What is measured at one time, on devices of its own.
+struct Sitting {
+    groups: Vec<Group>,
+    scalings: Vec<Scaling>,
+    clock: ClockUse,
+}
+
+fn sitting(
+    subject: &Subject,
+    options: &Options,
+    setting: Setting,
+    asked: &Asked<'_>,
+    use_wall: bool,
+    progress: &mut impl Progress,
+) -> Result<Sitting, Error> {
+    let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
+    // What computes and what draws have devices of their own: Mesa 22.3's llvmpipe loses the time of a dispatch once it has drawn.
+    let [computes, draws] = [(); 2].map(|()| lightmeter_subject_gpu::gpu(subject).map(Gpu::sibling).transpose());
+    let (computes, draws) = (computes?, draws?);
+    let bench = Bench {
+        gpu: computes.as_ref(),
+        clock: clock(computes.as_ref(), options.clock, use_wall)?,
+        shaders: &options.shaders,
+        catalogue: asked.catalogue,
+        ladder: &asked.ladder,
+        profile,
+        setting,
+    };
+    let drawing = clock(draws.as_ref(), options.clock, use_wall)?;
+    let on = scenes::On {
+        subject,
+        gpu: draws.as_ref(),
+        shaders: &options.shaders,
+        clock: &drawing,
+        profile: options.profile,
+        setting,
+    };
+    let (mut groups, mut scalings): (Vec<Group>, Vec<Scaling>) = (vec![], vec![]);
+    for (id, members) in &asked.formulas {
+        progress.group(id);
+        groups.push(formulas::formula(&bench, id, members)?);
+        progress.advance(1);
+    }
+    if bench.gpu.is_some() {
+        for group in &asked.techniques {
+            progress.group(group.id);
+            groups.push(techniques::techniques(&bench, group)?);
+            progress.advance(1);
+        }
+        groups.extend(scenes::techniques(&on, &asked.ladder, &asked.drawn, progress)?);
+        for member in &asked.stable {
+            progress.group(&member.spec.id);
+            groups.extend(techniques::stable(&bench, member)?);
+            progress.advance(1);
+        }
+        groups.extend(scenes::scenes(&on, &asked.ladder, &asked.scenes, progress)?);
+        for (name, loaded) in asked.files {
+            progress.group(name);
+            let (title, frame) = (loaded.title.clone(), loaded.frame.clone());
+            groups.extend(scenes::scene(&on, &asked.ladder, format!("scene/{name}"), title, frame)?);
+            progress.advance(1);
+        }
+        scalings.extend(scenes::scalings(&on, &asked.scalings, progress)?);
+        if asked.by_cases {
+            progress.group("scaling/cases");
+            scalings.extend(growth::cases(&bench)?);
+            progress.advance(1);
+        }
+    }
+    let (readings, rejected) = bench.clock.readings();
+    let of_drawing = drawing.readings();
+    let clock = ClockUse {
+        kind: bench.clock.kind().name().into(),
+        note: bench.clock.note().map(str::to_owned),
+        readings: readings + of_drawing.0,
+        rejected: rejected + of_drawing.1,
+    };
+    Ok(Sitting { groups, scalings, clock })
+}
+
+/// Of the stable forms, those of a quick bench.
+const QUICK_STABLE: [&str; 2] = ["vector/normalize-scaled", "lighting/cosine-power-by-chord"];
+
+/// The clock of a device, or the one that is asked for.
+fn clock(gpu: Option<&Gpu>, asked: Option<ClockKind>, use_wall: bool) -> Result<Clock, Error> {
+    match (gpu, asked) {
+        _ if use_wall => Ok(Clock::wall(Some("every one of its timestamps was one that cannot be true".into()))),
+        (None, _) => Ok(Clock::wall(Some("the embedded implementation has no device".into()))),
+        (_, Some(ClockKind::Wall)) => Ok(Clock::wall(Some("it was asked for".into()))),
+        (Some(gpu), _) => Clock::new(gpu),
+    }
+}
+
+/// The rungs of a subject, each with the reason why it is not there.
+fn ladder_of(subject: &Subject) -> Result<Vec<(Rung, Option<String>)>, Error> {
+    let of = |rung: Rung| match lightmeter_subject_gpu::gpu(subject) {
+        None => Ok((rung, Some("the embedded implementation has no shaders".into()))),
+        Some(gpu) => Ok((rung, rung.unavailable(gpu)?)),
+    };
+    Rung::ALL.into_iter().map(of).collect()
+}
+
+/// The families whose formulas, or scenes, were measured beside f32.
+fn families(groups: &[Group]) -> Vec<Family> {
+    let mut families: Vec<Family> = vec![];
+    let is_of_ladder = |group: &&Group| group.kind != GroupKind::Technique && group.baseline == Rung::F32.name();
+    for group in groups.iter().filter(is_of_ladder) {
+        if families.iter().all(|family| family.id != group.family) {
+            let of = groups.iter().filter(is_of_ladder).filter(|other| other.family == group.family);
+            families.push(ladder::family(&group.family, of));
+        }
+    }
+    families
+}

@@ -1,0 +1,15 @@
+//! The engine: a selection of cases, handed to subjects, whose answers are judged. It knows no GPU: what stands behind a subject is a
+//! [`device::Device`].
+
+pub mod blend_unit;
+pub mod device;
+pub mod evaluate;
+pub mod image;
+pub mod options;
+pub mod run;
+pub mod selection;
+pub mod special;
+pub mod stability;
+pub mod subject;
+pub mod sweep;
+pub mod witness;

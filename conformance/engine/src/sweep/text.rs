@@ -1,0 +1,190 @@
+//! A sweep's result for people.
+
+use super::document::Document;
+use super::statistics::{Exact, Place, Seen};
+use lightmeter_document::Number;
+use lightmeter_document::thousands;
+use std::fmt::{Result, Write};
+
+/// Characters of the longest bar.
+const BAR: usize = 40;
+
+/// Writes a result. `text` is the formula on a line, and `rerun` what to add to a command that sweeps one input again.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn write(document: &Document, text: &str, rerun: &str, out: &mut impl Write) -> Result {
+    let (sweep, found) = (&document.sweep, &document.statistics);
+    let unit = &sweep.unit;
+    writeln!(out, "{}: {text}", sweep.formula)?;
+    match (sweep.from, sweep.to) {
+        (Some(Exact(from)), Some(Exact(to))) => writeln!(
+            out,
+            "over       every {} from {} to {}: {} floats, output {}",
+            sweep.over,
+            Number(from.into()),
+            Number(to.into()),
+            thousands(sweep.inputs),
+            sweep.output
+        )?,
+        _ => writeln!(
+            out,
+            "over       every byte of source, destination and alpha: {} inputs on rgba8unorm",
+            thousands(sweep.inputs)
+        )?,
+    }
+    let fixed: Vec<String> =
+        sweep.fixed.iter().map(|(name, Exact(x))| format!("{name} {}", Number((*x).into()))).collect();
+    if !fixed.is_empty() {
+        writeln!(out, "fixed      {}", fixed.join(", "))?;
+    }
+    let adapter = &sweep.adapter;
+    writeln!(
+        out,
+        "on         {}, {}: {} · {} · {}",
+        adapter.name, sweep.stage, adapter.device, adapter.backend, adapter.driver
+    )?;
+    if document.shard != "1/1" {
+        writeln!(out, "shard      {}", document.shard)?;
+    }
+    let state = if document.is_finished() {
+        String::new()
+    } else {
+        format!(", not finished: {} of {} blocks", document.done, document.blocks)
+    };
+    writeln!(
+        out,
+        "done       {} inputs in {:.1} s, {} a second{state}",
+        thousands(found.inputs),
+        document.seconds,
+        thousands(rate(document))
+    )?;
+    writeln!(
+        out,
+        "outside    {} inputs; {} indeterminate, {} NaN",
+        thousands(found.failed),
+        thousands(found.indeterminate),
+        thousands(found.histogram.nan())
+    )?;
+    for (name, count) in &found.excused {
+        writeln!(out, "deviation  {name} says {} of what is outside the promised bound", thousands(*count))?;
+    }
+    if let Some(stored) = &found.stored {
+        let (store, share) = stored.counts.likeliest();
+        let model = match (stored.predicted, stored.departing) {
+            (0, _) => String::new(),
+            (of, departing) => {
+                format!("; {} of {} values depart from the known model", thousands(departing), thousands(of))
+            }
+        };
+        let tiers = stored.tiers.named().map(|(name, count)| format!("{name} {}", percent(count, found.inputs)));
+        writeln!(out, "tiers      {}", tiers.join(", "))?;
+        writeln!(out, "stored     {}: {:.2} % of the values that tell{model}", store.name(), 100.0 * share)?;
+    }
+    for (what, seen) in [("worst", &found.worst), ("at limit", &found.nearest_to_limit)] {
+        if let Some(seen) = seen {
+            writeln!(out, "\n{what:<10} {} {unit}, margin {}", error(seen.error), margin(seen.margin))?;
+            write_seen(document, seen, rerun, out)?;
+        }
+    }
+    for seen in &found.failures {
+        writeln!(out, "\nFAIL       {} {unit}, margin {}", error(seen.error), margin(seen.margin))?;
+        write_seen(document, seen, rerun, out)?;
+    }
+    writeln!(out)?;
+    bars(document, out)?;
+    let mark = if found.failed > 0 { "✗" } else { "✓" };
+    writeln!(out, "{mark} {} of {} inputs outside the bound", thousands(found.failed), thousands(found.inputs))
+}
+
+fn write_seen(document: &Document, seen: &Seen, rerun: &str, out: &mut impl Write) -> Result {
+    let sweep = &document.sweep;
+    let Exact(value) = seen.value;
+    let unwritten = if value.to_bits() == lightmeter_scene::target::SENTINEL { ", never written" } else { "" };
+    writeln!(out, "  input      {}", place(&sweep.over, seen.input))?;
+    if sweep.from.is_some() {
+        writeln!(out, "  value      {}  0x{:08x}{unwritten}", Number(value.into()), value.to_bits())?;
+    } else {
+        writeln!(out, "  value      {}", Number(value.into()))?;
+    }
+    writeln!(out, "  reference  {}", seen.reference)?;
+    writeln!(out, "  legal      {} to {}", seen.low, seen.high)?;
+    if let Place::Float(Exact(x)) = seen.input {
+        let bits = x.to_bits();
+        writeln!(out, "  again      lightmeter sweep {}{rerun} --from 0x{bits:08x} --to 0x{bits:08x}", sweep.formula)?;
+    }
+    Ok(())
+}
+
+/// An input as it is told.
+#[must_use]
+pub fn place(over: &str, place: Place) -> String {
+    match place {
+        Place::Float(Exact(x)) => format!("{over} {}  0x{:08x}", Number(x.into()), x.to_bits()),
+        Place::Bytes { source, destination, alpha } => {
+            format!("source {source}/255, destination {destination}/255, alpha {alpha}/255")
+        }
+    }
+}
+
+/// The histogram as aligned bars, the longest of them for the bin with the most inputs.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn bars(document: &Document, out: &mut impl Write) -> Result {
+    let (found, unit) = (&document.statistics, &document.sweep.unit);
+    let bins = found.histogram.bins();
+    let most = bins.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
+    let counts = found.inputs.max(1);
+    let widest = bins.iter().map(|(_, count)| thousands(*count).len()).max().unwrap_or(0);
+    writeln!(out, "error in {unit}")?;
+    for (name, count) in bins {
+        let label = if name.starts_with(|c: char| c.is_ascii_digit()) { format!("≤ {name}") } else { name };
+        let length = usize::try_from(u128::from(count) * BAR as u128 / u128::from(most)).unwrap_or(BAR);
+        let bar = if count > 0 { "█".repeat(length.max(1)) } else { String::new() };
+        writeln!(
+            out,
+            "{}",
+            format!("{label:>12}  {:>widest$}  {:>9}  {bar}", thousands(count), percent(count, counts)).trim_end()
+        )?;
+    }
+    Ok(())
+}
+
+/// Inputs a second.
+#[must_use]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "a rate that is read by people"
+)]
+pub fn rate(document: &Document) -> u64 {
+    (document.statistics.inputs as f64 / document.seconds.max(1e-9)) as u64
+}
+
+/// An error or a margin as it is told.
+#[must_use]
+pub fn error(Number(x): Number) -> String {
+    if x.is_finite() && x < 1e7 {
+        format!("{x:.2}")
+    } else if x.is_finite() {
+        format!("{x:.1e}")
+    } else {
+        Number(x).to_string()
+    }
+}
+
+/// A margin: 1 is the end of what is legal.
+#[must_use]
+pub fn margin(Number(x): Number) -> String {
+    if x.is_finite() { format!("{x:.4}") } else { Number(x).to_string() }
+}
+
+/// A share of a count.
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "a share that is read by people")]
+pub fn percent(count: u64, of: u64) -> String {
+    let share = 100.0 * count as f64 / of.max(1) as f64;
+    if count > 0 && share < 0.005 { "< 0.01 %".into() } else { format!("{share:.2} %") }
+}

@@ -1,0 +1,153 @@
+//! Every mistake of a renderer in every scene that shows it: whether it is caught, and told by its name.
+
+use super::{SCENE_FAULTS, Trial, draw, fails};
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::scene::library::SCENES;
+use lightmeter_catalogue::scene::select::{builtin, scene_id};
+use lightmeter_judge::image::expect;
+use lightmeter_judge::image::file::Stored;
+use lightmeter_reference::render::render;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::fmt::{Result, Write};
+
+/// What became of a mistake in the scenes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SceneRow {
+    /// The mistake.
+    pub fault: String,
+    /// In words.
+    pub says: String,
+    /// Scenes that it fails in.
+    pub caught: Vec<String>,
+    /// Of them, those whose diagnosis names it first, or names one that draws the same there.
+    pub named: Vec<String>,
+    /// What the others' diagnoses say.
+    pub others: Vec<String>,
+}
+
+/// What the scenes catch.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Record {
+    /// Each mistake.
+    pub rows: Vec<SceneRow>,
+    /// Scenes in which nothing is wrong and something fails all the same.
+    pub alarms: Vec<String>,
+}
+
+impl Record {
+    /// Whether every mistake is caught, and nothing that is right is flagged.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.alarms.is_empty() && self.rows.iter().all(SceneRow::is_caught)
+    }
+
+    /// How often a mistake was caught, and how often it was told by its name.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 2] {
+        let count = |of: fn(&SceneRow) -> &Vec<String>| self.rows.iter().map(|row| of(row).len()).sum();
+        [count(|row| &row.caught), count(|row| &row.named)]
+    }
+}
+
+/// Writes it for people.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn text(record: &Record, out: &mut impl Write) -> Result {
+    let [caught, named] = record.counts();
+    writeln!(out, "scenes: {} mistakes, caught {caught} times, told by name first {named} times", record.rows.len())?;
+    for row in &record.rows {
+        let mark = if row.is_caught() { '✓' } else { '✗' };
+        let [caught, named] = [row.caught.len(), row.named.len()];
+        writeln!(out, "{mark} {:<28} caught in {caught:>2} scenes, named in {named:>2}: {}", row.fault, row.says)?;
+    }
+    for alarm in &record.alarms {
+        writeln!(out, "FALSE ALARM: {alarm} fails and nothing is wrong")?;
+    }
+    Ok(())
+}
+
+impl SceneRow {
+    /// Whether some scene catches it.
+    #[must_use]
+    pub fn is_caught(&self) -> bool {
+        !self.caught.is_empty()
+    }
+}
+
+/// What the scenes catch, drawn with so many pixels on their longer side; and the scenes in which nothing is wrong and
+/// something fails all the same.
+///
+/// # Errors
+/// Where a scene is refused, which a test rules out.
+pub fn selftest(
+    size: u32,
+    profile: &Profile,
+    progress: &(impl Fn(&str) + Sync),
+) -> std::result::Result<Record, lightmeter_catalogue::scene::Error> {
+    let mut rows: Vec<SceneRow> = SCENE_FAULTS
+        .iter()
+        .map(|fault| SceneRow {
+            fault: fault.name.into(),
+            says: fault.says.into(),
+            caught: vec![],
+            named: vec![],
+            others: vec![],
+        })
+        .collect();
+    let mut alarms = vec![];
+    for place in 0..SCENES.len() {
+        let id = scene_id(place);
+        progress(&id);
+        let frame = builtin(place, Some(size))?.frame;
+        let expected = expect(&frame, None, None, profile);
+        let reference = Stored::unrounded(&render::<f64>(&frame, None, None), frame.target.format);
+        if fails(&draw::<f32>(&frame, &[]), &reference, &expected) {
+            alarms.push(id.clone());
+        }
+        let found: Vec<Option<std::result::Result<(), String>>> = SCENE_FAULTS
+            .par_iter()
+            .map(|fault| {
+                let image = draw::<f32>(&frame, &[fault]);
+                if !fails(&image, &reference, &expected) {
+                    return None;
+                }
+                let diagnosis = Trial::new(&frame, &image, &expected, profile).diagnose();
+                let is_named = diagnosis.explanations.first().is_some_and(|first| {
+                    // Two mistakes that draw the same cannot be told apart there.
+                    first.faults.iter().any(|own| own.name == fault.name) && first.faults.len() == 1
+                        || draw::<f32>(&frame, &first.faults) == image
+                });
+                Some(if is_named { Ok(()) } else { Err(diagnosis.sentence) })
+            })
+            .collect();
+        for (row, found) in rows.iter_mut().zip(found) {
+            match found {
+                None => continue,
+                Some(Ok(())) => row.named.push(id.clone()),
+                Some(Err(sentence)) => row.others.push(format!("{id}: {sentence}")),
+            }
+            row.caught.push(id.clone());
+        }
+    }
+    Ok(Record { rows, alarms })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_arithmetic::profile::WGSL;
+
+    #[test]
+    fn every_mistake_is_caught_and_nearly_all_are_named() {
+        let record = selftest(40, &WGSL, &|_| {}).expect("the scenes load");
+        assert!(record.alarms.is_empty(), "{:?}", record.alarms);
+        let rows = &record.rows;
+        let survivors: Vec<&str> = rows.iter().filter(|row| !row.is_caught()).map(|row| row.fault.as_str()).collect();
+        assert!(survivors.is_empty(), "{survivors:?}");
+        let [caught, named] = record.counts();
+        let others: Vec<&String> = rows.iter().flat_map(|row| &row.others).collect();
+        assert!(100 * named >= 95 * caught, "{named} of {caught}: {others:#?}");
+    }
+}

@@ -1,0 +1,179 @@
+//! An earlier result, than which nothing may be worse.
+
+use super::known::expanded;
+use super::plan::Choice;
+use super::report::{Group, Report};
+use lightmeter_catalogue::cases::GENERATOR_VERSION;
+use lightmeter_judge::image::file::whole;
+use serde::Deserialize;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+/// Errors up to this are no worse than others: half a step, half a ULP.
+const FLOOR: f64 = 0.5;
+/// The same of the mean of many errors.
+const MEAN_FLOOR: f64 = 0.05;
+/// Cases that are named, of each formula.
+const MOST_NAMED: usize = 8;
+
+/// What a baseline must have: a gate's JSON has it.
+#[derive(Debug, Deserialize)]
+pub struct Baseline {
+    schema: String,
+    choice: Choice,
+    generator: u64,
+    profile: String,
+    groups: Vec<Group>,
+}
+
+/// Why a baseline cannot be compared with, or written.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// It cannot be read.
+    #[error("cannot read {}: {message}", .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// It is of other cases.
+    #[error("{} is of other cases: {}", .path.display(), .differences.join("; "))]
+    Others {
+        /// The file.
+        path: PathBuf,
+        /// What differs.
+        differences: Vec<String>,
+    },
+    /// It cannot be written.
+    #[error("cannot write {}: {message}", .path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// The result is no standard to hold others to.
+    #[error("the baseline {} is left as it is: {why}", .path.display())]
+    Unfit {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the result.
+        why: &'static str,
+    },
+}
+
+impl Baseline {
+    /// Reads a gate's JSON.
+    ///
+    /// # Errors
+    /// Where it is none.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let failed = |message: String| Error::Read { path: path.into(), message };
+        let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
+        let expected = "expected the JSON of `lightmeter gate --format json`, or of --update-baseline";
+        let baseline: Self = serde_json::from_str(&text).map_err(|error| failed(format!("{error}; {expected}")))?;
+        if baseline.schema == super::report::SCHEMA {
+            Ok(baseline)
+        } else {
+            Err(failed(format!("its schema is `{}`; {expected}", baseline.schema)))
+        }
+    }
+
+    /// What is worse in the report, beyond `factor` where it is an error.
+    ///
+    /// # Errors
+    /// Where the cases are others.
+    pub fn compare(&self, report: &Report, factor: f64, path: &Path) -> Result<Vec<String>, Error> {
+        self.is_of(&report.choice, Some(&report.profile), path)?;
+        let mut worse = vec![];
+        for before in &self.groups {
+            match report.groups.iter().find(|group| group.id == before.id) {
+                None => worse.push(format!("{}: it is not among the cases any more", before.id)),
+                Some(now) => worse.extend(compare(before, now, factor)),
+            }
+        }
+        Ok(worse)
+    }
+
+    /// Whether it is of the cases that are chosen, and of the accuracy rules where those are known.
+    ///
+    /// # Errors
+    /// What differs.
+    pub fn is_of(&self, now: &Choice, profile: Option<&String>, path: &Path) -> Result<(), Error> {
+        let mut differences = vec![];
+        let mut differs = |what: &str, before: String, now: String| {
+            if before != now {
+                differences.push(format!("{what} {before} there, {now} here"));
+            }
+        };
+        let before = &self.choice;
+        differs("filter", format!("{:?}", before.filter), format!("{:?}", now.filter));
+        differs("cases", before.cases.to_string(), now.cases.to_string());
+        differs("seed", before.seed.to_string(), now.seed.to_string());
+        differs("size", format!("{:?}", before.size), format!("{:?}", now.size));
+        differs("generator", self.generator.to_string(), GENERATOR_VERSION.to_string());
+        if let Some(profile) = profile {
+            differs("profile", self.profile.clone(), profile.clone());
+        }
+        if differences.is_empty() { Ok(()) } else { Err(Error::Others { path: path.into(), differences }) }
+    }
+}
+
+fn compare(before: &Group, now: &Group, factor: f64) -> Vec<String> {
+    let id = &now.id;
+    let mut worse = vec![];
+    if now.asked < before.asked {
+        worse.push(format!("{id}: {} cases are asked, {} were: the renderer declares less", now.asked, before.asked));
+    }
+    // A case that passed and does not; one that was answered or skipped and is missing.
+    for (what, spared) in [("failed", &["failed"][..]), ("skipped", &["skipped", "failed"]), ("missing", &["missing"])]
+    {
+        let known: HashSet<String> = (spared.iter().filter_map(|state| before.not_passed.get(*state)).flatten())
+            .flat_map(|text| expanded(text))
+            .collect();
+        let cases = now.not_passed.get(what).into_iter().flatten().flat_map(|text| expanded(text));
+        let new: Vec<String> = cases.filter(|case| !known.contains(case)).collect();
+        if !new.is_empty() {
+            let named = new.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
+            let more = if new.len() > MOST_NAMED { ", …" } else { "" };
+            worse.push(format!("{id}: {} {what} and did not before: {named}{more}", cases_of(new.len())));
+        }
+    }
+    if now.indeterminate > before.indeterminate {
+        worse.push(format!("{id}: {} verdicts permit anything, {} did", now.indeterminate, before.indeterminate));
+    }
+    for (what, before, now, floor) in [
+        ("errs by", before.error_max, now.error_max, FLOOR),
+        ("errs where it passes by", before.error_passing, now.error_passing, FLOOR),
+        ("errs where it passes, in the mean, by", before.error_mean, now.error_mean, MEAN_FLOOR),
+    ] {
+        // A NaN is worse than any number.
+        if lightmeter_judge::is_worse(now.0, factor * before.0.max(floor)) {
+            worse.push(format!("{id}: {what} {now}, by {before} before: more than {factor} times that"));
+        }
+    }
+    worse
+}
+
+fn cases_of(count: usize) -> String {
+    super::report::cases(count as u64)
+}
+
+/// Writes a report as a baseline, whole or not at all.
+///
+/// # Errors
+/// Where it cannot be written, or the run was broken off, unstable or judged nothing.
+pub fn update(report: &Report, path: &Path) -> Result<(), Error> {
+    let why = [
+        (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
+        (report.totals.unstable > 0, "answers changed when they were asked once more"),
+        (!report.has_judged(), "nothing was judged"),
+    ];
+    if let Some((_, why)) = why.into_iter().find(|(is_so, _)| *is_so) {
+        return Err(Error::Unfit { path: path.into(), why });
+    }
+    let failed = |message: String| Error::Write { path: path.into(), message };
+    let text = serde_json::to_string_pretty(report).map_err(|error| failed(error.to_string()))? + "\n";
+    whole(path, text.as_bytes()).map_err(|error| failed(error.to_string()))
+}

@@ -1,0 +1,396 @@
+//! A pack: the cases as files, for a renderer that answers by files.
+
+use super::frame;
+use super::picture::within;
+use super::plan::{Choice, Plan};
+use lightmeter_catalogue::cases::{GENERATOR_VERSION, Shape};
+use lightmeter_document::Number;
+use lightmeter_judge::image::file::{Stored, whole};
+use lightmeter_scene::frame::{Frame, Mesh, Texture};
+use lightmeter_scene::target::TargetFormat;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufWriter, Read as _, Write};
+use std::path::{Path, PathBuf};
+
+/// The schema's name.
+pub const SCHEMA: &str = "lightmeter.pack/1";
+const MANIFEST: &str = "manifest.json";
+const CASES: &str = "cases.jsonl";
+/// Random cases for each formula, and pixels of a scene's longer side, at most.
+const MOST_CASES: u64 = 1_000_000_000;
+const MOST_PIXELS: u32 = 8192;
+
+/// What a pack holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// The version of what draws the cases: with another one they are others.
+    pub generator: u64,
+    /// The version of lightmeter that wrote it.
+    pub version: String,
+    /// What chose the cases.
+    #[serde(flatten)]
+    pub choice: Choice,
+    /// The formulas, with their inputs and outputs.
+    pub formulas: Vec<Value>,
+    /// The scenes.
+    pub scenes: Vec<Value>,
+    /// Each file's bytes and checksum.
+    pub files: Vec<Listed>,
+}
+
+/// A file of a pack.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Listed {
+    /// Its name within the pack.
+    pub name: String,
+    /// Its length.
+    pub bytes: u64,
+    /// Its CRC-32, as 8 digits of base 16.
+    pub crc32: String,
+}
+
+/// Why a pack was not written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A file cannot be written.
+    #[error("cannot write {}: {message}", .path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// A file cannot be read.
+    #[error("cannot read {}: {message}", .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// It is no pack, or another's.
+    #[error("{}: {message}", .path.display())]
+    Manifest {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what would be right.
+        message: String,
+    },
+    /// A scene is refused, or a glob.
+    #[error("{0}")]
+    Plan(String),
+}
+
+/// What a formula takes and gives, as `lightmeter list --formulas` has it.
+#[must_use]
+pub fn formula(plan: &Plan, formula: usize) -> Value {
+    let spec = &plan.member(formula).spec;
+    let value = |name: &str, shape: Shape, unit: &str| json!({ "name": name, "shape": shape, "unit": unit });
+    json!({
+        "id": spec.id,
+        "formula": spec.text,
+        "inputs": spec.inputs.iter().map(|input| value(input.name, input.shape, input.unit)).collect::<Vec<_>>(),
+        "outputs": spec.outputs.iter().map(|output| value(output.name, output.shape, output.unit)).collect::<Vec<_>>(),
+        "count": plan.formulas[formula].count(),
+    })
+}
+
+/// A case as a renderer is asked it.
+#[must_use]
+pub fn case(plan: &Plan, formula: usize, case: usize) -> Value {
+    let spec = &plan.member(formula).spec;
+    let row = plan.inputs(formula, case);
+    let mut inputs = Map::new();
+    let mut rest = row.as_slice();
+    for input in spec.inputs {
+        let (own, after) = rest.split_at(input.shape.components());
+        rest = after;
+        let numbers: Vec<Value> = own.iter().map(|&x| json!(Number(x.into()))).collect();
+        let value = if let [one] = numbers.as_slice() { one.clone() } else { numbers.into() };
+        inputs.insert(input.name.to_owned(), value);
+    }
+    json!({ "id": plan.id(super::plan::Place::Case { formula, case }), "formula": spec.id, "inputs": inputs })
+}
+
+/// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go.
+///
+/// # Errors
+/// Where a file cannot be written, or the folder holds something else.
+pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, Error> {
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |error: std::io::Error| Error::Write { path, message: error.to_string() }
+    };
+    std::fs::create_dir_all(folder).map_err(failed(folder))?;
+    clear(folder)?;
+    // A pack that is broken off is known as one, and is written over.
+    let path = folder.join(MANIFEST);
+    let begun = json!({ "schema": SCHEMA, "is_unfinished": true }).to_string();
+    whole(&path, begun.as_bytes()).map_err(|error| Error::Write { path, message: error.to_string() })?;
+    let mut files = vec![];
+    let path = folder.join(CASES);
+    let mut out =
+        Summed { out: BufWriter::new(File::create(&path).map_err(failed(&path))?), sum: Default::default(), bytes: 0 };
+    for formula in 0..plan.formulas.len() {
+        for place in 0..plan.formulas[formula].count() {
+            writeln!(out, "{}", case(plan, formula, place)).map_err(failed(&path))?;
+        }
+    }
+    out.flush().map_err(failed(&path))?;
+    files.push(out.listed(CASES));
+    for scene in 0..plan.scenes.len() {
+        for (name, bytes) in Drawn::new(plan, scene)?.files() {
+            let path = folder.join(&name);
+            let parent = path.parent().unwrap_or(folder);
+            std::fs::create_dir_all(parent).map_err(failed(parent))?;
+            whole(&path, &bytes).map_err(|error| Error::Write { path, message: error.to_string() })?;
+            files.push(Listed { crc32: digits(&bytes), bytes: bytes.len() as u64, name });
+        }
+    }
+    let manifest = Manifest { files, ..Manifest::of(plan)? };
+    let path = folder.join(MANIFEST);
+    let text = serde_json::to_string_pretty(&manifest).map_err(|error| Error::Plan(error.to_string()))? + "\n";
+    whole(&path, text.as_bytes()).map_err(|error| Error::Write { path, message: error.to_string() })?;
+    Ok(manifest)
+}
+
+/// Takes the files of an earlier pack out of a folder, and nothing else.
+fn clear(folder: &Path) -> Result<(), Error> {
+    let failed = |path: &Path, message: String| Error::Write { path: path.into(), message };
+    let mut entries = std::fs::read_dir(folder).map_err(|error| failed(folder, error.to_string()))?;
+    if entries.next().is_none() {
+        return Ok(());
+    }
+    let manifest = std::fs::read_to_string(folder.join(MANIFEST)).ok();
+    let manifest: Option<Value> = manifest.and_then(|text| serde_json::from_str(&text).ok());
+    let schema = manifest.as_ref().and_then(|manifest| manifest["schema"].as_str());
+    let Some(manifest) = manifest.as_ref().filter(|_| schema.is_some_and(|name| name.starts_with("lightmeter.pack/")))
+    else {
+        let expected = "expected a new or an empty folder, or one with a pack";
+        return Err(failed(folder, format!("it holds something else; {expected}")));
+    };
+    for file in manifest["files"].as_array().into_iter().flatten() {
+        // What leads out of the folder is no file of the pack.
+        if let Some(path) = file["name"].as_str().and_then(|name| within(folder, name).ok()) {
+            std::fs::remove_file(&path).map_err(|error| failed(&path, error.to_string()))?;
+        }
+    }
+    Ok(())
+}
+
+impl Manifest {
+    /// That of a plan, as yet without files.
+    fn of(plan: &Plan) -> Result<Self, Error> {
+        let scenes = (0..plan.scenes.len()).map(|scene| Ok(Drawn::new(plan, scene)?.listed()));
+        Ok(Self {
+            schema: SCHEMA.into(),
+            generator: GENERATOR_VERSION,
+            version: env!("CARGO_PKG_VERSION").into(),
+            choice: plan.choice.clone(),
+            formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
+            scenes: scenes.collect::<Result<_, Error>>()?,
+            files: vec![],
+        })
+    }
+}
+
+/// A scene of a pack.
+struct Drawn {
+    id: String,
+    title: String,
+    frame: Frame,
+}
+
+impl Drawn {
+    fn new(plan: &Plan, scene: usize) -> Result<Self, Error> {
+        let (title, frame) = plan.frame(scene).map_err(|error| Error::Plan(error.to_string()))?;
+        Ok(Self { id: plan.id(super::plan::Place::Scene(scene)), title, frame })
+    }
+
+    fn folder(&self) -> String {
+        self.id.replacen("scene/", "scenes/", 1)
+    }
+
+    /// As the manifest has it.
+    fn listed(&self) -> Value {
+        let target = &self.frame.target;
+        json!({
+            "id": self.id,
+            "title": self.title,
+            "file": format!("{}/scene.json", self.folder()),
+            "width": target.width,
+            "height": target.height,
+            "format": target.format.name(),
+        })
+    }
+
+    /// Its files, by their names.
+    fn files(&self) -> impl Iterator<Item = (String, Vec<u8>)> {
+        let (name, frame) = (self.folder(), &self.frame);
+        let scene = format!("{}\n", frame::to_json(&self.id, &self.title, frame));
+        let meshes = frame.meshes.iter().enumerate().map(|(k, mesh)| (format!("mesh-{k}.obj"), obj(mesh).into_bytes()));
+        let textures = frame.textures.iter().enumerate().map(|(k, texture)| (format!("texture-{k}.png"), png(texture)));
+        let scene = std::iter::once(("scene.json".to_owned(), scene.into_bytes()));
+        scene.chain(meshes).chain(textures).map(move |(file, bytes)| (format!("{name}/{file}"), bytes))
+    }
+}
+
+/// Counts and sums what is written.
+struct Summed<W> {
+    out: W,
+    sum: crc32fast::Hasher,
+    bytes: u64,
+}
+
+impl<W: Write> Write for Summed<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.sum.update(&bytes[..written]);
+        self.bytes += written as u64;
+        Ok(written)
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl<W> Summed<W> {
+    fn listed(self, name: &str) -> Listed {
+        Listed { name: name.into(), bytes: self.bytes, crc32: format!("{:08x}", self.sum.finalize()) }
+    }
+}
+
+fn digits(bytes: &[u8]) -> String {
+    format!("{:08x}", crc32fast::hash(bytes))
+}
+
+/// A mesh as Wavefront OBJ, which has no colours and no second texture coordinates.
+fn obj(mesh: &Mesh) -> String {
+    let mut out = String::new();
+    let mut line = |word: &str, numbers: &[f32]| {
+        let numbers: Vec<String> = numbers.iter().map(f32::to_string).collect();
+        let _ = writeln!(out, "{word} {}", numbers.join(" "));
+    };
+    mesh.positions.iter().for_each(|v| line("v", v));
+    // Images have their first row at the top, OBJ's coordinates grow upward.
+    mesh.uvs.iter().for_each(|[u, v]| line("vt", &[*u, 1.0 - v]));
+    mesh.normals.iter().for_each(|v| line("vn", v));
+    let corner = |k: u32| {
+        let k = k + 1;
+        match (mesh.uvs.is_empty(), mesh.normals.is_empty()) {
+            (true, true) => k.to_string(),
+            (true, false) => format!("{k}//{k}"),
+            (false, true) => format!("{k}/{k}"),
+            (false, false) => format!("{k}/{k}/{k}"),
+        }
+    };
+    for triangle in &mesh.triangles {
+        let corners = triangle.map(corner);
+        let _ = writeln!(out, "f {}", corners.join(" "));
+    }
+    out
+}
+
+/// A texture as PNG of 8 bits.
+fn png(texture: &Texture) -> Vec<u8> {
+    let pixels = texture.texels.iter().map(|texel| texel.map(|c| f64::from(c) * 255.0)).collect();
+    let image = Stored { width: texture.width as usize, format: TargetFormat::Rgba8Unorm, pixels };
+    image.encode(Path::new("texture.png")).unwrap_or_default()
+}
+
+/// Reads the manifest of a pack, holds its files against it, and gives the cases that it is of.
+///
+/// # Errors
+/// Where it is damaged, another version's, not what this lightmeter would write, or leads out of its folder.
+pub fn read(folder: &Path) -> Result<Plan, Error> {
+    let path = folder.join(MANIFEST);
+    let text = std::fs::read_to_string(&path).map_err(|error| Error::Read {
+        path: path.clone(),
+        message: format!("{error}; `lightmeter pack DIR` writes a pack"),
+    })?;
+    let refused = |message: String| Error::Manifest { path: path.clone(), message };
+    let value: Value = serde_json::from_str(&text).map_err(|error| refused(format!("it is damaged: {error}")))?;
+    match value.get("schema").and_then(Value::as_str) {
+        Some(SCHEMA) => {}
+        found => {
+            let found = found.map_or_else(|| "nothing".into(), |found| format!("`{found}`"));
+            return Err(refused(format!("its schema is {found}; expected `{SCHEMA}`")));
+        }
+    }
+    if value.get("is_unfinished").is_some() {
+        return Err(refused("it was not written to its end: write the pack again".into()));
+    }
+    let manifest: Manifest =
+        serde_json::from_value(value).map_err(|error| refused(format!("it is damaged: {error}")))?;
+    if manifest.generator != GENERATOR_VERSION {
+        return Err(refused(format!(
+            "its cases were drawn by generator {}; this lightmeter has {GENERATOR_VERSION}: write the pack again",
+            manifest.generator
+        )));
+    }
+    let Choice { cases, size, .. } = &manifest.choice;
+    if !(1..=MOST_CASES).contains(cases) || size.is_some_and(|size| !(1..=MOST_PIXELS).contains(&size)) {
+        return Err(refused(format!(
+            "it has {cases} cases and scenes of {size:?} pixels; expected 1 to {MOST_CASES}, and to {MOST_PIXELS}"
+        )));
+    }
+    for Listed { name, bytes, crc32 } in &manifest.files {
+        let file = within(folder, name).map_err(|error| refused(format!("files: {error}")))?;
+        let (found_bytes, found) =
+            sum(&file).map_err(|error| Error::Read { path: file.clone(), message: error.to_string() })?;
+        if (found_bytes, found.as_str()) != (*bytes, crc32.as_str()) {
+            let message = format!(
+                "it is not what was packed: {found_bytes} bytes with checksum {found}; expected {bytes} with {crc32}"
+            );
+            return Err(Error::Manifest { path: file, message });
+        }
+    }
+    let plan = Plan::new(manifest.choice.clone()).map_err(|error| refused(error.to_string()))?;
+    manifest.is_of(&plan)?.map_or(Ok(plan), |what| {
+        Err(refused(format!(
+            "its {what} are not those that its `filter`, `cases`, `seed` and `size` choose: write the pack again"
+        )))
+    })
+}
+
+impl Manifest {
+    /// What is not as this lightmeter would write it for the plan. The cases themselves go by the generator's version.
+    fn is_of(&self, plan: &Plan) -> Result<Option<&'static str>, Error> {
+        let own = Self::of(plan)?;
+        if self.formulas != own.formulas {
+            return Ok(Some("formulas"));
+        }
+        if self.scenes != own.scenes {
+            return Ok(Some("scenes"));
+        }
+        let mut files: Vec<(String, Option<String>)> = vec![(CASES.into(), None)];
+        for scene in 0..plan.scenes.len() {
+            files.extend(Drawn::new(plan, scene)?.files().map(|(name, bytes)| (name, Some(digits(&bytes)))));
+        }
+        let is_same = |(listed, (name, sum)): (&Listed, &(String, Option<String>))| {
+            listed.name == *name && sum.as_ref().is_none_or(|sum| *sum == listed.crc32)
+        };
+        let are_same = files.len() == self.files.len() && self.files.iter().zip(&files).all(is_same);
+        Ok((!are_same).then_some("files"))
+    }
+}
+
+fn sum(path: &Path) -> std::io::Result<(u64, String)> {
+    let mut file = File::open(path)?;
+    let (mut sum, mut all) = (crc32fast::Hasher::new(), 0);
+    let mut part = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok((all, format!("{:08x}", sum.finalize()))),
+            count => {
+                sum.update(&part[..count]);
+                all += count as u64;
+            }
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! The page on the self-test, made from the JSON of `lightmeter selftest`: the kill matrix, and the suite's resolution.
+
+use crate::selftest::smallest;
+use lightmeter_catalogue::cases::FAMILIES;
+use lightmeter_faults::calibrate::{CASES, Resolution};
+use lightmeter_faults::scene::selftest as scenes;
+use lightmeter_faults::selftest::{Clean, Finding, Kill, Record};
+use lightmeter_faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
+use serde::Deserialize;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::{Result as Written, Write};
+
+/// What the page needs of that JSON.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Run {
+    #[serde(flatten)]
+    record: Record,
+    #[serde(default)]
+    calibration: Vec<Resolution>,
+    #[serde(default)]
+    rows: Vec<UnitRow>,
+    scenes: Option<scenes::Record>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct UnitRow {
+    fault: String,
+    target: String,
+    finding: String,
+}
+
+impl Run {
+    /// Reads the JSON.
+    ///
+    /// # Errors
+    /// Where it is another document, of the blend unit alone, or of mistakes that this version does not have.
+    pub fn read(json: &str) -> Result<Self, String> {
+        const EXPECTED: &str = "the JSON of `lightmeter selftest --format json`";
+        let value = super::document(json, "lightmeter.selftest/1", EXPECTED)?;
+        if value["kills"].is_null() {
+            return Err("it is of the blend unit alone; expected formulas too".into());
+        }
+        let run: Self = serde_json::from_value(value).map_err(|error| format!("not {EXPECTED}: {error}"))?;
+        match run.record.kills.iter().find(|kill| Fault::by_name(&kill.fault).is_none()) {
+            Some(kill) => Err(format!("no mistake `{}`: the file is of another version", kill.fault)),
+            None => Ok(run),
+        }
+    }
+}
+
+/// The page in Markdown.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn markdown(run: &Run, out: &mut impl Write) -> Written {
+    writeln!(out, "# What the suite catches\n")?;
+    writeln!(
+        out,
+        "Every named mistake is made by an implementation that is right otherwise, in every formula that it concerns, and\n\
+         judged like any renderer. Made from a run's JSON:\n"
+    )?;
+    writeln!(out, "```\n./x selftest --calibrate --format json --out selftest.json")?;
+    writeln!(out, "./x page selftest selftest.json --out docs/selftest.md\n```\n")?;
+    totals(&run.record, out)?;
+    matrix(&run.record, out)?;
+    aliases(&run.record, out)?;
+    clean(&run.record, out)?;
+    if let Some(scenes) = &run.scenes {
+        drawn(scenes, out)?;
+    }
+    unit(&run.rows, out)?;
+    resolution(&run.calibration, out)
+}
+
+fn totals(record: &Record, out: &mut impl Write) -> Written {
+    let (total, survived) = (record.kills.len(), record.count(Finding::Survived));
+    let named = record.count(Finding::Named);
+    let aliases = record.kills.iter().filter(|kill| kill.alias).count();
+    let percent = lightmeter_faults::percent(named, total);
+    let made: BTreeSet<&str> = record.kills.iter().map(|kill| kill.fault.as_str()).collect();
+    writeln!(
+        out,
+        "{} mistakes make {total} combinations with the formulas that they concern: {} are caught, {survived} survive. The\n\
+         first diagnosis is the right one for {named}, {percent:.1} %; in {aliases} of these it is one of the same values in every \
+         case.\n",
+        made.len(),
+        total - survived,
+    )
+}
+
+fn matrix(record: &Record, out: &mut impl Write) -> Written {
+    writeln!(out, "## The mistakes\n")?;
+    writeln!(
+        out,
+        "By family: in how many formulas a mistake is made; bold where one is not told by its name. *Cases* is how many suffice \
+         to\ncatch it, in the order of a run: the median over its formulas, and the most.\n"
+    )?;
+    let families: Vec<&str> = FAMILIES
+        .into_iter()
+        .filter(|family| record.kills.iter().any(|kill| family_of(&kill.formula) == *family))
+        .collect();
+    writeln!(out, "| mistake | | {} | cases | most | seen in |", families.join(" | "))?;
+    writeln!(out, "|---|---|{}--:|--:|---|", "--:|".repeat(families.len()))?;
+    for fault in faults() {
+        let kills: Vec<&Kill> = record.kills.iter().filter(|kill| kill.fault == fault.name).collect();
+        if kills.is_empty() {
+            continue;
+        }
+        write!(out, "| {} | {} |", fault.name, fault.says)?;
+        for family in &families {
+            let of: Vec<&&Kill> = kills.iter().filter(|kill| family_of(&kill.formula) == *family).collect();
+            let named = of.iter().filter(|kill| kill.finding == Finding::Named).count();
+            match of.len() {
+                0 => write!(out, " |")?,
+                all if all == named => write!(out, " {all} |")?,
+                all => write!(out, " **{named} of {all}** |")?,
+            }
+        }
+        let (median, most) = smallest(&kills);
+        writeln!(out, " {median} | {most} | {} |", fault.seen_in.unwrap_or_default())?;
+    }
+    let missed: Vec<&Kill> = record.kills.iter().filter(|kill| kill.finding != Finding::Named).collect();
+    if !missed.is_empty() {
+        writeln!(out, "\nCaught, but told otherwise at first:\n")?;
+    }
+    for kill in missed {
+        let survived = if kill.finding == Finding::Survived { " **survived**:" } else { "" };
+        writeln!(out, "* {} in {}:{survived} {}", kill.fault, kill.formula, kill.sentence)?;
+    }
+    writeln!(out)
+}
+
+fn aliases(record: &Record, out: &mut impl Write) -> Written {
+    let mut by_pair: BTreeMap<(&str, String), BTreeSet<&str>> = BTreeMap::new();
+    for kill in record.kills.iter().filter(|kill| kill.alias) {
+        let told = kill.diagnosis.join(" and ");
+        by_pair.entry((&kill.fault, told)).or_default().insert(&kill.formula);
+    }
+    if by_pair.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "## Mistakes of the same values\n")?;
+    writeln!(out, "In these formulas two mistakes cannot be told apart, whatever the case:\n")?;
+    writeln!(out, "| mistake | told as | in |\n|---|---|---|")?;
+    for ((fault, told), formulas) in by_pair {
+        const MOST_NAMED: usize = 4;
+        let named: Vec<&str> = formulas.iter().copied().take(MOST_NAMED).collect();
+        let rest = formulas.len() - named.len();
+        let more = if rest > 0 { format!(" and {rest} more") } else { String::new() };
+        writeln!(out, "| {fault} | {told} | {}{more} |", named.join(", "))?;
+    }
+    writeln!(out)
+}
+
+fn clean(record: &Record, out: &mut impl Write) -> Written {
+    writeln!(out, "## Without a mistake\n")?;
+    writeln!(
+        out,
+        "The same formulas, dialects among them, by the embedded implementation and by evaluations that draw order, rounding,\n\
+         form, fusion and flush at random, as freely as the rules permit:\n"
+    )?;
+    writeln!(out, "| family | formulas | verdicts | failed | group verdicts |\n|---|--:|--:|--:|--:|")?;
+    for family in FAMILIES {
+        let of: Vec<&Clean> = record.clean.iter().filter(|clean| family_of(&clean.formula) == family).collect();
+        let verdicts: u64 = of.iter().map(|clean| clean.verdicts).sum();
+        let failed: u64 = of.iter().map(|clean| clean.failed).sum();
+        let systematic = of.iter().filter(|clean| clean.systematic.is_some()).count();
+        if !of.is_empty() {
+            writeln!(out, "| {family} | {} | {verdicts} | {failed} | {systematic} |", of.len())?;
+        }
+    }
+    writeln!(out)
+}
+
+fn drawn(record: &scenes::Record, out: &mut impl Write) -> Written {
+    let [caught, named] = record.counts();
+    writeln!(out, "\n## Mistakes of whole renderers\n")?;
+    writeln!(
+        out,
+        "Each is made by the reference renderer in f32 in every built-in scene, where it changes anything that is not legal. \
+         {} mistakes\nare caught in {caught} images; the first diagnosis names {named} of them, {:.1} %, or one that draws the \
+         same image.\n",
+        record.rows.len(),
+        lightmeter_faults::percent(named, caught)
+    )?;
+    writeln!(out, "| mistake | | scenes that catch it | named in | taken for another in |\n|---|---|--:|--:|---|")?;
+    for row in &record.rows {
+        let others: Vec<&str> = row.others.iter().filter_map(|other| other.split(':').next()).collect();
+        let [caught, named] = [row.caught.len(), row.named.len()];
+        writeln!(out, "| {} | {} | {caught} | {named} | {} |", row.fault, row.says, others.join(", "))?;
+    }
+    for alarm in &record.alarms {
+        writeln!(out, "\n**False alarm**: {alarm} fails and nothing is wrong.")?;
+    }
+    Ok(())
+}
+
+fn unit(rows: &[UnitRow], out: &mut impl Write) -> Written {
+    if rows.is_empty() {
+        return Ok(());
+    }
+    let mut targets: Vec<&str> = vec![];
+    let mut names: Vec<&str> = vec![];
+    for row in rows {
+        for (list, name) in [(&mut targets, &row.target), (&mut names, &row.fault)] {
+            if !list.contains(&name.as_str()) {
+                list.push(name);
+            }
+        }
+    }
+    writeln!(out, "## The blend unit\n")?;
+    writeln!(out, "| mistake | {} |\n|---|{}", targets.join(" | "), "---|".repeat(targets.len()))?;
+    for name in names {
+        write!(out, "| {name} |")?;
+        for target in &targets {
+            let finding = rows.iter().find(|row| row.fault == name && row.target == *target);
+            let word = finding.map_or("", |row| row.finding.as_str());
+            write!(out, " {} |", if word == "not-applicable" { "–" } else { word })?;
+        }
+        writeln!(out)?;
+    }
+    writeln!(out)
+}
+
+fn resolution(calibration: &[Resolution], out: &mut impl Write) -> Written {
+    if calibration.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "## Resolution\n")?;
+    writeln!(
+        out,
+        "The smallest error of a parameter that a run of {CASES} cases names: relative (*scale*) or absolute (*offset*), by a\n\
+         *single* verdict, some case leaving its interval, and by the *group* verdict, a regression of the residuals on the\n\
+         formula's derivatives that names what lies {LEAST_Z} standard errors from 0 and shifts the answers by {LEAST_SHARE} of \
+         their\ntolerance at least. Inputs as a whole; the JSON has each of their numbers.\n"
+    )?;
+    writeln!(
+        out,
+        "| formula | parameter | scale, single | group | offset, single | group |\n|---|---|--:|--:|--:|--:|"
+    )?;
+    let number = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.1e}"));
+    let mut seen = BTreeSet::new();
+    for resolution in calibration.iter().filter(|resolution| !resolution.parameter.contains('.')) {
+        let name = resolution.name();
+        if !seen.insert((&resolution.formula, name.clone())) {
+            continue;
+        }
+        write!(out, "| {} | {name} |", resolution.formula)?;
+        for error in [lightmeter_faults::Error::Scale, lightmeter_faults::Error::Offset] {
+            let found = calibration.iter().find(|other| {
+                other.formula == resolution.formula
+                    && other.parameter == resolution.parameter
+                    && other.is_output == resolution.is_output
+                    && other.error == error
+            });
+            let (single, group) = found.map_or((None, None), |found| (found.single, found.group));
+            write!(out, " {} | {} |", number(single), number(group))?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+fn family_of(formula: &str) -> &str {
+    formula.split('/').next().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_document_makes_no_page() {
+        for (json, message) in [
+            ("{", "not the JSON"),
+            (r#"{"schema":"lightmeter.run/1"}"#, "expected lightmeter.selftest/1"),
+            (r#"{"schema":"lightmeter.selftest/1","rows":[]}"#, "of the blend unit alone"),
+        ] {
+            let error = Run::read(json).expect_err("it is no page's");
+            assert!(error.contains(message), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_survivor_stands_out() {
+        let kill = r#"{"fault":"fog-radial","formula":"fog/exp","finding":"survived","cases":9,"failing":0,"smallest":null,
+            "first_case":null,"smallest_random":null,"diagnosis":[],"sentence":"nothing fails","alias":false}"#;
+        let json = format!(r#"{{"schema":"lightmeter.selftest/1","kills":[{kill}],"clean":[]}}"#);
+        let mut page = String::new();
+        markdown(&Run::read(&json).expect("a run"), &mut page).expect("a string takes it");
+        assert!(page.contains("fog-radial in fog/exp: **survived**: nothing fails"), "{page}");
+        assert!(page.contains("| fog-radial | fog uses radial distance | **0 of 1** |"), "{page}");
+    }
+}

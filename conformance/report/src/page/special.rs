@@ -1,0 +1,192 @@
+//! The page on NaN, infinity, subnormals and signed zero, made from the JSON of `lightmeter special`.
+
+use lightmeter_engine::special::{Class, DEVIATIONS, PROBES, Probe, Source};
+use serde::Deserialize;
+use std::fmt::{Result as Written, Write};
+
+/// What the page needs of that JSON. What is promised is the table's.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Run {
+    adapters: Vec<Adapter>,
+    outcomes: Vec<Outcome>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Adapter {
+    name: String,
+    device: String,
+    backend: String,
+    driver: String,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Outcome {
+    probe: String,
+    adapter: String,
+    value: String,
+    verdict: String,
+}
+
+impl Run {
+    /// Reads the JSON.
+    ///
+    /// # Errors
+    /// Where it is another document, or of probes that this version does not have.
+    pub fn read(json: &str) -> Result<Self, String> {
+        const EXPECTED: &str = "the JSON of `lightmeter special --format json`";
+        let value = super::document(json, "lightmeter.special/1", EXPECTED)?;
+        let run: Self = serde_json::from_value(value).map_err(|error| format!("not {EXPECTED}: {error}"))?;
+        let unknown = run.outcomes.iter().find(|outcome| Probe::by_name(&outcome.probe).is_none());
+        match unknown {
+            Some(outcome) => Err(format!("no probe `{}`: the file is of another version", outcome.probe)),
+            None if run.outcomes.is_empty() => Err("nothing was probed".into()),
+            None => Ok(run),
+        }
+    }
+
+    fn of<'a>(&'a self, probe: &'a Probe, adapter: &'a Adapter) -> impl Iterator<Item = &'a Outcome> {
+        self.outcomes.iter().filter(move |outcome| outcome.probe == probe.name && outcome.adapter == adapter.name)
+    }
+
+    /// Probes whose results differ between the stages of an adapter.
+    fn by_stage(&self, adapter: &Adapter) -> usize {
+        let differs = |probe: &&Probe| {
+            let mut values = self.of(probe, adapter).map(|outcome| &outcome.value);
+            let first = values.next();
+            values.any(|value| Some(value) != first)
+        };
+        PROBES.iter().filter(differs).count()
+    }
+}
+
+/// The page in Markdown.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn markdown(run: &Run, out: &mut impl Write) -> Written {
+    writeln!(out, "# NaN, infinity, subnormals and signed zero\n")?;
+    writeln!(out, "What the shading language promises of them, and what each driver does. Made from a run's JSON:\n")?;
+    writeln!(out, "```\n./x special --adapter all --format json --out special.json")?;
+    writeln!(out, "./x page special special.json --out docs/special-values.md\n```\n")?;
+    policy(out)?;
+    drivers(run, out)?;
+    for class in Class::ALL {
+        table(run, class, out)?;
+    }
+    Ok(())
+}
+
+fn policy(out: &mut impl Write) -> Written {
+    writeln!(out, "## What is promised\n")?;
+    writeln!(out, "| section | says |\n|---|---|")?;
+    for source in Source::ALL {
+        writeln!(out, "| {} | {} |", source.section(), source.says())?;
+    }
+    let definite = PROBES.iter().filter(|probe| probe.promise.is_definite()).count();
+    writeln!(
+        out,
+        "\nA *probe* is one operation on operands that are known at run time alone. Of {} probes {definite} are promised",
+        PROBES.len()
+    )?;
+    writeln!(
+        out,
+        "something, and another result fails. Of the others nothing is promised: the result is *indeterminate*."
+    )?;
+    writeln!(
+        out,
+        "What each driver gave is on record in `conformance/judge/records/special/`; where a driver tells its version, and it is the"
+    )?;
+    writeln!(out, "one on record, a result that changes fails by name.\n")?;
+    for deviation in DEVIATIONS {
+        writeln!(
+            out,
+            "Deviation *{}* of {}: {} ({}).\n",
+            deviation.name,
+            deviation.backend,
+            deviation.reason,
+            deviation.probes.join(", ")
+        )?;
+    }
+    Ok(())
+}
+
+fn drivers(run: &Run, out: &mut impl Write) -> Written {
+    writeln!(out, "## Drivers\n")?;
+    writeln!(
+        out,
+        "| driver | | as promised | broken | deviates | indeterminate | changed | differ by stage |\n|---|---|--:|--:|--:|--:|--:|--:|"
+    )?;
+    for adapter in &run.adapters {
+        let count =
+            |verdict: &str| run.outcomes.iter().filter(|o| o.adapter == adapter.name && o.verdict == verdict).count();
+        writeln!(
+            out,
+            "| {} | {}, {}, {} | {} | {} | {} | {} | {} | {} |",
+            adapter.name,
+            adapter.device,
+            adapter.backend,
+            adapter.driver,
+            count("kept"),
+            count("broken"),
+            count("deviates"),
+            count("indeterminate"),
+            count("changed"),
+            run.by_stage(adapter)
+        )?;
+    }
+    writeln!(
+        out,
+        "\nBelow, a result stands once where all stages agree, else as *compute* / *fragment*. ✗ is not as promised, ! is so by \
+         a named\ndeviation, ≠ is not as on record."
+    )
+}
+
+fn table(run: &Run, class: Class, out: &mut impl Write) -> Written {
+    writeln!(out, "\n## {}\n", class.title())?;
+    write!(out, "| probe | computed | promised |")?;
+    for adapter in &run.adapters {
+        write!(out, " {} |", adapter.name)?;
+    }
+    writeln!(out, "\n|---|---|---|{}", "---|".repeat(run.adapters.len()))?;
+    for probe in PROBES.iter().filter(|probe| probe.class == class) {
+        let promise = probe.promise.words(probe.gives);
+        write!(out, "| {} | {} | {promise} |", probe.name, probe.what)?;
+        for adapter in &run.adapters {
+            write!(out, " {} |", cell(run, probe, adapter))?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+fn cell(run: &Run, probe: &Probe, adapter: &Adapter) -> String {
+    let marked = |outcome: &Outcome| {
+        let mark = match outcome.verdict.as_str() {
+            "broken" => "✗ ",
+            "deviates" => "! ",
+            "changed" => "≠ ",
+            _ => "",
+        };
+        format!("{mark}{}", outcome.value)
+    };
+    let mut words: Vec<String> = run.of(probe, adapter).map(marked).collect();
+    words.dedup();
+    if words.is_empty() { "–".into() } else { words.join(" / ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_document_makes_no_page() {
+        for (json, message) in [
+            ("{", "not the JSON"),
+            (r#"{"schema":"lightmeter.run/1"}"#, "expected lightmeter.special/1"),
+            (r#"{"schema":"lightmeter.special/1","adapters":[],"outcomes":[]}"#, "nothing was probed"),
+        ] {
+            let error = Run::read(json).expect_err("it is no page's");
+            assert!(error.contains(message), "{error}");
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! The probes of NaN, infinity, subnormals and signed zero, for people to read.
+
+use lightmeter_document::run::Identity;
+use lightmeter_engine::special::run::{Outcome, Report, Verdict, failure};
+use lightmeter_engine::special::{Class, DEVIATIONS, Deviation, PROBES, Probe, Source};
+use std::fmt::{Result, Write};
+
+/// Writes the report: a row for each probe, a column for each adapter.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn write(report: &Report, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        writeln!(out, "{:<14} {} · {} · {}", adapter.name, adapter.device, adapter.backend, adapter.driver)?;
+        match report.records.iter().find(|record| record.adapter == adapter.name) {
+            None => writeln!(out, "{:<14} nothing is on record: its results are shown", "")?,
+            Some(record) if record.binds => writeln!(out, "{:<14} on record: another result fails", "")?,
+            Some(record) => {
+                writeln!(out, "{:<14} compared with the record of {}, which does not bind it", "", record.of)?;
+            }
+        }
+    }
+    for class in Class::ALL {
+        writeln!(out)?;
+        table(report, class, out)?;
+    }
+    writeln!(
+        out,
+        "\na / b: in the compute and in the fragment stage · ✗ not as promised · ! the same, as a deviation says · ≠ not as on \
+         record"
+    )?;
+    for source in Source::ALL {
+        writeln!(out, "{}: {}", source.section(), source.says())?;
+    }
+    for deviation in DEVIATIONS {
+        let Deviation { name, backend, reason, .. } = deviation;
+        if report.adapters.iter().any(|adapter| adapter.backend == *backend) {
+            writeln!(out, "deviation {name} on {backend}: {reason}")?;
+        }
+    }
+    for skipped in &report.skipped {
+        writeln!(out, "skipped {} on {}: {}", skipped.stage, skipped.adapter, skipped.reason)?;
+    }
+    for outcome in &report.outcomes {
+        if let Some(line) = failure(report, outcome) {
+            writeln!(out, "{line}")?;
+        }
+    }
+    verdict(report, out)
+}
+
+fn table(report: &Report, class: Class, out: &mut impl Write) -> Result {
+    let mut rows: Vec<Vec<String>> = vec![vec![class.title().into(), "computed".into(), "promised".into()]];
+    rows[0].extend(report.adapters.iter().map(|adapter| adapter.name.clone()));
+    for probe in PROBES.iter().filter(|probe| probe.class == class) {
+        let mut row = vec![probe.name.into(), probe.what.into(), probe.promise.words(probe.gives)];
+        row.extend(report.adapters.iter().map(|adapter| cell(report, probe, adapter)));
+        rows.push(row);
+    }
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or_default();
+    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
+    for row in &rows {
+        let cells: Vec<String> = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}")).collect();
+        writeln!(out, "{}", cells.join("  ").trim_end())?;
+    }
+    Ok(())
+}
+
+/// What an adapter gives, once where all stages agree.
+fn cell(report: &Report, probe: &Probe, adapter: &Identity) -> String {
+    let marked = |outcome: &Outcome| match outcome.verdict {
+        Verdict::Broken => format!("✗ {}", outcome.value),
+        Verdict::Deviates => format!("! {}", outcome.value),
+        _ if outcome.recorded.is_some_and(|recorded| recorded != outcome.bits) => format!("≠ {}", outcome.value),
+        _ => outcome.value.clone(),
+    };
+    let mut words: Vec<String> = report.of(probe, adapter).map(marked).collect();
+    words.dedup();
+    if words.is_empty() { "—".into() } else { words.join(" / ") }
+}
+
+fn verdict(report: &Report, out: &mut impl Write) -> Result {
+    let count = |verdict| report.outcomes.iter().filter(|outcome| outcome.verdict == verdict).count();
+    let differ = |o: &&Outcome| o.recorded.is_some_and(|recorded| recorded != o.bits);
+    writeln!(
+        out,
+        "{} {} probes, {} results: {} as promised, {} promises broken, {} deviate, {} indeterminate, {} changed; \
+         {} are not as on record",
+        if report.is_success() { "✓" } else { "✗" },
+        PROBES.len(),
+        report.outcomes.len(),
+        count(Verdict::Kept),
+        count(Verdict::Broken),
+        count(Verdict::Deviates),
+        count(Verdict::Indeterminate),
+        count(Verdict::Changed),
+        report.outcomes.iter().filter(differ).count()
+    )
+}

@@ -1,0 +1,425 @@
+//! A run's result for people to read.
+
+use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, ImageUse, Report, Tiers, Totals};
+use lightmeter_document::{Number, Word, thousands};
+use lightmeter_judge::{is_worse, worse};
+use lightmeter_scene::blend::Route;
+use lightmeter_scene::target::TargetFormat;
+use std::fmt::{Result, Write};
+
+/// How much is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// A row for each family and stage.
+    Families,
+    /// A row for each group.
+    Groups,
+}
+
+/// Writes the report.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        writeln!(out, "{:<14} {} · {} · {}", adapter.name, adapter.device, adapter.backend, adapter.driver)?;
+    }
+    writeln!(out)?;
+    let rows = match detail {
+        Detail::Families => families(&report.groups),
+        Detail::Groups => report.groups.iter().map(Row::of).collect(),
+    };
+    table(&rows, out)?;
+    failures(report, out)?;
+    writeln!(out)?;
+    notes(report, out)?;
+    if timing {
+        let t = report.timing;
+        blend_timing(report, out)?;
+        writeln!(
+            out,
+            "time: devices {:.2} s (their compilers included), pipelines {:.2} s, reference {:.2} s, inputs {:.2} s, \
+             judging {:.2} s",
+            t.devices, t.compile, t.reference, t.generate, t.judge
+        )?;
+    }
+    if let Some(interrupted) = &report.interrupted {
+        writeln!(out, "interrupted: {} was under way: {}", interrupted.under_way, interrupted.message)?;
+    }
+    verdict(report, out)
+}
+
+/// Writes each group that fails, with what explains it, and of each formula on an adapter one failing case.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn failures(report: &Report, out: &mut impl Write) -> Result {
+    for group in report.groups.iter().filter(|group| group.totals.failed > 0 || group.problem.is_some()) {
+        let (failed, verdicts) = (thousands(group.totals.failed), thousands(group.totals.verdicts));
+        write!(out, "\n✗ {} on {}, {}: {failed} of {verdicts} failed", group.id, group.adapter, group.place())?;
+        if let Some(explanation) = &group.explanation {
+            write!(out, "; {explanation}")?;
+        }
+        if let Some(problem) = &group.problem {
+            write!(out, "; {problem}")?;
+        }
+    }
+    if !report.failures.is_empty() {
+        writeln!(out)?;
+    }
+    // One failure a formula and adapter explains more than many; the JSON has the first of every stage.
+    let mut told: Vec<(&str, &str)> = vec![];
+    for failure in &report.failures {
+        let path = failure.id.rsplit_once('/').map_or(failure.id.as_str(), |(path, _)| path);
+        let formula = path.split("/hard").next().unwrap_or(path).trim_end_matches("/random");
+        if !told.contains(&(formula, &failure.adapter)) {
+            told.push((formula, &failure.adapter));
+            writeln!(out)?;
+            self::failure(failure, out)?;
+        }
+    }
+    Ok(())
+}
+
+/// What the first drawing of the blend states costs, and the second, by adapter: the product of factors and equations, and
+/// apart from it the states with another one for alpha.
+fn blend_timing(report: &Report, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        let groups = || report.groups.iter().filter(|group| group.adapter == adapter.name);
+        for (what, separate) in [("blend unit", false), ("states separate for alpha", true)] {
+            let of =
+                || groups().filter(|group| (group.id == "blend/separate") == separate && group.seconds_warm.is_some());
+            let (cold, warm) = of().fold((0.0, 0.0), |(cold, warm), group| {
+                (cold + group.seconds, warm + group.seconds_warm.unwrap_or_default())
+            });
+            if of().next().is_some() {
+                writeln!(
+                    out,
+                    "{what} of {}: {cold:.2} s at first, {warm:.2} s again, so {:.2} s are the driver's compilation",
+                    adapter.name,
+                    (cold - warm).max(0.0)
+                )?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How many hard cases the stable forms keep their claims at, and where a naive form does better than it is known for.
+fn stability(report: &Report, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        let on_adapter: Vec<_> = report.stability.iter().filter(|one| one.adapter == adapter.name).collect();
+        if on_adapter.is_empty() {
+            continue;
+        }
+        let (kept, fails) = (
+            on_adapter.iter().filter(|one| one.is_stable()).count(),
+            on_adapter.iter().filter(|one| one.naive_fails()).count(),
+        );
+        writeln!(
+            out,
+            "hard cases of {}, by stage: the stable form keeps its bound at {kept} of {}, the naive form fails at {fails}",
+            adapter.name,
+            on_adapter.len()
+        )?;
+        for one in on_adapter.iter().filter(|one| !one.naive_fails()) {
+            writeln!(
+                out,
+                "  {} does not fail at {} here, {}: {} roundings, said to be {} at least",
+                one.naive_formula,
+                one.id,
+                one.stage,
+                Number(one.naive.0.round()),
+                one.naive_at_least
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn notes(report: &Report, out: &mut impl Write) -> Result {
+    for deviation in &report.deviations {
+        self::deviation(deviation, out)?;
+    }
+    for group in report.groups.iter().filter(|group| group.skip_reason.is_some()) {
+        let reason = group.skip_reason.as_deref().unwrap_or_default();
+        writeln!(out, "skipped {} on {}, {}: {reason}", group.id, group.adapter, group.place())?;
+    }
+    let mut routes = std::collections::BTreeMap::<_, u64>::new();
+    let on_targets = |state: &&BlendState| {
+        let group = report
+            .groups
+            .iter()
+            .find(|group| group.adapter == state.adapter && group.target.as_ref() == Some(&state.target));
+        group.is_some_and(|group| group.skip_reason.is_none())
+    };
+    for state in report.blend_states.iter().filter(on_targets) {
+        if let Some(reason) = &state.skip_reason {
+            *routes.entry((&state.adapter, &state.target, &state.route, reason)).or_default() += 1;
+        }
+    }
+    for ((adapter, target, route, reason), states) in routes {
+        writeln!(out, "skipped {states} states by {route} on {adapter}, {target}: {reason}")?;
+    }
+    stores(report, out)?;
+    images(report, out)?;
+    stability(report, out)?;
+    for special in report.special.iter().filter(|special| !special.is_as_recorded()) {
+        let (seen, recorded) = (&special.seen, special.recorded.as_deref().unwrap_or_default());
+        writeln!(
+            out,
+            "{} on {}, {}: {seen}, where {recorded} is on record",
+            special.id, special.adapter, special.target
+        )?;
+    }
+    if !report.routes.is_empty() {
+        let states: u64 = report.routes.values().filter_map(serde_json::Value::as_u64).sum();
+        // They went another way before.
+        let dual = report.routes.get(Route::DualSource.name()).and_then(serde_json::Value::as_u64).unwrap_or(0);
+        let routes: Vec<String> = report.routes.iter().map(|(route, states)| format!("{states} {route}")).collect();
+        writeln!(
+            out,
+            "blend states: {} judged ({}), {} more are aliases of those",
+            thousands(states - dual),
+            routes.join(", "),
+            thousands(report.aliases)
+        )?;
+    }
+    Ok(())
+}
+
+/// Whether a named deviation is still needed, and what it excused.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn deviation(deviation: &DeviationUse, out: &mut impl Write) -> Result {
+    let DeviationUse { name, adapter, reason, .. } = deviation;
+    let state = if deviation.still_needed {
+        "still seen, so it is granted".to_owned()
+    } else {
+        format!("no longer seen: take it out ({reason})")
+    };
+    writeln!(out, "deviation {name} on {adapter}: {state}; {} verdicts excused", thousands(deviation.excused))
+}
+
+/// Of scenes, by adapter: how many pixels are marked, whether both kinds of shader draw alike, and what all effects cost.
+fn images(report: &Report, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        let of_adapter = report.groups.iter().filter(|group| group.adapter == adapter.name);
+        let images: Vec<_> = of_adapter.filter_map(|group| Some((group, group.image.as_ref()?))).collect();
+        #[expect(clippy::cast_precision_loss, reason = "a share")]
+        let share =
+            |(group, image): &(&Group, &ImageUse)| 100.0 * image.marked as f64 / group.totals.cases.max(1) as f64;
+        let Some(most) = images.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else { continue };
+        write!(out, "images of {}: at most {:.3} % of the pixels marked ({})", adapter.name, share(most), most.0.id)?;
+        let differing: Vec<u64> = images.iter().filter_map(|(_, image)| image.differs_from_composed).collect();
+        if !differing.is_empty() {
+            let alike = differing.iter().filter(|&&pixels| pixels == 0).count();
+            let pixels: u64 = differing.iter().sum();
+            let of = differing.len();
+            write!(out, "; {alike} of {of} are the same bit for bit by the shader with all effects")?;
+            if pixels > 0 {
+                write!(out, ", {} pixels of the others differ", thousands(pixels))?;
+            }
+        }
+        writeln!(out)?;
+        for (group, image) in &images {
+            if let Some(cost) = image.cost {
+                writeln!(
+                    out,
+                    "  {:<26} {:>8.2} ms composed, {:>8.2} ms with all effects: {:.2} times (quartiles {:.2} to {:.2})",
+                    group.id, cost.composed_ms, cost.full_ms, cost.ratio, cost.quartiles[0], cost.quartiles[1]
+                )?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// On targets of 8 bits: how near values come, and how they are stored.
+fn stores(report: &Report, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        for target in TargetFormat::ALL {
+            let groups = || {
+                let of =
+                    |group: &&Group| group.adapter == adapter.name && group.target.as_deref() == Some(target.name());
+                report.groups.iter().filter(of)
+            };
+            let mut tiers = Tiers::default();
+            groups().filter_map(|group| group.tiers).for_each(|of| tiers.add(&of));
+            let all: u64 = tiers.named().into_iter().map(|(_, count)| count).sum();
+            if all == 0 {
+                continue;
+            }
+            #[expect(clippy::cast_precision_loss, reason = "a share")]
+            let share = |count: u64| 100.0 * count as f64 / all as f64;
+            let shares = tiers.named().map(|(name, count)| format!("{name} {:.2} %", share(count)));
+            let mut stores: Vec<&str> = groups().filter_map(|group| Some(&*group.store.as_ref()?.identified)).collect();
+            stores.sort_unstable();
+            stores.dedup();
+            let stores = if stores.is_empty() { "too few values to tell".into() } else { stores.join(", ") };
+            writeln!(out, "{} of {}: {}; stored: {stores}", target.name(), adapter.name, shares.join(", "))?;
+        }
+    }
+    Ok(())
+}
+
+fn verdict(report: &Report, out: &mut impl Write) -> Result {
+    totals(&report.totals, report.is_success(), report.seconds, out)
+}
+
+/// Writes the last line of a run: how many verdicts there are of which outcome.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn totals(t: &Totals, is_success: bool, seconds: f64, out: &mut impl Write) -> Result {
+    #[expect(clippy::cast_precision_loss, reason = "a share")]
+    let share = 100.0 * t.indeterminate as f64 / t.verdicts.max(1) as f64;
+    writeln!(
+        out,
+        "{} {} verdicts on {} cases: {} passed, {} failed, {} indeterminate ({share:.3} %), {} expected failures, \
+         {} unexpected passes, {} cases skipped, in {:.1} s",
+        if is_success { "✓" } else { "✗" },
+        thousands(t.verdicts),
+        thousands(t.cases),
+        thousands(t.passed),
+        thousands(t.failed),
+        thousands(t.indeterminate),
+        thousands(t.expected_failures),
+        thousands(t.unexpected_passes),
+        thousands(t.skipped),
+        seconds
+    )
+}
+
+/// A row of the table.
+struct Row {
+    id: String,
+    adapter: String,
+    stage: Word,
+    groups: usize,
+    totals: Totals,
+    error_ulp_max: f64,
+    margin_max: f64,
+    worst: Option<String>,
+    seconds: f64,
+}
+
+impl Row {
+    fn of(group: &Group) -> Self {
+        Self {
+            id: group.id.clone(),
+            adapter: group.adapter.clone(),
+            // A blend unit is told by its target.
+            stage: group.target.as_ref().filter(|_| group.image.is_none()).unwrap_or(&group.stage).clone(),
+            groups: 1,
+            totals: group.totals,
+            error_ulp_max: group.error_ulp_max.0,
+            margin_max: group.margin_max.0,
+            worst: group.worst.clone(),
+            seconds: group.seconds,
+        }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.groups += 1;
+        self.totals.add(&other.totals);
+        self.error_ulp_max = worse(self.error_ulp_max, other.error_ulp_max);
+        if is_worse(other.margin_max, self.margin_max) {
+            self.margin_max = other.margin_max;
+            self.worst.clone_from(&other.worst);
+        }
+        self.seconds += other.seconds;
+    }
+}
+
+fn families(groups: &[Group]) -> Vec<Row> {
+    let mut rows: Vec<Row> = vec![];
+    for group in groups {
+        let mut row = Row::of(group);
+        row.id = group.id.split('/').next().unwrap_or_default().into();
+        match rows.iter_mut().find(|r| r.id == row.id && r.adapter == row.adapter && r.stage == row.stage) {
+            Some(known) => known.add(&row),
+            None => rows.push(row),
+        }
+    }
+    rows
+}
+
+fn table(rows: &[Row], out: &mut impl Write) -> Result {
+    let id = rows.iter().map(|row| row.id.len()).max().unwrap_or(0).max(13);
+    let adapter = rows.iter().map(|row| row.adapter.len()).max().unwrap_or(0).max(8);
+    writeln!(
+        out,
+        "{:<id$}  {:<adapter$}  {:<15} {:>8} {:>11} {:>7} {:>7} {:>9} {:>7}  nearest to its limit",
+        "", "adapter", "stage", "formulas", "verdicts", "failed", "indet.", "max ULP", "margin"
+    )?;
+    for row in rows {
+        writeln!(
+            out,
+            "{:<id$}  {:<adapter$}  {:<15} {:>8} {:>11} {:>7} {:>7} {:>9} {:>7.3}  {}",
+            row.id,
+            row.adapter,
+            row.stage,
+            row.groups,
+            thousands(row.totals.verdicts),
+            thousands(row.totals.failed),
+            thousands(row.totals.indeterminate),
+            short(row.error_ulp_max),
+            row.margin_max,
+            row.worst.as_deref().unwrap_or("—")
+        )?;
+    }
+    Ok(())
+}
+
+/// A failure with all that is needed to understand it and to run it again.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn failure(failure: &Failure, out: &mut impl Write) -> Result {
+    let Failure { id, adapter, stage, output, .. } = failure;
+    let is_unorm = failure.target.as_deref().and_then(TargetFormat::by_name).is_some_and(TargetFormat::is_unorm);
+    let unit = if is_unorm { "steps" } else { "ULP" };
+    let target = failure.target.as_ref().map(|target| format!(" on {target}")).unwrap_or_default();
+    writeln!(out, "FAIL {id} on {adapter}, {stage}{target}: {output}")?;
+    for ((name, value), bits) in failure.inputs.iter().zip(failure.inputs_hex.values()) {
+        writeln!(out, "  {name:<14} {}  {}", plain(value), plain(bits))?;
+    }
+    match &failure.promise {
+        Some(promise) => writeln!(out, "  {:<14} {promise}", "legal")?,
+        None => {
+            writeln!(out, "  {:<14} {}", "reference", failure.reference)?;
+            writeln!(out, "  {:<14} {} to {}", "legal", failure.interval[0], failure.interval[1])?;
+        }
+    }
+    if failure.unwritten {
+        writeln!(out, "  {:<14} never written", "value")?;
+    } else if failure.promise.is_some() {
+        writeln!(out, "  {:<14} {}  {}", "value", failure.value, failure.value_hex)?;
+    } else {
+        let (value, bits, error) = (failure.value, &failure.value_hex, short(failure.error_ulp.0));
+        writeln!(out, "  {:<14} {value}  {bits}, {error} {unit} from the reference", "value")?;
+    }
+    writeln!(out, "  {:<14} {}", "again", failure.rerun)
+}
+
+/// JSON without quotes and commas: `[0.5 1]`.
+fn plain(value: &serde_json::Value) -> String {
+    match value {
+        serde_json::Value::Array(values) => format!("[{}]", values.iter().map(plain).collect::<Vec<_>>().join(" ")),
+        serde_json::Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// Two digits after the point, or an exponent.
+fn short(x: f64) -> String {
+    if x.is_finite() && x >= 1e6 {
+        format!("{x:.1e}")
+    } else if x.is_finite() {
+        format!("{x:.2}")
+    } else {
+        Number(x).to_string()
+    }
+}

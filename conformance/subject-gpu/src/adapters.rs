@@ -1,0 +1,126 @@
+//! Adapters by the names that users give them, opened as subjects.
+
+use super::open_device;
+use lightmeter_engine::device::DeviceError;
+use lightmeter_engine::subject::Subject;
+use lightmeter_gpu::{Adapter, vulkan_adapters};
+
+/// The name of the embedded implementation, which needs no driver.
+pub const EMBEDDED: &str = "cpu";
+/// The name that stands for every adapter there is.
+pub const ALL: &str = "all";
+
+/// What the Vulkan loader reads the places of drivers from, in place of its own.
+const DRIVER_VARIABLES: [&str; 2] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
+
+/// Why an adapter cannot be judged.
+#[derive(Debug, thiserror::Error)]
+pub enum AdapterError {
+    /// There is no driver.
+    #[error(
+        "{0}. `./x run` and `./x test` install lavapipe, a driver that needs no GPU; the embedded implementation needs none: \
+         `--adapter cpu`, in tests LIGHTMETER_ADAPTER=cpu"
+    )]
+    NoDriver(String),
+    /// No adapter has that name.
+    #[error("no adapter `{name}`; there are {there}, cpu and all")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        there: String,
+    },
+    /// The driver gave no device, or the device failed.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+}
+
+impl AdapterError {
+    fn no_driver() -> Self {
+        Self::NoDriver("no Vulkan or OpenGL driver is here".into())
+    }
+}
+
+/// The adapters of those names, opened, each once; without any, lavapipe or the first there is.
+///
+/// # Errors
+/// Where there is no driver, no adapter of a name, or an adapter that gives no device.
+pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
+    if asked.is_empty() {
+        return Ok(vec![open_device(&first()?)?]);
+    }
+    let only_embedded = asked.iter().all(|name| name == EMBEDDED);
+    let mut found = if only_embedded { vec![] } else { vulkan_adapters() };
+    let known = |found: &[Adapter], name: &String| name == EMBEDDED || found.iter().any(|a| a.name == *name);
+    if !asked.iter().all(|name| known(&found, name)) {
+        found = lightmeter_gpu::adapters();
+    }
+    let mut subjects = vec![];
+    for name in asked {
+        match name.as_str() {
+            EMBEDDED => subjects.push(Subject::embedded()),
+            ALL => {
+                drivers_named(&found)?;
+                if found.is_empty() {
+                    return Err(AdapterError::no_driver());
+                }
+                for adapter in &found {
+                    subjects.push(open_device(adapter)?);
+                }
+            }
+            name => subjects.push(open_device(named(&found, name)?)?),
+        }
+    }
+    let mut seen = std::collections::HashSet::new();
+    subjects.retain(|subject| seen.insert(subject.identity.name.clone()));
+    Ok(subjects)
+}
+
+/// The names of all adapters. No device is opened.
+///
+/// # Errors
+/// Where there is no driver.
+pub fn names() -> Result<Vec<String>, AdapterError> {
+    let found = lightmeter_gpu::adapters();
+    drivers_named(&found)?;
+    if found.is_empty() {
+        return Err(AdapterError::no_driver());
+    }
+    Ok(found.into_iter().map(|adapter| adapter.name).collect())
+}
+
+/// The adapter that is judged where none is asked for. Where the user names drivers, no other one takes their place.
+fn first() -> Result<Adapter, AdapterError> {
+    if let Some(adapter) = vulkan_adapters().into_iter().next() {
+        return Ok(adapter);
+    }
+    drivers_named(&[])?;
+    lightmeter_gpu::adapters().into_iter().next().ok_or_else(AdapterError::no_driver)
+}
+
+/// Whether the Vulkan drivers that the user names, if any, are among the adapters found.
+fn drivers_named(found: &[Adapter]) -> Result<(), AdapterError> {
+    if found.iter().any(|adapter| adapter.backend == "vulkan") {
+        return Ok(());
+    }
+    for variable in DRIVER_VARIABLES {
+        if let Some(value) = std::env::var_os(variable).filter(|value| !value.is_empty()) {
+            let value = value.to_string_lossy().into_owned();
+            return Err(AdapterError::NoDriver(format!("{variable} names no Vulkan driver that is here: `{value}`")));
+        }
+    }
+    Ok(())
+}
+
+fn named<'a>(found: &'a [Adapter], name: &str) -> Result<&'a Adapter, AdapterError> {
+    if found.is_empty() {
+        let message = format!("adapter `{name}` is not here: no Vulkan or OpenGL driver is");
+        return Err(AdapterError::NoDriver(message));
+    }
+    if let Some(adapter) = found.iter().find(|adapter| adapter.name == name) {
+        return Ok(adapter);
+    }
+    drivers_named(found)?;
+    let there: Vec<&str> = found.iter().map(|adapter| adapter.name.as_str()).collect();
+    Err(AdapterError::Unknown { name: name.into(), there: there.join(", ") })
+}

@@ -1,0 +1,389 @@
+//! Adapters of wgpu as subjects: what the engine asks of a device, done by `lightmeter_gpu`.
+
+pub mod adapters;
+mod blend;
+mod cost;
+mod kernel;
+mod special;
+mod stable_cost;
+mod sweep;
+
+pub use kernel::kernel;
+
+use lightmeter_catalogue::cases::{Kind, Stage};
+use lightmeter_catalogue::select::Member;
+use lightmeter_catalogue::special::Probe;
+use lightmeter_document::run::{Cost, EffectsCost, Identity};
+use lightmeter_engine::blend_unit::draw::{Piece, Pixels};
+use lightmeter_engine::device::{Blocks, Code, Device, DeviceError, Own, Picture, Probed, Stages};
+use lightmeter_engine::subject::{Rows, Subject};
+use lightmeter_gpu::compose::{Recipe, Shader};
+use lightmeter_gpu::scene::SceneRenderer;
+use lightmeter_gpu::{
+    Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Shaders,
+};
+use lightmeter_judge::devices::{Known, known};
+use lightmeter_scene::along::Along;
+use lightmeter_scene::blend::Route;
+use lightmeter_scene::depth::DepthTest;
+use lightmeter_scene::effects::Called;
+use lightmeter_scene::frame::Frame;
+use lightmeter_scene::target::TargetFormat;
+use std::any::Any;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Shaders as the code under test.
+#[must_use]
+pub fn code(shaders: Shaders) -> Code {
+    Code::of(shaders)
+}
+
+/// The shaders of a folder, or the built-in ones, as the code under test.
+///
+/// # Errors
+/// Where the folder cannot be read, or holds no shader of the suite.
+pub fn code_of(folder: Option<&Path>) -> Result<Code, Error> {
+    folder.map_or_else(Shaders::built_in, Shaders::from_dir).map(code)
+}
+
+/// A subject on an adapter.
+///
+/// # Errors
+/// Where the driver gives no device.
+pub fn open_device(adapter: &Adapter) -> Result<Subject, DeviceError> {
+    let (identity, known, device) = device_of(adapter)?;
+    Ok(Subject::on_device(identity, known, Box::new(device)))
+}
+
+fn device_of(adapter: &Adapter) -> Result<(Identity, Known, GpuDevice), DeviceError> {
+    let identity = Identity {
+        name: adapter.name.clone(),
+        device: adapter.device.clone(),
+        backend: adapter.backend.into(),
+        driver: adapter.driver.clone(),
+    };
+    let known = known(&adapter.device, &adapter.driver);
+    let gpu = adapter.open().map_err(told)?;
+    let device = GpuDevice { name: adapter.name.clone(), gpu, blend: None, depth: None };
+    Ok((identity, known, device))
+}
+
+/// The device of a subject on an adapter; `None` of any other.
+#[must_use]
+pub fn gpu(subject: &Subject) -> Option<&Gpu> {
+    subject.device()?.as_any().downcast_ref().map(|device: &GpuDevice| &device.gpu)
+}
+
+/// An error as the engine tells kinds of them apart.
+#[must_use]
+pub fn told(error: Error) -> DeviceError {
+    match error {
+        Error::Device(_) => DeviceError::Failed(error.to_string()),
+        Error::Timeout(_) => DeviceError::Hangs(error.to_string()),
+        Error::Open { .. } => DeviceError::Closed(error.to_string()),
+        error => DeviceError::Refused(Box::new(error)),
+    }
+}
+
+/// The shaders under test.
+fn shaders(code: &Code) -> Result<&Shaders, DeviceError> {
+    code.get().ok_or_else(|| DeviceError::Refused("an adapter's code is a set of shaders, and there are none".into()))
+}
+
+/// A device of wgpu, with what is compiled for it.
+struct GpuDevice {
+    name: String,
+    gpu: Gpu,
+    /// The blend unit with its pipelines, kept from group to group.
+    blend: Option<BlendUnit>,
+    /// The depth test with its pipelines.
+    depth: Option<DepthUnit>,
+}
+
+/// How a stage evaluates.
+enum Work {
+    /// A shader over rows.
+    Arithmetic(ArithmeticPipeline),
+    /// The depth test, which the device holds.
+    Depth,
+    /// The rasteriser.
+    Raster(RasterPipeline),
+}
+
+/// Work that a device may still be doing.
+enum Job {
+    /// A pending batch.
+    Arithmetic(Pending),
+    /// A pending batch of the depth test.
+    Depth(Pending),
+    /// Pending batches of the rasteriser, each with its number of cases.
+    Raster(Vec<(usize, Pending)>),
+}
+
+/// What a device itself has made.
+fn own<T: Any>(own: &Own) -> &T {
+    own.downcast_ref().expect("a device is handed back what it made")
+}
+
+/// The same, taken.
+fn taken<T: Any>(own: Own) -> T {
+    *own.downcast().expect("a device is handed back what it made")
+}
+
+impl GpuDevice {
+    fn blend_unit(&mut self, shaders: &Shaders) -> Result<&mut BlendUnit, Error> {
+        if self.blend.is_none() {
+            self.blend = Some(BlendUnit::new(&self.gpu, shaders)?);
+        }
+        Ok(self.blend.as_mut().expect("it was just made"))
+    }
+
+    fn work(
+        &mut self,
+        shaders: &Shaders,
+        kind: Kind,
+        kernel: Option<&Kernel>,
+        stage: Stage,
+    ) -> Result<Result<Work, &'static str>, Error> {
+        let programmable = match stage {
+            Stage::Compute => lightmeter_gpu::Stage::Compute,
+            Stage::Fragment => lightmeter_gpu::Stage::Fragment,
+            Stage::FixedFunction => {
+                if self.depth.is_none() {
+                    self.depth = Some(DepthUnit::new(&self.gpu, shaders)?);
+                }
+                return Ok(Ok(Work::Depth));
+            }
+            Stage::Raster => {
+                let Kind::Raster(raster) = kind else { return Ok(Err("not a formula of the rasteriser")) };
+                return Ok(RasterPipeline::new(&self.gpu, shaders, raster)?.map(Work::Raster));
+            }
+        };
+        let Some(kernel) = kernel else { return Ok(Err("no shader function evaluates this formula")) };
+        Ok(ArithmeticPipeline::new(&self.gpu, kernel, programmable)?.map(Work::Arithmetic))
+    }
+
+    fn submitted(&mut self, work: &Work, rows: &Rows<'_>) -> Result<Job, Error> {
+        match work {
+            Work::Arithmetic(pipeline) => Ok(Job::Arithmetic(pipeline.submit(&self.gpu, rows.selected))),
+            Work::Depth => {
+                let unit = self.depth.as_mut().expect("the depth test is made before its work");
+                let tests: Vec<DepthTest> = rows.of.iter().map(|&member| rows.depth_test(member)).collect();
+                Ok(Job::Depth(unit.submit(&self.gpu, &tests, rows.inputs)?))
+            }
+            Work::Raster(pipeline) => {
+                let (mut jobs, mut rest) = (vec![], rows.inputs);
+                while !rest.is_empty() {
+                    let (count, pending) = pipeline.submit(&self.gpu, rest);
+                    rest = &rest[count * rows.stride()..];
+                    jobs.push((count, pending));
+                }
+                Ok(Job::Raster(jobs))
+            }
+        }
+    }
+
+    fn finished(&self, work: &Work, job: Job, rows: &Rows<'_>) -> Result<Vec<u32>, Error> {
+        let gpu = &self.gpu;
+        match (work, job) {
+            (Work::Arithmetic(pipeline), Job::Arithmetic(pending)) => {
+                Ok(pipeline.outputs(pending.wait(gpu)?, rows.of.len()))
+            }
+            (Work::Depth, Job::Depth(pending)) => Ok(DepthUnit::outputs(&pending.wait(gpu)?, rows.of.len())),
+            (Work::Raster(pipeline), Job::Raster(jobs)) => {
+                let (mut words, mut rest) = (vec![], rows.inputs);
+                for (count, pending) in jobs {
+                    words.extend(pipeline.outputs(&pending.wait(gpu)?, rest, count));
+                    rest = &rest[count * rows.stride()..];
+                }
+                Ok(words)
+            }
+            _ => unreachable!("a job is finished by the work that submitted it"),
+        }
+    }
+
+    fn probed(&self, shaders: &Shaders, function: &str, x: f32) -> Result<Option<u32>, Error> {
+        let kernel = Kernel::new(shaders, "probe.wgsl", function)?;
+        let Ok(pipeline) = ArithmeticPipeline::new(&self.gpu, &kernel, lightmeter_gpu::Stage::Compute)? else {
+            return Ok(None);
+        };
+        Ok(pipeline.submit(&self.gpu, &[x]).wait(&self.gpu)?.first().copied())
+    }
+}
+
+impl Device for GpuDevice {
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn built_in(&self) -> Result<Code, DeviceError> {
+        Shaders::built_in().map(code).map_err(told)
+    }
+
+    fn source(&self, code: &Code, file: &str) -> String {
+        code.get().map(|shaders: &Shaders| shaders.source(file)).unwrap_or_default()
+    }
+
+    fn compile(&mut self, code: &Code, member: &Member) -> Result<Stages<Own>, DeviceError> {
+        let shaders = shaders(code)?;
+        let kernel = kernel(shaders, member).map_err(told)?;
+        let mut stages: Stages<Own> = vec![];
+        for &stage in member.spec.row_stages() {
+            let work = self.work(shaders, member.spec.kind, kernel.as_ref(), stage).map_err(told)?;
+            stages.push((stage, work.map(|work| Box::new(work) as Own)));
+        }
+        Ok(stages)
+    }
+
+    fn submit(&mut self, work: &Own, rows: &Rows<'_>) -> Result<Own, DeviceError> {
+        self.submitted(own(work), rows).map(|job| Box::new(job) as Own).map_err(told)
+    }
+
+    fn finish(&self, work: &Own, job: Own, rows: &Rows<'_>) -> Result<Vec<u32>, DeviceError> {
+        self.finished(own(work), taken(job), rows).map_err(told)
+    }
+
+    fn probe(&self, code: &Code, function: &str, x: f32) -> Result<Option<u32>, DeviceError> {
+        self.probed(shaders(code)?, function, x).map_err(told)
+    }
+
+    fn special(&self, code: &Code, probes: &[&'static Probe]) -> Result<Probed, DeviceError> {
+        special::special(&self.gpu, shaders(code)?, probes).map_err(told)
+    }
+
+    fn lacks_blending(&self, target: TargetFormat) -> Option<&'static str> {
+        self.gpu.lacks_blending(target)
+    }
+
+    fn lacks_route(&mut self, code: &Code, route: Route) -> Result<Option<&'static str>, DeviceError> {
+        Ok(self.blend_unit(shaders(code)?).map_err(told)?.lacks_route(route))
+    }
+
+    fn blend(
+        &mut self,
+        code: &Code,
+        target: TargetFormat,
+        pieces: &[&Piece],
+        again: bool,
+    ) -> Result<Pixels, DeviceError> {
+        let unit = self.blend_unit(shaders(code)?).map_err(told)?;
+        blend::blend(unit, target, pieces, again).map_err(told)
+    }
+
+    fn forget_pipelines(&mut self) {
+        if let Some(unit) = &mut self.blend {
+            unit.forget_pipelines();
+        }
+    }
+
+    fn renew_blend_unit(&mut self) {
+        if let Some(unit) = self.blend.take() {
+            // Closing a device that hangs would hang as well.
+            std::mem::forget(unit);
+        }
+    }
+
+    fn lacks_frame(&self, frame: &Frame) -> Option<&'static str> {
+        SceneRenderer::lacks(&self.gpu, frame)
+    }
+
+    fn draw(&self, code: &Code, frame: &Frame, sets: &[Called], picture: Picture) -> Result<Own, DeviceError> {
+        let recipe = match picture {
+            Picture::Composed => Recipe::of(Shader::Composed),
+            Picture::Full => Recipe::of(Shader::Full),
+            Picture::Intermediate(stage) => Recipe::stage(stage),
+        };
+        let renderer = SceneRenderer::new(&self.gpu, shaders(code)?, frame, sets, recipe).map_err(told)?;
+        Ok(Box::new(renderer.submit(&self.gpu)))
+    }
+
+    fn pixels(&self, job: Own) -> Result<Vec<u8>, DeviceError> {
+        SceneRenderer::pixels(&self.gpu, taken(job)).map_err(told)
+    }
+
+    fn effects_cost(&self, code: &Code, frame: &Frame, called: &[Called]) -> Result<EffectsCost, DeviceError> {
+        cost::effects_cost(&self.gpu, shaders(code)?, frame, called).map_err(told)
+    }
+
+    fn stable_costs(
+        &self,
+        code: &Code,
+        member: &Member,
+        rivals: &BTreeMap<&'static str, Member>,
+        seed: u64,
+    ) -> Result<Vec<Cost>, DeviceError> {
+        stable_cost::stable_costs(member, rivals, (&self.gpu, &self.name), shaders(code)?, seed).map_err(told)
+    }
+
+    fn sweep<'a>(
+        &'a self,
+        code: &Code,
+        member: &Member,
+        stage: Stage,
+        along: Along<'_>,
+        capacity: usize,
+    ) -> Result<Result<Box<dyn Blocks + 'a>, &'static str>, DeviceError> {
+        sweep::sweep(&self.gpu, shaders(code)?, member, stage, along, capacity).map_err(told)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_catalogue::filter::Filter;
+    use lightmeter_document::run::Report;
+    use lightmeter_engine::options::{Options, Progress};
+    use lightmeter_engine::run::run;
+    use lightmeter_gpu::vulkan_adapters;
+    use lightmeter_scene::target::TargetFormat;
+
+    struct LoseAt<F>(&'static str, F);
+
+    impl<F: Fn()> Progress for LoseAt<F> {
+        fn start(&mut self, _cases: u64) {}
+        fn group(&mut self, id: &str) {
+            if id == self.0 {
+                (self.1)();
+            }
+        }
+        fn advance(&mut self, _cases: u64) {}
+    }
+
+    /// Loses the devices of the blend unit when a group begins.
+    fn lose_at(group: &'static str, filter: &str) -> Report {
+        let adapters = vulkan_adapters();
+        let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
+        let (identity, known, mut device) = device_of(adapter).expect("the adapter gives a device");
+        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+        let lose = device.blend_unit(&shaders).expect("a blend unit").breaker();
+        let mut subject = Subject::on_device(identity, known, Box::new(device));
+        let options = Options {
+            filter: Filter::new(&[filter]).expect("the glob is valid"),
+            cases: 64,
+            targets: vec![TargetFormat::Rgba8Unorm],
+            ..Options::new(code(shaders))
+        };
+        run(std::slice::from_mut(&mut subject), &options, &mut LoseAt(group, lose)).expect("there is a report")
+    }
+
+    #[test]
+    fn a_lost_device_ends_with_4_and_keeps_what_was_judged() {
+        let report = lose_at("blend/max", "blend/{min,max,write-mask}");
+        let interrupted = report.interrupted.as_ref().expect("the run was interrupted");
+        assert!(interrupted.under_way.contains("blend/max") && interrupted.under_way.contains("rgba8unorm"));
+        assert!(interrupted.message.contains("the device failed"), "{interrupted:?}");
+        let judged: Vec<&str> = report.groups.iter().map(|group| group.id.as_str()).collect();
+        assert!(judged.contains(&"blend/min") && !judged.contains(&"blend/write-mask"), "{judged:?}");
+    }
+
+    #[test]
+    fn states_that_were_drawn_together_are_tried_alone() {
+        let report = lose_at("blend/subtract", "blend/{add,subtract}/dst-alpha");
+        let under_way = &report.interrupted.as_ref().expect("the run was interrupted").under_way;
+        assert!(under_way.contains("15 states from blend/subtract/dst-alpha/zero to"), "{under_way}");
+        assert!(under_way.contains("none fails alone"), "{under_way}");
+        assert!(report.blend_states.iter().all(|state| state.id.starts_with("blend/add/dst-alpha")));
+        assert_eq!(report.blend_states.len(), 15);
+    }
+}

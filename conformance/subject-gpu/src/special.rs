@@ -1,0 +1,152 @@
+//! The probes of special values on a device.
+
+use lightmeter_catalogue::special::{Probe, Way};
+use lightmeter_engine::device::Probed;
+use lightmeter_gpu::{ArithmeticPipeline, Error, Gpu, Kernel, RasterPipeline, Shaders, Stage};
+use lightmeter_scene::raster::{Provoking, Raster, Topology};
+
+/// The shader file of the functions.
+const FILE: &str = "special.wgsl";
+
+/// Evaluates some probes in every stage.
+pub(super) fn special(gpu: &Gpu, shaders: &Shaders, probes: &[&'static Probe]) -> Result<Probed, Error> {
+    let kernels = functions(probes)
+        .into_iter()
+        .map(|function| Ok((function, Kernel::new(shaders, FILE, function)?)))
+        .collect::<Result<Vec<_>, Error>>()?;
+    let mut probed = Probed::default();
+    for (stage, name) in [(Stage::Compute, "compute"), (Stage::Fragment, "fragment")] {
+        for (function, kernel) in &kernels {
+            shade(gpu, kernel, &of_function(probes, function), (stage, name), &mut probed)?;
+        }
+    }
+    for flat in [false, true] {
+        let carried: Vec<&'static Probe> =
+            probes.iter().copied().filter(|probe| probe.way == Way::Varying { flat }).collect();
+        if !carried.is_empty() {
+            carry(gpu, shaders, flat, &carried, &mut probed)?;
+        }
+    }
+    Ok(probed)
+}
+
+fn skip(probed: &mut Probed, stage: &'static str, reason: &'static str) {
+    if !probed.skipped.contains(&(stage, reason)) {
+        probed.skipped.push((stage, reason));
+    }
+}
+
+/// The functions that some probes call, each once.
+fn functions(probes: &[&Probe]) -> Vec<&'static str> {
+    let mut functions = vec![];
+    for probe in probes {
+        if let Way::Function(function) = probe.way
+            && !functions.contains(&function)
+        {
+            functions.push(function);
+        }
+    }
+    functions
+}
+
+fn of_function(probes: &[&'static Probe], function: &str) -> Vec<&'static Probe> {
+    probes.iter().copied().filter(|probe| matches!(probe.way, Way::Function(name) if name == function)).collect()
+}
+
+/// The probes of one function in one stage.
+fn shade(
+    gpu: &Gpu,
+    kernel: &Kernel,
+    probes: &[&'static Probe],
+    (stage, name): (Stage, &'static str),
+    probed: &mut Probed,
+) -> Result<(), Error> {
+    let rows: Vec<f32> = probes.iter().flat_map(|probe| probe.inputs).map(|bits| f32::from_bits(*bits)).collect();
+    let pipeline = match ArithmeticPipeline::new(gpu, kernel, stage)? {
+        Ok(pipeline) => pipeline,
+        Err(reason) => {
+            skip(probed, name, reason);
+            return Ok(());
+        }
+    };
+    let words = pipeline.submit(gpu, &rows).wait(gpu)?;
+    for (probe, bits) in probes.iter().zip(pipeline.outputs(words, probes.len())) {
+        probed.words.push((probe, name, bits));
+    }
+    Ok(())
+}
+
+/// The probes of an attribute: every vertex has the value, and the pixel in the primitive's middle is read.
+fn carry(
+    gpu: &Gpu,
+    shaders: &Shaders,
+    flat: bool,
+    probes: &[&'static Probe],
+    probed: &mut Probed,
+) -> Result<(), Error> {
+    const STAGE: &str = "raster";
+    let kind = if flat {
+        Raster::Flat { topology: Topology::TriangleList, provoking: Provoking::Last }
+    } else {
+        Raster::TriangleAttributes
+    };
+    let pipeline = match RasterPipeline::new(gpu, shaders, kind)? {
+        Ok(pipeline) => pipeline,
+        Err(reason) => {
+            skip(probed, STAGE, reason);
+            return Ok(());
+        }
+    };
+    for probe in probes {
+        let value = f32::from_bits(probe.inputs[0]);
+        let row = if flat {
+            // Six attributes, the primitive that is looked at, the pixel.
+            vec![value, value, value, value, value, value, 0.0, 128.0, 128.0]
+        } else {
+            let corners = [-1.0, -1.0, 0.5, 1.0, 3.0, -1.0, 0.5, 1.0, -1.0, 3.0, 0.5, 1.0];
+            [&corners[..], &[value; 3], &[128.0, 128.0]].concat()
+        };
+        let (count, pending) = pipeline.submit(gpu, &row);
+        let outputs = pipeline.outputs(&pending.wait(gpu)?, &row, count);
+        probed.words.push((probe, STAGE, outputs[0]));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_catalogue::special::{Class, PROBES};
+    use lightmeter_scene::target::SENTINEL;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_function_has_a_probe() {
+        let (_, text) = lightmeter_gpu::FILES.into_iter().find(|(name, _)| *name == FILE).expect("it is built in");
+        for line in text.lines().filter_map(|line| line.strip_prefix("fn ")) {
+            let function = line.split('(').next().unwrap_or_default();
+            assert!(PROBES.iter().any(|probe| probe.way == Way::Function(function)), "{function} has no probe");
+        }
+    }
+
+    #[test]
+    fn probes_are_well_formed() {
+        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+        let mut names = BTreeSet::new();
+        for probe in PROBES {
+            assert!(names.insert(probe.name), "{} stands twice", probe.name);
+            assert!(probe.name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'));
+            assert!(!probe.inputs.contains(&SENTINEL), "{}", probe.name);
+            match probe.way {
+                Way::Function(function) => {
+                    let kernel = Kernel::new(&shaders, FILE, function).unwrap_or_else(|error| panic!("{error}"));
+                    assert_eq!((kernel.inputs, kernel.outputs), (probe.inputs.len(), 1), "{}", probe.name);
+                }
+                Way::Varying { .. } => assert_eq!(probe.inputs.len(), 1, "{}", probe.name),
+            }
+        }
+        for class in Class::ALL {
+            assert!(PROBES.iter().any(|probe| probe.class == class), "{class:?} has no probe");
+        }
+    }
+}
