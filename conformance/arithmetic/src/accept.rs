@@ -16,7 +16,7 @@
 
 use super::format::{F32, Format};
 use super::paths;
-use super::profile::{Excess, GrowingUlp, assert_in_force, current};
+use super::profile::{Excess, GrowingUlp, assert_in_force, current, relative};
 use lightmeter_reference::{Components, Real};
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -105,7 +105,7 @@ impl<F: Format> Accept<F> {
     /// [`Accept::seal`] of a sum's or a product's exact range, widened where the profile promises less than correct rounding.
     #[inline]
     fn rounded(low: f64, high: f64) -> Self {
-        let relative = current(|p| p.relative);
+        let relative = relative();
         if relative != 0.0 {
             assert_in_force(relative);
             return Self::seal(low - relative * low.abs(), high + relative * high.abs());
@@ -173,7 +173,6 @@ impl<F: Format> Accept<F> {
     /// stated relative error below [`F64_SLACK`], are given. For a point the ULP is that of the value; within a wide
     /// interval a value just past a power of two has twice the ULP of one just before, so the relative bound stands in.
     fn widen(point: bool, low: f64, high: f64, ulps: f64) -> Self {
-        assert_in_force(ulps);
         let error = |x: f64| {
             let ulp = if point { F::ulp(x) } else { (x.abs() * F::EPSILON).max(F::MIN_SUBNORMAL) };
             ulps * ulp + x.abs() * F64_SLACK
@@ -192,7 +191,6 @@ impl<F: Format> Accept<F> {
             return Self::ANY;
         }
         let mut ulps = bound.slope.mul_add(self.magnitude(), bound.base);
-        assert_in_force(bound.base);
         if let Some(excess) = excess
             && self.high >= excess.from
             && self.low <= excess.to
@@ -269,14 +267,9 @@ fn chain_error<F: Format>(n: usize) -> f64 {
 
 /// How far an addition or a multiplication may be off, relatively: a rounding up or down, or what the profile says.
 fn epsilon<F: Format>() -> f64 {
-    F::EPSILON.max(relative())
-}
-
-/// How far `+ − ×` may be off by the profile, relatively.
-fn relative() -> f64 {
-    let relative = current(|p| p.relative);
+    let relative = relative();
     assert_in_force(relative);
-    relative
+    F::EPSILON.max(relative)
 }
 
 impl<F: Format> Add for Accept<F> {
@@ -403,7 +396,6 @@ impl<F: Format> Real for Accept<F> {
             return Self::ANY;
         }
         let (absolute, ulps) = current(|p| (p.log2_absolute, p.log2_ulp));
-        assert_in_force(absolute);
         let touches_middle = self.low <= 2.0 && self.high >= 0.5;
         let low = core_math::log2(self.low);
         let high = if self.is_point() { low } else { core_math::log2(self.high) };
@@ -570,6 +562,7 @@ impl<F: Format> Real for Accept<F> {
             return Self::exactly(0.0);
         }
         let mut error = if rounded > 2 { chain_error::<F>(rounded) } else { relative() };
+        assert_in_force(error);
         if rounded <= 2 && least >= F::MIN_NORMAL {
             return Self::rounded(range.0, range.1);
         }

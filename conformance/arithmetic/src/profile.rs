@@ -116,53 +116,67 @@ impl Profile {
     /// Functions that evaluate take the profile as an argument and call this around the evaluation of a formula. Outside of it
     /// there is no profile at all, and an operation that asks for one panics.
     pub fn scope<T>(&self, f: impl FnOnce() -> T) -> T {
-        struct Restore(Profile, usize);
-        impl Drop for Restore {
-            fn drop(&mut self) {
-                CURRENT.set(self.0);
-                IN_FORCE.set(self.1);
-            }
-        }
-        // While a scope is open its profile is borrowed, so that what lies at the same address is the same profile.
-        let address = std::ptr::from_ref(self).addr();
-        if IN_FORCE.get() == address {
+        // Rows are evaluated one by one by the same figures, which stay where they are for the next row.
+        if FIGURES.with(|figures| figures.get().has_figures_of(self)) {
+            let _outer = Outer { relative: RELATIVE.replace(self.relative), figures: None };
             return f();
         }
-        let _restore = Restore(CURRENT.replace(*self), IN_FORCE.replace(address));
+        let figures = Some(FIGURES.replace(*self));
+        let _outer = Outer { relative: RELATIVE.replace(self.relative), figures };
         f()
+    }
+
+    /// Whether intervals are the same by both.
+    #[inline]
+    fn has_figures_of(&self, other: &Self) -> bool {
+        let figures = |p: &Self| {
+            let Self { exp_ulp: exp, exp2_ulp: exp2, .. } = *p;
+            [p.relative, p.divide_ulp, p.inverse_sqrt_ulp, exp.base, exp.slope, exp2.base, exp2.slope].map(f64::to_bits)
+        };
+        let others = |p: &Self| (p.log2_absolute, p.log2_ulp, p.subpixel_bits, p.exp_excess, p.exp2_excess);
+        figures(self) == figures(other) && others(self) == others(other)
     }
 }
 
-/// No profile: its figures are no numbers.
-const NONE: Profile = Profile {
-    name: "none",
-    source: "",
-    relative: f64::NAN,
-    divide_ulp: f64::NAN,
-    inverse_sqrt_ulp: f64::NAN,
-    exp_ulp: GrowingUlp { base: f64::NAN, slope: f64::NAN },
-    exp2_ulp: GrowingUlp { base: f64::NAN, slope: f64::NAN },
-    log2_absolute: f64::NAN,
-    log2_ulp: f64::NAN,
-    ..WGSL
-};
+/// What was in force outside of a scope, and is again at its end.
+struct Outer {
+    relative: f64,
+    figures: Option<Profile>,
+}
+
+impl Drop for Outer {
+    fn drop(&mut self) {
+        RELATIVE.set(self.relative);
+        if let Some(figures) = self.figures {
+            FIGURES.set(figures);
+        }
+    }
+}
 
 thread_local! {
-    static CURRENT: Cell<Profile> = const { Cell::new(NONE) };
-    /// Where the profile in force lies; 0 for none.
-    static IN_FORCE: Cell<usize> = const { Cell::new(0) };
+    /// The figures in force on this thread, or those of the last scope.
+    static FIGURES: Cell<Profile> = const { Cell::new(WGSL) };
+    /// [`Profile::relative`] of the profile in force; NaN for none.
+    static RELATIVE: Cell<f64> = const { Cell::new(f64::NAN) };
 }
 
-/// One figure of the profile in force on this thread.
+/// How far `+ − ×` may be off by the profile in force on this thread, relatively; NaN outside of a scope.
+#[inline]
+pub(crate) fn relative() -> f64 {
+    RELATIVE.get()
+}
+
+/// One figure of the profile in force on this thread, apart from [`Profile::relative`].
 #[inline]
 pub(crate) fn current<T>(figure: impl FnOnce(&Profile) -> T) -> T {
-    figure(&CURRENT.get())
+    assert_in_force(relative());
+    figure(&FIGURES.get())
 }
 
-/// Panics where a figure is of no profile.
+/// Panics where [`relative`] is of no profile.
 #[inline]
-pub(crate) fn assert_in_force(figure: f64) {
-    assert!(!figure.is_nan(), "an interval was asked for outside of `Profile::scope`, by no profile");
+pub(crate) fn assert_in_force(relative: f64) {
+    assert!(!relative.is_nan(), "an interval was asked for outside of `Profile::scope`, by no profile");
 }
 
 #[cfg(test)]

@@ -172,6 +172,15 @@ impl SpecialUse {
     }
 }
 
+/// What an interface says of NaN and infinity in blending.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct BlendPromise {
+    /// The interface.
+    pub interface: Word,
+    /// What it says.
+    pub says: Word,
+}
+
 /// A group on an adapter in a stage.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Group {
@@ -399,6 +408,12 @@ pub struct Report {
     /// What blend units left of NaN and infinity, of which nothing is promised.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub special: Vec<SpecialUse>,
+    /// What interfaces say of NaN and infinity in blending, where any was judged.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blend_promises: Vec<BlendPromise>,
+    /// How many times more than its condition explains a form may err before it is called unstable, where any was examined.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unstable_beyond: Option<f64>,
     /// Hard cases by their stable and their naive form.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stability: Vec<Examined>,
@@ -431,6 +446,8 @@ impl Report {
             groups: vec![],
             blend_states: vec![],
             special: vec![],
+            blend_promises: vec![],
+            unstable_beyond: None,
             stability: vec![],
             stable_costs: vec![],
             interrupted: None,

@@ -17,8 +17,10 @@ use lightmeter_catalogue::cases::blend;
 use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::Number;
-use lightmeter_document::run::{Group, Interrupted, Report, Totals};
+use lightmeter_document::run::{BlendPromise, Group, Interrupted, Report, Totals};
+use lightmeter_judge::blend_unit::policy::{PROMISES, Promise};
 use lightmeter_judge::chunk::{self, Chunk};
+use lightmeter_judge::stability::UNSTABLE;
 use lightmeter_judge::tally;
 use lightmeter_judge::tally::{Tally, judge_chunk, reported};
 use lightmeter_scene::blend::Equation;
@@ -62,6 +64,11 @@ pub fn run_selection(
         .filter(|(alias, canonical)| options.filter.selects(alias) || options.filter.selects(canonical))
         .count() as u64;
     report.routes = routes(&report);
+    if !report.special.is_empty() {
+        let told = |promise: &Promise| BlendPromise { interface: promise.interface.into(), says: promise.says.into() };
+        report.blend_promises = PROMISES.iter().map(told).collect();
+    }
+    report.unstable_beyond = (!report.stability.is_empty()).then_some(UNSTABLE);
     report.seconds = started.elapsed().as_secs_f64();
     Ok(report)
 }

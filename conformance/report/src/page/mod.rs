@@ -9,13 +9,13 @@ pub mod sweep;
 
 pub use picture::svg;
 
-use lightmeter_engine::blend_unit::policy::PROMISES;
+use lightmeter_document::run::{BlendState, DeviationUse, Group, Identity, Report, Tiers};
 use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::blend::{Route, routes};
 use lightmeter_scene::target::TargetFormat;
-use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::{Result, Write};
+use std::ops::Deref;
 
 /// A JSON document of a schema, which is expected to be what the words say.
 fn document(json: &str, schema: &str, expected: &str) -> std::result::Result<serde_json::Value, String> {
@@ -27,78 +27,16 @@ fn document(json: &str, schema: &str, expected: &str) -> std::result::Result<ser
     Ok(value)
 }
 
-/// What the page needs of a run's JSON.
-#[derive(Clone, Debug, Deserialize)]
-pub struct Run {
-    seed: u64,
-    adapters: Vec<Adapter>,
-    groups: Vec<Group>,
-    #[serde(default)]
-    blend_states: Vec<StateRow>,
-    #[serde(default)]
-    special: Vec<Special>,
-    #[serde(default)]
-    deviations: Vec<Deviation>,
-}
+/// A run that blend states were drawn in.
+#[derive(Clone, Debug)]
+pub struct Run(Report);
 
-#[derive(Clone, Debug, Deserialize)]
-struct Adapter {
-    name: String,
-    device: String,
-    backend: String,
-    driver: String,
-}
+impl Deref for Run {
+    type Target = Report;
 
-#[derive(Clone, Debug, Deserialize)]
-struct Group {
-    adapter: String,
-    target: Option<String>,
-    skip_reason: Option<String>,
-    store: Option<Store>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-struct Store {
-    identified: String,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-struct StateRow {
-    id: String,
-    adapter: String,
-    target: String,
-    route: String,
-    cases: u64,
-    failed: u64,
-    /// A number, or the word for one that JSON has none for.
-    error_max: serde_json::Value,
-    tiers: Option<Tiers>,
-    skip_reason: Option<String>,
-}
-
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-struct Tiers {
-    exact: u64,
-    nearest: u64,
-    neighbour: u64,
-    bound: u64,
-    outside: u64,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-struct Special {
-    id: String,
-    adapter: String,
-    target: String,
-    seen: String,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-struct Deviation {
-    name: String,
-    adapter: String,
-    reason: String,
-    excused: u64,
+    fn deref(&self) -> &Report {
+        &self.0
+    }
 }
 
 /// Why no page can be made of a file.
@@ -125,18 +63,18 @@ impl Run {
         if value["schema"] != "lightmeter.run/1" {
             return Err(PageError::Schema(value["schema"].as_str().unwrap_or("none").into()));
         }
-        let run: Self = serde_json::from_value(value)?;
+        let run = Self(serde_json::from_value(value)?);
         if run.blend_states.iter().all(|state| state.skip_reason.is_some()) {
             return Err(PageError::Empty);
         }
         Ok(run)
     }
 
-    fn rows<'a>(&'a self, adapter: &'a Adapter, target: &'a str) -> impl Iterator<Item = &'a StateRow> {
+    fn rows<'a>(&'a self, adapter: &'a Identity, target: &'a str) -> impl Iterator<Item = &'a BlendState> {
         self.blend_states.iter().filter(move |row| row.adapter == adapter.name && row.target == target)
     }
 
-    fn row<'a>(&'a self, adapter: &'a Adapter, target: &'a str, state: State) -> Option<&'a StateRow> {
+    fn row<'a>(&'a self, adapter: &'a Identity, target: &'a str, state: State) -> Option<&'a BlendState> {
         let id = format!("blend/{}", state.canonical());
         self.rows(adapter, target).find(|row| row.id == id && row.skip_reason.is_none())
     }
@@ -155,21 +93,15 @@ impl Run {
     }
 }
 
-impl StateRow {
-    fn error(&self) -> f64 {
-        self.error_max.as_f64().unwrap_or(f64::INFINITY)
-    }
-
-    /// The farthest tier that some value fell in.
-    const fn letter(&self) -> &'static str {
-        match self.tiers {
-            _ if self.failed > 0 => "✗",
-            None => "·",
-            Some(Tiers { bound: 1.., .. }) => "b",
-            Some(Tiers { neighbour: 1.., .. }) => "i",
-            Some(Tiers { nearest: 1.., .. }) => "n",
-            Some(_) => "e",
-        }
+/// The farthest tier that some value of a state fell in.
+const fn letter(row: &BlendState) -> &'static str {
+    match row.tiers {
+        _ if row.failed > 0 => "✗",
+        None => "·",
+        Some(Tiers { bound: 1.., .. }) => "b",
+        Some(Tiers { neighbour: 1.., .. }) => "i",
+        Some(Tiers { nearest: 1.., .. }) => "n",
+        Some(_) => "e",
     }
 }
 
@@ -224,9 +156,9 @@ fn drivers(run: &Run, out: &mut impl Write) -> Result {
                 writeln!(out, "| {} | {target} | — | | | | | | | | | skipped: {reason} |", adapter.name)?;
                 continue;
             }
-            let drawn: Vec<&StateRow> = run.rows(adapter, target).filter(|row| row.skip_reason.is_none()).collect();
-            let sum = |of: fn(&StateRow) -> u64| drawn.iter().map(|row| of(row)).sum::<u64>();
-            let error = drawn.iter().map(|row| row.error()).fold(0.0, f64::max);
+            let drawn: Vec<&BlendState> = run.rows(adapter, target).filter(|row| row.skip_reason.is_none()).collect();
+            let sum = |of: fn(&BlendState) -> u64| drawn.iter().map(|row| of(row)).sum::<u64>();
+            let error = drawn.iter().map(|row| row.error_max.0).fold(0.0, f64::max);
             let tier = |of: fn(&Tiers) -> u64| drawn.iter().filter_map(|row| row.tiers).map(|t| of(&t)).sum::<u64>();
             let tiers: [u64; 5] =
                 [tier(|t| t.exact), tier(|t| t.nearest), tier(|t| t.neighbour), tier(|t| t.bound), tier(|t| t.outside)];
@@ -238,7 +170,7 @@ fn drivers(run: &Run, out: &mut impl Write) -> Result {
                 (share, _) => format!("{share:.2} %"),
             });
             let mut stores: Vec<&str> =
-                groups().filter_map(|group| Some(group.store.as_ref()?.identified.as_str())).collect();
+                groups().filter_map(|group| Some(group.store.as_ref()?.identified.as_ref())).collect();
             stores.sort_unstable();
             stores.dedup();
             let error = if error < 1000.0 { format!("{error:.2}") } else { format!("{error:.1e}") };
@@ -255,7 +187,7 @@ fn drivers(run: &Run, out: &mut impl Write) -> Result {
         }
     }
     let mut skipped = BTreeMap::<_, usize>::new();
-    let fully = |row: &StateRow| {
+    let fully = |row: &BlendState| {
         let of = |group: &Group| group.adapter == row.adapter && group.target.as_deref() == Some(&row.target);
         run.groups.iter().any(|group| of(group) && group.skip_reason.is_some())
     };
@@ -271,7 +203,7 @@ fn drivers(run: &Run, out: &mut impl Write) -> Result {
         )?;
     }
     for deviation in run.deviations.iter().filter(|deviation| deviation.excused > 0) {
-        let Deviation { name, adapter, reason, excused } = deviation;
+        let DeviationUse { name, adapter, reason, excused, .. } = deviation;
         writeln!(out, "\nDeviation *{name}* of {adapter}, {excused} verdicts: {reason}.")?;
     }
     Ok(())
@@ -354,7 +286,7 @@ fn matrices(run: &Run, picture: Option<&str>, out: &mut impl Write) -> Result {
 }
 
 fn letters(run: &Run, target: &str, state: State) -> String {
-    let letter = |adapter| run.row(adapter, target, state).map_or("–", StateRow::letter);
+    let letter = |adapter| run.row(adapter, target, state).map_or("–", letter);
     run.adapters.iter().map(letter).collect()
 }
 
@@ -384,14 +316,14 @@ fn special(run: &Run, out: &mut impl Write) -> Result {
         return Ok(());
     }
     writeln!(out, "## NaN and infinity\n")?;
-    for promise in PROMISES {
+    for promise in &run.blend_promises {
         writeln!(out, "* {}: {}.", promise.interface, promise.says)?;
     }
     writeln!(out, "\nSo nothing is promised. This is what drivers leave.\n")?;
     let mut columns: Vec<(&str, &str)> = vec![];
     let mut cases: Vec<&str> = vec![];
     for special in &run.special {
-        let column = (special.adapter.as_str(), special.target.as_str());
+        let column = (special.adapter.as_str(), &*special.target);
         if !columns.contains(&column) {
             columns.push(column);
         }
@@ -407,7 +339,7 @@ fn special(run: &Run, out: &mut impl Write) -> Result {
     for case in cases {
         write!(out, "| {} |", case.rsplit('/').next().unwrap_or_default())?;
         for column in &columns {
-            let found = run.special.iter().find(|s| s.id == case && (s.adapter.as_str(), s.target.as_str()) == *column);
+            let found = run.special.iter().find(|s| s.id == case && (s.adapter.as_str(), &*s.target) == *column);
             write!(out, " {} |", found.map_or("–", |special| special.seen.as_str()))?;
         }
         writeln!(out)?;

@@ -1,6 +1,7 @@
 //! The picture of the page: the largest error of each state, a panel for each equation and driver.
 
-use super::{READING, Run, StateRow};
+use super::{READING, Run};
+use lightmeter_document::run::BlendState;
 use lightmeter_scene::blend::{Factor, State};
 use std::fmt::{Result, Write};
 
@@ -62,11 +63,13 @@ pub fn svg(run: &Run, out: &mut impl Write) -> Result {
     writeln!(out, "</svg>")
 }
 
-fn shade(row: Option<&StateRow>) -> &'static str {
+fn shade(row: Option<&BlendState>) -> &'static str {
     match row {
         None => "#dddddd",
         Some(row) if row.failed > 0 => "#d7301f",
-        Some(row) => SHADES.into_iter().find(|(most, _)| row.error() <= *most).map_or("#045a8d", |(_, shade)| shade),
+        Some(row) => {
+            SHADES.into_iter().find(|(most, _)| row.error_max.0 <= *most).map_or("#045a8d", |(_, shade)| shade)
+        }
     }
 }
 

@@ -4,13 +4,14 @@ use lightmeter_catalogue::scene::Error;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::load;
 use lightmeter_catalogue::scene::load::Loaded;
-use lightmeter_engine::blend_unit::pixel::Units;
-use lightmeter_engine::image::file::Stored;
+use lightmeter_document::run::{EffectsCost, Group, Report};
+use lightmeter_judge::blend_unit::pixel::Units;
+use lightmeter_judge::image::file::Stored;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::effects;
 use lightmeter_scene::target::TargetFormat;
-use serde::Deserialize;
 use std::fmt::{Result, Write};
+use std::ops::Deref;
 
 /// Pictures side by side.
 const COLUMNS: usize = 6;
@@ -19,41 +20,16 @@ const SIDE: usize = 160;
 /// Pixels between pictures.
 const GAP: usize = 4;
 
-/// What the page needs of a run's JSON.
-#[derive(Clone, Debug, Deserialize)]
-pub struct Run {
-    adapters: Vec<Adapter>,
-    groups: Vec<Group>,
-}
+/// A run that scenes were judged in.
+#[derive(Clone, Debug)]
+pub struct Run(Report);
 
-#[derive(Clone, Debug, Deserialize)]
-struct Adapter {
-    name: String,
-    device: String,
-    driver: String,
-}
+impl Deref for Run {
+    type Target = Report;
 
-#[derive(Clone, Debug, Deserialize)]
-struct Group {
-    id: String,
-    adapter: String,
-    stage: String,
-    cases: u64,
-    failed: u64,
-    image: Option<Image>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-struct Image {
-    marked: u64,
-    cost: Option<Cost>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-struct Cost {
-    composed_ms: f64,
-    full_ms: f64,
-    ratio: f64,
+    fn deref(&self) -> &Report {
+        &self.0
+    }
 }
 
 impl Run {
@@ -62,7 +38,7 @@ impl Run {
     /// # Errors
     /// Where it is none, or has no scene.
     pub fn read(json: &str) -> std::result::Result<Self, String> {
-        let run: Self = serde_json::from_str(json).map_err(|error| error.to_string())?;
+        let run = Self(serde_json::from_str(json).map_err(|error| error.to_string())?);
         if run.groups.iter().any(|group| group.image.is_some()) {
             Ok(run)
         } else {
@@ -164,8 +140,8 @@ fn judged(run: &Run, scenes: &[Loaded], out: &mut impl Write) -> Result {
     table(run, scenes, "image", "skipped", out, |group| {
         let image = group.image.as_ref()?;
         #[expect(clippy::cast_precision_loss, reason = "a share")]
-        let share = 100.0 * image.marked as f64 / group.cases.max(1) as f64;
-        Some(format!("{} failed, {share:.3} % marked", group.failed))
+        let share = 100.0 * image.marked as f64 / group.totals.cases.max(1) as f64;
+        Some(format!("{} failed, {share:.3} % marked", group.totals.failed))
     })
 }
 
@@ -210,7 +186,7 @@ fn costs(run: &Run, scenes: &[Loaded], out: &mut impl Write) -> Result {
     )?;
     writeln!(out, "their ratio.\n")?;
     table(run, scenes, "image-full", "—", out, |group| {
-        let Cost { composed_ms, full_ms, ratio } = group.image.as_ref()?.cost?;
+        let EffectsCost { composed_ms, full_ms, ratio, .. } = group.image.as_ref()?.cost?;
         Some(format!("{composed_ms:.2} ms, {full_ms:.2} ms: {ratio:.2} ×"))
     })
 }

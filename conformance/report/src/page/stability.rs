@@ -3,71 +3,32 @@
 
 use lightmeter_catalogue::cases::Stable;
 use lightmeter_catalogue::select::{Member, catalogue};
-use lightmeter_document::Number;
-use lightmeter_engine::stability::UNSTABLE;
-use serde::Deserialize;
+use lightmeter_document::run::{Examined, Report};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
+use std::ops::Deref;
 
-/// What the page needs of a run's JSON.
-#[derive(Clone, Debug, Deserialize)]
-pub struct Run {
-    filter: Vec<String>,
-    adapters: Vec<Adapter>,
-    stability: Vec<Row>,
-    #[serde(default)]
-    stable_costs: Vec<Cost>,
-}
+/// A run that hard cases were examined in.
+#[derive(Clone, Debug)]
+pub struct Run(Report);
 
-#[derive(Clone, Debug, Deserialize)]
-struct Adapter {
-    name: String,
-    device: String,
-    driver: String,
-}
+impl Deref for Run {
+    type Target = Report;
 
-#[derive(Clone, Debug, Deserialize)]
-struct Row {
-    id: String,
-    adapter: String,
-    #[serde(deserialize_with = "number")]
-    condition: f64,
-    bound: f64,
-    #[serde(deserialize_with = "number")]
-    stable: f64,
-    naive_formula: String,
-    fails: String,
-    #[serde(deserialize_with = "number")]
-    naive_at_least: f64,
-    #[serde(deserialize_with = "number")]
-    naive: f64,
-    #[serde(deserialize_with = "number")]
-    naive_rounding: f64,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-struct Cost {
-    formula: String,
-    naive: String,
-    adapter: String,
-    stable_ns: f64,
-    naive_ns: f64,
-    ratio: f64,
-    quartiles: [f64; 2],
-}
-
-/// A number, or the name of one that JSON has not.
-fn number<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Number::deserialize(deserializer).map(|number| number.0)
+    fn deref(&self) -> &Report {
+        &self.0
+    }
 }
 
 /// What stages and adapters found of one case: the stable form at its worst, the naive one at its best.
 struct Case<'a> {
-    row: &'a Row,
+    row: &'a Examined,
     stable: f64,
     naive: BTreeMap<&'a str, f64>,
     /// The naive form's error against its own exact value, at its greatest.
     rounding: f64,
+    /// How many times more than its condition explains an unstable form errs.
+    unstable_beyond: f64,
 }
 
 impl Case<'_> {
@@ -76,7 +37,7 @@ impl Case<'_> {
         let naive = self.least_naive();
         if self.rounding < 0.1 * naive {
             "another function"
-        } else if naive > UNSTABLE * (1.0 + self.row.condition) {
+        } else if naive > self.unstable_beyond * (1.0 + self.row.condition.0) {
             "unstable"
         } else {
             "as its condition"
@@ -103,22 +64,23 @@ impl Run {
         if value.get("stability").is_none() {
             return Err("the run examined no hard case; expected one of `lightmeter run '*/*/hard'`".into());
         }
-        serde_json::from_value(value).map_err(|error| format!("not a run's JSON: {error}"))
+        serde_json::from_value(value).map(Self).map_err(|error| format!("not a run's JSON: {error}"))
     }
 
     fn cases(&self) -> Vec<Case<'_>> {
+        let unstable_beyond = self.unstable_beyond.unwrap_or(f64::INFINITY);
         let mut cases: Vec<Case<'_>> = vec![];
         for row in &self.stability {
             let case = if let Some(place) = cases.iter().position(|case| case.row.id == row.id) {
                 &mut cases[place]
             } else {
-                cases.push(Case { row, stable: 0.0, naive: BTreeMap::new(), rounding: 0.0 });
+                cases.push(Case { row, stable: 0.0, naive: BTreeMap::new(), rounding: 0.0, unstable_beyond });
                 cases.last_mut().expect("one was just put there")
             };
-            case.stable = case.stable.max(row.stable);
-            case.rounding = case.rounding.max(row.naive_rounding);
+            case.stable = case.stable.max(row.stable.0);
+            case.rounding = case.rounding.max(row.naive_rounding.0);
             let naive = case.naive.entry(&row.adapter).or_insert(f64::INFINITY);
-            *naive = naive.min(row.naive);
+            *naive = naive.min(row.naive.0);
         }
         cases
     }
@@ -141,7 +103,7 @@ pub fn markdown(run: &Run, picture: Option<&str>, out: &mut impl Write) -> Writt
         writeln!(out, "* {}: {} ({})", adapter.name, adapter.device, adapter.driver)?;
     }
     let kept = cases.iter().filter(|case| case.stable <= case.row.bound).count();
-    let failing = cases.iter().filter(|case| case.least_naive() >= case.row.naive_at_least).count();
+    let failing = cases.iter().filter(|case| case.least_naive() >= case.row.naive_at_least.0).count();
     let families: BTreeSet<&str> = cases.iter().filter_map(|case| case.row.id.split('/').next()).collect();
     writeln!(
         out,
@@ -155,14 +117,15 @@ pub fn markdown(run: &Run, picture: Option<&str>, out: &mut impl Write) -> Writt
         "Errors are in *roundings*: the distance from the exact value over 2⁻²⁴ of its size, or of 1 where the result is a \
          share of what is seen. One operation that rounds to nearest errs by at most one. The *condition* is how many \
          roundings of the result come of one rounding of each input. A naive form is *unstable* where it errs by more than \
-         {UNSTABLE} times what the condition explains. Where it errs by no more than that, inputs that were rounded before lose as \
+         {} times what the condition explains. Where it errs by no more than that, inputs that were rounded before lose as \
          much in any form, and only inputs that are exact are done a favour. It computes *another function* where nine tenths \
          of its error are there in exact arithmetic too: a model that is wrong there, or a cosine of vectors that are not quite \
          unit for the angle between them.\n\nA bound holds at the hard cases and within 3 ULP of them. It covers all that \
          WGSL permits there, with directed rounding of sums and products and its bounds of the rest, which a test holds; but for \
          five forms whose bounds hold for the operations as they are written, since the language lets a compiler reassociate \
          them: `interpolation/edge-compensated`, `vector/face-normal-compensated`, `blend/subtract-compensated`, \
-         `fog/exp2-document` and `fog/exp2-opengl`. Of those the intervals promise little or nothing.\n"
+         `fog/exp2-document` and `fog/exp2-opengl`. Of those the intervals promise little or nothing.\n",
+        run.unstable_beyond.unwrap_or_default()
     )?;
     if let Some(picture) = picture {
         writeln!(out, "![Errors of naive and stable forms against the condition]({picture})\n")?;
@@ -190,7 +153,7 @@ fn table(run: &Run, cases: &[Case<'_>], out: &mut impl Write) -> Written {
             writeln!(out, "---|---|")?;
         }
         let row = case.row;
-        write!(out, "| {name} | {} | {} | `{}` |", short(row.condition), short(case.stable), row.naive_formula)?;
+        write!(out, "| {name} | {} | {} | `{}` |", short(row.condition.0), short(case.stable), row.naive_formula)?;
         for adapter in &run.adapters {
             write!(out, " {} |", case.naive.get(adapter.name.as_str()).map_or("–".into(), |&naive| short(naive)))?;
         }
@@ -294,7 +257,7 @@ pub fn svg(run: &Run, out: &mut impl Write) -> Written {
     }
     explained(out)?;
     for case in run.cases() {
-        let (x, name) = (x_of(case.row.condition), &case.row.id);
+        let (x, name) = (x_of(case.row.condition.0), &case.row.id);
         let (naive, stable) = (y_of(case.least_naive()), y_of(case.stable));
         writeln!(
             out,
