@@ -1,7 +1,7 @@
 //! Which adapters there are, and the short names that they go by.
 
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 
 /// An adapter that can be run on.
 #[derive(Debug)]
@@ -72,7 +72,7 @@ impl Adapter {
     ///
     /// # Errors
     /// Where the driver gives no device.
-    pub fn open(&self) -> Result<Gpu, Error> {
+    pub fn open(&self) -> Result<Gpu, GpuError> {
         Gpu::open(&self.name, &self.adapter)
     }
 }

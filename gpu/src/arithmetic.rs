@@ -1,7 +1,7 @@
 //! Formulas as arithmetic, in the compute and in the fragment stage: the same WGSL, which drivers compile differently.
 
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::kernel::Kernel;
 use crate::readback::{Pending, copy_target, sentinel_color, staging};
 use lightmeter_scene::target::SENTINEL;
@@ -13,7 +13,7 @@ const BITS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 /// A programmable stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub enum Programmable {
     /// A compute shader that writes a storage buffer.
     Compute,
     /// A fragment shader that writes colour targets, bit for bit.
@@ -40,15 +40,15 @@ impl ArithmeticPipeline {
     ///
     /// # Errors
     /// Where the device refuses the pipeline.
-    pub fn new(gpu: &Gpu, kernel: &Kernel, stage: Stage) -> Result<Result<Self, &'static str>, Error> {
+    pub fn new(gpu: &Gpu, kernel: &Kernel, stage: Programmable) -> Result<Result<Self, &'static str>, GpuError> {
         let pipeline = match stage {
-            Stage::Compute => {
+            Programmable::Compute => {
                 if let Some(reason) = gpu.lacks_compute() {
                     return Ok(Err(reason));
                 }
                 Pipeline::Compute(compute_pipeline(gpu, &kernel.function, kernel.compute.clone(), "lightmeter_compute"))
             }
-            Stage::Fragment => {
+            Programmable::Fragment => {
                 if let Some(reason) = gpu.lacks_storage(false) {
                     return Ok(Err(reason));
                 }

@@ -5,7 +5,7 @@
 //! that nothing but the unit itself converts them.
 
 use crate::device::{Gpu, middle};
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::readback::{Pending, staging};
 use crate::shaders::Shaders;
 use lightmeter_scene::blend::{Equation, Factor, Route, Separate, State, WriteMask};
@@ -83,8 +83,8 @@ impl BlendUnit {
     ///
     /// # Errors
     /// Where a shader is invalid, or the driver gives no device.
-    pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, Error> {
-        let lanes = (0..gpu.lanes()).map(|_| Lane::new(gpu.sibling()?, shaders)).collect::<Result<_, Error>>()?;
+    pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, GpuError> {
+        let lanes = (0..gpu.lanes()).map(|_| Lane::new(gpu.sibling()?, shaders)).collect::<Result<_, GpuError>>()?;
         Ok(Self { lanes })
     }
 
@@ -108,7 +108,7 @@ impl BlendUnit {
     ///
     /// # Panics
     /// Where there are more batches than devices, or a route is not open.
-    pub fn submit(&mut self, target: TargetFormat, batches: &[Batch]) -> Result<Vec<Pending>, Error> {
+    pub fn submit(&mut self, target: TargetFormat, batches: &[Batch]) -> Result<Vec<Pending>, GpuError> {
         assert!(batches.len() <= self.lanes.len(), "{} batches for {} devices", batches.len(), self.lanes.len());
         self.lanes.iter_mut().zip(batches).map(|(lane, batch)| lane.submit(target, batch)).collect()
     }
@@ -117,7 +117,7 @@ impl BlendUnit {
     ///
     /// # Errors
     /// Where a device failed or was lost.
-    pub fn wait(&self, pending: Vec<Pending>) -> Result<Vec<Vec<u8>>, Error> {
+    pub fn wait(&self, pending: Vec<Pending>) -> Result<Vec<Vec<u8>>, GpuError> {
         self.lanes.iter().zip(pending).map(|(lane, pending)| pending.wait_bytes(&lane.gpu)).collect()
     }
 
@@ -136,14 +136,14 @@ impl BlendUnit {
 }
 
 impl Lane {
-    fn new(gpu: Gpu, shaders: &Shaders) -> Result<Self, Error> {
+    fn new(gpu: Gpu, shaders: &Shaders) -> Result<Self, GpuError> {
         let module = gpu.module(FILE, shaders.source(FILE));
         let dual = gpu.has_dual_source().then(|| gpu.module(DUAL_FILE, shaders.source(DUAL_FILE)));
         gpu.check_shader(FILE)?;
         Ok(Self { gpu, module, dual, pipelines: HashMap::new() })
     }
 
-    fn submit(&mut self, target: TargetFormat, batch: &Batch) -> Result<Pending, Error> {
+    fn submit(&mut self, target: TargetFormat, batch: &Batch) -> Result<Pending, GpuError> {
         let gpu = &self.gpu;
         let lowered: Vec<Lowered> = batch.draws.iter().map(lower).collect();
         for lowered in &lowered {

@@ -1,7 +1,7 @@
 //! How long a device works: by its own timestamps, or, where it has none that can be used, by the clock on the wall.
 
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -124,7 +124,7 @@ impl Clock {
     ///
     /// # Errors
     /// Where the device fails.
-    pub fn new(gpu: &Gpu) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         if !gpu.has_timestamps() {
             return Ok(Self::wall(Some("the adapter lacks the feature TIMESTAMP_QUERY".into())));
         }
@@ -162,7 +162,7 @@ impl Clock {
         &self,
         gpu: &Gpu,
         encode: impl FnOnce(&mut wgpu::CommandEncoder, Span<'_>),
-    ) -> Result<Reading, Error> {
+    ) -> Result<Reading, GpuError> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encode(&mut encoder, self.stamps.as_ref().map_or(Span::NONE, |stamps| Span(Some(&stamps.queries))));
         if let Some(stamps) = &self.stamps {
@@ -207,8 +207,8 @@ impl Stamps {
         }
     }
 
-    fn read(&self, gpu: &Gpu) -> Result<[u64; 2], Error> {
-        let failed = |message: String| Error::Device(message);
+    fn read(&self, gpu: &Gpu) -> Result<[u64; 2], GpuError> {
+        let failed = |message: String| GpuError::Device(message);
         self.staging.map_async(wgpu::MapMode::Read, .., |_| {});
         gpu.wait()?;
         let ticks = {

@@ -24,12 +24,12 @@ mod forbidden;
 mod items;
 mod template;
 
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::rung::{Asked, Rung, lower};
 use crate::shaders::{Shaders, validate_lowered};
 use items::{Item, reached, split};
 use lightmeter_scene::effects::{Effect, Effects};
-pub use lightmeter_scene::stage::Stage;
+pub use lightmeter_scene::stage::Intermediate;
 use naga::valid::ModuleInfo;
 use std::collections::BTreeMap;
 use template::{Template, Wanted};
@@ -115,7 +115,7 @@ pub struct Recipe {
     /// How much of the effects a shader holds.
     pub shader: Shader,
     /// The intermediate result that is drawn in place of the colour.
-    pub stage: Option<Stage>,
+    pub stage: Option<Intermediate>,
     /// The arithmetic.
     pub rung: Rung,
     /// What is computed where.
@@ -131,20 +131,20 @@ impl Recipe {
 
     /// An intermediate result.
     #[must_use]
-    pub const fn stage(stage: Stage) -> Self {
+    pub const fn stage(stage: Intermediate) -> Self {
         Self { stage: Some(stage), ..Self::of(Shader::Composed) }
     }
 }
 
 /// Whether no surface colour is known yet.
-const fn is_before_surface(stage: Stage) -> bool {
-    !matches!(stage, Stage::Surface | Stage::Fog)
+const fn is_before_surface(stage: Intermediate) -> bool {
+    !matches!(stage, Intermediate::Surface | Intermediate::Fog)
 }
 
 /// The effects that a draw's result depends on: a texture in place of the colour leaves no use for light, and a stage
 /// none for what comes later, the alpha that a cutout reads excepted.
 #[must_use]
-pub fn live(effects: Effects, stage: Option<Stage>) -> Effects {
+pub fn live(effects: Effects, stage: Option<Intermediate>) -> Effects {
     use Effect as E;
     let ambient = [E::Emissive, E::AmbientProduct, E::AmbientConstant, E::LightAmbient, E::AttenuatedAmbient];
     let specular = [E::SpecularPhong, E::SpecularBlinn, E::SpecularUnnormalised];
@@ -161,7 +161,7 @@ pub fn live(effects: Effects, stage: Option<Stage>) -> Effects {
     let without = |from: Effects, gone: &[Effect]| gone.iter().fold(from, |from, &effect| from.without(effect));
 
     let mut live = effects;
-    if stage.is_some_and(|stage| stage != Stage::Fog) {
+    if stage.is_some_and(|stage| stage != Intermediate::Fog) {
         live = without(live, &fog);
     }
     if stage.is_some_and(is_before_surface) && !live.has(E::Cutout) {
@@ -172,11 +172,11 @@ pub fn live(effects: Effects, stage: Option<Stage>) -> Effects {
         live = live.without(E::VertexColor);
     }
     let (diffuse, highlights) = match stage {
-        Some(Stage::Position | Stage::Depth | Stage::Normal) => (false, false),
+        Some(Intermediate::Position | Intermediate::Depth | Intermediate::Normal) => (false, false),
         // Which lights are passed over depends on both, so that both are kept.
-        Some(Stage::Diffuse) => (true, effects.has_lights()),
-        Some(Stage::Specular) => (effects.has_lights(), true),
-        Some(Stage::Surface | Stage::Fog) | None => (!replaced, !replaced),
+        Some(Intermediate::Diffuse) => (true, effects.has_lights()),
+        Some(Intermediate::Specular) => (effects.has_lights(), true),
+        Some(Intermediate::Surface | Intermediate::Fog) | None => (!replaced, !replaced),
     };
     if !diffuse {
         live = without(without(live, &ambient), &[E::Diffuse]);
@@ -187,7 +187,7 @@ pub fn live(effects: Effects, stage: Option<Stage>) -> Effects {
     if !live.has_specular() {
         live = without(live, &[E::LocalViewer, E::Gate]);
     }
-    let keeps_normals = stage == Some(Stage::Normal) && effects.has_normals();
+    let keeps_normals = stage == Some(Intermediate::Normal) && effects.has_normals();
     if !live.has_normals() && !keeps_normals {
         live = live.without(E::InverseTranspose);
     }
@@ -226,12 +226,12 @@ impl Composition {
     ///
     /// # Errors
     /// naga's message, with the file and the line that the mistake is in.
-    pub fn validate(&self) -> Result<(naga::Module, ModuleInfo), Error> {
+    pub fn validate(&self) -> Result<(naga::Module, ModuleInfo), GpuError> {
         let invalid = |line: Option<u32>, message: String| {
             let origin = line.and_then(|line| self.origins.get((line as usize).checked_sub(1)?));
             let (file, line) = origin.cloned().unwrap_or_else(|| ("scene.wgsl".into(), 1));
             let message = format!("{file}:{line}, in the shader of: {}\n{message}", self.effects);
-            Error::Shader { file, message }
+            GpuError::Shader { file, message }
         };
         let module = naga::front::wgsl::parse_str(&self.source).map_err(|error| {
             let line = error.location(&self.source).map(|at| at.line_number);
@@ -266,7 +266,7 @@ impl Composer {
     ///
     /// # Errors
     /// Where a directing line cannot be read, with the file and the line.
-    pub fn new(shaders: &Shaders) -> Result<Self, Error> {
+    pub fn new(shaders: &Shaders) -> Result<Self, GpuError> {
         let mut families = vec![];
         for file in FAMILIES {
             families.extend(split(template::lines(file, shaders.text(file))));
@@ -283,7 +283,7 @@ impl Composer {
     ///
     /// # Panics
     /// Where a stage or a technique is asked of [`Shader::Full`], or more vectors than [`MOST_TOWARD`] are interpolated.
-    pub fn compose(&self, effects: Effects, recipe: Recipe, toward: usize) -> Result<Composition, Error> {
+    pub fn compose(&self, effects: Effects, recipe: Recipe, toward: usize) -> Result<Composition, GpuError> {
         let Recipe { shader, stage, technique, .. } = recipe;
         assert!(shader == Shader::Composed || stage.is_none(), "the full shader has no stages");
         assert!(shader == Shader::Composed || technique == Technique::Plain, "the full shader has no techniques");
@@ -313,8 +313,8 @@ impl Composer {
     /// A shader in a rung's arithmetic: see [`crate::Rung`].
     ///
     /// # Errors
-    /// [`Error::Unavailable`] where there is no such, with the reason.
-    pub(crate) fn lower(&self, composition: &Composition, rung: Rung) -> Result<String, Error> {
+    /// [`GpuError::Unavailable`] where there is no such, with the reason.
+    pub(crate) fn lower(&self, composition: &Composition, rung: Rung) -> Result<String, GpuError> {
         if rung == Rung::F32 {
             return Ok(composition.source.clone());
         }
@@ -326,7 +326,8 @@ impl Composer {
                 source.extend(item.lines.iter().flat_map(|line| [line.text.as_str(), "\n"]));
             }
         }
-        let unavailable = |reason| Error::Unavailable { what: format!("a scene's shader in {}", rung.name()), reason };
+        let unavailable =
+            |reason| GpuError::Unavailable { what: format!("a scene's shader in {}", rung.name()), reason };
         let lowered = lower(&source, rung, &self.forms, Asked::Module).map_err(unavailable)?;
         validate_lowered("scene.wgsl", &lowered.source)?;
         Ok(lowered.source)
@@ -336,7 +337,7 @@ impl Composer {
     ///
     /// # Errors
     /// The first mistake.
-    pub fn check(&self) -> Result<(), Error> {
+    pub fn check(&self) -> Result<(), GpuError> {
         for effects in covering() {
             for technique in Technique::ALL.into_iter().filter(|technique| technique.concerns(live(effects, None))) {
                 let recipe = Recipe { technique, ..Recipe::of(Shader::Composed) };

@@ -2,7 +2,7 @@
 
 use crate::arithmetic::read_target;
 use crate::device::{Gpu, middle};
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::raster::{draw_screen, screen_pipeline};
 use crate::readback::Pending;
 use crate::shaders::Shaders;
@@ -33,7 +33,7 @@ impl DepthUnit {
     ///
     /// # Errors
     /// Where a shader is invalid or the device refuses a pipeline.
-    pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, GpuError> {
         let module = gpu.module(FILE, shaders.source(FILE));
         let always = DepthTest { compare: Compare::Always, write: true };
         let first = pipeline(gpu, &module, ("unit_old", "unit_first"), always);
@@ -46,7 +46,7 @@ impl DepthUnit {
     ///
     /// # Errors
     /// Where the device refuses a pipeline.
-    pub fn submit(&mut self, gpu: &Gpu, tests: &[DepthTest], rows: &[f32]) -> Result<Pending, Error> {
+    pub fn submit(&mut self, gpu: &Gpu, tests: &[DepthTest], rows: &[f32]) -> Result<Pending, GpuError> {
         for test in tests {
             let module = &self.module;
             self.seconds.entry(*test).or_insert_with(|| pipeline(gpu, module, ("unit_new", "unit_second"), *test));

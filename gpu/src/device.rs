@@ -1,6 +1,6 @@
 //! One open device and what all evaluations on it share.
 
-use crate::error::Error;
+use crate::error::GpuError;
 use lightmeter_scene::target::TargetFormat;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -22,7 +22,7 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    pub(crate) fn open(name: &str, adapter: &wgpu::Adapter) -> Result<Self, Error> {
+    pub(crate) fn open(name: &str, adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let wanted = wgpu::Features::FLOAT32_BLENDABLE
             | wgpu::Features::DUAL_SOURCE_BLENDING
             | wgpu::Features::TIMESTAMP_QUERY
@@ -36,7 +36,7 @@ impl Gpu {
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
-            .map_err(|error| Error::Open { adapter: name.into(), message: error.to_string() })?;
+            .map_err(|error| GpuError::Open { adapter: name.into(), message: error.to_string() })?;
         let failure = Arc::new(Mutex::new(None));
         let (on_error, on_lost) = (failure.clone(), failure.clone());
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&on_error, error.to_string())));
@@ -73,7 +73,7 @@ impl Gpu {
     ///
     /// # Errors
     /// Where the driver gives none.
-    pub fn sibling(&self) -> Result<Self, Error> {
+    pub fn sibling(&self) -> Result<Self, GpuError> {
         Self::open(&self.name, &self.adapter)
     }
 
@@ -85,35 +85,35 @@ impl Gpu {
     }
 
     /// The first error that the device reported since the last time this was asked.
-    pub(crate) fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
         let failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
-        failure.map_or(Ok(()), |message| Err(Error::Device(message)))
+        failure.map_or(Ok(()), |message| Err(GpuError::Device(message)))
     }
 
     /// The same after a shader was compiled: what the device says then is of the shader.
-    pub(crate) fn check_shader(&self, file: &str) -> Result<(), Error> {
+    pub(crate) fn check_shader(&self, file: &str) -> Result<(), GpuError> {
         self.check().map_err(|error| match error {
-            Error::Device(message) if !message.contains("lost") => Error::Shader { file: file.into(), message },
+            GpuError::Device(message) if !message.contains("lost") => GpuError::Shader { file: file.into(), message },
             other => other,
         })
     }
 
     /// Waits until everything submitted is done, but not for ever: an edited shader may loop.
-    pub(crate) fn wait(&self) -> Result<(), Error> {
+    pub(crate) fn wait(&self) -> Result<(), GpuError> {
         self.wait_until(None)
     }
 
     /// The same until a submission is done, whatever came after it.
-    pub(crate) fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<(), Error> {
+    pub(crate) fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
         self.wait_until(Some(submission))
     }
 
-    fn wait_until(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), Error> {
+    fn wait_until(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), GpuError> {
         let wait = wgpu::PollType::Wait { submission_index, timeout: Some(PATIENCE) };
         match self.device.poll(wait) {
             Ok(_) => self.check(),
-            Err(wgpu::PollError::Timeout) => Err(Error::Timeout(PATIENCE.as_secs())),
-            Err(error) => Err(Error::Device(error.to_string())),
+            Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout(PATIENCE.as_secs())),
+            Err(error) => Err(GpuError::Device(error.to_string())),
         }
     }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// An error of the GPU's side: of a shader, of an adapter, or of the device.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum GpuError {
     /// A shader does not parse or does not validate.
     #[error("invalid shader {file}:\n{message}")]
     Shader {

@@ -1,6 +1,6 @@
 //! A WGSL function as something to evaluate on rows of numbers: its signature read by naga, its entry points written here.
 
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::rung::{Asked, Dialect, Lowered, Rung, Shape, lower, rung_struct};
 use crate::shaders::{Shaders, validate, validate_lowered};
 use crate::sweep::{SWEEP_GROUP, SWEEP_WIDTH};
@@ -33,7 +33,7 @@ impl Kernel {
     ///
     /// # Errors
     /// Where the file is invalid, has no such function, or one whose types cannot be read from numbers.
-    pub fn new(shaders: &Shaders, file: &str, function: &str) -> Result<Self, Error> {
+    pub fn new(shaders: &Shaders, file: &str, function: &str) -> Result<Self, GpuError> {
         let signature = Signature::read(shaders, file, function, row_word, Rung::F32)?;
         let (fields, call) = (signature.words(), &signature.call);
         let Signature { inputs, selectors, .. } = signature;
@@ -54,7 +54,7 @@ impl Kernel {
     }
 
     /// The function with entry points that evaluate one of its outputs along one of its inputs: see [`crate::Sweep`].
-    pub(crate) fn sweep(&self, shaders: &Shaders, free: usize, output: usize) -> Result<String, Error> {
+    pub(crate) fn sweep(&self, shaders: &Shaders, free: usize, output: usize) -> Result<String, GpuError> {
         let word = |k: usize| if k == free { "lightmeter_free".into() } else { format!("lightmeter_row[{k}u]") };
         let signature = Signature::read(shaders, &self.file, &self.function, word, Rung::F32)?;
         let entries = sweep_entries(&signature.call, self.inputs, &signature.words()[output]);
@@ -66,7 +66,7 @@ impl Kernel {
     /// The function with an entry point that evaluates it many times over, in a rung's arithmetic: see
     /// [`crate::RepeatPipeline`]. Inputs are numbers of f32; an output is handed back in [`Rung::parts`] words. `Ok(Err(reason))`
     /// where it is unavailable there.
-    pub(crate) fn repeat(&self, shaders: &Shaders, rung: Rung) -> Result<Result<String, String>, Error> {
+    pub(crate) fn repeat(&self, shaders: &Shaders, rung: Rung) -> Result<Result<String, String>, GpuError> {
         let source = shaders.source(&self.file);
         let lowered = if rung == Rung::F32 {
             Ok(Lowered { source, root: self.function.clone() })
@@ -186,12 +186,12 @@ impl Signature {
         function: &str,
         word: impl Fn(usize) -> String,
         rung: Rung,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, GpuError> {
         let module = shaders.parse(file)?;
-        let missing = || Error::MissingFunction { file: file.into(), function: function.into() };
+        let missing = || GpuError::MissingFunction { file: file.into(), function: function.into() };
         let (_, found) =
             module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function)).ok_or_else(missing)?;
-        let unsupported = |found: String| Error::Signature { file: file.into(), function: function.into(), found };
+        let unsupported = |found: String| GpuError::Signature { file: file.into(), function: function.into(), found };
 
         let (mut inputs, mut selectors, mut arguments) = (0, 0, vec![]);
         for argument in &found.arguments {

@@ -22,12 +22,12 @@ mod shaders;
 mod sweep;
 
 pub use adapters::{Adapter, adapters, vulkan_adapters};
-pub use arithmetic::{ArithmeticPipeline, Stage};
+pub use arithmetic::{ArithmeticPipeline, Programmable};
 pub use blend_unit::{Batch, BlendUnit, Draw};
 pub use clock::{Clock, ClockKind, Reading};
 pub use depth_unit::{DEPTH_OUTPUTS, DepthUnit};
 pub use device::Gpu;
-pub use error::Error;
+pub use error::GpuError;
 pub use kernel::Kernel;
 pub use raster::RasterPipeline;
 pub use readback::Pending;

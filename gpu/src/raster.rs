@@ -3,7 +3,7 @@
 use crate::arithmetic::{bind, cleared, read_target};
 use crate::depth_unit::compare_function;
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::readback::Pending;
 use crate::shaders::Shaders;
 use lightmeter_scene::depth::Compare;
@@ -32,7 +32,7 @@ impl RasterPipeline {
     ///
     /// # Errors
     /// Where a shader is invalid or the device refuses the pipeline.
-    pub fn new(gpu: &Gpu, shaders: &Shaders, kind: Raster) -> Result<Result<Self, &'static str>, Error> {
+    pub fn new(gpu: &Gpu, shaders: &Shaders, kind: Raster) -> Result<Result<Self, &'static str>, GpuError> {
         if let Some(reason) = gpu.lacks_storage(true) {
             return Ok(Err(reason));
         }

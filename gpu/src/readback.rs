@@ -1,7 +1,7 @@
 //! Results on their way back from the device.
 
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 use std::sync::mpsc;
 
 /// A result that the device is still working on.
@@ -36,7 +36,7 @@ impl Pending {
     ///
     /// # Errors
     /// Where the device failed or was lost.
-    pub(crate) fn wait_bytes(self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
+    pub(crate) fn wait_bytes(self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
         let bytes = self.bytes;
         let words = self.wait(gpu)?;
         Ok(bytemuck::cast_slice(&words)[..bytes].to_vec())
@@ -46,14 +46,14 @@ impl Pending {
     ///
     /// # Errors
     /// Where the device failed or was lost.
-    pub fn wait(self, gpu: &Gpu) -> Result<Vec<u32>, Error> {
+    pub fn wait(self, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
         gpu.wait()?;
         match self.mapped.recv() {
             Ok(Ok(())) => {}
-            Ok(Err(error)) => return Err(Error::Device(error.to_string())),
-            Err(error) => return Err(Error::Device(error.to_string())),
+            Ok(Err(error)) => return Err(GpuError::Device(error.to_string())),
+            Err(error) => return Err(GpuError::Device(error.to_string())),
         }
-        let view = self.buffer.get_mapped_range(..).map_err(|error| Error::Device(error.to_string()))?;
+        let view = self.buffer.get_mapped_range(..).map_err(|error| GpuError::Device(error.to_string()))?;
         let words: &[u32] = bytemuck::cast_slice(&view);
         let (stride, kept) = self.row;
         Ok(words.chunks_exact(stride).flat_map(|row| &row[..kept]).copied().collect())

@@ -5,7 +5,7 @@
 use crate::arithmetic::bind;
 use crate::clock::{Clock, Reading};
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::kernel::Kernel;
 use crate::readback::{Pending, staging};
 use crate::rung::Rung;
@@ -44,7 +44,7 @@ impl RepeatPipeline {
         kernel: &Kernel,
         rung: Rung,
         rows: &[f32],
-    ) -> Result<Result<Self, String>, Error> {
+    ) -> Result<Result<Self, String>, GpuError> {
         if let Some(reason) = rung.lacks(gpu) {
             return Ok(Err(reason.into()));
         }
@@ -58,7 +58,7 @@ impl RepeatPipeline {
     ///
     /// # Errors
     /// Where the device refuses the pipeline.
-    pub fn idle(gpu: &Gpu, kernel: &Kernel, rows: &[f32]) -> Result<Result<Self, String>, Error> {
+    pub fn idle(gpu: &Gpu, kernel: &Kernel, rows: &[f32]) -> Result<Result<Self, String>, GpuError> {
         Self::of(gpu, kernel, kernel.idle(), rows, 0)
     }
 
@@ -68,7 +68,7 @@ impl RepeatPipeline {
         source: String,
         rows: &[f32],
         words: usize,
-    ) -> Result<Result<Self, String>, Error> {
+    ) -> Result<Result<Self, String>, GpuError> {
         if let Some(reason) = gpu.lacks_compute() {
             return Ok(Err(reason.into()));
         }
@@ -91,7 +91,7 @@ impl RepeatPipeline {
     ///
     /// # Errors
     /// Where the device failed or was lost.
-    pub fn outputs(&self, gpu: &Gpu, rows: &[f32]) -> Result<Vec<u32>, Error> {
+    pub fn outputs(&self, gpu: &Gpu, rows: &[f32]) -> Result<Vec<u32>, GpuError> {
         let (stride, count) = (self.words + 1, rows.len() / self.inputs);
         let rows = gpu.buffer(bytemuck::cast_slice(rows), wgpu::BufferUsages::STORAGE);
         let (results, bindings) = self.bindings(gpu, &rows, count * stride);
@@ -107,7 +107,7 @@ impl RepeatPipeline {
     ///
     /// # Errors
     /// Where the device fails.
-    pub fn time(&self, gpu: &Gpu, clock: &Clock, groups: u32) -> Result<Reading, Error> {
+    pub fn time(&self, gpu: &Gpu, clock: &Clock, groups: u32) -> Result<Reading, GpuError> {
         let (_, bindings) = self.bindings(gpu, &self.rows, self.words + 1);
         clock.time(gpu, |encoder, span| self.encode(encoder, span.compute(), &bindings, groups))
     }

@@ -7,7 +7,7 @@ mod probe;
 mod widen;
 
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 pub(crate) use dialect::{Dialect, Shape};
 pub(crate) use lower::{Asked, Lowered, lower, rung_struct};
 
@@ -83,7 +83,7 @@ impl Rung {
     ///
     /// # Errors
     /// Where the device fails.
-    pub fn unavailable(self, gpu: &Gpu) -> Result<Option<String>, Error> {
+    pub fn unavailable(self, gpu: &Gpu) -> Result<Option<String>, GpuError> {
         match self.lacks(gpu) {
             Some(reason) => Ok(Some(reason.into())),
             None => probe::probe(self, gpu),

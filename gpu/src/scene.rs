@@ -9,9 +9,9 @@ mod uniforms;
 
 use crate::blend_unit::format;
 use crate::clock::{Clock, Reading};
-use crate::compose::{Composer, MOST_TOWARD, Recipe, Shader, Stage, Technique, live};
+use crate::compose::{Composer, Intermediate, MOST_TOWARD, Recipe, Shader, Technique, live};
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::readback::{Pending, staging};
 use crate::shaders::Shaders;
 use geometry::Geometry;
@@ -57,19 +57,19 @@ impl SceneRenderer {
     /// target is rgba32float and 0 where nothing is drawn, nothing is blended, and fragments give that intermediate result.
     ///
     /// # Errors
-    /// [`Error::Unavailable`] where a shader is, in the arithmetic that is asked for, or the device lacks what that takes.
+    /// [`GpuError::Unavailable`] where a shader is, in the arithmetic that is asked for, or the device lacks what that takes.
     /// Where the sets are not one a draw, the frame has no use for the technique, a blend state has no factor on the unit, a
     /// shader is invalid, or the device refuses a pipeline.
     ///
     /// # Panics
     /// Where a stage is asked of [`Shader::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
-    pub fn new(gpu: &Gpu, shaders: &Shaders, frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, shaders: &Shaders, frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<Self, GpuError> {
         let stage = recipe.stage;
         if sets.len() != frame.draws.len() {
-            return Err(Error::Sets { draws: frame.draws.len(), sets: sets.len() });
+            return Err(GpuError::Sets { draws: frame.draws.len(), sets: sets.len() });
         }
         if let Some(reason) = recipe.rung.lacks(gpu) {
-            return Err(Error::Unavailable { what: recipe.rung.name().into(), reason: reason.into() });
+            return Err(GpuError::Unavailable { what: recipe.rung.name().into(), reason: reason.into() });
         }
         check_technique(frame, sets, recipe)?;
         let composer = Composer::new(shaders)?;
@@ -94,7 +94,7 @@ impl SceneRenderer {
                 .bindings
                 .iter()
                 .map(|(binding, name)| Ok((*binding, resource(&told, name, &mut packer)?)))
-                .collect::<Result<_, Error>>()?;
+                .collect::<Result<_, GpuError>>()?;
             prepared.push((pipeline, program, resources, blend.map(|(_, constant)| constant)));
         }
         let uniforms = packer.finish(gpu);
@@ -147,7 +147,7 @@ impl SceneRenderer {
     ///
     /// # Errors
     /// Where the device failed or was lost.
-    pub fn pixels(gpu: &Gpu, pending: Pending) -> Result<Vec<u8>, Error> {
+    pub fn pixels(gpu: &Gpu, pending: Pending) -> Result<Vec<u8>, GpuError> {
         Ok(bytemuck::cast_slice(&pending.wait(gpu)?).to_vec())
     }
 
@@ -156,7 +156,7 @@ impl SceneRenderer {
     ///
     /// # Errors
     /// Where the device failed or was lost.
-    pub fn time(&self, gpu: &Gpu, clock: &Clock, repeats: u32) -> Result<Reading, Error> {
+    pub fn time(&self, gpu: &Gpu, clock: &Clock, repeats: u32) -> Result<Reading, GpuError> {
         clock.time(gpu, |encoder, span| {
             for k in 0..repeats {
                 self.encode(encoder, span.render(k == 0, k + 1 == repeats));
@@ -214,9 +214,9 @@ fn toward(frame: &Frame, called: &Called, recipe: Recipe) -> usize {
 }
 
 /// Whether some draw has use for the technique, and none is more than it can do.
-fn check_technique(frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<(), Error> {
+fn check_technique(frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<(), GpuError> {
     let technique = recipe.technique;
-    let refused = |reason: String| Err(Error::Technique { technique: technique.name(), reason });
+    let refused = |reason: String| Err(GpuError::Technique { technique: technique.name(), reason });
     if technique == Technique::Plain {
         return Ok(());
     }

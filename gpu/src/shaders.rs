@@ -1,7 +1,7 @@
 //! The WGSL files: built in, or read from a folder; composed, parsed and validated.
 
 use crate::compose::Composer;
-use crate::error::Error;
+use crate::error::GpuError;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -62,7 +62,7 @@ impl Shaders {
     ///
     /// # Errors
     /// Where one of them is invalid, which a test rules out.
-    pub fn built_in() -> Result<Self, Error> {
+    pub fn built_in() -> Result<Self, GpuError> {
         Self::validated(every_file().map(|(name, text)| (name.into(), text.into())).collect())
     }
 
@@ -70,7 +70,7 @@ impl Shaders {
     ///
     /// # Errors
     /// Where the folder cannot be read, holds no WGSL, holds a file of an unknown name, or one that is invalid.
-    pub fn from_dir(dir: &Path) -> Result<Self, Error> {
+    pub fn from_dir(dir: &Path) -> Result<Self, GpuError> {
         let mut files = Self::built_in()?.files;
         let effects = dir.join("effects");
         let mut replaced = replace(&mut files, dir, "")?;
@@ -79,12 +79,12 @@ impl Shaders {
         }
         if replaced == 0 {
             let message = "no .wgsl file there; copy gpu/src/shaders and edit the copy";
-            return Err(Error::Unreadable { path: dir.into(), message: message.into() });
+            return Err(GpuError::Unreadable { path: dir.into(), message: message.into() });
         }
         Self::validated(files)
     }
 
-    fn validated(files: BTreeMap<String, String>) -> Result<Self, Error> {
+    fn validated(files: BTreeMap<String, String>) -> Result<Self, GpuError> {
         let shaders = Self { files };
         // A file is reported before those that require it.
         let mut order: Vec<&str> = FILES.into_iter().map(|(name, _)| name).collect();
@@ -156,12 +156,12 @@ impl Shaders {
     ///
     /// # Errors
     /// naga's message, with the line.
-    pub fn parse(&self, file: &str) -> Result<naga::Module, Error> {
+    pub fn parse(&self, file: &str) -> Result<naga::Module, GpuError> {
         let module = validate(file, &self.source(file))?;
         let entries = ENTRY_POINTS.iter().filter(|(of, _)| *of == file).flat_map(|(_, names)| names.iter());
         for name in entries {
             if !module.entry_points.iter().any(|entry| entry.name == *name) {
-                return Err(Error::MissingFunction { file: file.into(), function: (*name).into() });
+                return Err(GpuError::MissingFunction { file: file.into(), function: (*name).into() });
             }
         }
         Ok(module)
@@ -197,8 +197,8 @@ const ENTRY_POINTS: [(&str, &[&str]); 4] = [
 ];
 
 /// Parses and validates WGSL that begins with a file's own text.
-pub(crate) fn validate(file: &str, source: &str) -> Result<naga::Module, Error> {
-    let invalid = |message: String| Error::Shader { file: file.into(), message };
+pub(crate) fn validate(file: &str, source: &str) -> Result<naga::Module, GpuError> {
+    let invalid = |message: String| GpuError::Shader { file: file.into(), message };
     let module =
         naga::front::wgsl::parse_str(source).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
     validator().validate(&module).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
@@ -206,8 +206,8 @@ pub(crate) fn validate(file: &str, source: &str) -> Result<naga::Module, Error> 
 }
 
 /// The same of a text in another arithmetic.
-pub(crate) fn validate_lowered(file: &str, source: &str) -> Result<naga::Module, Error> {
-    let invalid = |message: String| Error::Shader { file: file.into(), message };
+pub(crate) fn validate_lowered(file: &str, source: &str) -> Result<naga::Module, GpuError> {
+    let invalid = |message: String| GpuError::Shader { file: file.into(), message };
     let module =
         naga::front::wgsl::parse_str(source).map_err(|error| invalid(error.emit_to_string_with_path(source, file)))?;
     let capabilities = Capabilities::FLOAT64 | Capabilities::SHADER_FLOAT16 | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
@@ -227,8 +227,8 @@ fn every_file() -> impl Iterator<Item = (&'static str, &'static str)> {
 }
 
 /// Puts a folder's files in the place of those of the same name, and says how many.
-fn replace(files: &mut BTreeMap<String, String>, dir: &Path, prefix: &str) -> Result<usize, Error> {
-    let unreadable = |path: &Path, message: String| Error::Unreadable { path: path.into(), message };
+fn replace(files: &mut BTreeMap<String, String>, dir: &Path, prefix: &str) -> Result<usize, GpuError> {
+    let unreadable = |path: &Path, message: String| GpuError::Unreadable { path: path.into(), message };
     let mut replaced = 0;
     let entries = std::fs::read_dir(dir).map_err(|error| unreadable(dir, error.to_string()))?;
     for entry in entries {

@@ -4,9 +4,9 @@
 //! Floats are numbered in their order by [`key_of`](lightmeter_scene::along::key_of); −0 comes right before 0 and both are there. A device is told where a block
 //! begins and how long it is, and makes the inputs itself. Buffers are made once.
 
-use crate::arithmetic::{Stage, bind, cleared, compute_pipeline, render_pipeline};
+use crate::arithmetic::{Programmable, bind, cleared, compute_pipeline, render_pipeline};
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::kernel::Kernel;
 use crate::readback::staging;
 use crate::shaders::Shaders;
@@ -76,16 +76,16 @@ impl Sweep {
         gpu: &Gpu,
         shaders: &Shaders,
         kernel: &Kernel,
-        stage: Stage,
+        stage: Programmable,
         along: Along<'_>,
         capacity: usize,
-    ) -> Result<Result<Self, &'static str>, Error> {
+    ) -> Result<Result<Self, &'static str>, GpuError> {
         assert_eq!(along.row.len(), kernel.inputs, "the row is not of {} numbers", kernel.inputs);
         assert!((kernel.selectors..kernel.inputs).contains(&along.free), "number {} is no input", along.free);
         assert!(along.output < kernel.outputs, "number {} is no output", along.output);
         let lacking = match stage {
-            Stage::Compute => gpu.lacks_compute(),
-            Stage::Fragment => gpu.lacks_storage(false),
+            Programmable::Compute => gpu.lacks_compute(),
+            Programmable::Fragment => gpu.lacks_storage(false),
         };
         if let Some(reason) = lacking {
             return Ok(Err(reason));
@@ -93,8 +93,8 @@ impl Sweep {
         let capacity = capacity.next_multiple_of(SWEEP_WIDTH as usize);
         let (label, source) = (&kernel.function, kernel.sweep(shaders, along.free, along.output)?);
         let pipeline = match stage {
-            Stage::Compute => Pipeline::Compute(compute_pipeline(gpu, label, source, "lightmeter_sweep")),
-            Stage::Fragment => Pipeline::Fragment(render_pipeline(gpu, label, source, &[BITS])),
+            Programmable::Compute => Pipeline::Compute(compute_pipeline(gpu, label, source, "lightmeter_sweep")),
+            Programmable::Fragment => Pipeline::Fragment(render_pipeline(gpu, label, source, &[BITS])),
         };
         gpu.check_shader(&kernel.file)?;
         let row = gpu.buffer(bytemuck::cast_slice(along.row), wgpu::BufferUsages::STORAGE);
@@ -169,16 +169,16 @@ impl Sweep {
     ///
     /// # Errors
     /// Where the device failed or was lost.
-    pub fn read<T>(&self, gpu: &Gpu, block: Block, then: impl FnOnce(&[u32]) -> T) -> Result<T, Error> {
+    pub fn read<T>(&self, gpu: &Gpu, block: Block, then: impl FnOnce(&[u32]) -> T) -> Result<T, GpuError> {
         gpu.wait_for(block.submission)?;
         match block.mapped.recv() {
             Ok(Ok(())) => {}
-            Ok(Err(error)) => return Err(Error::Device(error.to_string())),
-            Err(error) => return Err(Error::Device(error.to_string())),
+            Ok(Err(error)) => return Err(GpuError::Device(error.to_string())),
+            Err(error) => return Err(GpuError::Device(error.to_string())),
         }
         let staging = &self.slots[block.slot].staging;
         let result = {
-            let view = staging.get_mapped_range(..).map_err(|error| Error::Device(error.to_string()))?;
+            let view = staging.get_mapped_range(..).map_err(|error| GpuError::Device(error.to_string()))?;
             let words: &[u32] = bytemuck::cast_slice(&view);
             then(&words[..block.count])
         };

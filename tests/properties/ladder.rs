@@ -11,7 +11,7 @@ const ROWS: u64 = 64;
 /// The values of a formula's outputs in a rung's arithmetic, row after row; `None` where it is unavailable.
 fn values(gpu: &Gpu, shaders: &Shaders, member: &Member, rung: Rung, rows: &[Vec<f32>]) -> Result<Vec<f64>, String> {
     let file = format!("{}.wgsl", member.spec.family());
-    let failed = |error: lightmeter_gpu::Error| panic!("{} at {}: {error}", member.spec.id, rung.name());
+    let failed = |error: lightmeter_gpu::GpuError| panic!("{} at {}: {error}", member.spec.id, rung.name());
     let kernel = Kernel::new(shaders, &file, member.spec.function).unwrap_or_else(failed);
     let selectors = member.spec.selectors.iter().map(|&code| f32::from_bits(code));
     let given: Vec<f32> = rows.iter().flat_map(|row| selectors.clone().chain(row.iter().copied())).collect();

@@ -7,7 +7,7 @@ use super::errors::Gathered;
 use super::turns::{self, Entry, Laps};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::select::{CaseRef, Member};
-use lightmeter_gpu::{Clock, Error, Gpu, Kernel, Reading, RepeatPipeline, Rung};
+use lightmeter_gpu::{Clock, Gpu, GpuError, Kernel, Reading, RepeatPipeline, Rung};
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_subject_gpu::kernel;
 use rayon::prelude::*;
@@ -183,7 +183,7 @@ pub(super) fn contest(
     sample: &Sample<'_>,
     contenders: &[Contender<'_>],
     baseline: &str,
-) -> Result<(Vec<Row>, String), Error> {
+) -> Result<(Vec<Row>, String), GpuError> {
     let exact = sample.references(None);
     let mut rows: Vec<Row> = contenders.iter().map(blank).collect();
     let (mut compiled, mut idle) = (vec![], None);
@@ -262,7 +262,7 @@ fn compile(
     rung: Rung,
     timed: &[f32],
     selected: &[f32],
-) -> Result<Result<Compiled, String>, Error> {
+) -> Result<Result<Compiled, String>, GpuError> {
     let start = Instant::now();
     let pipeline = match RepeatPipeline::new(gpu, bench.shaders, kernel, rung, timed)? {
         Ok(pipeline) => pipeline,
@@ -279,7 +279,7 @@ fn compile(
 }
 
 /// A formula in f32, ready to be timed over random rows; `None` where the adapter has no compute stage.
-pub(super) fn timed(bench: &Bench<'_>, gpu: &Gpu, member: &Member) -> Result<Option<RepeatPipeline>, Error> {
+pub(super) fn timed(bench: &Bench<'_>, gpu: &Gpu, member: &Member) -> Result<Option<RepeatPipeline>, GpuError> {
     let Some(kernel) = kernel(bench.shaders, member)? else { return Ok(None) };
     let rows = Sample::new(&[member], TIMED_ROWS as u64, bench.setting.seed).selected();
     Ok(RepeatPipeline::new(gpu, bench.shaders, &kernel, Rung::F32, &rows)?.ok())
@@ -378,7 +378,7 @@ fn time_rows(
     idle: Option<&RepeatPipeline>,
     baseline: &str,
     rows: &mut [Row],
-) -> Result<Option<(f64, bool)>, Error> {
+) -> Result<Option<(f64, bool)>, GpuError> {
     let clock = &bench.clock;
     let (mut entries, mut places) = (vec![], vec![]);
     if let (Some(gpu), Some(idle)) = (bench.gpu, idle) {

@@ -6,7 +6,7 @@ use super::document::{Group, GroupKind, RungUse};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::Member;
-use lightmeter_gpu::{Error, Rung};
+use lightmeter_gpu::{GpuError, Rung};
 
 /// What a rung is, in a line.
 pub(super) const fn what(rung: Rung) -> &'static str {
@@ -74,7 +74,7 @@ pub(super) fn groups(catalogue: &[Member]) -> Vec<(String, Vec<&Member>)> {
 }
 
 /// A formula at every rung.
-pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Result<Group, Error> {
+pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Result<Group, GpuError> {
     let sample = Sample::new(members, bench.setting.cases, bench.setting.seed);
     let mut contenders = on_device(bench.ladder, None, |rung| rung.name().into());
     contenders.extend(Arithmetic::ALL.into_iter().map(|arithmetic| Contender {

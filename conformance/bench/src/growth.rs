@@ -5,7 +5,7 @@ use super::document::{Scaling, ScalingPoint};
 use super::turns::{self, Effort, Entry};
 use super::{Bench, fit};
 use lightmeter_catalogue::select::catalogue;
-use lightmeter_gpu::{Error, RepeatPipeline};
+use lightmeter_gpu::{GpuError, RepeatPipeline};
 
 /// The formula that is evaluated.
 const FORMULA: &str = "lighting/blinn";
@@ -13,7 +13,7 @@ const FORMULA: &str = "lighting/blinn";
 const MOST: u32 = 1 << 13;
 
 /// Time against the number of evaluations in one submission.
-pub(super) fn cases(bench: &Bench<'_>) -> Result<Vec<Scaling>, Error> {
+pub(super) fn cases(bench: &Bench<'_>) -> Result<Vec<Scaling>, GpuError> {
     let Some(gpu) = bench.gpu else { return Ok(vec![]) };
     let catalogue = catalogue();
     let Some(member) = catalogue.iter().find(|member| member.spec.id == FORMULA) else { return Ok(vec![]) };

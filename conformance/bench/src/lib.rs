@@ -29,7 +29,7 @@ use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::select::{Member, catalogue};
 use lightmeter_engine::options::Progress;
 use lightmeter_engine::subject::Subject;
-use lightmeter_gpu::{Clock, ClockKind, Error, Gpu, Rung, Shaders};
+use lightmeter_gpu::{Clock, ClockKind, Gpu, GpuError, Rung, Shaders};
 use std::time::Instant;
 use turns::Effort;
 
@@ -116,11 +116,13 @@ const QUICK: [&str; 12] = [
 ///
 /// # Errors
 /// Where a shader is invalid or a device fails.
-pub fn bench(subjects: &[Subject], options: &Options, progress: &mut impl Progress) -> Result<Document, Error> {
+pub fn bench(subjects: &[Subject], options: &Options, progress: &mut impl Progress) -> Result<Document, GpuError> {
     let start = Instant::now();
     let setting = Setting::new(options.quick, options.seed);
-    let adapters =
-        subjects.iter().map(|subject| measured(subject, options, setting, progress)).collect::<Result<_, Error>>()?;
+    let adapters = subjects
+        .iter()
+        .map(|subject| measured(subject, options, setting, progress))
+        .collect::<Result<_, GpuError>>()?;
     Ok(Document {
         schema: SCHEMA.into(),
         command: options.command.clone(),
@@ -138,7 +140,7 @@ fn measured(
     options: &Options,
     setting: Setting,
     progress: &mut impl Progress,
-) -> Result<Measured, Error> {
+) -> Result<Measured, GpuError> {
     let catalogue = catalogue();
     let asked = Asked::new(options, &catalogue, ladder_of(subject)?);
     progress.start(setting.sittings as u64 * asked.count(subject));
@@ -243,7 +245,7 @@ fn sitting(
     asked: &Asked<'_>,
     use_wall: bool,
     progress: &mut impl Progress,
-) -> Result<Sitting, Error> {
+) -> Result<Sitting, GpuError> {
     let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
     // What computes and what draws have devices of their own: Mesa 22.3's llvmpipe loses the time of a dispatch once it has drawn.
     let [computes, draws] = [(); 2].map(|()| lightmeter_subject_gpu::gpu(subject).map(Gpu::sibling).transpose());
@@ -313,7 +315,7 @@ fn sitting(
 const QUICK_STABLE: [&str; 2] = ["vector/normalize-scaled", "lighting/cosine-power-by-chord"];
 
 /// The clock of a device, or the one that is asked for.
-fn clock(gpu: Option<&Gpu>, asked: Option<ClockKind>, use_wall: bool) -> Result<Clock, Error> {
+fn clock(gpu: Option<&Gpu>, asked: Option<ClockKind>, use_wall: bool) -> Result<Clock, GpuError> {
     match (gpu, asked) {
         _ if use_wall => Ok(Clock::wall(Some("every one of its timestamps was one that cannot be true".into()))),
         (None, _) => Ok(Clock::wall(Some("the embedded implementation has no device".into()))),
@@ -323,7 +325,7 @@ fn clock(gpu: Option<&Gpu>, asked: Option<ClockKind>, use_wall: bool) -> Result<
 }
 
 /// The rungs of a subject, each with the reason why it is not there.
-fn ladder_of(subject: &Subject) -> Result<Vec<(Rung, Option<String>)>, Error> {
+fn ladder_of(subject: &Subject) -> Result<Vec<(Rung, Option<String>)>, GpuError> {
     let of = |rung: Rung| match lightmeter_subject_gpu::gpu(subject) {
         None => Ok((rung, Some("the embedded implementation has no shaders".into()))),
         Some(gpu) => Ok((rung, rung.unavailable(gpu)?)),

@@ -25,7 +25,7 @@ use lightmeter_engine::options::Progress;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Clock, Error, Gpu, Reading, Rung, Shaders};
+use lightmeter_gpu::{Clock, Gpu, GpuError, Reading, Rung, Shaders};
 use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
@@ -78,7 +78,7 @@ pub fn scenes(
     ladder: &[(Rung, Option<String>)],
     names: &[&str],
     progress: &mut impl Progress,
-) -> Result<Vec<Group>, Error> {
+) -> Result<Vec<Group>, GpuError> {
     let size = if on.setting.quick { SIZE_QUICK } else { SIZE };
     let mut groups = vec![];
     for name in names {
@@ -110,7 +110,7 @@ pub fn scene(
     id: String,
     title: String,
     frame: Frame,
-) -> Result<Option<Group>, Error> {
+) -> Result<Option<Group>, GpuError> {
     let Some(drawer) = Drawer::new(on) else { return Ok(None) };
     let frame = widened(drawer.gpu, frame);
     let standard = drawer.standard(frame);
@@ -161,7 +161,7 @@ const fn what(rung: Rung) -> &'static str {
 type Draw = Box<dyn Fn(&Frame) + Send + Sync>;
 
 /// The reference renderer on one core, in turns of its own.
-fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result<Vec<Row>, Error> {
+fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result<Vec<Row>, GpuError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let (frame, profile) = (&standard.frame, drawer.profile);
     let kinds: [(&str, &str, Draw); 3] = [

@@ -2,14 +2,14 @@
 //! alike, and a ratio is of two times of the same turn. What is measured in a turn is the least of a few readings.
 
 use super::document::{Standing, Time};
-use lightmeter_gpu::{Error, Reading};
+use lightmeter_gpu::{GpuError, Reading};
 
 /// Something that is timed, and how much of it at once.
 pub struct Entry<'a> {
     /// The clock, as reports name it.
     clock: &'static str,
     /// Seconds of so much work at once.
-    run: Box<dyn FnMut(u32) -> Result<Reading, Error> + 'a>,
+    run: Box<dyn FnMut(u32) -> Result<Reading, GpuError> + 'a>,
     /// Units, in which times are given, of one of that.
     units: f64,
     /// The most at once.
@@ -38,13 +38,13 @@ impl<'a> Entry<'a> {
         clock: &'static str,
         units: f64,
         most: u32,
-        run: impl FnMut(u32) -> Result<Reading, Error> + 'a,
+        run: impl FnMut(u32) -> Result<Reading, GpuError> + 'a,
     ) -> Self {
         Self { clock, run: Box::new(run), units, most, amount: 1 }
     }
 
     /// Runs it until a measurement is long enough, so that it is warm, too.
-    fn calibrate(&mut self, seconds: f64) -> Result<(), Error> {
+    fn calibrate(&mut self, seconds: f64) -> Result<(), GpuError> {
         // The first time may compile.
         (self.run)(1)?;
         loop {
@@ -65,7 +65,7 @@ impl<'a> Entry<'a> {
     }
 
     /// The least of some readings: what else the machine does can only make one longer.
-    fn lap(&mut self, readings: usize) -> Result<Option<f64>, Error> {
+    fn lap(&mut self, readings: usize) -> Result<Option<f64>, GpuError> {
         let mut least: Option<f64> = None;
         for _ in 0..readings {
             if let Some(seconds) = (self.run)(self.amount)?.seconds() {
@@ -86,7 +86,7 @@ impl<'a> Entry<'a> {
 ///
 /// # Errors
 /// Where a device fails.
-pub fn measure(entries: &mut [Entry<'_>], effort: Effort) -> Result<Vec<Laps>, Error> {
+pub fn measure(entries: &mut [Entry<'_>], effort: Effort) -> Result<Vec<Laps>, GpuError> {
     for entry in entries.iter_mut() {
         entry.calibrate(effort.seconds)?;
     }

@@ -78,7 +78,7 @@ pub enum Picture {
     /// The colours, by the shader with all effects behind switches.
     Full,
     /// An intermediate result.
-    Intermediate(lightmeter_scene::stage::Stage),
+    Intermediate(lightmeter_scene::stage::Intermediate),
 }
 
 /// What the probes of special values gave on a device.

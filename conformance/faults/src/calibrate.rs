@@ -1,7 +1,7 @@
 //! The suite's resolution: for each parameter of each formula the smallest error that a run of 4,096 cases names, by a single
 //! verdict and by the group verdict.
 
-use super::group::{Design, Error, Parameter};
+use super::group::{Design, OffBy, Parameter};
 use super::selftest::Options;
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::Kind;
@@ -34,7 +34,7 @@ pub struct Resolution {
     /// Whether it is an output.
     pub is_output: bool,
     /// Relative or absolute.
-    pub error: Error,
+    pub error: OffBy,
     /// By a single verdict: some case leaves its interval.
     pub single: Option<f64>,
     /// By the group verdict.
@@ -118,8 +118,8 @@ impl<'a> Scale<'a> {
         #[expect(clippy::cast_possible_truncation, reason = "a renderer's own parameters are f32")]
         let wrong = |x: &mut f32| {
             *x = match parameter.error {
-                Error::Scale => (f64::from(*x) * (1.0 + amount)) as f32,
-                Error::Offset => (f64::from(*x) + amount) as f32,
+                OffBy::Scale => (f64::from(*x) * (1.0 + amount)) as f32,
+                OffBy::Offset => (f64::from(*x) + amount) as f32,
             };
         };
         let mut inputs = self.inputs[case].clone();

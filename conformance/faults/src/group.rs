@@ -12,14 +12,14 @@ use std::ops::Range;
 /// How a number is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Error {
+pub enum OffBy {
     /// A relative error: x(1 + δ).
     Scale,
     /// An absolute one: x + δ.
     Offset,
 }
 
-impl Error {
+impl OffBy {
     /// The name in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -36,7 +36,7 @@ pub(super) struct Parameter {
     pub(super) name: String,
     pub(super) is_output: bool,
     pub(super) range: Range<usize>,
-    pub(super) error: Error,
+    pub(super) error: OffBy,
 }
 
 impl Parameter {
@@ -59,7 +59,7 @@ pub struct Systematic {
     /// Whether it is an output.
     pub is_output: bool,
     /// Relatively or absolutely.
-    pub error: Error,
+    pub error: OffBy,
     /// By how much.
     pub amount: f64,
     /// How many standard errors that is.
@@ -93,20 +93,20 @@ const ROUNDS: usize = 4;
 /// The parameters of a formula: each input as a whole and each of its numbers, each output as a whole, scaled and moved.
 pub(super) fn parameters(spec: &Spec) -> Vec<Parameter> {
     let mut found = vec![];
-    let mut push = |name: &str, is_output: bool, range: Range<usize>, error: Error| {
+    let mut push = |name: &str, is_output: bool, range: Range<usize>, error: OffBy| {
         found.push(Parameter { name: name.into(), is_output, range, error });
     };
     let mut start = 0;
     for input in spec.inputs {
         let range = start..start + input.shape.components();
         start = range.end;
-        push(input.name, false, range.clone(), Error::Scale);
+        push(input.name, false, range.clone(), OffBy::Scale);
         if range.len() == 1 {
-            push(input.name, false, range, Error::Offset);
+            push(input.name, false, range, OffBy::Offset);
         } else {
             for number in range {
-                push(&spec.input_name(number), false, number..number + 1, Error::Scale);
-                push(&spec.input_name(number), false, number..number + 1, Error::Offset);
+                push(&spec.input_name(number), false, number..number + 1, OffBy::Scale);
+                push(&spec.input_name(number), false, number..number + 1, OffBy::Offset);
             }
         }
     }
@@ -114,8 +114,8 @@ pub(super) fn parameters(spec: &Spec) -> Vec<Parameter> {
     for output in spec.outputs {
         let range = start..start + output.shape.components();
         start = range.end;
-        push(output.name, true, range.clone(), Error::Scale);
-        push(output.name, true, range, Error::Offset);
+        push(output.name, true, range.clone(), OffBy::Scale);
+        push(output.name, true, range, OffBy::Offset);
     }
     found
 }
@@ -163,15 +163,15 @@ impl Design {
                     let slope = if parameter.is_output {
                         match (parameter.range.contains(&output), parameter.error) {
                             (false, _) => 0.0,
-                            (true, Error::Scale) => reference[output],
-                            (true, Error::Offset) => 1.0,
+                            (true, OffBy::Scale) => reference[output],
+                            (true, OffBy::Offset) => 1.0,
                         }
                     } else {
                         parameter
                             .range
                             .clone()
                             .map(|number| {
-                                let by = if parameter.error == Error::Scale { f64::from(row[number]) } else { 1.0 };
+                                let by = if parameter.error == OffBy::Scale { f64::from(row[number]) } else { 1.0 };
                                 if by == 0.0 { 0.0 } else { slopes[number][output].slope * by }
                             })
                             .sum()
@@ -313,11 +313,11 @@ fn limit(derivatives: &[f32]) -> Option<f64> {
 fn says(parameter: &Parameter, amount: f64) -> String {
     let name = &parameter.name;
     match parameter.error {
-        Error::Scale => {
+        OffBy::Scale => {
             let way = if amount < 0.0 { "smaller" } else { "larger" };
             format!("as if {name} were {} % {way}", digits(100.0 * amount.abs(), 2))
         }
-        Error::Offset => {
+        OffBy::Offset => {
             let way = if amount < 0.0 { "less" } else { "more" };
             format!("as if {name} were {} {way}", digits(amount.abs(), 2))
         }
@@ -381,7 +381,7 @@ mod tests {
         };
         assert_eq!(verdict(&answers(&|_| {})), None);
         let named = verdict(&answers(&|row| row[3] *= 1.000_003)).expect("a systematic error");
-        assert_eq!((named.parameter.as_str(), named.error), ("density", Error::Scale), "{named:?}");
+        assert_eq!((named.parameter.as_str(), named.error), ("density", OffBy::Scale), "{named:?}");
         assert!((named.amount - 3e-6).abs() < 3e-7 && named.says.contains("density"), "{named:?}");
         let named = verdict(&answers(&|row| row[4] += 4e-7)).expect("a systematic error");
         assert_eq!(named.parameter, "fog.r", "{named:?}");

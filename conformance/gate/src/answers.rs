@@ -32,18 +32,18 @@ impl Answers {
     ///
     /// # Errors
     /// Where it cannot be read.
-    pub fn open(answers: &Path) -> Result<Self, pack::Error> {
+    pub fn open(answers: &Path) -> Result<Self, pack::PackError> {
         let path = if answers.is_dir() { answers.join(ANSWERS) } else { answers.to_owned() };
         let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
-        let file =
-            File::open(&path).map_err(|error| pack::Error::Read { path: path.clone(), message: error.to_string() })?;
+        let file = File::open(&path)
+            .map_err(|error| pack::PackError::Read { path: path.clone(), message: error.to_string() })?;
         let stream = BufReader::with_capacity(1 << 20, file);
         let mut opened = Self { path, stream, folder, number: 0, first: vec![], hello: None };
         if let Some(Ok(line)) = opened.next()? {
             match answer::read(&line) {
                 Ok(answer::Line::Hello(hello)) => opened.hello = Some(*hello),
                 Err(message) if answer::is_hello(&line) => {
-                    return Err(pack::Error::Manifest { path: opened.path, message: format!("line 1: {message}") });
+                    return Err(pack::PackError::Manifest { path: opened.path, message: format!("line 1: {message}") });
                 }
                 _ => opened.first.push((opened.number, line)),
             }
@@ -52,7 +52,7 @@ impl Answers {
     }
 
     /// The next line that is not blank, or that it is too long.
-    fn next(&mut self) -> Result<Option<Result<Vec<u8>, Unread>>, pack::Error> {
+    fn next(&mut self) -> Result<Option<Result<Vec<u8>, Unread>>, pack::PackError> {
         let mut line = vec![];
         loop {
             self.number += 1;
@@ -62,7 +62,7 @@ impl Answers {
                 Ok(true) => Ok(Some(Ok(line))),
                 Err(error @ Unread::TooLong) => Ok(Some(Err(error))),
                 Err(Unread::Io(error)) => {
-                    Err(pack::Error::Read { path: self.path.clone(), message: error.to_string() })
+                    Err(pack::PackError::Read { path: self.path.clone(), message: error.to_string() })
                 }
             };
         }
@@ -72,7 +72,7 @@ impl Answers {
     ///
     /// # Errors
     /// Where the file cannot be read.
-    fn judge(mut self, ledger: &mut Ledger<'_>, progress: &mut impl FnMut(u64)) -> Result<(), pack::Error> {
+    fn judge(mut self, ledger: &mut Ledger<'_>, progress: &mut impl FnMut(u64)) -> Result<(), pack::PackError> {
         let mut lines = std::mem::take(&mut self.first);
         loop {
             let next = self.next()?;
@@ -105,7 +105,7 @@ pub fn judge(
     ledger: &mut Ledger<'_>,
     all: Vec<Answers>,
     progress: &mut impl FnMut(u64),
-) -> Result<Hello, process::Error> {
+) -> Result<Hello, process::ProcessError> {
     let mut who: Option<Hello> = None;
     let is_one = all.len() == 1;
     for mut answers in all {

@@ -28,7 +28,7 @@ pub struct Baseline {
 
 /// Why a baseline cannot be compared with, or written.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum BaselineError {
     /// It cannot be read.
     #[error("cannot read {}: {message}", .path.display())]
     Read {
@@ -68,8 +68,8 @@ impl Baseline {
     ///
     /// # Errors
     /// Where it is none.
-    pub fn read(path: &Path) -> Result<Self, Error> {
-        let failed = |message: String| Error::Read { path: path.into(), message };
+    pub fn read(path: &Path) -> Result<Self, BaselineError> {
+        let failed = |message: String| BaselineError::Read { path: path.into(), message };
         let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
         let expected = "expected the JSON of `lightmeter gate --format json`, or of --update-baseline";
         let baseline: Self = serde_json::from_str(&text).map_err(|error| failed(format!("{error}; {expected}")))?;
@@ -84,7 +84,7 @@ impl Baseline {
     ///
     /// # Errors
     /// Where the cases are others.
-    pub fn compare(&self, report: &Report, factor: f64, path: &Path) -> Result<Vec<String>, Error> {
+    pub fn compare(&self, report: &Report, factor: f64, path: &Path) -> Result<Vec<String>, BaselineError> {
         self.is_of(&report.choice, Some(&report.profile), path)?;
         let mut worse = vec![];
         for before in &self.groups {
@@ -100,7 +100,7 @@ impl Baseline {
     ///
     /// # Errors
     /// What differs.
-    pub fn is_of(&self, now: &Choice, profile: Option<&String>, path: &Path) -> Result<(), Error> {
+    pub fn is_of(&self, now: &Choice, profile: Option<&String>, path: &Path) -> Result<(), BaselineError> {
         let mut differences = vec![];
         let mut differs = |what: &str, before: String, now: String| {
             if before != now {
@@ -116,7 +116,7 @@ impl Baseline {
         if let Some(profile) = profile {
             differs("profile", self.profile.clone(), profile.clone());
         }
-        if differences.is_empty() { Ok(()) } else { Err(Error::Others { path: path.into(), differences }) }
+        if differences.is_empty() { Ok(()) } else { Err(BaselineError::Others { path: path.into(), differences }) }
     }
 }
 
@@ -164,16 +164,16 @@ fn cases_of(count: usize) -> String {
 ///
 /// # Errors
 /// Where it cannot be written, or the run was broken off, unstable or judged nothing.
-pub fn update(report: &Report, path: &Path) -> Result<(), Error> {
+pub fn update(report: &Report, path: &Path) -> Result<(), BaselineError> {
     let why = [
         (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
         (report.totals.unstable > 0, "answers changed when they were asked once more"),
         (!report.has_judged(), "nothing was judged"),
     ];
     if let Some((_, why)) = why.into_iter().find(|(is_so, _)| *is_so) {
-        return Err(Error::Unfit { path: path.into(), why });
+        return Err(BaselineError::Unfit { path: path.into(), why });
     }
-    let failed = |message: String| Error::Write { path: path.into(), message };
+    let failed = |message: String| BaselineError::Write { path: path.into(), message };
     let text = serde_json::to_string_pretty(report).map_err(|error| failed(error.to_string()))? + "\n";
     whole(path, text.as_bytes()).map_err(|error| failed(error.to_string()))
 }

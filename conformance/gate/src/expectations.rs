@@ -68,7 +68,7 @@ impl Expectation {
 /// Why a file of expectations is refused.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {message}", .path.display())]
-pub struct Error {
+pub struct ExpectationError {
     path: PathBuf,
     message: String,
 }
@@ -84,8 +84,8 @@ impl Expectations {
     ///
     /// # Errors
     /// Where it cannot be read, or says what nothing can be made of.
-    pub fn read(path: &Path) -> Result<Self, Error> {
-        let refused = |message: String| Error { path: path.into(), message };
+    pub fn read(path: &Path) -> Result<Self, ExpectationError> {
+        let refused = |message: String| ExpectationError { path: path.into(), message };
         let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
         Self::parse(&text).map_err(refused)
     }

@@ -141,10 +141,10 @@ impl<'a> Ledger<'a> {
     ///
     /// # Errors
     /// Where what it declares cannot be read.
-    pub fn begin(&mut self, hello: &Hello) -> Result<Vec<Place>, process::Error> {
+    pub fn begin(&mut self, hello: &Hello) -> Result<Vec<Place>, process::ProcessError> {
         self.expectations = self.expected.of(&hello.renderer, &hello.version);
         if let Some(name) = hello.profile.as_ref().filter(|_| !self.is_held_to) {
-            let profile = Profile::by_name(name).ok_or_else(|| process::Error::Profile(name.clone()))?;
+            let profile = Profile::by_name(name).ok_or_else(|| process::ProcessError::Profile(name.clone()))?;
             self.profile = *profile;
         }
         let [formulas, scenes] = hello.filters()?;

@@ -56,7 +56,7 @@ pub struct Listed {
 
 /// Why a pack was not written or read.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum PackError {
     /// A file cannot be written.
     #[error("cannot write {}: {message}", .path.display())]
     Write {
@@ -121,17 +121,17 @@ pub fn case(plan: &Plan, formula: usize, case: usize) -> Value {
 ///
 /// # Errors
 /// Where a file cannot be written, or the folder holds something else.
-pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, Error> {
+pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, PackError> {
     let failed = |path: &Path| {
         let path = path.to_owned();
-        move |error: std::io::Error| Error::Write { path, message: error.to_string() }
+        move |error: std::io::Error| PackError::Write { path, message: error.to_string() }
     };
     std::fs::create_dir_all(folder).map_err(failed(folder))?;
     clear(folder)?;
     // A pack that is broken off is known as one, and is written over.
     let path = folder.join(MANIFEST);
     let begun = json!({ "schema": SCHEMA, "is_unfinished": true }).to_string();
-    whole(&path, begun.as_bytes()).map_err(|error| Error::Write { path, message: error.to_string() })?;
+    whole(&path, begun.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
     let mut files = vec![];
     let path = folder.join(CASES);
     let mut out =
@@ -148,20 +148,20 @@ pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, Error> {
             let path = folder.join(&name);
             let parent = path.parent().unwrap_or(folder);
             std::fs::create_dir_all(parent).map_err(failed(parent))?;
-            whole(&path, &bytes).map_err(|error| Error::Write { path, message: error.to_string() })?;
+            whole(&path, &bytes).map_err(|error| PackError::Write { path, message: error.to_string() })?;
             files.push(Listed { crc32: digits(&bytes), bytes: bytes.len() as u64, name });
         }
     }
     let manifest = Manifest { files, ..Manifest::of(plan)? };
     let path = folder.join(MANIFEST);
-    let text = serde_json::to_string_pretty(&manifest).map_err(|error| Error::Plan(error.to_string()))? + "\n";
-    whole(&path, text.as_bytes()).map_err(|error| Error::Write { path, message: error.to_string() })?;
+    let text = serde_json::to_string_pretty(&manifest).map_err(|error| PackError::Plan(error.to_string()))? + "\n";
+    whole(&path, text.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
     Ok(manifest)
 }
 
 /// Takes the files of an earlier pack out of a folder, and nothing else.
-fn clear(folder: &Path) -> Result<(), Error> {
-    let failed = |path: &Path, message: String| Error::Write { path: path.into(), message };
+fn clear(folder: &Path) -> Result<(), PackError> {
+    let failed = |path: &Path, message: String| PackError::Write { path: path.into(), message };
     let mut entries = std::fs::read_dir(folder).map_err(|error| failed(folder, error.to_string()))?;
     if entries.next().is_none() {
         return Ok(());
@@ -185,7 +185,7 @@ fn clear(folder: &Path) -> Result<(), Error> {
 
 impl Manifest {
     /// That of a plan, as yet without files.
-    fn of(plan: &Plan) -> Result<Self, Error> {
+    fn of(plan: &Plan) -> Result<Self, PackError> {
         let scenes = (0..plan.scenes.len()).map(|scene| Ok(Drawn::new(plan, scene)?.listed()));
         Ok(Self {
             schema: SCHEMA.into(),
@@ -193,7 +193,7 @@ impl Manifest {
             version: env!("CARGO_PKG_VERSION").into(),
             choice: plan.choice.clone(),
             formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
-            scenes: scenes.collect::<Result<_, Error>>()?,
+            scenes: scenes.collect::<Result<_, PackError>>()?,
             files: vec![],
         })
     }
@@ -207,8 +207,8 @@ struct Drawn {
 }
 
 impl Drawn {
-    fn new(plan: &Plan, scene: usize) -> Result<Self, Error> {
-        let (title, frame) = plan.frame(scene).map_err(|error| Error::Plan(error.to_string()))?;
+    fn new(plan: &Plan, scene: usize) -> Result<Self, PackError> {
+        let (title, frame) = plan.frame(scene).map_err(|error| PackError::Plan(error.to_string()))?;
         Ok(Self { id: plan.id(super::plan::Place::Scene(scene)), title, frame })
     }
 
@@ -307,13 +307,13 @@ fn png(texture: &Texture) -> Vec<u8> {
 ///
 /// # Errors
 /// Where it is damaged, another version's, not what this lightmeter would write, or leads out of its folder.
-pub fn read(folder: &Path) -> Result<Plan, Error> {
+pub fn read(folder: &Path) -> Result<Plan, PackError> {
     let path = folder.join(MANIFEST);
-    let text = std::fs::read_to_string(&path).map_err(|error| Error::Read {
+    let text = std::fs::read_to_string(&path).map_err(|error| PackError::Read {
         path: path.clone(),
         message: format!("{error}; `lightmeter pack DIR` writes a pack"),
     })?;
-    let refused = |message: String| Error::Manifest { path: path.clone(), message };
+    let refused = |message: String| PackError::Manifest { path: path.clone(), message };
     let value: Value = serde_json::from_str(&text).map_err(|error| refused(format!("it is damaged: {error}")))?;
     match value.get("schema").and_then(Value::as_str) {
         Some(SCHEMA) => {}
@@ -342,12 +342,12 @@ pub fn read(folder: &Path) -> Result<Plan, Error> {
     for Listed { name, bytes, crc32 } in &manifest.files {
         let file = within(folder, name).map_err(|error| refused(format!("files: {error}")))?;
         let (found_bytes, found) =
-            sum(&file).map_err(|error| Error::Read { path: file.clone(), message: error.to_string() })?;
+            sum(&file).map_err(|error| PackError::Read { path: file.clone(), message: error.to_string() })?;
         if (found_bytes, found.as_str()) != (*bytes, crc32.as_str()) {
             let message = format!(
                 "it is not what was packed: {found_bytes} bytes with checksum {found}; expected {bytes} with {crc32}"
             );
-            return Err(Error::Manifest { path: file, message });
+            return Err(PackError::Manifest { path: file, message });
         }
     }
     let plan = Plan::new(manifest.choice.clone()).map_err(|error| refused(error.to_string()))?;
@@ -360,7 +360,7 @@ pub fn read(folder: &Path) -> Result<Plan, Error> {
 
 impl Manifest {
     /// What is not as this lightmeter would write it for the plan. The cases themselves go by the generator's version.
-    fn is_of(&self, plan: &Plan) -> Result<Option<&'static str>, Error> {
+    fn is_of(&self, plan: &Plan) -> Result<Option<&'static str>, PackError> {
         let own = Self::of(plan)?;
         if self.formulas != own.formulas {
             return Ok(Some("formulas"));

@@ -152,7 +152,7 @@ impl Plan {
     ///
     /// # Errors
     /// Where it is refused, which a test rules out.
-    pub fn frame(&self, scene: usize) -> Result<(String, Frame), lightmeter_catalogue::scene::Error> {
+    pub fn frame(&self, scene: usize) -> Result<(String, Frame), lightmeter_catalogue::scene::SceneError> {
         let loaded = builtin(self.scenes[scene], self.choice.size)?;
         Ok((loaded.title, loaded.frame))
     }

@@ -131,7 +131,7 @@ impl Gate {
             match baseline::update(&report, path) {
                 Ok(()) => eprintln!("the baseline {} is this result now", path.display()),
                 // The result itself says how the gate ends.
-                Err(error @ baseline::Error::Unfit { .. }) => eprintln!("{error}"),
+                Err(error @ baseline::BaselineError::Unfit { .. }) => eprintln!("{error}"),
                 Err(error) => return Err(error.into()),
             }
         }

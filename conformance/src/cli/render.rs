@@ -12,7 +12,7 @@ use lightmeter::scene::load;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
 use std::path::PathBuf;
 
@@ -32,7 +32,7 @@ pub(crate) struct Render {
     full: bool,
     /// An intermediate result in place of the colour: position, depth, normal, diffuse, specular, surface or fog
     #[arg(long, value_name = "NAME", value_parser = stage)]
-    stage: Option<Stage>,
+    stage: Option<Intermediate>,
     /// Draw by the WGSL in this folder in place of the built-in files of the same names
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
@@ -49,9 +49,9 @@ enum With {
     Gpu,
 }
 
-fn stage(name: &str) -> Result<Stage, String> {
-    let names: Vec<&str> = Stage::ALL.iter().map(|stage| stage.name()).collect();
-    let found = Stage::ALL.into_iter().find(|stage| stage.name() == name);
+fn stage(name: &str) -> Result<Intermediate, String> {
+    let names: Vec<&str> = Intermediate::ALL.iter().map(|stage| stage.name()).collect();
+    let found = Intermediate::ALL.into_iter().find(|stage| stage.name() == name);
     found.ok_or_else(|| format!("no such intermediate result; expected one of {}", names.join(", ")))
 }
 

@@ -2,7 +2,7 @@
 
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_engine::blend_unit::draw::{Piece, Pixels};
-use lightmeter_gpu::{Batch, BlendUnit, Draw, Error};
+use lightmeter_gpu::{Batch, BlendUnit, Draw, GpuError};
 use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ pub(super) fn blend(
     target: TargetFormat,
     pieces: &[&Piece],
     again: bool,
-) -> Result<Pixels, Error> {
+) -> Result<Pixels, GpuError> {
     let clock = Instant::now();
     let share = pieces.len().div_ceil(unit.lanes()).max(1);
     let batches: Vec<Batch> = pieces.par_chunks(share).map(|pieces| batch(target, pieces)).collect();
@@ -42,7 +42,7 @@ pub(super) fn blend(
     Ok(Pixels { pieces: pieces.collect(), seconds, seconds_warm })
 }
 
-fn through(unit: &mut BlendUnit, target: TargetFormat, batches: &[Batch]) -> Result<Vec<Vec<u8>>, Error> {
+fn through(unit: &mut BlendUnit, target: TargetFormat, batches: &[Batch]) -> Result<Vec<Vec<u8>>, GpuError> {
     let pending = unit.submit(target, batches)?;
     unit.wait(pending)
 }

@@ -3,7 +3,7 @@
 use lightmeter_document::run::EffectsCost;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Clock, Error, Gpu, Shaders};
+use lightmeter_gpu::{Clock, Gpu, GpuError, Shaders};
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
 
@@ -24,13 +24,13 @@ pub(super) fn effects_cost(
     shaders: &Shaders,
     frame: &Frame,
     called: &[Called],
-) -> Result<EffectsCost, Error> {
+) -> Result<EffectsCost, GpuError> {
     let composed = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(Shader::Composed))?;
     let full = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(Shader::Full))?;
     let clock = Clock::wall(None);
     let time = |renderer: &SceneRenderer, repeats: u32| {
         let reading = renderer.time(gpu, &clock, repeats)?;
-        Ok::<_, Error>(reading.seconds().expect("the clock on the wall goes forward"))
+        Ok::<_, GpuError>(reading.seconds().expect("the clock on the wall goes forward"))
     };
     time(&composed, 1)?;
     time(&full, 1)?;

@@ -1,13 +1,13 @@
 //! The shader function of a formula.
 
 use lightmeter_catalogue::select::Member;
-use lightmeter_gpu::{Error, Kernel, Shaders};
+use lightmeter_gpu::{GpuError, Kernel, Shaders};
 
 /// The shader function of a formula, held against the formula's description; `None` where no function evaluates it.
 ///
 /// # Errors
 /// Where the file lacks the function, or the function has other inputs or outputs than the formula.
-pub fn kernel(shaders: &Shaders, member: &Member) -> Result<Option<Kernel>, Error> {
+pub fn kernel(shaders: &Shaders, member: &Member) -> Result<Option<Kernel>, GpuError> {
     let (spec, function) = (&member.spec, member.spec.function);
     if function.is_empty() {
         return Ok(None);
@@ -19,7 +19,7 @@ pub fn kernel(shaders: &Shaders, member: &Member) -> Result<Option<Kernel>, Erro
     if (kernel.inputs, kernel.outputs, kernel.selectors) != (inputs, outputs, selectors) {
         let found =
             format!("{} numbers to {}, where {} takes {inputs} to {outputs}", kernel.inputs, kernel.outputs, spec.id);
-        return Err(Error::Signature { file, function: function.into(), found });
+        return Err(GpuError::Signature { file, function: function.into(), found });
     }
     Ok(Some(kernel))
 }

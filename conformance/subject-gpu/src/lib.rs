@@ -20,7 +20,7 @@ use lightmeter_engine::subject::{Rows, Subject};
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{
-    Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Error, Gpu, Kernel, Pending, RasterPipeline, Shaders,
+    Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Gpu, GpuError, Kernel, Pending, RasterPipeline, Shaders,
 };
 use lightmeter_judge::devices::{Known, known};
 use lightmeter_scene::along::Along;
@@ -43,7 +43,7 @@ pub fn code(shaders: Shaders) -> Code {
 ///
 /// # Errors
 /// Where the folder cannot be read, or holds no shader of the suite.
-pub fn code_of(folder: Option<&Path>) -> Result<Code, Error> {
+pub fn code_of(folder: Option<&Path>) -> Result<Code, GpuError> {
     folder.map_or_else(Shaders::built_in, Shaders::from_dir).map(code)
 }
 
@@ -77,11 +77,11 @@ pub fn gpu(subject: &Subject) -> Option<&Gpu> {
 
 /// An error as the engine tells kinds of them apart.
 #[must_use]
-pub fn told(error: Error) -> DeviceError {
+pub fn told(error: GpuError) -> DeviceError {
     match error {
-        Error::Device(_) => DeviceError::Failed(error.to_string()),
-        Error::Timeout(_) => DeviceError::Hangs(error.to_string()),
-        Error::Open { .. } => DeviceError::Closed(error.to_string()),
+        GpuError::Device(_) => DeviceError::Failed(error.to_string()),
+        GpuError::Timeout(_) => DeviceError::Hangs(error.to_string()),
+        GpuError::Open { .. } => DeviceError::Closed(error.to_string()),
         error => DeviceError::Refused(Box::new(error)),
     }
 }
@@ -132,7 +132,7 @@ fn taken<T: Any>(own: Own) -> T {
 }
 
 impl GpuDevice {
-    fn blend_unit(&mut self, shaders: &Shaders) -> Result<&mut BlendUnit, Error> {
+    fn blend_unit(&mut self, shaders: &Shaders) -> Result<&mut BlendUnit, GpuError> {
         if self.blend.is_none() {
             self.blend = Some(BlendUnit::new(&self.gpu, shaders)?);
         }
@@ -145,10 +145,10 @@ impl GpuDevice {
         kind: Kind,
         kernel: Option<&Kernel>,
         stage: Stage,
-    ) -> Result<Result<Work, &'static str>, Error> {
+    ) -> Result<Result<Work, &'static str>, GpuError> {
         let programmable = match stage {
-            Stage::Compute => lightmeter_gpu::Stage::Compute,
-            Stage::Fragment => lightmeter_gpu::Stage::Fragment,
+            Stage::Compute => lightmeter_gpu::Programmable::Compute,
+            Stage::Fragment => lightmeter_gpu::Programmable::Fragment,
             Stage::FixedFunction => {
                 if self.depth.is_none() {
                     self.depth = Some(DepthUnit::new(&self.gpu, shaders)?);
@@ -164,7 +164,7 @@ impl GpuDevice {
         Ok(ArithmeticPipeline::new(&self.gpu, kernel, programmable)?.map(Work::Arithmetic))
     }
 
-    fn submitted(&mut self, work: &Work, rows: &Rows<'_>) -> Result<Job, Error> {
+    fn submitted(&mut self, work: &Work, rows: &Rows<'_>) -> Result<Job, GpuError> {
         match work {
             Work::Arithmetic(pipeline) => Ok(Job::Arithmetic(pipeline.submit(&self.gpu, rows.selected))),
             Work::Depth => {
@@ -184,7 +184,7 @@ impl GpuDevice {
         }
     }
 
-    fn finished(&self, work: &Work, job: Job, rows: &Rows<'_>) -> Result<Vec<u32>, Error> {
+    fn finished(&self, work: &Work, job: Job, rows: &Rows<'_>) -> Result<Vec<u32>, GpuError> {
         let gpu = &self.gpu;
         match (work, job) {
             (Work::Arithmetic(pipeline), Job::Arithmetic(pending)) => {
@@ -203,9 +203,9 @@ impl GpuDevice {
         }
     }
 
-    fn probed(&self, shaders: &Shaders, function: &str, x: f32) -> Result<Option<u32>, Error> {
+    fn probed(&self, shaders: &Shaders, function: &str, x: f32) -> Result<Option<u32>, GpuError> {
         let kernel = Kernel::new(shaders, "probe.wgsl", function)?;
-        let Ok(pipeline) = ArithmeticPipeline::new(&self.gpu, &kernel, lightmeter_gpu::Stage::Compute)? else {
+        let Ok(pipeline) = ArithmeticPipeline::new(&self.gpu, &kernel, lightmeter_gpu::Programmable::Compute)? else {
             return Ok(None);
         };
         Ok(pipeline.submit(&self.gpu, &[x]).wait(&self.gpu)?.first().copied())

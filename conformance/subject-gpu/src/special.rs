@@ -2,20 +2,20 @@
 
 use lightmeter_catalogue::special::{Probe, Way};
 use lightmeter_engine::device::Probed;
-use lightmeter_gpu::{ArithmeticPipeline, Error, Gpu, Kernel, RasterPipeline, Shaders, Stage};
+use lightmeter_gpu::{ArithmeticPipeline, Gpu, GpuError, Kernel, Programmable, RasterPipeline, Shaders};
 use lightmeter_scene::raster::{Provoking, Raster, Topology};
 
 /// The shader file of the functions.
 const FILE: &str = "special.wgsl";
 
 /// Evaluates some probes in every stage.
-pub(super) fn special(gpu: &Gpu, shaders: &Shaders, probes: &[&'static Probe]) -> Result<Probed, Error> {
+pub(super) fn special(gpu: &Gpu, shaders: &Shaders, probes: &[&'static Probe]) -> Result<Probed, GpuError> {
     let kernels = functions(probes)
         .into_iter()
         .map(|function| Ok((function, Kernel::new(shaders, FILE, function)?)))
-        .collect::<Result<Vec<_>, Error>>()?;
+        .collect::<Result<Vec<_>, GpuError>>()?;
     let mut probed = Probed::default();
-    for (stage, name) in [(Stage::Compute, "compute"), (Stage::Fragment, "fragment")] {
+    for (stage, name) in [(Programmable::Compute, "compute"), (Programmable::Fragment, "fragment")] {
         for (function, kernel) in &kernels {
             shade(gpu, kernel, &of_function(probes, function), (stage, name), &mut probed)?;
         }
@@ -58,9 +58,9 @@ fn shade(
     gpu: &Gpu,
     kernel: &Kernel,
     probes: &[&'static Probe],
-    (stage, name): (Stage, &'static str),
+    (stage, name): (Programmable, &'static str),
     probed: &mut Probed,
-) -> Result<(), Error> {
+) -> Result<(), GpuError> {
     let rows: Vec<f32> = probes.iter().flat_map(|probe| probe.inputs).map(|bits| f32::from_bits(*bits)).collect();
     let pipeline = match ArithmeticPipeline::new(gpu, kernel, stage)? {
         Ok(pipeline) => pipeline,
@@ -83,7 +83,7 @@ fn carry(
     flat: bool,
     probes: &[&'static Probe],
     probed: &mut Probed,
-) -> Result<(), Error> {
+) -> Result<(), GpuError> {
     const STAGE: &str = "raster";
     let kind = if flat {
         Raster::Flat { topology: Topology::TriangleList, provoking: Provoking::Last }

@@ -3,7 +3,7 @@
 use super::kernel::kernel;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::run::Cost;
-use lightmeter_gpu::{Clock, Error, Gpu, RepeatPipeline, Rung, Shaders};
+use lightmeter_gpu::{Clock, Gpu, GpuError, RepeatPipeline, Rung, Shaders};
 use std::collections::BTreeMap;
 
 /// Turns that a cost is the median of.
@@ -20,7 +20,7 @@ pub(super) fn stable_costs(
     (gpu, adapter): (&Gpu, &str),
     shaders: &Shaders,
     seed: u64,
-) -> Result<Vec<Cost>, Error> {
+) -> Result<Vec<Cost>, GpuError> {
     let mut rows = vec![];
     for k in 0..COST_ROWS {
         member.inputs(CaseRef::Random(k), seed, &mut rows);
@@ -33,7 +33,7 @@ pub(super) fn stable_costs(
     let time = |pipeline: &RepeatPipeline| {
         let reading = pipeline.time(gpu, &clock, GROUPS)?;
         let seconds = reading.seconds().expect("the clock on the wall goes forward");
-        Ok::<_, Error>(seconds / (f64::from(GROUPS) * f64::from(RepeatPipeline::EVALUATIONS)))
+        Ok::<_, GpuError>(seconds / (f64::from(GROUPS) * f64::from(RepeatPipeline::EVALUATIONS)))
     };
     let mut costs = vec![];
     for (id, rival) in rivals {
@@ -43,7 +43,7 @@ pub(super) fn stable_costs(
             time(warm)?;
         }
         let turns: Vec<[f64; 3]> =
-            (0..TURNS).map(|_| Ok([time(&idle)?, time(&stable)?, time(&naive)?])).collect::<Result<_, Error>>()?;
+            (0..TURNS).map(|_| Ok([time(&idle)?, time(&stable)?, time(&naive)?])).collect::<Result<_, GpuError>>()?;
         let sorted = |of: &dyn Fn(&[f64; 3]) -> f64| {
             let mut all: Vec<f64> = turns.iter().map(of).collect();
             all.sort_by(f64::total_cmp);

@@ -4,7 +4,7 @@ use super::{kernel, told};
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::Member;
 use lightmeter_engine::device::{Blocks, DeviceError};
-use lightmeter_gpu::{Block, Error, Gpu, Shaders, Sweep};
+use lightmeter_gpu::{Block, Gpu, GpuError, Shaders, Sweep};
 use lightmeter_scene::along::Along;
 use std::collections::VecDeque;
 
@@ -19,10 +19,10 @@ pub(super) fn sweep<'a>(
     stage: Stage,
     along: Along<'_>,
     capacity: usize,
-) -> Result<Result<Box<dyn Blocks + 'a>, &'static str>, Error> {
+) -> Result<Result<Box<dyn Blocks + 'a>, &'static str>, GpuError> {
     let stage = match stage {
-        Stage::Fragment => lightmeter_gpu::Stage::Fragment,
-        _ => lightmeter_gpu::Stage::Compute,
+        Stage::Fragment => lightmeter_gpu::Programmable::Fragment,
+        _ => lightmeter_gpu::Programmable::Compute,
     };
     let Some(kernel) = kernel(shaders, member)? else { return Ok(Err("no shader function evaluates it")) };
     let selectors = member.spec.selectors.iter().map(|&code| f32::from_bits(code));

@@ -1,8 +1,8 @@
 //! The skeleton with the effects' texts put into it.
 
 use super::condition::{Condition, Named, Truth};
-use super::{MOST_TOWARD, Stage, Technique};
-use crate::error::Error;
+use super::{Intermediate, MOST_TOWARD, Technique};
+use crate::error::GpuError;
 use crate::shaders::Shaders;
 use lightmeter_scene::effects::{Effect, Effects};
 use std::collections::BTreeMap;
@@ -17,9 +17,9 @@ pub(super) struct Line {
 }
 
 impl Line {
-    fn wrong(&self, message: &str) -> Error {
+    fn wrong(&self, message: &str) -> GpuError {
         let message = format!("{}:{}: {message}", self.file, self.number);
-        Error::Shader { file: self.file.to_string(), message }
+        GpuError::Shader { file: self.file.to_string(), message }
     }
 
     /// A line of this one's place.
@@ -44,7 +44,7 @@ const SKELETON: [&str; 3] = ["scene.wgsl", "scene_lighting.wgsl", "scene_uniform
 /// What is composed.
 pub(super) struct Wanted {
     pub(super) effects: Effects,
-    pub(super) stage: Option<Stage>,
+    pub(super) stage: Option<Intermediate>,
     /// Whether the draw has normals, a stage without light included.
     pub(super) has_normals: bool,
     /// Whether every effect is there, behind switches.
@@ -85,21 +85,21 @@ pub(super) struct Template {
 const MARK: &str = "//@ ";
 
 impl Template {
-    pub(super) fn new(shaders: &Shaders) -> Result<Self, Error> {
+    pub(super) fn new(shaders: &Shaders) -> Result<Self, GpuError> {
         let mut named = Named::new();
         let mut read = |file: &str| File::parse(lines(file, shaders.text(file)), &mut named);
         let skeleton = SKELETON.into_iter().map(&mut read).collect::<Result<Vec<_>, _>>()?;
         let effects = Effect::ALL
             .into_iter()
             .map(|effect| Ok((effect, read(&format!("effects/{}.wgsl", effect.name()))?)))
-            .collect::<Result<Vec<_>, Error>>()?;
+            .collect::<Result<Vec<_>, GpuError>>()?;
         let template = Self { named, skeleton, effects };
         template.check_slots()?;
         Ok(template)
     }
 
     /// Every slot that a file has text for is one that is asked for.
-    fn check_slots(&self) -> Result<(), Error> {
+    fn check_slots(&self) -> Result<(), GpuError> {
         let files = || self.skeleton.iter().chain(self.effects.iter().map(|(_, file)| file));
         let mut asked = vec![];
         for file in files() {
@@ -120,7 +120,7 @@ impl Template {
     }
 
     /// The text of all that is wanted, reached or not.
-    pub(super) fn expand(&self, wanted: &Wanted) -> Result<Vec<Line>, Error> {
+    pub(super) fn expand(&self, wanted: &Wanted) -> Result<Vec<Line>, GpuError> {
         let mut out = vec![];
         let present = self.effects.iter().filter(|(effect, _)| wanted.full || wanted.effects.has(*effect));
         for file in self.skeleton.iter().chain(present.map(|(_, file)| file)) {
@@ -130,7 +130,7 @@ impl Template {
         Ok(out)
     }
 
-    fn nodes(&self, nodes: &[Node], wanted: &Wanted, out: &mut Vec<Line>) -> Result<(), Error> {
+    fn nodes(&self, nodes: &[Node], wanted: &Wanted, out: &mut Vec<Line>) -> Result<(), GpuError> {
         for node in nodes {
             match node {
                 Node::Text(line) => out.push(line.clone()),
@@ -168,7 +168,14 @@ impl Template {
         Ok(())
     }
 
-    fn slot(&self, line: &Line, slot: &str, members: bool, wanted: &Wanted, out: &mut Vec<Line>) -> Result<(), Error> {
+    fn slot(
+        &self,
+        line: &Line,
+        slot: &str,
+        members: bool,
+        wanted: &Wanted,
+        out: &mut Vec<Line>,
+    ) -> Result<(), GpuError> {
         let mut put = |text: Vec<Line>, switch: Option<String>| {
             let indent = line.indent();
             out.extend(switch.iter().map(|switch| line.with(format!("{indent}if {switch} {{"))));
@@ -187,7 +194,7 @@ impl Template {
     }
 
     /// The wanted effects' texts for a slot.
-    fn choices(&self, slot: &str, wanted: &Wanted) -> Result<Vec<(Effect, Vec<Line>)>, Error> {
+    fn choices(&self, slot: &str, wanted: &Wanted) -> Result<Vec<(Effect, Vec<Line>)>, GpuError> {
         let mut found = vec![];
         for (effect, file) in &self.effects {
             if let Some(nodes) = file.slots.get(slot).filter(|_| wanted.full || wanted.effects.has(*effect)) {
@@ -216,7 +223,7 @@ impl Wanted {
             return Some(Truth::Known(self.toward >= number));
         }
         if let Some(stage) = name.strip_prefix("stage_") {
-            let stage = Stage::ALL.into_iter().find(|of| of.name() == stage)?;
+            let stage = Intermediate::ALL.into_iter().find(|of| of.name() == stage)?;
             return Some(Truth::Known(self.stage == Some(stage)));
         }
         let effect = Effect::ALL.into_iter().find(|effect| effect.name() == name)?;
@@ -243,7 +250,7 @@ fn choose(
     found: Vec<(Effect, Vec<Line>)>,
     wanted: &Wanted,
     out: &mut Vec<Line>,
-) -> Result<(), Error> {
+) -> Result<(), GpuError> {
     let indent = line.indent();
     let give = |head: &str, indent: &str, mut text: Vec<Line>| {
         if let Some(first) = text.first_mut() {
@@ -301,7 +308,7 @@ fn asked_slots(nodes: &[Node], asked: &mut Vec<String>) {
 }
 
 impl File {
-    fn parse(lines: Vec<Line>, named: &mut Named) -> Result<Self, Error> {
+    fn parse(lines: Vec<Line>, named: &mut Named) -> Result<Self, GpuError> {
         let mut file = Self::default();
         let mut at: Option<String> = None;
         // The blocks that are open, the innermost last: the line that opened each, and what is in it so far.

@@ -128,7 +128,7 @@ fn each<T: Sync>(items: &[T], check: impl Fn(&T) + Sync) {
     });
 }
 
-fn composed(composer: &Composer, effects: Effects, stage: Option<Stage>) -> Composition {
+fn composed(composer: &Composer, effects: Effects, stage: Option<Intermediate>) -> Composition {
     let composition = composer.compose(effects, Recipe { stage, ..Recipe::of(Shader::Composed) }, 0);
     composition.unwrap_or_else(|error| panic!("{error}"))
 }
@@ -306,7 +306,7 @@ fn stages_hold_what_they_need() {
     let composer = composer();
     let sets: Vec<Effects> = sets().into_iter().step_by(23).collect();
     each(&sets, |set| {
-        for stage in Stage::ALL {
+        for stage in Intermediate::ALL {
             let composition = composed(&composer, *set, Some(stage));
             let what = format!("{} of {set}", stage.name());
             let (module, _) = composition.validate().unwrap_or_else(|error| panic!("{what}: {error}"));
@@ -314,11 +314,12 @@ fn stages_hold_what_they_need() {
             let marks = marks(&module);
             let has = |mark: &str| marks.contains(mark);
             assert_eq!(has("Kill"), set.has(E::Cutout), "{what}");
-            assert!(!has("fog_mix") || stage == Stage::Fog, "{what}");
-            let early = matches!(stage, Stage::Position | Stage::Depth | Stage::Normal);
+            assert!(!has("fog_mix") || stage == Intermediate::Fog, "{what}");
+            let early = matches!(stage, Intermediate::Position | Intermediate::Depth | Intermediate::Normal);
             assert!(!early || !has("scene_material") && !has("scene_shine"), "{what}");
-            assert!(stage != Stage::Specular || set.has_lights() || !has("lighting_ambient"), "{what}");
-            let surface = !early && !matches!(stage, Stage::Diffuse | Stage::Specular) || set.has(E::Cutout);
+            assert!(stage != Intermediate::Specular || set.has_lights() || !has("lighting_ambient"), "{what}");
+            let surface =
+                !early && !matches!(stage, Intermediate::Diffuse | Intermediate::Specular) || set.has(E::Cutout);
             assert_eq!(has("scene_texture"), set.has_texture() && surface, "{what}");
         }
     });

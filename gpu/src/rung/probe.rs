@@ -5,7 +5,7 @@ use super::Rung;
 use super::dialect::Prelude;
 use crate::arithmetic::bind;
 use crate::device::Gpu;
-use crate::error::Error;
+use crate::error::GpuError;
 use crate::readback::{Pending, staging};
 use lightmeter_scene::target::SENTINEL;
 
@@ -16,11 +16,11 @@ type Judge = fn(f64, f64, &[f32]) -> Option<&'static str>;
 const PAIRS: usize = 256;
 
 /// Why the rung is unavailable, by what its arithmetic gives; `None` where it is as it should be.
-pub(super) fn probe(rung: Rung, gpu: &Gpu) -> Result<Option<String>, Error> {
+pub(super) fn probe(rung: Rung, gpu: &Gpu) -> Result<Option<String>, GpuError> {
     probe_with(rung, &Prelude::of(rung).text, gpu)
 }
 
-pub(super) fn probe_with(rung: Rung, prelude: &str, gpu: &Gpu) -> Result<Option<String>, Error> {
+pub(super) fn probe_with(rung: Rung, prelude: &str, gpu: &Gpu) -> Result<Option<String>, GpuError> {
     let (entry, words, judge): (_, _, Judge) = match rung {
         Rung::Cheap | Rung::F32 | Rung::Stable => return Ok(None),
         Rung::F16 => (HALF, 4, judge_half),
@@ -141,7 +141,7 @@ fn as_half(x: f64) -> f64 {
 }
 
 /// What `probed` gives of each pair.
-fn evaluate(gpu: &Gpu, rung: Rung, source: String, given: &[f32], words: usize) -> Result<Vec<f32>, Error> {
+fn evaluate(gpu: &Gpu, rung: Rung, source: String, given: &[f32], words: usize) -> Result<Vec<f32>, GpuError> {
     let source = format!(
         "{source}
 @group(0) @binding(0) var<storage, read> given: array<vec2f, {PAIRS}>;

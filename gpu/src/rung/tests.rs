@@ -129,10 +129,10 @@ fn shaders_of_scenes_are_valid_at_every_rung() {
         for rung in Rung::ALL {
             match composer.lower(&composition, rung) {
                 Ok(_) => {}
-                Err(Error::Unavailable { reason, .. }) if reason == NOTHING_STABLE && rung == Rung::Stable => {
+                Err(GpuError::Unavailable { reason, .. }) if reason == NOTHING_STABLE && rung == Rung::Stable => {
                     nothing_stable += 1;
                 }
-                Err(Error::Unavailable { reason, .. }) if reason == NOTHING_CHEAP && rung == Rung::Cheap => {}
+                Err(GpuError::Unavailable { reason, .. }) if reason == NOTHING_CHEAP && rung == Rung::Cheap => {}
                 Err(error) => panic!("{effects}, {}: {error}", rung.name()),
             }
         }
@@ -143,7 +143,7 @@ fn shaders_of_scenes_are_valid_at_every_rung() {
 /// What a function gives for rows of inputs, as sums of its words.
 fn values(gpu: &Gpu, file: &str, function: &str, rung: Rung, rows: &[f32]) -> Vec<f64> {
     let shaders = built_in();
-    let failed = |error: Error| panic!("{function}, {}: {error}", rung.name());
+    let failed = |error: GpuError| panic!("{function}, {}: {error}", rung.name());
     let kernel = Kernel::new(&shaders, file, function).unwrap_or_else(failed);
     let pipeline = RepeatPipeline::new(gpu, &shaders, &kernel, rung, rows)
         .unwrap_or_else(|error| panic!("{function}, {}: {error}", rung.name()))

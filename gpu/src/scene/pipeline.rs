@@ -1,7 +1,7 @@
 //! Pipelines, shared by draws that differ in numbers alone.
 
 use super::geometry::Input;
-use super::{Effects, Error, Gpu, Recipe, Shader, Stage};
+use super::{Effects, Gpu, GpuError, Intermediate, Recipe, Shader};
 use crate::blend_unit;
 use crate::compose::{Composer, Composition, live};
 use crate::depth_unit::compare_function;
@@ -32,7 +32,7 @@ pub(super) struct Program {
     /// The bindings' numbers and names.
     pub(super) bindings: Vec<(u32, String)>,
     pub(super) inputs: Vec<Input>,
-    stage: Option<Stage>,
+    stage: Option<Intermediate>,
 }
 
 impl Program {
@@ -66,7 +66,7 @@ impl<'a> Pipelines<'a> {
         Self { gpu, composer, recipe, format, tests_depth, programs, pipelines }
     }
 
-    pub(super) fn get(&mut self, mut key: Key) -> Result<(wgpu::RenderPipeline, Rc<Program>), Error> {
+    pub(super) fn get(&mut self, mut key: Key) -> Result<(wgpu::RenderPipeline, Rc<Program>), GpuError> {
         // A stage without light still tells whether there are normals, which `live` leaves out.
         let has_normals = key.effects.has_normals();
         let called = key.effects;
@@ -90,7 +90,7 @@ impl<'a> Pipelines<'a> {
         Ok((pipeline, program))
     }
 
-    fn program(&self, composition: &Composition) -> Result<Program, Error> {
+    fn program(&self, composition: &Composition) -> Result<Program, GpuError> {
         let (module, _) = composition.validate()?;
         let bindings = module
             .global_variables
@@ -188,7 +188,7 @@ impl<'a> Pipelines<'a> {
 ///
 /// # Errors
 /// Where one factor reads the constant's colour and another its alpha: the unit has one constant for both.
-pub(super) fn native(draw: &Draw, blend: Blend) -> Result<(wgpu::BlendState, wgpu::Color), Error> {
+pub(super) fn native(draw: &Draw, blend: Blend) -> Result<(wgpu::BlendState, wgpu::Color), GpuError> {
     let route = routes(blend.state)[0];
     if !matches!(route, Route::Native | Route::ConstantReplicated) {
         let message = format!(
@@ -196,7 +196,7 @@ pub(super) fn native(draw: &Draw, blend: Blend) -> Result<(wgpu::BlendState, wgp
              one constant for both; use factors of one kind",
             blend.state
         );
-        return Err(Error::Draw { draw: draw.name.clone(), message });
+        return Err(GpuError::Draw { draw: draw.name.clone(), message });
     }
     let unit = blend_unit::Draw {
         state: blend.state,

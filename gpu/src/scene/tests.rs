@@ -116,7 +116,7 @@ fn frame() -> Frame {
     }
 }
 
-fn drawn(gpu: &Gpu, frame: &Frame, sets: &[Called], shader: Shader, stage: Option<Stage>) -> Vec<u8> {
+fn drawn(gpu: &Gpu, frame: &Frame, sets: &[Called], shader: Shader, stage: Option<Intermediate>) -> Vec<u8> {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let renderer = SceneRenderer::new(gpu, &shaders, frame, sets, Recipe { stage, ..Recipe::of(shader) })
         .unwrap_or_else(|error| panic!("{error}"));
@@ -257,12 +257,12 @@ fn stages_are_steps_towards_the_colour() {
         let called = named(&frame);
         let of = |stage| drawn(&gpu, &frame, &called, Shader::Composed, Some(stage));
         let color = drawn(&gpu, &frame, &called, Shader::Composed, None);
-        assert_alike(&of(Stage::Fog), &color, &what);
-        let [_, _, z, w] = middle(&of(Stage::Position));
+        assert_alike(&of(Intermediate::Fog), &color, &what);
+        let [_, _, z, w] = middle(&of(Intermediate::Position));
         assert!((-2.4..-1.8).contains(&z) && (w - 1.0).abs() < 1e-6, "{what}: p.z is {z}");
-        let [depth, ..] = middle(&of(Stage::Depth));
+        let [depth, ..] = middle(&of(Intermediate::Depth));
         assert!((depth - (1.1 * -z - 1.1) / -z).abs() < 1e-5, "{what}: {depth} at {z}");
-        let [x, y, z, _] = middle(&of(Stage::Normal));
+        let [x, y, z, _] = middle(&of(Intermediate::Normal));
         let length = (x * x + y * y + z * z).sqrt();
         let phong = frame.draws[0].shading.is_some_and(|shading| shading.frequency == Frequency::Phong);
         assert!(if phong { (length - 1.0).abs() < 1e-6 } else { (0.8..1.0).contains(&length) }, "{what}: {length}");
@@ -270,17 +270,17 @@ fn stages_are_steps_towards_the_colour() {
         let draw = &mut bare.draws[0];
         (draw.vertex_colors, draw.texture, draw.lightmap, draw.cutout, bare.fog) = (false, None, None, None, None);
         let lit = middle(&drawn(&gpu, &bare, &effects(&bare), Shader::Composed, None));
-        let (diffuse, specular) = (middle(&of(Stage::Diffuse)), middle(&of(Stage::Specular)));
+        let (diffuse, specular) = (middle(&of(Intermediate::Diffuse)), middle(&of(Intermediate::Specular)));
         for k in 0..3 {
             assert!((diffuse[k] + specular[k] - lit[k]).abs() < 1e-5, "{what}: {diffuse:?} {specular:?} {lit:?}");
             assert!(specular[k] > 0.0, "{what}: {specular:?}");
         }
-        assert_ne!(of(Stage::Surface), color, "{what}: fog is seen");
+        assert_ne!(of(Intermediate::Surface), color, "{what}: fog is seen");
     }
 }
 
 /// Drawn by a technique.
-fn by(gpu: &Gpu, frame: &Frame, technique: Technique) -> Result<Vec<u8>, Error> {
+fn by(gpu: &Gpu, frame: &Frame, technique: Technique) -> Result<Vec<u8>, GpuError> {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let recipe = Recipe { technique, ..Recipe::of(Shader::Composed) };
     let renderer = SceneRenderer::new(gpu, &shaders, frame, &effects(frame), recipe)?;
@@ -351,7 +351,7 @@ fn a_frame_that_has_no_use_for_a_technique_is_refused() {
     let _alone = alone();
     let (_, gpu, _) = devices().next().expect("there is one");
     let refused = |frame: &Frame, technique: Technique| match by(&gpu, frame, technique) {
-        Err(Error::Technique { technique: named, reason }) => {
+        Err(GpuError::Technique { technique: named, reason }) => {
             assert_eq!(named, technique.name());
             reason
         }
@@ -369,7 +369,7 @@ fn a_frame_that_has_no_use_for_a_technique_is_refused() {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let recipe = Recipe { technique: Technique::FogAtVertex, ..Recipe::of(Shader::Full) };
     let full = SceneRenderer::new(&gpu, &shaders, &frame(), &effects(&frame()), recipe);
-    assert!(matches!(full, Err(Error::Technique { .. })));
+    assert!(matches!(full, Err(GpuError::Technique { .. })));
 }
 
 /// Timestamps that a driver takes before it has rasterised would tell less than goes by on the wall.
@@ -546,7 +546,7 @@ fn at_rung(gpu: &Gpu, frame: &Frame, recipe: Recipe) -> Option<Vec<f32>> {
     }
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let renderer = match SceneRenderer::new(gpu, &shaders, frame, &effects(frame), recipe) {
-        Err(Error::Unavailable { .. }) if matches!(recipe.rung, Rung::Cheap | Rung::Stable) => return None,
+        Err(GpuError::Unavailable { .. }) if matches!(recipe.rung, Rung::Cheap | Rung::Stable) => return None,
         made => made.unwrap_or_else(|error| panic!("{}: {error}", recipe.rung.name())),
     };
     let pixels = SceneRenderer::pixels(gpu, renderer.submit(gpu)).unwrap_or_else(|error| panic!("{error}"));
@@ -598,7 +598,7 @@ fn the_clip_position_is_of_f32_at_every_rung() {
     let _alone = alone();
     let frame = frame();
     for (name, gpu, _) in devices().filter(|(_, gpu, _)| gpu.lacks_target(TargetFormat::Rgba32Float).is_none()) {
-        let depth = |rung| at_rung(&gpu, &frame, Recipe { rung, ..Recipe::stage(Stage::Depth) });
+        let depth = |rung| at_rung(&gpu, &frame, Recipe { rung, ..Recipe::stage(Intermediate::Depth) });
         let single = depth(Rung::F32).expect("f32 is everywhere");
         for rung in [Rung::Cheap, Rung::DoubleFloat, Rung::F64] {
             assert!(depth(rung).is_none_or(|pixels| pixels == single), "{name}, {}", rung.name());

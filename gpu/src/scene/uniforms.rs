@@ -1,6 +1,6 @@
 //! What a draw's shader is told, in the layouts of `scene_uniforms.wgsl` and of the effects' own bindings.
 
-use super::{Called, Effects, Error, Frame, Gpu, Stage};
+use super::{Called, Effects, Frame, Gpu, GpuError, Intermediate};
 use lightmeter_scene::frame::{Draw, Fog, FogForm, Light, MOST_LIGHTS, Material, Place, Sampled, Wrap};
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ pub(super) struct Told<'a> {
     pub(super) draw: &'a Draw,
     pub(super) called: &'a Called,
     pub(super) effects: Effects,
-    pub(super) stage: Option<Stage>,
+    pub(super) stage: Option<Intermediate>,
 }
 
 /// What a binding is given.
@@ -57,7 +57,7 @@ impl Packer {
 ///
 /// # Errors
 /// As [`words`] has them.
-pub(super) fn resource(told: &Told<'_>, name: &str, packer: &mut Packer) -> Result<Resource, Error> {
+pub(super) fn resource(told: &Told<'_>, name: &str, packer: &mut Packer) -> Result<Resource, GpuError> {
     Ok(match words(told, name)? {
         Some(words) => packer.put(words),
         None if name == "scene_texture" => {
@@ -71,7 +71,7 @@ pub(super) fn resource(told: &Told<'_>, name: &str, packer: &mut Packer) -> Resu
 ///
 /// # Errors
 /// Where there is no such binding, which an edited shader may ask for, or more lights than a shader takes.
-pub(super) fn words(told: &Told<'_>, name: &str) -> Result<Option<Vec<u32>>, Error> {
+pub(super) fn words(told: &Told<'_>, name: &str) -> Result<Option<Vec<u32>>, GpuError> {
     let (frame, draw) = (told.frame, told.draw);
     Ok(Some(match name {
         "scene_texture" | "scene_lightmap" => return Ok(None),
@@ -89,7 +89,7 @@ pub(super) fn words(told: &Told<'_>, name: &str) -> Result<Option<Vec<u32>>, Err
         "scene_spot" => light_words(told, SPOT, spot)?,
         _ => {
             let message = format!("its shader has a binding `{name}`, which nothing is known to be bound to");
-            return Err(Error::Draw { draw: draw.name.clone(), message });
+            return Err(GpuError::Draw { draw: draw.name.clone(), message });
         }
     }))
 }
@@ -105,7 +105,7 @@ fn floats(rows: &[[f32; 4]]) -> Vec<u32> {
 fn draw_words(told: &Told<'_>) -> Vec<u32> {
     let draw = told.draw;
     // What is not lit has its colour; its highlight is 0.
-    let is_base = draw.shading.is_none() && told.stage != Some(Stage::Specular);
+    let is_base = draw.shading.is_none() && told.stage != Some(Intermediate::Specular);
     let base = if is_base { draw.material.diffuse } else { [0.0; 3] };
     let mut rows = [told.frame.projection, draw.modelview].concat();
     rows.push(four(base, draw.alpha));
@@ -150,11 +150,15 @@ const POINT: usize = 5;
 const SPOT: usize = 6;
 
 /// The lights of a kind that shine on the draw, how many of them first.
-fn light_words(told: &Told<'_>, rows: usize, of_kind: fn(&Light) -> Option<Vec<[f32; 4]>>) -> Result<Vec<u32>, Error> {
+fn light_words(
+    told: &Told<'_>,
+    rows: usize,
+    of_kind: fn(&Light) -> Option<Vec<[f32; 4]>>,
+) -> Result<Vec<u32>, GpuError> {
     let lights: Vec<_> = told.called.lights.iter().filter_map(|&light| of_kind(&told.frame.lights[light])).collect();
     if lights.len() > MOST_LIGHTS {
         let message = format!("{} lights of a kind shine on it, and a shader takes {MOST_LIGHTS}", lights.len());
-        return Err(Error::Draw { draw: told.draw.name.clone(), message });
+        return Err(GpuError::Draw { draw: told.draw.name.clone(), message });
     }
     let mut words = vec![u32::try_from(lights.len()).unwrap_or(u32::MAX), 0, 0, 0];
     words.extend(floats(&lights.concat()));

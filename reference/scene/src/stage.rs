@@ -2,7 +2,7 @@
 
 /// What a fragment may show in place of its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Stage {
+pub enum Intermediate {
     /// Its position in eye space.
     Position,
     /// Its depth in the window.
@@ -19,7 +19,7 @@ pub enum Stage {
     Fog,
 }
 
-impl Stage {
+impl Intermediate {
     /// All, in the order in which they come about.
     pub const ALL: [Self; 7] =
         [Self::Position, Self::Depth, Self::Normal, Self::Diffuse, Self::Specular, Self::Surface, Self::Fog];

@@ -11,7 +11,7 @@ use crate::real::Real;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::{Draw, Frame};
 use lightmeter_scene::raster::Provoking;
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use rayon::prelude::*;
 
 /// Pixels of a tile's side.
@@ -33,7 +33,7 @@ pub struct Image {
 /// Draws a frame: everything that it names, or what is called for only; its colours, or an intermediate result of the
 /// fragment that is seen.
 #[must_use]
-pub fn render<R>(frame: &Frame, only: Option<&[Called]>, stage: Option<Stage>) -> Image
+pub fn render<R>(frame: &Frame, only: Option<&[Called]>, stage: Option<Intermediate>) -> Image
 where
     R: Real + Into<f64> + Send + Sync,
 {
@@ -124,7 +124,7 @@ fn bins<R>(draws: &[Prepared<'_, R>], size: [usize; 2]) -> Vec<Vec<(usize, usize
 /// A part of the image.
 struct Tile<'a, R> {
     frame: &'a Frame,
-    stage: Option<Stage>,
+    stage: Option<Intermediate>,
     /// First and last pixel of each axis.
     within: [[usize; 2]; 2],
     colors: Vec<[f64; 4]>,
@@ -135,7 +135,7 @@ struct Tile<'a, R> {
 }
 
 impl<'a, R: Real + Into<f64>> Tile<'a, R> {
-    fn new(frame: &'a Frame, stage: Option<Stage>, origin: [usize; 2], size: [usize; 2]) -> Self {
+    fn new(frame: &'a Frame, stage: Option<Intermediate>, origin: [usize; 2], size: [usize; 2]) -> Self {
         let within = std::array::from_fn(|axis| [origin[axis], (origin[axis] + TILE).min(size[axis]) - 1]);
         let [[left, right], [top, bottom]] = within;
         let count = (right - left + 1) * (bottom - top + 1);

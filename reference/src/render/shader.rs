@@ -15,7 +15,7 @@ use lightmeter_scene::effects::{Called, Effect};
 use lightmeter_scene::frame::Shading;
 use lightmeter_scene::frame::{self, FogForm, Frame, Place};
 use lightmeter_scene::shading::{Ambient, Frequency, Gate, LightAmbient, Normals, Viewer};
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 
 /// A draw with its constants brought to an arithmetic.
 #[derive(Clone, Debug)]
@@ -106,16 +106,16 @@ impl<R> Default for Scratch<R> {
 
 impl<R: Real> Fragment<R> {
     /// An intermediate result of a fragment at a depth, as an image shows it.
-    pub fn at(&self, stage: Stage, depth: R) -> Rgba<R> {
+    pub fn at(&self, stage: Intermediate, depth: R) -> Rgba<R> {
         let (zero, one) = (R::literal(0.0), R::literal(1.0));
         match stage {
-            Stage::Position => self.p.extend(one),
-            Stage::Depth => Vector([depth, zero, zero, one]),
-            Stage::Normal => self.n.extend(one),
-            Stage::Diffuse => self.diffuse.extend(one),
-            Stage::Specular => self.specular.extend(one),
-            Stage::Surface => self.surface,
-            Stage::Fog => self.color,
+            Intermediate::Position => self.p.extend(one),
+            Intermediate::Depth => Vector([depth, zero, zero, one]),
+            Intermediate::Normal => self.n.extend(one),
+            Intermediate::Diffuse => self.diffuse.extend(one),
+            Intermediate::Specular => self.specular.extend(one),
+            Intermediate::Surface => self.surface,
+            Intermediate::Fog => self.color,
         }
     }
 }

@@ -8,7 +8,7 @@ use lightmeter_reference::render::{Image, render};
 use lightmeter_scene::frame::{Cull, Draw, Filter, Fog, FogForm, Frame, Mesh, Place, Sampled, Texture, Textured, Wrap};
 use lightmeter_scene::raster::Provoking;
 use lightmeter_scene::shading::{Distance, Frequency, LightAmbient};
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
 use lightmeter_tests::frames::frame;
 use proptest::prelude::*;
@@ -277,7 +277,7 @@ proptest! {
         frame.ambient = [0.0; 3];
         frame.draws.retain(|draw| draw.shading.is_some());
         frame.draws.iter_mut().for_each(|draw| draw.material.emissive = [0.0; 3]);
-        for stage in [Stage::Diffuse, Stage::Specular] {
+        for stage in [Intermediate::Diffuse, Intermediate::Specular] {
             let mut once = render::<f64>(&frame, None, Some(stage));
             once.pixels.iter_mut().flat_map(|pixel| &mut pixel[..3]).for_each(|x| *x *= 2.0);
             let mut frame = frame.clone();

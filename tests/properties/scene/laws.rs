@@ -7,7 +7,7 @@ use lightmeter::image::expect;
 use lightmeter_reference::render::{Image, render};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::frame::{Cull, Frame, Light};
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
 use lightmeter_tests::frames::{Numbers, frame};
 use proptest::prelude::*;
@@ -34,7 +34,7 @@ fn shuffle<T>(items: &mut [T], n: &mut Numbers) {
 fn ties(frame: &Frame) -> Vec<bool> {
     let alone = |number: usize| {
         let frame = Frame { draws: vec![frame.draws[number].clone()], ..frame.clone() };
-        render::<f64>(&frame, None, Some(Stage::Depth)).pixels
+        render::<f64>(&frame, None, Some(Intermediate::Depth)).pixels
     };
     let depths: Vec<_> = (0..frame.draws.len()).map(alone).collect();
     let away = if frame.clear_depth < 0.5 { -1.0 } else { 1.0 };
@@ -157,8 +157,8 @@ proptest! {
 
     /// What is legal with 8 subpixel bits is legal with 4, in each intermediate result.
     #[test]
-    fn more_subpixel_bits_narrow_what_is_legal(seed: u64, stage in 0..=Stage::ALL.len()) {
-        let (given, stage) = (frame(seed), Stage::ALL.get(stage).copied());
+    fn more_subpixel_bits_narrow_what_is_legal(seed: u64, stage in 0..=Intermediate::ALL.len()) {
+        let (given, stage) = (frame(seed), Intermediate::ALL.get(stage).copied());
         let of = |subpixel_bits: u32| expect(&given, None, stage, &Profile { subpixel_bits, ..WGSL });
         for (pixel, (fine, coarse)) in of(8).iter().zip(&of(4)).enumerate() {
             for k in 0..4 {

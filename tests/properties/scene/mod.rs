@@ -15,7 +15,7 @@ use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_reference::render::{Image, render};
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
 use lightmeter_tests::frames::frame;
 use proptest::prelude::*;
@@ -52,7 +52,10 @@ proptest! {
 }
 
 /// The pixels of random frames that are outside what is legal, and how many are marked of how many.
-fn departures(of: impl Fn(&Frame, Option<Stage>) -> Image, stage: Option<Stage>) -> (Vec<String>, usize, usize) {
+fn departures(
+    of: impl Fn(&Frame, Option<Intermediate>) -> Image,
+    stage: Option<Intermediate>,
+) -> (Vec<String>, usize, usize) {
     let (mut outside, mut marked, mut all) = (vec![], 0, 0);
     for seed in 0..120 {
         let frame = frame(seed);
@@ -66,7 +69,12 @@ fn departures(of: impl Fn(&Frame, Option<Stage>) -> Image, stage: Option<Stage>)
 }
 
 /// The pixels of a frame's image that are not legal.
-fn illegal(frame: &Frame, stage: Option<Stage>, expected: &[Expected], image: &Image) -> impl Iterator<Item = String> {
+fn illegal(
+    frame: &Frame,
+    stage: Option<Intermediate>,
+    expected: &[Expected],
+    image: &Image,
+) -> impl Iterator<Item = String> {
     let pairs = image.pixels.iter().zip(expected).enumerate();
     pairs.filter(move |(_, (pixel, expected))| !contains(frame, stage, expected, **pixel)).map(
         |(number, (pixel, expected))| {
@@ -76,7 +84,7 @@ fn illegal(frame: &Frame, stage: Option<Stage>, expected: &[Expected], image: &I
     )
 }
 
-fn contains(frame: &Frame, stage: Option<Stage>, expected: &Expected, pixel: [f64; 4]) -> bool {
+fn contains(frame: &Frame, stage: Option<Intermediate>, expected: &Expected, pixel: [f64; 4]) -> bool {
     let units = if stage.is_none() && frame.target.format.is_unorm() { 255.0 } else { 1.0 };
     (0..4).all(|k| {
         let value = pixel[k] * units;
@@ -89,7 +97,7 @@ fn contains(frame: &Frame, stage: Option<Stage>, expected: &Expected, pixel: [f6
 
 #[test]
 fn the_reference_and_its_form_in_f32_are_legal() {
-    for stage in std::iter::once(None).chain(Stage::ALL.map(Some)) {
+    for stage in std::iter::once(None).chain(Intermediate::ALL.map(Some)) {
         for of in [|f: &Frame, s| render::<f64>(f, None, s), |f: &Frame, s| render::<f32>(f, None, s)] {
             let (outside, marked, all) = departures(of, stage);
             assert!(outside.is_empty(), "{stage:?}: {} pixels are not legal, as {}", outside.len(), outside[0]);
@@ -140,8 +148,8 @@ fn devices_draw_intermediate_results_within_what_is_legal() {
     for seed in 0..FRAMES / 2 {
         let frame = frame(seed);
         let sets = named(&frame);
-        let depths = expect(&frame, None, Some(Stage::Depth), &profile);
-        for stage in Stage::ALL {
+        let depths = expect(&frame, None, Some(Intermediate::Depth), &profile);
+        for stage in Intermediate::ALL {
             let expected = expect(&frame, None, Some(stage), &profile);
             let image =
                 intermediate(&subject, &code, &frame, &sets, stage).expect("it draws").expect("it can be drawn");

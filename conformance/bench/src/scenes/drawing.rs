@@ -12,7 +12,7 @@ use lightmeter_engine::image::judge::judge;
 use lightmeter_engine::image::run::{excuse, profile_of};
 use lightmeter_gpu::compose::Recipe;
 use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Clock, Error, Gpu, Shaders};
+use lightmeter_gpu::{Clock, Gpu, GpuError, Shaders};
 use lightmeter_judge::devices::Deviation;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::effects;
@@ -107,11 +107,11 @@ impl<'a> Drawer<'a> {
     }
 
     /// Draws each plan once: its errors against the ideal, what is wrong with it, and how long it took to compile.
-    pub(super) fn draw(&self, plans: &[Plan<'_>], ideal: &Standard) -> Result<Vec<Drawn>, Error> {
+    pub(super) fn draw(&self, plans: &[Plan<'_>], ideal: &Standard) -> Result<Vec<Drawn>, GpuError> {
         plans.iter().map(|plan| self.one(plan, ideal)).collect()
     }
 
-    fn one(&self, plan: &Plan<'_>, ideal: &Standard) -> Result<Drawn, Error> {
+    fn one(&self, plan: &Plan<'_>, ideal: &Standard) -> Result<Drawn, GpuError> {
         let row = Row {
             name: plan.name.clone(),
             what: plan.what.clone(),
@@ -130,7 +130,7 @@ impl<'a> Drawer<'a> {
         }
         let start = Instant::now();
         let renderer = match self.renderer(plan.frame, plan.recipe) {
-            Err(Error::Technique { reason, .. } | Error::Unavailable { reason, .. }) => {
+            Err(GpuError::Technique { reason, .. } | GpuError::Unavailable { reason, .. }) => {
                 return Ok(Drawn { row: Row { unavailable: Some(reason), ..row }, timed: None });
             }
             made => made?,
@@ -153,14 +153,14 @@ impl<'a> Drawer<'a> {
     }
 
     /// What is timed in the place of what has been drawn.
-    fn larger(&self, plan: &Plan<'_>, drawn: SceneRenderer) -> Result<SceneRenderer, Error> {
+    fn larger(&self, plan: &Plan<'_>, drawn: SceneRenderer) -> Result<SceneRenderer, GpuError> {
         let Some(frame) = self.timed(plan.frame) else { return Ok(drawn) };
         let renderer = self.renderer(&frame, plan.recipe)?;
         SceneRenderer::pixels(self.gpu, renderer.submit(self.gpu))?;
         Ok(renderer)
     }
 
-    pub(super) fn renderer(&self, frame: &Frame, recipe: Recipe) -> Result<SceneRenderer, Error> {
+    pub(super) fn renderer(&self, frame: &Frame, recipe: Recipe) -> Result<SceneRenderer, GpuError> {
         SceneRenderer::new(self.gpu, self.shaders, frame, &effects(frame), recipe)
     }
 
@@ -181,7 +181,7 @@ impl<'a> Drawer<'a> {
     }
 
     /// The rows with their times beside that of the baseline.
-    pub(super) fn rows(&self, drawn: &[Drawn], baseline: Option<usize>, effort: Effort) -> Result<Vec<Row>, Error> {
+    pub(super) fn rows(&self, drawn: &[Drawn], baseline: Option<usize>, effort: Effort) -> Result<Vec<Row>, GpuError> {
         let places: Vec<usize> = (0..drawn.len()).filter(|&place| drawn[place].timed.is_some()).collect();
         let mut entries: Vec<Entry<'_>> =
             drawn.iter().filter_map(|drawn| drawn.timed.as_ref()).map(|renderer| self.entry(renderer)).collect();

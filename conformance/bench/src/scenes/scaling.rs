@@ -9,7 +9,7 @@ use crate::turns::{Effort, Entry, Laps};
 use lightmeter_engine::options::Progress;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Clock, Error};
+use lightmeter_gpu::{Clock, GpuError};
 use lightmeter_scene::frame::{Frame, MOST_LIGHTS};
 use std::time::Instant;
 
@@ -31,7 +31,7 @@ pub const SCALINGS: [&str; 3] = ["lights", "vertices", "pixels"];
 ///
 /// # Errors
 /// Where a shader is invalid or the device fails.
-pub fn scalings(on: &On<'_>, names: &[&str], progress: &mut impl Progress) -> Result<Vec<Scaling>, Error> {
+pub fn scalings(on: &On<'_>, names: &[&str], progress: &mut impl Progress) -> Result<Vec<Scaling>, GpuError> {
     let Some(drawer) = Drawer::new(on) else { return Ok(vec![]) };
     let (gpu, setting) = (drawer.gpu, &on.setting);
     let most = usize::from(setting.quick);
@@ -97,7 +97,7 @@ struct Step {
 }
 
 impl Kind<'_> {
-    fn measure(self, drawer: &Drawer<'_>, setting: &Setting) -> Result<Scaling, Error> {
+    fn measure(self, drawer: &Drawer<'_>, setting: &Setting) -> Result<Scaling, GpuError> {
         let (mut steps, mut unavailable) = (vec![], vec![]);
         for (work, size) in self.steps {
             let frame = (self.frame)(size);
@@ -140,7 +140,7 @@ impl Kind<'_> {
 }
 
 /// The laps of each step in turns, the slow ones in few of their own.
-fn laps(drawer: &Drawer<'_>, steps: &[Step], effort: Effort) -> Result<Vec<Laps>, Error> {
+fn laps(drawer: &Drawer<'_>, steps: &[Step], effort: Effort) -> Result<Vec<Laps>, GpuError> {
     let mut laps: Vec<Laps> = vec![vec![]; steps.len()];
     for is_slow in [false, true] {
         let places: Vec<usize> = (0..steps.len()).filter(|&place| steps[place].is_slow == is_slow).collect();

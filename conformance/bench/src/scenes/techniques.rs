@@ -5,7 +5,7 @@ use super::{On, Setting, frames};
 use crate::document::{Group, GroupKind};
 use lightmeter_engine::options::Progress;
 use lightmeter_gpu::compose::{Recipe, Shader, Technique};
-use lightmeter_gpu::{Error, Rung};
+use lightmeter_gpu::{GpuError, Rung};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
 
@@ -31,7 +31,7 @@ pub fn techniques(
     ladder: &[(Rung, Option<String>)],
     ids: &[&str],
     progress: &mut impl Progress,
-) -> Result<Vec<Group>, Error> {
+) -> Result<Vec<Group>, GpuError> {
     let Some(drawer) = Drawer::new(on) else { return Ok(vec![]) };
     let mut groups = vec![];
     for comparison in comparisons().into_iter().filter(|comparison| ids.contains(&comparison.id)) {
@@ -87,7 +87,7 @@ impl Comparison {
         drawer: &Drawer<'_>,
         ladder: &[(Rung, Option<String>)],
         setting: &Setting,
-    ) -> Result<Group, Error> {
+    ) -> Result<Group, GpuError> {
         let standards = self.standards(drawer, side(setting, SIDE, SIDE_QUICK));
         let plans = self.plans(&standards, ladder);
         let drawn = drawer.draw(&plans, &standards[0])?;

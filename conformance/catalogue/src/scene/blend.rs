@@ -1,12 +1,12 @@
 //! Blend states by their names, and what WebGPU has no state for.
 
-use super::field::{At, Error, one_of};
+use super::field::{At, SceneError, one_of};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State};
 use lightmeter_scene::frame::Blend;
 use lightmeter_scene::model;
 
 /// The state of an object's blending.
-pub(super) fn blend(at: &At<'_>, blend: &model::Blend) -> Result<Blend, Error> {
+pub(super) fn blend(at: &At<'_>, blend: &model::Blend) -> Result<Blend, SceneError> {
     let color = state(&at.field("color"), &blend.color)?;
     let alpha = match &blend.alpha {
         Some(alpha) => state(&at.field("alpha"), alpha)?,
@@ -21,7 +21,7 @@ pub(super) fn blend(at: &At<'_>, blend: &model::Blend) -> Result<Blend, Error> {
 }
 
 /// A named mode of 002, or equation and factors.
-fn state(at: &At<'_>, name: &str) -> Result<State, Error> {
+fn state(at: &At<'_>, name: &str) -> Result<State, SceneError> {
     let add = |src, dst| State { equation: Equation::Add, src, dst };
     match name {
         "solid" => return Ok(add(Factor::One, Factor::Zero)),

@@ -1,6 +1,6 @@
 //! The image and the camera's matrices.
 
-use super::field::{At, Error};
+use super::field::{At, SceneError};
 use glam::{DMat4, DVec3, dcamera::rh};
 use lightmeter_scene::frame::{Matrix, Target};
 use lightmeter_scene::model::{self, Projection};
@@ -9,7 +9,7 @@ use lightmeter_scene::model::{self, Projection};
 const MOST_PIXELS: u32 = 8192;
 
 /// The image.
-pub(super) fn target(target: model::Target) -> Result<Target, Error> {
+pub(super) fn target(target: model::Target) -> Result<Target, SceneError> {
     let at = At::Scene.field("target");
     for (name, pixels) in [("width", target.width), ("height", target.height)] {
         at.field(name).require((1..=MOST_PIXELS).contains(&pixels), pixels, "1 to 8192 pixels")?;
@@ -18,7 +18,7 @@ pub(super) fn target(target: model::Target) -> Result<Target, Error> {
 }
 
 /// World → eye.
-pub(super) fn view(camera: &model::Camera) -> Result<DMat4, Error> {
+pub(super) fn view(camera: &model::Camera) -> Result<DMat4, SceneError> {
     let at = At::Scene.field("camera");
     at.field("eye").numbers(camera.eye)?;
     at.field("center").numbers(camera.center)?;
@@ -38,11 +38,11 @@ pub(super) fn view(camera: &model::Camera) -> Result<DMat4, Error> {
 }
 
 /// Eye → clip, with WebGPU's depth from 0 to 1, or from 1 to 0.
-pub(super) fn projection(camera: &model::Camera, target: Target) -> Result<Matrix, Error> {
+pub(super) fn projection(camera: &model::Camera, target: Target) -> Result<Matrix, SceneError> {
     let at = At::Scene.field("camera");
     let at = at.field("projection");
     let aspect = f64::from(target.width) / f64::from(target.height);
-    let planes = |at: &At<'_>, near: f64, far: f64| -> Result<(f64, f64), Error> {
+    let planes = |at: &At<'_>, near: f64, far: f64| -> Result<(f64, f64), SceneError> {
         let rounded = at.field("near").positive(near)?;
         let beyond = at.field("far").number(far)? > rounded;
         at.field("far").require(beyond, far, &format!("a distance above `near`, which is {near}"))?;
@@ -67,7 +67,7 @@ pub(super) fn projection(camera: &model::Camera, target: Target) -> Result<Matri
 }
 
 /// The matrix in f32.
-pub(super) fn columns(at: &At<'_>, matrix: DMat4) -> Result<Matrix, Error> {
+pub(super) fn columns(at: &At<'_>, matrix: DMat4) -> Result<Matrix, SceneError> {
     let mut columns = [[0.0; 4]; 4];
     for (column, of) in columns.iter_mut().zip(matrix.to_cols_array_2d()) {
         for (to, x) in column.iter_mut().zip(of) {

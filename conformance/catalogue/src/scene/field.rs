@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Why a scene is refused.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum SceneError {
     /// A file that cannot be read.
     #[error("cannot read {file}: {source}")]
     File {
@@ -62,17 +62,17 @@ impl At<'_> {
     }
 
     /// What stands here is refused.
-    pub(super) fn refuse(&self, holds: impl fmt::Display, allowed: impl fmt::Display) -> Error {
-        Error::Field { path: self.to_string(), holds: holds.to_string(), allowed: allowed.to_string() }
+    pub(super) fn refuse(&self, holds: impl fmt::Display, allowed: impl fmt::Display) -> SceneError {
+        SceneError::Field { path: self.to_string(), holds: holds.to_string(), allowed: allowed.to_string() }
     }
 
     /// What stands here is refused unless it is right.
-    pub(super) fn require(&self, right: bool, holds: impl fmt::Display, allowed: &str) -> Result<(), Error> {
+    pub(super) fn require(&self, right: bool, holds: impl fmt::Display, allowed: &str) -> Result<(), SceneError> {
         if right { Ok(()) } else { Err(self.refuse(format_args!("is {holds}"), allowed)) }
     }
 
     /// The f32 nearest to a number.
-    pub(super) fn number(&self, x: f64) -> Result<f32, Error> {
+    pub(super) fn number(&self, x: f64) -> Result<f32, SceneError> {
         #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is what is asked for")]
         let nearest = x as f32;
         self.require(nearest.is_finite(), x, "a number within the range of f32")?;
@@ -80,7 +80,7 @@ impl At<'_> {
     }
 
     /// The f32s nearest to numbers.
-    pub(super) fn numbers<const N: usize>(&self, numbers: [f64; N]) -> Result<[f32; N], Error> {
+    pub(super) fn numbers<const N: usize>(&self, numbers: [f64; N]) -> Result<[f32; N], SceneError> {
         let mut nearest = [0.0; N];
         for (place, x) in numbers.into_iter().enumerate() {
             nearest[place] = self.item(place).number(x)?;
@@ -89,27 +89,27 @@ impl At<'_> {
     }
 
     /// The f32 nearest to a number that is to be 0 or above.
-    pub(super) fn not_negative(&self, x: f64) -> Result<f32, Error> {
+    pub(super) fn not_negative(&self, x: f64) -> Result<f32, SceneError> {
         let nearest = self.number(x)?;
         self.require(nearest >= 0.0, x, "a number that is 0 or above")?;
         Ok(nearest)
     }
 
     /// The f32 nearest to a number that is to be above 0, as an f32 too.
-    pub(super) fn positive(&self, x: f64) -> Result<f32, Error> {
+    pub(super) fn positive(&self, x: f64) -> Result<f32, SceneError> {
         let nearest = self.number(x)?;
         self.require(nearest > 0.0, x, "a number above 0")?;
         Ok(nearest)
     }
 
     /// The f32 nearest to a number that is to be from 0 to 1.
-    pub(super) fn share(&self, x: f64) -> Result<f32, Error> {
+    pub(super) fn share(&self, x: f64) -> Result<f32, SceneError> {
         self.require((0.0..=1.0).contains(&x), x, "a number from 0 to 1")?;
         self.number(x)
     }
 
     /// A vector that is to have a direction, also as f32s.
-    pub(super) fn direction(&self, v: [f64; 3]) -> Result<[f32; 3], Error> {
+    pub(super) fn direction(&self, v: [f64; 3]) -> Result<[f32; 3], SceneError> {
         let nearest = self.numbers(v)?;
         let shown = format!("[{}, {}, {}]", v[0], v[1], v[2]);
         self.require(nearest.iter().any(|&x| x != 0.0), shown, "a vector that is not 0")?;
@@ -117,7 +117,7 @@ impl At<'_> {
     }
 
     /// A thing of that name among those that there are.
-    pub(super) fn named<T>(&self, found: Option<T>, name: &str, known: &[&str]) -> Result<T, Error> {
+    pub(super) fn named<T>(&self, found: Option<T>, name: &str, known: &[&str]) -> Result<T, SceneError> {
         let known = if known.is_empty() { "a name, of which there are none".into() } else { one_of(known) };
         found.ok_or_else(|| self.refuse(format_args!("is `{name}`"), known))
     }

@@ -1,6 +1,6 @@
 //! Lights in eye space, and fog.
 
-use super::field::{At, Error, one_of};
+use super::field::{At, SceneError, one_of};
 use glam::{DMat4, DVec3};
 use lightmeter_scene::frame::{Fog, FogForm, Light, MOST_LIGHTS, Place};
 use lightmeter_scene::model::{self, FogFactor, LightKind};
@@ -8,8 +8,8 @@ use lightmeter_scene::model::{self, FogFactor, LightKind};
 /// The lights. `space` gives the matrix to eye space of what a light is attached to.
 pub(super) fn lights(
     lights: &[model::Light],
-    space: &dyn Fn(&At<'_>, &str) -> Result<DMat4, Error>,
-) -> Result<Vec<Light>, Error> {
+    space: &dyn Fn(&At<'_>, &str) -> Result<DMat4, SceneError>,
+) -> Result<Vec<Light>, SceneError> {
     let at = At::Scene.field("lights");
     let most = format!("{MOST_LIGHTS} lights at most");
     at.require(lights.len() <= MOST_LIGHTS, format_args!("a list of {}", lights.len()), &most)?;
@@ -20,8 +20,8 @@ fn one(
     at: &At<'_>,
     place: usize,
     light: &model::Light,
-    space: &dyn Fn(&At<'_>, &str) -> Result<DMat4, Error>,
-) -> Result<Light, Error> {
+    space: &dyn Fn(&At<'_>, &str) -> Result<DMat4, SceneError>,
+) -> Result<Light, SceneError> {
     let color = at.field("color").numbers(light.color)?;
     let or_color = |name, own: Option<[f64; 3]>| own.map_or(Ok(color), |own| at.field(name).numbers(own));
     only_its_own(at, light)?;
@@ -42,7 +42,7 @@ fn one(
 }
 
 /// A field that a kind of light has no use for is a mistake.
-fn only_its_own(at: &At<'_>, light: &model::Light) -> Result<(), Error> {
+fn only_its_own(at: &At<'_>, light: &model::Light) -> Result<(), SceneError> {
     let (directional, spot) = (light.kind == LightKind::Directional, light.kind == LightKind::Spot);
     let fields = [
         ("travel", light.travel.is_some(), directional),
@@ -61,7 +61,7 @@ fn only_its_own(at: &At<'_>, light: &model::Light) -> Result<(), Error> {
     }
 }
 
-fn directional(at: &At<'_>, light: &model::Light, to_eye: DMat4) -> Result<Place, Error> {
+fn directional(at: &At<'_>, light: &model::Light, to_eye: DMat4) -> Result<Place, SceneError> {
     let toward = match (light.travel, light.toward) {
         (Some(travel), None) => -in_eye_space(&at.field("travel"), travel, to_eye)?,
         (None, Some(toward)) => in_eye_space(&at.field("toward"), toward, to_eye)?,
@@ -72,7 +72,7 @@ fn directional(at: &At<'_>, light: &model::Light, to_eye: DMat4) -> Result<Place
     Ok(Place::Directional { toward, unit: light.unit })
 }
 
-fn spot(at: &At<'_>, light: &model::Light, to_eye: DMat4) -> Result<Place, Error> {
+fn spot(at: &At<'_>, light: &model::Light, to_eye: DMat4) -> Result<Place, SceneError> {
     let axis = in_eye_space(&at.field("axis"), needed(at, "axis", light.axis)?, to_eye)?;
     let cutoff_deg = needed(at, "cutoff_deg", light.cutoff_deg)?;
     let is_angle = cutoff_deg > 0.0 && cutoff_deg <= 90.0;
@@ -86,19 +86,19 @@ fn spot(at: &At<'_>, light: &model::Light, to_eye: DMat4) -> Result<Place, Error
     })
 }
 
-fn in_eye_space(at: &At<'_>, direction: [f64; 3], to_eye: DMat4) -> Result<DVec3, Error> {
+fn in_eye_space(at: &At<'_>, direction: [f64; 3], to_eye: DMat4) -> Result<DVec3, SceneError> {
     at.direction(direction)?;
     Ok(to_eye.transform_vector3(direction.into()))
 }
 
-fn position(at: &At<'_>, light: &model::Light, to_eye: DMat4) -> Result<[f32; 3], Error> {
+fn position(at: &At<'_>, light: &model::Light, to_eye: DMat4) -> Result<[f32; 3], SceneError> {
     let position = needed(at, "position", light.position)?;
     let at = at.field("position");
     at.numbers(position)?;
     at.numbers(to_eye.transform_point3(position.into()).into())
 }
 
-fn falloff(at: &At<'_>, falloff: Option<[f64; 3]>) -> Result<[f32; 3], Error> {
+fn falloff(at: &At<'_>, falloff: Option<[f64; 3]>) -> Result<[f32; 3], SceneError> {
     let at = at.field("falloff");
     let mut nearest = [0.0; 3];
     for (place, k) in falloff.unwrap_or([1.0, 0.0, 0.0]).into_iter().enumerate() {
@@ -108,12 +108,12 @@ fn falloff(at: &At<'_>, falloff: Option<[f64; 3]>) -> Result<[f32; 3], Error> {
     Ok(nearest)
 }
 
-fn needed<T>(at: &At<'_>, name: &str, given: Option<T>) -> Result<T, Error> {
+fn needed<T>(at: &At<'_>, name: &str, given: Option<T>) -> Result<T, SceneError> {
     given.ok_or_else(|| at.field(name).refuse("is missing", "it, for this kind of light"))
 }
 
 /// The fog.
-pub(super) fn fog(fog: &model::Fog) -> Result<Fog, Error> {
+pub(super) fn fog(fog: &model::Fog) -> Result<Fog, SceneError> {
     let at = At::Scene.field("fog");
     let factor = at.field("factor");
     let density = |form: &str, density| factor.field(form).field("density").not_negative(density);

@@ -1,6 +1,6 @@
 //! From JSON to a frame.
 
-use super::field::{At, Error};
+use super::field::{At, SceneError};
 use super::objects::{self, Known, Parts};
 use super::{camera, library, lights, mesh, texture};
 use lightmeter_scene::frame::Frame;
@@ -37,7 +37,7 @@ pub struct Loaded {
 /// # Errors
 ///
 /// Where there is neither, or the scene is refused.
-pub fn scene(path_or_name: &str) -> Result<Loaded, Error> {
+pub fn scene(path_or_name: &str) -> Result<Loaded, SceneError> {
     let name = path_or_name.strip_prefix("scene/").unwrap_or(path_or_name);
     if library::SCENES.iter().any(|(own, _)| *own == name) && !Path::new(path_or_name).is_file() {
         return builtin(name);
@@ -53,8 +53,8 @@ pub fn scene(path_or_name: &str) -> Result<Loaded, Error> {
 /// # Errors
 ///
 /// Where the file cannot be read, or the scene is refused.
-pub fn file(path: &Path) -> Result<Loaded, Error> {
-    let unreadable = |source| Error::File { file: path.display().to_string(), source };
+pub fn file(path: &Path) -> Result<Loaded, SceneError> {
+    let unreadable = |source| SceneError::File { file: path.display().to_string(), source };
     let json = read(path).map_err(unreadable)?;
     let json = String::from_utf8(json).map_err(|error| unreadable(io::Error::other(error)))?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -67,13 +67,13 @@ pub fn file(path: &Path) -> Result<Loaded, Error> {
 /// # Errors
 ///
 /// Where there is none of that name.
-pub fn builtin(name: &str) -> Result<Loaded, Error> {
+pub fn builtin(name: &str) -> Result<Loaded, SceneError> {
     let (name, json) = library::SCENES.iter().find(|(own, _)| *own == name).ok_or_else(|| unknown(name))?;
     text(name, json, &library::asset)
 }
 
-fn unknown(name: &str) -> Error {
-    Error::Unknown { name: name.to_owned(), known: library::SCENES.map(|(own, _)| own).join(", ") }
+fn unknown(name: &str) -> SceneError {
+    SceneError::Unknown { name: name.to_owned(), known: library::SCENES.map(|(own, _)| own).join(", ") }
 }
 
 /// Loads a scene from JSON. `files` gives the bytes of the files that it names.
@@ -81,7 +81,7 @@ fn unknown(name: &str) -> Error {
 /// # Errors
 ///
 /// Where the text is not JSON, not of the schema, or holds what is not allowed.
-pub fn text(name: &str, json: &str, files: &Files<'_>) -> Result<Loaded, Error> {
+pub fn text(name: &str, json: &str, files: &Files<'_>) -> Result<Loaded, SceneError> {
     let scene = parse(json)?;
     let frame = frame(&scene, files)?;
     Ok(Loaded { name: name.to_owned(), title: scene.title, shows: scene.shows, frame })
@@ -92,11 +92,11 @@ pub fn text(name: &str, json: &str, files: &Files<'_>) -> Result<Loaded, Error> 
 /// # Errors
 ///
 /// Where the text is not JSON, or not of the schema.
-pub fn parse(json: &str) -> Result<Scene, Error> {
+pub fn parse(json: &str) -> Result<Scene, SceneError> {
     let mut deserializer = serde_json::Deserializer::from_str(json);
     let scene = serde_path_to_error::deserialize(&mut deserializer)
-        .map_err(|error| Error::Json { path: error.path().to_string(), says: error.inner().to_string() })?;
-    deserializer.end().map_err(|error| Error::Json { path: ".".into(), says: error.to_string() })?;
+        .map_err(|error| SceneError::Json { path: error.path().to_string(), says: error.inner().to_string() })?;
+    deserializer.end().map_err(|error| SceneError::Json { path: ".".into(), says: error.to_string() })?;
     Ok(scene)
 }
 
@@ -105,7 +105,7 @@ pub fn parse(json: &str) -> Result<Scene, Error> {
 /// # Errors
 ///
 /// Where a field holds what it may not.
-pub fn frame(scene: &Scene, files: &Files<'_>) -> Result<Frame, Error> {
+pub fn frame(scene: &Scene, files: &Files<'_>) -> Result<Frame, SceneError> {
     let target = camera::target(scene.target)?;
     let view = camera::view(&scene.camera)?;
     let projection = camera::projection(&scene.camera, target)?;

@@ -1,6 +1,6 @@
 //! Materials: 003's scalars and their highlights turned into colours.
 
-use super::field::{At, Error};
+use super::field::{At, SceneError};
 use lightmeter_scene::frame::{self, Filter, Sampled, Textured, Wrap};
 use lightmeter_scene::model::{Highlight, Image, Material, Named, Reading, TextureMode};
 
@@ -35,9 +35,9 @@ pub(super) const fn of_file(texture: usize) -> Textured {
 }
 
 /// What the material is, with its images by their places among the textures.
-pub(super) fn surface(at: &At<'_>, material: &Material, textures: &Named<Image>) -> Result<Surface, Error> {
+pub(super) fn surface(at: &At<'_>, material: &Material, textures: &Named<Image>) -> Result<Surface, SceneError> {
     at.field("color").numbers(material.color)?;
-    let scaled = |name: &str, k: Option<f64>| -> Result<[f64; 3], Error> {
+    let scaled = |name: &str, k: Option<f64>| -> Result<[f64; 3], SceneError> {
         let k = k.unwrap_or(1.0);
         at.field(name).number(k)?;
         Ok(material.color.map(|c| k * c))
@@ -88,7 +88,7 @@ pub(super) fn surface(at: &At<'_>, material: &Material, textures: &Named<Image>)
     })
 }
 
-fn sampled(at: &At<'_>, reading: &Reading, textures: &Named<Image>) -> Result<Sampled, Error> {
+fn sampled(at: &At<'_>, reading: &Reading, textures: &Named<Image>) -> Result<Sampled, SceneError> {
     let found = textures.find(&reading.image).map(|(place, _)| place);
     let texture = at.field("image").named(found, &reading.image, &textures.names())?;
     Ok(Sampled { texture, filter: reading.filter.into(), wrap: reading.wrap.into() })

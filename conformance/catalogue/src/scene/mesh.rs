@@ -1,6 +1,6 @@
 //! Meshes: what is written is checked, what is generated is made, and normals are made anew where that is asked for.
 
-use super::field::{At, Error};
+use super::field::{At, SceneError};
 use super::load::Files;
 use super::material::Surface;
 use super::{normals, obj, shapes};
@@ -28,7 +28,7 @@ pub(super) fn parts(
     mesh: &model::Mesh,
     files: &Files<'_>,
     textures: &mut Vec<Texture>,
-) -> Result<Vec<Part>, Error> {
+) -> Result<Vec<Part>, SceneError> {
     let shape = at.field("shape");
     let mut parts = match &mesh.shape {
         Shape::Obj(path) => obj::parts(&shape.field("obj"), path, files, textures)?,
@@ -48,7 +48,7 @@ pub(super) fn parts(
 }
 
 /// Triangles as they are written.
-fn triangles(at: &At<'_>, shape: &Shape) -> Result<Mesh, Error> {
+fn triangles(at: &At<'_>, shape: &Shape) -> Result<Mesh, SceneError> {
     let Shape::Triangles { positions, normals, uvs, lightmap_uvs, colors, triangles } = shape else {
         return Ok(Mesh::default());
     };
@@ -69,7 +69,7 @@ fn triangles(at: &At<'_>, shape: &Shape) -> Result<Mesh, Error> {
 }
 
 /// Refuses a mesh without triangles, or with too many.
-pub(super) fn size(at: &At<'_>, vertices: usize, triangles: usize) -> Result<(), Error> {
+pub(super) fn size(at: &At<'_>, vertices: usize, triangles: usize) -> Result<(), SceneError> {
     let right = (1..=MOST_TRIANGLES).contains(&(triangles as u64)) && vertices as u64 <= MOST_VERTICES;
     let holds = format_args!("has {vertices} vertices and {triangles} triangles");
     let allowed = format_args!("1 to {MOST_TRIANGLES} triangles of up to {MOST_VERTICES} vertices");
@@ -77,7 +77,7 @@ pub(super) fn size(at: &At<'_>, vertices: usize, triangles: usize) -> Result<(),
 }
 
 /// Refuses a triangle of a vertex that there is not.
-pub(super) fn indices(at: &At<'_>, mesh: &Mesh) -> Result<(), Error> {
+pub(super) fn indices(at: &At<'_>, mesh: &Mesh) -> Result<(), SceneError> {
     let vertices = mesh.positions.len();
     for (place, triangle) in mesh.triangles.iter().enumerate() {
         for (corner, &vertex) in triangle.iter().enumerate() {
@@ -92,7 +92,7 @@ pub(super) fn indices(at: &At<'_>, mesh: &Mesh) -> Result<(), Error> {
     Ok(())
 }
 
-fn attribute<const N: usize>(at: &At<'_>, values: &[[f64; N]], vertices: usize) -> Result<Vec<[f32; N]>, Error> {
+fn attribute<const N: usize>(at: &At<'_>, values: &[[f64; N]], vertices: usize) -> Result<Vec<[f32; N]>, SceneError> {
     if !values.is_empty() && values.len() != vertices {
         let holds = format_args!("has {} entries", values.len());
         return Err(at.refuse(holds, format_args!("none, or one for each of {vertices} positions")));

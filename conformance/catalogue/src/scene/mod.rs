@@ -1,6 +1,6 @@
 //! Scenes: from what is written to what is drawn.
 //!
-//! [`load`] reads JSON, files and names and gives a [`Frame`](lightmeter_scene::frame::Frame), or an [`Error`] that
+//! [`load`] reads JSON, files and names and gives a [`Frame`](lightmeter_scene::frame::Frame), or an [`SceneError`] that
 //! says which field holds what, and what is allowed. [`library`] has the scenes that are built in.
 
 mod blend;
@@ -19,5 +19,5 @@ mod shapes;
 mod teapot;
 mod texture;
 
-pub use field::Error;
+pub use field::SceneError;
 pub use load::Loaded;

@@ -1,13 +1,13 @@
 //! Normals from the faces: one a face, or averaged at the vertices (004).
 
-use super::field::{At, Error};
+use super::field::{At, SceneError};
 use super::mesh::MOST_VERTICES;
 use glam::DVec3;
 use lightmeter_scene::frame::Mesh;
 use std::collections::HashMap;
 
 /// The mesh with its vertices split, so that each face has its own three with its normal.
-pub(super) fn of_faces(at: &At<'_>, mesh: &Mesh) -> Result<Mesh, Error> {
+pub(super) fn of_faces(at: &At<'_>, mesh: &Mesh) -> Result<Mesh, SceneError> {
     let vertices = 3 * mesh.triangles.len() as u64;
     if vertices > MOST_VERTICES {
         return Err(
@@ -32,7 +32,7 @@ pub(super) fn of_faces(at: &At<'_>, mesh: &Mesh) -> Result<Mesh, Error> {
 }
 
 /// Gives each vertex the mean of the unit normals of the faces around its position.
-pub(super) fn average(at: &At<'_>, mesh: &mut Mesh) -> Result<(), Error> {
+pub(super) fn average(at: &At<'_>, mesh: &mut Mesh) -> Result<(), SceneError> {
     // Negative zero is zero.
     let key = |position: [f32; 3]| position.map(|x| (x + 0.0).to_bits());
     let mut sums = HashMap::<[u32; 3], DVec3>::new();
@@ -63,7 +63,7 @@ fn split<const N: usize>(values: &[[f32; N]], corners: &[usize]) -> Vec<[f32; N]
 }
 
 /// The unit normal of a face, on the side from which it is counter-clockwise.
-fn face(at: &At<'_>, mesh: &Mesh, place: usize) -> Result<DVec3, Error> {
+fn face(at: &At<'_>, mesh: &Mesh, place: usize) -> Result<DVec3, SceneError> {
     let [a, b, c] = mesh.triangles[place].map(|vertex| DVec3::from(mesh.positions[vertex as usize].map(f64::from)));
     (b - a).cross(c - a).try_normalize().ok_or_else(|| {
         at.refuse(format_args!("is made from faces, and triangle {place} has no area"), "triangles with an area")

@@ -3,7 +3,7 @@
 //! Of an MTL, Ka Kd Ks Ke Ns d and map_Kd are the material; what it leaves out is as in a material of a scene. The
 //! files that an OBJ names lie in its own folder.
 
-use super::field::{At, Error};
+use super::field::{At, SceneError};
 use super::load::Files;
 use super::material::{Surface, of_file};
 use super::mesh::{Part, indices, size};
@@ -19,7 +19,7 @@ pub(super) fn parts(
     path: &str,
     files: &Files<'_>,
     textures: &mut Vec<Texture>,
-) -> Result<Vec<Part>, Error> {
+) -> Result<Vec<Part>, SceneError> {
     let unreadable = |path: &str, error: &dyn std::fmt::Display| {
         at.refuse(format_args!("is `{path}`, which cannot be read: {error}"), "an OBJ with its MTL")
     };
@@ -57,7 +57,7 @@ pub(super) fn parts(
         .collect()
 }
 
-fn mesh(at: &At<'_>, from: &tobj::Mesh) -> Result<Mesh, Error> {
+fn mesh(at: &At<'_>, from: &tobj::Mesh) -> Result<Mesh, SceneError> {
     let uvs: Vec<[f32; 2]> = attribute(at, &from.texcoords)?;
     let colors: Vec<[f32; 3]> = attribute(at, &from.vertex_color)?;
     let mesh = Mesh {
@@ -75,7 +75,7 @@ fn mesh(at: &At<'_>, from: &tobj::Mesh) -> Result<Mesh, Error> {
     Ok(mesh)
 }
 
-fn attribute<const N: usize>(at: &At<'_>, values: &[f32]) -> Result<Vec<[f32; N]>, Error> {
+fn attribute<const N: usize>(at: &At<'_>, values: &[f32]) -> Result<Vec<[f32; N]>, SceneError> {
     match values.iter().find(|x| !x.is_finite()) {
         Some(x) => Err(at.refuse(format_args!("holds {x}"), "finite numbers")),
         None => Ok(values.as_chunks().0.to_vec()),
@@ -89,7 +89,7 @@ fn surface(
     files: &Files<'_>,
     textures: &mut Vec<Texture>,
     images: &mut HashMap<String, usize>,
-) -> Result<Surface, Error> {
+) -> Result<Surface, SceneError> {
     let mut surface = Surface::WHITE;
     let number = |name: &str, x: f32, allowed: &str, right: bool| {
         let holds = format_args!("has a material `{}` with {name} {x}", from.name);

@@ -3,7 +3,7 @@
 
 use super::blend::blend;
 use super::camera::columns;
-use super::field::{At, Error};
+use super::field::{At, SceneError};
 use super::material::Surface;
 use glam::{DMat3, DMat4, DVec3};
 use lightmeter_scene::depth::{Compare, DepthTest};
@@ -33,7 +33,7 @@ struct Ordered {
 }
 
 /// The draws in their order. Meshes are given lightmap coordinates where they have but others.
-pub(super) fn draws(known: &Known<'_>, meshes: &mut [Mesh]) -> Result<Vec<Draw>, Error> {
+pub(super) fn draws(known: &Known<'_>, meshes: &mut [Mesh]) -> Result<Vec<Draw>, SceneError> {
     let at = At::Scene.field("objects");
     let count: usize = known.scene.objects.iter().map(|object| object.instances.as_ref().map_or(1, Vec::len)).sum();
     at.require(count <= MOST_DRAWS, format_args!("a list of {count}, with instances"), "4096 at most")?;
@@ -61,7 +61,7 @@ fn of_object(
     object: &Object,
     meshes: &mut [Mesh],
     draws: &mut Vec<Ordered>,
-) -> Result<(), Error> {
+) -> Result<(), SceneError> {
     let found = known.scene.meshes.find(&object.mesh).map(|(place, _)| place);
     let parts = &known.parts[at.field("mesh").named(found, &object.mesh, &known.scene.meshes.names())?];
     let own = object.material.as_ref().map(|name| material(&at.field("material"), known, name)).transpose()?;
@@ -73,7 +73,7 @@ fn of_object(
             let placed = list.iter().enumerate();
             placed
                 .map(|(k, steps)| Ok((format!("[{k}]"), transform(&instances.item(k), steps)? * model)))
-                .collect::<Result<_, Error>>()?
+                .collect::<Result<_, SceneError>>()?
         }
     };
     let name = object.name.as_ref().unwrap_or(&object.mesh);
@@ -97,7 +97,7 @@ fn of_part(
     (place, mesh): (usize, &mut Mesh),
     name: String,
     modelview: DMat4,
-) -> Result<Draw, Error> {
+) -> Result<Draw, SceneError> {
     let (shading, alpha) = shading(known.scene, object);
     let needs = |needed: bool, has: bool, what: &str| {
         let holds = format_args!("is `{}`, which has no {what}", object.mesh);
@@ -132,7 +132,7 @@ fn of_part(
     })
 }
 
-fn material(at: &At<'_>, known: &Known<'_>, name: &str) -> Result<Surface, Error> {
+fn material(at: &At<'_>, known: &Known<'_>, name: &str) -> Result<Surface, SceneError> {
     let found = known.scene.materials.find(name).map(|(place, _)| known.surfaces[place]);
     at.named(found, name, &known.scene.materials.names())
 }
@@ -172,7 +172,7 @@ fn depth(scene: &Scene, object: &Object) -> Option<DepthTest> {
 }
 
 /// Object → world.
-pub(super) fn transform(at: &At<'_>, steps: &[Step]) -> Result<DMat4, Error> {
+pub(super) fn transform(at: &At<'_>, steps: &[Step]) -> Result<DMat4, SceneError> {
     let mut matrix = DMat4::IDENTITY;
     for (place, step) in steps.iter().enumerate() {
         let at = at.item(place);
@@ -226,7 +226,7 @@ fn middle(mesh: &Mesh) -> DVec3 {
 }
 
 /// The matrix to eye space of what a light is attached to.
-pub(super) fn space(at: &At<'_>, scene: &Scene, view: DMat4, attached: &str) -> Result<DMat4, Error> {
+pub(super) fn space(at: &At<'_>, scene: &Scene, view: DMat4, attached: &str) -> Result<DMat4, SceneError> {
     match attached {
         "world" => return Ok(view),
         "camera" => return Ok(DMat4::IDENTITY),
@@ -251,7 +251,7 @@ pub(super) fn space(at: &At<'_>, scene: &Scene, view: DMat4, attached: &str) -> 
 }
 
 /// Refuses objects named as the spaces are.
-pub(super) fn names(scene: &Scene) -> Result<(), Error> {
+pub(super) fn names(scene: &Scene) -> Result<(), SceneError> {
     let at = At::Scene.field("objects");
     for (place, object) in scene.objects.iter().enumerate() {
         if let Some(name @ ("world" | "camera")) = object.name.as_deref() {
@@ -265,7 +265,7 @@ pub(super) fn names(scene: &Scene) -> Result<(), Error> {
 }
 
 /// The images that materials read are there.
-pub(super) fn surfaces(scene: &Scene) -> Result<Vec<Surface>, Error> {
+pub(super) fn surfaces(scene: &Scene) -> Result<Vec<Surface>, SceneError> {
     let at = At::Scene.field("materials");
     let each: &Named<_> = &scene.materials;
     each.iter().map(|(name, material)| super::material::surface(&at.field(name), material, &scene.textures)).collect()

@@ -48,7 +48,7 @@ pub fn pixel_of(id: &str, scene: &str, frame: &Frame) -> Option<usize> {
 ///
 /// # Errors
 /// Where it is refused, which a test rules out.
-pub fn builtin(place: usize, size: Option<u32>) -> Result<Loaded, crate::scene::Error> {
+pub fn builtin(place: usize, size: Option<u32>) -> Result<Loaded, crate::scene::SceneError> {
     let mut loaded = load::builtin(SCENES[place].0)?;
     if let Some(size) = size {
         let target = &mut loaded.frame.target;

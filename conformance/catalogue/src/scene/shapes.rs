@@ -2,7 +2,7 @@
 //!
 //! Points are computed in f64 and rounded once. Triangles without area, as at a sphere's poles, are left out.
 
-use super::field::{At, Error};
+use super::field::{At, SceneError};
 use super::mesh::{MOST_TRIANGLES, MOST_VERTICES};
 use super::teapot;
 use glam::DVec3;
@@ -19,7 +19,7 @@ pub(super) struct Vertex {
 }
 
 /// The mesh of a generated shape.
-pub(super) fn shape(at: &At<'_>, shape: &Shape) -> Result<Mesh, Error> {
+pub(super) fn shape(at: &At<'_>, shape: &Shape) -> Result<Mesh, SceneError> {
     let mut mesh = Mesh::default();
     match *shape {
         Shape::Triangles { .. } | Shape::Obj(_) => {}
@@ -105,7 +105,7 @@ fn turn(u: f64) -> (f64, f64) {
     (TAU * u).sin_cos()
 }
 
-fn parts(at: &At<'_>, name: &str, count: u32, least: u32) -> Result<(), Error> {
+fn parts(at: &At<'_>, name: &str, count: u32, least: u32) -> Result<(), SceneError> {
     at.field(name).require((least..=1024).contains(&count), count, &format!("{least} to 1024 parts"))
 }
 
@@ -117,7 +117,7 @@ fn rectangle(
     steps: [u32; 2],
     repeat: [f64; 2],
     place: impl Fn([f64; 2]) -> (DVec3, DVec3),
-) -> Result<(), Error> {
+) -> Result<(), SceneError> {
     for k in 0..2 {
         at.field("size").item(k).positive(size[k])?;
         at.field("steps").item(k).require((1..=1024).contains(&steps[k]), steps[k], "1 to 1024 parts")?;
@@ -135,7 +135,7 @@ fn rectangle(
     Ok(())
 }
 
-fn cube(at: &At<'_>, mesh: &mut Mesh, size: f64, steps: u32) -> Result<(), Error> {
+fn cube(at: &At<'_>, mesh: &mut Mesh, size: f64, steps: u32) -> Result<(), SceneError> {
     at.field("size").positive(size)?;
     parts(at, "steps", steps, 1)?;
     for [right, up] in [
@@ -160,7 +160,12 @@ fn cube(at: &At<'_>, mesh: &mut Mesh, size: f64, steps: u32) -> Result<(), Error
 }
 
 /// A disc of a fan of triangles; `place` puts a point of the unit disc, y up, into space.
-fn disc(at: &At<'_>, mesh: &mut Mesh, segments: u32, place: impl Fn(f64, f64) -> (DVec3, DVec3)) -> Result<(), Error> {
+fn disc(
+    at: &At<'_>,
+    mesh: &mut Mesh,
+    segments: u32,
+    place: impl Fn(f64, f64) -> (DVec3, DVec3),
+) -> Result<(), SceneError> {
     grid(at, mesh, [segments, 1], |[u, v]| {
         let (sin, cos) = turn(u);
         let (position, normal) = place(cos * v, sin * v);
@@ -175,7 +180,7 @@ fn grid(
     mesh: &mut Mesh,
     [columns, rows]: [u32; 2],
     vertex: impl Fn([f64; 2]) -> Vertex,
-) -> Result<(), Error> {
+) -> Result<(), SceneError> {
     let (columns, rows) = (u64::from(columns), u64::from(rows));
     let vertices = mesh.positions.len() as u64 + (columns + 1) * (rows + 1);
     let triangles = mesh.triangles.len() as u64 + 2 * columns * rows;

@@ -1,6 +1,6 @@
 //! Textures: read from PNG, written out, or generated.
 
-use super::field::{At, Error};
+use super::field::{At, SceneError};
 use super::load::Files;
 use image::{ImageFormat, ImageReader, Limits};
 use lightmeter_scene::frame::Texture;
@@ -12,7 +12,7 @@ const MOST_TEXELS: u32 = 2048;
 const SIZES: &str = "1 to 2048 texels";
 
 /// The texels of an image.
-pub(super) fn texture(at: &At<'_>, image: &Image, files: &Files<'_>) -> Result<Texture, Error> {
+pub(super) fn texture(at: &At<'_>, image: &Image, files: &Files<'_>) -> Result<Texture, SceneError> {
     match image {
         Image::File(path) => from_file(&at.field("file"), path, files),
         Image::Texels(rows) => written(&at.field("texels"), rows),
@@ -47,7 +47,7 @@ fn mix(a: [f64; 4], b: [f64; 4], t: f64) -> [f64; 4] {
     std::array::from_fn(|k| a[k] * (1.0 - t) + b[k] * t)
 }
 
-fn generated(at: &At<'_>, size: [u32; 2], texel: impl Fn(u32, u32) -> [f64; 4]) -> Result<Texture, Error> {
+fn generated(at: &At<'_>, size: [u32; 2], texel: impl Fn(u32, u32) -> [f64; 4]) -> Result<Texture, SceneError> {
     let [width, height] = size;
     for texels in size {
         at.field("size").require((1..=MOST_TEXELS).contains(&texels), texels, SIZES)?;
@@ -56,7 +56,7 @@ fn generated(at: &At<'_>, size: [u32; 2], texel: impl Fn(u32, u32) -> [f64; 4]) 
     Ok(Texture { width, height, texels: texels.collect::<Result<_, _>>()? })
 }
 
-fn written(at: &At<'_>, rows: &[Vec<[f64; 4]>]) -> Result<Texture, Error> {
+fn written(at: &At<'_>, rows: &[Vec<[f64; 4]>]) -> Result<Texture, SceneError> {
     let side = |at: &At<'_>, texels: usize| {
         let right = u32::try_from(texels).ok().filter(|texels| (1..=MOST_TEXELS).contains(texels));
         right.ok_or_else(|| at.refuse(format_args!("has {texels} entries"), SIZES))
@@ -79,7 +79,7 @@ fn written(at: &At<'_>, rows: &[Vec<[f64; 4]>]) -> Result<Texture, Error> {
 }
 
 /// A PNG: a byte b stands for b/255.
-pub(super) fn from_file(at: &At<'_>, path: &str, files: &Files<'_>) -> Result<Texture, Error> {
+pub(super) fn from_file(at: &At<'_>, path: &str, files: &Files<'_>) -> Result<Texture, SceneError> {
     let bytes =
         files(path).map_err(|error| at.refuse(format_args!("is `{path}`, which cannot be read: {error}"), "a PNG"))?;
     let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);

@@ -7,7 +7,7 @@ use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use std::fmt;
 
 /// Pixels that are looked at: the first of those that fail.
@@ -46,7 +46,7 @@ pub fn departure(
     pixels: &[usize],
 ) -> Result<Departure, DeviceError> {
     let pixels = &pixels[..pixels.len().min(LOOKED_AT)];
-    for stage in Stage::ALL {
+    for stage in Intermediate::ALL {
         let image = intermediate(subject, code, frame, sets, stage)?.expect("the frame was drawn");
         let expectation = Expectation::new(frame, None, Some(stage), profile);
         let departs = |&&pixel: &&usize| {

@@ -6,7 +6,7 @@ use crate::subject::Subject;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
 
 /// The image in its target's units, or why the subject cannot draw it. An embedded subject has no shader with switches, and draws
@@ -45,7 +45,7 @@ pub fn intermediate(
     code: &Code,
     frame: &Frame,
     sets: &[Called],
-    stage: Stage,
+    stage: Intermediate,
 ) -> Result<Result<Stored, &'static str>, DeviceError> {
     drawn(subject, code, frame, sets, Picture::Intermediate(stage))
 }

@@ -325,7 +325,7 @@ impl<'a> Scene<'a> {
             match image.write(&path) {
                 Ok(()) => files.push(path.display().to_string()),
                 Err(error) => {
-                    let _: file::Error = error;
+                    let _: file::ImageFileError = error;
                 }
             }
         }

@@ -85,7 +85,7 @@ pub fn selftest(
     size: u32,
     profile: &Profile,
     progress: &(impl Fn(&str) + Sync),
-) -> std::result::Result<Record, lightmeter_catalogue::scene::Error> {
+) -> std::result::Result<Record, lightmeter_catalogue::scene::SceneError> {
     let mut rows: Vec<SceneRow> = SCENE_FAULTS
         .iter()
         .map(|fault| SceneRow {

@@ -56,7 +56,7 @@ impl Default for Limits {
 
 /// Why a renderer could not be asked at all.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum ProcessError {
     /// The command cannot be started, or says nothing that can be read.
     #[error("`{command}` {message}")]
     Start {
@@ -73,10 +73,10 @@ pub enum Error {
     Profile(String),
     /// A scene is refused, which a test rules out.
     #[error("{0}")]
-    Scene(#[from] lightmeter_catalogue::scene::Error),
+    Scene(#[from] lightmeter_catalogue::scene::SceneError),
     /// A pack's or a scene's file cannot be written.
     #[error("{0}")]
-    Pack(#[from] pack::Error),
+    Pack(#[from] pack::PackError),
     /// A folder for images cannot be made.
     #[error("cannot write {}: {message}", .path.display())]
     Folder {
@@ -144,7 +144,7 @@ pub fn ask(
     plan: &Plan,
     asking: Asking<'_>,
     progress: &mut impl FnMut(u64),
-) -> Result<Outcome, Error> {
+) -> Result<Outcome, ProcessError> {
     let mut session = Session {
         plan,
         asking,
@@ -210,8 +210,8 @@ impl Session<'_> {
     }
 
     /// Starts the process and hears its hello.
-    fn start(&mut self) -> Result<(), Error> {
-        let failed = |message: String| Error::Start { command: self.asking.command.to_owned(), message };
+    fn start(&mut self) -> Result<(), ProcessError> {
+        let failed = |message: String| ProcessError::Start { command: self.asking.command.to_owned(), message };
         let mut running = Running::start(self.asking.command).map_err(&failed)?;
         self.outcome.starts += 1;
         let greeting = json!({ "hello": PROTOCOL, "version": env!("CARGO_PKG_VERSION"), "folder": self.asking.folder });
@@ -268,7 +268,7 @@ impl Session<'_> {
         ledger: &mut Ledger<'_>,
         asked: Vec<Place>,
         progress: &mut impl FnMut(u64),
-    ) -> Result<bool, Error> {
+    ) -> Result<bool, ProcessError> {
         let mut open: VecDeque<Place> = asked.into();
         // Cases that are asked alone, to find the one that it fails at.
         let mut alone = 0;
@@ -395,7 +395,7 @@ impl Session<'_> {
     }
 
     /// Asks cases at once; how that ended, and what is left unanswered.
-    fn batch(&mut self, ledger: &mut Ledger<'_>, batch: &[Place]) -> Result<(Ended, Vec<Place>), Error> {
+    fn batch(&mut self, ledger: &mut Ledger<'_>, batch: &[Place]) -> Result<(Ended, Vec<Place>), ProcessError> {
         let mut text = String::new();
         for &place in batch {
             text += &self.request(ledger, place)?;
@@ -483,7 +483,7 @@ impl Session<'_> {
         Ok((ended, left))
     }
 
-    fn request(&self, ledger: &mut Ledger<'_>, place: Place) -> Result<String, Error> {
+    fn request(&self, ledger: &mut Ledger<'_>, place: Place) -> Result<String, ProcessError> {
         Ok(match place {
             Place::Case { formula, case } => pack::case(self.plan, formula, case).to_string(),
             Place::Scene(scene) => {
@@ -491,7 +491,8 @@ impl Session<'_> {
                 let id = self.plan.id(place);
                 let path = self.asking.folder.join(format!("{}.json", id.replace('/', "-")));
                 let text = super::frame::to_json(&id, &title, &frame).to_string();
-                let failed = |error: std::io::Error| Error::Folder { path: path.clone(), message: error.to_string() };
+                let failed =
+                    |error: std::io::Error| ProcessError::Folder { path: path.clone(), message: error.to_string() };
                 std::fs::write(&path, text).map_err(failed)?;
                 // By the same clock that an image gets its time from.
                 let asked = path.metadata().and_then(|metadata| metadata.modified()).map_err(failed)?;

@@ -10,7 +10,7 @@ use lightmeter_reference::{Vec4, Vector};
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::{Draw, Frame};
 use lightmeter_scene::raster::Provoking;
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -33,7 +33,7 @@ pub struct Expected {
 /// A frame prepared for the legal values of its pixels.
 pub struct Expectation<'a> {
     frame: &'a Frame,
-    stage: Option<Stage>,
+    stage: Option<Intermediate>,
     profile: Profile,
     draws: Vec<Prepared<'a>>,
     bins: Vec<Vec<(u32, u32)>>,
@@ -55,11 +55,11 @@ impl<'a> Expectation<'a> {
     /// Prepares a frame to be judged by a profile: everything that it names, or what is called for
     /// only; its colours, or an intermediate result.
     #[must_use]
-    pub fn new(frame: &'a Frame, only: Option<&'a [Called]>, stage: Option<Stage>, profile: &Profile) -> Self {
+    pub fn new(frame: &'a Frame, only: Option<&'a [Called]>, stage: Option<Intermediate>, profile: &Profile) -> Self {
         profile.scope(|| Self::prepared(frame, only, stage, profile))
     }
 
-    fn prepared(frame: &'a Frame, only: Option<&'a [Called]>, stage: Option<Stage>, profile: &Profile) -> Self {
+    fn prepared(frame: &'a Frame, only: Option<&'a [Called]>, stage: Option<Intermediate>, profile: &Profile) -> Self {
         let steps = f64::from(2.0_f32).powi(-i32::try_from(profile.subpixel_bits).unwrap_or(0));
         let mut draws: Vec<Prepared<'a>> = vec![];
         for number in 0..frame.draws.len() {
@@ -158,7 +158,7 @@ impl<'a> Expectation<'a> {
 
 /// The legal values of every pixel of a frame, by a profile.
 #[must_use]
-pub fn expect(frame: &Frame, only: Option<&[Called]>, stage: Option<Stage>, profile: &Profile) -> Vec<Expected> {
+pub fn expect(frame: &Frame, only: Option<&[Called]>, stage: Option<Intermediate>, profile: &Profile) -> Vec<Expected> {
     Expectation::new(frame, only, stage, profile).pixels()
 }
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Why an image was not written.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum ImageFileError {
     /// The name does not end as a known format does.
     #[error("{}: an image is written as .png or .exr", .0.display())]
     Format(PathBuf),
@@ -73,7 +73,7 @@ impl Stored {
     ///
     /// # Errors
     /// Where the name ends otherwise, or the file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), Error> {
+    pub fn write(&self, path: &Path) -> Result<(), ImageFileError> {
         let bytes = self.encode(path)?;
         whole(path, &bytes)
     }
@@ -82,10 +82,10 @@ impl Stored {
     ///
     /// # Errors
     /// Where it ends otherwise than in .png or .exr.
-    pub fn check_name(path: &Path) -> Result<ImageFormat, Error> {
+    pub fn check_name(path: &Path) -> Result<ImageFormat, ImageFileError> {
         match ImageFormat::from_path(path) {
             Ok(format @ (ImageFormat::Png | ImageFormat::OpenExr)) => Ok(format),
-            _ => Err(Error::Format(path.into())),
+            _ => Err(ImageFileError::Format(path.into())),
         }
     }
 
@@ -96,9 +96,9 @@ impl Stored {
     ///
     /// # Panics
     /// Where a side of the image does not fit 32 bits.
-    pub fn encode(&self, path: &Path) -> Result<Vec<u8>, Error> {
+    pub fn encode(&self, path: &Path) -> Result<Vec<u8>, ImageFileError> {
         let format = Self::check_name(path)?;
-        let failed = |message: String| Error::Encode { path: path.into(), message };
+        let failed = |message: String| ImageFileError::Encode { path: path.into(), message };
         let [width, height] = [self.width, self.pixels.len() / self.width]
             .map(|pixels| u32::try_from(pixels).expect("a target's size fits 32 bits"));
         let drawn = match format {
@@ -136,13 +136,13 @@ impl Stored {
 ///
 /// # Errors
 /// Where either fails.
-pub fn whole(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+pub fn whole(path: &Path, bytes: &[u8]) -> Result<(), ImageFileError> {
     let mut beside = path.as_os_str().to_owned();
     beside.push(".part");
     let beside = PathBuf::from(beside);
     let written = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, path));
     written.map_err(|error| {
         let _ = std::fs::remove_file(&beside);
-        Error::Write { path: path.into(), message: error.to_string() }
+        ImageFileError::Write { path: path.into(), message: error.to_string() }
     })
 }

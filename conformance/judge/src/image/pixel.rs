@@ -12,7 +12,7 @@ use lightmeter_reference::Rgba;
 use lightmeter_reference::render::Scratch;
 use lightmeter_scene::depth::Compare;
 use lightmeter_scene::frame::Frame;
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
 
 /// Ways that are followed for one pixel; beyond, anything is legal there.
@@ -55,7 +55,7 @@ struct Way {
 pub(super) struct Painter<'a> {
     frame: &'a Frame,
     draws: &'a [Prepared<'a>],
-    stage: Option<Stage>,
+    stage: Option<Intermediate>,
     target: TargetFormat,
     background: (Units, Units),
     scratch: Scratch<Accept>,
@@ -65,7 +65,7 @@ pub(super) struct Painter<'a> {
 }
 
 impl<'a> Painter<'a> {
-    pub(super) fn new(frame: &'a Frame, draws: &'a [Prepared<'a>], stage: Option<Stage>) -> Self {
+    pub(super) fn new(frame: &'a Frame, draws: &'a [Prepared<'a>], stage: Option<Intermediate>) -> Self {
         let target = if stage.is_some() { TargetFormat::Rgba32Float } else { frame.target.format };
         // Converting the colour that a target is cleared to is a store as any other.
         let color = if stage.is_some() { [0.0; 4] } else { frame.background.map(f64::from) };

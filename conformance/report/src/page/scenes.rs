@@ -1,6 +1,6 @@
 //! The page on the built-in scenes: a contact sheet, what each shows, and what a run found.
 
-use lightmeter_catalogue::scene::Error;
+use lightmeter_catalogue::scene::SceneError;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::load;
 use lightmeter_catalogue::scene::load::Loaded;
@@ -55,7 +55,7 @@ impl Run {
 ///
 /// # Errors
 /// Where one is refused, which a test rules out.
-pub fn scenes() -> std::result::Result<Vec<Loaded>, Error> {
+pub fn scenes() -> std::result::Result<Vec<Loaded>, SceneError> {
     SCENES.iter().map(|(name, _)| load::builtin(name)).collect()
 }
 

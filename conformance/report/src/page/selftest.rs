@@ -246,7 +246,7 @@ fn resolution(calibration: &[Resolution], out: &mut impl Write) -> Written {
             continue;
         }
         write!(out, "| {} | {name} |", resolution.formula)?;
-        for error in [lightmeter_faults::Error::Scale, lightmeter_faults::Error::Offset] {
+        for error in [lightmeter_faults::OffBy::Scale, lightmeter_faults::OffBy::Offset] {
             let found = calibration.iter().find(|other| {
                 other.formula == resolution.formula
                     && other.parameter == resolution.parameter

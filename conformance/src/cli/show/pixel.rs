@@ -16,7 +16,7 @@ use lightmeter::subject::Subject;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -52,7 +52,7 @@ pub(super) fn find(id: &str, size: Option<u32>) -> anyhow::Result<Option<(Loaded
 
 fn rows(frame: &Frame, pixel: usize, profile: &Profile, subjects: &[Subject], code: &Code) -> anyhow::Result<Vec<Row>> {
     let width = frame.target.width as usize;
-    let stages = Stage::ALL.map(Some).into_iter().chain([None]);
+    let stages = Intermediate::ALL.map(Some).into_iter().chain([None]);
     stages
         .map(|stage| {
             let format = stage.map_or(frame.target.format, |_| TargetFormat::Rgba32Float);
@@ -70,12 +70,12 @@ fn rows(frame: &Frame, pixel: usize, profile: &Profile, subjects: &[Subject], co
             if seen.is_empty() {
                 seen.push((profile.name.to_owned(), legal(profile), None));
             }
-            Ok(Row { what: stage.map_or("color", Stage::name), reference, seen })
+            Ok(Row { what: stage.map_or("color", Intermediate::name), reference, seen })
         })
         .collect()
 }
 
-fn drawn(subject: &Subject, code: &Code, frame: &Frame, stage: Option<Stage>) -> anyhow::Result<Option<Stored>> {
+fn drawn(subject: &Subject, code: &Code, frame: &Frame, stage: Option<Intermediate>) -> anyhow::Result<Option<Stored>> {
     let (sets, picture) = match stage {
         Some(stage) => (named(frame), Picture::Intermediate(stage)),
         None => (effects(frame), Picture::Composed),

@@ -19,7 +19,7 @@ use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{Called, effects};
 use lightmeter_scene::frame::Frame;
-use lightmeter_scene::stage::Stage;
+use lightmeter_scene::stage::Intermediate;
 use std::collections::BTreeMap;
 use std::path::Path;
 use table::{MISTAKES, Mistake, RIGHT, UNSEEN};
@@ -43,7 +43,7 @@ impl Prepared {
 
     /// Pixels where something is drawn for certain, of every four.
     fn covered(&self, profile: &Profile) -> Vec<usize> {
-        let expected = expect(&self.frame, None, Some(Stage::Depth), profile);
+        let expected = expect(&self.frame, None, Some(Intermediate::Depth), profile);
         (0..expected.len()).step_by(4).filter(|&pixel| expected[pixel].low[3] > 0.0).collect()
     }
 
