@@ -20,7 +20,7 @@ const DUAL_FILE: &str = "blend_unit_dual.wgsl";
 
 /// Points drawn with one state and one constant.
 #[derive(Clone, Debug)]
-pub struct Draw {
+pub struct UnitDraw {
     /// Factors and equations.
     pub state: Separate,
     /// The components that are written.
@@ -37,7 +37,7 @@ pub struct Draw {
 #[derive(Clone, Debug, Default)]
 pub struct Batch {
     /// The draws, in order.
-    pub draws: Vec<Draw>,
+    pub draws: Vec<UnitDraw>,
     /// The source colour of each point.
     pub sources: Vec<[f32; 4]>,
     /// The pixel of each point.
@@ -217,7 +217,7 @@ pub(crate) const fn format(target: TargetFormat) -> wgpu::TextureFormat {
     }
 }
 
-pub(crate) fn lower(draw: &Draw) -> Lowered {
+pub(crate) fn lower(draw: &UnitDraw) -> Lowered {
     let (color, alpha) = (draw.state.color, draw.state.alpha);
     let folded = draw.route == Route::FoldedIntoSource;
     let dual = draw.route == Route::DualSource;
@@ -251,7 +251,7 @@ pub(crate) fn lower(draw: &Draw) -> Lowered {
 }
 
 /// The constant that the unit is given.
-pub(crate) fn blend_constant(draw: &Draw) -> wgpu::Color {
+pub(crate) fn blend_constant(draw: &UnitDraw) -> wgpu::Color {
     let [r, g, b, a] = draw.constant;
     let replicated = match draw.route {
         Route::ConstantReplicated => true,
@@ -263,7 +263,7 @@ pub(crate) fn blend_constant(draw: &Draw) -> wgpu::Color {
     if read { wgpu::Color { r, g, b, a } } else { wgpu::Color::TRANSPARENT }
 }
 
-fn instance(target: TargetFormat, draw: &Draw) -> [u8; INSTANCE_BYTES] {
+fn instance(target: TargetFormat, draw: &UnitDraw) -> [u8; INSTANCE_BYTES] {
     let [r, g, b, a] = draw.constant.map(f32::to_bits);
     let words = [r, g, b, a, draw.state.color.src.code(), u32::from(target.is_unorm())];
     bytemuck::cast(words)

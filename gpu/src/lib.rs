@@ -23,7 +23,7 @@ mod sweep;
 
 pub use adapters::{Adapter, adapters, vulkan_adapters};
 pub use arithmetic::{ArithmeticPipeline, Programmable};
-pub use blend_unit::{Batch, BlendUnit, Draw};
+pub use blend_unit::{Batch, BlendUnit, UnitDraw};
 pub use clock::{Clock, ClockKind, Reading};
 pub use depth_unit::{DEPTH_OUTPUTS, DepthUnit};
 pub use device::Gpu;

@@ -24,7 +24,7 @@ use uniforms::{Packer, Resource, resource};
 /// A frame on a device, ready to be drawn: pipelines, buffers and textures.
 #[derive(Debug)]
 pub struct SceneRenderer {
-    draws: Vec<Drawn>,
+    draws: Vec<PreparedDraw>,
     target: wgpu::Texture,
     /// Where some draw has a depth test.
     depth: Option<wgpu::TextureView>,
@@ -35,7 +35,7 @@ pub struct SceneRenderer {
 
 /// A draw, ready.
 #[derive(Debug)]
-struct Drawn {
+struct PreparedDraw {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
     vertices: Vec<wgpu::Buffer>,
@@ -106,7 +106,7 @@ impl SceneRenderer {
             let group = bind(gpu, &pipeline, &resources, (&uniforms, &textures, &none));
             let (indices, index_count) = geometry.indices(draw);
             let vertices = program.inputs.iter().map(|input| geometry.vertices(draw.mesh, *input)).collect();
-            draws.push(Drawn { pipeline, group, vertices, indices, index_count, constant });
+            draws.push(PreparedDraw { pipeline, group, vertices, indices, index_count, constant });
         }
         let (width, height) = (frame.target.width, frame.target.height);
         let depth = tests_depth.then(|| gpu.target(width, height, DEPTH).create_view(&Default::default()));

@@ -8,7 +8,7 @@ use crate::algebra::{Rgb, Rgba, Vec3, Vector};
 use crate::attenuation;
 use crate::real::Real;
 use crate::vector::{face_normal, halfway, halfway_unnormalised, reflect, toward};
-pub use lightmeter_scene::shading::{Gate, Specular};
+pub use lightmeter_scene::shading::{Specular, SpecularGate};
 
 /// The colours of a light.
 #[derive(Clone, Copy, Debug)]
@@ -122,7 +122,7 @@ fn specular<R: Real>(light: Rgb<R>, material: Rgb<R>, fs: R) -> Rgb<R> {
 
 /// CA, CD and CS of one light for unit n, l and v; `atten` multiplies diffuse and specular.
 pub fn terms<R: Real>(
-    (model, gate): (Specular, Gate),
+    (model, gate): (Specular, SpecularGate),
     light: &Light<R>,
     material: &Material<R>,
     [n, l, v]: [Vec3<R>; 3],
@@ -131,8 +131,8 @@ pub fn terms<R: Real>(
     let (zero, atten) = (R::literal(0.0), Vector::splat(atten));
     let fs = || highlight(model, n, l, v, material.shininess);
     let fs = match gate {
-        Gate::Documents => fs(),
-        Gate::OpenGl => R::if_ge(zero, l.dot(n), || zero, fs),
+        SpecularGate::Documents => fs(),
+        SpecularGate::OpenGl => R::if_ge(zero, l.dot(n), || zero, fs),
     };
     Terms {
         ambient: ambient(light.ambient, material.ambient),
@@ -149,7 +149,7 @@ fn to_eye<R: Real>(p: Vec3<R>) -> Vec3<R> {
 ///
 /// `p` and the normal `n` as interpolated, `direction` the way light travels; none need be of unit length.
 pub fn directional<R: Real>(
-    dialect: (Specular, Gate),
+    dialect: (Specular, SpecularGate),
     light: &Light<R>,
     material: &Material<R>,
     [p, n, direction]: [Vec3<R>; 3],
@@ -162,7 +162,9 @@ pub fn directional<R: Real>(
 /// The same with the light's direction taken as a unit vector and not normalised. Source: 000 §6.4.
 pub fn unit_light<R: Real>(light: &Light<R>, material: &Material<R>, [p, n, direction]: [Vec3<R>; 3]) -> Rgba<R> {
     let vectors = [n.normalize().named("n"), -direction, to_eye(p)];
-    terms((Specular::Phong, Gate::Documents), light, material, vectors, R::literal(1.0)).sum().extend(R::literal(1.0))
+    terms((Specular::Phong, SpecularGate::Documents), light, material, vectors, R::literal(1.0))
+        .sum()
+        .extend(R::literal(1.0))
 }
 
 /// The viewer at infinity, v = (0, 0, 1), and a unit light: 000 §6.4's faster program.
@@ -180,7 +182,7 @@ pub fn nonlocal<R: Real>(light: &Light<R>, material: &Material<R>, n: Vec3<R>, d
 
 /// A point light with attenuation on its diffuse and specular terms. Source: 000 §6.4, 004; rulings 2 and 11.
 pub fn point<R: Real>(
-    dialect: (Specular, Gate),
+    dialect: (Specular, SpecularGate),
     light: &Light<R>,
     material: &Material<R>,
     [p, n, position]: [Vec3<R>; 3],
@@ -202,7 +204,7 @@ pub fn point_opengl<R: Real>(
 ) -> Rgba<R> {
     let atten = attenuation::point(falloff.kc, falloff.kl, falloff.kq, position, p).named("atten");
     let vectors = [n.normalize().named("n"), toward(position, p), to_eye(p)];
-    let mut terms = terms((Specular::Blinn, Gate::OpenGl), light, material, vectors, atten);
+    let mut terms = terms((Specular::Blinn, SpecularGate::OpenGl), light, material, vectors, atten);
     terms.ambient = Vector::product([light.ambient, material.ambient, Vector::splat(atten)]).named("atten·CA");
     terms.sum().extend(alpha)
 }
@@ -221,7 +223,7 @@ pub fn spot<R: Real>(
     let cone = attenuation::spot_exponent(l, axis.normalize(), cutoff_cosine, exponent).named("spot");
     let atten = attenuation::point(falloff.kc, falloff.kl, falloff.kq, position, p).named("atten");
     let vectors = [n.normalize().named("n"), l, to_eye(p)];
-    let dialect = (Specular::Phong, Gate::Documents);
+    let dialect = (Specular::Phong, SpecularGate::Documents);
     terms(dialect, light, material, vectors, R::product([cone, atten])).sum().extend(R::literal(1.0))
 }
 
@@ -235,7 +237,9 @@ pub fn scalar_material<R: Real>(
     let [ambient, diffuse, specular] = [ka, kd, ks].map(Vector::splat);
     let material = Material { ambient, diffuse, specular, shininess };
     let vectors = [n.normalize().named("n"), toward(position, p), to_eye(p)];
-    terms((Specular::Phong, Gate::Documents), &light, &material, vectors, R::literal(1.0)).sum().extend(R::literal(1.0))
+    terms((Specular::Phong, SpecularGate::Documents), &light, &material, vectors, R::literal(1.0))
+        .sum()
+        .extend(R::literal(1.0))
 }
 
 /// One light of document 004: `diffuse·color·max(n·l, 0) + specular·color·max(n·h, 0)^S`, in RGBA. Source: 004.

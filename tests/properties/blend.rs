@@ -9,9 +9,10 @@ use lightmeter::blend_unit::model::Model;
 use lightmeter::blend_unit::pixel::{Units, stored};
 use lightmeter::blend_unit::rules::{FAULTS, Rules, Store};
 use lightmeter::blend_unit::store::StoreCounts;
-use lightmeter::blend_unit::tally::{Drawn, Outcome, Tally};
+use lightmeter::blend_unit::tally::{DrawnState, UnitTally};
 use lightmeter::cases::blend::Program;
 use lightmeter::devices::Known;
+use lightmeter::judge::Outcome;
 use lightmeter::subject_gpu::code_of;
 use lightmeter_reference::blend::{Mode, Operands, Saturate, alpha_clamped, blend, factor, without_alpha};
 use lightmeter_reference::{Rgba, Vector};
@@ -277,12 +278,12 @@ fn wrong_pixels_fail() {
 }
 
 /// A tally of every state drawn by the embedded unit under some rules, as if by a known driver.
-fn tally(rules: &Rules, known: &Known, target: TargetFormat) -> Tally {
+fn tally(rules: &Rules, known: &Known, target: TargetFormat) -> UnitTally {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let rows = proptest::collection::vec(unit_row(), 24).new_tree(&mut runner).expect("rows").current();
-    let mut tally = Tally::default();
+    let mut tally = UnitTally::default();
     for piece in pieces(&rows) {
-        let drawn = Drawn { program: piece.program, route: piece.route, target, profile: &WGSL };
+        let drawn = DrawnState { program: piece.program, route: piece.route, target, profile: &WGSL };
         for place in 0..piece.count() {
             let case = piece.case(place);
             tally.pixel(drawn, known, place, &case, embedded::blend(piece.program, target, &case, rules));

@@ -2,7 +2,7 @@
 
 use crate::{family, wide};
 use lightmeter_reference::lighting::{
-    Falloff, Gate, Light, Material, Specular, Vertex, ambient, ambient_constant, compute_light, diffuse_toward,
+    Falloff, Light, Material, Specular, SpecularGate, Vertex, ambient, ambient_constant, compute_light, diffuse_toward,
     diffuse_travel, directional, flat, gouraud, highlight, highlight_metal, highlight_plastic, incidence, nonlocal,
     phong, phong_interpolated, point, point_opengl, scalar_material, specular_blinn, specular_nonlocal, specular_phong,
     spot, sum, terms, two_lights, unit_light,
@@ -70,7 +70,7 @@ proptest! {
     fn light_adds_up(n in unit(), l in unit(), v in unit(), s in 1.0..64.0_f64, k in 0.0..4.0_f64) {
         let lit = |scale: f64| {
             let light = Light { ambient: WHITE.scale(scale), diffuse: WHITE.scale(scale), specular: WHITE.scale(scale) };
-            terms((Specular::Phong, Gate::Documents), &light, &material(s), [n, l, v], 1.0).sum()
+            terms((Specular::Phong, SpecularGate::Documents), &light, &material(s), [n, l, v], 1.0).sum()
         };
         prop_assert!(approx::abs_diff_eq!(lit(1.0).scale(k), lit(k), epsilon = 1e-13));
         prop_assert!(lit(1.0).0.iter().all(|c| (0.1 - 1e-15..=1.0 + 1e-12).contains(c)));
@@ -80,22 +80,22 @@ proptest! {
     fn the_gate_darkens_only_what_faces_away(n in unit(), l in unit(), v in unit(), s in 1.0..64.0_f64) {
         let lit = |gate| terms((Specular::Phong, gate), &LIGHT, &material(s), [n, l, v], 1.0).sum();
         if l.dot(n) > 0.0 {
-            prop_assert_eq!(lit(Gate::OpenGl), lit(Gate::Documents));
+            prop_assert_eq!(lit(SpecularGate::OpenGl), lit(SpecularGate::Documents));
         } else {
-            prop_assert_eq!(lit(Gate::OpenGl), Vector([0.1; 3]));
+            prop_assert_eq!(lit(SpecularGate::OpenGl), Vector([0.1; 3]));
         }
     }
 
     #[test]
     fn lengths_of_normal_and_light_do_not_count(p in unit(), n in unit(), d in unit(), a in 0.1..10.0_f64, b in 0.1..10.0_f64) {
         for model in [Specular::Phong, Specular::Blinn] {
-            let dialect = (model, Gate::Documents);
+            let dialect = (model, SpecularGate::Documents);
             let plain = directional(dialect, &LIGHT, &material(8.0), [p, n, d]);
             let scaled = directional(dialect, &LIGHT, &material(8.0), [p, n.scale(a), d.scale(b)]);
             prop_assert!(approx::abs_diff_eq!(plain, scaled, epsilon = 1e-12));
         }
         // A unit light is what it is taken for.
-        let plain = directional((Specular::Phong, Gate::Documents), &LIGHT, &material(8.0), [p, n, d]);
+        let plain = directional((Specular::Phong, SpecularGate::Documents), &LIGHT, &material(8.0), [p, n, d]);
         prop_assert!(approx::abs_diff_eq!(plain, unit_light(&LIGHT, &material(8.0), [p, n, d]), epsilon = 1e-12));
     }
 
@@ -113,7 +113,7 @@ proptest! {
         let position = at.scale(5.0);
         let none = Falloff { kc: 1.0, kl: 0.0, kq: 0.0 };
         for model in [Specular::Phong, Specular::Blinn] {
-            let dialect = (model, Gate::Documents);
+            let dialect = (model, SpecularGate::Documents);
             let lit = point(dialect, &LIGHT, &material(8.0), [p, n, position], &none);
             let same = directional(dialect, &LIGHT, &material(8.0), [p, n, p - position]);
             prop_assert!(approx::abs_diff_eq!(lit, same, epsilon = 1e-12));
@@ -121,7 +121,7 @@ proptest! {
         // The widest evenly lit cone that holds the surface changes nothing.
         let axis = p - position;
         let lit = spot(&LIGHT, &material(8.0), [p, n, position, axis], &none, [0.5, 0.0]);
-        prop_assert!(approx::abs_diff_eq!(lit, point((Specular::Phong, Gate::Documents), &LIGHT, &material(8.0), [p, n, position], &none), epsilon = 1e-12));
+        prop_assert!(approx::abs_diff_eq!(lit, point((Specular::Phong, SpecularGate::Documents), &LIGHT, &material(8.0), [p, n, position], &none), epsilon = 1e-12));
     }
 
     #[test]
@@ -141,7 +141,7 @@ proptest! {
         let light = Light { ambient: WHITE, diffuse: color, specular: color };
         let grey = Material { ambient: Vector([ka; 3]), diffuse: Vector([kd; 3]), specular: Vector([ks; 3]), shininess: 8.0 };
         let none = Falloff { kc: 1.0, kl: 0.0, kq: 0.0 };
-        prop_assert!(approx::abs_diff_eq!(by_scalars, point((Specular::Phong, Gate::Documents), &light, &grey, [p, n, position], &none), epsilon = 1e-13));
+        prop_assert!(approx::abs_diff_eq!(by_scalars, point((Specular::Phong, SpecularGate::Documents), &light, &grey, [p, n, position], &none), epsilon = 1e-13));
     }
 
     #[test]

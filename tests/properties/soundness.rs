@@ -3,7 +3,7 @@
 
 use lightmeter::arithmetic::profile::{VULKAN, WGSL};
 use lightmeter::arithmetic::random::{seed, share};
-use lightmeter::arithmetic::{Accept, Draw, F32, Format as _, Hardware, Profile};
+use lightmeter::arithmetic::{Accept, F32, Format as _, Hardware, Profile, RandomLegal};
 use lightmeter::cases::{Formula, Kind, Reader, Spec, Visitor, Writer, visit};
 use lightmeter::select::{CaseRef, catalogue};
 use lightmeter_reference::Real;
@@ -61,8 +61,8 @@ impl Check {
         self.profile.scope(|| formula.evaluate(&mut Reader::new(&inputs), &mut Writer::new(&mut legal)));
         let mut seen = vec![(f64::INFINITY, f64::NEG_INFINITY); outputs];
         for _ in 0..self.draws {
-            let inputs: Vec<Draw> = row.iter().map(|&x| Draw::input(x)).collect();
-            let mut out = vec![Draw::of(0.0); outputs];
+            let inputs: Vec<RandomLegal> = row.iter().map(|&x| RandomLegal::input(x)).collect();
+            let mut out = vec![RandomLegal::of(0.0); outputs];
             self.profile.scope(|| formula.evaluate(&mut Reader::new(&inputs), &mut Writer::new(&mut out)));
             self.drawn += outputs as u64;
             for ((out, legal), seen) in out.iter().zip(&legal).zip(&mut seen) {
@@ -112,7 +112,7 @@ fn an_arithmetic_that_errs_more_is_caught() {
     // The control: a division off by twice its bound.
     seed(1);
     let legal: Accept = Accept::literal(1.0) / Accept::literal(3.0);
-    let third = || Profile { divide_ulp: 5.0, ..WGSL }.scope(|| Draw::of(1.0) / Draw::of(3.0));
+    let third = || Profile { divide_ulp: 5.0, ..WGSL }.scope(|| RandomLegal::of(1.0) / RandomLegal::of(3.0));
     let outside = (0..1000).filter(|_| !legal.contains(third().value)).count();
     assert!(outside > 100, "{outside} of 1000");
 }
@@ -123,7 +123,7 @@ fn a_blend_unit_may_take_out_a_shared_factor() {
     seed(7);
     let mut outside_a_shaders_rules = 0;
     for _ in 0..100_000 {
-        let [s, d, f] = [0; 3].map(|_| Draw::of(share().abs()));
+        let [s, d, f] = [0; 3].map(|_| RandomLegal::of(share().abs()));
         let factored = ((s + d) * f).value;
         let legal = hardware([s.value, d.value, f.value]);
         assert!(legal.contains(factored), "{factored} outside {legal:?}: {s:?} {d:?} {f:?}");

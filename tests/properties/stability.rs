@@ -9,7 +9,7 @@ use lightmeter::filter::Filter;
 use lightmeter::options::{Options, Silent};
 use lightmeter::run::run;
 use lightmeter::select::{CaseRef, Member, catalogue};
-use lightmeter::stability::{Conditioning, Standing, roundings};
+use lightmeter::stability::{Conditioning, FormStanding, roundings};
 use lightmeter::subject::Subject;
 use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_gpu::{Adapter, FILES};
@@ -326,7 +326,7 @@ fn published_formulas_are_not_called_unstable_on_random_cases() {
             let mut row = vec![];
             member.inputs(CaseRef::Random(k), 1, &mut row);
             all += 1;
-            if conditioning(member, &row).standing == Standing::Unstable {
+            if conditioning(member, &row).standing == FormStanding::Unstable {
                 *unstable.entry(&member.spec.id).or_default() += 1;
             }
         }
@@ -354,16 +354,16 @@ fn ill_conditioned_unstable_and_singular_are_told_apart() {
         member.formula.interval(&row, &WGSL, &mut legal);
         Conditioning::of(member, &row, &legal, &near).standing
     };
-    assert_eq!(standing("vector/halfway/hard/half-vector-of-nothing"), Standing::Singular);
-    assert_eq!(standing("fog/linear/hard/dmin-equals-dmax-at-the-step"), Standing::Singular);
-    assert_eq!(standing("vector/normalize-scaled/hard/length-1e30"), Standing::Stable);
-    assert_eq!(standing("vector/normalize/hard/tiny"), Standing::NothingPromised);
-    assert_eq!(standing("vector/interpolated-normal/hard/nearly-opposite"), Standing::IllConditioned);
-    assert_eq!(standing("interpolation/weights/hard/no-area"), Standing::Singular);
+    assert_eq!(standing("vector/halfway/hard/half-vector-of-nothing"), FormStanding::Singular);
+    assert_eq!(standing("fog/linear/hard/dmin-equals-dmax-at-the-step"), FormStanding::Singular);
+    assert_eq!(standing("vector/normalize-scaled/hard/length-1e30"), FormStanding::Stable);
+    assert_eq!(standing("vector/normalize/hard/tiny"), FormStanding::NothingPromised);
+    assert_eq!(standing("vector/interpolated-normal/hard/nearly-opposite"), FormStanding::IllConditioned);
+    assert_eq!(standing("interpolation/weights/hard/no-area"), FormStanding::Singular);
     // The published power of a cosine that is near 1 loses what the chord keeps.
     let member = |id: &str| catalogue.iter().find(|member| member.spec.id == id).expect("a formula");
     let row = [0.0, 0.0, 1.0, 0.001_177_4, 0.0, 0.999_999_3, 1e6];
-    assert_eq!(conditioning(member("lighting/cosine-power-by-chord"), &row).standing, Standing::Stable);
-    assert_eq!(conditioning(member("fog/opacity"), &[1.0, 1e-7]).standing, Standing::Unstable);
-    assert_eq!(conditioning(member("fog/opacity-expm1"), &[1.0, 1e-7]).standing, Standing::Stable);
+    assert_eq!(conditioning(member("lighting/cosine-power-by-chord"), &row).standing, FormStanding::Stable);
+    assert_eq!(conditioning(member("fog/opacity"), &[1.0, 1e-7]).standing, FormStanding::Unstable);
+    assert_eq!(conditioning(member("fog/opacity-expm1"), &[1.0, 1e-7]).standing, FormStanding::Stable);
 }

@@ -15,7 +15,7 @@ use lightmeter_scene::frame::{
     Textured, Wrap,
 };
 use lightmeter_scene::raster::Provoking;
-use lightmeter_scene::shading::{Ambient, Distance, Frequency, Gate, LightAmbient, Normals, Specular, Viewer};
+use lightmeter_scene::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 use lightmeter_scene::target::TargetFormat;
 
 /// A stream of numbers from a seed (SplitMix64).
@@ -224,7 +224,7 @@ fn draw(n: &mut Numbers, number: usize, reversed: bool, format: TargetFormat) ->
             frequency: n.of(&[Frequency::Flat, Frequency::Gouraud, Frequency::Phong]),
             provoking: n.of(&[Provoking::First, Provoking::Last]),
             specular: n.of(&[Specular::Phong, Specular::Blinn, Specular::BlinnUnnormalised]),
-            gate: n.of(&[Gate::Documents, Gate::OpenGl]),
+            gate: n.of(&[SpecularGate::Documents, SpecularGate::OpenGl]),
             viewer: n.of(&[Viewer::Local, Viewer::NonLocal]),
             normals: n.of(&[Normals::InverseTranspose, Normals::Modelview]),
         }),

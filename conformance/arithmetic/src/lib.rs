@@ -14,5 +14,5 @@ pub use dual::Dual;
 pub use fixed::Fixed;
 pub use format::{F16, F32, Format, Hardware};
 pub use profile::Profile;
-pub use random::Draw;
+pub use random::RandomLegal;
 pub use trace::Trace;

@@ -111,18 +111,24 @@ impl Profile {
         Self::by_name(name).ok_or_else(|| format!("no such profile; expected one of {}", names.join(", ")))
     }
 
-    /// Evaluates `f` by the figures of this profile: the one way in which a profile reaches the operators of `Accept` and `Draw`.
+    /// Evaluates `f` by the figures of this profile: the one way in which a profile reaches the operators of `Accept` and `RandomLegal`.
     ///
     /// Functions that evaluate take the profile as an argument and call this around the evaluation of a formula. Outside of it
     /// there is no profile at all, and an operation that asks for one panics.
     pub fn scope<T>(&self, f: impl FnOnce() -> T) -> T {
+        // While a scope is open its profile is borrowed: what lies at the same address is the same profile.
+        let address = std::ptr::from_ref(self).addr();
+        if IN_FORCE.get() == address {
+            return f();
+        }
         // Rows are evaluated one by one by the same figures, which stay where they are for the next row.
         if FIGURES.with(|figures| figures.get().has_figures_of(self)) {
-            let _outer = Outer { relative: RELATIVE.replace(self.relative), figures: None };
+            let _outer =
+                Outer { relative: RELATIVE.replace(self.relative), address: IN_FORCE.replace(address), figures: None };
             return f();
         }
         let figures = Some(FIGURES.replace(*self));
-        let _outer = Outer { relative: RELATIVE.replace(self.relative), figures };
+        let _outer = Outer { relative: RELATIVE.replace(self.relative), address: IN_FORCE.replace(address), figures };
         f()
     }
 
@@ -141,12 +147,14 @@ impl Profile {
 /// What was in force outside of a scope, and is again at its end.
 struct Outer {
     relative: f64,
+    address: usize,
     figures: Option<Profile>,
 }
 
 impl Drop for Outer {
     fn drop(&mut self) {
         RELATIVE.set(self.relative);
+        IN_FORCE.set(self.address);
         if let Some(figures) = self.figures {
             FIGURES.set(figures);
         }
@@ -158,6 +166,8 @@ thread_local! {
     static FIGURES: Cell<Profile> = const { Cell::new(WGSL) };
     /// [`Profile::relative`] of the profile in force; NaN for none.
     static RELATIVE: Cell<f64> = const { Cell::new(f64::NAN) };
+    /// Where that profile lies; 0 for none.
+    static IN_FORCE: Cell<usize> = const { Cell::new(0) };
 }
 
 /// How far `+ − ×` may be off by the profile in force on this thread, relatively; NaN outside of a scope.

@@ -48,7 +48,7 @@ pub fn share() -> f64 {
 
 /// A value as some device may hold it, and the product that it was rounded from, which a fused operation would use.
 #[derive(Clone, Copy, Debug)]
-pub struct Draw {
+pub struct RandomLegal {
     /// The f32 that it is.
     pub value: f64,
     unrounded: f64,
@@ -71,7 +71,7 @@ fn flush(x: f64) -> f64 {
     if x.abs() < F32::MIN_NORMAL && coin() { 0.0 } else { x }
 }
 
-impl Draw {
+impl RandomLegal {
     /// A number, rounded.
     #[must_use]
     pub fn of(x: f64) -> Self {
@@ -115,7 +115,7 @@ impl Draw {
     }
 }
 
-impl Add for Draw {
+impl Add for RandomLegal {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         // A fused multiply-add takes one product unrounded.
@@ -124,21 +124,21 @@ impl Add for Draw {
     }
 }
 
-impl Neg for Draw {
+impl Neg for RandomLegal {
     type Output = Self;
     fn neg(self) -> Self {
         Self { value: -self.value, unrounded: -self.unrounded }
     }
 }
 
-impl Sub for Draw {
+impl Sub for RandomLegal {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl Mul for Draw {
+impl Mul for RandomLegal {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let unrounded = self.value * other.value;
@@ -146,7 +146,7 @@ impl Mul for Draw {
     }
 }
 
-impl Div for Draw {
+impl Div for RandomLegal {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let exact = self.value / other.value;
@@ -155,7 +155,7 @@ impl Div for Draw {
 }
 
 /// Any order of a chain: two of what is left are combined until one is.
-fn chain(items: &[Draw], combine: impl Fn(Draw, Draw) -> Draw) -> Draw {
+fn chain(items: &[RandomLegal], combine: impl Fn(RandomLegal, RandomLegal) -> RandomLegal) -> RandomLegal {
     let mut left = items.to_vec();
     while left.len() > 1 {
         let a = left.swap_remove(below(left.len()));
@@ -165,7 +165,7 @@ fn chain(items: &[Draw], combine: impl Fn(Draw, Draw) -> Draw) -> Draw {
     left[0]
 }
 
-impl Real for Draw {
+impl Real for RandomLegal {
     fn input(x: f32) -> Self {
         let value = flush(f64::from(x));
         Self { value, unrounded: value }

@@ -1,6 +1,6 @@
 //! What the documents claim of cost and quality, held against what was measured.
 
-use super::document::{Claim, Errors, Group, Row, Standing};
+use super::document::{BenchGroup, BenchRow, Claim, Errors, Rank};
 use lightmeter_document::Number;
 
 /// A claim: its words, and the rows that it is about.
@@ -12,7 +12,7 @@ struct Claimed {
     /// The row that the claim is about, and the one that it is held against.
     rows: [&'static str; 2],
     /// What the ratio of the first's time to the second's should be, where it is about time.
-    time: Option<Standing>,
+    time: Option<Rank>,
     /// What the first's error should be, where it is about that.
     quality: Option<Quality>,
     /// Which error goes with it.
@@ -46,7 +46,7 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Lighting every fragment costs more than lighting the vertices",
         group: "technique/shading",
         rows: ["phong", "gouraud"],
-        time: Some(Standing::Slower),
+        time: Some(Rank::Slower),
         quality: None,
         error: Figure::TimesLarger,
     },
@@ -66,7 +66,7 @@ const CLAIMS: [Claimed; 9] = [
         claim: "A viewer infinitely far away saves computing v, with similar results",
         group: "technique/viewer",
         rows: ["nonlocal", "local"],
-        time: Some(Standing::Faster),
+        time: Some(Rank::Faster),
         quality: Some(Quality::Unseen),
         error: Figure::Mean,
     },
@@ -76,7 +76,7 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Blinn's half vector avoids r and its normalisation",
         group: "technique/highlight",
         rows: ["blinn", "phong-normalised"],
-        time: Some(Standing::Faster),
+        time: Some(Rank::Faster),
         quality: None,
         error: Figure::Mean,
     },
@@ -86,7 +86,7 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Blinn's half vector is cheaper than r where r is not normalised again, as the documents' programs have it",
         group: "technique/highlight",
         rows: ["blinn", "phong"],
-        time: Some(Standing::Faster),
+        time: Some(Rank::Faster),
         quality: None,
         error: Figure::Mean,
     },
@@ -96,7 +96,7 @@ const CLAIMS: [Claimed; 9] = [
         claim: "A light's direction that is a unit vector need not be normalised",
         group: "technique/unit-light",
         rows: ["assumed-unit", "normalised"],
-        time: Some(Standing::Faster),
+        time: Some(Rank::Faster),
         quality: None,
         error: Figure::Largest,
     },
@@ -106,7 +106,7 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Difference equations along a span are efficient",
         group: "technique/span-256",
         rows: ["differences", "direct"],
-        time: Some(Standing::Faster),
+        time: Some(Rank::Faster),
         quality: None,
         error: Figure::Largest,
     },
@@ -116,7 +116,7 @@ const CLAIMS: [Claimed; 9] = [
         claim: "Difference equations along a long span are efficient",
         group: "technique/span-4096",
         rows: ["differences", "direct"],
-        time: Some(Standing::Faster),
+        time: Some(Rank::Faster),
         quality: None,
         error: Figure::Largest,
     },
@@ -133,18 +133,18 @@ const CLAIMS: [Claimed; 9] = [
 ];
 
 /// The claims whose rows were measured.
-pub(super) fn claims(groups: &[Group]) -> Vec<Claim> {
+pub(super) fn claims(groups: &[BenchGroup]) -> Vec<Claim> {
     CLAIMS.iter().filter_map(|claimed| claim(claimed, groups.iter().find(|group| group.id == claimed.group)?)).collect()
 }
 
-fn claim(claimed: &Claimed, group: &Group) -> Option<Claim> {
+fn claim(claimed: &Claimed, group: &BenchGroup) -> Option<Claim> {
     let row = |name: &str| group.rows.iter().find(|row| row.name == name);
     let [about, against] = [row(claimed.rows[0])?, row(claimed.rows[1])?];
     let (ratio, spread) = ratio(about, against)?;
     let [own, other] = [about.random.as_ref()?, against.random.as_ref()?];
     let (error, error_is) = figure(claimed.error, own, other);
     let verdict = super::turns::standing(spread);
-    let in_time = claimed.time.map(|expected| (verdict != Standing::Tie).then_some(verdict == expected));
+    let in_time = claimed.time.map(|expected| (verdict != Rank::Tie).then_some(verdict == expected));
     let in_quality = claimed.quality.map(|quality| {
         Some(match quality {
             Quality::Worse => own.absolute.max.0 > other.absolute.max.0,
@@ -190,7 +190,7 @@ fn claim(claimed: &Claimed, group: &Group) -> Option<Claim> {
 }
 
 /// The first row's time over the second's, both over the baseline's. Where neither is the baseline the spreads multiply.
-fn ratio(about: &Row, against: &Row) -> Option<(f64, [f64; 2])> {
+fn ratio(about: &BenchRow, against: &BenchRow) -> Option<(f64, [f64; 2])> {
     let (a, b) = (about.time.as_ref()?, against.time.as_ref()?);
     Some((a.ratio / b.ratio, [a.spread[0] / b.spread[1], a.spread[1] / b.spread[0]]))
 }

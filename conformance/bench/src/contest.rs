@@ -2,7 +2,7 @@
 //! they take, in turns.
 
 use super::Bench;
-use super::document::{Errors, Row};
+use super::document::{BenchRow, Errors};
 use super::errors::Gathered;
 use super::turns::{self, Entry, Laps};
 use lightmeter_arithmetic::{Accept, Profile};
@@ -183,9 +183,9 @@ pub(super) fn contest(
     sample: &Sample<'_>,
     contenders: &[Contender<'_>],
     baseline: &str,
-) -> Result<(Vec<Row>, String), GpuError> {
+) -> Result<(Vec<BenchRow>, String), GpuError> {
     let exact = sample.references(None);
-    let mut rows: Vec<Row> = contenders.iter().map(blank).collect();
+    let mut rows: Vec<BenchRow> = contenders.iter().map(blank).collect();
     let (mut compiled, mut idle) = (vec![], None);
     let selected = sample.selected();
     for (contender, row) in contenders.iter().zip(&mut rows) {
@@ -240,8 +240,8 @@ pub(super) fn contest(
     Ok((rows, work))
 }
 
-fn blank(contender: &Contender<'_>) -> Row {
-    Row {
+fn blank(contender: &Contender<'_>) -> BenchRow {
+    BenchRow {
         name: contender.name.clone(),
         what: contender.what.clone(),
         claims_exact: contender.on.claims_exact(),
@@ -288,7 +288,7 @@ pub(super) fn timed(bench: &Bench<'_>, gpu: &Gpu, member: &Member) -> Result<Opt
 /// Errors against the exact values of the rows' formulas, and against those of the contender's own; whether all is legal.
 fn judge_row(
     bench: &Bench<'_>,
-    row: &mut Row,
+    row: &mut BenchRow,
     contender: &Contender<'_>,
     sample: &Sample<'_>,
     exact: &[f64],
@@ -377,7 +377,7 @@ fn time_rows(
     compiled: &[Option<Compiled>],
     idle: Option<&RepeatPipeline>,
     baseline: &str,
-    rows: &mut [Row],
+    rows: &mut [BenchRow],
 ) -> Result<Option<(f64, bool)>, GpuError> {
     let clock = &bench.clock;
     let (mut entries, mut places) = (vec![], vec![]);

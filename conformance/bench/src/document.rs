@@ -11,7 +11,7 @@ pub const SCHEMA: &str = "lightmeter.bench/1";
 
 /// Everything that was found.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Document {
+pub struct BenchDocument {
     /// [`SCHEMA`].
     pub schema: String,
     /// The command that made it.
@@ -48,7 +48,7 @@ pub struct Measured {
     /// The rungs of the ladder and whether the adapter has them.
     pub rungs: Vec<RungUse>,
     /// The groups.
-    pub groups: Vec<Group>,
+    pub groups: Vec<BenchGroup>,
     /// Formula families as a whole.
     pub families: Vec<Family>,
     /// How time grows with work.
@@ -103,7 +103,7 @@ pub enum GroupKind {
 
 /// Rows that compute the same.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Group {
+pub struct BenchGroup {
     /// `fog/exp`, `technique/viewer`, `scene/teapot`.
     pub id: String,
     /// What its rows are.
@@ -121,7 +121,7 @@ pub struct Group {
     /// What errors and times are over, in a line: how many cases, what is drawn.
     pub work: String,
     /// The rows.
-    pub rows: Vec<Row>,
+    pub rows: Vec<BenchRow>,
     /// Rows than which none is both as fast, within the spreads, and closer, the fastest first; errors are the largest on random
     /// inputs.
     pub front: Vec<String>,
@@ -129,7 +129,7 @@ pub struct Group {
 
 /// A technique or a rung.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Row {
+pub struct BenchRow {
     /// Its name, one of its own in its group.
     pub name: String,
     /// What it is, in a line.
@@ -196,7 +196,7 @@ pub struct Time {
     /// From where to where that goes in the turns.
     pub spread: [f64; 2],
     /// What the ratio says.
-    pub verdict: Standing,
+    pub verdict: Rank,
     /// Turns that are in the figures.
     pub turns: usize,
     /// Readings that could not be true: in no figure.
@@ -208,7 +208,7 @@ pub struct Time {
 /// What a ratio says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Standing {
+pub enum Rank {
     /// It is the baseline itself.
     Baseline,
     /// Below 1, and the spread with it.

@@ -1,6 +1,6 @@
 //! Figures and words as reports show them.
 
-use super::document::{Measured, Standing, Time};
+use super::document::{Measured, Rank, Time};
 use super::ladder::median;
 use lightmeter_gpu::Rung;
 
@@ -71,10 +71,10 @@ pub(super) fn spread([from, to]: [f64; 2]) -> String {
 /// What a ratio says, in a word.
 pub(super) const fn standing(time: &Time) -> &'static str {
     match time.verdict {
-        Standing::Baseline => "baseline",
-        Standing::Faster => "faster",
-        Standing::Slower => "slower",
-        Standing::Tie => "tie",
+        Rank::Baseline => "baseline",
+        Rank::Faster => "faster",
+        Rank::Slower => "slower",
+        Rank::Tie => "tie",
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Bench;
 use super::contest::{Arithmetic, Contender, On, Sample, contest};
-use super::document::{Group, GroupKind, RungUse};
+use super::document::{BenchGroup, GroupKind, RungUse};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::Member;
@@ -74,7 +74,7 @@ pub(super) fn groups(catalogue: &[Member]) -> Vec<(String, Vec<&Member>)> {
 }
 
 /// A formula at every rung.
-pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Result<Group, GpuError> {
+pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Result<BenchGroup, GpuError> {
     let sample = Sample::new(members, bench.setting.cases, bench.setting.seed);
     let mut contenders = on_device(bench.ladder, None, |rung| rung.name().into());
     contenders.extend(Arithmetic::ALL.into_iter().map(|arithmetic| Contender {
@@ -90,7 +90,7 @@ pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Resul
     let (rows, work) = contest(bench, &sample, &contenders, baseline)?;
     let title =
         if members.len() == 1 { spec.text.into() } else { format!("{} states by one shader function", members.len()) };
-    Ok(Group {
+    Ok(BenchGroup {
         id: id.into(),
         kind: GroupKind::Formula,
         family: spec.family().into(),

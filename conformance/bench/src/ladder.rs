@@ -1,6 +1,6 @@
 //! Rungs over many groups: the geometric mean of times, the median of largest errors.
 
-use super::document::{Errors, Family, FamilyRung, Group, Row};
+use super::document::{BenchGroup, BenchRow, Errors, Family, FamilyRung};
 use super::pareto::{self, Point, is_processor};
 use lightmeter_document::Number;
 
@@ -31,7 +31,7 @@ pub struct Rung {
 
 /// The rungs over groups, in the order in which they first appear. `error` takes the largest error in the unit wanted.
 #[must_use]
-pub fn rungs<'a>(groups: impl Iterator<Item = &'a Group> + Clone, error: impl Fn(&Errors) -> f64) -> Vec<Rung> {
+pub fn rungs<'a>(groups: impl Iterator<Item = &'a BenchGroup> + Clone, error: impl Fn(&Errors) -> f64) -> Vec<Rung> {
     let mut names: Vec<&str> = vec![];
     for row in groups.clone().flat_map(|group| &group.rows) {
         if !names.contains(&row.name.as_str()) {
@@ -39,13 +39,17 @@ pub fn rungs<'a>(groups: impl Iterator<Item = &'a Group> + Clone, error: impl Fn
         }
     }
     let rows = |name: &'a str| {
-        let of = move |group: &'a Group| group.rows.iter().find(|row| row.name == name).map(|row| (group, row));
+        let of = move |group: &'a BenchGroup| group.rows.iter().find(|row| row.name == name).map(|row| (group, row));
         groups.clone().filter_map(of)
     };
     names.into_iter().map(|name| rung(name, rows(name), &error)).collect()
 }
 
-fn rung<'a>(name: &str, rows: impl Iterator<Item = (&'a Group, &'a Row)>, error: &impl Fn(&Errors) -> f64) -> Rung {
+fn rung<'a>(
+    name: &str,
+    rows: impl Iterator<Item = (&'a BenchGroup, &'a BenchRow)>,
+    error: &impl Fn(&Errors) -> f64,
+) -> Rung {
     let (mut disqualified, mut unavailable, mut as_f32) = (0, 0, 0);
     let (mut points, mut figures) = (vec![], vec![]);
     for (group, row) in rows {
@@ -56,9 +60,9 @@ fn rung<'a>(name: &str, rows: impl Iterator<Item = (&'a Group, &'a Row)>, error:
             own = base;
         }
         match own {
-            Row { unavailable: Some(_), .. } => unavailable += 1,
-            Row { disqualified: Some(_), .. } => disqualified += 1,
-            Row { time: Some(time), random: Some(errors), .. } => {
+            BenchRow { unavailable: Some(_), .. } => unavailable += 1,
+            BenchRow { disqualified: Some(_), .. } => disqualified += 1,
+            BenchRow { time: Some(time), random: Some(errors), .. } => {
                 if row.name == own.name {
                     points.push((group.id.clone(), time.ratio, error(errors)));
                 } else {
@@ -100,7 +104,7 @@ pub fn front(rungs: &[Rung]) -> Vec<String> {
 
 /// A family of formulas as the document has it.
 #[must_use]
-pub fn family<'a>(id: &str, groups: impl Iterator<Item = &'a Group> + Clone) -> Family {
+pub fn family<'a>(id: &str, groups: impl Iterator<Item = &'a BenchGroup> + Clone) -> Family {
     let of = |rung: Rung| FamilyRung {
         name: rung.name,
         formulas: rung.groups,
@@ -166,7 +170,7 @@ mod tests {
 
     #[test]
     fn a_family_is_of_what_was_measured_and_is_right() {
-        let mut groups: Vec<Group> = [2.0, 8.0, 3.0, 5.0]
+        let mut groups: Vec<BenchGroup> = [2.0, 8.0, 3.0, 5.0]
             .map(|ns| group("fog/made-up", vec![row("f32", 1.0, 1.0, 4.0), row("f16", ns, ns, 100.0 * ns)]))
             .into();
         groups[2].rows[1].disqualified = Some("wrong".into());
@@ -185,7 +189,7 @@ mod tests {
         for (place, group) in groups.iter_mut().enumerate() {
             let mut cheap = row("f32-cheap", 1.0, 0.5, 100.0);
             if place > 0 {
-                cheap = Row { unavailable: Some(reason.into()), time: None, random: None, ..cheap };
+                cheap = BenchRow { unavailable: Some(reason.into()), time: None, random: None, ..cheap };
             }
             group.rows.push(cheap);
         }

@@ -22,7 +22,7 @@ mod techniques;
 pub mod text;
 pub mod turns;
 
-use document::{ClockUse, Document, Family, Group, GroupKind, Measured, SCHEMA, Scaling};
+use document::{BenchDocument, BenchGroup, ClockUse, Family, GroupKind, Measured, SCHEMA, Scaling};
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::scene::Loaded;
@@ -116,14 +116,14 @@ const QUICK: [&str; 12] = [
 ///
 /// # Errors
 /// Where a shader is invalid or a device fails.
-pub fn bench(subjects: &[Subject], options: &Options, progress: &mut impl Progress) -> Result<Document, GpuError> {
+pub fn bench(subjects: &[Subject], options: &Options, progress: &mut impl Progress) -> Result<BenchDocument, GpuError> {
     let start = Instant::now();
     let setting = Setting::new(options.quick, options.seed);
     let adapters = subjects
         .iter()
         .map(|subject| measured(subject, options, setting, progress))
         .collect::<Result<_, GpuError>>()?;
-    Ok(Document {
+    Ok(BenchDocument {
         schema: SCHEMA.into(),
         command: options.command.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -233,7 +233,7 @@ impl<'a> Asked<'a> {
 
 /// What is measured at one time, on devices of its own.
 struct Sitting {
-    groups: Vec<Group>,
+    groups: Vec<BenchGroup>,
     scalings: Vec<Scaling>,
     clock: ClockUse,
 }
@@ -268,7 +268,7 @@ fn sitting(
         profile: options.profile,
         setting,
     };
-    let (mut groups, mut scalings): (Vec<Group>, Vec<Scaling>) = (vec![], vec![]);
+    let (mut groups, mut scalings): (Vec<BenchGroup>, Vec<Scaling>) = (vec![], vec![]);
     for (id, members) in &asked.formulas {
         progress.group(id);
         groups.push(formulas::formula(&bench, id, members)?);
@@ -334,9 +334,9 @@ fn ladder_of(subject: &Subject) -> Result<Vec<(Rung, Option<String>)>, GpuError>
 }
 
 /// The families whose formulas, or scenes, were measured beside f32.
-fn families(groups: &[Group]) -> Vec<Family> {
+fn families(groups: &[BenchGroup]) -> Vec<Family> {
     let mut families: Vec<Family> = vec![];
-    let is_of_ladder = |group: &&Group| group.kind != GroupKind::Technique && group.baseline == Rung::F32.name();
+    let is_of_ladder = |group: &&BenchGroup| group.kind != GroupKind::Technique && group.baseline == Rung::F32.name();
     for group in groups.iter().filter(is_of_ladder) {
         if families.iter().all(|family| family.id != group.family) {
             let of = groups.iter().filter(is_of_ladder).filter(|other| other.family == group.family);

@@ -1,6 +1,6 @@
 //! The page on what accuracy costs, and the README's part of it, in Markdown.
 
-use super::document::{Claim, Document, Family, Group, GroupKind, Measured, Row};
+use super::document::{BenchDocument, BenchGroup, BenchRow, Claim, Family, GroupKind, Measured};
 use super::figures::{compilation, count, digits, error, holding, spread, standing, time};
 use super::ladder::{Rung, rungs};
 use super::pareto::is_processor;
@@ -13,7 +13,7 @@ use std::fmt::{Result, Write};
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(document: &Document, pictures: &[Picture], folder: &str, out: &mut impl Write) -> Result {
+pub fn markdown(document: &BenchDocument, pictures: &[Picture], folder: &str, out: &mut impl Write) -> Result {
     writeln!(out, "# What accuracy costs: techniques and the ladder of precision\n")?;
     made(document, out)?;
     reading(out)?;
@@ -43,8 +43,8 @@ fn embed(picture: &Picture, folder: &str, out: &mut impl Write) -> Result {
     writeln!(out, "\n![{}]({folder}{}.svg)", picture.title, picture.stem())
 }
 
-fn made(document: &Document, out: &mut impl Write) -> Result {
-    let Document { command, version, seed, seconds, cores, .. } = document;
+fn made(document: &BenchDocument, out: &mut impl Write) -> Result {
+    let BenchDocument { command, version, seed, seconds, cores, .. } = document;
     writeln!(out, "Made by\n\n```\n{command}\n```\n")?;
     let quick = if document.quick { " It was a quick one: fewer formulas, fewer turns." } else { "" };
     writeln!(
@@ -95,7 +95,7 @@ fn reading(out: &mut impl Write) -> Result {
     )
 }
 
-fn claims(document: &Document, out: &mut impl Write) -> Result {
+fn claims(document: &BenchDocument, out: &mut impl Write) -> Result {
     writeln!(out, "\n## What is claimed, and what was measured\n")?;
     let mut told: Vec<&str> = vec![];
     for claim in document.adapters.iter().flat_map(|measured| &measured.claims) {
@@ -181,7 +181,7 @@ fn marked(cell: Option<String>, is_on_front: bool) -> String {
 fn techniques(measured: &Measured, out: &mut impl Write) -> Result {
     let techniques =
         measured.groups.iter().filter(|group| group.kind == GroupKind::Technique && !is_stable_form(group));
-    let techniques: Vec<&Group> = techniques.collect();
+    let techniques: Vec<&BenchGroup> = techniques.collect();
     if !techniques.is_empty() {
         writeln!(out, "\n### Techniques")?;
     }
@@ -208,7 +208,7 @@ fn techniques(measured: &Measured, out: &mut impl Write) -> Result {
     Ok(())
 }
 
-fn technique(group: &Group, row: &Row, out: &mut impl Write) -> Result {
+fn technique(group: &BenchGroup, row: &BenchRow, out: &mut impl Write) -> Result {
     let name = marked(Some(row.name.clone()), group.front.contains(&row.name));
     if let Some(why) = &row.unavailable {
         return writeln!(
@@ -228,13 +228,13 @@ fn technique(group: &Group, row: &Row, out: &mut impl Write) -> Result {
 }
 
 /// Time, ratio, spread and what they say.
-fn timed(row: &Row) -> [String; 4] {
+fn timed(row: &BenchRow) -> [String; 4] {
     row.time.as_ref().map_or_else(Default::default, |taken| {
         [time(taken.ns), digits(taken.ratio), spread(taken.spread), standing(taken).to_owned()]
     })
 }
 
-fn erring(row: &Row) -> [String; 7] {
+fn erring(row: &BenchRow) -> [String; 7] {
     let random = row.random.as_ref().map(|of| [of.ulp.max, of.ulp.p99, of.ulp.mean, of.absolute.max, of.steps.max]);
     let hard = row.hard.as_ref().map(|of| [of.ulp.max, of.absolute.max]);
     let random = random.map_or_else(Default::default, |all| all.map(|one| error(one.0)));
@@ -244,7 +244,7 @@ fn erring(row: &Row) -> [String; 7] {
 }
 
 fn stable_forms(measured: &Measured, out: &mut impl Write) -> Result {
-    let groups: Vec<&Group> = measured.groups.iter().filter(|group| is_stable_form(group)).collect();
+    let groups: Vec<&BenchGroup> = measured.groups.iter().filter(|group| is_stable_form(group)).collect();
     if groups.is_empty() {
         return Ok(());
     }
@@ -269,7 +269,7 @@ fn stable_forms(measured: &Measured, out: &mut impl Write) -> Result {
 }
 
 fn scenes(measured: &Measured, out: &mut impl Write) -> Result {
-    let scenes: Vec<&Group> = measured.groups.iter().filter(|group| group.kind == GroupKind::Scene).collect();
+    let scenes: Vec<&BenchGroup> = measured.groups.iter().filter(|group| group.kind == GroupKind::Scene).collect();
     let rungs = rungs(scenes.iter().copied(), |errors| errors.steps.max.0);
     if rungs.is_empty() {
         return Ok(());
@@ -292,7 +292,12 @@ fn scenes(measured: &Measured, out: &mut impl Write) -> Result {
 }
 
 /// A cell for each row by name: its ratio, and its largest errors on random and on hard inputs.
-fn cells(group: &Group, names: &[&str], largest: impl Fn(&Row) -> [Option<f64>; 2], out: &mut impl Write) -> Result {
+fn cells(
+    group: &BenchGroup,
+    names: &[&str],
+    largest: impl Fn(&BenchRow) -> [Option<f64>; 2],
+    out: &mut impl Write,
+) -> Result {
     for name in names {
         let row = group.rows.iter().find(|row| row.name == *name && row.unavailable.is_none());
         let figures = row.map(|row| {
@@ -333,7 +338,7 @@ fn growth(measured: &Measured, out: &mut impl Write) -> Result {
 /// Rows of any kind that are in no figure, by reason; for rungs that the adapter has not, their table is enough.
 fn left_out(measured: &Measured, out: &mut impl Write) -> Result {
     let is_told =
-        |row: &Row| measured.rungs.iter().any(|rung| rung.name == row.name && rung.unavailable == row.unavailable);
+        |row: &BenchRow| measured.rungs.iter().any(|rung| rung.name == row.name && rung.unavailable == row.unavailable);
     let rows = || measured.groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)));
     let unavailable = rows().filter(|(_, row)| !is_told(row));
     let unavailable = unavailable.filter_map(|(group, row)| Some((group, row, row.unavailable.as_ref()?)));
@@ -345,7 +350,7 @@ fn left_out(measured: &Measured, out: &mut impl Write) -> Result {
 
 fn listed<'a>(
     title: &str,
-    rows: impl Iterator<Item = (&'a Group, &'a Row, &'a String)>,
+    rows: impl Iterator<Item = (&'a BenchGroup, &'a BenchRow, &'a String)>,
     out: &mut impl Write,
 ) -> Result {
     let mut reasons: Vec<(&str, &str, Vec<&str>)> = vec![];
@@ -365,7 +370,7 @@ fn listed<'a>(
 }
 
 fn formulas(measured: &Measured, out: &mut impl Write) -> Result {
-    let formulas: Vec<&Group> = measured.groups.iter().filter(|group| group.kind == GroupKind::Formula).collect();
+    let formulas: Vec<&BenchGroup> = measured.groups.iter().filter(|group| group.kind == GroupKind::Formula).collect();
     if formulas.is_empty() {
         return Ok(());
     }
@@ -391,12 +396,12 @@ const SHOWN: [&str; 2] = ["lighting/blinn", "fog/exp"];
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn readme(document: &Document, out: &mut impl Write) -> Result {
+pub fn readme(document: &BenchDocument, out: &mut impl Write) -> Result {
     for measured in &document.adapters {
-        let is_in_shaders = |group: &&Group| group.kind == GroupKind::Formula && !is_processor(&group.baseline);
+        let is_in_shaders = |group: &&BenchGroup| group.kind == GroupKind::Formula && !is_processor(&group.baseline);
         let formulas = measured.groups.iter().filter(is_in_shaders);
         let all = rungs(formulas.clone(), |errors| errors.absolute.max.0);
-        let shown: Vec<&Group> =
+        let shown: Vec<&BenchGroup> =
             SHOWN.into_iter().filter_map(|id| formulas.clone().find(|group| group.id == id)).collect();
         let Measured { adapter, device, clock, .. } = measured;
         let count = count(formulas.count(), "formula");
@@ -474,7 +479,7 @@ mod tests {
         for measured in &document.adapters {
             let part = section(&page, &format!("\n## {}", measured.adapter));
             for group in &measured.groups {
-                let expected = |row: &Row, cell: &str| {
+                let expected = |row: &BenchRow, cell: &str| {
                     assert_eq!(cell == "—", row.unavailable.is_some(), "{}: {} is {cell}", group.id, row.name);
                     assert_eq!(cell.contains('✗'), row.disqualified.is_some() && row.unavailable.is_none(), "{cell}");
                     assert_eq!(cell.contains("**"), group.front.contains(&row.name), "{}: {cell}", group.id);

@@ -3,7 +3,7 @@
 //! A point is on it where no other of it is at most as slow *and* at most as far off, and one of these strictly. What has no time or no finite error is never on it; nor is a row that is unavailable or wrong in value, nor
 //! a rung on the processor, which no shader can take.
 
-use super::document::{Group, Row};
+use super::document::{BenchGroup, BenchRow};
 
 /// A row, or a rung over many.
 #[derive(Clone, Debug)]
@@ -54,8 +54,8 @@ pub fn front(mut points: Vec<Point>) -> Vec<String> {
 
 /// The front of a group's rows: by their time and their largest absolute error on random inputs.
 #[must_use]
-pub fn front_of(group: &Group) -> Vec<String> {
-    let point = |row: &Row| {
+pub fn front_of(group: &BenchGroup) -> Vec<String> {
+    let point = |row: &BenchRow| {
         let (error, time) = (row.random.as_ref()?.absolute.max.0, row.time.as_ref()?);
         let (name, is_baseline) = (row.name.clone(), row.name == group.baseline);
         let point = Point { name, time: time.spread, ratio: time.ratio, error, is_baseline };
@@ -72,14 +72,14 @@ pub fn is_processor(name: &str) -> bool {
 
 /// Why a row is on no front and never recommended, if so.
 #[must_use]
-pub fn refusal(row: &Row) -> Option<&str> {
+pub fn refusal(row: &BenchRow) -> Option<&str> {
     let processor = is_processor(&row.name).then_some("on the processor");
     row.unavailable.as_deref().or(row.disqualified.as_deref()).or(processor)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic::{Draw, document};
+    use super::super::synthetic::{SyntheticDraw, document};
     use super::*;
 
     fn point(name: &str, time: [f64; 2], error: f64) -> Point {
@@ -107,11 +107,11 @@ mod tests {
     #[test]
     fn the_front_is_what_the_definition_says() {
         const NAMES: [&str; 12] = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l"];
-        let mut draw = Draw::new(7);
+        let mut draw = SyntheticDraw::new(7);
         let mut sizes = [0_usize; 13];
         for _ in 0..4000 {
             // Few values, so that many are equal.
-            let value = |draw: &mut Draw| match draw.below(9) {
+            let value = |draw: &mut SyntheticDraw| match draw.below(9) {
                 0 => f64::NAN,
                 1 => f64::INFINITY,
                 k => f64::from(k - 2),

@@ -1,6 +1,6 @@
 //! The cheapest row of each group whose largest error is at most so much: `lightmeter.recommendation/1`.
 
-use super::document::{Document, Errors, Group, Row};
+use super::document::{BenchDocument, BenchGroup, BenchRow, Errors};
 use super::figures::{digits, error, time};
 use super::pareto::refusal;
 use super::text::wrapped;
@@ -130,7 +130,7 @@ pub struct Recommendation {
     pub limit: String,
     /// The inputs that it must hold on.
     pub inputs: Inputs,
-    /// Group by group.
+    /// BenchGroup by group.
     pub groups: Vec<Advice>,
     #[serde(skip)]
     unit: &'static str,
@@ -174,7 +174,7 @@ pub struct Candidate {
 
 /// The cheapest row of each group that the filter selects, on each adapter, whose largest error on `inputs` is at most `limit`.
 #[must_use]
-pub fn recommend(document: &Document, filter: &Filter, limit: Limit, inputs: Inputs) -> Recommendation {
+pub fn recommend(document: &BenchDocument, filter: &Filter, limit: Limit, inputs: Inputs) -> Recommendation {
     let groups = document.adapters.iter().flat_map(|measured| {
         let selected = measured.groups.iter().filter(|group| filter.selects(&group.id));
         selected.map(|group| advice(&measured.adapter, group, limit, inputs))
@@ -183,7 +183,7 @@ pub fn recommend(document: &Document, filter: &Filter, limit: Limit, inputs: Inp
     Recommendation { schema: SCHEMA, limit: limit.to_string(), inputs, groups, unit: limit.unit() }
 }
 
-fn advice(adapter: &str, group: &Group, limit: Limit, inputs: Inputs) -> Advice {
+fn advice(adapter: &str, group: &BenchGroup, limit: Limit, inputs: Inputs) -> Advice {
     let has_hard = group.rows.iter().any(|row| row.hard.is_some());
     let inputs = if inputs == Inputs::All && !has_hard { Inputs::Random } else { inputs };
     let candidates: Vec<Candidate> = group.rows.iter().filter_map(|row| candidate(row, limit, inputs)).collect();
@@ -202,13 +202,13 @@ fn advice(adapter: &str, group: &Group, limit: Limit, inputs: Inputs) -> Advice 
         (None, None) if inputs == Inputs::Hard && !has_hard => Some("it has no hard cases".into()),
         (None, None) => Some("no row was measured that is right in value and runs in a shader".into()),
     };
-    let Group { id, title, unit, .. } = group;
+    let BenchGroup { id, title, unit, .. } = group;
     let (adapter, group, title, unit) = (adapter.to_owned(), id.clone(), title.clone(), unit.clone());
     Advice { adapter, group, title, unit, chosen, closest, reason }
 }
 
 /// The row with its largest error, where it can be taken and was timed and measured on those inputs.
-fn candidate(row: &Row, limit: Limit, inputs: Inputs) -> Option<Candidate> {
+fn candidate(row: &BenchRow, limit: Limit, inputs: Inputs) -> Option<Candidate> {
     if refusal(row).is_some() {
         return None;
     }
@@ -292,7 +292,7 @@ mod tests {
     /// What a row of the table pins: rows, limit and inputs; the row chosen, or the closest.
     type Choice<'a> = (&'a str, &'a [Made], Limit, Inputs, Option<&'a str>, Option<&'a str>);
 
-    fn with(rows: &[Made]) -> Group {
+    fn with(rows: &[Made]) -> BenchGroup {
         let of = |&(name, ns, random, hard): &Made| {
             let mut row = row(name, ns, ns, random);
             row.hard = hard.map(errors);
@@ -339,7 +339,7 @@ mod tests {
     #[test]
     fn what_cannot_be_taken_is_never_chosen() {
         let mut group = with(&[("cpu-f32", 0.1, 0.0, None), ("a", 1.0, 0.0, None), ("b", 2.0, 0.0, None)]);
-        let chosen = |group: &Group| advice("x", group, Limit::Ulp(1.0), Inputs::All).chosen.map(|one| one.row);
+        let chosen = |group: &BenchGroup| advice("x", group, Limit::Ulp(1.0), Inputs::All).chosen.map(|one| one.row);
         assert_eq!(chosen(&group).as_deref(), Some("a"), "a rung on the processor is none of a shader");
         group.rows[1].disqualified = Some("another model".into());
         assert_eq!(chosen(&group).as_deref(), Some("b"));

@@ -13,7 +13,7 @@ pub use scaling::{SCALINGS, scalings};
 pub use techniques::{technique_ids, techniques};
 
 use super::Setting;
-use super::document::{Group, GroupKind, Row};
+use super::document::{BenchGroup, BenchRow, GroupKind};
 use super::errors::Gathered;
 use super::turns::{self, Effort, Entry};
 use drawing::{Drawer, Plan, Standard};
@@ -78,7 +78,7 @@ pub fn scenes(
     ladder: &[(Rung, Option<String>)],
     names: &[&str],
     progress: &mut impl Progress,
-) -> Result<Vec<Group>, GpuError> {
+) -> Result<Vec<BenchGroup>, GpuError> {
     let size = if on.setting.quick { SIZE_QUICK } else { SIZE };
     let mut groups = vec![];
     for name in names {
@@ -110,7 +110,7 @@ pub fn scene(
     id: String,
     title: String,
     frame: Frame,
-) -> Result<Option<Group>, GpuError> {
+) -> Result<Option<BenchGroup>, GpuError> {
     let Some(drawer) = Drawer::new(on) else { return Ok(None) };
     let frame = widened(drawer.gpu, frame);
     let standard = drawer.standard(frame);
@@ -131,7 +131,7 @@ pub fn scene(
     let mut rows = drawer.rows(&drawn, baseline, on.setting.effort)?;
     rows.extend(processor(&drawer, &standard, on.setting.effort)?);
     let format = standard.frame.target.format.name();
-    Ok(Some(Group {
+    Ok(Some(BenchGroup {
         id,
         kind: GroupKind::Scene,
         family: "scene".into(),
@@ -161,7 +161,7 @@ const fn what(rung: Rung) -> &'static str {
 type Draw = Box<dyn Fn(&Frame) + Send + Sync>;
 
 /// The reference renderer on one core, in turns of its own.
-fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result<Vec<Row>, GpuError> {
+fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result<Vec<BenchRow>, GpuError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let (frame, profile) = (&standard.frame, drawer.profile);
     let kinds: [(&str, &str, Draw); 3] = [
@@ -207,7 +207,7 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
         if let Some(time) = time.as_mut().filter(|_| share < 1.0) {
             time.note = Some("of a smaller frame, and as many times that as there are more pixels".into());
         }
-        Row {
+        BenchRow {
             name: (*name).into(),
             what: (*what).into(),
             claims_exact: *name != "cpu-accept",
@@ -226,7 +226,7 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Standing;
+    use crate::document::Rank;
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_engine::options::Silent;
     use lightmeter_gpu::adapters;
@@ -253,9 +253,9 @@ mod tests {
         let names: Vec<&str> = group.rows.iter().map(|row| row.name.as_str()).collect();
         assert_eq!(names, ["f32", "f64", "cpu-f32", "cpu-f64", "cpu-accept"]);
         let [f32, f64, cpu32, cpu64, accept] = group.rows.as_slice() else { panic!("five rows") };
-        assert_eq!(f32.time.as_ref().map(|time| time.verdict), Some(Standing::Baseline));
+        assert_eq!(f32.time.as_ref().map(|time| time.verdict), Some(Rank::Baseline));
         assert_eq!((f64.unavailable.as_deref(), f64.time.is_none()), (Some("a reason"), true));
-        let max = |row: &Row| row.random.as_ref().map(|errors| errors.absolute.max.0);
+        let max = |row: &BenchRow| row.random.as_ref().map(|errors| errors.absolute.max.0);
         assert!(max(cpu64) == Some(0.0) && max(cpu32) > Some(0.0) && max(accept) > max(cpu32));
         for row in [f32, cpu32, cpu64, accept] {
             assert_eq!((&row.disqualified, row.time.is_some()), (&None, true), "{}", row.name);

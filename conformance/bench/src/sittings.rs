@@ -2,7 +2,7 @@
 //! lie apart, since machine code and memory lie elsewhere; so every sitting has devices and pipelines of its own.
 
 use super::Sitting;
-use super::document::{ScalingPoint, Standing, Time};
+use super::document::{Rank, ScalingPoint, Time};
 use super::fit::fit;
 use super::turns::{median, standing};
 
@@ -48,13 +48,13 @@ pub(super) fn together(mut all: Vec<Sitting>) -> Sitting {
 /// The median of the sittings' medians, from the least of all turns to the greatest.
 fn time(of: &[Time]) -> Time {
     let spread = range(of.iter().map(|time| time.spread));
-    let is_baseline = of[0].verdict == Standing::Baseline;
+    let is_baseline = of[0].verdict == Rank::Baseline;
     Time {
         ns: middle(of.iter().map(|time| time.ns)),
         quartiles_ns: range(of.iter().map(|time| time.quartiles_ns)),
         ratio: middle(of.iter().map(|time| time.ratio)),
         spread,
-        verdict: if is_baseline { Standing::Baseline } else { standing(spread) },
+        verdict: if is_baseline { Rank::Baseline } else { standing(spread) },
         turns: of.iter().map(|time| time.turns).sum(),
         rejected: of.iter().map(|time| time.rejected).sum(),
         ..of[0].clone()
@@ -95,7 +95,7 @@ mod tests {
         let time = row.time.as_ref().expect("it is timed");
         assert!((time.ratio - 1.2).abs() < 1e-12 && (time.ns - 3.0).abs() < 1e-12);
         assert!((time.spread[0] - 0.8 * 0.97).abs() < 1e-12 && (time.spread[1] - 1.3 * 1.03).abs() < 1e-12);
-        assert_eq!((time.verdict, time.turns), (Standing::Tie, 45));
+        assert_eq!((time.verdict, time.turns), (Rank::Tie, 45));
         assert!(row.random.is_some(), "errors are those of the first");
         assert_eq!((all.clock.readings, all.clock.rejected), (30, 3));
     }

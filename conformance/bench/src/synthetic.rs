@@ -6,9 +6,9 @@ use super::pareto::front_of;
 use lightmeter_document::Number;
 
 /// SplitMix64.
-pub(crate) struct Draw(u64);
+pub(crate) struct SyntheticDraw(u64);
 
-impl Draw {
+impl SyntheticDraw {
     pub(crate) const fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -52,17 +52,17 @@ pub(crate) fn errors(ulp: f64) -> Errors {
 }
 
 /// A row that was measured.
-pub(crate) fn row(name: &str, ns: f64, ratio: f64, ulp: f64) -> Row {
+pub(crate) fn row(name: &str, ns: f64, ratio: f64, ulp: f64) -> BenchRow {
     let verdict = match ratio {
-        x if x < 0.97 => Standing::Faster,
-        x if x > 1.03 => Standing::Slower,
-        _ => Standing::Tie,
+        x if x < 0.97 => Rank::Faster,
+        x if x > 1.03 => Rank::Slower,
+        _ => Rank::Tie,
     };
     let spread = [ratio * 0.97, ratio * 1.03];
     let quartiles_ns = [ns * 0.98, ns * 1.02];
     let clock = if name.starts_with("cpu-") { "processor" } else { "timestamps" }.to_owned();
     let time = Time { clock, ns, quartiles_ns, ratio, spread, verdict, turns: 15, rejected: 0, note: None };
-    Row {
+    BenchRow {
         name: name.into(),
         what: format!("{name}, in a line"),
         claims_exact: true,
@@ -77,14 +77,14 @@ pub(crate) fn row(name: &str, ns: f64, ratio: f64, ulp: f64) -> Row {
 }
 
 /// A group whose first row is the baseline.
-pub(crate) fn group(id: &str, rows: Vec<Row>) -> Group {
+pub(crate) fn group(id: &str, rows: Vec<BenchRow>) -> BenchGroup {
     let family = id.split('/').next().unwrap_or_default();
     let kind = match family {
         "technique" | "stable" => GroupKind::Technique,
         "scene" => GroupKind::Scene,
         _ => GroupKind::Formula,
     };
-    let mut group = Group {
+    let mut group = BenchGroup {
         id: id.into(),
         kind,
         family: family.into(),
@@ -99,7 +99,7 @@ pub(crate) fn group(id: &str, rows: Vec<Row>) -> Group {
     let baseline = group.baseline.clone();
     let first = group.rows.iter_mut().find(|row| row.name == baseline).and_then(|row| row.time.as_mut());
     if let Some(time) = first {
-        time.verdict = Standing::Baseline;
+        time.verdict = Rank::Baseline;
     }
     group.front = front_of(&group);
     group
@@ -161,8 +161,8 @@ const TECHNIQUES: [(&str, &[Made]); 12] = [
 ];
 
 /// Two adapters, each with every kind of group.
-pub(crate) fn document() -> Document {
-    let mut draw = Draw::new(1);
+pub(crate) fn document() -> BenchDocument {
+    let mut draw = SyntheticDraw::new(1);
     let mut first = measured("lavapipe", 1.0, &mut draw);
     first.is_cpu = true;
     first.device = "llvmpipe (LLVM 15.0.6, 256 bits)".into();
@@ -183,7 +183,7 @@ pub(crate) fn document() -> Document {
     second.clock = ClockUse { kind: "wall".into(), note: Some(note.into()), readings: 40_002, rejected: 0 };
     let times = second.groups.iter_mut().flat_map(|group| &mut group.rows).filter_map(|row| row.time.as_mut());
     times.filter(|time| time.clock == "timestamps").for_each(|time| time.clock = "wall".into());
-    Document {
+    BenchDocument {
         schema: SCHEMA.into(),
         command: "./x bench --adapter all --format json --out bench.json".into(),
         version: "0.1.0".into(),
@@ -195,17 +195,17 @@ pub(crate) fn document() -> Document {
     }
 }
 
-fn take_away(row: &mut Row, why: &str) {
+fn take_away(row: &mut BenchRow, why: &str) {
     row.unavailable = Some(why.into());
     (row.random, row.hard, row.time, row.disqualified) = (None, None, None, None);
 }
 
-fn families(groups: &[Group]) -> Vec<Family> {
+fn families(groups: &[BenchGroup]) -> Vec<Family> {
     let of = |id: &'static str| groups.iter().filter(move |group| group.family == id);
     FAMILIES.iter().map(|(id, ..)| family(id, of(id))).collect()
 }
 
-fn measured(adapter: &str, scale: f64, draw: &mut Draw) -> Measured {
+fn measured(adapter: &str, scale: f64, draw: &mut SyntheticDraw) -> Measured {
     let mut groups = vec![];
     for (family, names, count) in FAMILIES {
         for place in 0..count {
@@ -248,7 +248,7 @@ fn measured(adapter: &str, scale: f64, draw: &mut Draw) -> Measured {
     }
 }
 
-fn formula(id: &str, scale: f64, draw: &mut Draw) -> Group {
+fn formula(id: &str, scale: f64, draw: &mut SyntheticDraw) -> BenchGroup {
     let (weight, loss) = (scale * draw.about(6.0), draw.about(12.0));
     let is_exact = draw.below(9) == 0;
     let mut rows = vec![];
@@ -278,7 +278,7 @@ fn formula(id: &str, scale: f64, draw: &mut Draw) -> Group {
     group(id, rows)
 }
 
-fn technique(id: &str, rows: &[Made], scale: f64, draw: &mut Draw) -> Group {
+fn technique(id: &str, rows: &[Made], scale: f64, draw: &mut SyntheticDraw) -> BenchGroup {
     let weight = scale * draw.about(5.0);
     let of = |&(name, ratio, ulp): &Made| {
         let mut row = row(name, weight * ratio, ratio, ulp);
@@ -294,7 +294,7 @@ fn technique(id: &str, rows: &[Made], scale: f64, draw: &mut Draw) -> Group {
     group(id, rows.iter().map(of).collect())
 }
 
-fn scene(place: usize, scale: f64, draw: &mut Draw) -> Group {
+fn scene(place: usize, scale: f64, draw: &mut SyntheticDraw) -> BenchGroup {
     let named = ["teapot", "attached-lights", "missed-highlight", "fogged-floor"];
     let id = named.get(place).map_or_else(|| format!("scene/made-up-{place:02}"), |name| format!("scene/{name}"));
     let weight = 4e6 * scale * draw.about(3.0);
@@ -314,7 +314,7 @@ fn scene(place: usize, scale: f64, draw: &mut Draw) -> Group {
     group(&id, rows.map(of).collect())
 }
 
-fn scalings(scale: f64, draw: &mut Draw) -> Vec<Scaling> {
+fn scalings(scale: f64, draw: &mut SyntheticDraw) -> Vec<Scaling> {
     let rows = [
         ("lights", "a lit quad of 256² pixels", 1, 7, 9e4, 3e5, 1.01),
         ("vertices", "points, one a vertex", 100, 7, 5e4, 8.0, 1.0),
@@ -322,7 +322,7 @@ fn scalings(scale: f64, draw: &mut Draw) -> Vec<Scaling> {
         ("cases", "lighting/blinn", 1024, 6, 2e4, 1.5, 0.99),
     ];
     let of = |(id, what, from, steps, fixed, factor, exponent): (&str, &str, u64, u32, f64, f64, f64)| {
-        let point = |step: u32, draw: &mut Draw| {
+        let point = |step: u32, draw: &mut SyntheticDraw| {
             let work = from * 4_u64.pow(step);
             #[expect(clippy::cast_precision_loss, reason = "small")]
             let ns = scale * (fixed + factor * (work as f64).powf(exponent)) * draw.about(1.06);
@@ -351,8 +351,8 @@ fn scalings(scale: f64, draw: &mut Draw) -> Vec<Scaling> {
 }
 
 fn claims() -> Vec<Claim> {
-    type Row<'a> = (&'a str, &'a str, &'a str, &'a str, [&'a str; 2], f64, Option<bool>);
-    let rows: [Row; 7] = [
+    type BenchRow<'a> = (&'a str, &'a str, &'a str, &'a str, [&'a str; 2], f64, Option<bool>);
+    let rows: [BenchRow; 7] = [
         (
             "infinite-viewer",
             "000 §6.4",
@@ -417,7 +417,7 @@ fn claims() -> Vec<Claim> {
             Some(false),
         ),
     ];
-    let of = |(id, source, claim, group, [row, other], ratio, holds): Row| Claim {
+    let of = |(id, source, claim, group, [row, other], ratio, holds): BenchRow| Claim {
         id: id.into(),
         source: source.into(),
         claim: claim.into(),

@@ -3,7 +3,7 @@
 
 use super::Bench;
 use super::contest::{Arithmetic, Contender, On, Sample, contest};
-use super::document::{Group, GroupKind};
+use super::document::{BenchGroup, GroupKind};
 use super::formulas::on_device;
 use lightmeter_catalogue::cases::formula::formula;
 use lightmeter_catalogue::cases::{Domain, Formula, Hard, Input, Output, Reader, Shape};
@@ -329,7 +329,7 @@ const DIRECT: &str = "a·(1 − t) + b·t at each pixel";
 const DIFFERENCES: &str = "the step added once a pixel";
 
 /// The techniques of a group, each at the ladder's rungs.
-pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<Group, GpuError> {
+pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<BenchGroup, GpuError> {
     let ideal = &group.techniques[0].member;
     let sample = Sample::new(&[ideal], bench.setting.cases, bench.setting.seed);
     let mut contenders = vec![];
@@ -337,7 +337,7 @@ pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<Group,
         contenders.extend(at_every_rung(bench, technique.name, technique.what, (k > 0).then_some(&technique.member)));
     }
     let (rows, work) = contest(bench, &sample, &contenders, group.baseline)?;
-    Ok(Group {
+    Ok(BenchGroup {
         id: group.id.into(),
         kind: GroupKind::Technique,
         family: "technique".into(),
@@ -380,7 +380,7 @@ fn at_every_rung<'a>(
 }
 
 /// The published and the stable form of a formula that has both, at its hard cases.
-pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<Group>, GpuError> {
+pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<BenchGroup>, GpuError> {
     let mut naive: Vec<&Member> = vec![];
     for hard in member.spec.hard.iter().filter_map(|hard| hard.naive) {
         let rival = bench.catalogue.iter().find(|rival| rival.spec.id == hard.formula);
@@ -395,7 +395,7 @@ pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<Group>
         contenders.extend(rungs.into_iter().filter(|contender| contender.on != On::Device(Rung::Stable)));
     }
     let (rows, work) = contest(bench, &sample, &contenders, &short(first))?;
-    Ok(Some(Group {
+    Ok(Some(BenchGroup {
         id: format!("stable/{}", member.spec.id),
         kind: GroupKind::Technique,
         family: "stable".into(),

@@ -1,6 +1,6 @@
 //! A bench for people to read on a terminal, 120 columns wide.
 
-use super::document::{Document, Family, Group, GroupKind, Measured, Row, Scaling};
+use super::document::{BenchDocument, BenchGroup, BenchRow, Family, GroupKind, Measured, Scaling};
 use super::figures::{compilation, count, digits, error, spread, standing, time};
 use super::ladder::{Rung, rungs};
 use lightmeter_document::thousands;
@@ -15,8 +15,8 @@ const NAME: usize = 22;
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn write(document: &Document, details: bool, out: &mut impl Write) -> Result {
-    let Document { command, version, seed, seconds, cores, .. } = document;
+pub fn write(document: &BenchDocument, details: bool, out: &mut impl Write) -> Result {
+    let BenchDocument { command, version, seed, seconds, cores, .. } = document;
     let quick = if document.quick { "quick: fewer formulas and turns; " } else { "" };
     let head = format!("{command}: {quick}version {version}, seed {seed}, {}, {seconds:.0} s", count(*cores, "core"));
     wrapped("", "  ", &head, out)?;
@@ -48,7 +48,7 @@ pub fn write(document: &Document, details: bool, out: &mut impl Write) -> Result
 }
 
 /// Whether a group holds a published form against its stable one.
-pub(super) fn is_stable_form(group: &Group) -> bool {
+pub(super) fn is_stable_form(group: &BenchGroup) -> bool {
     group.id.starts_with("stable/")
 }
 
@@ -162,7 +162,7 @@ fn in_width<'a, 'b>(names: &'b [&'a str]) -> Vec<&'b [&'a str]> {
 }
 
 /// A group with all of its rows.
-fn block(group: &Group, out: &mut impl Write) -> Result {
+fn block(group: &BenchGroup, out: &mut impl Write) -> Result {
     writeln!(out)?;
     wrapped("", "  ", &format!("{}: {}", group.id, group.title), out)?;
     let over =
@@ -176,11 +176,11 @@ fn block(group: &Group, out: &mut impl Write) -> Result {
     group.rows.iter().try_for_each(|row| line(group, row, out))
 }
 
-fn line(group: &Group, row: &Row, out: &mut impl Write) -> Result {
+fn line(group: &BenchGroup, row: &BenchRow, out: &mut impl Write) -> Result {
     let is_on_front = group.front.contains(&row.name);
     let mark = match row {
-        Row { unavailable: Some(_), .. } => '—',
-        Row { disqualified: Some(_), .. } => '✗',
+        BenchRow { unavailable: Some(_), .. } => '—',
+        BenchRow { disqualified: Some(_), .. } => '✗',
         _ if is_on_front => '●',
         _ => ' ',
     };
@@ -213,7 +213,7 @@ fn line(group: &Group, row: &Row, out: &mut impl Write) -> Result {
 }
 
 /// What else is to be said of a row.
-fn remarks(row: &Row) -> Vec<String> {
+fn remarks(row: &BenchRow) -> Vec<String> {
     let mut remarks = vec![];
     if let Some(why) = &row.disqualified {
         remarks.push(format!("disqualified: {why}"));
@@ -234,8 +234,8 @@ fn remarks(row: &Row) -> Vec<String> {
     remarks
 }
 
-fn stable_forms<'a>(groups: impl Iterator<Item = &'a Group>, out: &mut impl Write) -> Result {
-    let groups: Vec<&Group> = groups.collect();
+fn stable_forms<'a>(groups: impl Iterator<Item = &'a BenchGroup>, out: &mut impl Write) -> Result {
+    let groups: Vec<&BenchGroup> = groups.collect();
     if groups.is_empty() {
         return Ok(());
     }

@@ -1,7 +1,7 @@
 //! Times in turns: everything that is compared is measured in each turn, so that what else the machine does falls upon all
 //! alike, and a ratio is of two times of the same turn. What is measured in a turn is the least of a few readings.
 
-use super::document::{Standing, Time};
+use super::document::{Rank, Time};
 use lightmeter_gpu::{GpuError, Reading};
 
 /// Something that is timed, and how much of it at once.
@@ -115,7 +115,7 @@ pub fn time(clock: &'static str, own: &Laps, baseline: Option<&Laps>) -> Option<
     }
     kept.sort_by(f64::total_cmp);
     let (ratio, spread, verdict) = match baseline {
-        None => (1.0, [1.0, 1.0], Standing::Baseline),
+        None => (1.0, [1.0, 1.0], Rank::Baseline),
         Some(baseline) => {
             let (ratio, spread) = ratio(own, baseline)?;
             (ratio, spread, standing(spread))
@@ -173,13 +173,13 @@ pub fn ratio(own: &Laps, baseline: &Laps) -> Option<(f64, [f64; 2])> {
 
 /// What the spread of a ratio says.
 #[must_use]
-pub fn standing([low, high]: [f64; 2]) -> Standing {
+pub fn standing([low, high]: [f64; 2]) -> Rank {
     if high < 1.0 {
-        Standing::Faster
+        Rank::Faster
     } else if low > 1.0 {
-        Standing::Slower
+        Rank::Slower
     } else {
-        Standing::Tie
+        Rank::Tie
     }
 }
 
@@ -226,9 +226,9 @@ mod tests {
     fn a_ratio_within_its_spread_of_one_is_a_tie() {
         let base = laps(&[1.0; 7]);
         let verdict = |own: &[f64]| time("wall", &laps(own), Some(&base)).expect("it is measured").verdict;
-        assert_eq!(verdict(&[1.1, 1.2, 0.9, 1.3, 0.95, 1.2, 1.1]), Standing::Tie);
-        assert_eq!(verdict(&[1.1, 1.2, 1.1, 1.3, 1.05, 1.2, 1.1]), Standing::Slower);
-        assert_eq!(verdict(&[0.8, 0.8, 0.8, 0.8, 0.95, 0.9, 0.7]), Standing::Faster);
+        assert_eq!(verdict(&[1.1, 1.2, 0.9, 1.3, 0.95, 1.2, 1.1]), Rank::Tie);
+        assert_eq!(verdict(&[1.1, 1.2, 1.1, 1.3, 1.05, 1.2, 1.1]), Rank::Slower);
+        assert_eq!(verdict(&[0.8, 0.8, 0.8, 0.8, 0.95, 0.9, 0.7]), Rank::Faster);
     }
 
     #[test]

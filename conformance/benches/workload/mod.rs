@@ -12,7 +12,7 @@ use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::blend_unit::embedded;
 use lightmeter::blend_unit::pixel::{self, Units};
 use lightmeter::blend_unit::rules::Rules;
-use lightmeter::blend_unit::tally::{Drawn, Tally};
+use lightmeter::blend_unit::tally::{DrawnState, UnitTally};
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::UnitCase;
 use lightmeter::devices::Known;
@@ -231,13 +231,12 @@ fn blend_unit(member: &Member, target: TargetFormat, cases: &Rc<[UnitCase]>) -> 
     let name = |what: &str| format!("blend-unit/{}/{what}", target.name());
     let blend = move |case: &UnitCase| embedded::blend(program, target, case, &Rules::RIGHT);
     let pixels: Vec<Units> = cases.iter().map(blend).collect();
-    let drawn = Drawn { program, route: Route::Native, target, profile: &WGSL };
+    let drawn = DrawnState { program, route: Route::Native, target, profile: &WGSL };
     let (blended, judged) = (Rc::clone(cases), Rc::clone(cases));
     let verdict = move || {
-        let mut tally = Tally::default();
-        for (place, (case, pixel)) in judged.iter().zip(&pixels).enumerate() {
-            tally.pixel(drawn, &Known::default(), place, black_box(case), *pixel);
-        }
+        let mut tally = UnitTally::default();
+        let pixels = judged.iter().zip(&pixels).map(|(case, pixel)| (black_box(*case), *pixel));
+        tally.pixels(drawn, &Known::default(), pixels);
         black_box(tally);
     };
     let blend = move || {

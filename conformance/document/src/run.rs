@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 pub const SCHEMA: &str = "lightmeter.run/1";
 
 /// How a subject is named in reports.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Identity {
     /// The short name.
     pub name: String,

@@ -147,10 +147,11 @@ fn special(deviation: &special::Deviation, subject: &Subject, code: &Code) -> Re
     let Some(results) = results.filter(|results| results.record.as_ref().is_some_and(|record| record.binds)) else {
         return Ok(None);
     };
-    let breaks = |outcome: &special::run::Outcome, bits: u32| {
+    let breaks = |outcome: &special::run::ProbeResult, bits: u32| {
         Probe::by_name(outcome.probe).is_some_and(|probe| !probe.promise.allows(bits))
     };
-    let known = |outcome: &&special::run::Outcome| outcome.recorded.is_some_and(|recorded| breaks(outcome, recorded));
+    let known =
+        |outcome: &&special::run::ProbeResult| outcome.recorded.is_some_and(|recorded| breaks(outcome, recorded));
     let mut known = results.outcomes.iter().filter(known).peekable();
     Ok(Some(known.peek().is_some() && known.all(|outcome| breaks(outcome, outcome.bits))))
 }

@@ -1,7 +1,7 @@
 //! Blending with mistakes: the state that is drawn with is another one, or an operand is.
 
 use super::change::{After, Before};
-use super::row::{Row, put};
+use super::row::{InputRow, put};
 use lightmeter_catalogue::cases::blend::{MOST_LAYERS, Program};
 use lightmeter_catalogue::cases::{Domain, Input, Kind, Spec};
 use lightmeter_reference::blend::{Mode, Operands, Saturate, blend, blend_separate, masked};
@@ -210,7 +210,7 @@ impl Model {
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &Row<'_, R>, out: &mut [R]) -> Option<()> {
+    fn evaluate<R: Real>(&self, x: &InputRow<'_, R>, out: &mut [R]) -> Option<()> {
         let unit = |c: Vec4<R>| if self.clamped { c.map(|x| x.clamp(R::literal(0.0), R::literal(1.0))) } else { c };
         let zero = Vector::splat(R::literal(0.0));
         match self.program {
@@ -239,7 +239,7 @@ impl Model {
         Some(())
     }
 
-    fn layers<R: Real>(&self, modes: &[Mode], x: &Row<'_, R>) -> Option<Vec4<R>> {
+    fn layers<R: Real>(&self, modes: &[Mode], x: &InputRow<'_, R>) -> Option<Vec4<R>> {
         let (dst, count): (Vec4<R>, R) = (x.vector("dst")?, x.scalar("count")?);
         let unit = |c: Vec4<R>| if self.clamped { c.map(|x| x.clamp(R::literal(0.0), R::literal(1.0))) } else { c };
         let mut sources = vec![];
@@ -388,5 +388,5 @@ pub(super) fn evaluate<R: Real>(spec: &Spec, twists: &[Twist], numbers: &[R], ou
     for &twist in twists {
         model.twist(twist);
     }
-    model.evaluate(&Row::new(spec, numbers), out)
+    model.evaluate(&InputRow::new(spec, numbers), out)
 }

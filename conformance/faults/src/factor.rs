@@ -156,19 +156,19 @@ pub(super) fn nearest<'a, 'b>(
 }
 
 /// So many of the failing cases, evenly spread.
-fn rows(member: &Member, failing: &[Answered<'_>], profile: &Profile, count: usize) -> Vec<Row> {
+fn rows(member: &Member, failing: &[Answered<'_>], profile: &Profile, count: usize) -> Vec<FactorRow> {
     let some = failing.iter().step_by((failing.len() / count).max(1)).take(count);
-    some.filter_map(|row| Row::new(member, row, profile)).collect()
+    some.filter_map(|row| FactorRow::new(member, row, profile)).collect()
 }
 
 /// An answer with the size of what its error is measured by.
-struct Row {
+struct FactorRow {
     inputs: Vec<f64>,
     values: Vec<f64>,
     tolerance: Vec<f64>,
 }
 
-impl Row {
+impl FactorRow {
     fn new(member: &Member, row: &Answered<'_>, profile: &Profile) -> Option<Self> {
         let mut legal = vec![Accept::ANY; member.spec.output_len()];
         member.formula.interval(row.inputs, profile, &mut legal);
@@ -194,7 +194,7 @@ impl Row {
 }
 
 /// The residuals of all rows at a factor.
-fn residuals(variation: &Variation<'_>, rows: &[Row], scaled: &Scaled, factor: f64) -> Vec<f64> {
+fn residuals(variation: &Variation<'_>, rows: &[FactorRow], scaled: &Scaled, factor: f64) -> Vec<f64> {
     let mut residuals = vec![];
     rows.iter().for_each(|row| row.residuals(variation, scaled, factor, &mut residuals));
     residuals
@@ -208,7 +208,7 @@ fn cost(residuals: &[f64]) -> f64 {
 /// The best factor of a wide range, and its cost.
 fn roughly(
     variation: &Variation<'_>,
-    rows: &[Row],
+    rows: &[FactorRow],
     scaled: &Scaled,
     octaves: i32,
     steps_an_octave: i32,
@@ -220,7 +220,7 @@ fn roughly(
 }
 
 /// The factor of least residuals: the best of a wide range, refined.
-fn search(variation: &Variation<'_>, rows: &[Row], mut scaled: Scaled) -> Option<Scaled> {
+fn search(variation: &Variation<'_>, rows: &[FactorRow], mut scaled: Scaled) -> Option<Scaled> {
     let all = |scaled: &Scaled, factor: f64| residuals(variation, rows, scaled, factor);
     let (mut least, mut factor) = roughly(variation, rows, &scaled, OCTAVES, STEPS_AN_OCTAVE)?;
     for _ in 0..STEPS {

@@ -1,6 +1,6 @@
 //! Fog with mistakes: distance, factor and mix, each of which can be wrong. Without a mistake it computes what the formula does.
 
-use super::row::{Row, put};
+use super::row::{InputRow, put};
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_reference::departure::smoothstep;
 use lightmeter_reference::fog::{self, Distance};
@@ -121,7 +121,7 @@ impl Model {
         *self != before
     }
 
-    fn factor<R: Real>(&self, x: &Row<'_, R>, d: R) -> Option<R> {
+    fn factor<R: Real>(&self, x: &InputRow<'_, R>, d: R) -> Option<R> {
         let one = R::literal(1.0);
         let raise = |exponent: R| if self.base_two { exponent.exp2() } else { exponent.exp() };
         let f = match self.factor {
@@ -162,7 +162,7 @@ pub(super) fn evaluate<R: Real>(spec: &Spec, twists: &[Twist], numbers: &[R], ou
     for &twist in twists {
         model.twist(twist);
     }
-    let x = Row::new(spec, numbers);
+    let x = InputRow::new(spec, numbers);
     let p: Vec3<R> = x.vector("p")?;
     let zero = R::literal(0.0);
     let d = match model.length {

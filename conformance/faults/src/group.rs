@@ -346,7 +346,7 @@ pub fn group_verdict(member: &Member, rows: &[Answered<'_>], profile: &Profile) 
 mod tests {
     use super::*;
     use crate::catalogue::formulas;
-    use lightmeter_arithmetic::Draw;
+    use lightmeter_arithmetic::RandomLegal;
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_arithmetic::random::seed;
     use lightmeter_catalogue::select::CaseRef;
@@ -393,8 +393,8 @@ mod tests {
         for member in formulas().iter().filter(|member| ["fog", "attenuation"].contains(&member.spec.family())) {
             let rows = rows_of(member, 4096);
             let answer = |row: &Vec<f32>| {
-                let inputs: Vec<Draw> = row.iter().map(|&x| Draw::input(x)).collect();
-                let mut out = vec![Draw::of(0.0); member.spec.output_len()];
+                let inputs: Vec<RandomLegal> = row.iter().map(|&x| RandomLegal::input(x)).collect();
+                let mut out = vec![RandomLegal::of(0.0); member.spec.output_len()];
                 WGSL.scope(|| member.formula.on_draw(&inputs, &mut out));
                 #[expect(clippy::cast_possible_truncation, reason = "a draw is an f32")]
                 out.iter().map(|x| x.value as f32).collect::<Vec<f32>>()

@@ -1,6 +1,6 @@
 //! A row of inputs by name, in any arithmetic.
 
-use lightmeter_arithmetic::{Accept, Draw};
+use lightmeter_arithmetic::{Accept, RandomLegal};
 use lightmeter_catalogue::cases::{AnyFormula, Spec};
 use lightmeter_reference::{Mat3, Mat4, Real, Vector};
 
@@ -28,7 +28,7 @@ impl Arithmetic for Accept {
     }
 }
 
-impl Arithmetic for Draw {
+impl Arithmetic for RandomLegal {
     fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
         formula.on_draw(inputs, out);
     }
@@ -36,12 +36,12 @@ impl Arithmetic for Draw {
 
 /// A formula's inputs by name.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row<'a, R> {
+pub(super) struct InputRow<'a, R> {
     spec: &'a Spec,
     numbers: &'a [R],
 }
 
-impl<'a, R: Real> Row<'a, R> {
+impl<'a, R: Real> InputRow<'a, R> {
     pub(super) const fn new(spec: &'a Spec, numbers: &'a [R]) -> Self {
         Self { spec, numbers }
     }
@@ -91,7 +91,7 @@ mod tests {
     fn inputs_are_found_by_name_and_size() {
         let member = formulas().iter().find(|member| member.spec.id == "fog/linear").expect("fog/linear");
         let numbers: Vec<f64> = (0..11).map(f64::from).collect();
-        let row = Row::new(&member.spec, &numbers);
+        let row = InputRow::new(&member.spec, &numbers);
         assert_eq!((row.scalar("dmin"), row.scalar("p"), row.scalar("density")), (Some(3.0), None, None));
         assert_eq!(row.vector::<3>("shaded"), Some(Vector([8.0, 9.0, 10.0])));
     }

@@ -7,7 +7,7 @@ use super::catalogue::{Fault, concerning};
 use super::diagnose::{Answered, Diagnosis, diagnose};
 use super::group::{Systematic, group_verdict};
 use super::variation::Variation;
-use lightmeter_arithmetic::{Accept, Draw, Profile, random};
+use lightmeter_arithmetic::{Accept, Profile, RandomLegal, random};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::{CaseRef, Member, Shard, catalogue, select};
@@ -285,8 +285,8 @@ impl<'a> Bench<'a> {
     /// One legal evaluation.
     fn draw(&self, inputs: &[f32], out: &mut [f32]) {
         self.options.profile.scope(|| {
-            let inputs: Vec<Draw> = inputs.iter().map(|&x| Draw::input(x)).collect();
-            let mut drawn = vec![Draw::of(0.0); out.len()];
+            let inputs: Vec<RandomLegal> = inputs.iter().map(|&x| RandomLegal::input(x)).collect();
+            let mut drawn = vec![RandomLegal::of(0.0); out.len()];
             self.member.formula.on_draw(&inputs, &mut drawn);
             for (out, drawn) in out.iter_mut().zip(drawn) {
                 *out = drawn.narrow();

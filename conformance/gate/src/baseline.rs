@@ -2,7 +2,7 @@
 
 use super::known::expanded;
 use super::plan::Choice;
-use super::report::{Group, Report};
+use super::report::{GateGroup, GateReport};
 use lightmeter_catalogue::cases::GENERATOR_VERSION;
 use lightmeter_judge::image::file::whole;
 use serde::Deserialize;
@@ -23,7 +23,7 @@ pub struct Baseline {
     choice: Choice,
     generator: u64,
     profile: String,
-    groups: Vec<Group>,
+    groups: Vec<GateGroup>,
 }
 
 /// Why a baseline cannot be compared with, or written.
@@ -84,7 +84,7 @@ impl Baseline {
     ///
     /// # Errors
     /// Where the cases are others.
-    pub fn compare(&self, report: &Report, factor: f64, path: &Path) -> Result<Vec<String>, BaselineError> {
+    pub fn compare(&self, report: &GateReport, factor: f64, path: &Path) -> Result<Vec<String>, BaselineError> {
         self.is_of(&report.choice, Some(&report.profile), path)?;
         let mut worse = vec![];
         for before in &self.groups {
@@ -120,7 +120,7 @@ impl Baseline {
     }
 }
 
-fn compare(before: &Group, now: &Group, factor: f64) -> Vec<String> {
+fn compare(before: &GateGroup, now: &GateGroup, factor: f64) -> Vec<String> {
     let id = &now.id;
     let mut worse = vec![];
     if now.asked < before.asked {
@@ -164,7 +164,7 @@ fn cases_of(count: usize) -> String {
 ///
 /// # Errors
 /// Where it cannot be written, or the run was broken off, unstable or judged nothing.
-pub fn update(report: &Report, path: &Path) -> Result<(), BaselineError> {
+pub fn update(report: &GateReport, path: &Path) -> Result<(), BaselineError> {
     let why = [
         (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
         (report.totals.unstable > 0, "answers changed when they were asked once more"),

@@ -34,7 +34,7 @@ struct File {
 
 /// A known failure, and what became of its cases.
 #[derive(Clone, Debug, Serialize)]
-pub struct Expectation {
+pub struct KnownFailure {
     /// A glob of cases.
     pub id: String,
     /// Why they fail.
@@ -51,7 +51,7 @@ pub struct Expectation {
     filter: Filter,
 }
 
-impl Expectation {
+impl KnownFailure {
     /// Whether it has a case.
     #[must_use]
     pub fn has(&self, id: &str) -> bool {
@@ -114,13 +114,13 @@ impl Expectations {
 
     /// Those of a renderer.
     #[must_use]
-    pub fn of(&self, renderer: &str, version: &str) -> Vec<Expectation> {
+    pub fn of(&self, renderer: &str, version: &str) -> Vec<KnownFailure> {
         let version = lenient(version);
         let concerns = |(written, _, range): &&(Written, Filter, Option<VersionReq>)| {
             let is_version = range.as_ref().is_none_or(|range| version.as_ref().is_some_and(|own| range.matches(own)));
             written.renderer.as_ref().is_none_or(|name| name == renderer) && is_version
         };
-        let of = |(written, filter, _): &(Written, Filter, _)| Expectation {
+        let of = |(written, filter, _): &(Written, Filter, _)| KnownFailure {
             id: written.id.clone(),
             reason: written.reason.clone(),
             failed: 0,

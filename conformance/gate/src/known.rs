@@ -48,15 +48,15 @@ pub enum Turn {
 }
 
 /// The states of all cases.
-pub struct Known {
+pub struct Register {
     /// Of each formula, and then of each scene, which has one case.
-    groups: Vec<Group>,
+    groups: Vec<RegisterGroup>,
     formulas: usize,
     /// Whether this run follows another one.
     pub is_again: bool,
 }
 
-struct Group {
+struct RegisterGroup {
     states: Vec<State>,
     /// What was answered, hashed.
     digests: Vec<u32>,
@@ -64,12 +64,13 @@ struct Group {
     again: Vec<bool>,
 }
 
-impl Known {
+impl Register {
     /// Nothing is known of the cases of a plan.
     #[must_use]
     pub fn new(plan: &Plan) -> Self {
         let counts = plan.formulas.iter().map(super::plan::Formula::count).chain(plan.scenes.iter().map(|_| 1));
-        let group = |count: usize| Group { states: vec![State::Open; count], digests: vec![0; count], again: vec![] };
+        let group =
+            |count: usize| RegisterGroup { states: vec![State::Open; count], digests: vec![0; count], again: vec![] };
         Self { groups: counts.map(group).collect(), formulas: plan.formulas.len(), is_again: false }
     }
 
@@ -227,7 +228,7 @@ mod tests {
     #[test]
     fn an_answer_is_first_the_same_changed_or_given_twice() {
         let plan = plan();
-        let mut known = Known::new(&plan);
+        let mut known = Register::new(&plan);
         let at = |case| Place::Case { formula: 0, case };
         assert_eq!(known.answer(at(0), State::Passed, 7), Turn::First);
         assert_eq!(known.answer(at(0), State::Passed, 7), Turn::Twice);
@@ -246,7 +247,7 @@ mod tests {
     #[test]
     fn cases_in_a_row_are_written_short_and_read_back() {
         let plan = plan();
-        let mut known = Known::new(&plan);
+        let mut known = Register::new(&plan);
         for group in 0..plan.formulas.len() + plan.scenes.len() {
             let count = plan.formulas.get(group).map_or(1, super::super::plan::Formula::count);
             for case in 0..count {

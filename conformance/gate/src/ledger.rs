@@ -1,11 +1,11 @@
 //! What was asked, and what was answered: each answer judged as it comes.
 
 use super::answer::{self, Hello, Line, clipped};
-use super::expectations::{Expectation, Expectations};
-use super::known::{Known, State, Turn};
+use super::expectations::{Expectations, KnownFailure};
+use super::known::{Register, State, Turn};
 use super::plan::{Place, Plan};
-use super::tally::Tally;
-use super::verdict::{self, Failure, Verdicts};
+use super::tally::AnswerTally;
+use super::verdict::{self, GateFailure, Verdicts};
 use super::{picture, process};
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::Number;
@@ -52,19 +52,19 @@ impl Problems {
 pub struct Ledger<'a> {
     plan: &'a Plan,
     profile: Profile,
-    known: Known,
+    known: Register,
     /// Of each formula, and then of each scene.
-    pub tallies: Vec<Tally>,
+    pub tallies: Vec<AnswerTally>,
     /// Answers that are none.
     pub problems: Problems,
     /// Cases whose second answer was another, by id: the first of them.
     pub unstable: Vec<String>,
     /// How many those are.
     pub unstable_count: u64,
-    /// Known failures of any renderer.
+    /// Register failures of any renderer.
     pub expected: Expectations,
     /// Those of this one.
-    pub expectations: Vec<Expectation>,
+    pub expectations: Vec<KnownFailure>,
     /// Whether the accuracy rules stay, whatever the renderer asks for.
     pub is_held_to: bool,
     /// What lines are of, where there is more than one file: it stands before their numbers.
@@ -90,11 +90,11 @@ impl<'a> Ledger<'a> {
         Self {
             plan,
             profile: *profile,
-            known: Known::new(plan),
+            known: Register::new(plan),
             tallies: (0..plan.formulas.len())
                 .map(outputs)
                 .chain(plan.scenes.iter().map(|_| 0))
-                .map(Tally::new)
+                .map(AnswerTally::new)
                 .collect(),
             problems: Problems::default(),
             unstable: vec![],
@@ -121,7 +121,7 @@ impl<'a> Ledger<'a> {
 
     /// What is known of each case.
     #[must_use]
-    pub const fn known(&self) -> &Known {
+    pub const fn known(&self) -> &Register {
         &self.known
     }
 
@@ -132,7 +132,7 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    fn tally(&mut self, place: Place) -> &mut Tally {
+    fn tally(&mut self, place: Place) -> &mut AnswerTally {
         let group = self.known.group(place);
         &mut self.tallies[group]
     }
@@ -302,7 +302,7 @@ impl<'a> Ledger<'a> {
                 tally.values(place, is_random, verdicts);
                 tally.expected += u64::from(is_expected);
                 if has_failed {
-                    tally.failure(|| Failure::of_values(plan, formula, case, &values, &profile));
+                    tally.failure(|| GateFailure::of_values(plan, formula, case, &values, &profile));
                 }
                 tally.keep(case, &values, &inputs, has_failed);
             }
@@ -358,7 +358,7 @@ impl<'a> Ledger<'a> {
         tally.failed += 1;
         tally.unjudged += 1;
         tally.expected += u64::from(is_expected);
-        tally.failure(|| Failure::of_problem(id, clipped(message)));
+        tally.failure(|| GateFailure::of_problem(id, clipped(message)));
     }
 
     fn image(&mut self, scene: usize, file: &str, folder: &Path) {
@@ -397,7 +397,7 @@ impl<'a> Ledger<'a> {
             return;
         }
         tally.failed += 1;
-        tally.failure(|| Failure {
+        tally.failure(|| GateFailure {
             id: format!("{id}/{}", found.worst),
             inputs: vec![],
             reference: found.reference.map(Number).to_vec(),

@@ -1,7 +1,7 @@
 //! A gate's result for people, for CI servers and for GitHub.
 
-use super::report::{Group, Report, cases};
-use super::verdict::Failure;
+use super::report::{GateGroup, GateReport, cases};
+use super::verdict::GateFailure;
 use lightmeter_document::Number;
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::fmt::{Result, Write};
@@ -15,11 +15,11 @@ const MOST_TOLD: usize = 24;
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn text(report: &Report, out: &mut impl Write) -> Result {
+pub fn text(report: &GateReport, out: &mut impl Write) -> Result {
     let renderer = &report.renderer;
     writeln!(out, "{} {} · profile {} · {:.1} s", renderer.name, renderer.version, report.profile, report.seconds)?;
     families(report, out)?;
-    let failed: Vec<&Group> = report.groups.iter().filter(|group| group.is_failed()).collect();
+    let failed: Vec<&GateGroup> = report.groups.iter().filter(|group| group.is_failed()).collect();
     for group in failed.iter().take(MOST_TOLD) {
         told(group, report, out)?;
     }
@@ -67,8 +67,8 @@ pub fn text(report: &Report, out: &mut impl Write) -> Result {
 }
 
 /// A line a family.
-fn families(report: &Report, out: &mut impl Write) -> Result {
-    let family = |group: &Group| group.id.split('/').next().unwrap_or_default().to_owned();
+fn families(report: &GateReport, out: &mut impl Write) -> Result {
+    let family = |group: &GateGroup| group.id.split('/').next().unwrap_or_default().to_owned();
     let mut names: Vec<String> = vec![];
     for group in report.groups.iter().filter(|group| group.asked > 0) {
         if !names.contains(&family(group)) {
@@ -76,8 +76,9 @@ fn families(report: &Report, out: &mut impl Write) -> Result {
         }
     }
     for name in names {
-        let of: Vec<&Group> = report.groups.iter().filter(|group| group.asked > 0 && family(group) == name).collect();
-        let sum = |count: fn(&Group) -> u64| of.iter().map(|group| count(group)).sum::<u64>();
+        let of: Vec<&GateGroup> =
+            report.groups.iter().filter(|group| group.asked > 0 && family(group) == name).collect();
+        let sum = |count: fn(&GateGroup) -> u64| of.iter().map(|group| count(group)).sum::<u64>();
         let (asked, failed, missing) =
             (sum(|group| group.asked), sum(|group| group.failed), sum(|group| group.missing));
         let failing = of.iter().filter(|group| group.is_failed()).count();
@@ -106,7 +107,7 @@ fn short(x: f64) -> String {
 }
 
 /// What fails in a group, what explains it, and the first failure.
-fn told(group: &Group, report: &Report, out: &mut impl Write) -> Result {
+fn told(group: &GateGroup, report: &GateReport, out: &mut impl Write) -> Result {
     writeln!(out, "\n✗ {}: {} of {} fail", group.id, group.failed, cases(group.asked))?;
     if group.missing > 0 {
         let was = if group.missing == 1 { "was" } else { "were" };
@@ -116,10 +117,10 @@ fn told(group: &Group, report: &Report, out: &mut impl Write) -> Result {
         writeln!(out, "  {what}")?;
     }
     let below = format!("{}/", group.id);
-    let is_of = |failure: &&Failure| {
+    let is_of = |failure: &&GateFailure| {
         failure.id == group.id || failure.id.starts_with(&below) || group.smallest.as_ref() == Some(&failure.id)
     };
-    let of: Vec<&Failure> = report.failures.iter().filter(is_of).collect();
+    let of: Vec<&GateFailure> = report.failures.iter().filter(is_of).collect();
     let smallest = of.iter().find(|failure| group.smallest.as_ref() == Some(&failure.id));
     if let Some(smallest) = smallest {
         writeln!(out, "  the smallest failing case:")?;
@@ -131,14 +132,14 @@ fn told(group: &Group, report: &Report, out: &mut impl Write) -> Result {
 }
 
 /// The cases of a group that were never answered: the first of them, by the end of their ids.
-fn missing(group: &Group) -> String {
+fn missing(group: &GateGroup) -> String {
     let all = group.not_passed.get("missing").map_or(&[][..], Vec::as_slice);
     let named = all.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
     if all.len() > MOST_NAMED { named + ", …" } else { named }
 }
 
 /// A failure.
-fn failure(failure: &Failure, out: &mut impl Write) -> Result {
+fn failure(failure: &GateFailure, out: &mut impl Write) -> Result {
     let list = |numbers: &[Number]| numbers.iter().map(Number::to_string).collect::<Vec<_>>().join(", ");
     writeln!(out, "  {}", failure.id)?;
     if let Some(problem) = &failure.problem {
@@ -166,7 +167,7 @@ fn listed(what: &str, all: &[String], out: &mut impl Write) -> Result {
 }
 
 /// What is wrong with a group, on one line.
-fn sentence(group: &Group) -> String {
+fn sentence(group: &GateGroup) -> String {
     let mut said = format!("{} of {} fail", group.failed, cases(group.asked));
     if group.missing > 0 {
         said += &format!(", {} never answered: {}", group.missing, missing(group));
@@ -178,7 +179,7 @@ fn sentence(group: &Group) -> String {
 }
 
 /// The smallest failing case of a group, on one line.
-fn smallest(group: &Group, report: &Report) -> Option<String> {
+fn smallest(group: &GateGroup, report: &GateReport) -> Option<String> {
     let id = group.smallest.as_ref()?;
     let failure = report.failures.iter().find(|failure| failure.id == *id)?;
     let list = |numbers: &[Number]| numbers.iter().map(Number::to_string).collect::<Vec<_>>().join(", ");
@@ -188,7 +189,7 @@ fn smallest(group: &Group, report: &Report) -> Option<String> {
 }
 
 /// What is wrong with all of it, each on a line with its title.
-fn whole(report: &Report) -> Vec<(String, String)> {
+fn whole(report: &GateReport) -> Vec<(String, String)> {
     let mut said = vec![];
     said.extend(report.incidents.iter().map(|what| ("process".to_owned(), what.clone())));
     said.extend(report.problems.first.iter().map(|what| ("answers".to_owned(), what.clone())));
@@ -204,7 +205,7 @@ fn whole(report: &Report) -> Vec<(String, String)> {
 ///
 /// # Errors
 /// Where it cannot be written as XML.
-pub fn junit(report: &Report) -> std::result::Result<String, SerializeError> {
+pub fn junit(report: &GateReport) -> std::result::Result<String, SerializeError> {
     let mut document = Document::new("lightmeter gate");
     let mut suite = TestSuite::new(format!("{} {}", report.renderer.name, report.renderer.version));
     for group in &report.groups {
@@ -235,7 +236,7 @@ pub fn junit(report: &Report) -> std::result::Result<String, SerializeError> {
 
 /// Lines that GitHub Actions shows as annotations.
 #[must_use]
-pub fn github(report: &Report) -> String {
+pub fn github(report: &GateReport) -> String {
     let data = |text: &str| text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
     let property = |text: &str| data(text).replace(':', "%3A").replace(',', "%2C");
     let mut out = String::new();

@@ -144,7 +144,7 @@ pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, PackError> {
     out.flush().map_err(failed(&path))?;
     files.push(out.listed(CASES));
     for scene in 0..plan.scenes.len() {
-        for (name, bytes) in Drawn::new(plan, scene)?.files() {
+        for (name, bytes) in PackedDraw::new(plan, scene)?.files() {
             let path = folder.join(&name);
             let parent = path.parent().unwrap_or(folder);
             std::fs::create_dir_all(parent).map_err(failed(parent))?;
@@ -186,7 +186,7 @@ fn clear(folder: &Path) -> Result<(), PackError> {
 impl Manifest {
     /// That of a plan, as yet without files.
     fn of(plan: &Plan) -> Result<Self, PackError> {
-        let scenes = (0..plan.scenes.len()).map(|scene| Ok(Drawn::new(plan, scene)?.listed()));
+        let scenes = (0..plan.scenes.len()).map(|scene| Ok(PackedDraw::new(plan, scene)?.listed()));
         Ok(Self {
             schema: SCHEMA.into(),
             generator: GENERATOR_VERSION,
@@ -200,13 +200,13 @@ impl Manifest {
 }
 
 /// A scene of a pack.
-struct Drawn {
+struct PackedDraw {
     id: String,
     title: String,
     frame: Frame,
 }
 
-impl Drawn {
+impl PackedDraw {
     fn new(plan: &Plan, scene: usize) -> Result<Self, PackError> {
         let (title, frame) = plan.frame(scene).map_err(|error| PackError::Plan(error.to_string()))?;
         Ok(Self { id: plan.id(super::plan::Place::Scene(scene)), title, frame })
@@ -370,7 +370,7 @@ impl Manifest {
         }
         let mut files: Vec<(String, Option<String>)> = vec![(CASES.into(), None)];
         for scene in 0..plan.scenes.len() {
-            files.extend(Drawn::new(plan, scene)?.files().map(|(name, bytes)| (name, Some(digits(&bytes)))));
+            files.extend(PackedDraw::new(plan, scene)?.files().map(|(name, bytes)| (name, Some(digits(&bytes)))));
         }
         let is_same = |(listed, (name, sum)): (&Listed, &(String, Option<String>))| {
             listed.name == *name && sum.as_ref().is_none_or(|sum| *sum == listed.crc32)

@@ -70,8 +70,8 @@ pub fn ask(
 #[cfg(test)]
 mod tests {
     use super::super::plan::Choice;
-    use super::super::process::Outcome;
-    use super::super::report::Report;
+    use super::super::process::Ending;
+    use super::super::report::GateReport;
     use super::*;
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::{Member, catalogue};
@@ -114,7 +114,11 @@ mod tests {
         }
     }
 
-    fn gate(filter: &[&str], fault: Option<(&'static str, &'static str)>, scene_fault: Option<&'static str>) -> Report {
+    fn gate(
+        filter: &[&str],
+        fault: Option<(&'static str, &'static str)>,
+        scene_fault: Option<&'static str>,
+    ) -> GateReport {
         let folder = std::env::temp_dir().join(format!("lightmeter-renderer-{}-{}", std::process::id(), filter.len()));
         std::fs::create_dir_all(&folder).expect("a folder can be made");
         let filter = filter.iter().map(|&glob| glob.to_owned()).collect();
@@ -123,7 +127,7 @@ mod tests {
         let mut renderer = Wrong { catalogue: catalogue(), fault, scene_fault };
         ask(&mut ledger, &plan, &mut renderer, &folder).unwrap_or_else(|error| panic!("{error}"));
         let _ = std::fs::remove_dir_all(&folder);
-        Report::new(&mut ledger, Outcome::default(), String::new(), 0.0)
+        GateReport::new(&mut ledger, Ending::default(), String::new(), 0.0)
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! What became of a gate: `lightmeter.gate/1`.
 
 use super::answer::clipped;
-use super::expectations::Expectation;
+use super::expectations::KnownFailure;
 use super::ledger::{Ledger, Problems};
 use super::plan::{Choice, Place};
-use super::process::Outcome;
-use super::tally::{Sample, Tally};
-use super::verdict::Failure;
+use super::process::Ending;
+use super::tally::{AnswerTally, Sample};
+use super::verdict::GateFailure;
 use lightmeter_document::Number;
 use lightmeter_faults::{Answered, diagnose, group_verdict};
 use rayon::prelude::*;
@@ -22,7 +22,7 @@ const MOST_INDETERMINATE: f64 = 0.01;
 
 /// A gate's result.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct GateReport {
     /// [`SCHEMA`].
     pub schema: &'static str,
     /// The command.
@@ -40,7 +40,7 @@ pub struct Report {
     /// How long it took.
     pub seconds: f64,
     /// Counts over all groups.
-    pub totals: Totals,
+    pub totals: GateTotals,
     /// Lines that are no answers.
     pub problems: Problems,
     /// What went wrong with the process.
@@ -50,13 +50,13 @@ pub struct Report {
     /// How often it was started.
     pub starts: u64,
     /// Formulas and scenes.
-    pub groups: Vec<Group>,
+    pub groups: Vec<GateGroup>,
     /// The first failures of each.
-    pub failures: Vec<Failure>,
+    pub failures: Vec<GateFailure>,
     /// Cases whose answer changed: the first 1,000 of them.
     pub unstable: Vec<String>,
     /// Known failures, and what became of them.
-    pub expectations: Vec<Expectation>,
+    pub expectations: Vec<KnownFailure>,
     /// What is worse than in the baseline.
     pub regressions: Vec<String>,
 }
@@ -72,7 +72,7 @@ pub struct Named {
 
 /// Counts of cases, but for the verdicts, which are of scalars.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct Totals {
+pub struct GateTotals {
     /// Asked for.
     pub asked: u64,
     /// Answered, and every verdict passed or permits anything.
@@ -99,7 +99,7 @@ pub struct Totals {
 
 /// A formula or a scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Group {
+pub struct GateGroup {
     /// Its id.
     pub id: String,
     /// Cases that were asked.
@@ -139,7 +139,7 @@ pub struct Group {
     pub smallest: Option<String>,
 }
 
-impl Group {
+impl GateGroup {
     /// Whether something fails that is not expected to.
     #[must_use]
     pub const fn is_failed(&self) -> bool {
@@ -147,15 +147,15 @@ impl Group {
     }
 }
 
-impl Report {
+impl GateReport {
     /// What a ledger holds.
     #[must_use]
-    pub fn new(ledger: &mut Ledger<'_>, outcome: Outcome, command: String, seconds: f64) -> Self {
+    pub fn new(ledger: &mut Ledger<'_>, outcome: Ending, command: String, seconds: f64) -> Self {
         ledger.close();
         let plan = ledger.plan();
-        let mut totals = Totals { unstable: ledger.unstable_count, ..Totals::default() };
+        let mut totals = GateTotals { unstable: ledger.unstable_count, ..GateTotals::default() };
         let (mut groups, mut failures) = (vec![], vec![]);
-        let told: Vec<(Group, Option<Failure>)> =
+        let told: Vec<(GateGroup, Option<GateFailure>)> =
             ledger.tallies.par_iter().enumerate().map(|(k, tally)| group(ledger, k, tally)).collect();
         for (k, (tally, (group, smallest))) in ledger.tallies.iter().zip(told).enumerate() {
             totals.asked += tally.asked;
@@ -211,7 +211,7 @@ impl Report {
         let totals = &self.totals;
         totals.unstable + totals.unexpected_passes > 0
             || !self.regressions.is_empty()
-            || self.groups.iter().any(Group::is_failed)
+            || self.groups.iter().any(GateGroup::is_failed)
     }
 
     /// Whether anything was judged at all.
@@ -226,11 +226,11 @@ impl Report {
 struct Told {
     diagnosis: Option<String>,
     systematic: Option<String>,
-    smallest: Option<Failure>,
+    smallest: Option<GateFailure>,
 }
 
 impl Told {
-    fn new(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> Self {
+    fn new(ledger: &Ledger<'_>, k: usize, tally: &AnswerTally) -> Self {
         let plan = ledger.plan();
         if k >= plan.formulas.len() {
             return Self {
@@ -260,7 +260,7 @@ impl Told {
         if tally.unjudged > 0 {
             diagnosis += &format!("; besides, {} were not answered by values", cases(tally.unjudged));
         }
-        let smallest = Failure::of_values(plan, k, smallest.case, &smallest.values, ledger.profile());
+        let smallest = GateFailure::of_values(plan, k, smallest.case, &smallest.values, ledger.profile());
         Self { diagnosis: Some(diagnosis), smallest: Some(smallest), ..Self::default() }
     }
 }
@@ -271,7 +271,7 @@ pub(super) fn cases(count: u64) -> String {
     if count == 1 { "1 case".into() } else { format!("{count} cases") }
 }
 
-fn group(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> (Group, Option<Failure>) {
+fn group(ledger: &Ledger<'_>, k: usize, tally: &AnswerTally) -> (GateGroup, Option<GateFailure>) {
     let plan = ledger.plan();
     let told = Told::new(ledger, k, tally);
     let id = if k < plan.formulas.len() {
@@ -290,7 +290,7 @@ fn group(ledger: &Ledger<'_>, k: usize, tally: &Tally) -> (Group, Option<Failure
     });
     let reason = tally.undeclared.clone().or_else(|| (!tally.reasons.is_empty()).then(|| tally.reasons.join("; ")));
     let not_passed = if tally.asked > 0 { ledger.known().not_passed(plan, k) } else { BTreeMap::new() };
-    let group = Group {
+    let group = GateGroup {
         id,
         asked: tally.asked,
         failed: tally.failed,

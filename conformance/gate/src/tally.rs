@@ -1,7 +1,7 @@
 //! What became of the cases of a formula, or of a scene.
 
 use super::plan::Place;
-use super::verdict::{Failure, Verdicts};
+use super::verdict::{GateFailure, Verdicts};
 use lightmeter_faults::LEAST_VALUES;
 use lightmeter_judge::{is_worse, simplicity, worse};
 
@@ -16,7 +16,7 @@ const KEPT_REASONS: usize = 16;
 
 /// Counts of cases, but for the verdicts, which are of scalars.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub struct AnswerTally {
     /// Cases that were asked for.
     pub asked: u64,
     /// Cases that were answered with values or an image.
@@ -40,13 +40,13 @@ pub struct Tally {
     /// The place of the case that it is of.
     pub worst: Option<Place>,
     /// The first failures.
-    pub failures: Vec<Failure>,
+    pub failures: Vec<GateFailure>,
     /// Why cases were skipped, each reason once.
     pub reasons: Vec<String>,
     /// Rows that fail and rows that do not, for the diagnosis.
     pub rows: [Sample; 2],
     /// The failing row with the simplest inputs, and how simple they are.
-    pub smallest: Option<(u32, Row)>,
+    pub smallest: Option<(u32, AnswerRow)>,
     /// Cases that were asked for and never answered.
     pub missing: u64,
     /// Failed cases whose answer could not be judged.
@@ -61,7 +61,7 @@ pub struct Tally {
     pub undeclared: Option<String>,
 }
 
-impl Tally {
+impl AnswerTally {
     /// Nothing is answered, of so many outputs.
     #[must_use]
     pub fn new(outputs: usize) -> Self {
@@ -73,7 +73,7 @@ impl Tally {
 
 /// A case and the values that were answered.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct AnswerRow {
     /// The case's place.
     pub case: usize,
     /// What was answered.
@@ -126,7 +126,7 @@ impl Sample {
     }
 }
 
-impl Tally {
+impl AnswerTally {
     /// Counts an answer with values.
     pub(super) fn values(&mut self, place: Place, is_random: bool, verdicts: Verdicts) {
         self.answered += 1;
@@ -152,14 +152,14 @@ impl Tally {
         if has_failed {
             let simple = simplicity(inputs);
             if self.smallest.as_ref().is_none_or(|(least, _)| simple < *least) {
-                self.smallest = Some((simple, Row { case, values: values.to_vec() }));
+                self.smallest = Some((simple, AnswerRow { case, values: values.to_vec() }));
             }
         }
         self.rows[usize::from(!has_failed)].push(case, values);
     }
 
     /// Keeps a failure, where there is room.
-    pub(super) fn failure(&mut self, failure: impl FnOnce() -> Failure) {
+    pub(super) fn failure(&mut self, failure: impl FnOnce() -> GateFailure) {
         if self.failures.len() < KEPT {
             self.failures.push(failure());
         }

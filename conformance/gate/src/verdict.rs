@@ -25,7 +25,7 @@ pub struct Verdicts {
 
 /// A case that failed.
 #[derive(Clone, Debug, Serialize)]
-pub struct Failure {
+pub struct GateFailure {
     /// The case.
     pub id: String,
     /// Its inputs, row by row of the formula's description.
@@ -43,13 +43,13 @@ pub struct Failure {
 }
 
 /// The reference and what is legal, of a case.
-struct Expected {
+struct ExpectedCase {
     inputs: Vec<f32>,
     reference: Vec<f64>,
     legal: Vec<Accept>,
 }
 
-impl Expected {
+impl ExpectedCase {
     fn new(plan: &Plan, formula: usize, case: usize, profile: &Profile) -> Self {
         let member = plan.member(formula);
         let outputs = member.spec.output_len();
@@ -63,7 +63,8 @@ impl Expected {
     fn judge(&self, values: &[f32]) -> Verdicts {
         let mut all = Verdicts::default();
         for (k, value) in values.iter().enumerate() {
-            let Verdict { outcome, error_ulp, margin } = judge(value.to_bits(), self.reference[k], &self.legal[k]);
+            let Verdict { outcome, error: error_ulp, margin } =
+                judge(value.to_bits(), self.reference[k], &self.legal[k]);
             all.all += 1;
             match outcome {
                 Outcome::Indeterminate => all.indeterminate += 1,
@@ -85,15 +86,15 @@ impl Expected {
 /// Judges the values that were answered to a case, as many as it has outputs; and its inputs.
 #[must_use]
 pub fn values(plan: &Plan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> (Verdicts, Vec<f32>) {
-    let expected = Expected::new(plan, formula, case, profile);
+    let expected = ExpectedCase::new(plan, formula, case, profile);
     (expected.judge(values), expected.inputs)
 }
 
-impl Failure {
+impl GateFailure {
     /// A case whose values are wrong.
     #[must_use]
     pub fn of_values(plan: &Plan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> Self {
-        let expected = Expected::new(plan, formula, case, profile);
+        let expected = ExpectedCase::new(plan, formula, case, profile);
         let error = expected.judge(values).error;
         let narrow = |numbers: &[f32]| numbers.iter().map(|&x| Number(x.into())).collect();
         Self {

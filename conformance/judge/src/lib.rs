@@ -23,13 +23,25 @@ pub enum Outcome {
     Indeterminate,
 }
 
+impl Outcome {
+    /// The name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+            Self::Indeterminate => "indeterminate",
+        }
+    }
+}
+
 /// A verdict.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
     /// Inside or outside.
     pub outcome: Outcome,
-    /// The error against the reference in ULP of the output's format.
-    pub error_ulp: f64,
+    /// The error against the reference in ULP of the output's format, or in its steps where that is of 8 bits.
+    pub error: f64,
     /// The distance from the reference over the distance to the interval's end on the value's side: above 1 outside.
     pub margin: f64,
 }
@@ -38,17 +50,17 @@ pub struct Verdict {
 #[must_use]
 pub fn judge(bits: u32, reference: f64, interval: &Accept) -> Verdict {
     let value = f32::from_bits(bits);
-    let error_ulp = error_ulp::<F32>(value, reference);
+    let error = error_ulp::<F32>(value, reference);
     if bits == SENTINEL {
-        return Verdict { outcome: Outcome::Fail, error_ulp: f64::INFINITY, margin: f64::INFINITY };
+        return Verdict { outcome: Outcome::Fail, error: f64::INFINITY, margin: f64::INFINITY };
     }
     if interval.is_any() {
-        return Verdict { outcome: Outcome::Indeterminate, error_ulp, margin: 0.0 };
+        return Verdict { outcome: Outcome::Indeterminate, error, margin: 0.0 };
     }
     let value = f64::from(value);
     // Beside a reference that is no number nothing passes, whatever is legal.
     let outcome = if interval.contains(value) && !reference.is_nan() { Outcome::Pass } else { Outcome::Fail };
-    Verdict { outcome, error_ulp, margin: margin(value, reference, interval.low(), interval.high()) }
+    Verdict { outcome, error, margin: margin(value, reference, interval.low(), interval.high()) }
 }
 
 /// The distance from the reference over the distance to the end of the interval on the value's side. It is never NaN: beside
@@ -129,7 +141,7 @@ mod tests {
             for interval in [Accept::from_bounds(0.5, 2.0), Accept::from_bounds(0.0, 0.0)] {
                 let verdict = judge(bits, 1.0, &interval);
                 assert_eq!(verdict.outcome, Outcome::Fail, "{bits:08x}");
-                assert!(verdict.margin == f64::INFINITY && verdict.error_ulp == f64::INFINITY, "{bits:08x}");
+                assert!(verdict.margin == f64::INFINITY && verdict.error == f64::INFINITY, "{bits:08x}");
             }
             assert_eq!(judge(bits, 1.0, &Accept::ANY).outcome, Outcome::Indeterminate, "{bits:08x}");
             assert_eq!(judge(bits, f64::NAN, &Accept::from_bounds(0.5, 2.0)).outcome, Outcome::Fail, "{bits:08x}");
@@ -140,7 +152,7 @@ mod tests {
     fn a_reference_that_is_no_number_passes_nothing() {
         let verdict = judge(1.0_f32.to_bits(), f64::NAN, &Accept::from_bounds(0.5, 2.0));
         assert_eq!(verdict.outcome, Outcome::Fail);
-        assert!(verdict.margin == f64::INFINITY && verdict.error_ulp == f64::INFINITY);
+        assert!(verdict.margin == f64::INFINITY && verdict.error == f64::INFINITY);
     }
 
     #[test]

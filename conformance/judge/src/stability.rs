@@ -57,7 +57,7 @@ pub fn condition(formula: &dyn AnyFormula, inputs: &[f32], size: Size) -> f64 {
 /// What a form's legal values say of it at a case, apart from any renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Standing {
+pub enum FormStanding {
     /// The result moves by no more than a few roundings, and so do the legal values.
     Stable,
     /// The inputs' own roundings move the result by more than [`ILL_CONDITIONED`] of its roundings: with inputs that were
@@ -87,7 +87,7 @@ pub struct Conditioning {
     /// How many roundings the legal values reach from the reference; infinite where anything is legal.
     pub reach: Number,
     /// What follows.
-    pub standing: Standing,
+    pub standing: FormStanding,
 }
 
 impl Conditioning {
@@ -112,15 +112,15 @@ impl Conditioning {
             roundings(&there, &exact, size) > UNSTABLE * (1.0 + condition)
         });
         let standing = if !is_number || !condition.is_finite() || jumps {
-            Standing::Singular
+            FormStanding::Singular
         } else if reach.is_nan() || reach.is_infinite() {
-            Standing::NothingPromised
+            FormStanding::NothingPromised
         } else if reach > UNSTABLE * (1.0 + condition) {
-            Standing::Unstable
+            FormStanding::Unstable
         } else if condition > ILL_CONDITIONED {
-            Standing::IllConditioned
+            FormStanding::IllConditioned
         } else {
-            Standing::Stable
+            FormStanding::Stable
         };
         Self { condition: Number(condition), reach: Number(reach), standing }
     }
@@ -141,19 +141,21 @@ impl Conditioning {
         let times = rounded(Number(self.reach.0 / (1.0 + self.condition.0)));
         let moves = format!("a rounding of each input moves the result by {condition} of its own");
         match self.standing {
-            Standing::Stable => format!("{moves}; legal values reach {reach}: stable"),
-            Standing::IllConditioned => {
+            FormStanding::Stable => format!("{moves}; legal values reach {reach}: stable"),
+            FormStanding::IllConditioned => {
                 format!(
                     "{moves}; legal values reach {reach}: ill-conditioned: with inputs that were rounded no method can do better"
                 )
             }
-            Standing::Unstable => {
+            FormStanding::Unstable => {
                 format!(
                     "{moves}; legal values reach {reach}, {times} times what that explains: unstable, the fault of the form"
                 )
             }
-            Standing::NothingPromised => format!("{moves}; yet anything is legal: the fault of the form"),
-            Standing::Singular => "there is no value here, or the least change of an input makes another of it".into(),
+            FormStanding::NothingPromised => format!("{moves}; yet anything is legal: the fault of the form"),
+            FormStanding::Singular => {
+                "there is no value here, or the least change of an input makes another of it".into()
+            }
         }
     }
 }

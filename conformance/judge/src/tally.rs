@@ -166,7 +166,7 @@ fn judge_case(chunk: &Chunk<'_>, words: &[u32], case: usize, stage: Stage, by: &
                     let is_simplest = tally.simplest.as_ref().is_none_or(|(least, _)| simple < *least);
                     if is_simplest || tally.failures.len() < KEPT_FAILURES {
                         let id = member.case_id(chunk.cases[case]);
-                        let seen = Seen { bits, reference, interval: legal[output], error_ulp: verdict.error_ulp };
+                        let seen = Seen { bits, reference, interval: legal[output], error_ulp: verdict.error };
                         let failure = failure(member, id, inputs, output, stage, by, &seen);
                         if tally.failures.len() < KEPT_FAILURES {
                             tally.failures.push(failure.clone());
@@ -176,7 +176,7 @@ fn judge_case(chunk: &Chunk<'_>, words: &[u32], case: usize, stage: Stage, by: &
                 }
             }
         }
-        tally.error_ulp_max = worse(tally.error_ulp_max, verdict.error_ulp);
+        tally.error_ulp_max = worse(tally.error_ulp_max, verdict.error);
         if tally.worst.as_ref().is_none_or(|(most, _)| is_worse(verdict.margin, *most)) {
             tally.worst = Some((verdict.margin, member.case_id(chunk.cases[case])));
         }

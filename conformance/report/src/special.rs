@@ -1,7 +1,7 @@
 //! The probes of NaN, infinity, subnormals and signed zero, for people to read.
 
 use lightmeter_document::run::Identity;
-use lightmeter_engine::special::run::{Outcome, Report, Verdict, failure};
+use lightmeter_engine::special::run::{ProbeResult, ProbeVerdict, SpecialReport, failure};
 use lightmeter_engine::special::{Class, DEVIATIONS, Deviation, PROBES, Probe, Source};
 use std::fmt::{Result, Write};
 
@@ -9,7 +9,7 @@ use std::fmt::{Result, Write};
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn write(report: &Report, out: &mut impl Write) -> Result {
+pub fn write(report: &SpecialReport, out: &mut impl Write) -> Result {
     for adapter in &report.adapters {
         writeln!(out, "{:<14} {} · {} · {}", adapter.name, adapter.device, adapter.backend, adapter.driver)?;
         match report.records.iter().find(|record| record.adapter == adapter.name) {
@@ -49,7 +49,7 @@ pub fn write(report: &Report, out: &mut impl Write) -> Result {
     verdict(report, out)
 }
 
-fn table(report: &Report, class: Class, out: &mut impl Write) -> Result {
+fn table(report: &SpecialReport, class: Class, out: &mut impl Write) -> Result {
     let mut rows: Vec<Vec<String>> = vec![vec![class.title().into(), "computed".into(), "promised".into()]];
     rows[0].extend(report.adapters.iter().map(|adapter| adapter.name.clone()));
     for probe in PROBES.iter().filter(|probe| probe.class == class) {
@@ -67,10 +67,10 @@ fn table(report: &Report, class: Class, out: &mut impl Write) -> Result {
 }
 
 /// What an adapter gives, once where all stages agree.
-fn cell(report: &Report, probe: &Probe, adapter: &Identity) -> String {
-    let marked = |outcome: &Outcome| match outcome.verdict {
-        Verdict::Broken => format!("✗ {}", outcome.value),
-        Verdict::Deviates => format!("! {}", outcome.value),
+fn cell(report: &SpecialReport, probe: &Probe, adapter: &Identity) -> String {
+    let marked = |outcome: &ProbeResult| match outcome.verdict {
+        ProbeVerdict::Broken => format!("✗ {}", outcome.value),
+        ProbeVerdict::Deviates => format!("! {}", outcome.value),
         _ if outcome.recorded.is_some_and(|recorded| recorded != outcome.bits) => format!("≠ {}", outcome.value),
         _ => outcome.value.clone(),
     };
@@ -79,9 +79,9 @@ fn cell(report: &Report, probe: &Probe, adapter: &Identity) -> String {
     if words.is_empty() { "—".into() } else { words.join(" / ") }
 }
 
-fn verdict(report: &Report, out: &mut impl Write) -> Result {
+fn verdict(report: &SpecialReport, out: &mut impl Write) -> Result {
     let count = |verdict| report.outcomes.iter().filter(|outcome| outcome.verdict == verdict).count();
-    let differ = |o: &&Outcome| o.recorded.is_some_and(|recorded| recorded != o.bits);
+    let differ = |o: &&ProbeResult| o.recorded.is_some_and(|recorded| recorded != o.bits);
     writeln!(
         out,
         "{} {} probes, {} results: {} as promised, {} promises broken, {} deviate, {} indeterminate, {} changed; \
@@ -89,11 +89,11 @@ fn verdict(report: &Report, out: &mut impl Write) -> Result {
         if report.is_success() { "✓" } else { "✗" },
         PROBES.len(),
         report.outcomes.len(),
-        count(Verdict::Kept),
-        count(Verdict::Broken),
-        count(Verdict::Deviates),
-        count(Verdict::Indeterminate),
-        count(Verdict::Changed),
+        count(ProbeVerdict::Kept),
+        count(ProbeVerdict::Broken),
+        count(ProbeVerdict::Deviates),
+        count(ProbeVerdict::Indeterminate),
+        count(ProbeVerdict::Changed),
         report.outcomes.iter().filter(differ).count()
     )
 }

@@ -27,7 +27,7 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
     writeln!(out)?;
     let rows = match detail {
         Detail::Families => families(&report.groups),
-        Detail::Groups => report.groups.iter().map(Row::of).collect(),
+        Detail::Groups => report.groups.iter().map(TableRow::of).collect(),
     };
     table(&rows, out)?;
     failures(report, out)?;
@@ -293,7 +293,7 @@ pub fn totals(t: &Totals, is_success: bool, seconds: f64, out: &mut impl Write) 
 }
 
 /// A row of the table.
-struct Row {
+struct TableRow {
     id: String,
     adapter: String,
     stage: Word,
@@ -305,7 +305,7 @@ struct Row {
     seconds: f64,
 }
 
-impl Row {
+impl TableRow {
     fn of(group: &Group) -> Self {
         Self {
             id: group.id.clone(),
@@ -333,10 +333,10 @@ impl Row {
     }
 }
 
-fn families(groups: &[Group]) -> Vec<Row> {
-    let mut rows: Vec<Row> = vec![];
+fn families(groups: &[Group]) -> Vec<TableRow> {
+    let mut rows: Vec<TableRow> = vec![];
     for group in groups {
-        let mut row = Row::of(group);
+        let mut row = TableRow::of(group);
         row.id = group.id.split('/').next().unwrap_or_default().into();
         match rows.iter_mut().find(|r| r.id == row.id && r.adapter == row.adapter && r.stage == row.stage) {
             Some(known) => known.add(&row),
@@ -346,7 +346,7 @@ fn families(groups: &[Group]) -> Vec<Row> {
     rows
 }
 
-fn table(rows: &[Row], out: &mut impl Write) -> Result {
+fn table(rows: &[TableRow], out: &mut impl Write) -> Result {
     let id = rows.iter().map(|row| row.id.len()).max().unwrap_or(0).max(13);
     let adapter = rows.iter().map(|row| row.adapter.len()).max().unwrap_or(0).max(8);
     writeln!(

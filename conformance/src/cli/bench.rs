@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
-use lightmeter::bench::document::Document;
+use lightmeter::bench::document::BenchDocument;
 use lightmeter::bench::recommend::{self, Inputs, Limit, recommend};
 use lightmeter::bench::{Options, bench, page, text};
 use lightmeter::filter::Filter;
@@ -131,7 +131,7 @@ impl Bench {
         Ok(Status::Success)
     }
 
-    fn write(&self, document: &Document) -> anyhow::Result<String> {
+    fn write(&self, document: &BenchDocument) -> anyhow::Result<String> {
         let mut out = String::new();
         match (self.recommend, self.format) {
             (None, Format::Json) => out = serde_json::to_string_pretty(document)? + "\n",

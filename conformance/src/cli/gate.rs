@@ -15,8 +15,8 @@ use lightmeter::gate::ledger::Ledger;
 use lightmeter::gate::outputs;
 use lightmeter::gate::pack;
 use lightmeter::gate::plan::{Choice, Place, Plan};
-use lightmeter::gate::process::{self, Asking, Limits, Outcome};
-use lightmeter::gate::report::Report;
+use lightmeter::gate::process::{self, Asking, Ending, Limits};
+use lightmeter::gate::report::GateReport;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -117,11 +117,11 @@ impl Gate {
             None => {
                 ledger.expected = expectations;
                 let hello = answers::judge(&mut ledger, answers, &mut |count| bar.inc(count));
-                hello.map(|hello| Outcome { hello, ..Outcome::default() }).map_err(Into::into)
+                hello.map(|hello| Ending { hello, ..Ending::default() }).map_err(Into::into)
             }
         };
         bar.finish_and_clear();
-        let mut report = Report::new(&mut ledger, outcome?, command(), start.elapsed().as_secs_f64());
+        let mut report = GateReport::new(&mut ledger, outcome?, command(), start.elapsed().as_secs_f64());
         // What was asked is told, even where the baseline turns out to be of other accuracy rules.
         let regressions = known.as_ref().map(|(path, known)| known.compare(&report, self.growth, path)).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
@@ -161,7 +161,7 @@ impl Gate {
         command: &str,
         expectations: Expectations,
         bar: &ProgressBar,
-    ) -> anyhow::Result<Outcome> {
+    ) -> anyhow::Result<Ending> {
         let own = std::env::temp_dir().join(format!("lightmeter-gate-{}", std::process::id()));
         let folder = self.images.clone().unwrap_or_else(|| own.clone());
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot write {}", folder.display()))?;
@@ -183,7 +183,7 @@ impl Gate {
         Ok(outcome?)
     }
 
-    fn write(&self, report: &Report) -> anyhow::Result<String> {
+    fn write(&self, report: &GateReport) -> anyhow::Result<String> {
         Ok(match self.format {
             Format::Json => serde_json::to_string_pretty(report)? + "\n",
             Format::Junit => outputs::junit(report)?,
@@ -257,7 +257,7 @@ fn command() -> String {
 }
 
 /// A renderer that broke off, or wrote what is no answer, ends with 4 whatever else is right.
-fn status(report: &Report) -> Status {
+fn status(report: &GateReport) -> Status {
     if report.is_broken() {
         Status::Device
     } else if report.is_failed() {

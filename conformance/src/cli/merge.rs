@@ -4,7 +4,7 @@ use super::options::Format;
 use super::sweep::{status, written};
 use super::{Status, emit};
 use clap::Args;
-use lightmeter::sweep::{Document, Exact};
+use lightmeter::sweep::{Exact, SweepDocument};
 use std::path::PathBuf;
 
 /// Join the results of a sweep's shards.
@@ -25,9 +25,9 @@ impl Merge {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let mut parts = vec![];
         for path in &self.results {
-            parts.push((path.clone(), Document::read(path)?));
+            parts.push((path.clone(), SweepDocument::read(path)?));
         }
-        let whole = Document::merge(&parts)?;
+        let whole = SweepDocument::merge(&parts)?;
         emit(&written(&whole, self.format, &rerun(&whole))?, self.out.as_deref())?;
         Ok(status(&whole))
     }
@@ -35,7 +35,7 @@ impl Merge {
 
 /// What a command that sweeps one input again is given besides the formula and the range: all that the results tell, which is
 /// everything but a folder of shaders.
-fn rerun(document: &Document) -> String {
+fn rerun(document: &SweepDocument) -> String {
     let sweep = &document.sweep;
     let mut rerun = format!(" --over {} --output {} --adapter {}", sweep.over, sweep.output, sweep.adapter.name);
     for (name, Exact(x)) in &sweep.fixed {

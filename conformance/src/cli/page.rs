@@ -3,7 +3,7 @@
 use super::{Status, emit};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
-use lightmeter::bench::document::{Document, SCHEMA};
+use lightmeter::bench::document::{BenchDocument, SCHEMA};
 use lightmeter::bench::{page, plot};
 use lightmeter::report;
 use lightmeter::report::page::{Run, markdown, scenes, selftest, special, stability, svg};
@@ -70,7 +70,7 @@ impl Page {
     fn sweeps(&self) -> anyhow::Result<String> {
         let mut results = vec![];
         for path in &self.runs {
-            let result = sweep::Document::read(path)?;
+            let result = sweep::SweepDocument::read(path)?;
             if !result.is_finished() {
                 bail!("{} is not finished; give it as --checkpoint to its command again", path.display());
             }
@@ -82,7 +82,7 @@ impl Page {
     }
 
     fn bench(&self, json: &str) -> anyhow::Result<String> {
-        let document: Document = serde_json::from_str(json)?;
+        let document: BenchDocument = serde_json::from_str(json)?;
         if document.schema != SCHEMA {
             bail!("its schema is {}; expected {SCHEMA}", document.schema);
         }

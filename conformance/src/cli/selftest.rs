@@ -5,7 +5,7 @@ use super::{NothingToRun, Status, emit};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
-use lightmeter::blend_unit::selftest::{Finding, Row, selftest};
+use lightmeter::blend_unit::selftest::{UnitFinding, UnitRow, selftest};
 use lightmeter::faults::calibrate::calibrate;
 use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
@@ -149,23 +149,24 @@ impl Selftest {
         };
         emit(&text, self.out.as_deref())?;
         let unit = rows.iter().flatten().all(|row| row.finding.is_good());
-        let good = unit && record.iter().all(formulas::Record::is_good) && drawn.iter().all(scenes::Record::is_good);
+        let good =
+            unit && record.iter().all(formulas::Record::is_good) && drawn.iter().all(scenes::SceneRecord::is_good);
         Ok(if good { Status::Success } else { Status::Failed })
     }
 }
 
-fn word(finding: Finding) -> &'static str {
+fn word(finding: UnitFinding) -> &'static str {
     match finding {
-        Finding::Named => "named",
-        Finding::Caught => "caught, not named",
-        Finding::Survived => "SURVIVED",
-        Finding::NotApplicable => "—",
-        Finding::Clean => "clean",
-        Finding::FalseAlarm => "FALSE ALARM",
+        UnitFinding::Named => "named",
+        UnitFinding::Caught => "caught, not named",
+        UnitFinding::Survived => "SURVIVED",
+        UnitFinding::NotApplicable => "—",
+        UnitFinding::Clean => "clean",
+        UnitFinding::FalseAlarm => "FALSE ALARM",
     }
 }
 
-fn table(targets: &[TargetFormat], rows: &[Row]) -> anyhow::Result<String> {
+fn table(targets: &[TargetFormat], rows: &[UnitRow]) -> anyhow::Result<String> {
     let mut text = String::new();
     write!(text, "{:<30}", "blend unit")?;
     for target in targets {

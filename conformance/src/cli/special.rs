@@ -6,7 +6,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::adapters;
 use lightmeter::report::special;
-use lightmeter::special::run::{Report, run};
+use lightmeter::special::run::{SpecialReport, run};
 use lightmeter::subject_gpu::code_of;
 use std::path::{Path, PathBuf};
 
@@ -58,7 +58,7 @@ impl Special {
     }
 }
 
-fn write_records(report: &Report, dir: &Path) -> anyhow::Result<()> {
+fn write_records(report: &SpecialReport, dir: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
     for adapter in &report.adapters {
         let text = serde_json::to_string_pretty(&report.record(adapter))? + "\n";

@@ -10,7 +10,7 @@ use lightmeter::cases::Stage;
 use lightmeter::document::thousands;
 use lightmeter::select::{Shard, catalogue};
 use lightmeter::sweep::{
-    Asked, Description, Document, Free, Over, PRESETS, Plan, SCHEMA, SweepError, name_of, sweep, text,
+    Asked, Description, Free, Over, PRESETS, Plan, SCHEMA, SweepDocument, SweepError, name_of, sweep, text,
 };
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -106,8 +106,9 @@ impl Sweep {
             bail!("a sweep is of one adapter; expected its name");
         };
         let description = Description::new(&plan, subject, self.profile, &code);
-        let resumed = self.checkpoint.as_deref().map(|path| Document::resume(path, &description, shard)).transpose()?;
-        let mut document = resumed.flatten().unwrap_or_else(|| Document::new(description, shard));
+        let resumed =
+            self.checkpoint.as_deref().map(|path| SweepDocument::resume(path, &description, shard)).transpose()?;
+        let mut document = resumed.flatten().unwrap_or_else(|| SweepDocument::new(description, shard));
         // Not after hours of work.
         if let Some(path) = &self.checkpoint {
             document.write(path)?;
@@ -120,7 +121,7 @@ impl Sweep {
 
         let bar = bar(&document, shard);
         let mut saved = Instant::now();
-        let mut tell = |document: &Document| {
+        let mut tell = |document: &SweepDocument| {
             bar.set_position(document.statistics.inputs);
             if let Some(path) = &self.checkpoint
                 && saved.elapsed() >= SAVED_EVERY
@@ -210,7 +211,7 @@ impl Sweep {
 }
 
 /// A result as text or JSON.
-pub(crate) fn written(document: &Document, format: Format, rerun: &str) -> anyhow::Result<String> {
+pub(crate) fn written(document: &SweepDocument, format: Format, rerun: &str) -> anyhow::Result<String> {
     match format {
         Format::Json => Ok(document.to_json()?),
         Format::Junit => bail!("a sweep is written as text or json"),
@@ -234,7 +235,7 @@ fn place_of(path: &Path) -> PathBuf {
 }
 
 /// Whether some input is outside its bound.
-pub(crate) fn status(document: &Document) -> Status {
+pub(crate) fn status(document: &SweepDocument) -> Status {
     if document.statistics.failed > 0 { Status::Failed } else { Status::Success }
 }
 
@@ -265,7 +266,7 @@ fn presets(format: Format) -> anyhow::Result<String> {
 }
 
 /// A bar on standard error, where that is a terminal.
-fn bar(document: &Document, shard: lightmeter::select::Shard) -> ProgressBar {
+fn bar(document: &SweepDocument, shard: lightmeter::select::Shard) -> ProgressBar {
     let inputs = document.sweep.span().inputs_of(shard, document.blocks);
     let bar = ProgressBar::with_draw_target(Some(inputs), ProgressDrawTarget::stderr());
     let template = "{bar:30} {human_pos}/{human_len} inputs  {rate} a second  {elapsed}, {eta} to go";

@@ -2,7 +2,7 @@
 
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_engine::blend_unit::draw::{Piece, Pixels};
-use lightmeter_gpu::{Batch, BlendUnit, Draw, GpuError};
+use lightmeter_gpu::{Batch, BlendUnit, GpuError, UnitDraw};
 use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
@@ -68,7 +68,7 @@ fn batch(target: TargetFormat, pieces: &[&Piece]) -> Batch {
             }
             let (state, mask) = piece.program.layer(layer);
             let points = start..small(batch.pixels.len());
-            batch.draws.push(Draw { state, mask, route: piece.route, constant, points });
+            batch.draws.push(UnitDraw { state, mask, route: piece.route, constant, points });
         };
         match piece.program {
             // One mode: the layers overlap within a draw, in the order of its points.

@@ -198,7 +198,7 @@ pub(super) fn native(draw: &Draw, blend: Blend) -> Result<(wgpu::BlendState, wgp
         );
         return Err(GpuError::Draw { draw: draw.name.clone(), message });
     }
-    let unit = blend_unit::Draw {
+    let unit = blend_unit::UnitDraw {
         state: blend.state,
         mask: WriteMask([true; 4]),
         route,

@@ -13,7 +13,7 @@ use lightmeter_scene::frame::{
     Wrap,
 };
 use lightmeter_scene::raster::Provoking;
-use lightmeter_scene::shading::{Ambient, Distance, Frequency, Gate, LightAmbient, Normals, Specular, Viewer};
+use lightmeter_scene::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 const IDENTITY: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
@@ -48,7 +48,7 @@ fn frame() -> Frame {
         frequency: Frequency::Phong,
         provoking: Provoking::First,
         specular: Specular::Blinn,
-        gate: Gate::OpenGl,
+        gate: SpecularGate::OpenGl,
         viewer: Viewer::Local,
         normals: Normals::InverseTranspose,
     };
@@ -185,7 +185,8 @@ fn frames() -> Vec<(String, Frame)> {
         let shading = frame.draws[0].shading.as_mut().expect("it is lit");
         (shading.frequency, shading.specular) = (frequency, specular);
         if number == 1 {
-            (shading.viewer, shading.gate, shading.normals) = (Viewer::NonLocal, Gate::Documents, Normals::Modelview);
+            (shading.viewer, shading.gate, shading.normals) =
+                (Viewer::NonLocal, SpecularGate::Documents, Normals::Modelview);
             frame.fog.as_mut().expect("there is fog").form = FogForm::Exp { density: 0.4 };
             frame.draws[0].texture.as_mut().expect("it is textured").sampled.filter = Filter::Nearest;
             frame.ambient_form = Ambient::Constant;
@@ -279,7 +280,7 @@ fn stages_are_steps_towards_the_colour() {
     }
 }
 
-/// Drawn by a technique.
+/// PreparedDraw by a technique.
 fn by(gpu: &Gpu, frame: &Frame, technique: Technique) -> Result<Vec<u8>, GpuError> {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let recipe = Recipe { technique, ..Recipe::of(Shader::Composed) };

@@ -7,7 +7,7 @@
 use crate::blend::Separate;
 use crate::depth::DepthTest;
 use crate::raster::Provoking;
-use crate::shading::{Ambient, Distance, Frequency, Gate, LightAmbient, Normals, Specular, Viewer};
+use crate::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 use crate::target::TargetFormat;
 
 /// A 4 × 4 matrix of columns.
@@ -241,7 +241,7 @@ pub struct Shading {
     /// The highlight.
     pub specular: Specular,
     /// Whether a face that is turned away may have one.
-    pub gate: Gate,
+    pub gate: SpecularGate,
     /// The viewer.
     pub viewer: Viewer,
     /// The normals.

@@ -24,7 +24,7 @@ pub enum Specular {
 
 /// Whether a surface that faces away from the light can have a highlight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Gate {
+pub enum SpecularGate {
     /// It can: what the documents write.
     Documents,
     /// It cannot: the highlight is 0 where n·l ≤ 0, as OpenGL's fixed function has it.

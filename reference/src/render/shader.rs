@@ -14,7 +14,7 @@ use crate::{attenuation, color, fog, texture, vector};
 use lightmeter_scene::effects::{Called, Effect};
 use lightmeter_scene::frame::Shading;
 use lightmeter_scene::frame::{self, FogForm, Frame, Place};
-use lightmeter_scene::shading::{Ambient, Frequency, Gate, LightAmbient, Normals, Viewer};
+use lightmeter_scene::shading::{Ambient, Frequency, LightAmbient, Normals, SpecularGate, Viewer};
 use lightmeter_scene::stage::Intermediate;
 
 /// A draw with its constants brought to an arithmetic.
@@ -292,7 +292,7 @@ impl<'a, R: Real> Shader<'a, R> {
             let factors = |light: R, material: R| R::product([light, material, fi, cone, atten]);
             diffuse.push(zip(colors.diffuse, material.diffuse, factors));
         }
-        let gated = shading.gate == Gate::OpenGl;
+        let gated = shading.gate == SpecularGate::OpenGl;
         if self.has_specular() && !is_dark && !(gated && is_turned_away) {
             if self.frame.departures.fresnel_highlight {
                 let fresnel = FresnelHighlight::new(n, l, v, fi, material.shininess);
@@ -304,8 +304,8 @@ impl<'a, R: Real> Shader<'a, R> {
             }
             let fs = || lighting::highlight(shading.specular, n, l, v, material.shininess);
             let fs = match shading.gate {
-                Gate::OpenGl => R::if_ge(R::literal(0.0), l.dot(n), || R::literal(0.0), fs),
-                Gate::Documents => fs(),
+                SpecularGate::OpenGl => R::if_ge(R::literal(0.0), l.dot(n), || R::literal(0.0), fs),
+                SpecularGate::Documents => fs(),
             };
             let factors = |light: R, material: R| R::product([light, material, fs, cone, atten]);
             specular.push(zip(colors.specular, material.specular, factors));

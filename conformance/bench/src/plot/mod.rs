@@ -11,7 +11,7 @@ mod mark;
 mod panels;
 mod svg;
 
-use super::document::{Document, GroupKind, Measured};
+use super::document::{BenchDocument, GroupKind, Measured};
 use super::ladder::{Rung, rungs};
 use super::text::is_stable_form;
 
@@ -41,7 +41,7 @@ impl Picture {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn pictures(document: &Document) -> Result<Vec<Picture>, std::fmt::Error> {
+pub fn pictures(document: &BenchDocument) -> Result<Vec<Picture>, std::fmt::Error> {
     let mut pictures = vec![];
     for measured in &document.adapters {
         // Scenes have a picture of their own.

@@ -4,7 +4,7 @@ use super::axis::{Axis, ErrorAxis};
 use super::label::{Area, Room};
 use super::mark::{mark, style};
 use super::svg::{Named, SIZE, WIDTH, across, errors, escaped, frame, markers, open, shortened, text, text_width};
-use crate::document::{Group, Row};
+use crate::document::{BenchGroup, BenchRow};
 use crate::pareto::is_processor;
 use lightmeter_gpu::Rung;
 use std::fmt::{Error, Result as Written, Write};
@@ -15,8 +15,8 @@ const HEIGHT: f64 = 286.0;
 const HEAD: f64 = 58.0;
 
 /// A picture with a panel for each group that has rows to show.
-pub(super) fn svg(groups: &[&Group], title: &str) -> Result<Option<String>, Error> {
-    let groups: Vec<&&Group> =
+pub(super) fn svg(groups: &[&BenchGroup], title: &str) -> Result<Option<String>, Error> {
+    let groups: Vec<&&BenchGroup> =
         groups.iter().filter(|group| group.rows.iter().any(|row| place(row).is_some())).collect();
     if groups.is_empty() {
         return Ok(None);
@@ -48,19 +48,19 @@ pub(super) fn svg(groups: &[&Group], title: &str) -> Result<Option<String>, Erro
 }
 
 /// A row's time and its quartiles, where it has them and errors. What the processor takes is told in tables.
-fn place(row: &Row) -> Option<(f64, [f64; 2])> {
+fn place(row: &BenchRow) -> Option<(f64, [f64; 2])> {
     row.random.as_ref().filter(|_| !is_processor(&row.name))?;
     row.time.as_ref().map(|time| (time.ns, time.quartiles_ns))
 }
 
-fn panel(group: &Group, [left, top]: [f64; 2], out: &mut String) -> Written {
+fn panel(group: &BenchGroup, [left, top]: [f64; 2], out: &mut String) -> Written {
     let area = Area { left: left + 66.0, top: top + 40.0, width: PANEL - 66.0 - 14.0, height: HEIGHT - 40.0 - 52.0 };
     let (right, bottom) = (area.left + area.width, area.top + area.height);
     let id = escaped(group.id.trim_start_matches("technique/"));
     let room_for = |size: f64| PANEL - 80.0 - size;
     writeln!(out, r#"<text x="{:.1}" y="{:.1}" font-size="14" font-weight="bold">{id}</text>"#, area.left, top + 14.0)?;
     text([area.left, top + 32.0], "start", true, &shortened(&group.title, 12.0, room_for(0.0)), out)?;
-    let rows: Vec<(&Row, f64, [f64; 2], f64)> = (group.rows.iter())
+    let rows: Vec<(&BenchRow, f64, [f64; 2], f64)> = (group.rows.iter())
         .filter_map(|row| place(row).map(|(ns, quartiles)| (row, ns, quartiles)))
         .filter_map(|(row, ns, quartiles)| Some((row, ns, quartiles, row.random.as_ref()?.absolute.max.0)))
         .collect();

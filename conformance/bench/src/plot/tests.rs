@@ -84,7 +84,7 @@ fn names(svg: &str) -> Vec<(String, [f64; 3])> {
 }
 
 /// The same document with all rows of a group in one place, or nearly.
-fn crowded() -> Document {
+fn crowded() -> BenchDocument {
     let mut document = document();
     for measured in &mut document.adapters {
         for rung in measured.families.iter_mut().flat_map(|family| &mut family.rungs) {

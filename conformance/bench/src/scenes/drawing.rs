@@ -1,6 +1,6 @@
 //! Rows that are drawn: compiled, drawn once, held against the reference, and timed in turns.
 
-use super::{Gathered, On, Row, Setting, TIMED};
+use super::{BenchRow, Gathered, On, Setting, TIMED};
 use crate::document::Errors;
 use crate::turns;
 use crate::turns::{Effort, Entry};
@@ -72,8 +72,8 @@ pub(super) struct Plan<'a> {
 }
 
 /// A row that was drawn.
-pub(super) struct Drawn {
-    pub(super) row: Row,
+pub(super) struct DrawnScene {
+    pub(super) row: BenchRow,
     /// What it is timed by.
     pub(super) timed: Option<SceneRenderer>,
 }
@@ -107,12 +107,12 @@ impl<'a> Drawer<'a> {
     }
 
     /// Draws each plan once: its errors against the ideal, what is wrong with it, and how long it took to compile.
-    pub(super) fn draw(&self, plans: &[Plan<'_>], ideal: &Standard) -> Result<Vec<Drawn>, GpuError> {
+    pub(super) fn draw(&self, plans: &[Plan<'_>], ideal: &Standard) -> Result<Vec<DrawnScene>, GpuError> {
         plans.iter().map(|plan| self.one(plan, ideal)).collect()
     }
 
-    fn one(&self, plan: &Plan<'_>, ideal: &Standard) -> Result<Drawn, GpuError> {
-        let row = Row {
+    fn one(&self, plan: &Plan<'_>, ideal: &Standard) -> Result<DrawnScene, GpuError> {
+        let row = BenchRow {
             name: plan.name.clone(),
             what: plan.what.clone(),
             claims_exact: plan.claims_exact,
@@ -126,12 +126,12 @@ impl<'a> Drawer<'a> {
         };
         let lacking = SceneRenderer::lacks(self.gpu, plan.frame).map(str::to_owned);
         if let Some(reason) = row.unavailable.clone().or(lacking) {
-            return Ok(Drawn { row: Row { unavailable: Some(reason), ..row }, timed: None });
+            return Ok(DrawnScene { row: BenchRow { unavailable: Some(reason), ..row }, timed: None });
         }
         let start = Instant::now();
         let renderer = match self.renderer(plan.frame, plan.recipe) {
             Err(GpuError::Technique { reason, .. } | GpuError::Unavailable { reason, .. }) => {
-                return Ok(Drawn { row: Row { unavailable: Some(reason), ..row }, timed: None });
+                return Ok(DrawnScene { row: BenchRow { unavailable: Some(reason), ..row }, timed: None });
             }
             made => made?,
         };
@@ -140,16 +140,16 @@ impl<'a> Drawer<'a> {
         let image = Stored::read(plan.frame.target.width as usize, plan.frame.target.format, &bytes);
         let settled: Vec<&Standard> = std::iter::once(ideal).chain(plan.own).collect();
         if !self.judges {
-            return Ok(Drawn { row: Row { compile_ms, ..row }, timed: Some(self.larger(plan, renderer)?) });
+            return Ok(DrawnScene { row: BenchRow { compile_ms, ..row }, timed: Some(self.larger(plan, renderer)?) });
         }
-        let row = Row {
+        let row = BenchRow {
             disqualified: plan.own.and_then(|own| self.outside(&image, own)),
             random: errors(&image, ideal, &settled),
             rounding: plan.own.filter(|own| own.exact != ideal.exact).and_then(|own| errors(&image, own, &settled)),
             compile_ms,
             ..row
         };
-        Ok(Drawn { row, timed: Some(self.larger(plan, renderer)?) })
+        Ok(DrawnScene { row, timed: Some(self.larger(plan, renderer)?) })
     }
 
     /// What is timed in the place of what has been drawn.
@@ -181,7 +181,12 @@ impl<'a> Drawer<'a> {
     }
 
     /// The rows with their times beside that of the baseline.
-    pub(super) fn rows(&self, drawn: &[Drawn], baseline: Option<usize>, effort: Effort) -> Result<Vec<Row>, GpuError> {
+    pub(super) fn rows(
+        &self,
+        drawn: &[DrawnScene],
+        baseline: Option<usize>,
+        effort: Effort,
+    ) -> Result<Vec<BenchRow>, GpuError> {
         let places: Vec<usize> = (0..drawn.len()).filter(|&place| drawn[place].timed.is_some()).collect();
         let mut entries: Vec<Entry<'_>> =
             drawn.iter().filter_map(|drawn| drawn.timed.as_ref()).map(|renderer| self.entry(renderer)).collect();
@@ -194,7 +199,7 @@ impl<'a> Drawer<'a> {
             let time = own.filter(|_| base.is_some());
             let time = time.and_then(|own| turns::time(self.clock.kind().name(), own, against));
             let reason = own.filter(|_| time.is_none()).map(|own| turns::reason(own).to_owned());
-            Row { time, unavailable: drawn.row.unavailable.clone().or(reason), ..drawn.row.clone() }
+            BenchRow { time, unavailable: drawn.row.unavailable.clone().or(reason), ..drawn.row.clone() }
         });
         Ok(rows.collect())
     }
@@ -330,7 +335,7 @@ pub(super) mod tests {
                 assert_eq!(drawn[0].row.disqualified, None, "{name}");
                 let said = drawn[1].row.disqualified.as_deref().unwrap_or_default();
                 assert!(said.contains("outside of what is legal"), "{name}: {said:?}");
-                let max = |row: &Row| row.random.as_ref().map_or(f64::NAN, |errors| errors.absolute.max.0);
+                let max = |row: &BenchRow| row.random.as_ref().map_or(f64::NAN, |errors| errors.absolute.max.0);
                 assert!(max(&drawn[0].row) < 1e-3 && max(&drawn[1].row) > 1e-2, "{name}");
                 let absent = &drawn[2];
                 assert_eq!(absent.row.unavailable.as_deref(), Some("a reason"));

@@ -2,7 +2,7 @@
 
 use super::drawing::{Drawer, Plan, Standard, side, sized};
 use super::{On, Setting, frames};
-use crate::document::{Group, GroupKind};
+use crate::document::{BenchGroup, GroupKind};
 use lightmeter_engine::options::Progress;
 use lightmeter_gpu::compose::{Recipe, Shader, Technique};
 use lightmeter_gpu::{GpuError, Rung};
@@ -31,7 +31,7 @@ pub fn techniques(
     ladder: &[(Rung, Option<String>)],
     ids: &[&str],
     progress: &mut impl Progress,
-) -> Result<Vec<Group>, GpuError> {
+) -> Result<Vec<BenchGroup>, GpuError> {
     let Some(drawer) = Drawer::new(on) else { return Ok(vec![]) };
     let mut groups = vec![];
     for comparison in comparisons().into_iter().filter(|comparison| ids.contains(&comparison.id)) {
@@ -87,13 +87,13 @@ impl Comparison {
         drawer: &Drawer<'_>,
         ladder: &[(Rung, Option<String>)],
         setting: &Setting,
-    ) -> Result<Group, GpuError> {
+    ) -> Result<BenchGroup, GpuError> {
         let standards = self.standards(drawer, side(setting, SIDE, SIDE_QUICK));
         let plans = self.plans(&standards, ladder);
         let drawn = drawer.draw(&plans, &standards[0])?;
         let baseline = plans.iter().position(|plan| plan.name == self.baseline);
         let rows = drawer.rows(&drawn, baseline, setting.effort)?;
-        Ok(Group {
+        Ok(BenchGroup {
             id: self.id.into(),
             kind: GroupKind::Technique,
             family: "technique".into(),
@@ -262,7 +262,7 @@ fn targets(id: &'static str, title: &'static str, mut frame: Frame) -> Compariso
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Row;
+    use crate::document::BenchRow;
     use crate::scenes::drawing::tests::{brighter, on_a_device};
 
     #[test]
@@ -271,7 +271,7 @@ mod tests {
             for comparison in comparisons() {
                 let standards = comparison.standards(drawer, 48);
                 let mut plans = comparison.plans(&standards, &[(Rung::F32, None)]);
-                let rows = |plans: &[Plan<'_>]| -> Vec<Row> {
+                let rows = |plans: &[Plan<'_>]| -> Vec<BenchRow> {
                     let drawn = drawer.draw(plans, &standards[0]).unwrap_or_else(|error| panic!("{error}"));
                     drawn.into_iter().map(|drawn| drawn.row).collect()
                 };
@@ -285,7 +285,7 @@ mod tests {
                     }
                     assert_eq!(right.disqualified, None, "{what}");
                     assert_eq!(wrong.disqualified.is_some(), way.has_reference, "{what}");
-                    let mean = |row: &Row| row.random.as_ref().map_or(f64::NAN, |errors| errors.absolute.mean.0);
+                    let mean = |row: &BenchRow| row.random.as_ref().map_or(f64::NAN, |errors| errors.absolute.mean.0);
                     assert!((mean(right) - mean(&wrong)).abs() > 1e-4, "{what}: {} {}", mean(right), mean(&wrong));
                 }
             }
@@ -300,7 +300,7 @@ mod tests {
                 let standards = comparison.standards(drawer, 48);
                 let drawn = drawer.draw(&comparison.plans(&standards, &[(Rung::F32, None)]), &standards[0]);
                 let rows = drawn.unwrap_or_else(|error| panic!("{error}")).into_iter().map(|drawn| drawn.row);
-                let of = |row: Row| {
+                let of = |row: BenchRow| {
                     let max = row.random.map_or(f64::NAN, |errors| errors.absolute.max.0);
                     (row.name, max, row.rounding.is_some())
                 };

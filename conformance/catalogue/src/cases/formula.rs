@@ -3,7 +3,7 @@
 use super::raster;
 use super::rows::{Reader, Writer};
 use super::spec::{Kind, Spec};
-use lightmeter_arithmetic::{Accept, Draw, Dual, Profile, Trace, dual};
+use lightmeter_arithmetic::{Accept, Dual, Profile, RandomLegal, Trace, dual};
 use lightmeter_reference::Real;
 use lightmeter_scene::along::Along;
 use lightmeter_scene::raster::Raster;
@@ -50,7 +50,7 @@ pub trait AnyFormula: Send + Sync {
     fn on_accept(&self, inputs: &[Accept], out: &mut [Accept]);
 
     /// The same of legal evaluations drawn at random, inside [`Profile::scope`].
-    fn on_draw(&self, inputs: &[Draw], out: &mut [Draw]);
+    fn on_draw(&self, inputs: &[RandomLegal], out: &mut [RandomLegal]);
 
     /// The values that a profile makes legal as they leave a rasteriser, which snaps positions to the profile's subpixel bits.
     fn raster_interval(&self, kind: Raster, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
@@ -159,7 +159,7 @@ impl<F: Formula> AnyFormula for F {
     }
 
     #[inline(never)]
-    fn on_draw(&self, inputs: &[Draw], out: &mut [Draw]) {
+    fn on_draw(&self, inputs: &[RandomLegal], out: &mut [RandomLegal]) {
         self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
     }
 

@@ -6,7 +6,7 @@ use super::formula::formula;
 use super::rows::Reader;
 use super::spec::{Domain, Hard, Input, Output, Shape};
 use lightmeter_reference::Real;
-use lightmeter_reference::lighting::{self, Falloff, Gate, Light, Material, Specular, Vertex};
+use lightmeter_reference::lighting::{self, Falloff, Light, Material, Specular, SpecularGate, Vertex};
 
 const LA: Input = Input::rgb("la");
 const LD: Input = Input::rgb("ld");
@@ -133,7 +133,7 @@ macro_rules! directional {
 }
 
 directional!(
-    Phong, "lighting/phong", "lighting_phong", (Specular::Phong, Gate::Documents),
+    Phong, "lighting/phong", "lighting_phong", (Specular::Phong, SpecularGate::Documents),
     "CF = LA*MA + LD*MD·max(l·n, 0) + LS*MS·max(r·v, 0)^shininess, everything normalised", "000 §6.3",
     hard [
         Hard::new("light-behind-the-surface", "the documents light the highlight; ruling 9", &[("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[-1.0, 0.0, 0.05]), ("shininess", &[1.0])]),
@@ -142,7 +142,7 @@ directional!(
     ]
 );
 directional!(
-    Blinn, "lighting/blinn", "lighting_blinn", (Specular::Blinn, Gate::Documents),
+    Blinn, "lighting/blinn", "lighting_blinn", (Specular::Blinn, SpecularGate::Documents),
     "CF = LA*MA + LD*MD·max(l·n, 0) + LS*MS·max(n·h, 0)^shininess, everything normalised", "000 §6.4, 004",
     hard [
         Hard::new("half-vector-of-nothing", "the light behind the eye's line: no highlight, not NaN", &[("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.0, 0.0, 1.0])]),
@@ -152,7 +152,7 @@ directional!(
     PhongGated,
     "lighting/phong-gated",
     "lighting_phong_gated",
-    (Specular::Phong, Gate::OpenGl),
+    (Specular::Phong, SpecularGate::OpenGl),
     "CF as lighting/phong, the highlight 0 where l·n ≤ 0",
     "OpenGL 2.1 §2.14.1; ruling 9, `opengl`",
     stable 16.0 Unit "where the gate closes the other terms are left: products and a sum of one sign",
@@ -169,7 +169,7 @@ formula!(
     [LA, LD, LS, MA, MD, MS, Input::scalar("shininess", "1", Domain::Uniform(1.0, 16.0)), P, NORMAL, DIRECTION] -> [RGBA],
     |x, out| {
         let (light, material) = (light(x), material(x));
-        let dialect = (Specular::BlinnUnnormalised, Gate::Documents);
+        let dialect = (Specular::BlinnUnnormalised, SpecularGate::Documents);
         out.vector(lighting::directional(dialect, &light, &material, x.vectors()));
     },
 );
@@ -202,7 +202,7 @@ macro_rules! point {
             [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, LIGHT_POSITION, KC, KL, KQ] -> [RGBA],
             |x, out| {
                 let (light, material, vectors) = (light(x), material(x), x.vectors());
-                out.vector(lighting::point(($model, Gate::Documents), &light, &material, vectors, &falloff(x)));
+                out.vector(lighting::point(($model, SpecularGate::Documents), &light, &material, vectors, &falloff(x)));
             },
         );
     };

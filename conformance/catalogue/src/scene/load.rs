@@ -1,7 +1,7 @@
 //! From JSON to a frame.
 
 use super::field::{At, SceneError};
-use super::objects::{self, Known, Parts};
+use super::objects::{self, KnownObjects, Parts};
 use super::{camera, library, lights, mesh, texture};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::model::Scene;
@@ -139,7 +139,7 @@ pub fn frame(scene: &Scene, files: &Files<'_>) -> Result<Frame, SceneError> {
     }
 
     let lights = lights::lights(&scene.lights, &|at, attached| objects::space(at, scene, view, attached))?;
-    let known = Known { scene, view, surfaces: &surfaces, parts: &parts };
+    let known = KnownObjects { scene, view, surfaces: &surfaces, parts: &parts };
     let draws = objects::draws(&known, &mut meshes)?;
     let drawn: usize = draws.iter().map(|draw| meshes[draw.mesh].triangles.len()).sum();
     let at = At::Scene.field("objects");

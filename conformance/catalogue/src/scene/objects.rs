@@ -17,7 +17,7 @@ const MOST_DRAWS: usize = 4096;
 pub(super) type Parts = Vec<(usize, String, Option<Surface>)>;
 
 /// What objects refer to.
-pub(super) struct Known<'a> {
+pub(super) struct KnownObjects<'a> {
     pub(super) scene: &'a Scene,
     /// World → eye.
     pub(super) view: DMat4,
@@ -33,7 +33,7 @@ struct Ordered {
 }
 
 /// The draws in their order. Meshes are given lightmap coordinates where they have but others.
-pub(super) fn draws(known: &Known<'_>, meshes: &mut [Mesh]) -> Result<Vec<Draw>, SceneError> {
+pub(super) fn draws(known: &KnownObjects<'_>, meshes: &mut [Mesh]) -> Result<Vec<Draw>, SceneError> {
     let at = At::Scene.field("objects");
     let count: usize = known.scene.objects.iter().map(|object| object.instances.as_ref().map_or(1, Vec::len)).sum();
     at.require(count <= MOST_DRAWS, format_args!("a list of {count}, with instances"), "4096 at most")?;
@@ -57,7 +57,7 @@ pub(super) fn draws(known: &Known<'_>, meshes: &mut [Mesh]) -> Result<Vec<Draw>,
 
 fn of_object(
     at: &At<'_>,
-    known: &Known<'_>,
+    known: &KnownObjects<'_>,
     object: &Object,
     meshes: &mut [Mesh],
     draws: &mut Vec<Ordered>,
@@ -91,7 +91,7 @@ fn of_object(
 
 fn of_part(
     at: &At<'_>,
-    known: &Known<'_>,
+    known: &KnownObjects<'_>,
     object: &Object,
     surface: Surface,
     (place, mesh): (usize, &mut Mesh),
@@ -132,7 +132,7 @@ fn of_part(
     })
 }
 
-fn material(at: &At<'_>, known: &Known<'_>, name: &str) -> Result<Surface, SceneError> {
+fn material(at: &At<'_>, known: &KnownObjects<'_>, name: &str) -> Result<Surface, SceneError> {
     let found = known.scene.materials.find(name).map(|(place, _)| known.surfaces[place]);
     at.named(found, name, &known.scene.materials.names())
 }

@@ -1,7 +1,7 @@
 //! A group of blend states judged on every subject and target.
 
 use super::draw::{Piece, draw};
-use super::standing::Standing;
+use super::standing::UnitStanding;
 use crate::device::{Code, DeviceError};
 use crate::options::{Options, Progress};
 use crate::subject::Subject;
@@ -19,7 +19,7 @@ const PIXELS: usize = 1 << 19;
 const BLOCK: usize = 1 << 15;
 
 /// Pieces of a chunk, and whose they are.
-pub(super) struct Chunk<'a> {
+pub(super) struct UnitChunk<'a> {
     pub(super) members: Vec<&'a Member>,
     pub(super) cases: Vec<Vec<CaseRef>>,
     pub(super) pieces: Vec<Piece>,
@@ -35,15 +35,17 @@ pub(crate) fn run_group(
     progress: &mut impl Progress,
 ) -> Result<(), DeviceError> {
     let targets = targets_of(members[0], &options.targets);
-    let mut standings: Vec<Vec<Standing>> = subjects
+    let mut standings: Vec<Vec<UnitStanding>> = subjects
         .iter()
-        .map(|subject| targets.iter().map(|&target| Standing::new(target, subject.lacks_blending(target))).collect())
+        .map(|subject| {
+            targets.iter().map(|&target| UnitStanding::new(target, subject.lacks_blending(target))).collect()
+        })
         .collect();
     let mut result = Ok(());
     let mut pieces = pieces(members, group).peekable();
     'chunks: while pieces.peek().is_some() {
         let clock = Instant::now();
-        let chunk = Chunk::next(&mut pieces, options.seed);
+        let chunk = UnitChunk::next(&mut pieces, options.seed);
         report.timing.generate += clock.elapsed().as_secs_f64();
         for (subject, standings) in subjects.iter_mut().zip(&mut standings) {
             for standing in standings {
@@ -95,7 +97,7 @@ fn pieces<'a>(members: &'a [&'a Member], group: &'a [Selected]) -> impl Iterator
     })
 }
 
-impl<'a> Chunk<'a> {
+impl<'a> UnitChunk<'a> {
     fn next(parts: &mut impl Iterator<Item = Part<'a>>, seed: u64) -> Self {
         let (mut taken, mut pixels) = (vec![], 0);
         while pixels < PIXELS {
@@ -118,7 +120,7 @@ impl<'a> Chunk<'a> {
 
     /// What was under way when a device failed: the state that fails again alone on fresh devices, or all that were drawn
     /// together.
-    fn under_way(&self, subject: &mut Subject, standing: &Standing, code: &Code, error: &DeviceError) -> String {
+    fn under_way(&self, subject: &mut Subject, standing: &UnitStanding, code: &Code, error: &DeviceError) -> String {
         let target = standing.target;
         let place = format!("on {} of {}", target.name(), subject.identity.name);
         // What hangs would hang again for minutes.

@@ -17,7 +17,7 @@ use serde::Serialize;
 /// What became of a fault on a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Finding {
+pub enum UnitFinding {
     /// Found, and told by its name.
     Named,
     /// Found, and told by another name or none.
@@ -34,13 +34,13 @@ pub enum Finding {
 
 /// A fault on a target.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct UnitRow {
     /// The fault's name, or `none`.
     pub fault: &'static str,
     /// The target's format.
     pub target: &'static str,
     /// What became of it.
-    pub finding: Finding,
+    pub finding: UnitFinding,
     /// Verdicts.
     pub verdicts: u64,
     /// Those that failed by themselves.
@@ -49,7 +49,7 @@ pub struct Row {
     pub said: Vec<String>,
 }
 
-impl Finding {
+impl UnitFinding {
     /// Whether it is as it should be.
     #[must_use]
     pub const fn is_good(self) -> bool {
@@ -65,7 +65,7 @@ pub fn selftest(
     targets: &[TargetFormat],
     cases: u64,
     progress: &mut impl FnMut(&str),
-) -> Result<Vec<Row>, DeviceError> {
+) -> Result<Vec<UnitRow>, DeviceError> {
     let groups = groups();
     let mut rows = vec![];
     for &target in targets {
@@ -73,11 +73,11 @@ pub fn selftest(
         let judged = judge(&groups, target, Rules::RIGHT, cases)?;
         rows.push(row("none", target, &judged, |groups| {
             let found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
-            if groups.iter().any(found) { Finding::FalseAlarm } else { Finding::Clean }
+            if groups.iter().any(found) { UnitFinding::FalseAlarm } else { UnitFinding::Clean }
         }));
         for fault in FAULTS {
             if !fault.concerns(target) {
-                rows.push(row(fault.name, target, &empty_report(target)?, |_| Finding::NotApplicable));
+                rows.push(row(fault.name, target, &empty_report(target)?, |_| UnitFinding::NotApplicable));
                 continue;
             }
             // A fault of one state has that state's values alone to show in.
@@ -145,12 +145,17 @@ fn judge(groups: &[Vec<Member>], target: TargetFormat, rules: Rules, cases: u64)
     Ok(report)
 }
 
-fn row(fault: &'static str, target: TargetFormat, report: &Report, finding: impl FnOnce(&[Group]) -> Finding) -> Row {
+fn row(
+    fault: &'static str,
+    target: TargetFormat,
+    report: &Report,
+    finding: impl FnOnce(&[Group]) -> UnitFinding,
+) -> UnitRow {
     let mut said: Vec<String> = vec![];
     for group in &report.groups {
         said.extend(group.problem.iter().chain(&group.explanation).map(|text| format!("{}: {text}", group.id)));
     }
-    Row {
+    UnitRow {
         fault,
         target: target.name(),
         finding: finding(&report.groups),
@@ -162,7 +167,7 @@ fn row(fault: &'static str, target: TargetFormat, report: &Report, finding: impl
 
 /// A wrong store must be named by the verdict on each group that has enough values to tell; any fault by each group that it
 /// fails values in.
-fn finding(fault: &Fault, groups: &[Group]) -> Finding {
+fn finding(fault: &Fault, groups: &[Group]) -> UnitFinding {
     let is_found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
     let says = |text: &Option<String>, what: &str| text.as_ref().is_some_and(|text| text.contains(what));
     let is_store = fault.rules.store != Store::Nearest;
@@ -175,10 +180,10 @@ fn finding(fault: &Fault, groups: &[Group]) -> Finding {
     let is_chain = |group: &Group| is_store && group.id == "blend/layers";
     let must_show = |group: &&Group| !is_chain(group) && (is_found(group) || (throughout && group.store.is_some()));
     if !groups.iter().any(is_found) {
-        Finding::Survived
+        UnitFinding::Survived
     } else if groups.iter().filter(must_show).all(is_named) {
-        Finding::Named
+        UnitFinding::Named
     } else {
-        Finding::Caught
+        UnitFinding::Caught
     }
 }

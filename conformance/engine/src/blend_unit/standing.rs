@@ -5,9 +5,9 @@ use super::model::Model;
 use super::pixel::{self, Units};
 use super::policy;
 use super::rules::Rules;
-use super::run::Chunk;
+use super::run::UnitChunk;
 use super::store::{ENOUGH, StoreCounts};
-use super::tally::{Drawn, Outcome, Sample, Tally, explain};
+use super::tally::{DrawnState, Sample, UnitTally, explain};
 use crate::device::DeviceError;
 use crate::options::Options;
 use crate::subject::Subject;
@@ -16,7 +16,7 @@ use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
 use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Totals};
 use lightmeter_judge::tally::{KEPT_FAILURES, by_name, keep_simplest, reported};
-use lightmeter_judge::{is_worse, worse};
+use lightmeter_judge::{Outcome, is_worse, worse};
 use lightmeter_scene::target::{Encoding, TargetFormat};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -25,11 +25,11 @@ use std::time::Instant;
 const SAMPLES: usize = 1024;
 
 /// What a group has come to on one subject and target.
-pub(super) struct Standing {
+pub(super) struct UnitStanding {
     pub(super) target: TargetFormat,
     /// Why nothing is drawn.
     lacks: Option<&'static str>,
-    tally: Tally,
+    tally: UnitTally,
     worst: Option<(f64, String)>,
     departure: Option<String>,
     failures: Vec<Failure>,
@@ -51,12 +51,12 @@ fn declared_model(subject: &Subject, target: TargetFormat) -> Option<Model> {
     subject.known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8)
 }
 
-impl Standing {
+impl UnitStanding {
     pub(super) fn new(target: TargetFormat, lacks: Option<&'static str>) -> Self {
         Self {
             target,
             lacks,
-            tally: Tally::default(),
+            tally: UnitTally::default(),
             worst: None,
             departure: None,
             failures: vec![],
@@ -75,7 +75,7 @@ impl Standing {
     pub(super) fn judge(
         &mut self,
         subject: &mut Subject,
-        chunk: &Chunk<'_>,
+        chunk: &UnitChunk<'_>,
         options: &Options,
         report: &mut Report,
     ) -> Result<(), DeviceError> {
@@ -98,15 +98,13 @@ impl Standing {
         }
         let clock = Instant::now();
         let (target, known) = (self.target, &subject.known);
-        let tallies: Vec<Tally> = pieces
+        let tallies: Vec<UnitTally> = pieces
             .par_iter()
             .zip(&drawn.pieces)
             .map(|(piece, pixels)| {
-                let drawn = Drawn { program: piece.program, route: piece.route, target, profile: options.profile };
-                let mut tally = Tally::default();
-                for (place, pixel) in pixels.iter().enumerate() {
-                    tally.pixel(drawn, known, place, &piece.case(place), *pixel);
-                }
+                let drawn = DrawnState { program: piece.program, route: piece.route, target, profile: options.profile };
+                let mut tally = UnitTally::default();
+                tally.pixels(drawn, known, pixels.iter().enumerate().map(|(place, pixel)| (piece.case(place), *pixel)));
                 tally
             })
             .collect();
@@ -132,7 +130,7 @@ impl Standing {
     }
 
     /// The place of the row of a piece's state, which may have begun in the chunk before.
-    fn row(&mut self, subject: &Subject, chunk: &Chunk<'_>, k: usize, skip_reason: Option<&'static str>) -> usize {
+    fn row(&mut self, subject: &Subject, chunk: &UnitChunk<'_>, k: usize, skip_reason: Option<&'static str>) -> usize {
         let (id, route) = (&chunk.members[k].spec.id, chunk.pieces[k].route.name());
         // A state's routes take turns block by block.
         let known = self.rows.iter().rev().take(2).position(|row| row.id == *id && row.route == route);
@@ -157,9 +155,9 @@ impl Standing {
     fn add(
         &mut self,
         subject: &Subject,
-        chunk: &Chunk<'_>,
+        chunk: &UnitChunk<'_>,
         k: usize,
-        tally: &Tally,
+        tally: &UnitTally,
         pixels: &[Units],
         options: &Options,
     ) {
@@ -191,7 +189,8 @@ impl Standing {
                 }
             }));
         }
-        let drawn = Drawn { program: piece.program, route: piece.route, target: self.target, profile: options.profile };
+        let drawn =
+            DrawnState { program: piece.program, route: piece.route, target: self.target, profile: options.profile };
         let told =
             |place: usize| failure(member, &id(place), piece, place, pixels[place], drawn.target, subject, options);
         if let Some((simple, place)) = tally.simplest {
@@ -312,7 +311,7 @@ impl Standing {
 }
 
 /// Counts what the named deviations of a target's values excused.
-fn use_deviations(subject: &Subject, target: TargetFormat, tally: &Tally, report: &mut Report) {
+fn use_deviations(subject: &Subject, target: TargetFormat, tally: &UnitTally, report: &mut Report) {
     for deviation in subject.known.blend_deviations.iter().filter(|deviation| deviation.target == target) {
         report.excuse(deviation.name, &subject.identity.name, tally.expected_failures);
     }

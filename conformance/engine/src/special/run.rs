@@ -1,6 +1,6 @@
 //! The probes on adapters, and their verdicts.
 
-use super::record::{OnRecord, Record};
+use super::record::{DriverRecord, OnRecord};
 use super::{Deviation, PROBES, Probe, Promise};
 use crate::device::{Code, DeviceError, Probed};
 use crate::subject::Subject;
@@ -11,7 +11,7 @@ use serde::{Serialize, Serializer};
 /// What became of a probe on an adapter in a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub enum ProbeVerdict {
     /// As promised.
     Kept,
     /// Not as promised.
@@ -24,7 +24,7 @@ pub enum Verdict {
     Deviates,
 }
 
-impl Verdict {
+impl ProbeVerdict {
     /// The verdict on a result. `recorded` is what is on record where that binds; `deviates` says that the promise is known to
     /// be broken.
     #[must_use]
@@ -60,7 +60,7 @@ impl Verdict {
 
 /// A result of a probe.
 #[derive(Clone, Debug, Serialize)]
-pub struct Outcome {
+pub struct ProbeResult {
     /// The probe's name.
     pub probe: &'static str,
     /// The adapter's short name.
@@ -73,7 +73,7 @@ pub struct Outcome {
     /// The same in few letters.
     pub value: String,
     /// What became of it.
-    pub verdict: Verdict,
+    pub verdict: ProbeVerdict,
     /// What is on record for the driver.
     #[serde(serialize_with = "maybe_hex", skip_serializing_if = "Option::is_none")]
     pub recorded: Option<u32>,
@@ -114,7 +114,7 @@ pub struct RecordUse {
 
 /// A probe as JSON has it.
 #[derive(Clone, Debug, Serialize)]
-struct Row {
+struct ProbeRow {
     name: &'static str,
     class: super::Class,
     what: &'static str,
@@ -126,22 +126,22 @@ struct Row {
 
 /// The JSON of `special`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct SpecialReport {
     /// `lightmeter.special/1`.
     pub schema: &'static str,
     /// What was probed.
     pub adapters: Vec<Identity>,
     /// What is on record for them.
     pub records: Vec<RecordUse>,
-    probes: Vec<Row>,
+    probes: Vec<ProbeRow>,
     /// Stages that an adapter lacks.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<Skipped>,
     /// Every result.
-    pub outcomes: Vec<Outcome>,
+    pub outcomes: Vec<ProbeResult>,
 }
 
-impl Report {
+impl SpecialReport {
     /// Whether every promise was kept, and every result is as on record where a record binds.
     #[must_use]
     pub fn is_success(&self) -> bool {
@@ -149,15 +149,15 @@ impl Report {
     }
 
     /// A probe's results on an adapter, stage by stage.
-    pub fn of<'a>(&'a self, probe: &Probe, adapter: &'a Identity) -> impl Iterator<Item = &'a Outcome> {
+    pub fn of<'a>(&'a self, probe: &Probe, adapter: &'a Identity) -> impl Iterator<Item = &'a ProbeResult> {
         let name = probe.name;
         self.outcomes.iter().filter(move |outcome| outcome.probe == name && outcome.adapter == adapter.name)
     }
 
     /// What is to be put on record of an adapter.
     #[must_use]
-    pub fn record(&self, adapter: &Identity) -> Record {
-        let mut record = Record::new(adapter);
+    pub fn record(&self, adapter: &Identity) -> DriverRecord {
+        let mut record = DriverRecord::new(adapter);
         for outcome in self.outcomes.iter().filter(|outcome| outcome.adapter == adapter.name) {
             record.note(outcome.probe, outcome.stage, outcome.bits);
         }
@@ -167,22 +167,22 @@ impl Report {
 
 /// A failure in a line.
 #[must_use]
-pub fn failure(report: &Report, outcome: &Outcome) -> Option<String> {
+pub fn failure(report: &SpecialReport, outcome: &ProbeResult) -> Option<String> {
     let probe = Probe::by_name(outcome.probe)?;
-    let Outcome { adapter, stage, bits, value, .. } = outcome;
+    let ProbeResult { adapter, stage, bits, value, .. } = outcome;
     let is = format!("{} on {adapter}, {stage}: {} is {value} (0x{bits:08x})", probe.name, probe.what);
     match outcome.verdict {
-        Verdict::Broken => {
+        ProbeVerdict::Broken => {
             let promised = probe.promise.words(probe.gives);
             Some(format!("BROKEN {is}, where {} promises {promised}", probe.source.section()))
         }
-        Verdict::Changed => {
+        ProbeVerdict::Changed => {
             let recorded = outcome.recorded.unwrap_or_default();
             let whose = report.records.iter().find(|record| record.adapter == *adapter).map(|record| &record.of);
             let (whose, word) = (whose.map_or("the driver", String::as_str), probe.gives.word(recorded));
             Some(format!("CHANGED {is}, where {whose} is on record with {word} (0x{recorded:08x})"))
         }
-        Verdict::Kept | Verdict::Indeterminate | Verdict::Deviates => None,
+        ProbeVerdict::Kept | ProbeVerdict::Indeterminate | ProbeVerdict::Deviates => None,
     }
 }
 
@@ -190,12 +190,12 @@ pub fn failure(report: &Report, outcome: &Outcome) -> Option<String> {
 ///
 /// # Errors
 /// Where a shader is invalid, or a device fails.
-pub fn run(subjects: &[Subject], code: &Code) -> Result<Report, DeviceError> {
-    let mut report = Report {
+pub fn run(subjects: &[Subject], code: &Code) -> Result<SpecialReport, DeviceError> {
+    let mut report = SpecialReport {
         schema: "lightmeter.special/1",
         adapters: vec![],
         records: vec![],
-        probes: PROBES.iter().map(Row::of).collect(),
+        probes: PROBES.iter().map(ProbeRow::of).collect(),
         skipped: vec![],
         outcomes: vec![],
     };
@@ -207,7 +207,7 @@ pub fn run(subjects: &[Subject], code: &Code) -> Result<Report, DeviceError> {
         report.skipped.extend(results.skipped);
         report.records.extend(results.record);
     }
-    let place = |outcome: &Outcome| PROBES.iter().position(|probe| probe.name == outcome.probe);
+    let place = |outcome: &ProbeResult| PROBES.iter().position(|probe| probe.name == outcome.probe);
     report.outcomes.sort_by_key(place);
     Ok(report)
 }
@@ -215,7 +215,7 @@ pub fn run(subjects: &[Subject], code: &Code) -> Result<Report, DeviceError> {
 /// What became of some probes on one subject.
 pub struct Results {
     /// The results, stage by stage.
-    pub outcomes: Vec<Outcome>,
+    pub outcomes: Vec<ProbeResult>,
     /// Stages that the subject lacks.
     pub skipped: Vec<Skipped>,
     /// What is on record for its driver.
@@ -256,19 +256,19 @@ impl Sink<'_> {
         let recorded = self.on_record.and_then(|of| of.record().get(probe, stage));
         let binding = recorded.filter(|_| self.on_record.is_some_and(|of| of.binds));
         let deviation = Deviation::of(probe, &self.adapter.backend);
-        self.results.outcomes.push(Outcome {
+        self.results.outcomes.push(ProbeResult {
             probe: probe.name,
             adapter: self.adapter.name.clone(),
             stage,
             bits,
             value: probe.gives.word(bits),
-            verdict: Verdict::of(probe.promise, bits, binding, deviation.is_some()),
+            verdict: ProbeVerdict::of(probe.promise, bits, binding, deviation.is_some()),
             recorded,
         });
     }
 }
 
-impl Row {
+impl ProbeRow {
     fn of(probe: &Probe) -> Self {
         Self {
             name: probe.name,
@@ -300,22 +300,26 @@ mod tests {
     #[test]
     fn a_broken_promise_is_worse_than_a_changed_record() {
         let rows = [
-            (Promise::Exactly(1), 1, None, false, Verdict::Kept),
-            (Promise::Exactly(1), NAN, None, false, Verdict::Broken),
-            (Promise::Exactly(1), NAN, Some(NAN), false, Verdict::Broken),
-            (Promise::Exactly(1), NAN, Some(NAN), true, Verdict::Deviates),
-            (Promise::Exactly(1), NAN, None, true, Verdict::Deviates),
-            (Promise::Exactly(1), 1, Some(NAN), true, Verdict::Changed),
-            (Promise::Exactly(1), SENTINEL, None, true, Verdict::Broken),
-            (Promise::OneOf(&[1, 2]), 2, Some(1), false, Verdict::Changed),
-            (Promise::OneOf(&[1, 2]), 2, None, false, Verdict::Kept),
-            (Promise::Indeterminate, NAN, Some(NAN), false, Verdict::Indeterminate),
-            (Promise::Indeterminate, NAN, Some(NAN + 1), false, Verdict::Changed),
-            (Promise::Indeterminate, NAN, None, false, Verdict::Indeterminate),
-            (Promise::Indeterminate, SENTINEL, None, false, Verdict::Broken),
+            (Promise::Exactly(1), 1, None, false, ProbeVerdict::Kept),
+            (Promise::Exactly(1), NAN, None, false, ProbeVerdict::Broken),
+            (Promise::Exactly(1), NAN, Some(NAN), false, ProbeVerdict::Broken),
+            (Promise::Exactly(1), NAN, Some(NAN), true, ProbeVerdict::Deviates),
+            (Promise::Exactly(1), NAN, None, true, ProbeVerdict::Deviates),
+            (Promise::Exactly(1), 1, Some(NAN), true, ProbeVerdict::Changed),
+            (Promise::Exactly(1), SENTINEL, None, true, ProbeVerdict::Broken),
+            (Promise::OneOf(&[1, 2]), 2, Some(1), false, ProbeVerdict::Changed),
+            (Promise::OneOf(&[1, 2]), 2, None, false, ProbeVerdict::Kept),
+            (Promise::Indeterminate, NAN, Some(NAN), false, ProbeVerdict::Indeterminate),
+            (Promise::Indeterminate, NAN, Some(NAN + 1), false, ProbeVerdict::Changed),
+            (Promise::Indeterminate, NAN, None, false, ProbeVerdict::Indeterminate),
+            (Promise::Indeterminate, SENTINEL, None, false, ProbeVerdict::Broken),
         ];
         for (promise, bits, recorded, deviates, verdict) in rows {
-            assert_eq!(Verdict::of(promise, bits, recorded, deviates), verdict, "{promise:?} {bits:x} {recorded:?}");
+            assert_eq!(
+                ProbeVerdict::of(promise, bits, recorded, deviates),
+                verdict,
+                "{promise:?} {bits:x} {recorded:?}"
+            );
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The tables of special values as groups of a run: `special/nan`, `special/infinity`, …, a case for each probe.
 
-use super::run::{EMBEDDED, Outcome, Results, Skipped, Verdict, evaluate};
+use super::run::{EMBEDDED, ProbeResult, ProbeVerdict, Results, Skipped, evaluate};
 use super::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
 use crate::device::DeviceError;
 use crate::options::{Options, Progress};
@@ -104,15 +104,16 @@ impl Table {
                 report.groups.push(skipped(group, self.in_stage(stage), reason));
                 continue;
             }
-            let of_stage: Vec<&Outcome> = results.outcomes.iter().filter(|outcome| outcome.stage == stage).collect();
+            let of_stage: Vec<&ProbeResult> =
+                results.outcomes.iter().filter(|outcome| outcome.stage == stage).collect();
             let mut totals =
                 Totals { cases: of_stage.len() as u64, verdicts: of_stage.len() as u64, ..Totals::default() };
             for outcome in &of_stage {
                 match outcome.verdict {
-                    Verdict::Kept => totals.passed += 1,
-                    Verdict::Broken | Verdict::Changed => totals.failed += 1,
-                    Verdict::Indeterminate => totals.indeterminate += 1,
-                    Verdict::Deviates => {
+                    ProbeVerdict::Kept => totals.passed += 1,
+                    ProbeVerdict::Broken | ProbeVerdict::Changed => totals.failed += 1,
+                    ProbeVerdict::Indeterminate => totals.indeterminate += 1,
+                    ProbeVerdict::Deviates => {
                         totals.expected_failures += 1;
                         let probe = Probe::by_name(outcome.probe);
                         let deviation = probe.and_then(|probe| Deviation::of(probe, &subject.identity.backend));
@@ -149,11 +150,11 @@ fn granted(deviation: &Deviation, adapter: &str, report: &mut Report) {
 }
 
 /// What is known of a result that fails, and how simple its operands are.
-fn failure(outcome: &Outcome, results: &Results, subject: &Subject, options: &Options) -> Option<(u32, Failure)> {
+fn failure(outcome: &ProbeResult, results: &Results, subject: &Subject, options: &Options) -> Option<(u32, Failure)> {
     let probe = Probe::by_name(outcome.probe)?;
     let (reference, interval) = probe.promise.bounds(probe.gives);
     let legal = match (outcome.verdict, outcome.recorded) {
-        (Verdict::Changed, Some(recorded)) => {
+        (ProbeVerdict::Changed, Some(recorded)) => {
             let whose = results.record.as_ref().map_or("the driver", |record| &record.of);
             format!("{}, by the record of {whose}", probe.gives.word(recorded))
         }

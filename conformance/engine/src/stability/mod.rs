@@ -5,7 +5,7 @@
 //! do better than is the *condition*: so many roundings of the result come of one rounding of each input.
 
 pub use lightmeter_judge::stability::{
-    Conditioning, ILL_CONDITIONED, ROUNDING, Standing, UNSTABLE, condition, roundings, size,
+    Conditioning, FormStanding, ILL_CONDITIONED, ROUNDING, UNSTABLE, condition, roundings, size,
 };
 
 use crate::device::DeviceError;
@@ -20,12 +20,12 @@ use lightmeter_document::run::{Cost, Examined};
 use std::collections::BTreeMap;
 
 /// The rows of a hard case: itself, and those near it.
-struct Rows {
+struct HardRows {
     cases: Vec<CaseRef>,
     inputs: Vec<f32>,
 }
 
-impl Rows {
+impl HardRows {
     fn of(member: &Member, places: &[usize], seed: u64) -> Self {
         let near = |&place: &usize| (0..member.near()).map(move |k| CaseRef::Near(place, k));
         let cases: Vec<CaseRef> =
@@ -66,13 +66,13 @@ pub fn examine(
     if places.is_empty() {
         return Ok(());
     }
-    let rows = Rows::of(member, &places, options.seed);
+    let rows = HardRows::of(member, &places, options.seed);
     let conditions: BTreeMap<usize, f64> = rows
         .cases
         .iter()
         .zip(rows.inputs.chunks_exact(member.spec.input_len()))
         .filter(|(case, _)| matches!(case, CaseRef::Hard(_)))
-        .map(|(&case, inputs)| (Rows::place(case), condition(member.formula.as_ref(), inputs, stable.size)))
+        .map(|(&case, inputs)| (HardRows::place(case), condition(member.formula.as_ref(), inputs, stable.size)))
         .collect();
     let exact = references(member, &rows);
     let rivals = rivals(places.iter().filter_map(|&place| naive(place)));
@@ -134,7 +134,7 @@ fn rivals(named: impl Iterator<Item = Naive>) -> BTreeMap<&'static str, Member> 
     catalogue().into_iter().filter_map(member).collect()
 }
 
-fn references(member: &Member, rows: &Rows) -> Vec<f64> {
+fn references(member: &Member, rows: &HardRows) -> Vec<f64> {
     let (inputs, outputs) = (member.spec.input_len(), member.spec.output_len());
     let mut exact = vec![0.0; rows.cases.len() * outputs];
     for (inputs, exact) in rows.inputs.chunks_exact(inputs).zip(exact.chunks_exact_mut(outputs)) {
@@ -147,7 +147,7 @@ fn references(member: &Member, rows: &Rows) -> Vec<f64> {
 fn errors(
     form: &Member,
     stable: Stable,
-    rows: &Rows,
+    rows: &HardRows,
     exact: &[f64],
     subject: &mut Subject,
     options: &Options,
@@ -162,7 +162,7 @@ fn errors(
         for ((words, exact), &case) in of_rows {
             let values: Vec<f64> = words.iter().map(|&bits| f64::from(f32::from_bits(bits))).collect();
             let error = roundings(&values, exact, stable.size);
-            let entry = worst.entry(Rows::place(case)).or_insert((error, case));
+            let entry = worst.entry(HardRows::place(case)).or_insert((error, case));
             if error > entry.0 {
                 *entry = (error, case);
             }

@@ -32,7 +32,7 @@ pub struct Description {
     /// The stage.
     pub stage: String,
     /// The adapter.
-    pub adapter: Adapter,
+    pub adapter: Identity,
     /// The accuracy rules.
     pub profile: String,
     /// A hash of the shader's text; of the version, where the embedded implementation is swept.
@@ -41,27 +41,6 @@ pub struct Description {
     pub inputs: u64,
     /// Inputs of a block.
     pub block: u64,
-}
-
-/// How the adapter is named.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Adapter {
-    /// The short name.
-    pub name: String,
-    /// The device as the driver names it.
-    pub device: String,
-    /// `vulkan`, `gl` or `embedded`.
-    pub backend: String,
-    /// The driver and its version.
-    pub driver: String,
-}
-
-impl From<&Identity> for Adapter {
-    fn from(identity: &Identity) -> Self {
-        let Identity { name, device, backend, driver } = identity.clone();
-        Self { name, device, backend: backend.into(), driver }
-    }
 }
 
 impl Description {
@@ -86,7 +65,7 @@ impl Description {
             output: plan.output_name(),
             unit: unit.into(),
             stage: plan.stage.name().into(),
-            adapter: adapter.into(),
+            adapter: adapter.clone(),
             profile: profile.name.into(),
             shader: hash(text.as_bytes()),
             inputs,
@@ -160,7 +139,7 @@ fn leaves(description: &Description) -> Vec<(String, String)> {
         ("stage", stage),
         ("adapter", adapter.name),
         ("device", adapter.device),
-        ("backend", adapter.backend),
+        ("backend", adapter.backend.into()),
         ("driver", adapter.driver),
         ("profile", profile),
         ("the shader's text", shader),

@@ -18,7 +18,7 @@ pub const SCHEMA: &str = "lightmeter.sweep/1";
 /// A sweep's file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Document {
+pub struct SweepDocument {
     /// [`SCHEMA`].
     pub schema: String,
     /// What is swept.
@@ -78,7 +78,7 @@ pub enum DocumentError {
     NoWhole(String),
 }
 
-impl Document {
+impl SweepDocument {
     /// A sweep of which nothing is done.
     #[must_use]
     pub fn new(sweep: Description, shard: Shard) -> Self {
@@ -281,12 +281,12 @@ mod tests {
     use lightmeter_catalogue::select::catalogue;
 
     /// Five blocks of fog, of which one input fails.
-    fn document(shard: Shard) -> Document {
+    fn document(shard: Shard) -> SweepDocument {
         let catalogue = catalogue();
         let asked = Asked { from: Some(1.0), to: Some(1.002), ..Asked::default() };
         let plan = Plan::new(&catalogue, "fog/exp", &asked).expect("a plan");
         let sweep = Description::new(&plan, &Subject::embedded(), &WGSL, &Code::default());
-        let mut document = Document::new(sweep, shard);
+        let mut document = SweepDocument::new(sweep, shard);
         document.done = document.blocks;
         let inputs = document.sweep.span().inputs_of(shard, document.done);
         document.statistics = Statistics { inputs, passed: inputs - 1, failed: 1, ..Statistics::default() };
@@ -301,7 +301,7 @@ mod tests {
     fn a_file_is_read_back_as_it_was_written() {
         let document = document(Shard::WHOLE);
         let text = document.to_json().expect("JSON");
-        let back = Document::parse(&text).expect("it is whole");
+        let back = SweepDocument::parse(&text).expect("it is whole");
         assert_eq!(back.to_json().expect("JSON"), text);
         assert_eq!(back.statistics, document.statistics);
         assert_eq!(back.statistics.worst, Some(seen(1.001, 9.0)));
@@ -309,7 +309,7 @@ mod tests {
 
     #[test]
     fn files_whose_counts_do_not_add_up_are_refused_though_their_checksum_holds() {
-        type Change = (&'static str, fn(&mut Document));
+        type Change = (&'static str, fn(&mut SweepDocument));
         let change: &[Change] = &[
             ("histogram", |d| d.statistics.histogram.count(1.0)),
             ("verdicts", |d| d.statistics.passed -= 1),
@@ -323,7 +323,7 @@ mod tests {
         for (says, change) in change {
             let mut document = document(Shard::WHOLE);
             change(&mut document);
-            let message = Document::parse(&document.to_json().expect("JSON")).err().unwrap_or_default();
+            let message = SweepDocument::parse(&document.to_json().expect("JSON")).err().unwrap_or_default();
             assert!(message.contains(says), "{says}: {message}");
         }
     }
@@ -335,7 +335,7 @@ mod tests {
             let mut bytes = text.clone().into_bytes();
             bytes[at] ^= 1;
             // What is read as the same numbers, as with other white space, is no damage.
-            let read = String::from_utf8(bytes).ok().and_then(|text| Document::parse(&text).ok());
+            let read = String::from_utf8(bytes).ok().and_then(|text| SweepDocument::parse(&text).ok());
             let differs = read.is_some_and(|read| read.to_json().expect("JSON") != text);
             assert!(!differs, "byte {at} of {text}");
         }
@@ -344,12 +344,12 @@ mod tests {
     #[test]
     fn shards_that_have_no_block_are_not_missed() {
         let count = NonZeroU64::new(8).expect("not 0");
-        let parts: Vec<(PathBuf, Document)> =
+        let parts: Vec<(PathBuf, SweepDocument)> =
             (0..5).map(|index| (PathBuf::from(format!("{index}.json")), document(Shard { index, count }))).collect();
         assert_eq!(parts[0].1.sweep.span().blocks(), 5);
-        let merged = Document::merge(&parts).expect("they are all");
+        let merged = SweepDocument::merge(&parts).expect("they are all");
         assert_eq!((merged.statistics.inputs, merged.statistics.failed), (merged.sweep.inputs, 5));
-        let missing = Document::merge(&parts[1..]).expect_err("one is missing").to_string();
+        let missing = SweepDocument::merge(&parts[1..]).expect_err("one is missing").to_string();
         assert_eq!(missing, "there is no result of shard 1/8");
     }
 }

@@ -17,8 +17,8 @@ mod span;
 mod statistics;
 pub mod text;
 
-pub use description::{Adapter, Description};
-pub use document::{Document, DocumentError, SCHEMA, name_of};
+pub use description::Description;
+pub use document::{DocumentError, SCHEMA, SweepDocument, name_of};
 pub use histogram::Histogram;
 pub use judge::Judge;
 pub use plan::{Asked, Over, Plan, Refused};

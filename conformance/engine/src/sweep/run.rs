@@ -1,7 +1,7 @@
 //! The way of a sweep's data: block after block, with the next ones under way on the device while one is judged.
 
 use super::blend::BytesWork;
-use super::document::{Document, DocumentError};
+use super::document::{DocumentError, SweepDocument};
 use super::judge::Judge;
 use super::plan::{Over, Plan, input};
 use super::statistics::Statistics;
@@ -24,7 +24,7 @@ pub enum SweepError {
     Device(#[from] DeviceError),
     /// The checkpoint.
     #[error(transparent)]
-    Document(#[from] DocumentError),
+    SweepDocument(#[from] DocumentError),
     /// The adapter lacks what it takes.
     #[error("{adapter} cannot do this sweep: {reason}")]
     Lacks {
@@ -55,9 +55,9 @@ pub fn sweep(
     subject: &mut Subject,
     code: &Code,
     profile: &'static Profile,
-    document: &mut Document,
+    document: &mut SweepDocument,
     part: Option<u64>,
-    tell: &mut dyn FnMut(&Document) -> Result<(), DocumentError>,
+    tell: &mut dyn FnMut(&SweepDocument) -> Result<(), DocumentError>,
 ) -> Result<(), SweepError> {
     let last = document.blocks.min(document.done.saturating_add(part.unwrap_or(u64::MAX)));
     if document.done == last {
@@ -89,9 +89,9 @@ pub const UNDER_WAY: usize = 2;
 
 fn drive<W: Work>(
     work: &mut W,
-    document: &mut Document,
+    document: &mut SweepDocument,
     last: u64,
-    tell: &mut dyn FnMut(&Document) -> Result<(), DocumentError>,
+    tell: &mut dyn FnMut(&SweepDocument) -> Result<(), DocumentError>,
 ) -> Result<(), SweepError> {
     let (before, clock) = (document.seconds, Instant::now());
     let (span, shard) = (document.sweep.span(), document.shard());
@@ -197,7 +197,7 @@ mod tests {
         let asked = Asked { from: Some(1.0), to: Some(1.125), ..Asked::default() };
         let plan = Plan::new(&catalogue, "fog/exp", &asked).expect("a plan");
         let sweep = Description::new(&plan, &Subject::embedded(), &WGSL, &Code::default());
-        let mut document = Document::new(sweep, Shard::WHOLE);
+        let mut document = SweepDocument::new(sweep, Shard::WHOLE);
         let last = document.blocks;
         let mut told = 0;
         let lost = drive(&mut Lost(0), &mut document, last, &mut |_| {
@@ -207,6 +207,6 @@ mod tests {
         assert!(matches!(lost, Err(SweepError::Device(DeviceError::Failed(_)))), "{lost:?}");
         assert_eq!((document.done, told), (3, 3));
         let text = document.to_json().expect("JSON");
-        assert_eq!(Document::parse(&text).expect("it adds up").done, 3);
+        assert_eq!(SweepDocument::parse(&text).expect("it adds up").done, 3);
     }
 }

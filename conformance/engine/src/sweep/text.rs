@@ -1,6 +1,6 @@
 //! A sweep's result for people.
 
-use super::document::Document;
+use super::document::SweepDocument;
 use super::statistics::{Exact, Place, Seen};
 use lightmeter_document::Number;
 use lightmeter_document::thousands;
@@ -13,7 +13,7 @@ const BAR: usize = 40;
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn write(document: &Document, text: &str, rerun: &str, out: &mut impl Write) -> Result {
+pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl Write) -> Result {
     let (sweep, found) = (&document.sweep, &document.statistics);
     let unit = &sweep.unit;
     writeln!(out, "{}: {text}", sweep.formula)?;
@@ -97,7 +97,7 @@ pub fn write(document: &Document, text: &str, rerun: &str, out: &mut impl Write)
     writeln!(out, "{mark} {} of {} inputs outside the bound", thousands(found.failed), thousands(found.inputs))
 }
 
-fn write_seen(document: &Document, seen: &Seen, rerun: &str, out: &mut impl Write) -> Result {
+fn write_seen(document: &SweepDocument, seen: &Seen, rerun: &str, out: &mut impl Write) -> Result {
     let sweep = &document.sweep;
     let Exact(value) = seen.value;
     let unwritten = if value.to_bits() == lightmeter_scene::target::SENTINEL { ", never written" } else { "" };
@@ -131,7 +131,7 @@ pub fn place(over: &str, place: Place) -> String {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn bars(document: &Document, out: &mut impl Write) -> Result {
+pub fn bars(document: &SweepDocument, out: &mut impl Write) -> Result {
     let (found, unit) = (&document.statistics, &document.sweep.unit);
     let bins = found.histogram.bins();
     let most = bins.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
@@ -159,7 +159,7 @@ pub fn bars(document: &Document, out: &mut impl Write) -> Result {
     clippy::cast_precision_loss,
     reason = "a rate that is read by people"
 )]
-pub fn rate(document: &Document) -> u64 {
+pub fn rate(document: &SweepDocument) -> u64 {
     (document.statistics.inputs as f64 / document.seconds.max(1e-9)) as u64
 }
 

@@ -1,11 +1,11 @@
 //! Attenuation and spotlights with a step wrong.
 
-use super::super::row::Row;
+use super::super::row::InputRow;
 use super::Body;
 use lightmeter_reference::departure::smoothstep;
 use lightmeter_reference::{Real, attenuation};
 
-pub(super) fn falloff<R: Real>(body: Body, x: &Row<'_, R>) -> Option<R> {
+pub(super) fn falloff<R: Real>(body: Body, x: &InputRow<'_, R>) -> Option<R> {
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
     if let (Some(l), Some(axis)) = (x.vector::<3>("l"), x.vector::<3>("axis")) {
         let (cosine, cutoff) = ((-l).dot(axis), x.scalar("cutoff_cosine")?);

@@ -1,11 +1,11 @@
 //! Colours and their storage with a step wrong.
 
-use super::super::row::{Row, put};
+use super::super::row::{InputRow, put};
 use super::Body;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_reference::{Real, Vec4, Vector, color};
 
-pub(super) fn colors<R: Real>(spec: &Spec, body: Body, x: &Row<'_, R>, out: &mut [R]) -> Option<()> {
+pub(super) fn colors<R: Real>(spec: &Spec, body: Body, x: &InputRow<'_, R>, out: &mut [R]) -> Option<()> {
     let (zero, one, byte) = (R::literal(0.0), R::literal(1.0), R::literal(255.0));
     let decodes = spec.id == "color/srgb-decode";
     match body {

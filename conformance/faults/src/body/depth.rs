@@ -1,6 +1,6 @@
 //! The depth test, and distances read back from depth with a step wrong.
 
-use super::super::row::{Row, put};
+use super::super::row::{InputRow, put};
 use super::Body;
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_reference::depth::passes;
@@ -24,7 +24,7 @@ pub(super) fn other_compare(body: Body, compare: Compare) -> Compare {
     }
 }
 
-pub(super) fn depths<R: Real>(spec: &Spec, body: Body, x: &Row<'_, R>, out: &mut [R]) -> Option<()> {
+pub(super) fn depths<R: Real>(spec: &Spec, body: Body, x: &InputRow<'_, R>, out: &mut [R]) -> Option<()> {
     let (half, one) = (R::literal(0.5), R::literal(1.0));
     if let Kind::Depth(by) = spec.kind {
         let clamp = |depth: R| if body == Body::DepthNotClamped { depth } else { interpolation::frag_depth(depth) };

@@ -1,11 +1,11 @@
 //! Interpolation, coverage and the viewport with a step wrong.
 
-use super::super::row::{Row, put};
+use super::super::row::{InputRow, put};
 use super::Body;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_reference::{Real, Vec4, Vector, interpolation};
 
-pub(super) fn interpolated<R: Real>(spec: &Spec, body: Body, x: &Row<'_, R>, out: &mut [R]) -> Option<()> {
+pub(super) fn interpolated<R: Real>(spec: &Spec, body: Body, x: &InputRow<'_, R>, out: &mut [R]) -> Option<()> {
     let (zero, one, half) = (R::literal(0.0), R::literal(1.0), R::literal(0.5));
     let opengl = spec.id.ends_with("-opengl");
     match body {

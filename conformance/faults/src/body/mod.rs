@@ -6,7 +6,7 @@ mod depth;
 mod interpolation;
 mod vector;
 
-use super::row::{Row, put};
+use super::row::{InputRow, put};
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_reference::{Real, Vector};
 use lightmeter_scene::depth::Compare;
@@ -215,7 +215,7 @@ pub(super) fn concerns(spec: &Spec, body: Body) -> bool {
 
 /// The formula with that step wrong; `None` where it has none such.
 pub(super) fn evaluate<R: Real>(spec: &Spec, body: Body, numbers: &[R], out: &mut [R]) -> Option<()> {
-    let x = Row::new(spec, numbers);
+    let x = InputRow::new(spec, numbers);
     match spec.family() {
         "vector" => put(out, 0, vector::vectors(body, &x)?),
         "attenuation" => put(out, 0, Vector([attenuation::falloff(body, &x)?])),

@@ -1,11 +1,11 @@
 //! Vectors and transforms with a step wrong.
 
-use super::super::row::Row;
+use super::super::row::InputRow;
 use super::Body;
 use lightmeter_reference::vector::{light_with_model, reflect};
 use lightmeter_reference::{Real, Vec3, Vec4, Vector};
 
-pub(super) fn vectors<R: Real>(body: Body, x: &Row<'_, R>) -> Option<Vec3<R>> {
+pub(super) fn vectors<R: Real>(body: Body, x: &InputRow<'_, R>) -> Option<Vec3<R>> {
     let (zero, one, two) = (R::literal(0.0), R::literal(1.0), R::literal(2.0));
     let divided = |v: Vec3<R>, by: R| R::if_ge(zero, by, || Vector::splat(zero), || v.map(|c| c / by));
     let normal = || -> Option<_> {

@@ -4,7 +4,7 @@
 mod model;
 mod shade;
 
-use super::row::Row;
+use super::row::InputRow;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_reference::Real;
 pub(super) use model::Twist;
@@ -21,7 +21,7 @@ pub(super) fn evaluate<R: Real>(spec: &Spec, twists: &[Twist], numbers: &[R], ou
     for &twist in twists {
         model.twist(twist);
     }
-    model.evaluate(&Row::new(spec, numbers), out)
+    model.evaluate(&InputRow::new(spec, numbers), out)
 }
 
 #[cfg(test)]

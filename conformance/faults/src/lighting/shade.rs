@@ -1,6 +1,6 @@
 //! The model evaluated.
 
-use super::super::row::{Row, put};
+use super::super::row::{InputRow, put};
 use super::model::{
     Arrangement, Attenuation, Cone, Cosine, Edge, Incidence, LitAt, Lobe, Mirror, Model, Source, Strength, View,
 };
@@ -130,7 +130,7 @@ impl Model {
         [ambient, diffuse, specular]
     }
 
-    fn weights<R: Real>(&self, x: &Row<'_, R>, light: Vec3<R>, p: Vec3<R>, l: Vec3<R>) -> Option<[R; 3]> {
+    fn weights<R: Real>(&self, x: &InputRow<'_, R>, light: Vec3<R>, p: Vec3<R>, l: Vec3<R>) -> Option<[R; 3]> {
         let one = R::literal(1.0);
         let atten = match self.attenuation {
             Attenuation::None => one,
@@ -167,7 +167,7 @@ impl Model {
         (diffuse + specular).x()
     }
 
-    fn surface<R: Real>(&self, source: Source, x: &Row<'_, R>, out: &mut [R]) -> Option<()> {
+    fn surface<R: Real>(&self, source: Source, x: &InputRow<'_, R>, out: &mut [R]) -> Option<()> {
         let zero = Vector([0.0; 3].map(R::literal));
         let p: Vec3<R> = x.vector("p").unwrap_or(zero);
         let n = self.normal(x.vector("normal")?);
@@ -190,7 +190,7 @@ impl Model {
         Some(())
     }
 
-    fn two_lights<R: Real>(&self, x: &Row<'_, R>, out: &mut [R]) -> Option<()> {
+    fn two_lights<R: Real>(&self, x: &InputRow<'_, R>, out: &mut [R]) -> Option<()> {
         let (p, n): (Vec3<R>, _) = (x.vector("p")?, self.normal(x.vector("normal")?));
         let one = R::literal(1.0);
         let material = [Vector::splat(one), x.vector("diffuse")?, x.vector("specular")?];
@@ -208,7 +208,7 @@ impl Model {
         Some(())
     }
 
-    fn along_edge<R: Real>(&self, edge: Edge, x: &Row<'_, R>) -> Option<R> {
+    fn along_edge<R: Real>(&self, edge: Edge, x: &InputRow<'_, R>) -> Option<R> {
         let [pa, na, pb, nb]: [Vec3<R>; 4] = [x.vector("pa")?, x.vector("na")?, x.vector("pb")?, x.vector("nb")?];
         let (t, position) = (x.scalar("t")?, x.vector("position")?);
         let material = [x.scalar("kd")?, x.scalar("ks")?, x.scalar("shininess")?];
@@ -232,7 +232,7 @@ impl Model {
         })
     }
 
-    fn face<R: Real>(&self, x: &Row<'_, R>) -> Option<R> {
+    fn face<R: Real>(&self, x: &InputRow<'_, R>) -> Option<R> {
         let [a, b, c]: [Vec3<R>; 3] = [x.vector("a")?, x.vector("b")?, x.vector("c")?];
         let material = [x.scalar("kd")?, x.scalar("ks")?, x.scalar("shininess")?];
         let p = match self.lit_at {
@@ -244,7 +244,7 @@ impl Model {
         Some(self.intensity([face_normal(a, b, c), l, self.eye(p)], material))
     }
 
-    pub(super) fn evaluate<R: Real>(&self, x: &Row<'_, R>, out: &mut [R]) -> Option<()> {
+    pub(super) fn evaluate<R: Real>(&self, x: &InputRow<'_, R>, out: &mut [R]) -> Option<()> {
         match self.arrangement {
             Arrangement::Diffuse(source, l) => {
                 let given: Vec3<R> = x.vector(l)?;

@@ -28,14 +28,14 @@ pub struct SceneRow {
 
 /// What the scenes catch.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Record {
+pub struct SceneRecord {
     /// Each mistake.
     pub rows: Vec<SceneRow>,
     /// Scenes in which nothing is wrong and something fails all the same.
     pub alarms: Vec<String>,
 }
 
-impl Record {
+impl SceneRecord {
     /// Whether every mistake is caught, and nothing that is right is flagged.
     #[must_use]
     pub fn is_good(&self) -> bool {
@@ -54,7 +54,7 @@ impl Record {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn text(record: &Record, out: &mut impl Write) -> Result {
+pub fn text(record: &SceneRecord, out: &mut impl Write) -> Result {
     let [caught, named] = record.counts();
     writeln!(out, "scenes: {} mistakes, caught {caught} times, told by name first {named} times", record.rows.len())?;
     for row in &record.rows {
@@ -85,7 +85,7 @@ pub fn selftest(
     size: u32,
     profile: &Profile,
     progress: &(impl Fn(&str) + Sync),
-) -> std::result::Result<Record, lightmeter_catalogue::scene::SceneError> {
+) -> std::result::Result<SceneRecord, lightmeter_catalogue::scene::SceneError> {
     let mut rows: Vec<SceneRow> = SCENE_FAULTS
         .iter()
         .map(|fault| SceneRow {
@@ -131,7 +131,7 @@ pub fn selftest(
             row.caught.push(id.clone());
         }
     }
-    Ok(Record { rows, alarms })
+    Ok(SceneRecord { rows, alarms })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use lightmeter_reference::color;
 use lightmeter_scene::blend::{Factor, State};
 use lightmeter_scene::frame::{Cull, Filter, Fog, FogForm, Frame, Light, Material, Place, Shading, Wrap};
 use lightmeter_scene::raster::Provoking;
-use lightmeter_scene::shading::{Ambient, Distance, Frequency, Gate, LightAmbient, Normals, Specular, Viewer};
+use lightmeter_scene::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 
 /// A mistake of a renderer.
 #[derive(Debug)]
@@ -115,8 +115,8 @@ faults! {
         frame.departures.highlight_over_texture = true;
     };
     Frame "gate" "the highlight on what is turned away from the light is of the other dialect" |frame| each_shading(frame, |shading| shading.gate = match shading.gate {
-        Gate::Documents => Gate::OpenGl,
-        Gate::OpenGl => Gate::Documents,
+        SpecularGate::Documents => SpecularGate::OpenGl,
+        SpecularGate::OpenGl => SpecularGate::Documents,
     });
     Frame "viewer" "the viewer is taken to be at the other place, at infinity or at the eye" |frame| each_shading(frame, |shading| shading.viewer = match shading.viewer {
         Viewer::Local => Viewer::NonLocal,

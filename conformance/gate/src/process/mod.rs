@@ -107,7 +107,7 @@ enum Ended {
 
 /// What a gate over a process came to, besides the ledger.
 #[derive(Clone, Debug, Default)]
-pub struct Outcome {
+pub struct Ending {
     /// Who answered.
     pub hello: Hello,
     /// How often it was started.
@@ -144,13 +144,13 @@ pub fn ask(
     plan: &Plan,
     asking: Asking<'_>,
     progress: &mut impl FnMut(u64),
-) -> Result<Outcome, ProcessError> {
+) -> Result<Ending, ProcessError> {
     let mut session = Session {
         plan,
         asking,
         deadline: asking.limits.total.map(|total| Instant::now() + total),
         running: None,
-        outcome: Outcome::default(),
+        outcome: Ending::default(),
         number: 0,
         size: BATCH[0],
         answered: 0,
@@ -185,7 +185,7 @@ struct Session<'a> {
     asking: Asking<'a>,
     deadline: Option<Instant>,
     running: Option<Running>,
-    outcome: Outcome,
+    outcome: Ending,
     number: u64,
     /// Cases that are asked at once.
     size: usize,

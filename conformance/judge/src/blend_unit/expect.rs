@@ -21,7 +21,7 @@ use lightmeter_scene::target::{Encoding, TargetFormat};
 
 /// The reference and the legal values of a pixel, in its target's units. From −∞ to ∞ anything is legal, NaN included.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expected {
+pub struct ExpectedPixel {
     /// What the formula gives, not rounded.
     pub reference: Units,
     /// The least legal value.
@@ -40,7 +40,13 @@ const ENCODING: f64 = 1.0 / 1024.0;
 
 /// What a case should give on a target, by rules that may be faulty, and what a profile makes legal there.
 #[must_use]
-pub fn expect(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules, profile: &Profile) -> Expected {
+pub fn expect(
+    program: Program,
+    target: TargetFormat,
+    case: &UnitCase,
+    rules: &Rules,
+    profile: &Profile,
+) -> ExpectedPixel {
     let (case, target) = (&rules.case(case), rules.target(target));
     let start = pixel::stored(target, case.dst);
     let reference = reference(program, target, case, rules, start);
@@ -49,7 +55,7 @@ pub fn expect(program: Program, target: TargetFormat, case: &UnitCase, rules: &R
         Encoding::Float16 => profile.scope(|| legal_on_floats::<F16>(program, case, rules, start)),
         Encoding::Unorm8 | Encoding::Srgb8 => legal_in_steps(program, target, case, rules, start),
     };
-    let mut expected = Expected { reference, low, high };
+    let mut expected = ExpectedPixel { reference, low, high };
     if program.is_special() {
         for k in (0..4).filter(|&k| promises_nothing(case, k)) {
             (expected.low[k], expected.high[k]) = (f64::NEG_INFINITY, f64::INFINITY);

@@ -1,12 +1,12 @@
 //! Verdicts on the pixels of a state, the tiers that they fall in, and what they say together of how results are stored.
 
 use super::embedded;
-use super::expect::{Expected, expect};
+use super::expect::{ExpectedPixel, expect};
 use super::pixel::Units;
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::store::{NEAR, StoreCounts};
 use crate::devices::{BlendDeviation, Known};
-use crate::{is_worse, margin, simplicity, worse};
+use crate::{Outcome, Verdict, is_worse, margin, simplicity, worse};
 use lightmeter_arithmetic::{F16, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_document::run::Tiers;
@@ -16,7 +16,7 @@ use lightmeter_scene::target::{Encoding, TargetFormat};
 
 /// A state by one of its routes on a target, and the profile that its pixels are judged by.
 #[derive(Clone, Copy, Debug)]
-pub struct Drawn {
+pub struct DrawnState {
     /// What is drawn.
     pub program: Program,
     /// How it reaches the unit.
@@ -27,41 +27,7 @@ pub struct Drawn {
     pub profile: &'static Profile,
 }
 
-/// What became of one component.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// Legal.
-    Pass,
-    /// Not.
-    Fail,
-    /// Anything is.
-    Indeterminate,
-}
-
-impl Outcome {
-    /// The name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Fail => "fail",
-            Self::Indeterminate => "indeterminate",
-        }
-    }
-}
-
-/// A verdict on one component of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Verdict {
-    /// Legal or not.
-    pub outcome: Outcome,
-    /// The error in ULP of a float format, in steps of one of 8 bits.
-    pub error: f64,
-    /// The distance from the reference over the distance to the end of what is legal on that side.
-    pub margin: f64,
-}
-
-impl Expected {
+impl ExpectedPixel {
     /// Judges a component.
     #[must_use]
     pub fn judge(&self, target: TargetFormat, k: usize, value: f64) -> Verdict {
@@ -94,7 +60,7 @@ fn distance(value: f64, reference: f64, most: f64) -> f64 {
 
 /// The pixels of a state, or of a group of them.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub struct UnitTally {
     /// Pixels.
     pub cases: u64,
     /// Components judged.
@@ -134,10 +100,20 @@ fn tells_stores(state: Separate, case: &UnitCase) -> bool {
 /// Failing pixels of a state that are kept.
 const KEPT: usize = 16;
 
-impl Tally {
+impl UnitTally {
+    /// Judges pixels, each with its case, in their order.
+    pub fn pixels(&mut self, drawn: DrawnState, known: &Known, pixels: impl IntoIterator<Item = (UnitCase, Units)>) {
+        // What is legal of each is computed inside of this scope, so that none has to enter one of its own.
+        drawn.profile.scope(|| {
+            for (place, (case, pixel)) in pixels.into_iter().enumerate() {
+                self.pixel(drawn, known, place, &case, pixel);
+            }
+        });
+    }
+
     /// Judges a pixel, the `place`-th.
-    pub fn pixel(&mut self, drawn: Drawn, known: &Known, place: usize, case: &UnitCase, pixel: Units) {
-        let Drawn { program, route, target, profile } = drawn;
+    pub fn pixel(&mut self, drawn: DrawnState, known: &Known, place: usize, case: &UnitCase, pixel: Units) {
+        let DrawnState { program, route, target, profile } = drawn;
         let expected = expect(program, target, case, &Rules::RIGHT, profile);
         self.cases += 1;
         let (state, mask) = program.layer(0);
@@ -234,7 +210,7 @@ pub fn count_tier(tiers: &mut Tiers, reference: f64, value: f64, outcome: Outcom
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// What was drawn.
-    pub drawn: Drawn,
+    pub drawn: DrawnState,
     /// The case.
     pub case: UnitCase,
     /// What was left.
@@ -244,7 +220,7 @@ pub struct Sample {
 impl Sample {
     /// Whether a fault would have left what was left: a value that its rules allow, or the very step that a store gives.
     fn is_as_by(&self, fault: &Fault) -> bool {
-        let Drawn { program, target, profile, .. } = self.drawn;
+        let DrawnState { program, target, profile, .. } = self.drawn;
         if fault.rules.store != Store::Nearest {
             let stored = embedded::blend(program, target, &self.case, &fault.rules);
             return (0..4).all(|k| stored[k].to_bits() == self.pixel[k].to_bits());
@@ -284,14 +260,14 @@ mod tests {
         UnitCase { sources: [[src; 4]; MOST_LAYERS], layers: 1, dst: [dst; 4], constant: [0.0; 4] }
     }
 
-    fn tally(target: TargetFormat, case: &UnitCase, pixels: &[Units]) -> Tally {
-        let drawn = Drawn {
+    fn tally(target: TargetFormat, case: &UnitCase, pixels: &[Units]) -> UnitTally {
+        let drawn = DrawnState {
             program: one_plus_one(),
             route: Route::Native,
             target,
             profile: &lightmeter_arithmetic::profile::WGSL,
         };
-        let mut tally = Tally::default();
+        let mut tally = UnitTally::default();
         for (place, pixel) in pixels.iter().enumerate() {
             tally.pixel(drawn, &Known::default(), place, case, *pixel);
         }
@@ -327,8 +303,9 @@ mod tests {
         for (src, dst) in [(f32::NAN, 0.5), (0.5, f32::NEG_INFINITY)] {
             let target = TargetFormat::Rgba32Float;
             let program = Program::Special(State { equation: Equation::Add, src: Factor::One, dst: Factor::One });
-            let drawn = Drawn { program, route: Route::Native, target, profile: &lightmeter_arithmetic::profile::WGSL };
-            let mut tally = Tally::default();
+            let drawn =
+                DrawnState { program, route: Route::Native, target, profile: &lightmeter_arithmetic::profile::WGSL };
+            let mut tally = UnitTally::default();
             tally.pixel(drawn, &Known::default(), 0, &case(src, dst), [f64::NAN; 4]);
             assert_eq!((tally.passed, tally.failed, tally.indeterminate), (0, 0, 4));
         }

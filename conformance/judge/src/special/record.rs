@@ -22,7 +22,7 @@ const SCHEMA: &str = "lightmeter.special-record/1";
 /// A driver's results: bits as `0x…` by stage, by the probe's name.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Record {
+pub struct DriverRecord {
     schema: String,
     /// The adapter's short name.
     pub name: String,
@@ -40,19 +40,19 @@ pub struct Record {
 /// A record as it concerns an adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct OnRecord {
-    record: &'static Record,
+    record: &'static DriverRecord,
     /// Whether another result fails.
     pub binds: bool,
 }
 
-static RECORDS: LazyLock<Vec<Record>> = LazyLock::new(|| {
+static RECORDS: LazyLock<Vec<DriverRecord>> = LazyLock::new(|| {
     let read = |(name, text): &(&str, &str)| {
         serde_json::from_str(text).unwrap_or_else(|error| panic!("conformance/judge/records/special/{name}: {error}"))
     };
     FILES.iter().map(read).collect()
 });
 
-impl Record {
+impl DriverRecord {
     /// A record without results.
     #[must_use]
     pub fn new(identity: &Identity) -> Self {
@@ -104,7 +104,7 @@ impl OnRecord {
         Self::among(&RECORDS, identity, std::env::consts::ARCH)
     }
 
-    fn among(records: &'static [Record], identity: &Identity, processor: &str) -> Option<Self> {
+    fn among(records: &'static [DriverRecord], identity: &Identity, processor: &str) -> Option<Self> {
         let mut same = records.iter().filter(|r| r.backend == identity.backend);
         let found = same.clone().find(|record| record.binds(identity, processor));
         let binds = found.is_some();
@@ -114,7 +114,7 @@ impl OnRecord {
 
     /// The record.
     #[must_use]
-    pub const fn record(&self) -> &'static Record {
+    pub const fn record(&self) -> &'static DriverRecord {
         self.record
     }
 }
@@ -128,8 +128,8 @@ mod tests {
         Identity { name: "lavapipe".into(), device: device.into(), backend: "vulkan".into(), driver: driver.into() }
     }
 
-    fn one(identity: &Identity) -> &'static [Record] {
-        let mut record = Record::new(identity);
+    fn one(identity: &Identity) -> &'static [DriverRecord] {
+        let mut record = DriverRecord::new(identity);
         record.note("nan-plus-one", "compute", 0xffc0_0000);
         Box::leak(Box::new([record]))
     }
@@ -161,7 +161,7 @@ mod tests {
         let whose = identity("a", "b");
         let record = &one(&whose)[0];
         let text = serde_json::to_string(record).expect("a record is JSON");
-        let again: Record = serde_json::from_str(&text).expect("it reads back");
+        let again: DriverRecord = serde_json::from_str(&text).expect("it reads back");
         assert_eq!(&again, record);
         let probe = Probe::by_name("nan-plus-one").expect("it is in the table");
         assert_eq!((again.get(probe, "compute"), again.get(probe, "fragment")), (Some(0xffc0_0000), None));

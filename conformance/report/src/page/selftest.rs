@@ -19,7 +19,7 @@ pub struct Run {
     calibration: Vec<Resolution>,
     #[serde(default)]
     rows: Vec<UnitRow>,
-    scenes: Option<scenes::Record>,
+    scenes: Option<scenes::SceneRecord>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -172,7 +172,7 @@ fn clean(record: &Record, out: &mut impl Write) -> Written {
     writeln!(out)
 }
 
-fn drawn(record: &scenes::Record, out: &mut impl Write) -> Written {
+fn drawn(record: &scenes::SceneRecord, out: &mut impl Write) -> Written {
     let [caught, named] = record.counts();
     writeln!(out, "\n## Mistakes of whole renderers\n")?;
     writeln!(

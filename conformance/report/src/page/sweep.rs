@@ -4,14 +4,14 @@ use lightmeter_catalogue::select::catalogue;
 use lightmeter_document::Number;
 use lightmeter_document::thousands;
 use lightmeter_engine::sweep::text::{bars, error, margin, rate};
-use lightmeter_engine::sweep::{Asked, Document, Exact, PRESETS, Place, Plan, Seen};
+use lightmeter_engine::sweep::{Asked, Exact, PRESETS, Place, Plan, Seen, SweepDocument};
 use std::fmt::{Result, Write};
 
 /// The page in Markdown.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(results: &[Document], out: &mut impl Write) -> Result {
+pub fn markdown(results: &[SweepDocument], out: &mut impl Write) -> Result {
     writeln!(out, "# Sweeps: every float of a range, every byte of a blend mode\n")?;
     writeln!(out, "Made from the results of `lightmeter sweep`, one file each:\n\n```")?;
     for (place, result) in results.iter().enumerate() {
@@ -46,7 +46,7 @@ pub fn markdown(results: &[Document], out: &mut impl Write) -> Result {
 }
 
 /// What a result was asked for by, as on the command line: what its ready-made sweep says is left out.
-fn command(result: &Document) -> String {
+fn command(result: &SweepDocument) -> String {
     let sweep = &result.sweep;
     let mut command = sweep.formula.clone();
     let catalogue = catalogue();
@@ -68,8 +68,8 @@ fn command(result: &Document) -> String {
 }
 
 /// A file's name that no other of these results has.
-fn stem(results: &[Document], place: usize) -> String {
-    let named = |result: &Document| {
+fn stem(results: &[SweepDocument], place: usize) -> String {
+    let named = |result: &SweepDocument| {
         format!("{}-{}-{}", result.sweep.formula.replace('/', "-"), result.sweep.adapter.name, result.sweep.stage)
     };
     let name = named(&results[place]);
@@ -77,7 +77,7 @@ fn stem(results: &[Document], place: usize) -> String {
     if earlier == 0 { name } else { format!("{name}-{}", earlier + 1) }
 }
 
-fn table(results: &[Document], out: &mut impl Write) -> Result {
+fn table(results: &[SweepDocument], out: &mut impl Write) -> Result {
     writeln!(
         out,
         "| formula | over | adapter, stage | inputs | outside | deviations | indeterminate | NaN | worst error | at | margin | inputs a second |"
@@ -106,7 +106,7 @@ fn table(results: &[Document], out: &mut impl Write) -> Result {
     Ok(())
 }
 
-fn range(result: &Document) -> String {
+fn range(result: &SweepDocument) -> String {
     let sweep = &result.sweep;
     let part = if result.shard == "1/1" { String::new() } else { format!(", shard {}", result.shard) };
     match (sweep.from, sweep.to) {
@@ -124,7 +124,7 @@ fn place(seen: &Seen) -> String {
     }
 }
 
-fn section(result: &Document, out: &mut impl Write) -> Result {
+fn section(result: &SweepDocument, out: &mut impl Write) -> Result {
     let (sweep, found) = (&result.sweep, &result.statistics);
     let what = PRESETS.iter().find(|preset| preset.formula == sweep.formula).map(|preset| preset.what);
     writeln!(out, "\n## {} on {}, {}\n", sweep.formula, sweep.adapter.name, sweep.stage)?;

@@ -15,10 +15,10 @@ use lightmeter::document::Number;
 use lightmeter::document::run::Examined;
 use lightmeter::evaluate::Evaluator;
 use lightmeter::filter::Filter;
-use lightmeter::judge::{Outcome, judge};
+use lightmeter::judge::judge;
 use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
 use lightmeter::stability;
-use lightmeter::stability::{Conditioning, Standing};
+use lightmeter::stability::{Conditioning, FormStanding};
 use lightmeter::subject::Subject;
 use lightmeter::tally::{by_name, intervals};
 use serde_json::{Value, json};
@@ -189,12 +189,7 @@ fn find<'a>(catalogue: &'a [Member], id: &str) -> anyhow::Result<(&'a Member, Ca
 
 fn outcome(bits: u32, reference: f64, legal: &Accept) -> (&'static str, f64) {
     let verdict = judge(bits, reference, legal);
-    let name = match verdict.outcome {
-        Outcome::Pass => "pass",
-        Outcome::Fail => "fail",
-        Outcome::Indeterminate => "indeterminate",
-    };
-    (name, verdict.error_ulp)
+    (verdict.outcome.name(), verdict.error)
 }
 
 fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) -> anyhow::Result<String> {
@@ -232,7 +227,8 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
         )?;
     }
     writeln!(text, "\nconditioning\n  {}", known.conditioning.text())?;
-    let is_promised_less = matches!(known.conditioning.standing, Standing::Unstable | Standing::NothingPromised);
+    let is_promised_less =
+        matches!(known.conditioning.standing, FormStanding::Unstable | FormStanding::NothingPromised);
     if let Some(stable) = spec.stable.filter(|_| is_promised_less) {
         writeln!(
             text,

@@ -2,7 +2,7 @@
 
 use super::super::options::Choice;
 use lightmeter::document::Number;
-use lightmeter::special::run::{Outcome, Results, Skipped, evaluate};
+use lightmeter::special::run::{ProbeResult, Results, Skipped, evaluate};
 use lightmeter::special::{FAMILY, Gives, Probe};
 use lightmeter::subject::Subject;
 use serde_json::{Value, json};
@@ -51,7 +51,7 @@ pub(super) fn show(
             writeln!(text, "  {:<9} skipped: {}", skipped.stage, skipped.reason)?;
         }
         for outcome in &found.outcomes {
-            let Outcome { stage, value, bits, .. } = outcome;
+            let ProbeResult { stage, value, bits, .. } = outcome;
             let recorded = outcome.recorded.map(|recorded| format!("; on record: {}", probe.gives.word(recorded)));
             let verdict = outcome.verdict.name();
             writeln!(text, "  {stage:<9} {value}  0x{bits:08x}  {verdict}{}", recorded.unwrap_or_default())?;

@@ -2,15 +2,15 @@
 
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::draw::{Piece, draw};
-use lightmeter::blend_unit::expect::{Expected, expect};
+use lightmeter::blend_unit::expect::{ExpectedPixel, expect};
 use lightmeter::blend_unit::pixel::Units;
 use lightmeter::blend_unit::rules::{Rules, unit_name};
 use lightmeter::blend_unit::run::targets_of;
-use lightmeter::blend_unit::tally::Outcome;
 use lightmeter::cases::Stage;
 use lightmeter::cases::blend::Program;
 use lightmeter::device::Code;
 use lightmeter::document::Number;
+use lightmeter::judge::Outcome;
 use lightmeter::select::Member;
 use lightmeter::subject::Subject;
 use lightmeter_scene::blend::{Route, routes};
@@ -23,7 +23,7 @@ pub(super) struct UnitAnswer {
     adapter: String,
     target: TargetFormat,
     route: Route,
-    pixel: Result<(Units, Expected), &'static str>,
+    pixel: Result<(Units, ExpectedPixel), &'static str>,
 }
 
 /// What the blend unit makes of it, on each target and by each route.

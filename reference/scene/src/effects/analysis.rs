@@ -2,7 +2,7 @@
 
 use super::{Called, Effect, Reason, Subject};
 use crate::frame::{Draw, Filter, FogForm, Frame, Light, Place, Sampled};
-use crate::shading::{Ambient, Distance, Frequency, Gate, LightAmbient, Normals, Specular, Viewer};
+use crate::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 use std::fmt;
 
 /// The analysis of one draw.
@@ -81,7 +81,7 @@ impl Analysis<'_> {
             let local = shading.viewer == Viewer::Local;
             let why = if local { "the viewer is at the eye" } else { "the viewer is infinitely far away" };
             self.choice(Effect::LocalViewer, local, why);
-            let gated = shading.gate == Gate::OpenGl;
+            let gated = shading.gate == SpecularGate::OpenGl;
             let why = if gated {
                 "a face that is turned away has no highlight"
             } else {

@@ -136,7 +136,7 @@ choice! {
 
 choice! {
     /// Whether a surface that faces away from a light can have its highlight (ruling 9).
-    Gate default Documents is (shading::Gate)
+    Gate default Documents is (shading::SpecularGate)
     /// It can.
     Documents "documents"
     /// It cannot.

@@ -25,11 +25,13 @@ pub(in crate::cases) fn interval(kind: Raster, inputs: &[f32], subpixel_bits: u3
     let snap = f64::from(2.0_f32).powi(-i32::try_from(subpixel_bits).unwrap_or(0));
     match kind {
         Raster::TriangleAttributes => {
-            let [perspective, linear, ..] = Drawn::new(inputs, snap).map_or([Accept::ANY; 4], |drawn| drawn.fragment());
+            let [perspective, linear, ..] =
+                SnappedTriangle::new(inputs, snap).map_or([Accept::ANY; 4], |drawn| drawn.fragment());
             out.copy_from_slice(&[perspective, linear]);
         }
         Raster::TrianglePosition => {
-            let [_, _, depth, inverse_w] = Drawn::new(inputs, snap).map_or([Accept::ANY; 4], |drawn| drawn.fragment());
+            let [_, _, depth, inverse_w] =
+                SnappedTriangle::new(inputs, snap).map_or([Accept::ANY; 4], |drawn| drawn.fragment());
             let [x, y] = pixel(inputs).0.map(Accept::exactly);
             out.copy_from_slice(&[x, y, depth, inverse_w]);
         }
@@ -82,14 +84,14 @@ fn vertices<const N: usize>(inputs: &[f32], snap: f64) -> ([Vec4<f64>; N], [f64;
 }
 
 /// A drawn triangle.
-struct Drawn {
+struct SnappedTriangle {
     clip: [Vec4<f64>; 3],
     attr: [f64; 3],
     p: Vec2<f64>,
     off: [f64; 2],
 }
 
-impl Drawn {
+impl SnappedTriangle {
     /// `None` where snapping may leave the triangle without area: it is undecided as a whole.
     fn new(inputs: &[f32], snap: f64) -> Option<Self> {
         let (clip, off) = vertices(inputs, snap);
@@ -212,7 +214,7 @@ fn quad(inputs: &[f32], snap: f64) -> Accept {
 }
 
 fn facing(inputs: &[f32], snap: f64) -> Accept {
-    Drawn::new(inputs, snap).map_or(Accept::from_bounds(UNDECIDED.0, UNDECIDED.1), |drawn| {
+    SnappedTriangle::new(inputs, snap).map_or(Accept::from_bounds(UNDECIDED.0, UNDECIDED.1), |drawn| {
         Accept::exactly(interpolation::front_facing(drawn.window()))
     })
 }
