@@ -75,6 +75,7 @@ impl Formula for Wrong {
             fit: None,
             hard: &[],
             stable: None,
+            is_normalised: false,
         }
     }
 

@@ -4,22 +4,135 @@
 use lightmeter::cases::{FAMILIES, Kind};
 use lightmeter::select::{CaseRef, catalogue};
 use lightmeter_gpu::{FILES, Kernel, Shaders};
-use std::collections::BTreeSet;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::process::Command;
 
 #[test]
 fn every_family_has_its_four_files() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace's root");
     for family in FAMILIES {
         for file in [
             format!("reference/src/{family}.rs"),
             format!("gpu/src/shaders/{family}.wgsl"),
-            format!("conformance/src/cases/{family}.rs"),
+            format!("conformance/catalogue/src/cases/{family}.rs"),
             format!("tests/properties/{family}.rs"),
         ] {
-            assert!(root.join(&file).is_file(), "family `{family}` lacks {file}");
+            assert!(root().join(&file).is_file(), "family `{family}` lacks {file}");
         }
     }
+}
+
+/// The rooms and what each depends upon, as cargo has it: of the workspace alone, without what only tests need.
+fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
+        .current_dir(root())
+        .output()
+        .expect("cargo starts");
+    let metadata: Value = serde_json::from_slice(&output.stdout).expect("cargo writes JSON");
+    let folder = |package: &Value| {
+        let manifest = Path::new(package["manifest_path"].as_str().expect("a path"));
+        let folder = manifest.parent().expect("a folder").strip_prefix(root()).expect("a folder of the workspace");
+        folder.to_str().expect("UTF-8").to_owned()
+    };
+    let packages = metadata["packages"].as_array().expect("packages");
+    let of_name: BTreeMap<&str, String> =
+        packages.iter().map(|package| (package["name"].as_str().expect("a name"), folder(package))).collect();
+    let needs = |package: &Value| {
+        let all = package["dependencies"].as_array().expect("dependencies").iter();
+        let rooms = all.filter(|one| one["kind"].is_null()).filter_map(|one| of_name.get(one["name"].as_str()?));
+        rooms.cloned().collect()
+    };
+    packages.iter().map(|package| (folder(package), needs(package))).collect()
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace's root")
+}
+
+/// Every room that a path of dependencies leads to.
+fn reached<'a>(rooms: &'a BTreeMap<String, BTreeSet<String>>, from: &'a str) -> BTreeSet<&'a str> {
+    let (mut found, mut open) = (BTreeSet::new(), vec![from]);
+    while let Some(room) = open.pop() {
+        open.extend(rooms[room].iter().map(String::as_str).filter(|next| found.insert(*next)));
+    }
+    found
+}
+
+#[test]
+fn rooms_depend_one_way_as_the_architecture_says() {
+    let rooms = dependencies();
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).expect("it is there");
+    let (_, text) = text.split_once("## The rooms").expect("the section is there");
+    let (text, _) = text.split_once("\n## ").expect("another section follows");
+    let mut told = BTreeMap::new();
+    for line in text.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        let needs = cells[2].split(", ").filter(|name| !name.is_empty());
+        told.insert(cells[0].trim_matches('`').to_owned(), needs.map(str::to_owned).collect::<BTreeSet<String>>());
+    }
+    assert_eq!(told.keys().collect::<Vec<_>>(), rooms.keys().collect::<Vec<_>>(), "ARCHITECTURE names every room");
+    for (room, needs) in &rooms {
+        let needs: BTreeSet<String> =
+            needs.iter().map(|room| room.rsplit('/').next().unwrap_or_default().to_owned()).collect();
+        if !told[room].contains("all of them") {
+            assert_eq!(needs, told[room], "what {room} depends upon, and what ARCHITECTURE says");
+        }
+        assert!(!reached(&rooms, room).contains(room.as_str()), "{room} depends upon itself");
+    }
+    for room in ["engine", "faults", "gate", "report", "judge", "catalogue"] {
+        let room = format!("conformance/{room}");
+        assert!(!reached(&rooms, &room).contains("gpu"), "{room} reaches the GPU");
+    }
+    assert!(!reached(&rooms, "gpu").contains("reference") && !reached(&rooms, "reference").contains("gpu"));
+}
+
+/// Every Rust file below a folder of the workspace, with its text.
+fn sources(folder: &Path, found: &mut Vec<(String, String)>) {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() && !path.ends_with("target") {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let name = path.strip_prefix(root()).expect("of the workspace").to_str().expect("UTF-8").to_owned();
+            found.push((name, std::fs::read_to_string(&path).expect("a source file")));
+        }
+    }
+}
+
+/// Lines outside of tests in which a text stands, by file.
+fn files_with(text: &str) -> Vec<String> {
+    let mut all = vec![];
+    sources(&root().join("conformance"), &mut all);
+    let has = |source: &str| source.split("#[cfg(test)]").next().is_some_and(|code| code.contains(text));
+    let mut files: Vec<String> =
+        all.into_iter().filter(|(name, source)| name.contains("/src/") && has(source)).map(|(name, _)| name).collect();
+    files.sort();
+    files
+}
+
+/// The functions that take a profile and evaluate: nobody else enters its scope, so that it cannot be forgotten.
+#[test]
+fn a_profile_comes_into_force_where_formulas_are_evaluated_alone() {
+    let files = [
+        "conformance/catalogue/src/cases/formula.rs",
+        "conformance/faults/src/factor.rs",
+        "conformance/faults/src/selftest.rs",
+        "conformance/faults/src/variation.rs",
+        "conformance/judge/src/blend_unit/expect.rs",
+        "conformance/judge/src/blend_unit/tally.rs",
+        "conformance/judge/src/devices.rs",
+        "conformance/judge/src/image/expect.rs",
+    ];
+    assert_eq!(files_with(".scope("), files);
+}
+
+/// Formulas are instantiated in every arithmetic where they are evaluated by their type: in the catalogue alone.
+#[test]
+fn formulas_are_instantiated_in_one_room() {
+    assert_eq!(files_with(".evaluate(&mut Reader::new("), ["conformance/catalogue/src/cases/formula.rs"]);
+    assert_eq!(files_with("AnyFormula for"), ["conformance/catalogue/src/cases/formula.rs"]);
 }
 
 #[test]
@@ -95,6 +208,13 @@ fn hard_cases_name_inputs_of_their_formula() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn what_a_formula_normalises_its_description_says() {
+    for member in catalogue() {
+        assert_eq!(member.spec.is_normalised, member.spec.text.contains('⟨'), "{}", member.spec.id);
     }
 }
 

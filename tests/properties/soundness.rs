@@ -111,7 +111,7 @@ fn every_legal_evaluation_by_vulkans_rules_lies_inside() {
 fn an_arithmetic_that_errs_more_is_caught() {
     // The control: a division off by twice its bound.
     seed(1);
-    let legal: Accept = Accept::literal(1.0) / Accept::literal(3.0);
+    let legal: Accept = WGSL.scope(|| Accept::literal(1.0) / Accept::literal(3.0));
     let third = || Profile { divide_ulp: 5.0, ..WGSL }.scope(|| RandomLegal::of(1.0) / RandomLegal::of(3.0));
     let outside = (0..1000).filter(|_| !legal.contains(third().value)).count();
     assert!(outside > 100, "{outside} of 1000");
@@ -124,22 +124,26 @@ fn a_blend_unit_may_take_out_a_shared_factor() {
     let mut outside_a_shaders_rules = 0;
     for _ in 0..100_000 {
         let [s, d, f] = [0; 3].map(|_| RandomLegal::of(share().abs()));
-        let factored = ((s + d) * f).value;
+        let factored = WGSL.scope(|| (s + d) * f).value;
         let legal = hardware([s.value, d.value, f.value]);
         assert!(legal.contains(factored), "{factored} outside {legal:?}: {s:?} {d:?} {f:?}");
         let [s, d, f] = [s, d, f].map(|x| Accept::<F32>::exactly(x.value));
-        outside_a_shaders_rules += u32::from(!(s * f + d * f).contains(factored));
+        outside_a_shaders_rules += u32::from(!WGSL.scope(|| s * f + d * f).contains(factored));
     }
     assert!(outside_a_shaders_rules > 100, "only {outside_a_shaders_rules}");
 }
 
 fn hardware([s, d, f]: [f64; 3]) -> Accept<Hardware<F32>> {
     let [s, d, f] = [s, d, f].map(Accept::exactly);
-    Accept::sum([s * f, d * f])
+    WGSL.scope(|| Accept::sum([s * f, d * f]))
 }
 
 #[test]
 fn chains_reach_their_bounds_and_not_beyond() {
+    WGSL.scope(chains_reach_their_bounds);
+}
+
+fn chains_reach_their_bounds() {
     let ulp = f64::from(f32::EPSILON);
     // Rounded up at each step, 1 and ever so little comes to a ULP more for each term.
     let dust: Accept = Accept::exactly(2.0_f64.powi(-60));
@@ -178,6 +182,10 @@ fn chains_reach_their_bounds_and_not_beyond() {
 
 #[test]
 fn single_operations_are_sharp() {
+    WGSL.scope(sharp_operations);
+}
+
+fn sharp_operations() {
     let number = |x: f32| -> Accept { Accept::input(x) };
     let third = number(1.0) + number(2.0_f32.powi(-25));
     assert_eq!((third.low(), third.high()), (1.0, f64::from(1.0_f32.next_up())));

@@ -53,7 +53,7 @@ impl<'a, R: Real> InputRow<'a, R> {
 
     /// Whether the formula says that it normalises what it gives.
     pub(super) fn is_normalised(&self) -> bool {
-        self.spec.text.contains('⟨')
+        self.spec.is_normalised
     }
 
     pub(super) fn scalar(&self, name: &str) -> Option<R> {

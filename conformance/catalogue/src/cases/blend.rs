@@ -50,6 +50,7 @@ impl Formula for BlendState {
             fit: None,
             hard: hard(state),
             stable: None,
+            is_normalised: false,
         }
     }
 
@@ -273,6 +274,7 @@ fn unit_spec() -> Spec {
         fit: None,
         hard: &[],
         stable: None,
+        is_normalised: false,
     }
 }
 

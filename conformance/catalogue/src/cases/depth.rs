@@ -31,6 +31,7 @@ impl Formula for OverAnother {
             fit: Some(bring_together),
             hard: hard(self.0),
             stable: None,
+            is_normalised: false,
         }
     }
 
@@ -126,6 +127,7 @@ impl Formula for OverItself {
             fit: Some(raster::triangle_around_the_pixel),
             hard: &[],
             stable: None,
+            is_normalised: false,
         }
     }
 

@@ -214,7 +214,7 @@ impl<F: Formula> AnyFormula for F {
 macro_rules! formula {
     (
         $(#[$doc:meta])* $name:ident: $id:literal by $function:literal,
-        $text:literal, $source:literal,
+        $text:literal, $source:literal, $(normalised $normalised:literal,)?
         [$($input:expr),* $(,)?] -> [$($output:expr),* $(,)?],
         $(fit $fit:expr,)?
         $(kind $kind:expr,)?
@@ -228,6 +228,7 @@ macro_rules! formula {
 
         impl $crate::cases::Formula for $name {
             fn spec(&self) -> $crate::cases::Spec {
+                const NORMALISED: &[bool] = &[$($normalised)?];
                 const FIT: &[fn(&mut [f32])] = &[$($fit)?];
                 const KIND: &[$crate::cases::Kind] = &[$($kind)?];
                 const INPUTS: &[$crate::cases::Input] = &[$($input),*];
@@ -248,6 +249,7 @@ macro_rules! formula {
                     fit: FIT.first().copied(),
                     hard: HARD,
                     stable: STABLE.first().copied(),
+                    is_normalised: NORMALISED.contains(&true),
                 }
             }
 

@@ -198,7 +198,7 @@ macro_rules! point {
     ($name:ident, $id:literal, $function:literal, $model:expr, $text:literal) => {
         formula!(
             /// A point light.
-            $name: $id by $function, $text, "000 §6.4, 004; rulings 2 and 11",
+            $name: $id by $function, $text, "000 §6.4, 004; rulings 2 and 11", normalised true,
             [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, LIGHT_POSITION, KC, KL, KQ] -> [RGBA],
             |x, out| {
                 let (light, material, vectors) = (light(x), material(x), x.vectors());
@@ -315,10 +315,11 @@ const T: Input = Input::scalar("t", "1", Domain::Unit);
 
 macro_rules! along_an_edge {
     ($name:ident, $id:literal, $function:literal, $shading:path, $text:literal, $source:literal
-        $(, stable $bound:literal $size:ident $because:literal)? $(, hard [$($hard:expr),* $(,)?])?) => {
+        $(, normalised $normalised:literal)? $(, stable $bound:literal $size:ident $because:literal)?
+        $(, hard [$($hard:expr),* $(,)?])?) => {
         formula!(
             /// Shading between two vertices.
-            $name: $id by $function, $text, $source,
+            $name: $id by $function, $text, $source, $(normalised $normalised,)?
             [
                 Input::position("pa"), Input::vector("na"), Input::position("pb"), Input::vector("nb"), T,
                 LIGHT_POSITION, KD, KS, SHININESS,
@@ -341,7 +342,7 @@ along_an_edge!(
 );
 along_an_edge!(
     PhongShading, "lighting/phong-shading", "lighting_phong_shading", lighting::phong,
-    "I(mix(pa, pb, t), ⟨mix(na, nb, t)⟩): position and normal interpolated, lit at the point", "000 §6.3, 004",
+    "I(mix(pa, pb, t), ⟨mix(na, nb, t)⟩): position and normal interpolated, lit at the point", "000 §6.3, 004", normalised true,
     stable 16384.0 Unit "a shininess of 100 times the 40 roundings of a cosine of three normalised vectors, twice by the mirror, and pow's 2⁻²¹",
     hard [
         Hard::new("highlight-between", "document 004: both vertices dark, the middle bright", BETWEEN)
@@ -374,7 +375,7 @@ const BETWEEN: &[(&str, &[f32])] = &[
 formula!(
     /// Flat shading.
     Flat: "lighting/flat" by "lighting_flat",
-    "I of the face's own normal ⟨(b − a) × (c − a)⟩ at its first vertex", "004",
+    "I of the face's own normal ⟨(b − a) × (c − a)⟩ at its first vertex", "004", normalised true,
     [Input::position("a"), Input::position("b"), Input::position("c"), LIGHT_POSITION, KD, KS, SHININESS] -> [INTENSITY],
     |x, out| { out.scalar(lighting::flat(x.vectors(), x.vector(), x.array())); },
     hard [

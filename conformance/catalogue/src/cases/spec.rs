@@ -274,6 +274,8 @@ pub struct Spec {
     pub hard: &'static [Hard],
     /// What it claims, where it is a stable form.
     pub stable: Option<Stable>,
+    /// Whether it normalises a vector, as its text says by ⟨ and ⟩.
+    pub is_normalised: bool,
 }
 
 impl Spec {

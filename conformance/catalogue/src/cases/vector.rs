@@ -38,7 +38,7 @@ formula!(
 formula!(
     /// The halfway vector.
     Halfway: "vector/halfway" by "vector_halfway",
-    "h = ⟨v + l⟩", "004; ruling 3",
+    "h = ⟨v + l⟩", "004; ruling 3", normalised true,
     [Input::direction("v"), Input::direction("l")] -> [vec3("h")],
     stable 16.0 Own "an exact sum of opposite vectors, then a normalisation of 16",
     |x, out| { out.vector(vector::halfway(x.vector(), x.vector())); },
@@ -59,7 +59,7 @@ formula!(
 formula!(
     /// normalize.
     Normalize: "vector/normalize" by "vector_normalize",
-    "⟨v⟩ = v/|v|, 0 for the zero vector", "000 §6.3",
+    "⟨v⟩ = v/|v|, 0 for the zero vector", "000 §6.3", normalised true,
     [Input::new("v", Shape::Vec3, "1", Domain::Vector(1e-6, 1e6))] -> [vec3("v")],
     |x, out| { out.vector(vector::normalize(x.vector())); },
     hard [
@@ -119,7 +119,7 @@ formula!(
 formula!(
     /// From a surface point to a light.
     Toward: "vector/toward" by "vector_toward",
-    "l = ⟨light − p⟩", "000 §6.4, 003; ruling 2",
+    "l = ⟨light − p⟩", "000 §6.4, 003; ruling 2", normalised true,
     [Input::position("light"), Input::position("p")] -> [vec3("l")],
     |x, out| { out.vector(vector::toward(x.vector(), x.vector())); },
     hard [
@@ -129,14 +129,14 @@ formula!(
 formula!(
     /// Face normals averaged at a vertex.
     AverageNormal: "vector/average-normal" by "vector_average_normal",
-    "⟨n0 + n1 + n2⟩", "004",
+    "⟨n0 + n1 + n2⟩", "004", normalised true,
     [Input::direction("n0"), Input::direction("n1"), Input::direction("n2")] -> [vec3("n")],
     |x, out| { out.vector(vector::average_normal(x.vectors())); },
 );
 formula!(
     /// The normal of a face.
     FaceNormal: "vector/face-normal" by "vector_face_normal",
-    "n = ⟨(b − a) × (c − a)⟩", "004",
+    "n = ⟨(b − a) × (c − a)⟩", "004", normalised true,
     [Input::position("a"), Input::position("b"), Input::position("c")] -> [vec3("n")],
     |x, out| { out.vector(vector::face_normal(x.vector(), x.vector(), x.vector())); },
     hard [
@@ -157,7 +157,7 @@ formula!(
 formula!(
     /// normalize of any length.
     NormalizeScaled: "vector/normalize-scaled" by "vector_normalize_scaled",
-    "⟨v·2ᵏ⟩ with the largest component of v·2ᵏ in [2⁻²⁰, 2²⁰); 0 for the zero vector", "000 §6.3, at any length",
+    "⟨v·2ᵏ⟩ with the largest component of v·2ᵏ in [2⁻²⁰, 2²⁰); 0 for the zero vector", "000 §6.3, at any length", normalised true,
     [V] -> [vec3("v")],
     stable 16.0 Own "an inverse root of 2 ULP or a division of 2½, and the half of three squares' errors",
     |x, out| { out.vector(vector::normalize_scaled(x.vector())); },
@@ -217,7 +217,7 @@ formula!(
 formula!(
     /// reflect about a normal of any length.
     ReflectAnyNormal: "vector/reflect-any-normal" by "vector_reflect_any_normal",
-    "r = i − 2(i·⟨n⟩)⟨n⟩", "000 §6.3, the normal normalised at any length",
+    "r = i − 2(i·⟨n⟩)⟨n⟩", "000 §6.3, the normal normalised at any length", normalised true,
     [Input::direction("i"), Input::vector("n")] -> [vec3("r")],
     stable 64.0 Own "twice the normal's 16 roundings twice over",
     |x, out| { out.vector(vector::reflect_any_normal(x.vector(), x.vector())); },
@@ -235,14 +235,14 @@ formula!(
 formula!(
     /// Normals by the inverse transpose, normalised.
     NormalByDeterminant: "vector/normal-by-determinant" by "vector_normal_by_determinant",
-    "n′ = ⟨cofactors·n/determinant⟩", "004; ruling 6",
+    "n′ = ⟨cofactors·n/determinant⟩", "004; ruling 6", normalised true,
     [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
     |x, out| { out.vector(vector::normal_by_determinant(&x.mat3(), x.vector())); },
 );
 formula!(
     /// Normals by the cofactors alone.
     NormalByCofactors: "vector/normal-by-cofactors" by "vector_normal_by_cofactors",
-    "n′ = ±⟨Σ nᵢ·sᵢ·cofactorᵢ⟩ of columns scaled by powers of two sᵢ, by the determinant's sign", "Lengyel; ruling 6",
+    "n′ = ±⟨Σ nᵢ·sᵢ·cofactorᵢ⟩ of columns scaled by powers of two sᵢ, by the determinant's sign", "Lengyel; ruling 6", normalised true,
     [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
     stable 64.0 Own "nine cofactors and a product that do not cancel, then a normalisation of 16",
     |x, out| { out.vector(vector::normal_by_cofactors(&x.mat3(), x.vector())); },
@@ -268,7 +268,7 @@ formula!(
 formula!(
     /// The normal of any face.
     FaceNormalCompensated: "vector/face-normal-compensated" by "vector_face_normal_compensated",
-    "n = ⟨(b − a)·2ʲ × (c − a)·2ᵏ⟩, differences of products with their errors", "004, for faces of any size and slivers",
+    "n = ⟨(b − a)·2ʲ × (c − a)·2ᵏ⟩, differences of products with their errors", "004, for faces of any size and slivers", normalised true,
     [Input::position("a"), Input::position("b"), Input::position("c")] -> [vec3("n")],
     stable 24.0 Own "2 roundings a component, then a normalisation of 16; for corners whose differences are exact",
     |x, out| { out.vector(vector::face_normal_compensated(x.vector(), x.vector(), x.vector())); },
@@ -290,7 +290,7 @@ const BETWEEN: Input = Input::scalar("t", "1", Domain::Unit);
 formula!(
     /// A normal between two vertices.
     InterpolatedNormal: "vector/interpolated-normal" by "vector_interpolated_normal",
-    "n = ⟨mix(n0, n1, t)⟩", "000 §6.3, 004",
+    "n = ⟨mix(n0, n1, t)⟩", "000 §6.3, 004", normalised true,
     [Input::direction("n0"), Input::direction("n1"), FACE, BETWEEN] -> [vec3("n")],
     |x, out| {
         let [n0, n1, _] = x.vectors();
@@ -303,7 +303,7 @@ formula!(
 formula!(
     /// A normal between two vertices, or the face's.
     InterpolatedNormalGuarded: "vector/interpolated-normal-guarded" by "vector_interpolated_normal_guarded",
-    "n = ⟨mix(n0, n1, t)⟩, the face's normal where the mix is below 2⁻¹⁰", "000 §6.3, 004, with a rule for opposite normals",
+    "n = ⟨mix(n0, n1, t)⟩, the face's normal where the mix is below 2⁻¹⁰", "000 §6.3, 004, with a rule for opposite normals", normalised true,
     [Input::direction("n0"), Input::direction("n1"), FACE, BETWEEN] -> [vec3("n")],
     stable 16.0 Own "a normalisation of 16; where the mix is used, twice its condition of at most 2¹⁰ besides",
     |x, out| {

@@ -275,6 +275,7 @@ impl Formula for RasterFlat {
             fit: None,
             hard: &[],
             stable: None,
+            is_normalised: false,
         }
     }
 
