@@ -13,6 +13,7 @@ use lightmeter_document::run::Tiers;
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::blend::Separate;
 use lightmeter_scene::target::{Encoding, TargetFormat};
+use std::borrow::Borrow;
 
 /// A state by one of its routes on a target, and the profile that its pixels are judged by.
 #[derive(Clone, Copy, Debug)]
@@ -102,11 +103,16 @@ const KEPT: usize = 16;
 
 impl UnitTally {
     /// Judges pixels, each with its case, in their order.
-    pub fn pixels(&mut self, drawn: DrawnState, known: &Known, pixels: impl IntoIterator<Item = (UnitCase, Units)>) {
+    pub fn pixels<C: Borrow<UnitCase>>(
+        &mut self,
+        drawn: DrawnState,
+        known: &Known,
+        pixels: impl IntoIterator<Item = (C, Units)>,
+    ) {
         // What is legal of each is computed inside of this scope, so that none has to enter one of its own.
         drawn.profile.scope(|| {
             for (place, (case, pixel)) in pixels.into_iter().enumerate() {
-                self.pixel(drawn, known, place, &case, pixel);
+                self.pixel(drawn, known, place, case.borrow(), pixel);
             }
         });
     }
