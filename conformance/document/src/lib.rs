@@ -4,6 +4,7 @@
 
 mod number;
 pub mod run;
+pub mod special;
 
 pub use number::{Number, thousands};
 

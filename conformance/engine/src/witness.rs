@@ -13,6 +13,7 @@ use crate::special::{self, Probe};
 use crate::subject::Subject;
 use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected};
 use lightmeter_document::run::{DeviationUse, Report, Totals};
+use lightmeter_document::special::ProbeResult;
 
 /// The first segment of the ids.
 pub const FAMILY: &str = "deviation";
@@ -147,11 +148,10 @@ fn special(deviation: &special::Deviation, subject: &Subject, code: &Code) -> Re
     let Some(results) = results.filter(|results| results.record.as_ref().is_some_and(|record| record.binds)) else {
         return Ok(None);
     };
-    let breaks = |outcome: &special::run::ProbeResult, bits: u32| {
-        Probe::by_name(outcome.probe).is_some_and(|probe| !probe.promise.allows(bits))
+    let breaks = |outcome: &ProbeResult, bits: u32| {
+        Probe::by_name(&outcome.probe).is_some_and(|probe| !probe.promise.allows(bits))
     };
-    let known =
-        |outcome: &&special::run::ProbeResult| outcome.recorded.is_some_and(|recorded| breaks(outcome, recorded));
+    let known = |outcome: &&ProbeResult| outcome.recorded.is_some_and(|recorded| breaks(outcome, recorded));
     let mut known = results.outcomes.iter().filter(known).peekable();
     Ok(Some(known.peek().is_some() && known.all(|outcome| breaks(outcome, outcome.bits))))
 }

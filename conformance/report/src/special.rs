@@ -1,7 +1,8 @@
 //! The probes of NaN, infinity, subnormals and signed zero, for people to read.
 
 use lightmeter_document::run::Identity;
-use lightmeter_engine::special::run::{ProbeResult, ProbeVerdict, SpecialReport, failure};
+use lightmeter_document::special::{ProbeResult, ProbeVerdict, SpecialReport};
+use lightmeter_engine::special::run::failure;
 use lightmeter_engine::special::{Class, DEVIATIONS, Deviation, PROBES, Probe, Source};
 use std::fmt::{Result, Write};
 
@@ -74,7 +75,7 @@ fn cell(report: &SpecialReport, probe: &Probe, adapter: &Identity) -> String {
         _ if outcome.recorded.is_some_and(|recorded| recorded != outcome.bits) => format!("≠ {}", outcome.value),
         _ => outcome.value.clone(),
     };
-    let mut words: Vec<String> = report.of(probe, adapter).map(marked).collect();
+    let mut words: Vec<String> = report.of(probe.name, &adapter.name).map(marked).collect();
     words.dedup();
     if words.is_empty() { "—".into() } else { words.join(" / ") }
 }

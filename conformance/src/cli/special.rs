@@ -5,8 +5,9 @@ use super::{NothingToRun, Status, emit};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::adapters;
+use lightmeter::document::special::SpecialReport;
 use lightmeter::report::special;
-use lightmeter::special::run::{SpecialReport, run};
+use lightmeter::special::run::{record, run};
 use lightmeter::subject_gpu::code_of;
 use std::path::{Path, PathBuf};
 
@@ -61,7 +62,7 @@ impl Special {
 fn write_records(report: &SpecialReport, dir: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
     for adapter in &report.adapters {
-        let text = serde_json::to_string_pretty(&report.record(adapter))? + "\n";
+        let text = serde_json::to_string_pretty(&record(report, adapter))? + "\n";
         emit(&text, Some(&dir.join(format!("{}.json", adapter.name))))?;
     }
     Ok(())

@@ -4,171 +4,48 @@ use super::record::{DriverRecord, OnRecord};
 use super::{Deviation, PROBES, Probe, Promise};
 use crate::device::{Code, DeviceError, Probed};
 use crate::subject::Subject;
+use lightmeter_document::Word;
 use lightmeter_document::run::Identity;
+use lightmeter_document::special::{self, ProbeResult, ProbeRow, ProbeVerdict, RecordUse, Skipped, SpecialReport};
 use lightmeter_scene::target::SENTINEL;
-use serde::{Serialize, Serializer};
-
-/// What became of a probe on an adapter in a stage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ProbeVerdict {
-    /// As promised.
-    Kept,
-    /// Not as promised.
-    Broken,
-    /// Nothing is promised.
-    Indeterminate,
-    /// Not what is on record for this very driver.
-    Changed,
-    /// Not as promised, as a named deviation says.
-    Deviates,
-}
-
-impl ProbeVerdict {
-    /// The verdict on a result. `recorded` is what is on record where that binds; `deviates` says that the promise is known to
-    /// be broken.
-    #[must_use]
-    pub fn of(promise: Promise, bits: u32, recorded: Option<u32>, deviates: bool) -> Self {
-        let is_kept = promise.allows(bits);
-        match promise {
-            _ if !is_kept && (!deviates || bits == SENTINEL) => Self::Broken,
-            _ if recorded.is_some_and(|recorded| recorded != bits) => Self::Changed,
-            _ if !is_kept => Self::Deviates,
-            Promise::Indeterminate => Self::Indeterminate,
-            _ => Self::Kept,
-        }
-    }
-
-    /// The name in JSON and reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Kept => "kept",
-            Self::Broken => "broken",
-            Self::Indeterminate => "indeterminate",
-            Self::Changed => "changed",
-            Self::Deviates => "deviates",
-        }
-    }
-
-    /// Whether it fails.
-    #[must_use]
-    pub const fn is_failure(self) -> bool {
-        matches!(self, Self::Broken | Self::Changed)
-    }
-}
-
-/// A result of a probe.
-#[derive(Clone, Debug, Serialize)]
-pub struct ProbeResult {
-    /// The probe's name.
-    pub probe: &'static str,
-    /// The adapter's short name.
-    pub adapter: String,
-    /// The stage's name.
-    pub stage: &'static str,
-    /// What came out.
-    #[serde(serialize_with = "hex")]
-    pub bits: u32,
-    /// The same in few letters.
-    pub value: String,
-    /// What became of it.
-    pub verdict: ProbeVerdict,
-    /// What is on record for the driver.
-    #[serde(serialize_with = "maybe_hex", skip_serializing_if = "Option::is_none")]
-    pub recorded: Option<u32>,
-}
-
-/// A stage that an adapter lacks.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Skipped {
-    /// The adapter's short name.
-    pub adapter: String,
-    /// The stage's name.
-    pub stage: &'static str,
-    /// Why.
-    pub reason: &'static str,
-}
-
-impl Skipped {
-    /// The embedded implementation has no shading language, and so no stage that a probe is of.
-    #[must_use]
-    pub fn embedded(adapter: &str) -> Self {
-        Self { adapter: adapter.into(), stage: "compute", reason: EMBEDDED }
-    }
-}
 
 /// Why the embedded implementation is skipped.
 pub const EMBEDDED: &str = "the embedded implementation has no shading language";
 
-/// What is on record for an adapter.
-#[derive(Clone, Debug, Serialize)]
-pub struct RecordUse {
-    /// The adapter's short name.
-    pub adapter: String,
-    /// Whose record it is.
-    pub of: String,
-    /// Whether another result fails.
-    pub binds: bool,
+/// The embedded implementation as a stage that is lacking: it has no shading language, and so no stage that a probe is of.
+#[must_use]
+pub fn skipped_embedded(adapter: &str) -> Skipped {
+    Skipped { adapter: adapter.into(), stage: "compute".into(), reason: EMBEDDED.into() }
 }
 
-/// A probe as JSON has it.
-#[derive(Clone, Debug, Serialize)]
-struct ProbeRow {
-    name: &'static str,
-    class: super::Class,
-    what: &'static str,
-    inputs: Vec<String>,
-    promise: String,
-    definite: bool,
-    source: &'static str,
+/// The verdict on a result. `recorded` is what is on record where that binds; `deviates` says that the promise is known to
+/// be broken.
+#[must_use]
+pub fn verdict(promise: Promise, bits: u32, recorded: Option<u32>, deviates: bool) -> ProbeVerdict {
+    let is_kept = promise.allows(bits);
+    match promise {
+        _ if !is_kept && (!deviates || bits == SENTINEL) => ProbeVerdict::Broken,
+        _ if recorded.is_some_and(|recorded| recorded != bits) => ProbeVerdict::Changed,
+        _ if !is_kept => ProbeVerdict::Deviates,
+        Promise::Indeterminate => ProbeVerdict::Indeterminate,
+        _ => ProbeVerdict::Kept,
+    }
 }
 
-/// The JSON of `special`.
-#[derive(Clone, Debug, Serialize)]
-pub struct SpecialReport {
-    /// `lightmeter.special/1`.
-    pub schema: &'static str,
-    /// What was probed.
-    pub adapters: Vec<Identity>,
-    /// What is on record for them.
-    pub records: Vec<RecordUse>,
-    probes: Vec<ProbeRow>,
-    /// Stages that an adapter lacks.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub skipped: Vec<Skipped>,
-    /// Every result.
-    pub outcomes: Vec<ProbeResult>,
-}
-
-impl SpecialReport {
-    /// Whether every promise was kept, and every result is as on record where a record binds.
-    #[must_use]
-    pub fn is_success(&self) -> bool {
-        !self.outcomes.iter().any(|outcome| outcome.verdict.is_failure())
+/// What is to be put on record of an adapter.
+#[must_use]
+pub fn record(report: &SpecialReport, adapter: &Identity) -> DriverRecord {
+    let mut record = DriverRecord::new(adapter);
+    for outcome in report.outcomes.iter().filter(|outcome| outcome.adapter == adapter.name) {
+        record.note(&outcome.probe, &outcome.stage, outcome.bits);
     }
-
-    /// A probe's results on an adapter, stage by stage.
-    pub fn of<'a>(&'a self, probe: &Probe, adapter: &'a Identity) -> impl Iterator<Item = &'a ProbeResult> {
-        let name = probe.name;
-        self.outcomes.iter().filter(move |outcome| outcome.probe == name && outcome.adapter == adapter.name)
-    }
-
-    /// What is to be put on record of an adapter.
-    #[must_use]
-    pub fn record(&self, adapter: &Identity) -> DriverRecord {
-        let mut record = DriverRecord::new(adapter);
-        for outcome in self.outcomes.iter().filter(|outcome| outcome.adapter == adapter.name) {
-            record.note(outcome.probe, outcome.stage, outcome.bits);
-        }
-        record
-    }
+    record
 }
 
 /// A failure in a line.
 #[must_use]
 pub fn failure(report: &SpecialReport, outcome: &ProbeResult) -> Option<String> {
-    let probe = Probe::by_name(outcome.probe)?;
+    let probe = Probe::by_name(&outcome.probe)?;
     let ProbeResult { adapter, stage, bits, value, .. } = outcome;
     let is = format!("{} on {adapter}, {stage}: {} is {value} (0x{bits:08x})", probe.name, probe.what);
     match outcome.verdict {
@@ -192,10 +69,10 @@ pub fn failure(report: &SpecialReport, outcome: &ProbeResult) -> Option<String> 
 /// Where a shader is invalid, or a device fails.
 pub fn run(subjects: &[Subject], code: &Code) -> Result<SpecialReport, DeviceError> {
     let mut report = SpecialReport {
-        schema: "lightmeter.special/1",
+        schema: special::SCHEMA.into(),
         adapters: vec![],
         records: vec![],
-        probes: PROBES.iter().map(ProbeRow::of).collect(),
+        probes: PROBES.iter().map(row).collect(),
         skipped: vec![],
         outcomes: vec![],
     };
@@ -207,7 +84,7 @@ pub fn run(subjects: &[Subject], code: &Code) -> Result<SpecialReport, DeviceErr
         report.skipped.extend(results.skipped);
         report.records.extend(results.record);
     }
-    let place = |outcome: &ProbeResult| PROBES.iter().position(|probe| probe.name == outcome.probe);
+    let place = |outcome: &ProbeResult| PROBES.iter().position(|probe| outcome.probe == probe.name);
     report.outcomes.sort_by_key(place);
     Ok(report)
 }
@@ -235,7 +112,8 @@ pub fn evaluate(subject: &Subject, code: &Code, probes: &[&'static Probe]) -> Re
         RecordUse { adapter, of, binds: on_record.binds }
     });
     let adapter = &subject.identity.name;
-    let skip = |(stage, reason)| Skipped { adapter: adapter.clone(), stage, reason };
+    let skip =
+        |(stage, reason)| Skipped { adapter: adapter.clone(), stage: Word::from(stage), reason: Word::from(reason) };
     let results = Results { outcomes: vec![], skipped: skipped.into_iter().map(skip).collect(), record };
     let mut sink = Sink { adapter: &subject.identity, on_record, results };
     for (probe, stage, bits) in words {
@@ -257,38 +135,27 @@ impl Sink<'_> {
         let binding = recorded.filter(|_| self.on_record.is_some_and(|of| of.binds));
         let deviation = Deviation::of(probe, &self.adapter.backend);
         self.results.outcomes.push(ProbeResult {
-            probe: probe.name,
+            probe: probe.name.into(),
             adapter: self.adapter.name.clone(),
-            stage,
+            stage: stage.into(),
             bits,
             value: probe.gives.word(bits),
-            verdict: ProbeVerdict::of(probe.promise, bits, binding, deviation.is_some()),
+            verdict: verdict(probe.promise, bits, binding, deviation.is_some()),
             recorded,
         });
     }
 }
 
-impl ProbeRow {
-    fn of(probe: &Probe) -> Self {
-        Self {
-            name: probe.name,
-            class: probe.class,
-            what: probe.what,
-            inputs: probe.inputs.iter().map(|bits| format!("0x{bits:08x}")).collect(),
-            promise: probe.promise.words(probe.gives),
-            definite: probe.promise.is_definite(),
-            source: probe.source.section(),
-        }
+fn row(probe: &Probe) -> ProbeRow {
+    ProbeRow {
+        name: probe.name.into(),
+        class: probe.class.name().into(),
+        what: probe.what.into(),
+        inputs: probe.inputs.iter().map(|bits| format!("0x{bits:08x}")).collect(),
+        promise: probe.promise.words(probe.gives),
+        definite: probe.promise.is_definite(),
+        source: probe.source.section().into(),
     }
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
-fn hex<S: Serializer>(bits: &u32, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(&format!("0x{bits:08x}"))
-}
-
-fn maybe_hex<S: Serializer>(bits: &Option<u32>, serializer: S) -> Result<S::Ok, S::Error> {
-    hex(&bits.unwrap_or_default(), serializer)
 }
 
 #[cfg(test)]
@@ -314,12 +181,8 @@ mod tests {
             (Promise::Indeterminate, NAN, None, false, ProbeVerdict::Indeterminate),
             (Promise::Indeterminate, SENTINEL, None, false, ProbeVerdict::Broken),
         ];
-        for (promise, bits, recorded, deviates, verdict) in rows {
-            assert_eq!(
-                ProbeVerdict::of(promise, bits, recorded, deviates),
-                verdict,
-                "{promise:?} {bits:x} {recorded:?}"
-            );
+        for (promise, bits, recorded, deviates, expected) in rows {
+            assert_eq!(verdict(promise, bits, recorded, deviates), expected, "{promise:?} {bits:x} {recorded:?}");
         }
     }
 }

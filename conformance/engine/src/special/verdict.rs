@@ -1,14 +1,15 @@
 //! The tables of special values as groups of a run: `special/nan`, `special/infinity`, …, a case for each probe.
 
-use super::run::{EMBEDDED, ProbeResult, ProbeVerdict, Results, Skipped, evaluate};
+use super::run::{EMBEDDED, Results, evaluate};
 use super::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
 use crate::device::DeviceError;
 use crate::options::{Options, Progress};
 use crate::subject::Subject;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
-use lightmeter_document::Number;
 use lightmeter_document::run::{DeviationUse, Failure, Group, Report, Totals};
+use lightmeter_document::special::{ProbeResult, ProbeVerdict, Skipped};
+use lightmeter_document::{Number, Word};
 use lightmeter_judge::simplicity;
 use lightmeter_judge::tally::KEPT_FAILURES;
 use lightmeter_scene::target::SENTINEL;
@@ -79,7 +80,7 @@ pub(crate) fn run_table(
             None => {
                 let group = Group { stage: STAGES[0].into(), ..table.group(subject) };
                 let cases = table.probes.len() as u64;
-                report.groups.push(skipped(group, cases, EMBEDDED));
+                report.groups.push(skipped(group, cases, EMBEDDED.into()));
             }
             Some(results) => table.judge(&results, subject, seconds, options, report),
         }
@@ -88,8 +89,8 @@ pub(crate) fn run_table(
     Ok(())
 }
 
-fn skipped(group: Group, cases: u64, reason: &'static str) -> Group {
-    Group { skip_reason: Some(reason.into()), totals: Totals { cases, skipped: cases, ..Totals::default() }, ..group }
+fn skipped(group: Group, cases: u64, reason: Word) -> Group {
+    Group { skip_reason: Some(reason), totals: Totals { cases, skipped: cases, ..Totals::default() }, ..group }
 }
 
 impl Table {
@@ -101,7 +102,7 @@ impl Table {
         for stage in STAGES.into_iter().filter(|stage| self.in_stage(stage) > 0) {
             let group = Group { stage: stage.into(), ..self.group(subject) };
             if let Some(Skipped { reason, .. }) = results.skipped.iter().find(|skipped| skipped.stage == stage) {
-                report.groups.push(skipped(group, self.in_stage(stage), reason));
+                report.groups.push(skipped(group, self.in_stage(stage), reason.clone()));
                 continue;
             }
             let of_stage: Vec<&ProbeResult> =
@@ -115,7 +116,7 @@ impl Table {
                     ProbeVerdict::Indeterminate => totals.indeterminate += 1,
                     ProbeVerdict::Deviates => {
                         totals.expected_failures += 1;
-                        let probe = Probe::by_name(outcome.probe);
+                        let probe = Probe::by_name(&outcome.probe);
                         let deviation = probe.and_then(|probe| Deviation::of(probe, &subject.identity.backend));
                         if let Some(deviation) = deviation {
                             granted(deviation, &subject.identity.name, report);
@@ -151,7 +152,7 @@ fn granted(deviation: &Deviation, adapter: &str, report: &mut Report) {
 
 /// What is known of a result that fails, and how simple its operands are.
 fn failure(outcome: &ProbeResult, results: &Results, subject: &Subject, options: &Options) -> Option<(u32, Failure)> {
-    let probe = Probe::by_name(outcome.probe)?;
+    let probe = Probe::by_name(&outcome.probe)?;
     let (reference, interval) = probe.promise.bounds(probe.gives);
     let legal = match (outcome.verdict, outcome.recorded) {
         (ProbeVerdict::Changed, Some(recorded)) => {
@@ -168,7 +169,7 @@ fn failure(outcome: &ProbeResult, results: &Results, subject: &Subject, options:
         rerun: format!("lightmeter run '{}' --adapter {}{}", probe.id(), subject.identity.name, options.rerun),
         id: probe.id(),
         adapter: subject.identity.name.clone(),
-        stage: outcome.stage.into(),
+        stage: outcome.stage.clone(),
         target: None,
         route: None,
         output: probe.what.into(),

@@ -1,30 +1,21 @@
 //! The page on NaN, infinity, subnormals and signed zero, made from the JSON of `lightmeter special`.
 
+use lightmeter_document::run::Identity;
+use lightmeter_document::special::{ProbeResult, SpecialReport};
 use lightmeter_engine::special::{Class, DEVIATIONS, PROBES, Probe, Source};
-use serde::Deserialize;
 use std::fmt::{Result as Written, Write};
+use std::ops::Deref;
 
-/// What the page needs of that JSON. What is promised is the table's.
-#[derive(Clone, Debug, Deserialize)]
-pub struct Run {
-    adapters: Vec<Adapter>,
-    outcomes: Vec<Outcome>,
-}
+/// What was probed.
+#[derive(Clone, Debug)]
+pub struct Run(SpecialReport);
 
-#[derive(Clone, Debug, Deserialize)]
-struct Adapter {
-    name: String,
-    device: String,
-    backend: String,
-    driver: String,
-}
+impl Deref for Run {
+    type Target = SpecialReport;
 
-#[derive(Clone, Debug, Deserialize)]
-struct Outcome {
-    probe: String,
-    adapter: String,
-    value: String,
-    verdict: String,
+    fn deref(&self) -> &SpecialReport {
+        &self.0
+    }
 }
 
 impl Run {
@@ -35,7 +26,7 @@ impl Run {
     pub fn read(json: &str) -> Result<Self, String> {
         const EXPECTED: &str = "the JSON of `lightmeter special --format json`";
         let value = super::document(json, "lightmeter.special/1", EXPECTED)?;
-        let run: Self = serde_json::from_value(value).map_err(|error| format!("not {EXPECTED}: {error}"))?;
+        let run = Self(serde_json::from_value(value).map_err(|error| format!("not {EXPECTED}: {error}"))?);
         let unknown = run.outcomes.iter().find(|outcome| Probe::by_name(&outcome.probe).is_none());
         match unknown {
             Some(outcome) => Err(format!("no probe `{}`: the file is of another version", outcome.probe)),
@@ -44,14 +35,10 @@ impl Run {
         }
     }
 
-    fn of<'a>(&'a self, probe: &'a Probe, adapter: &'a Adapter) -> impl Iterator<Item = &'a Outcome> {
-        self.outcomes.iter().filter(move |outcome| outcome.probe == probe.name && outcome.adapter == adapter.name)
-    }
-
     /// Probes whose results differ between the stages of an adapter.
-    fn by_stage(&self, adapter: &Adapter) -> usize {
+    fn by_stage(&self, adapter: &Identity) -> usize {
         let differs = |probe: &&Probe| {
-            let mut values = self.of(probe, adapter).map(|outcome| &outcome.value);
+            let mut values = self.of(probe.name, &adapter.name).map(|outcome| &outcome.value);
             let first = values.next();
             values.any(|value| Some(value) != first)
         };
@@ -117,8 +104,9 @@ fn drivers(run: &Run, out: &mut impl Write) -> Written {
         "| driver | | as promised | broken | deviates | indeterminate | changed | differ by stage |\n|---|---|--:|--:|--:|--:|--:|--:|"
     )?;
     for adapter in &run.adapters {
-        let count =
-            |verdict: &str| run.outcomes.iter().filter(|o| o.adapter == adapter.name && o.verdict == verdict).count();
+        let count = |verdict: &str| {
+            run.outcomes.iter().filter(|o| o.adapter == adapter.name && o.verdict.name() == verdict).count()
+        };
         writeln!(
             out,
             "| {} | {}, {}, {} | {} | {} | {} | {} | {} | {} |",
@@ -159,9 +147,9 @@ fn table(run: &Run, class: Class, out: &mut impl Write) -> Written {
     Ok(())
 }
 
-fn cell(run: &Run, probe: &Probe, adapter: &Adapter) -> String {
-    let marked = |outcome: &Outcome| {
-        let mark = match outcome.verdict.as_str() {
+fn cell(run: &Run, probe: &Probe, adapter: &Identity) -> String {
+    let marked = |outcome: &ProbeResult| {
+        let mark = match outcome.verdict.name() {
             "broken" => "✗ ",
             "deviates" => "! ",
             "changed" => "≠ ",
@@ -169,7 +157,7 @@ fn cell(run: &Run, probe: &Probe, adapter: &Adapter) -> String {
         };
         format!("{mark}{}", outcome.value)
     };
-    let mut words: Vec<String> = run.of(probe, adapter).map(marked).collect();
+    let mut words: Vec<String> = run.of(probe.name, &adapter.name).map(marked).collect();
     words.dedup();
     if words.is_empty() { "–".into() } else { words.join(" / ") }
 }

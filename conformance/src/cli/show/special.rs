@@ -2,7 +2,8 @@
 
 use super::super::options::Choice;
 use lightmeter::document::Number;
-use lightmeter::special::run::{ProbeResult, Results, Skipped, evaluate};
+use lightmeter::document::special::ProbeResult;
+use lightmeter::special::run::{Results, evaluate, skipped_embedded};
 use lightmeter::special::{FAMILY, Gives, Probe};
 use lightmeter::subject::Subject;
 use serde_json::{Value, json};
@@ -31,7 +32,7 @@ pub(super) fn show(
     for subject in subjects {
         let found = evaluate(subject, &code, &[probe])?.unwrap_or_else(|| Results {
             outcomes: vec![],
-            skipped: vec![Skipped::embedded(&subject.identity.name)],
+            skipped: vec![skipped_embedded(&subject.identity.name)],
             record: None,
         });
         results.push((subject, found));

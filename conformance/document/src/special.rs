@@ -1,0 +1,166 @@
+//! The JSON of `special`.
+
+use crate::Word;
+use crate::run::Identity;
+use serde::{Deserialize, Serialize};
+
+/// The schema of [`SpecialReport`].
+pub const SCHEMA: &str = "lightmeter.special/1";
+
+/// What became of a probe on an adapter in a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ProbeVerdict {
+    /// As promised.
+    Kept,
+    /// Not as promised.
+    Broken,
+    /// Nothing is promised.
+    Indeterminate,
+    /// Not what is on record for this very driver.
+    Changed,
+    /// Not as promised, as a named deviation says.
+    Deviates,
+}
+
+impl ProbeVerdict {
+    /// The name in JSON and reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Kept => "kept",
+            Self::Broken => "broken",
+            Self::Indeterminate => "indeterminate",
+            Self::Changed => "changed",
+            Self::Deviates => "deviates",
+        }
+    }
+
+    /// Whether it fails.
+    #[must_use]
+    pub const fn is_failure(self) -> bool {
+        matches!(self, Self::Broken | Self::Changed)
+    }
+}
+
+/// A result of a probe.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ProbeResult {
+    /// The probe's name.
+    pub probe: Word,
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The stage's name.
+    pub stage: Word,
+    /// What came out.
+    #[serde(with = "hex")]
+    pub bits: u32,
+    /// The same in few letters.
+    pub value: String,
+    /// What became of it.
+    pub verdict: ProbeVerdict,
+    /// What is on record for the driver.
+    #[serde(default, with = "maybe_hex", skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<u32>,
+}
+
+/// A stage that an adapter lacks.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Skipped {
+    /// The adapter's short name.
+    pub adapter: String,
+    /// The stage's name.
+    pub stage: Word,
+    /// Why.
+    pub reason: Word,
+}
+
+/// What is on record for an adapter.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct RecordUse {
+    /// The adapter's short name.
+    pub adapter: String,
+    /// Whose record it is.
+    pub of: String,
+    /// Whether another result fails.
+    pub binds: bool,
+}
+
+/// A probe as JSON has it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ProbeRow {
+    /// Its name.
+    pub name: Word,
+    /// What it is about.
+    pub class: Word,
+    /// What is computed, for people.
+    pub what: Word,
+    /// The operands' bits.
+    pub inputs: Vec<String>,
+    /// What is promised, in words.
+    pub promise: String,
+    /// Whether anything is.
+    pub definite: bool,
+    /// The section that says so.
+    pub source: Word,
+}
+
+/// The JSON of `special`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SpecialReport {
+    /// `lightmeter.special/1`.
+    pub schema: Word,
+    /// What was probed.
+    pub adapters: Vec<Identity>,
+    /// What is on record for them.
+    pub records: Vec<RecordUse>,
+    /// The probes.
+    pub probes: Vec<ProbeRow>,
+    /// Stages that an adapter lacks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub skipped: Vec<Skipped>,
+    /// Every result.
+    pub outcomes: Vec<ProbeResult>,
+}
+
+impl SpecialReport {
+    /// Whether every promise was kept, and every result is as on record where a record binds.
+    #[must_use]
+    pub fn is_success(&self) -> bool {
+        !self.outcomes.iter().any(|outcome| outcome.verdict.is_failure())
+    }
+
+    /// A probe's results on an adapter, stage by stage.
+    pub fn of<'a>(&'a self, probe: &'a str, adapter: &'a str) -> impl Iterator<Item = &'a ProbeResult> {
+        self.outcomes.iter().filter(move |outcome| outcome.probe == probe && outcome.adapter == adapter)
+    }
+}
+
+/// Bits as `0x7fc00000`.
+mod hex {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+    pub(super) fn serialize<S: Serializer>(bits: &u32, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&format!("0x{bits:08x}"))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        let bits = text.strip_prefix("0x").and_then(|digits| u32::from_str_radix(digits, 16).ok());
+        bits.ok_or_else(|| serde::de::Error::custom(format!("expected bits such as 0x7fc00000, not {text:?}")))
+    }
+}
+
+/// The same, where there are any.
+mod maybe_hex {
+    use serde::{Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(bits: &Option<u32>, serializer: S) -> Result<S::Ok, S::Error> {
+        super::hex::serialize(&bits.unwrap_or_default(), serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+        super::hex::deserialize(deserializer).map(Some)
+    }
+}
