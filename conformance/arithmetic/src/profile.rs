@@ -111,10 +111,12 @@ impl Profile {
         Self::by_name(name).ok_or_else(|| format!("no such profile; expected one of {}", names.join(", ")))
     }
 
-    /// Evaluates `f` by the figures of this profile: the one way in which a profile reaches the operators of `Accept` and `RandomLegal`.
+    /// Evaluates `f` by the figures of this profile: the one way in which a profile reaches the operators of
+    /// `Accept` and the built-in functions of `RandomLegal`.
     ///
     /// Functions that evaluate take the profile as an argument and call this around the evaluation of a formula. Outside of it
-    /// there is no profile at all, and an operation that asks for one panics.
+    /// there is no profile at all, and an operation that asks for one panics. Work that is handed to a pool of threads inside of a
+    /// scope must enter one of its own, since another thread has none and this one may take up other work meanwhile.
     pub fn scope<T>(&self, f: impl FnOnce() -> T) -> T {
         // While a scope is open its profile is borrowed: what lies at the same address is the same profile.
         let address = std::ptr::from_ref(self).addr();
@@ -127,7 +129,8 @@ impl Profile {
                 Outer { relative: RELATIVE.replace(self.relative), address: IN_FORCE.replace(address), figures: None };
             return f();
         }
-        let figures = Some(FIGURES.replace(*self));
+        let is_outermost = RELATIVE.get().is_nan();
+        let figures = Some(FIGURES.replace(*self)).filter(|_| !is_outermost);
         let _outer = Outer { relative: RELATIVE.replace(self.relative), address: IN_FORCE.replace(address), figures };
         f()
     }
@@ -136,10 +139,35 @@ impl Profile {
     #[inline]
     fn has_figures_of(&self, other: &Self) -> bool {
         let figures = |p: &Self| {
-            let Self { exp_ulp: exp, exp2_ulp: exp2, .. } = *p;
-            [p.relative, p.divide_ulp, p.inverse_sqrt_ulp, exp.base, exp.slope, exp2.base, exp2.slope].map(f64::to_bits)
+            // Every field is named, so that a new figure cannot be left out.
+            let Self {
+                name: _,
+                source: _,
+                relative,
+                divide_ulp,
+                inverse_sqrt_ulp,
+                exp_ulp: exp,
+                exp2_ulp: exp2,
+                log2_absolute,
+                log2_ulp,
+                subpixel_bits: _,
+                exp_excess: _,
+                exp2_excess: _,
+            } = *p;
+            [
+                relative,
+                divide_ulp,
+                inverse_sqrt_ulp,
+                exp.base,
+                exp.slope,
+                exp2.base,
+                exp2.slope,
+                log2_absolute,
+                log2_ulp,
+            ]
+            .map(f64::to_bits)
         };
-        let others = |p: &Self| (p.log2_absolute, p.log2_ulp, p.subpixel_bits, p.exp_excess, p.exp2_excess);
+        let others = |p: &Self| (p.subpixel_bits, p.exp_excess, p.exp2_excess);
         figures(self) == figures(other) && others(self) == others(other)
     }
 }

@@ -1,6 +1,7 @@
-//! The JSON that the suite writes and reads. Each type of it is here, once, and reads what it writes.
+//! The JSON of `run` and of `special`: each type reads what it writes. The types of the gate, sweeps, the bench and the self-test are
+//! still in their own rooms.
 //!
-//! Nothing here judges or draws: pages, reports and tests work from these documents alone.
+//! Nothing here judges or draws.
 
 mod number;
 pub mod run;

@@ -113,8 +113,10 @@ pub struct SpecialReport {
     /// What was probed.
     pub adapters: Vec<Identity>,
     /// What is on record for them.
+    #[serde(default)]
     pub records: Vec<RecordUse>,
     /// The probes.
+    #[serde(default)]
     pub probes: Vec<ProbeRow>,
     /// Stages that an adapter lacks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -26,7 +26,7 @@ pub enum DeviceError {
     Hangs(String),
     /// The driver gave no device.
     #[error("{0}")]
-    Closed(String),
+    NoDevice(String),
     /// What it was handed is invalid: a shader, a scene.
     #[error(transparent)]
     Refused(Box<dyn std::error::Error + Send + Sync>),
@@ -95,14 +95,14 @@ pub trait Blocks {
     /// Begins a block: the place of its first float in the order of all floats, and how many there are.
     fn start(&mut self, key: u32, count: usize);
 
-    /// Waits for the block that began first, and hands its words on.
+    /// Waits for the block that began first, and hands all of its words to `read`, once.
     ///
     /// # Errors
     /// Where the device failed or was lost.
     fn finish(&mut self, read: &mut dyn FnMut(&[u32])) -> Result<(), DeviceError>;
 }
 
-/// A device under test. It is handed cases and gives back bits; it knows no formula.
+/// A device under test. It is handed cases and gives back bits. Of a formula it uses the description and never the evaluation.
 ///
 /// # Errors
 /// Each function fails where the code is invalid, where the device refuses it, and where the device fails or is lost.

@@ -1,4 +1,5 @@
-//! One verdict: a value against the reference and the interval of legal values.
+//! What is legal, and what an answer is worth. Here a single verdict: a value against the reference and the interval of legal values.
+//! `tally` has the verdicts on the cases of formulas, `blend_unit` and `image` those on pixels, `devices` what is known of drivers.
 
 pub mod blend_unit;
 pub mod chunk;

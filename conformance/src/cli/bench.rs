@@ -13,6 +13,7 @@ use lightmeter::filter::Filter;
 use lightmeter::options::Progress;
 use lightmeter::scene::load;
 use lightmeter::select::catalogue;
+use lightmeter::subject_gpu::device_error;
 use lightmeter_gpu::ClockKind;
 use lightmeter_gpu::Shaders;
 use std::path::{Path, PathBuf};
@@ -121,7 +122,7 @@ impl Bench {
         let mut bar = Bar::default();
         let document = bench(&subjects, &options, &mut bar);
         bar.0.finish_and_clear();
-        let document = document?;
+        let document = document.map_err(device_error)?;
         if document.adapters.iter().all(|adapter| adapter.groups.is_empty() && adapter.scalings.is_empty()) {
             let message =
                 "no group matches; there are the formulas, as fog/exp, technique/*, stable/**, scene/* and scaling/*";

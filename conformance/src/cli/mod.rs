@@ -140,7 +140,7 @@ impl Status {
         };
         match device {
             Some(error) if error.is_of_device() => Self::Device,
-            Some(DeviceError::Closed(_)) => Self::Nothing,
+            Some(DeviceError::NoDevice(_)) => Self::Nothing,
             _ => Self::BadInput,
         }
     }
@@ -160,5 +160,29 @@ pub(crate) fn emit(text: &str, file: Option<&Path>) -> anyhow::Result<()> {
             std::fs::write(path, text).map_err(|error| anyhow::anyhow!("cannot write {}: {error}", path.display()))
         }
         None => Ok(std::io::stdout().lock().write_all(text.as_bytes())?),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter::subject_gpu::device_error;
+    use lightmeter_gpu::GpuError;
+
+    #[test]
+    fn what_went_wrong_decides_how_a_command_ends() {
+        let open = GpuError::Open { adapter: "lavapipe".into(), message: "no".into() };
+        let shader = GpuError::Shader { file: "fog.wgsl".into(), message: "no".into() };
+        for (error, expected) in [
+            (GpuError::Device("lost".into()), Status::Device),
+            (GpuError::Timeout(60), Status::Device),
+            (open, Status::Nothing),
+            (shader, Status::BadInput),
+        ] {
+            let message = error.to_string();
+            let error = anyhow::Error::from(device_error(error));
+            assert_eq!(Status::of(&error), expected, "{message}");
+            assert_eq!(error.to_string(), message);
+        }
     }
 }

@@ -154,3 +154,19 @@ impl Progress for Bar {
         self.0.inc(cases);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter::document::run::Interrupted;
+
+    #[test]
+    fn a_run_that_a_device_ended_says_so_and_ends_with_4() {
+        let mut report = Report::empty(1, "wgsl".into(), vec![], vec![]);
+        report.interrupted = Some(Interrupted { under_way: "blend/max".into(), message: "the device failed".into() });
+        assert_eq!(status(&report), Status::Device);
+        let mut text = String::new();
+        text::write(&report, text::Detail::Families, false, &mut text).expect("a string takes it");
+        assert!(text.contains("interrupted: ") && text.contains("✗ "), "{text}");
+    }
+}

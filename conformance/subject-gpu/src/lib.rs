@@ -64,7 +64,7 @@ fn device_of(adapter: &Adapter) -> Result<(Identity, Known, GpuDevice), DeviceEr
         driver: adapter.driver.clone(),
     };
     let known = known(&adapter.device, &adapter.driver);
-    let gpu = adapter.open().map_err(told)?;
+    let gpu = adapter.open().map_err(device_error)?;
     let device = GpuDevice { name: adapter.name.clone(), gpu, blend: None, depth: None };
     Ok((identity, known, device))
 }
@@ -77,11 +77,11 @@ pub fn gpu(subject: &Subject) -> Option<&Gpu> {
 
 /// An error as the engine tells kinds of them apart.
 #[must_use]
-pub fn told(error: GpuError) -> DeviceError {
+pub fn device_error(error: GpuError) -> DeviceError {
     match error {
         GpuError::Device(_) => DeviceError::Failed(error.to_string()),
         GpuError::Timeout(_) => DeviceError::Hangs(error.to_string()),
-        GpuError::Open { .. } => DeviceError::Closed(error.to_string()),
+        GpuError::Open { .. } => DeviceError::NoDevice(error.to_string()),
         error => DeviceError::Refused(Box::new(error)),
     }
 }
@@ -218,7 +218,7 @@ impl Device for GpuDevice {
     }
 
     fn built_in(&self) -> Result<Code, DeviceError> {
-        Shaders::built_in().map(code).map_err(told)
+        Shaders::built_in().map(code).map_err(device_error)
     }
 
     fn source(&self, code: &Code, file: &str) -> String {
@@ -227,29 +227,29 @@ impl Device for GpuDevice {
 
     fn compile(&mut self, code: &Code, member: &Member) -> Result<Stages<Own>, DeviceError> {
         let shaders = shaders(code)?;
-        let kernel = kernel(shaders, member).map_err(told)?;
+        let kernel = kernel(shaders, member).map_err(device_error)?;
         let mut stages: Stages<Own> = vec![];
         for &stage in member.spec.row_stages() {
-            let work = self.work(shaders, member.spec.kind, kernel.as_ref(), stage).map_err(told)?;
+            let work = self.work(shaders, member.spec.kind, kernel.as_ref(), stage).map_err(device_error)?;
             stages.push((stage, work.map(|work| Box::new(work) as Own)));
         }
         Ok(stages)
     }
 
     fn submit(&mut self, work: &Own, rows: &Rows<'_>) -> Result<Own, DeviceError> {
-        self.submitted(own(work), rows).map(|job| Box::new(job) as Own).map_err(told)
+        self.submitted(own(work), rows).map(|job| Box::new(job) as Own).map_err(device_error)
     }
 
     fn finish(&self, work: &Own, job: Own, rows: &Rows<'_>) -> Result<Vec<u32>, DeviceError> {
-        self.finished(own(work), taken(job), rows).map_err(told)
+        self.finished(own(work), taken(job), rows).map_err(device_error)
     }
 
     fn probe(&self, code: &Code, function: &str, x: f32) -> Result<Option<u32>, DeviceError> {
-        self.probed(shaders(code)?, function, x).map_err(told)
+        self.probed(shaders(code)?, function, x).map_err(device_error)
     }
 
     fn special(&self, code: &Code, probes: &[&'static Probe]) -> Result<Probed, DeviceError> {
-        special::special(&self.gpu, shaders(code)?, probes).map_err(told)
+        special::special(&self.gpu, shaders(code)?, probes).map_err(device_error)
     }
 
     fn lacks_blending(&self, target: TargetFormat) -> Option<&'static str> {
@@ -257,7 +257,7 @@ impl Device for GpuDevice {
     }
 
     fn lacks_route(&mut self, code: &Code, route: Route) -> Result<Option<&'static str>, DeviceError> {
-        Ok(self.blend_unit(shaders(code)?).map_err(told)?.lacks_route(route))
+        Ok(self.blend_unit(shaders(code)?).map_err(device_error)?.lacks_route(route))
     }
 
     fn blend(
@@ -267,8 +267,8 @@ impl Device for GpuDevice {
         pieces: &[&Piece],
         again: bool,
     ) -> Result<Pixels, DeviceError> {
-        let unit = self.blend_unit(shaders(code)?).map_err(told)?;
-        blend::blend(unit, target, pieces, again).map_err(told)
+        let unit = self.blend_unit(shaders(code)?).map_err(device_error)?;
+        blend::blend(unit, target, pieces, again).map_err(device_error)
     }
 
     fn forget_pipelines(&mut self) {
@@ -294,16 +294,16 @@ impl Device for GpuDevice {
             Picture::Full => Recipe::of(Shader::Full),
             Picture::Intermediate(stage) => Recipe::stage(stage),
         };
-        let renderer = SceneRenderer::new(&self.gpu, shaders(code)?, frame, sets, recipe).map_err(told)?;
+        let renderer = SceneRenderer::new(&self.gpu, shaders(code)?, frame, sets, recipe).map_err(device_error)?;
         Ok(Box::new(renderer.submit(&self.gpu)))
     }
 
     fn pixels(&self, job: Own) -> Result<Vec<u8>, DeviceError> {
-        SceneRenderer::pixels(&self.gpu, taken(job)).map_err(told)
+        SceneRenderer::pixels(&self.gpu, taken(job)).map_err(device_error)
     }
 
     fn effects_cost(&self, code: &Code, frame: &Frame, called: &[Called]) -> Result<EffectsCost, DeviceError> {
-        cost::effects_cost(&self.gpu, shaders(code)?, frame, called).map_err(told)
+        cost::effects_cost(&self.gpu, shaders(code)?, frame, called).map_err(device_error)
     }
 
     fn stable_costs(
@@ -313,7 +313,7 @@ impl Device for GpuDevice {
         rivals: &BTreeMap<&'static str, Member>,
         seed: u64,
     ) -> Result<Vec<Cost>, DeviceError> {
-        stable_cost::stable_costs(member, rivals, (&self.gpu, &self.name), shaders(code)?, seed).map_err(told)
+        stable_cost::stable_costs(member, rivals, (&self.gpu, &self.name), shaders(code)?, seed).map_err(device_error)
     }
 
     fn sweep<'a>(
@@ -324,7 +324,7 @@ impl Device for GpuDevice {
         along: Along<'_>,
         capacity: usize,
     ) -> Result<Result<Box<dyn Blocks + 'a>, &'static str>, DeviceError> {
-        sweep::sweep(&self.gpu, shaders(code)?, member, stage, along, capacity).map_err(told)
+        sweep::sweep(&self.gpu, shaders(code)?, member, stage, along, capacity).map_err(device_error)
     }
 }
 
@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_device_ends_with_4_and_keeps_what_was_judged() {
+    fn a_lost_device_ends_the_run_and_keeps_what_was_judged() {
         let report = lose_at("blend/max", "blend/{min,max,write-mask}");
         let interrupted = report.interrupted.as_ref().expect("the run was interrupted");
         assert!(interrupted.under_way.contains("blend/max") && interrupted.under_way.contains("rgba8unorm"));

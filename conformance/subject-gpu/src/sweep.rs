@@ -1,6 +1,6 @@
 //! A sweep on a device.
 
-use super::{kernel, told};
+use super::{device_error, kernel};
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::Member;
 use lightmeter_engine::device::{Blocks, DeviceError};
@@ -45,6 +45,6 @@ impl Blocks for OnDevice<'_> {
 
     fn finish(&mut self, read: &mut dyn FnMut(&[u32])) -> Result<(), DeviceError> {
         let block = self.under_way.pop_front().expect("a block that ends has begun");
-        self.sweep.read(self.gpu, block, read).map_err(told)
+        self.sweep.read(self.gpu, block, read).map_err(device_error)
     }
 }

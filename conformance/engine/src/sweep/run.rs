@@ -24,7 +24,7 @@ pub enum SweepError {
     Device(#[from] DeviceError),
     /// The checkpoint.
     #[error(transparent)]
-    SweepDocument(#[from] DocumentError),
+    Document(#[from] DocumentError),
     /// The adapter lacks what it takes.
     #[error("{adapter} cannot do this sweep: {reason}")]
     Lacks {
@@ -120,18 +120,25 @@ struct OnDevice<'a> {
 }
 
 impl Work for OnDevice<'_> {
-    type Job = u32;
+    type Job = (u32, usize);
 
     fn start(&mut self, first: u64, count: u64) -> Self::Job {
         let key = key_of(input(self.from, first));
-        self.blocks.start(key, usize::try_from(count).unwrap_or(usize::MAX));
-        key
+        let count = usize::try_from(count).unwrap_or(usize::MAX);
+        self.blocks.start(key, count);
+        (key, count)
     }
 
-    fn finish(&mut self, key: Self::Job) -> Result<Statistics, DeviceError> {
-        let mut judged = Statistics::default();
-        self.blocks.finish(&mut |words| judged = self.judge.block(key, words))?;
-        Ok(judged)
+    fn finish(&mut self, (key, count): Self::Job) -> Result<Statistics, DeviceError> {
+        let mut judged = None;
+        self.blocks.finish(&mut |words| {
+            assert!(
+                judged.is_none() && words.len() == count,
+                "a device gives the words of a block once, and all of them"
+            );
+            judged = Some(self.judge.block(key, words));
+        })?;
+        Ok(judged.expect("a device gives the words of a block that it has finished"))
     }
 }
 
