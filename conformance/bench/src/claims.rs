@@ -1,7 +1,7 @@
 //! What the documents claim of cost and quality, held against what was measured.
 
-use super::document::{BenchGroup, BenchRow, Claim, Errors, Rank};
 use lightmeter_document::Number;
+use lightmeter_document::bench::{BenchGroup, BenchRow, Claim, Errors, Rank};
 
 /// A claim: its words, and the rows that it is about.
 struct Claimed {

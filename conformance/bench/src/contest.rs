@@ -2,11 +2,11 @@
 //! they take, in turns.
 
 use super::Bench;
-use super::document::{BenchRow, Errors};
 use super::errors::Gathered;
 use super::turns::{self, Entry, Laps};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::select::{CaseRef, Member};
+use lightmeter_document::bench::{BenchRow, Errors};
 use lightmeter_gpu::{Clock, Gpu, GpuError, Kernel, Reading, RepeatPipeline, Rung};
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_subject_gpu::kernel;

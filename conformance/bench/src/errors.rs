@@ -1,9 +1,9 @@
 //! Errors of many values against their exact ones.
 
-use super::document::{Errors, Spread};
 use lightmeter_arithmetic::F32;
 use lightmeter_arithmetic::format::Format as _;
 use lightmeter_document::Number;
+use lightmeter_document::bench::{Errors, Spread};
 
 /// Gathers errors.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,7 @@
 //! Figures and words as reports show them.
 
-use super::document::{Measured, Rank, Time};
 use super::ladder::median;
+use lightmeter_document::bench::{Measured, Rank, Time};
 use lightmeter_gpu::Rung;
 
 /// How long compilation took, rung by rung.

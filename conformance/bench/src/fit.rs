@@ -4,7 +4,7 @@
 //! part itself, from 0 to below the least time, is searched for. Where the exponent is free, a fixed part is told from a lower
 //! exponent only by points from both sides of where the one takes over.
 
-use super::document::{Fit, ScalingPoint};
+use lightmeter_document::bench::{Fit, ScalingPoint};
 
 /// Fixed parts that are tried, as equal shares of the least time.
 const SHARES: u32 = 200;

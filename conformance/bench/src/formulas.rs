@@ -2,10 +2,10 @@
 
 use super::Bench;
 use super::contest::{Arithmetic, Contender, On, Sample, contest};
-use super::document::{BenchGroup, GroupKind, RungUse};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::Member;
+use lightmeter_document::bench::{BenchGroup, GroupKind, RungUse};
 use lightmeter_gpu::{GpuError, Rung};
 
 /// What a rung is, in a line.

@@ -1,10 +1,10 @@
 //! How time grows with the number of cases.
 
 use super::contest::timed;
-use super::document::{Scaling, ScalingPoint};
 use super::turns::{self, Effort, Entry};
 use super::{Bench, fit};
 use lightmeter_catalogue::select::catalogue;
+use lightmeter_document::bench::{Scaling, ScalingPoint};
 use lightmeter_gpu::{GpuError, RepeatPipeline};
 
 /// The formula that is evaluated.

@@ -1,8 +1,8 @@
 //! Rungs over many groups: the geometric mean of times, the median of largest errors.
 
-use super::document::{BenchGroup, BenchRow, Errors, Family, FamilyRung};
 use super::pareto::{self, Point, is_processor};
 use lightmeter_document::Number;
+use lightmeter_document::bench::{BenchGroup, BenchRow, Errors, Family, FamilyRung};
 
 /// A rung over many groups.
 #[derive(Clone, Debug)]

@@ -3,7 +3,6 @@
 
 mod claims;
 mod contest;
-pub mod document;
 pub mod errors;
 mod figures;
 pub mod fit;
@@ -22,11 +21,11 @@ mod techniques;
 pub mod text;
 pub mod turns;
 
-use document::{BenchDocument, BenchGroup, ClockUse, Family, GroupKind, Measured, SCHEMA, Scaling};
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::select::{Member, catalogue};
+use lightmeter_document::bench::{BenchDocument, BenchGroup, ClockUse, Family, GroupKind, Measured, SCHEMA, Scaling};
 use lightmeter_engine::options::Progress;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Clock, ClockKind, Gpu, GpuError, Rung, Shaders};

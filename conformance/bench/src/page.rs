@@ -1,11 +1,11 @@
 //! The page on what accuracy costs, and the README's part of it, in Markdown.
 
-use super::document::{BenchDocument, BenchGroup, BenchRow, Claim, Family, GroupKind, Measured};
 use super::figures::{compilation, count, digits, error, holding, spread, standing, time};
 use super::ladder::{Rung, rungs};
 use super::pareto::is_processor;
 use super::plot::Picture;
 use super::text::{is_stable_form, law, steps};
+use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Claim, Family, GroupKind, Measured};
 use lightmeter_document::thousands;
 use std::fmt::{Result, Write};
 

@@ -3,7 +3,7 @@
 //! A point is on it where no other of it is at most as slow *and* at most as far off, and one of these strictly. What has no time or no finite error is never on it; nor is a row that is unavailable or wrong in value, nor
 //! a rung on the processor, which no shader can take.
 
-use super::document::{BenchGroup, BenchRow};
+use lightmeter_document::bench::{BenchGroup, BenchRow};
 
 /// A row, or a rung over many.
 #[derive(Clone, Debug)]

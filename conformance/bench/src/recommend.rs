@@ -1,11 +1,11 @@
 //! The cheapest row of each group whose largest error is at most so much: `lightmeter.recommendation/1`.
 
-use super::document::{BenchDocument, BenchGroup, BenchRow, Errors};
 use super::figures::{digits, error, time};
 use super::pareto::refusal;
 use super::text::wrapped;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::Number;
+use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Errors};
 use serde::Serialize;
 use std::fmt::{Display, Formatter, Result as Written, Write};
 use std::str::FromStr;

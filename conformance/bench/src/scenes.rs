@@ -13,13 +13,13 @@ pub use scaling::{SCALINGS, scalings};
 pub use techniques::{technique_ids, techniques};
 
 use super::Setting;
-use super::document::{BenchGroup, BenchRow, GroupKind};
 use super::errors::Gathered;
 use super::turns::{self, Effort, Entry};
 use drawing::{Drawer, Plan, Standard};
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
+use lightmeter_document::bench::{BenchGroup, BenchRow, GroupKind};
 use lightmeter_engine::image::file::Stored;
 use lightmeter_engine::options::Progress;
 use lightmeter_engine::subject::Subject;
@@ -226,8 +226,8 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Rank;
     use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_document::bench::Rank;
     use lightmeter_engine::options::Silent;
     use lightmeter_gpu::adapters;
 

@@ -2,9 +2,9 @@
 //! lie apart, since machine code and memory lie elsewhere; so every sitting has devices and pipelines of its own.
 
 use super::Sitting;
-use super::document::{Rank, ScalingPoint, Time};
 use super::fit::fit;
 use super::turns::{median, standing};
+use lightmeter_document::bench::{Rank, ScalingPoint, Time};
 
 /// The first sitting, which has the errors, with the times of all.
 ///
@@ -73,9 +73,9 @@ fn range(of: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::document::ClockUse;
     use super::super::synthetic::{group, row};
     use super::*;
+    use lightmeter_document::bench::ClockUse;
 
     fn sitting(ns: f64, ratio: f64) -> Sitting {
         let clock = ClockUse { kind: "timestamps".into(), note: None, readings: 10, rejected: 1 };

@@ -1,9 +1,9 @@
 //! A made-up document with everything that a real one may have in it, for tests of what is made of one.
 
-use super::document::*;
 use super::ladder::family;
 use super::pareto::front_of;
 use lightmeter_document::Number;
+use lightmeter_document::bench::*;
 
 /// SplitMix64.
 pub(crate) struct SyntheticDraw(u64);

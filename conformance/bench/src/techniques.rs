@@ -3,11 +3,11 @@
 
 use super::Bench;
 use super::contest::{Arithmetic, Contender, On, Sample, contest};
-use super::document::{BenchGroup, GroupKind};
 use super::formulas::on_device;
 use lightmeter_catalogue::cases::formula::formula;
 use lightmeter_catalogue::cases::{Domain, Formula, Hard, Input, Output, Reader, Shape};
 use lightmeter_catalogue::select::Member;
+use lightmeter_document::bench::{BenchGroup, GroupKind};
 use lightmeter_gpu::{GpuError, Rung};
 use lightmeter_reference::lighting::{self, Specular, highlight, incidence};
 use lightmeter_reference::{Real, Vec3, Vector, fog, interpolation, vector};

@@ -1,8 +1,8 @@
 //! A bench for people to read on a terminal, 120 columns wide.
 
-use super::document::{BenchDocument, BenchGroup, BenchRow, Family, GroupKind, Measured, Scaling};
 use super::figures::{compilation, count, digits, error, spread, standing, time};
 use super::ladder::{Rung, rungs};
+use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Family, GroupKind, Measured, Scaling};
 use lightmeter_document::thousands;
 use std::fmt::{Result, Write};
 

@@ -1,7 +1,7 @@
 //! Times in turns: everything that is compared is measured in each turn, so that what else the machine does falls upon all
 //! alike, and a ratio is of two times of the same turn. What is measured in a turn is the least of a few readings.
 
-use super::document::{Rank, Time};
+use lightmeter_document::bench::{Rank, Time};
 use lightmeter_gpu::{GpuError, Reading};
 
 /// Something that is timed, and how much of it at once.

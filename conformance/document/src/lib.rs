@@ -1,10 +1,12 @@
-//! The JSON of `run` and of `special`: each type reads what it writes. The types of the gate, sweeps, the bench and the self-test are
-//! still in their own rooms.
+//! The JSON of `run`, `special`, `bench` and `selftest`: each type reads what it writes. The types of the gate and of sweeps are still
+//! in their own rooms.
 //!
 //! Nothing here judges or draws.
 
+pub mod bench;
 mod number;
 pub mod run;
+pub mod selftest;
 pub mod special;
 
 pub use number::{Number, thousands};

@@ -1,15 +1,15 @@
 //! The suite's resolution: for each parameter of each formula the smallest error that a run of 4,096 cases names, by a single
 //! verdict and by the group verdict.
 
-use super::group::{Design, OffBy, Parameter};
+use super::group::{Design, Parameter};
 use super::selftest::Options;
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::{CaseRef, Member, Shard, catalogue, select};
+use lightmeter_document::selftest::{OffBy, Resolution};
 use lightmeter_judge::{Outcome, judge};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 /// Cases of a run.
 pub const CASES: u64 = 4096;
@@ -23,31 +23,6 @@ const WIDEST: f64 = 16.0;
 /// What an error grows by while the group verdict does not name it, and how often.
 const STEP: f64 = 1.25;
 const MOST_STEPS: u32 = 16;
-
-/// The smallest errors of a parameter that are named.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Resolution {
-    /// The formula.
-    pub formula: String,
-    /// An input, one number of it, or an output.
-    pub parameter: String,
-    /// Whether it is an output.
-    pub is_output: bool,
-    /// Relative or absolute.
-    pub error: OffBy,
-    /// By a single verdict: some case leaves its interval.
-    pub single: Option<f64>,
-    /// By the group verdict.
-    pub group: Option<f64>,
-}
-
-impl Resolution {
-    /// The parameter's name, an output's said to be one.
-    #[must_use]
-    pub fn name(&self) -> String {
-        if self.is_output { format!("{} (output)", self.parameter) } else { self.parameter.clone() }
-    }
-}
 
 /// Measures every parameter of every formula that a filter selects. Of the many blend states, which have their operands in
 /// common, the named modes stand for all.

@@ -6,29 +6,8 @@ use super::factor::digits;
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_catalogue::select::Member;
-use serde::{Deserialize, Serialize};
+use lightmeter_document::selftest::{OffBy, Systematic};
 use std::ops::Range;
-
-/// How a number is off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum OffBy {
-    /// A relative error: x(1 + δ).
-    Scale,
-    /// An absolute one: x + δ.
-    Offset,
-}
-
-impl OffBy {
-    /// The name in tables.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Scale => "scale",
-            Self::Offset => "offset",
-        }
-    }
-}
 
 /// A number of a formula's that may be off: an input as a whole, one number of an input, or an output.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,27 +28,6 @@ impl Parameter {
             (false, false, _) => 1,
         }
     }
-}
-
-/// A systematic error that the answers show together.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Systematic {
-    /// What is off: an input, one number of it, or an output.
-    pub parameter: String,
-    /// Whether it is an output.
-    pub is_output: bool,
-    /// Relatively or absolutely.
-    pub error: OffBy,
-    /// By how much.
-    pub amount: f64,
-    /// How many standard errors that is.
-    pub z: f64,
-    /// The shift that it makes, as a share of the tolerance: the root of the mean square over the cases.
-    pub share: f64,
-    /// Other parameters that would explain it as well: their z is above 0.99 of this one.
-    pub or: Vec<String>,
-    /// In words: "as if shininess were 0.40 % larger".
-    pub says: String,
 }
 
 /// Values that a group verdict takes at least.

@@ -22,7 +22,7 @@ mod variation;
 pub use catalogue::{Fault, concerning, faults};
 pub use diagnose::{Answered, Diagnosis, Explanation, diagnose};
 pub use factor::Scaled;
-pub use group::{LEAST_SHARE, LEAST_VALUES, LEAST_Z, OffBy, Systematic, group_verdict};
+pub use group::{LEAST_SHARE, LEAST_VALUES, LEAST_Z, group_verdict};
 pub use row::Arithmetic;
 pub use variation::Variation;
 

@@ -5,16 +5,16 @@
 
 use super::catalogue::{Fault, concerning};
 use super::diagnose::{Answered, Diagnosis, diagnose};
-use super::group::{Systematic, group_verdict};
+use super::group::group_verdict;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, Profile, RandomLegal, random};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::{CaseRef, Member, Shard, catalogue, select};
+use lightmeter_document::selftest::{Clean, Finding, Kill, Record};
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_reference::Real as _;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::cell::LazyCell;
 
 /// What is tried.
@@ -30,82 +30,6 @@ pub struct Options {
     pub draws: u64,
     /// By which rules.
     pub profile: &'static Profile,
-}
-
-/// What became of a mistake in a formula.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Finding {
-    /// Caught, and the first diagnosis is it, or one of the same values in every case.
-    Named,
-    /// Caught, and the first diagnosis is another.
-    Caught,
-    /// Not caught.
-    Survived,
-}
-
-/// A mistake in a formula.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Kill {
-    /// The mistake.
-    pub fault: String,
-    /// The formula.
-    pub formula: String,
-    /// What became of it.
-    pub finding: Finding,
-    /// Cases that were tried.
-    pub cases: usize,
-    /// Those of them that fail.
-    pub failing: usize,
-    /// How many cases suffice to catch it, in the order of a run.
-    pub smallest: Option<usize>,
-    /// The case that catches it.
-    pub first_case: Option<String>,
-    /// How many random cases alone suffice.
-    pub smallest_random: Option<usize>,
-    /// The first diagnosis.
-    pub diagnosis: Vec<String>,
-    /// It in words.
-    pub sentence: String,
-    /// Whether the diagnosis names another mistake of the same values in every case, from which it cannot be told.
-    pub alias: bool,
-}
-
-/// A formula without a mistake.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Clean {
-    /// The formula.
-    pub formula: String,
-    /// Verdicts on the embedded implementation and on legal evaluations drawn at random.
-    pub verdicts: u64,
-    /// Those that failed.
-    pub failed: u64,
-    /// What a group verdict named, of the embedded implementation or of the draws.
-    pub systematic: Option<Systematic>,
-}
-
-/// The outcome of the self-test.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Record {
-    /// Every mistake in every formula that it concerns.
-    pub kills: Vec<Kill>,
-    /// Every formula without a mistake.
-    pub clean: Vec<Clean>,
-}
-
-impl Record {
-    /// Whether every mistake is caught and nothing right is flagged.
-    #[must_use]
-    pub fn is_good(&self) -> bool {
-        self.kills.iter().all(|kill| kill.finding != Finding::Survived)
-            && self.clean.iter().all(|clean| clean.failed == 0 && clean.systematic.is_none())
-    }
-
-    /// Mistakes in formulas of a finding.
-    #[must_use]
-    pub fn count(&self, finding: Finding) -> usize {
-        self.kills.iter().filter(|kill| kill.finding == finding).count()
-    }
 }
 
 /// Tries every mistake, and none, in every formula that a filter selects.

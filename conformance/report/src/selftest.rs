@@ -1,9 +1,9 @@
 //! The self-test of formulas as text.
 
 use lightmeter_catalogue::cases::FAMILIES;
-use lightmeter_faults::calibrate::Resolution;
+use lightmeter_document::selftest::Resolution;
+use lightmeter_document::selftest::{Finding, Kill, Record};
 use lightmeter_faults::faults;
-use lightmeter_faults::selftest::{Finding, Kill, Record};
 use std::fmt::{Result, Write};
 
 /// The kill matrix by mistake, what went wrong, and the resolution where it was measured.
@@ -67,7 +67,10 @@ pub fn text(record: &Record, resolutions: &[Resolution], out: &mut impl Write) -
     Ok(())
 }
 
-fn of_family<'a>(record: &'a Record, family: &'a str) -> impl Iterator<Item = &'a lightmeter_faults::selftest::Clean> {
+fn of_family<'a>(
+    record: &'a Record,
+    family: &'a str,
+) -> impl Iterator<Item = &'a lightmeter_document::selftest::Clean> {
     record.clean.iter().filter(move |clean| clean.formula.split('/').next() == Some(family))
 }
 

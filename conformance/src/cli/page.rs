@@ -3,8 +3,8 @@
 use super::{Status, emit};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
-use lightmeter::bench::document::{BenchDocument, SCHEMA};
 use lightmeter::bench::{page, plot};
+use lightmeter::document::bench::{BenchDocument, SCHEMA};
 use lightmeter::report;
 use lightmeter::report::page::{Run, markdown, scenes, selftest, special, stability, svg};
 use lightmeter::sweep;

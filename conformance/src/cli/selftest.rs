@@ -6,6 +6,7 @@ use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::selftest::{UnitFinding, UnitRow, selftest};
+use lightmeter::document::selftest::{Record, SceneRecord};
 use lightmeter::faults::calibrate::calibrate;
 use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
@@ -149,8 +150,7 @@ impl Selftest {
         };
         emit(&text, self.out.as_deref())?;
         let unit = rows.iter().flatten().all(|row| row.finding.is_good());
-        let good =
-            unit && record.iter().all(formulas::Record::is_good) && drawn.iter().all(scenes::SceneRecord::is_good);
+        let good = unit && record.iter().all(Record::is_good) && drawn.iter().all(SceneRecord::is_good);
         Ok(if good { Status::Success } else { Status::Failed })
     }
 }

@@ -11,9 +11,9 @@ mod mark;
 mod panels;
 mod svg;
 
-use super::document::{BenchDocument, GroupKind, Measured};
 use super::ladder::{Rung, rungs};
 use super::text::is_stable_form;
+use lightmeter_document::bench::{BenchDocument, GroupKind, Measured};
 
 /// A picture.
 #[derive(Clone, Debug)]

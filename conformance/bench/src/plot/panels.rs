@@ -4,8 +4,8 @@ use super::axis::{Axis, ErrorAxis};
 use super::label::{Area, Room};
 use super::mark::{mark, style};
 use super::svg::{Named, SIZE, WIDTH, across, errors, escaped, frame, markers, open, shortened, text, text_width};
-use crate::document::{BenchGroup, BenchRow};
 use crate::pareto::is_processor;
+use lightmeter_document::bench::{BenchGroup, BenchRow};
 use lightmeter_gpu::Rung;
 use std::fmt::{Error, Result as Written, Write};
 

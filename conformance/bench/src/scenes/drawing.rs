@@ -1,10 +1,10 @@
 //! Rows that are drawn: compiled, drawn once, held against the reference, and timed in turns.
 
 use super::{BenchRow, Gathered, On, Setting, TIMED};
-use crate::document::Errors;
 use crate::turns;
 use crate::turns::{Effort, Entry};
 use lightmeter_arithmetic::Profile;
+use lightmeter_document::bench::Errors;
 use lightmeter_engine::blend_unit::pixel::linear;
 use lightmeter_engine::image::expect::{Expected, expect};
 use lightmeter_engine::image::file::Stored;

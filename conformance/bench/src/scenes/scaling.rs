@@ -2,10 +2,10 @@
 
 use super::drawing::{Drawer, sized};
 use super::{On, Setting, frames};
-use crate::document::{Scaling, ScalingPoint};
 use crate::fit::fit;
 use crate::turns;
 use crate::turns::{Effort, Entry, Laps};
+use lightmeter_document::bench::{Scaling, ScalingPoint};
 use lightmeter_engine::options::Progress;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;

@@ -2,7 +2,7 @@
 
 use super::drawing::{Drawer, Plan, Standard, side, sized};
 use super::{On, Setting, frames};
-use crate::document::{BenchGroup, GroupKind};
+use lightmeter_document::bench::{BenchGroup, GroupKind};
 use lightmeter_engine::options::Progress;
 use lightmeter_gpu::compose::{Recipe, Shader, Technique};
 use lightmeter_gpu::{GpuError, Rung};
@@ -262,8 +262,8 @@ fn targets(id: &'static str, title: &'static str, mut frame: Frame) -> Compariso
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::BenchRow;
     use crate::scenes::drawing::tests::{brighter, on_a_device};
+    use lightmeter_document::bench::BenchRow;
 
     #[test]
     fn a_row_that_draws_something_else_is_seen_in_every_group() {

@@ -4,51 +4,12 @@ use super::{SCENE_FAULTS, Trial, draw, fails};
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
+use lightmeter_document::selftest::{SceneRecord, SceneRow};
 use lightmeter_judge::image::expect;
 use lightmeter_judge::image::file::Stored;
 use lightmeter_reference::render::render;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::fmt::{Result, Write};
-
-/// What became of a mistake in the scenes.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SceneRow {
-    /// The mistake.
-    pub fault: String,
-    /// In words.
-    pub says: String,
-    /// Scenes that it fails in.
-    pub caught: Vec<String>,
-    /// Of them, those whose diagnosis names it first, or names one that draws the same there.
-    pub named: Vec<String>,
-    /// What the others' diagnoses say.
-    pub others: Vec<String>,
-}
-
-/// What the scenes catch.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SceneRecord {
-    /// Each mistake.
-    pub rows: Vec<SceneRow>,
-    /// Scenes in which nothing is wrong and something fails all the same.
-    pub alarms: Vec<String>,
-}
-
-impl SceneRecord {
-    /// Whether every mistake is caught, and nothing that is right is flagged.
-    #[must_use]
-    pub fn is_good(&self) -> bool {
-        self.alarms.is_empty() && self.rows.iter().all(SceneRow::is_caught)
-    }
-
-    /// How often a mistake was caught, and how often it was told by its name.
-    #[must_use]
-    pub fn counts(&self) -> [usize; 2] {
-        let count = |of: fn(&SceneRow) -> &Vec<String>| self.rows.iter().map(|row| of(row).len()).sum();
-        [count(|row| &row.caught), count(|row| &row.named)]
-    }
-}
 
 /// Writes it for people.
 ///
@@ -66,14 +27,6 @@ pub fn text(record: &SceneRecord, out: &mut impl Write) -> Result {
         writeln!(out, "FALSE ALARM: {alarm} fails and nothing is wrong")?;
     }
     Ok(())
-}
-
-impl SceneRow {
-    /// Whether some scene catches it.
-    #[must_use]
-    pub fn is_caught(&self) -> bool {
-        !self.caught.is_empty()
-    }
 }
 
 /// What the scenes catch, drawn with so many pixels on their longer side; and the scenes in which nothing is wrong and

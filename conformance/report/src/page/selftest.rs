@@ -2,9 +2,10 @@
 
 use crate::selftest::smallest;
 use lightmeter_catalogue::cases::FAMILIES;
-use lightmeter_faults::calibrate::{CASES, Resolution};
-use lightmeter_faults::scene::selftest as scenes;
-use lightmeter_faults::selftest::{Clean, Finding, Kill, Record};
+use lightmeter_document::selftest::Resolution;
+use lightmeter_document::selftest::SceneRecord;
+use lightmeter_document::selftest::{Clean, Finding, Kill, Record};
+use lightmeter_faults::calibrate::CASES;
 use lightmeter_faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,7 +20,7 @@ pub struct Run {
     calibration: Vec<Resolution>,
     #[serde(default)]
     rows: Vec<UnitRow>,
-    scenes: Option<scenes::SceneRecord>,
+    scenes: Option<SceneRecord>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -172,7 +173,7 @@ fn clean(record: &Record, out: &mut impl Write) -> Written {
     writeln!(out)
 }
 
-fn drawn(record: &scenes::SceneRecord, out: &mut impl Write) -> Written {
+fn drawn(record: &SceneRecord, out: &mut impl Write) -> Written {
     let [caught, named] = record.counts();
     writeln!(out, "\n## Mistakes of whole renderers\n")?;
     writeln!(
@@ -246,7 +247,7 @@ fn resolution(calibration: &[Resolution], out: &mut impl Write) -> Written {
             continue;
         }
         write!(out, "| {} | {name} |", resolution.formula)?;
-        for error in [lightmeter_faults::OffBy::Scale, lightmeter_faults::OffBy::Offset] {
+        for error in [lightmeter_document::selftest::OffBy::Scale, lightmeter_document::selftest::OffBy::Offset] {
             let found = calibration.iter().find(|other| {
                 other.formula == resolution.formula
                     && other.parameter == resolution.parameter

@@ -3,7 +3,7 @@
 //! Times are nanoseconds, errors are against the f64 reference of what a group's `ideal` says. A *row* is a technique or a
 //! rung of the ladder; rows of a *group* compute the same, and are measured in turns beside the group's baseline.
 
-use lightmeter_document::Number;
+use crate::Number;
 use serde::{Deserialize, Serialize};
 
 /// The schema's name.

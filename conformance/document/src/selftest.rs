@@ -1,0 +1,193 @@
+//! The JSON of `selftest`.
+
+use serde::{Deserialize, Serialize};
+
+/// What became of a mistake in a formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Finding {
+    /// Caught, and the first diagnosis is it, or one of the same values in every case.
+    Named,
+    /// Caught, and the first diagnosis is another.
+    Caught,
+    /// Not caught.
+    Survived,
+}
+
+/// A mistake in a formula.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Kill {
+    /// The mistake.
+    pub fault: String,
+    /// The formula.
+    pub formula: String,
+    /// What became of it.
+    pub finding: Finding,
+    /// Cases that were tried.
+    pub cases: usize,
+    /// Those of them that fail.
+    pub failing: usize,
+    /// How many cases suffice to catch it, in the order of a run.
+    pub smallest: Option<usize>,
+    /// The case that catches it.
+    pub first_case: Option<String>,
+    /// How many random cases alone suffice.
+    pub smallest_random: Option<usize>,
+    /// The first diagnosis.
+    pub diagnosis: Vec<String>,
+    /// It in words.
+    pub sentence: String,
+    /// Whether the diagnosis names another mistake of the same values in every case, from which it cannot be told.
+    pub alias: bool,
+}
+
+/// A formula without a mistake.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Clean {
+    /// The formula.
+    pub formula: String,
+    /// Verdicts on the embedded implementation and on legal evaluations drawn at random.
+    pub verdicts: u64,
+    /// Those that failed.
+    pub failed: u64,
+    /// What a group verdict named, of the embedded implementation or of the draws.
+    pub systematic: Option<Systematic>,
+}
+
+/// The outcome of the self-test.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Record {
+    /// Every mistake in every formula that it concerns.
+    pub kills: Vec<Kill>,
+    /// Every formula without a mistake.
+    pub clean: Vec<Clean>,
+}
+
+impl Record {
+    /// Whether every mistake is caught and nothing right is flagged.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.kills.iter().all(|kill| kill.finding != Finding::Survived)
+            && self.clean.iter().all(|clean| clean.failed == 0 && clean.systematic.is_none())
+    }
+
+    /// Mistakes in formulas of a finding.
+    #[must_use]
+    pub fn count(&self, finding: Finding) -> usize {
+        self.kills.iter().filter(|kill| kill.finding == finding).count()
+    }
+}
+
+/// How a number is off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OffBy {
+    /// A relative error: x(1 + δ).
+    Scale,
+    /// An absolute one: x + δ.
+    Offset,
+}
+
+impl OffBy {
+    /// The name in tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scale => "scale",
+            Self::Offset => "offset",
+        }
+    }
+}
+
+/// A systematic error that the answers show together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Systematic {
+    /// What is off: an input, one number of it, or an output.
+    pub parameter: String,
+    /// Whether it is an output.
+    pub is_output: bool,
+    /// Relatively or absolutely.
+    pub error: OffBy,
+    /// By how much.
+    pub amount: f64,
+    /// How many standard errors that is.
+    pub z: f64,
+    /// The shift that it makes, as a share of the tolerance: the root of the mean square over the cases.
+    pub share: f64,
+    /// Other parameters that would explain it as well: their z is above 0.99 of this one.
+    pub or: Vec<String>,
+    /// In words: "as if shininess were 0.40 % larger".
+    pub says: String,
+}
+
+/// The smallest errors of a parameter that are named.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Resolution {
+    /// The formula.
+    pub formula: String,
+    /// An input, one number of it, or an output.
+    pub parameter: String,
+    /// Whether it is an output.
+    pub is_output: bool,
+    /// Relative or absolute.
+    pub error: OffBy,
+    /// By a single verdict: some case leaves its interval.
+    pub single: Option<f64>,
+    /// By the group verdict.
+    pub group: Option<f64>,
+}
+
+impl Resolution {
+    /// The parameter's name, an output's said to be one.
+    #[must_use]
+    pub fn name(&self) -> String {
+        if self.is_output { format!("{} (output)", self.parameter) } else { self.parameter.clone() }
+    }
+}
+
+/// What became of a mistake in the scenes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SceneRow {
+    /// The mistake.
+    pub fault: String,
+    /// In words.
+    pub says: String,
+    /// Scenes that it fails in.
+    pub caught: Vec<String>,
+    /// Of them, those whose diagnosis names it first, or names one that draws the same there.
+    pub named: Vec<String>,
+    /// What the others' diagnoses say.
+    pub others: Vec<String>,
+}
+
+/// What the scenes catch.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SceneRecord {
+    /// Each mistake.
+    pub rows: Vec<SceneRow>,
+    /// Scenes in which nothing is wrong and something fails all the same.
+    pub alarms: Vec<String>,
+}
+
+impl SceneRecord {
+    /// Whether every mistake is caught, and nothing that is right is flagged.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.alarms.is_empty() && self.rows.iter().all(SceneRow::is_caught)
+    }
+
+    /// How often a mistake was caught, and how often it was told by its name.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 2] {
+        let count = |of: fn(&SceneRow) -> &Vec<String>| self.rows.iter().map(|row| of(row).len()).sum();
+        [count(|row| &row.caught), count(|row| &row.named)]
+    }
+}
+
+impl SceneRow {
+    /// Whether some scene catches it.
+    #[must_use]
+    pub fn is_caught(&self) -> bool {
+        !self.caught.is_empty()
+    }
+}
