@@ -9,7 +9,7 @@ use crate::image;
 use crate::options::{Options, Progress};
 use crate::selection::Selection;
 use crate::special::verdict::Table;
-use crate::subject::{Compiled, Rows, Subject};
+use crate::subject::{Compiled, Job, Rows, Subject};
 use crate::witness;
 use crate::{special, stability};
 use lightmeter_catalogue::cases::Kind;
@@ -189,6 +189,17 @@ fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
     routes.into_iter().map(|(route, states)| (route.into(), states.len().into())).collect()
 }
 
+/// A group of formulas in the stages that take rows.
+struct RowRun {
+    /// The stages of each subject.
+    compiled: Vec<Compiled>,
+    /// What each of them has come to.
+    tallies: Vec<Vec<Tally>>,
+}
+
+/// A job of a stage, and how long it took to hand it over; `None` where the stage is skipped.
+type Submitted = (Option<Job>, f64);
+
 fn run_rows(
     members: &[&Member],
     group: &[Selected],
@@ -198,20 +209,12 @@ fn run_rows(
     progress: &mut impl Progress,
 ) -> Result<(), DeviceError> {
     let group: Vec<Selected> = group.iter().zip(members).map(|(chosen, member)| chosen.rows(member)).collect();
-    let spec = &members[0].spec;
     let clock = Instant::now();
-    let compiled: Vec<Compiled> = subjects
-        .iter_mut()
-        .map(|subject| subject.compile(&options.code, members[0]))
-        .collect::<Result<_, DeviceError>>()?;
-    let compiling = clock.elapsed().as_secs_f64();
-    report.timing.compile += compiling;
+    let mut run = RowRun::new(members[0], subjects, options)?;
+    report.timing.compile += clock.elapsed().as_secs_f64();
 
-    let mut tallies: Vec<Vec<Tally>> =
-        compiled.iter().map(|compiled| compiled.stages.iter().map(|_| Tally::default()).collect()).collect();
-    let cases: Vec<(usize, CaseRef)> = vec![];
     let mut all = group.iter().enumerate().flat_map(|(of, chosen)| chosen.cases().map(move |case| (of, case)));
-    let mut next = cases;
+    let mut next: Vec<(usize, CaseRef)> = vec![];
     loop {
         next.clear();
         next.extend(all.by_ref().take(CHUNK));
@@ -223,61 +226,93 @@ fn run_rows(
         report.timing.generate += clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
-        let mut jobs = vec![];
-        for (subject, compiled) in subjects.iter_mut().zip(&compiled) {
-            for (_, work) in &compiled.stages {
-                let clock = Instant::now();
-                let job = work.as_ref().ok().map(|work| subject.submit(work, &rows(&chunk))).transpose()?;
-                jobs.push((job, clock.elapsed().as_secs_f64()));
-            }
-        }
+        let jobs = run.submit(subjects, &chunk)?;
         report.timing.devices += clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
         chunk::refer(&mut chunk, options.profile);
         report.timing.reference += clock.elapsed().as_secs_f64();
 
-        let mut jobs = jobs.into_iter();
-        for ((subject, compiled), tallies) in subjects.iter().zip(&compiled).zip(&mut tallies) {
+        run.judge(subjects, &chunk, jobs, options, report)?;
+        progress.advance(next.len() as u64);
+    }
+    run.finish(members[0], subjects, report);
+    Ok(())
+}
+
+impl RowRun {
+    fn new(member: &Member, subjects: &mut [Subject], options: &Options) -> Result<Self, DeviceError> {
+        let compile = |subject: &mut Subject| subject.compile(&options.code, member);
+        let compiled: Vec<Compiled> = subjects.iter_mut().map(compile).collect::<Result<_, _>>()?;
+        let blank = |compiled: &Compiled| compiled.stages.iter().map(|_| Tally::default()).collect();
+        Ok(Self { tallies: compiled.iter().map(blank).collect(), compiled })
+    }
+
+    /// Hands a chunk to every stage of every subject, in the order in which the jobs are finished.
+    fn submit(&self, subjects: &mut [Subject], chunk: &Chunk<'_>) -> Result<Vec<Submitted>, DeviceError> {
+        let mut jobs = vec![];
+        for (subject, compiled) in subjects.iter_mut().zip(&self.compiled) {
+            for (_, work) in &compiled.stages {
+                let clock = Instant::now();
+                let job = work.as_ref().ok().map(|work| subject.submit(work, &rows(chunk))).transpose()?;
+                jobs.push((job, clock.elapsed().as_secs_f64()));
+            }
+        }
+        Ok(jobs)
+    }
+
+    /// Waits for every stage of every subject, and judges what it gave.
+    fn judge(
+        &mut self,
+        subjects: &[Subject],
+        chunk: &Chunk<'_>,
+        jobs: Vec<Submitted>,
+        options: &Options,
+        report: &mut Report,
+    ) -> Result<(), DeviceError> {
+        let (mut jobs, cases) = (jobs.into_iter(), chunk.cases.len() as u64);
+        for ((subject, compiled), tallies) in subjects.iter().zip(&self.compiled).zip(&mut self.tallies) {
             for ((stage, work), tally) in compiled.stages.iter().zip(tallies) {
                 let (Some((Some(job), submitting)), Ok(work)) = (jobs.next(), work) else {
-                    tally.totals.cases += next.len() as u64;
-                    tally.totals.skipped += next.len() as u64;
+                    tally.totals.cases += cases;
+                    tally.totals.skipped += cases;
                     continue;
                 };
                 let clock = Instant::now();
-                let words = subject.finish(work, job, &rows(&chunk))?;
+                let words = subject.finish(work, job, &rows(chunk))?;
                 let waiting = clock.elapsed().as_secs_f64();
                 report.timing.devices += waiting;
                 let clock = Instant::now();
-                tally.merge(judge_chunk(&chunk, &words, *stage, &subject.judging(options)));
+                tally.merge(judge_chunk(chunk, &words, *stage, &subject.judging(options)));
                 report.timing.judge += clock.elapsed().as_secs_f64();
                 tally.seconds += submitting + waiting + clock.elapsed().as_secs_f64();
             }
         }
-        progress.advance(next.len() as u64);
+        Ok(())
     }
 
-    for ((subject, compiled), tallies) in subjects.iter().zip(compiled).zip(tallies) {
-        for ((stage, work), tally) in compiled.stages.into_iter().zip(tallies) {
-            for (name, excused) in &tally.excused {
-                report.excuse(name, &subject.identity.name, *excused);
+    /// Adds a group for each stage of each subject to the report.
+    fn finish(self, member: &Member, subjects: &[Subject], report: &mut Report) {
+        for ((subject, compiled), tallies) in subjects.iter().zip(self.compiled).zip(self.tallies) {
+            for ((stage, work), tally) in compiled.stages.into_iter().zip(tallies) {
+                for (name, excused) in &tally.excused {
+                    report.excuse(name, &subject.identity.name, *excused);
+                }
+                report.failures.extend(reported(tally.simplest, tally.failures));
+                let problem = tally::problem(tally.random, tally.totals.verdicts, tally.totals.indeterminate);
+                report.groups.push(Group {
+                    totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
+                    error_ulp_max: Number(tally.error_ulp_max),
+                    margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
+                    seconds: tally.seconds,
+                    worst: tally.worst.map(|(_, id)| id),
+                    skip_reason: work.err().map(Into::into),
+                    problem,
+                    ..Group::new(member.spec.group().into(), subject.identity.name.clone(), stage.name())
+                });
             }
-            report.failures.extend(reported(tally.simplest, tally.failures));
-            let problem = tally::problem(tally.random, tally.totals.verdicts, tally.totals.indeterminate);
-            report.groups.push(Group {
-                totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
-                error_ulp_max: Number(tally.error_ulp_max),
-                margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
-                seconds: tally.seconds,
-                worst: tally.worst.map(|(_, id)| id),
-                skip_reason: work.err().map(Into::into),
-                problem,
-                ..Group::new(spec.group().into(), subject.identity.name.clone(), stage.name())
-            });
         }
     }
-    Ok(())
 }
 
 /// The rows of a chunk, as a stage takes them.
