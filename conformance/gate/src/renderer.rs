@@ -119,7 +119,9 @@ mod tests {
         fault: Option<(&'static str, &'static str)>,
         scene_fault: Option<&'static str>,
     ) -> GateReport {
-        let folder = std::env::temp_dir().join(format!("lightmeter-renderer-{}-{}", std::process::id(), filter.len()));
+        // Each call has a folder of its own: tests run at the same time in one process.
+        let name = filter.join("+").replace('/', "-");
+        let folder = std::env::temp_dir().join(format!("lightmeter-renderer-{}-{name}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder can be made");
         let filter = filter.iter().map(|&glob| glob.to_owned()).collect();
         let plan = Plan::new(Choice { filter, cases: 64, seed: 1, size: Some(48) }).expect("the globs are valid");
