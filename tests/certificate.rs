@@ -1,7 +1,7 @@
 //! The certificate of the reference and of the intervals: it holds, the page is the present one, and each of its checks
 //! fails where it should.
 
-use lightmeter::cases::{Formula, Input, Kind, Output, Reader, Spec, Writer};
+use lightmeter::cases::{Formula, Input, Kind, Output, Reader, Spec, Writer, place};
 use lightmeter::select::catalogue;
 use lightmeter_reference::Real;
 use lightmeter_tests::certificate::{CASES, EXCEPTIONS, Finding, certify, certify_one, groups, page, problems};
@@ -59,9 +59,10 @@ enum Wrong {
     InNoValue,
 }
 
+const INPUTS: &[Input] = &[Input::rgb("x")];
+
 impl Formula for Wrong {
     fn spec(&self) -> Spec {
-        const INPUTS: &[Input] = &[Input::rgb("x")];
         const OUTPUTS: &[Output] = &[Output::new("y", lightmeter::cases::Shape::Scalar, "1")];
         Spec {
             id: "control/wrong".into(),
@@ -79,8 +80,9 @@ impl Formula for Wrong {
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let ([x, ..], number) = (x.array::<3>(), R::literal);
+    fn evaluate<R: Real>(&self, inputs: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        let [x, ..]: [R; 3] = inputs.at(const { place(INPUTS, "x") });
+        let number = R::literal;
         let is = |name: &str| type_name::<R>().contains(name);
         let (f64_alone, f64_too) = (type_name::<R>() == "f64", type_name::<R>() == "f64" || is("Running"));
         let choose = |a: R, b: R| R::if_ge(a, b, || x, || -x);

@@ -138,7 +138,7 @@ fn a_profile_comes_into_force_where_formulas_are_evaluated_alone() {
 /// Formulas are instantiated in every arithmetic where they are evaluated by their type: in the catalogue alone.
 #[test]
 fn formulas_are_instantiated_in_one_room() {
-    assert_eq!(files_with(".evaluate(&mut Reader::new("), ["conformance/catalogue/src/cases/formula.rs"]);
+    assert_eq!(files_with(".evaluate(&Reader::new("), ["conformance/catalogue/src/cases/formula.rs"]);
     assert_eq!(files_with("AnyFormula for"), ["conformance/catalogue/src/cases/formula.rs"]);
 }
 

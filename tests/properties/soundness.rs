@@ -58,12 +58,12 @@ impl Check {
         let outputs = spec.output_len();
         let mut legal = vec![Accept::<F32>::ANY; outputs];
         let inputs: Vec<Accept> = row.iter().map(|&x| Accept::input(x)).collect();
-        self.profile.scope(|| formula.evaluate(&mut Reader::new(&inputs), &mut Writer::new(&mut legal)));
+        self.profile.scope(|| formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut legal, None)));
         let mut seen = vec![(f64::INFINITY, f64::NEG_INFINITY); outputs];
         for _ in 0..self.draws {
             let inputs: Vec<RandomLegal> = row.iter().map(|&x| RandomLegal::input(x)).collect();
             let mut out = vec![RandomLegal::of(0.0); outputs];
-            self.profile.scope(|| formula.evaluate(&mut Reader::new(&inputs), &mut Writer::new(&mut out)));
+            self.profile.scope(|| formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut out, None)));
             self.drawn += outputs as u64;
             for ((out, legal), seen) in out.iter().zip(&legal).zip(&mut seen) {
                 assert!(legal.contains(out.value), "{}: {} outside {legal:?}, inputs {row:?}", spec.id, out.value);

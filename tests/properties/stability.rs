@@ -217,7 +217,7 @@ impl Visitor for InExact<'_> {
             exact::clear();
             let inputs: Vec<Exact> = row.iter().map(|&x| Exact::input(x)).collect();
             let mut out = vec![Exact::literal(0.0); spec.output_len()];
-            formula.evaluate(&mut Reader::new(&inputs), &mut Writer::new(&mut out));
+            formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut out, None));
             out.iter().map(|y| y.get().map(|(value, _)| value.to_f64().value())).collect()
         });
         self.found.insert(spec.id.clone(), outputs.collect());

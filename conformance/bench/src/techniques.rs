@@ -5,7 +5,7 @@ use super::Bench;
 use super::contest::{Arithmetic, Contender, On, Sample, contest};
 use super::formulas::on_device;
 use lightmeter_catalogue::cases::formula::formula;
-use lightmeter_catalogue::cases::{Domain, Formula, Hard, Input, Output, Reader, Shape};
+use lightmeter_catalogue::cases::{Domain, Formula, Hard, Input, Output, Shape};
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::bench::{BenchGroup, GroupKind};
 use lightmeter_gpu::{GpuError, Rung};
@@ -73,9 +73,8 @@ fn near_each_other(row: &mut [f32]) {
     }
 }
 
-/// n, l, v of a row's first nine numbers, l as it is given.
-fn vectors<R: Real>(x: &mut Reader<'_, R>) -> [Vec3<R>; 3] {
-    let [p, normal, travel] = x.vectors();
+/// n, l, v, l as it is given.
+fn vectors<R: Real>(p: Vec3<R>, normal: Vec3<R>, travel: Vec3<R>) -> [Vec3<R>; 3] {
     [normal.normalize(), -travel, (-p).normalize()]
 }
 
@@ -86,9 +85,9 @@ fn lit<R: Real>(model: Specular, [n, l, v]: [Vec3<R>; 3], [kd, ks, shininess]: [
 formula!(
     Local: "technique/viewer-local" by "technique_viewer_local",
     "kd·max(l·n, 0) + ks·max(r·v, 0)^S", "000 §6.3", [P, NORMAL, TRAVEL, KD, KS, SHININESS] -> [INTENSITY], fit in_view,
-    |x, out| {
-        let [n, l, v] = vectors(x);
-        out.scalar(lit(Specular::Phong, [n, l.normalize(), v], x.array()));
+    |p, normal, i, kd, ks, shininess; out| {
+        let [n, l, v] = vectors(p, normal, i);
+        out.scalar(lit(Specular::Phong, [n, l.normalize(), v], [kd, ks, shininess]));
     },
     hard [
         Hard::new("wide-angle", "a point at 76 degrees from the view's axis", &[
@@ -102,21 +101,21 @@ formula!(
 formula!(
     NonLocal: "technique/viewer-nonlocal" by "technique_viewer_nonlocal",
     "kd·max(l·n, 0) + ks·max(r.z, 0)^S", "000 §6.4", [P, NORMAL, TRAVEL, KD, KS, SHININESS] -> [INTENSITY], fit in_view,
-    |x, out| {
-        let [n, l, _] = vectors(x);
+    |p, normal, i, kd, ks, shininess; out| {
+        let [n, l, _] = vectors(p, normal, i);
         let v = Vector([R::literal(0.0), R::literal(0.0), R::literal(1.0)]);
-        out.scalar(lit(Specular::Phong, [n, l.normalize(), v], x.array()));
+        out.scalar(lit(Specular::Phong, [n, l.normalize(), v], [kd, ks, shininess]));
     },
 );
 formula!(
     PhongNormalised: "technique/highlight-phong-normalised" by "technique_highlight_phong_normalised",
     "kd·max(l·n, 0) + ks·max(⟨r⟩·v, 0)^S", "000 §6.4", [P, NORMAL, TRAVEL, KD, KS, SHININESS] -> [INTENSITY], fit in_view,
-    |x, out| {
-        let [n, l, v] = vectors(x);
+    |p, normal, i, kd, ks, shininess; out| {
+        let [n, l, v] = vectors(p, normal, i);
         let l = l.normalize();
-        let [kd, ks, shininess] = x.array();
         let r = vector::reflect(-l, n).normalize();
-        out.scalar(kd * incidence(l, n) + ks * lighting::cosine_power(r, v, shininess));
+        let weights: [R; 2] = [kd, ks];
+        out.scalar(weights[0] * incidence(l, n) + weights[1] * lighting::cosine_power(r, v, shininess));
     },
     hard [
         Hard::new("grazing", "the light along the surface", &[
@@ -127,25 +126,24 @@ formula!(
 formula!(
     Phong: "technique/highlight-phong" by "technique_viewer_local",
     "kd·max(l·n, 0) + ks·max(r·v, 0)^S", "000 §6.3", [P, NORMAL, TRAVEL, KD, KS, SHININESS] -> [INTENSITY], fit in_view,
-    |x, out| {
-        let [n, l, v] = vectors(x);
-        out.scalar(lit(Specular::Phong, [n, l.normalize(), v], x.array()));
+    |p, normal, i, kd, ks, shininess; out| {
+        let [n, l, v] = vectors(p, normal, i);
+        out.scalar(lit(Specular::Phong, [n, l.normalize(), v], [kd, ks, shininess]));
     },
 );
 formula!(
     Blinn: "technique/highlight-blinn" by "technique_highlight_blinn",
     "kd·max(l·n, 0) + ks·max(n·h, 0)^S", "000 §6.4", [P, NORMAL, TRAVEL, KD, KS, SHININESS] -> [INTENSITY], fit in_view,
-    |x, out| {
-        let [n, l, v] = vectors(x);
-        out.scalar(lit(Specular::Blinn, [n, l.normalize(), v], x.array()));
+    |p, normal, i, kd, ks, shininess; out| {
+        let [n, l, v] = vectors(p, normal, i);
+        out.scalar(lit(Specular::Blinn, [n, l.normalize(), v], [kd, ks, shininess]));
     },
 );
 formula!(
     BlinnFourfold: "technique/highlight-blinn-fourfold" by "technique_highlight_blinn_fourfold",
     "kd·max(l·n, 0) + ks·max(n·h, 0)^4S", "000 §6.4", [P, NORMAL, TRAVEL, KD, KS, SHININESS] -> [INTENSITY], fit in_view,
-    |x, out| {
-        let [n, l, v] = vectors(x);
-        let [kd, ks, shininess] = x.array();
+    |p, normal, i, kd, ks, shininess; out| {
+        let [n, l, v] = vectors(p, normal, i);
         out.scalar(lit(Specular::Blinn, [n, l.normalize(), v], [kd, ks, R::literal(4.0) * shininess]));
     },
 );
@@ -153,9 +151,9 @@ formula!(
     Normalised: "technique/light-normalised" by "technique_viewer_local",
     "kd·max(l·n, 0) + ks·max(r·v, 0)^S, l = ⟨−i⟩", "000 §6.3", [P, NORMAL, UNIT_TRAVEL, KD, KS, SHININESS] -> [INTENSITY],
     fit in_view,
-    |x, out| {
-        let [n, l, v] = vectors(x);
-        out.scalar(lit(Specular::Phong, [n, l.normalize(), v], x.array()));
+    |p, normal, i, kd, ks, shininess; out| {
+        let [n, l, v] = vectors(p, normal, i);
+        out.scalar(lit(Specular::Phong, [n, l.normalize(), v], [kd, ks, shininess]));
     },
     hard [
         Hard::new("a-tenth-short", "a direction of length 0.9, as interpolation or a scale leaves it", &[
@@ -170,7 +168,7 @@ formula!(
     AssumedUnit: "technique/light-assumed-unit" by "technique_light_assumed_unit",
     "kd·max(l·n, 0) + ks·max(r·v, 0)^S, l = −i", "000 §6.4", [P, NORMAL, UNIT_TRAVEL, KD, KS, SHININESS] -> [INTENSITY],
     fit in_view,
-    |x, out| { let vectors = vectors(x); out.scalar(lit(Specular::Phong, vectors, x.array())); },
+    |p, normal, i, kd, ks, shininess; out| { out.scalar(lit(Specular::Phong, vectors(p, normal, i), [kd, ks, shininess])); },
 );
 
 const A: Input = Input::direction("a");
@@ -180,12 +178,12 @@ const EXPONENT: Input = Input::scalar("exponent", "1", Domain::LogUniform(1.0, 1
 formula!(
     Power: "technique/power" by "technique_power",
     "max(a·b, 0)^S", "000 §6.3", [A, B, EXPONENT] -> [FACTOR], fit near_each_other,
-    |x, out| { out.scalar(lighting::cosine_power(x.vector(), x.vector(), x.scalar())); },
+    |a, b, exponent; out| { out.scalar(lighting::cosine_power(a, b, exponent)); },
 );
 formula!(
     PowerByChord: "technique/power-by-chord" by "technique_power_by_chord",
     "exp(S·log1p(−½|a − b|²))", "Goldberg 1991 on log1p", [A, B, EXPONENT] -> [FACTOR], fit near_each_other,
-    |x, out| { out.scalar(lighting::cosine_power_by_chord(x.vector(), x.vector(), x.scalar())); },
+    |a, b, exponent; out| { out.scalar(lighting::cosine_power_by_chord(a, b, exponent)); },
     hard [
         Hard::new("ten-thousand", "shininess 1e4, half a degree off", &[
             ("a", &[0.0, 0.0, 1.0]), ("b", &[0.008_726_535, 0.0, 0.999_961_9]), ("exponent", &[1e4]),
@@ -198,7 +196,7 @@ formula!(
 formula!(
     PowerBySchlick: "technique/power-by-schlick" by "technique_power_by_schlick",
     "t/(S − S·t + t), t = max(a·b, 0)", "Schlick 1994", [A, B, EXPONENT] -> [FACTOR], fit near_each_other,
-    |x, out| { out.scalar(lighting::cosine_power_by_schlick(x.vector(), x.vector(), x.scalar())); },
+    |a, b, exponent; out| { out.scalar(lighting::cosine_power_by_schlick(a, b, exponent)); },
 );
 
 const DENSITY: Input = Input::scalar("density", "1/unit", Domain::LogUniform(0.01, 1.0));
@@ -206,7 +204,7 @@ const DENSITY: Input = Input::scalar("density", "1/unit", Domain::LogUniform(0.0
 formula!(
     Radial: "technique/distance-radial" by "technique_distance_radial",
     "exp(−d·|p|)", "000 §6.5", [P, DENSITY] -> [FACTOR], fit before_the_eye,
-    |x, out| { out.scalar(fog::exp(fog::distance(x.vector(), Distance::Radial), x.scalar())); },
+    |p, density; out| { out.scalar(fog::exp(fog::distance(p, Distance::Radial), density)); },
     hard [
         Hard::new("wide-angle", "a point at 76 degrees from the view's axis", &[
             ("p", &[4.0, 0.0, -1.0]), ("density", &[0.5]),
@@ -216,23 +214,21 @@ formula!(
 formula!(
     Planar: "technique/distance-planar" by "technique_distance_planar",
     "exp(−d·|z|)", "000 §6.5", [P, DENSITY] -> [FACTOR], fit before_the_eye,
-    |x, out| { out.scalar(fog::exp(fog::distance(x.vector(), Distance::Planar), x.scalar())); },
+    |p, density; out| { out.scalar(fog::exp(fog::distance(p, Distance::Planar), density)); },
 );
 
 macro_rules! span {
     ($direct:ident $by:ident $n:literal $id:literal $by_id:literal $function:literal $by_function:literal) => {
         formula!(
             $direct: $id by $function, "a·(1 − t) + b·t at t = (N − 1)/N", "004", [RAMP_A, RAMP_B] -> [FACTOR],
-            |x, out| {
-                let [a, b] = x.array();
+            |a, b; out| {
                 // Exact: N is a power of two.
                 out.scalar(interpolation::mix(a, b, R::literal(f64::from($n - 1) / f64::from($n))));
             },
         );
         formula!(
             $by: $by_id by $by_function, "a + (b − a)/N + … + (b − a)/N", "004", [RAMP_A, RAMP_B] -> [FACTOR],
-            |x, out| {
-                let [a, b] = x.array();
+            |a, b; out| {
                 out.scalar(interpolation::last_by_differences::<R, $n>(a, b));
             },
         );

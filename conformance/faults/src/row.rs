@@ -12,19 +12,19 @@ pub trait Arithmetic: Real {
 
 impl Arithmetic for f64 {
     fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_f64(inputs, out);
+        formula.on_f64(inputs, None, out);
     }
 }
 
 impl Arithmetic for f32 {
     fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_f32(inputs, out);
+        formula.on_f32(inputs, None, out);
     }
 }
 
 impl Arithmetic for Accept {
     fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_accept(inputs, out);
+        formula.on_accept(inputs, None, out);
     }
 }
 

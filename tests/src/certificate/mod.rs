@@ -87,7 +87,7 @@ impl<F: Formula> Certify for F {
 
 fn evaluate<F: Formula, R: Real>(formula: &F, inputs: impl Iterator<Item = R>, outputs: usize) -> Vec<R> {
     let (inputs, mut out): (Vec<R>, _) = (inputs.collect(), vec![R::literal(0.0); outputs]);
-    formula.evaluate(&mut Reader::new(&inputs), &mut Writer::new(&mut out));
+    formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut out, None));
     out
 }
 

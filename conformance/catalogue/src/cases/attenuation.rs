@@ -19,7 +19,7 @@ formula!(
     Polynomial: "attenuation/polynomial" by "attenuation_polynomial",
     "atten = 1 / (kc + kl·d + kq·d²)", "004",
     [KC, KL, KQ, DISTANCE] -> [ATTEN],
-    |x, out| { out.scalar(attenuation::polynomial(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
+    |kc, kl, kq, d; out| { out.scalar(attenuation::polynomial(kc, kl, kq, d)); },
     hard [
         Hard::new("all-zero", "no value: nothing is promised", &[("kc", &[0.0]), ("kl", &[0.0]), ("kq", &[0.0])]),
         Hard::new("at-the-light", "1/kc", &[("kc", &[0.5]), ("d", &[0.0])]),
@@ -32,35 +32,35 @@ formula!(
     Constant: "attenuation/constant" by "attenuation_constant",
     "atten = 1, (kc, kl, kq) = (1, 0, 0)", "004",
     [DISTANCE] -> [ATTEN],
-    |x, out| { out.scalar(attenuation::constant(x.scalar())); },
+    |d; out| { out.scalar(attenuation::constant(d)); },
 );
 formula!(
     /// The falloff of a tube light.
     Linear: "attenuation/linear" by "attenuation_linear",
     "atten = 1/d, (0, 1, 0)", "004",
     [DISTANCE] -> [ATTEN],
-    |x, out| { out.scalar(attenuation::linear(x.scalar())); },
+    |d; out| { out.scalar(attenuation::linear(d)); },
 );
 formula!(
     /// The falloff of a point light.
     Square: "attenuation/square" by "attenuation_square",
     "atten = 1/d², (0, 0, 1)", "004",
     [DISTANCE] -> [ATTEN],
-    |x, out| { out.scalar(attenuation::square(x.scalar())); },
+    |d; out| { out.scalar(attenuation::square(d)); },
 );
 formula!(
     /// From positions.
     Point: "attenuation/point" by "attenuation_point",
     "atten = 1 / (kc + kl·d + kq·d²), d = |light − p|", "004",
     [KC, KL, KQ, Input::position("light"), Input::position("p")] -> [ATTEN],
-    |x, out| { out.scalar(attenuation::point(x.scalar(), x.scalar(), x.scalar(), x.vector(), x.vector())); },
+    |kc, kl, kq, light, p; out| { out.scalar(attenuation::point(kc, kl, kq, light, p)); },
 );
 formula!(
     /// A spotlight's cone.
     SpotCutoff: "attenuation/spot-cutoff" by "attenuation_spot_cutoff",
     "spot = 1 for −l·axis ≥ cos(cutoff), else 0", "000 §6.4",
     [Input::direction("l"), Input::direction("axis"), CUTOFF] -> [SPOT],
-    |x, out| { out.scalar(attenuation::spot_cutoff(x.vector(), x.vector(), x.scalar())); },
+    |l, axis, cutoff_cosine; out| { out.scalar(attenuation::spot_cutoff(l, axis, cutoff_cosine)); },
     hard [
         Hard::new("on-the-edge", "the edge belongs to the cone", &[("l", &[0.0, 0.0, -1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[1.0])]),
         Hard::new("all-round", "a cutoff of 180 degrees lights what lies behind too", &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[-1.0])]),
@@ -72,7 +72,7 @@ formula!(
     "spot = max(−l·axis, 0)^e within the cone, else 0", "OpenGL 2.1 §2.14.1",
     [Input::direction("l"), Input::direction("axis"), CUTOFF, EXPONENT] -> [SPOT],
     fit toward_the_cone,
-    |x, out| { out.scalar(attenuation::spot_exponent(x.vector(), x.vector(), x.scalar(), x.scalar())); },
+    |l, axis, cutoff_cosine, exponent; out| { out.scalar(attenuation::spot_exponent(l, axis, cutoff_cosine, exponent)); },
     hard [
         Hard::new("no-exponent", "an evenly lit cone", &[("l", &[0.0, 0.6, -0.8]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[0.0])]),
         Hard::new("behind", "0 behind the light with the widest cone", &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[2.0])]),
@@ -92,7 +92,7 @@ formula!(
     PolynomialExpanded: "attenuation/polynomial-expanded" by "attenuation_polynomial_expanded",
     "atten = 1 / (kc + kl·d + kq·(d·d))", "004, taken literally",
     [KC, KL, KQ, DISTANCE] -> [ATTEN],
-    |x, out| { out.scalar(attenuation::polynomial_expanded(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
+    |kc, kl, kq, d; out| { out.scalar(attenuation::polynomial_expanded(kc, kl, kq, d)); },
 );
 formula!(
     /// The polynomial by Horner's scheme with bounds.
@@ -100,7 +100,7 @@ formula!(
     "atten = 1 / clamp(kc + d(kl + d·kq), 2⁻¹²⁶, 2¹²⁶)", "004, with a denominator that can be divided by",
     [KC, KL, KQ, DISTANCE] -> [ATTEN],
     stable 12.0 Own "two products and two sums of one sign, and a division of at most 2½ ULP",
-    |x, out| { out.scalar(attenuation::polynomial_bounded(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
+    |kc, kl, kq, d; out| { out.scalar(attenuation::polynomial_bounded(kc, kl, kq, d)); },
     hard [
         Hard::new("no-quadratic-term-far", "a tube light at 1e20", &[("kc", &[0.0]), ("kl", &[1e-20]), ("kq", &[0.0]), ("d", &[1e20])])
             .naive("attenuation/polynomial-expanded", "0·∞ is NaN", f64::INFINITY),
@@ -120,7 +120,7 @@ formula!(
     "atten of attenuation/polynomial-bounded at d = |(light − p)·2ᵏ|·2⁻ᵏ", "004, at any distance",
     [KC, KL, KQ, Input::position("light"), Input::position("p")] -> [ATTEN],
     stable 40.0 Own "a distance of 16 roundings, which its square doubles",
-    |x, out| { out.scalar(attenuation::point_scaled(x.scalar(), x.scalar(), x.scalar(), x.vector(), x.vector())); },
+    |kc, kl, kq, light, p; out| { out.scalar(attenuation::point_scaled(kc, kl, kq, light, p)); },
     hard [
         Hard::new("far", "5e19 away", &[("kc", &[1.0]), ("kl", &[1e-20]), ("kq", &[0.0]), ("light", &[3e19, 4e19, 0.0]), ("p", &[0.0, 0.0, 0.0])])
             .naive("attenuation/point", "the distance is ∞", 1e6),
@@ -135,7 +135,7 @@ formula!(
     [Input::direction("l"), Input::direction("axis"), CUTOFF, EXPONENT] -> [SPOT],
     fit toward_the_cone,
     stable 32.0 Unit "as lighting/cosine-power-by-chord",
-    |x, out| { out.scalar(attenuation::spot_exponent_by_chord(x.vector(), x.vector(), x.scalar(), x.scalar())); },
+    |l, axis, cutoff_cosine, exponent; out| { out.scalar(attenuation::spot_exponent_by_chord(l, axis, cutoff_cosine, exponent)); },
     hard [
         Hard::new("beam-1e4", "half as bright at 0.67°", &[("l", &[-0.011_773_7, 0.0, -0.999_930_7]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e4])])
             .naive("attenuation/spot-exponent", "l·axis near 1 has no digits for the angle, which l + axis keeps", 1e3),

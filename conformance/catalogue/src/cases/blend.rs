@@ -9,21 +9,27 @@ pub use program::{MOST_LAYERS, Program, UnitCase};
 pub use separate::{Samples, covering_array, separate_of};
 
 use super::Visitor;
-use super::formula::{AnyFormula, Formula, formula};
-use super::rows::{Reader, Writer};
+use super::formula::{AnyFormula, Formula, bind, formula};
+use super::rows::{Reader, Writer, place};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
 use lightmeter_reference::blend::{
     Mode, Operands, Saturate, alpha_clamped, blend, blend_separate, layers, masked, opacity_of_layers,
     opacity_of_layers_expm1, over, over_incremental, subtract, subtract_compensated, unpremultiply,
     unpremultiply_guarded, without_alpha,
 };
-use lightmeter_reference::{Real, Vector};
+use lightmeter_reference::{Real, Vec3, Vector};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
 use special::SPECIAL;
 use std::collections::BTreeSet;
 
 const INPUTS: &[Input] = &[Input::rgba("src"), Input::rgba("dst"), Input::rgba("constant")];
 const COLOR: &[Output] = &[Output::new("color", Shape::Vec4, "color")];
+
+/// What a blend state takes.
+fn operands<R: Real>(x: &Reader<'_, R>) -> Operands<R> {
+    bind!(x, INPUTS => src, dst, constant);
+    Operands { src, dst, constant }
+}
 
 /// A blend state.
 #[derive(Clone, Copy, Debug)]
@@ -54,8 +60,8 @@ impl Formula for BlendState {
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let operands = Operands { src: x.vector(), dst: x.vector(), constant: x.vector() };
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        let operands = operands(x);
         out.vector(blend(self.0, &operands, Saturate::SourceAndDestination));
     }
 }
@@ -139,8 +145,8 @@ impl Formula for SeparateState {
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let operands = Operands { src: x.vector(), dst: x.vector(), constant: x.vector() };
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        let operands = operands(x);
         out.vector(blend_separate(self.0, &operands, Saturate::SourceAndDestination));
     }
 }
@@ -159,8 +165,8 @@ impl Formula for Masked {
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let operands = Operands { src: x.vector(), dst: x.vector(), constant: x.vector() };
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        let operands = operands(x);
         let written = blend(Mode::Alpha.state(), &operands, Saturate::SourceAndDestination);
         out.vector(masked(self.0, written, operands.dst));
     }
@@ -181,11 +187,13 @@ impl Formula for SpecialValues {
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let operands = Operands { src: x.vector(), dst: x.vector(), constant: x.vector() };
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        let operands = operands(x);
         out.vector(blend(self.0, &operands, Saturate::SourceAndDestination));
     }
 }
+
+const OVER_RGB: &[Input] = &[Input::rgba("src"), Input::rgb("dst")];
 
 /// A factor of the destination's alpha, where there is none.
 #[derive(Clone, Copy, Debug)]
@@ -193,24 +201,45 @@ struct AlphaReadsAsOne(State);
 
 impl Formula for AlphaReadsAsOne {
     fn spec(&self) -> Spec {
-        const INPUTS: &[Input] = &[Input::rgba("src"), Input::rgb("dst")];
         const OUTPUTS: &[Output] = &[Output::new("color", Shape::Vec3, "color")];
         Spec {
             id: format!("blend/without-alpha/{}", self.0.segment()),
             text: "color = src·S + dst·D, where Ad reads as 1",
             kind: Kind::Blend(Program::WithoutAlpha(self.0)),
-            inputs: INPUTS,
+            inputs: OVER_RGB,
             outputs: OUTPUTS,
             ..unit_spec()
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let (src, dst) = (x.vector(), x.vector::<3>().extend(R::literal(1.0)));
-        let operands = Operands { src, dst, constant: Vector::splat(R::literal(0.0)) };
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        bind!(x, OVER_RGB => src, dst);
+        let opaque: Vec3<R> = dst;
+        let operands = Operands { src, dst: opaque.extend(R::literal(1.0)), constant: Vector::splat(R::literal(0.0)) };
         out.vector(blend(self.0, &operands, Saturate::SourceAndDestination).xyz());
     }
 }
+
+const LAYER_INPUTS: &[Input] = &[
+    Input::rgba("dst"),
+    Input::scalar("count", "1", Domain::Whole(1, 16)),
+    Input::rgba("src-1"),
+    Input::rgba("src-2"),
+    Input::rgba("src-3"),
+    Input::rgba("src-4"),
+    Input::rgba("src-5"),
+    Input::rgba("src-6"),
+    Input::rgba("src-7"),
+    Input::rgba("src-8"),
+    Input::rgba("src-9"),
+    Input::rgba("src-10"),
+    Input::rgba("src-11"),
+    Input::rgba("src-12"),
+    Input::rgba("src-13"),
+    Input::rgba("src-14"),
+    Input::rgba("src-15"),
+    Input::rgba("src-16"),
+];
 
 /// Overlapping draws.
 #[derive(Clone, Copy, Debug)]
@@ -218,42 +247,20 @@ struct Layered(&'static str, &'static [Mode]);
 
 impl Formula for Layered {
     fn spec(&self) -> Spec {
-        const fn layer(name: &'static str) -> Input {
-            Input::rgba(name)
-        }
-        const INPUTS: &[Input] = &[
-            Input::rgba("dst"),
-            Input::scalar("count", "1", Domain::Whole(1, 16)),
-            layer("src-1"),
-            layer("src-2"),
-            layer("src-3"),
-            layer("src-4"),
-            layer("src-5"),
-            layer("src-6"),
-            layer("src-7"),
-            layer("src-8"),
-            layer("src-9"),
-            layer("src-10"),
-            layer("src-11"),
-            layer("src-12"),
-            layer("src-13"),
-            layer("src-14"),
-            layer("src-15"),
-            layer("src-16"),
-        ];
         Spec {
             id: format!("blend/layers/{}", self.0),
             text: "color = srcₙ over … over src₁ over dst, the modes in turn",
             source: "002",
             kind: Kind::Blend(Program::Layers(self.1)),
-            inputs: INPUTS,
+            inputs: LAYER_INPUTS,
             ..unit_spec()
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let (dst, count) = (x.vector(), x.scalar());
-        out.vector(layers::<R, MOST_LAYERS>(self.1, count, x.vectors(), dst));
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        bind!(x, LAYER_INPUTS => dst, count);
+        let sources = x.at(const { place(LAYER_INPUTS, "src-1").through(place(LAYER_INPUTS, "src-16")) });
+        out.vector(layers::<R, MOST_LAYERS>(self.1, count, sources, dst));
     }
 }
 
@@ -284,8 +291,8 @@ formula!(
     "color = src·(min(As, 1 − As), 1) + dst", "000 §6.6, a dialect of ruling 1",
     [Input::rgba("src"), Input::new("dst", Shape::Vec4, "color", Domain::Unit)] ->
     [Output::new("color", Shape::Vec4, "color")],
-    |x, out| {
-        let operands = Operands { src: x.vector(), dst: x.vector(), constant: Vector::splat(R::literal(0.0)) };
+    |src, dst; out| {
+        let operands = Operands { src, dst, constant: Vector::splat(R::literal(0.0)) };
         let state = State { equation: Equation::Add, src: Factor::SrcAlphaSaturate, dst: Factor::One };
         out.vector(blend(state, &operands, Saturate::SourceOnly));
     },
@@ -298,7 +305,7 @@ macro_rules! mode {
             $name: $id by $function, $text, "002",
             [Input::rgba("src"), Input::rgb("dst")] -> [Output::new("color", Shape::Vec3, "color")],
             kind Kind::Blend(Program::WithoutAlpha($mode.state())),
-            |x, out| { out.vector(without_alpha($mode, x.vector(), x.vector())); }
+            |src, dst; out| { out.vector(without_alpha($mode, src, dst)); }
             $(, hard [$($hard),*])?
         );
     };
@@ -321,7 +328,7 @@ formula!(
         Input::new("src", Shape::Vec4, "color", Domain::Uniform(-0.5, 1.5)),
         Input::new("dst", Shape::Vec4, "color", Domain::Uniform(-0.5, 1.5)),
     ] -> [Output::new("color", Shape::Vec4, "color")],
-    |x, out| { out.vector(alpha_clamped(x.vector(), x.vector())); },
+    |src, dst; out| { out.vector(alpha_clamped(src, dst)); },
     hard [
         Hard::new("alpha-above-one", "1 − As would be negative: clamped before, not after", &[("src", &[0.5, 0.5, 0.5, 1.5]), ("dst", &[1.0, 1.0, 1.0, 1.0])]),
     ],
@@ -346,7 +353,7 @@ formula!(
     "color = src·As + dst(1 − As)", "000 §6.6, 002",
     [Input::rgba("src"), BRIGHT] -> [RGB],
     stable 4.0 Own "two products and a sum of one sign",
-    |x, out| { out.vector(over(x.vector(), x.vector())); },
+    |src, dst; out| { out.vector(over(src, dst)); },
     hard [
         Hard::new("opaque-over-1e8", "all of an opaque source, over the brightest light", &[("src", &[0.3, 0.5, 0.7, 1.0]), ("dst", &[1e8, 1e8, 1e8])])
             .naive("blend/over-incremental", "src − dst has lost src", 1e6),
@@ -359,14 +366,14 @@ formula!(
     OverIncremental: "blend/over-incremental" by "blend_over_incremental",
     "color = dst + As(src − dst)", "a shortcut",
     [Input::rgba("src"), BRIGHT] -> [RGB],
-    |x, out| { out.vector(over_incremental(x.vector(), x.vector())); },
+    |src, dst; out| { out.vector(over_incremental(src, dst)); },
 );
 formula!(
     /// What many layers hide.
     OpacityOfLayers: "blend/opacity-of-layers" by "blend_opacity_of_layers",
     "opacity = 1 − (1 − α)ⁿ", "002, of n layers",
     [LAYER_ALPHA, LAYER_COUNT] -> [SHOWN],
-    |x, out| { out.scalar(opacity_of_layers(x.scalar(), x.scalar())); },
+    |alpha, layers; out| { out.scalar(opacity_of_layers(alpha, layers)); },
 );
 formula!(
     /// What many layers hide, however thin.
@@ -374,7 +381,7 @@ formula!(
     "opacity = −expm1(n·ln(1 − α)), short series for small ones", "002, of n layers",
     [LAYER_ALPHA, LAYER_COUNT] -> [SHOWN],
     stable 104.0 Own "two series summed in any order, 34 and 66, and a product; beyond 1/16, log's 2⁻²¹ of at least 0.06",
-    |x, out| { out.scalar(opacity_of_layers_expm1(x.scalar(), x.scalar())); },
+    |alpha, layers; out| { out.scalar(opacity_of_layers_expm1(alpha, layers)); },
     hard [
         Hard::new("one-of-1e-8", "a layer thinner than a rounding of 1", &[("alpha", &[1e-8]), ("layers", &[1.0])])
             .naive("blend/opacity-of-layers", "1 − α is 1", 1e6),
@@ -391,7 +398,7 @@ formula!(
     Unpremultiply: "blend/unpremultiply" by "blend_unpremultiply",
     "color/α", "a shortcut",
     [Input::rgb("color"), Input::scalar("alpha", "color", Domain::Uniform(0.01, 1.0))] -> [RGB],
-    |x, out| { out.vector(unpremultiply(x.vector(), x.scalar())); },
+    |color, alpha; out| { out.vector(unpremultiply(color, alpha)); },
 );
 formula!(
     /// Straight alpha from premultiplied, where nothing is there too.
@@ -399,7 +406,7 @@ formula!(
     "color/α, and 0 for α < 2⁻¹²⁶", "000 §6.6 undone",
     [Input::rgb("color"), Input::scalar("alpha", "color", Domain::Uniform(0.01, 1.0))] -> [RGB],
     stable 6.0 Own "a division of at most 2½ ULP",
-    |x, out| { out.vector(unpremultiply_guarded(x.vector(), x.scalar())); },
+    |color, alpha; out| { out.vector(unpremultiply_guarded(color, alpha)); },
     hard [
         Hard::new("nothing", "0/0 is no colour", &[("color", &[0.0, 0.0, 0.0]), ("alpha", &[0.0])])
             .naive("blend/unpremultiply", "NaN, which spreads through every blur", f64::INFINITY),
@@ -412,7 +419,7 @@ formula!(
     SubtractProducts: "blend/subtract-products" by "blend_subtract",
     "src·S − dst·D", "000 §6.6, FUNC_SUBTRACT",
     [Input::scalar("src", "color", Domain::Unit), Input::scalar("s", "1", Domain::Unit), Input::scalar("dst", "color", Domain::Unit), Input::scalar("d", "1", Domain::Unit)] -> [Output::new("color", Shape::Scalar, "color")],
-    |x, out| { out.scalar(subtract(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
+    |src, s, dst, d; out| { out.scalar(subtract(src, s, dst, d)); },
 );
 formula!(
     /// The subtraction of two products that nearly cancel.
@@ -420,7 +427,7 @@ formula!(
     "src·S − dst·D, a difference of products with their errors", "Cornea, Harrison & Tang 2002",
     [Input::scalar("src", "color", Domain::Unit), Input::scalar("s", "1", Domain::Unit), Input::scalar("dst", "color", Domain::Unit), Input::scalar("d", "1", Domain::Unit)] -> [Output::new("color", Shape::Scalar, "color")],
     stable 2.0 Own "2 roundings (Cornea, Harrison & Tang)",
-    |x, out| { out.scalar(subtract_compensated(x.scalar(), x.scalar(), x.scalar(), x.scalar())); },
+    |src, s, dst, d; out| { out.scalar(subtract_compensated(src, s, dst, d)); },
     hard [
         Hard::new("the-same-but-a-bit", "products that agree to the last bits", &[("src", &[0.3]), ("s", &[0.7]), ("dst", &[0.6]), ("d", &[0.350_000_03])])
             .naive("blend/subtract-products", "not one digit is right", 1e5),

@@ -13,7 +13,7 @@ formula!(
     ToUnorm8: "color/to-unorm8" by "color_to_unorm8",
     "byte = round(255·clamp(c, 0, 1))", "000 §6.2",
     [Input::scalar("c", "color", BEYOND)] -> [Output::new("byte", Shape::Scalar, "1/255")],
-    |x, out| { out.scalar(color::to_unorm8(x.scalar())); },
+    |c; out| { out.scalar(color::to_unorm8(c)); },
     hard [
         Hard::new("half-a-step", "a tie: both neighbours are legal", &[("c", &[0.5 / 255.0])]),
         Hard::new("half-grey", "127.5 may go either way, 128 by ties to even", &[("c", &[0.5])]),
@@ -27,14 +27,14 @@ formula!(
     FromUnorm8: "color/from-unorm8" by "color_from_unorm8",
     "c = byte / 255", "000 §6.2",
     [Input::scalar("byte", "1/255", Domain::Whole(0, 255))] -> [Output::new("c", Shape::Scalar, "color")],
-    |x, out| { out.scalar(color::from_unorm8(x.scalar())); },
+    |byte; out| { out.scalar(color::from_unorm8(byte)); },
 );
 formula!(
     /// sRGB encoding.
     SrgbEncode: "color/srgb-encode" by "color_srgb_encode",
     "e = 12.92·c for c ≤ 0.0031308, else 1.055·c^(1/2.4) − 0.055; alpha linear", "IEC 61966-2-1",
     [Input::rgba("c")] -> [COLOR],
-    |x, out| { out.vector(color::srgb_encode_rgba(x.vector())); },
+    |c; out| { out.vector(color::srgb_encode_rgba(c)); },
     hard [
         Hard::new("threshold", "both pieces are legal where they meet", &[("c", &[0.003_130_8, 0.003_130_7, 0.003_131, 1.0])]),
         Hard::new("ends", "0 and 1 are kept", &[("c", &[0.0, 1.0, 1e-30, 0.0])]),
@@ -45,7 +45,7 @@ formula!(
     SrgbDecode: "color/srgb-decode" by "color_srgb_decode",
     "c = e/12.92 for e ≤ 0.04045, else ((e + 0.055)/1.055)^2.4; alpha linear", "IEC 61966-2-1",
     [Input::rgba("e")] -> [COLOR],
-    |x, out| { out.vector(color::srgb_decode_rgba(x.vector())); },
+    |e; out| { out.vector(color::srgb_decode_rgba(e)); },
     hard [
         Hard::new("threshold", "both pieces are legal where they meet", &[("e", &[0.040_45, 0.040_449, 0.040_451, 1.0])]),
     ],
@@ -55,21 +55,21 @@ formula!(
     Modulate: "color/modulate" by "color_modulate",
     "color = texel * color", "002 (DIFFUSE × LIGHTMAP)",
     [Input::rgba("texel"), Input::rgba("color")] -> [COLOR],
-    |x, out| { out.vector(color::modulate(x.vector(), x.vector())); },
+    |texel, color; out| { out.vector(color::modulate(texel, color)); },
 );
 formula!(
     /// A texture that replaces.
     Replace: "color/replace" by "color_replace",
     "color = texel", "004",
     [Input::rgba("texel"), Input::rgba("color")] -> [COLOR],
-    |x, out| { out.vector(color::replace(x.vector(), x.vector())); },
+    |texel, color; out| { out.vector(color::replace(texel, color)); },
 );
 formula!(
     /// Sums on the colour cube.
     Sum: "color/sum" by "color_sum",
     "color = clamp(a + b, 0, 1)", "004",
     [Input::rgb("a"), Input::rgb("b")] -> [Output::new("color", Shape::Vec3, "color")],
-    |x, out| { out.vector(color::sum(x.vector(), x.vector())); },
+    |a, b; out| { out.vector(color::sum(a, b)); },
     hard [
         Hard::new("red-and-green", "yellow", &[("a", &[1.0, 0.0, 0.0]), ("b", &[0.0, 1.0, 0.0])]),
         Hard::new("green-and-blue", "cyan", &[("a", &[0.0, 1.0, 0.0]), ("b", &[0.0, 0.0, 1.0])]),
@@ -83,7 +83,7 @@ formula!(
     Uniform: "color/uniform" by "color_uniform",
     "(color, 1)", "000 §6.2",
     [Input::rgb("color")] -> [COLOR],
-    |x, out| { out.vector(color::uniform(x.vector())); },
+    |color; out| { out.vector(color::uniform(color)); },
 );
 formula!(
     /// A colour bound to the vertices.
@@ -93,7 +93,7 @@ formula!(
         Input::new("weights", Shape::Vec3, "1", Domain::Weights),
         Input::rgb("a"), Input::rgb("b"), Input::rgb("c"),
     ] -> [COLOR],
-    |x, out| { out.vector(color::per_vertex(x.array(), x.vectors())); },
+    |weights, a, b, c; out| { out.vector(color::per_vertex(weights, [a, b, c])); },
     hard [
         Hard::new("outside", "alpha is 1, not the weights' sum", &[("weights", &[0.5, 0.25, 0.0])]),
     ],
@@ -108,7 +108,7 @@ formula!(
     "e = 12.92·c for c ≤ 0.0031308, else 1.055·c^(1/2.4) − 0.055", "IEC 61966-2-1",
     [COMPONENT] -> [ENCODED],
     stable 128.0 Own "exp2's 3 + 2·3.4 ULP, 20 roundings, and log2's 3 ULP through the exponent, magnified up to 2.4 times by the subtraction of 0.055",
-    |x, out| { out.scalar(color::srgb_encode(x.scalar())); },
+    |c; out| { out.scalar(color::srgb_encode(c)); },
     hard [
         Hard::new("below-zero", "a colour out of gamut stays a number", &[("c", &[-0.001])])
             .naive("color/srgb-encode-power", "the power of a negative base: NaN, or a colour", 1e6),
@@ -127,14 +127,14 @@ formula!(
     SrgbEncodePower: "color/srgb-encode-power" by "color_srgb_encode_power",
     "e = 1.055·c^(1/2.4) − 0.055", "a shortcut: sRGB without its straight piece",
     [COMPONENT] -> [ENCODED],
-    |x, out| { out.scalar(color::srgb_encode_power(x.scalar())); },
+    |c; out| { out.scalar(color::srgb_encode_power(c)); },
 );
 formula!(
     /// One power for sRGB.
     GammaEncode: "color/gamma-encode" by "color_gamma_encode",
     "e = c^(1/2.2)", "a shortcut",
     [COMPONENT] -> [ENCODED],
-    |x, out| { out.scalar(color::gamma_encode(x.scalar())); },
+    |c; out| { out.scalar(color::gamma_encode(c)); },
 );
 
 pub(super) fn visit(visitor: &mut impl Visitor) {

@@ -1,6 +1,6 @@
 //! Cases of the depth test: every compare function, with and without writing. Formulas: `lightmeter_reference::depth`.
 
-use super::formula::{Formula, formula};
+use super::formula::{Formula, bind, formula};
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
 use super::{Visitor, raster};
@@ -9,14 +9,15 @@ use lightmeter_reference::depth::{passes, recovered, recovered_reversed, test};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::raster::Raster;
 
+const BEYOND: Domain = Domain::Uniform(-0.25, 1.25);
+const DEPTHS: &[Input] = &[Input::scalar("new", "1", BEYOND), Input::scalar("old", "1", BEYOND)];
+
 /// A fragment over another.
 #[derive(Clone, Copy, Debug)]
 struct OverAnother(DepthTest);
 
 impl Formula for OverAnother {
     fn spec(&self) -> Spec {
-        const BEYOND: Domain = Domain::Uniform(-0.25, 1.25);
-        const INPUTS: &[Input] = &[Input::scalar("new", "1", BEYOND), Input::scalar("old", "1", BEYOND)];
         const OUTPUTS: &[Output] = &[Output::new("seen", Shape::Scalar, "1"), Output::new("depth", Shape::Scalar, "1")];
         let DepthTest { compare, write } = self.0;
         Spec {
@@ -26,7 +27,7 @@ impl Formula for OverAnother {
             function: "depth_test",
             kind: Kind::Depth(self.0),
             selectors: vec![compare.code(), u32::from(write)],
-            inputs: INPUTS,
+            inputs: DEPTHS,
             outputs: OUTPUTS,
             fit: Some(bring_together),
             hard: hard(self.0),
@@ -35,8 +36,8 @@ impl Formula for OverAnother {
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let (new, old) = (x.scalar(), x.scalar());
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        bind!(x, DEPTHS => new, old);
         let left = test(self.0, new, old);
         out.scalar(left.seen);
         out.scalar(left.depth);
@@ -131,7 +132,7 @@ impl Formula for OverItself {
         }
     }
 
-    fn evaluate<R: Real>(&self, _x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
+    fn evaluate<R: Real>(&self, _x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
         let depth = R::literal(0.5);
         out.scalar(passes(self.0, depth, depth) + R::literal(1.0));
     }
@@ -147,7 +148,7 @@ formula!(
     Recovered: "depth/recovered" by "depth_recovered",
     "z = n·f/(f − depth(f − n)), depth = f(z − n)/(z(f − n))", "000 §6.6; ruling 15",
     [NEAR, FAR, EYE_DISTANCE] -> [READ_BACK],
-    |x, out| { out.scalar(recovered(x.scalar(), x.scalar(), x.scalar())); },
+    |near, far, z; out| { out.scalar(recovered(near, far, z)); },
 );
 formula!(
     /// A distance read back from depth reversed.
@@ -155,7 +156,7 @@ formula!(
     "z = n·f/(n + depth(f − n)), depth = n(f − z)/(z(f − n))", "000 §6.6, with depth reversed",
     [NEAR, FAR, EYE_DISTANCE] -> [READ_BACK],
     stable 32.0 Own "five products, two differences that cancel by little and two divisions of at most 2½ ULP",
-    |x, out| { out.scalar(recovered_reversed(x.scalar(), x.scalar(), x.scalar())); },
+    |near, far, z; out| { out.scalar(recovered_reversed(near, far, z)); },
     hard [
         Hard::new("at-900-of-1000", "near 0.1, far 1000: no nearer than half a unit", &[("near", &[0.1]), ("far", &[1000.0]), ("z", &[900.3])])
             .naive("depth/recovered", "a step of depth is 0.48 units", 500.0),

@@ -2,10 +2,10 @@
 
 use super::Visitor;
 use super::formula::formula;
-use super::rows::{Reader, Writer};
+use super::rows::Writer;
 use super::spec::{Domain, Hard, Input, Output, Shape};
-use lightmeter_reference::Real;
 use lightmeter_reference::fog::{self, Distance};
+use lightmeter_reference::{Real, Vec3};
 
 const P: Input = Input::new("p", Shape::Vec3, "unit", Domain::Uniform(-100.0, 100.0));
 const DMIN: Input = Input::scalar("dmin", "unit", Domain::Uniform(0.0, 50.0));
@@ -17,16 +17,10 @@ const SHADED: Input = Input::rgb("shaded");
 const F: Output = Output::new("f", Shape::Scalar, "1");
 const COLOR: Output = Output::new("color", Shape::Vec3, "color");
 
-/// The factor by a function of the distance and its parameters, then the mix.
-fn fogged<R: Real, const N: usize>(
-    x: &mut Reader<'_, R>,
-    out: &mut Writer<'_, R>,
-    distance: Distance,
-    factor: impl Fn(R, [R; N]) -> R,
-) {
-    let f = factor(fog::distance(x.vector(), distance), x.array());
+/// The factor, and the mix by it.
+fn fogged<R: Real>(out: &mut Writer<'_, R>, f: R, fog: Vec3<R>, shaded: Vec3<R>) {
     out.scalar(f);
-    out.lazy_vector(|| fog::apply(x.vector(), x.vector(), f));
+    out.lazy_vector(|| fog::apply(fog, shaded, f));
 }
 
 /// dmin and dmax in order, but for one case in sixteen, which turns the fog round.
@@ -47,7 +41,7 @@ macro_rules! linear {
             [P, DMIN, DMAX, FOG, SHADED] -> [F, COLOR],
             fit in_order,
             $(stable $bound $size $because,)?
-            |x, out| { fogged(x, out, $distance, |d, [dmin, dmax]| fog::linear(d, dmin, dmax)); }
+            |p, dmin, dmax, fog, shaded; out| { fogged(out, fog::linear(fog::distance(p, $distance), dmin, dmax), fog, shaded); }
             $(, hard [$($hard),*])?
         );
     };
@@ -98,7 +92,7 @@ macro_rules! exponential {
             $text, $source,
             [P, $density, FOG, SHADED] -> [F, COLOR],
             $(stable $bound $size $because,)?
-            |x, out| { fogged(x, out, $distance, |d, [density]| $factor(d, density)); }
+            |p, density, fog, shaded; out| { fogged(out, $factor(fog::distance(p, $distance), density), fog, shaded); }
             $(, hard [$($hard),*])?
         );
     };
@@ -173,21 +167,27 @@ formula!(
     "f = clamp(|z|·scale + offset, 0, 1), scale = −1/(dmax − dmin), offset = dmax/(dmax − dmin)", "a shortcut",
     [P, DMIN, DMAX, FOG, SHADED] -> [F, COLOR],
     fit in_order,
-    |x, out| { fogged(x, out, Distance::Planar, |d, [dmin, dmax]| fog::linear_multiply_add(d, dmin, dmax)); },
+    |p, dmin, dmax, fog, shaded; out| {
+        fogged(out, fog::linear_multiply_add(fog::distance(p, Distance::Planar), dmin, dmax), fog, shaded);
+    },
 );
 formula!(
     /// Document 000's exponential-squared fog, the distance squared first.
     Exp2DocumentSquare: "fog/exp2-document-square" by "fog_exp2_document_square",
     "f = clamp(exp(−density·(z·z)), 0, 1)", "000 §6.5, taken literally",
     [P, DENSITY_SQUARED, FOG, SHADED] -> [F, COLOR],
-    |x, out| { fogged(x, out, Distance::Planar, |d, [density]| fog::exp2_document_square(d, density)); },
+    |p, density, fog, shaded; out| {
+        fogged(out, fog::exp2_document_square(fog::distance(p, Distance::Planar), density), fog, shaded);
+    },
 );
 formula!(
     /// OpenGL's exponential-squared fog, density and distance squared alone.
     Exp2OpenGlSquares: "fog/exp2-opengl-squares" by "fog_exp2_opengl_squares",
     "f = clamp(exp(−(density·density)·(z·z)), 0, 1)", "a shortcut",
     [P, DENSITY, FOG, SHADED] -> [F, COLOR],
-    |x, out| { fogged(x, out, Distance::Planar, |d, [density]| fog::exp2_opengl_squares(d, density)); },
+    |p, density, fog, shaded; out| {
+        fogged(out, fog::exp2_opengl_squares(fog::distance(p, Distance::Planar), density), fog, shaded);
+    },
 );
 formula!(
     /// Exponential fog by a distance of any length.
@@ -195,10 +195,10 @@ formula!(
     "f = clamp(exp(−density·|p·2ᵏ|·2⁻ᵏ), 0, 1); color = mix(fog, shaded, f)", "000 §6.5, a dialect, at any distance",
     [P, DENSITY, FOG, SHADED] -> [F, COLOR],
     stable 48.0 Unit "a distance of 16 roundings, which f·ln f takes at most 0.37 of, and exp's 3 ULP and more",
-    |x, out| {
-        let f = fog::exp(fog::radial_distance_scaled(x.vector()), x.scalar());
+    |p, density, fog, shaded; out| {
+        let f = fog::exp(fog::radial_distance_scaled(p), density);
         out.scalar(f);
-        out.vector(fog::apply(x.vector(), x.vector(), f));
+        out.vector(fog::apply(fog, shaded, f));
     },
     hard [
         Hard::new("far", "5e19 away in thin fog", &[("p", &[3e19, 0.0, -4e19]), ("density", &[1e-20])])
@@ -216,7 +216,7 @@ formula!(
     Opacity: "fog/opacity" by "fog_opacity",
     "opacity = 1 − exp(−density·distance)", "000 §6.5, 1 − f",
     [THICKNESS, DENSITY] -> [OPACITY],
-    |x, out| { out.scalar(fog::opacity(x.scalar(), x.scalar())); },
+    |distance, density; out| { out.scalar(fog::opacity(distance, density)); },
 );
 formula!(
     /// How much of the fog is seen, however thin.
@@ -224,7 +224,7 @@ formula!(
     "opacity = −expm1(−density·distance), a short series below ½", "000 §6.5, 1 − f",
     [THICKNESS, DENSITY] -> [OPACITY],
     stable 72.0 Own "a product, and a series of 8 terms summed in any order, 66; beyond ½, exp's bound on at most 0.61",
-    |x, out| { out.scalar(fog::opacity_expm1(x.scalar(), x.scalar())); },
+    |distance, density; out| { out.scalar(fog::opacity_expm1(distance, density)); },
     hard [
         Hard::new("one-in-1e3", "a thousandth of fog", &[("distance", &[1.0]), ("density", &[1.1e-3])])
             .naive("fog/opacity", "1 − 0.999 has lost 10 bits", 100.0),

@@ -14,7 +14,7 @@ pub trait Formula: Send + Sync + 'static {
     fn spec(&self) -> Spec;
 
     /// Its outputs for a row of inputs.
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>);
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>);
 }
 
 /// Is shown formulas one by one, each of a type of its own.
@@ -23,70 +23,59 @@ pub trait Visitor {
     fn formula<F: Formula>(&mut self, formula: F);
 }
 
-/// A formula in the arithmetics of the suite, its type forgotten.
+/// A formula in the arithmetics of the suite, its type forgotten: here alone, and in each of them once, is its code made.
+/// Outputs are for a row of inputs; where `only` names a number, that one alone need be worked out.
 pub trait AnyFormula: Send + Sync {
     /// Its description.
     fn spec(&self) -> Spec;
 
-    /// The reference.
-    fn reference(&self, inputs: &[f32], out: &mut [f64]);
+    /// In f64: the reference.
+    fn on_f64(&self, inputs: &[f64], only: Option<usize>, out: &mut [f64]);
 
-    /// The embedded implementation in f32.
-    fn embedded(&self, inputs: &[f32], out: &mut [f32]);
+    /// In f32: the embedded implementation.
+    fn on_f32(&self, inputs: &[f32], only: Option<usize>, out: &mut [f32]);
 
-    /// The values that a profile makes legal in the programmable stages.
-    fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
+    /// In intervals of legal values, inside [`Profile::scope`].
+    fn on_accept(&self, inputs: &[Accept], only: Option<usize>, out: &mut [Accept]);
 
-    /// The same for many rows of inputs, `stride` numbers each.
-    fn intervals(&self, rows: &[f32], stride: usize, profile: &Profile, out: &mut [Accept]);
-
-    /// The outputs for a row of inputs of f64.
-    fn on_f64(&self, inputs: &[f64], out: &mut [f64]);
-
-    /// The same of f32.
-    fn on_f32(&self, inputs: &[f32], out: &mut [f32]);
-
-    /// The same of intervals, inside [`Profile::scope`].
-    fn on_accept(&self, inputs: &[Accept], out: &mut [Accept]);
-
-    /// The same of legal evaluations drawn at random, inside [`Profile::scope`].
+    /// In legal values drawn at random, inside [`Profile::scope`].
     fn on_draw(&self, inputs: &[RandomLegal], out: &mut [RandomLegal]);
 
-    /// The values that a profile makes legal as they leave a rasteriser, which snaps positions to the profile's subpixel bits.
-    fn raster_interval(&self, kind: Raster, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
+    /// In values and intervals with the steps that lead to them, inside [`Profile::scope`].
+    fn on_trace(&self, inputs: &[Trace], out: &mut [Trace]);
 
-    /// The values that a profile makes legal where nothing else is known: of a raster formula those of a rasteriser.
-    fn promised_interval(&self, kind: Kind, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
-        match kind {
-            Kind::Raster(raster) => self.raster_interval(raster, inputs, profile, out),
-            Kind::Arithmetic | Kind::Blend(_) | Kind::Depth(_) => self.interval(inputs, profile, out),
-        }
+    /// In values with their derivatives.
+    fn on_dual(&self, inputs: &[Dual], out: &mut [Dual]);
+}
+
+impl<F: Formula> AnyFormula for F {
+    fn spec(&self) -> Spec {
+        Formula::spec(self)
     }
 
-    /// The reference and the interval of each output, with the steps that lead to them.
-    fn trace(&self, inputs: &[f32], profile: &Profile, out: &mut [Trace]);
-
-    /// The outputs with their derivatives with respect to each input in turn.
-    fn derivatives(&self, inputs: &[f32]) -> Vec<Vec<Dual>>;
-
-    /// The condition number of each output.
-    fn condition(&self, inputs: &[f32]) -> Vec<f64> {
-        let by_input = self.derivatives(inputs);
-        let outputs = by_input.first().map_or(0, Vec::len);
-        (0..outputs).map(|output| dual::condition(inputs, &by_input, output)).collect()
+    fn on_f64(&self, inputs: &[f64], only: Option<usize>, out: &mut [f64]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, only));
     }
 
-    /// One output of the reference along one input: for each of `inputs` in the place of the row's free number.
-    fn reference_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f64]);
+    fn on_f32(&self, inputs: &[f32], only: Option<usize>, out: &mut [f32]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, only));
+    }
 
-    /// The same of the embedded implementation.
-    fn embedded_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f32]);
+    fn on_accept(&self, inputs: &[Accept], only: Option<usize>, out: &mut [Accept]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, only));
+    }
 
-    /// The values of that output that a profile makes legal in the programmable stages.
-    fn interval_along(&self, along: &Along<'_>, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
+    fn on_draw(&self, inputs: &[RandomLegal], out: &mut [RandomLegal]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, None));
+    }
 
-    /// What is legal of that output somewhere while the free number goes from `first` to `last`.
-    fn interval_between(&self, along: &Along<'_>, first: f32, last: f32, profile: &Profile) -> Accept;
+    fn on_trace(&self, inputs: &[Trace], out: &mut [Trace]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, None));
+    }
+
+    fn on_dual(&self, inputs: &[Dual], out: &mut [Dual]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, None));
+    }
 }
 
 /// Room for the inputs of any formula, so that a row is widened without an allocation.
@@ -95,7 +84,7 @@ const MOST_INPUTS: usize = 80;
 const MOST_OUTPUTS: usize = 16;
 
 /// Widens a row of inputs for an evaluation.
-fn run<R: Real>(inputs: &[f32], evaluate: impl FnOnce(&[R])) {
+fn widened<R: Real>(inputs: &[f32], evaluate: impl FnOnce(&[R])) {
     let mut row = [R::literal(0.0); MOST_INPUTS];
     for (wide, &narrow) in row.iter_mut().zip(inputs) {
         *wide = R::input(narrow);
@@ -103,8 +92,13 @@ fn run<R: Real>(inputs: &[f32], evaluate: impl FnOnce(&[R])) {
     evaluate(&row[..inputs.len()]);
 }
 
-/// The same along one input, in a loop of the formula's own type.
-fn run_along<F: Formula, R: Real>(formula: &F, along: &Along<'_>, inputs: impl Iterator<Item = R>, out: &mut [R]) {
+/// Evaluates one output for each of `inputs` in the place of the row's free number.
+fn evaluate_along<R: Real>(
+    along: &Along<'_>,
+    inputs: impl Iterator<Item = R>,
+    out: &mut [R],
+    evaluate: impl Fn(&[R], Option<usize>, &mut [R]),
+) {
     let mut row = [R::literal(0.0); MOST_INPUTS];
     for (wide, &narrow) in row.iter_mut().zip(along.row) {
         *wide = R::input(narrow);
@@ -112,104 +106,129 @@ fn run_along<F: Formula, R: Real>(formula: &F, along: &Along<'_>, inputs: impl I
     let mut outputs = [R::literal(0.0); MOST_OUTPUTS];
     for (input, out) in inputs.zip(out) {
         row[along.free] = input;
-        formula.evaluate(&mut Reader::new(&row[..along.row.len()]), &mut Writer::only(&mut outputs, along.output));
+        evaluate(&row[..along.row.len()], Some(along.output), &mut outputs);
         *out = outputs[along.output];
     }
 }
 
-impl<F: Formula> AnyFormula for F {
-    fn spec(&self) -> Spec {
-        Formula::spec(self)
+impl dyn AnyFormula + '_ {
+    /// The reference.
+    pub fn reference(&self, inputs: &[f32], out: &mut [f64]) {
+        widened(inputs, |row| self.on_f64(row, None, out));
     }
 
-    fn reference(&self, inputs: &[f32], out: &mut [f64]) {
-        run(inputs, |row| self.on_f64(row, out));
+    /// The embedded implementation in f32.
+    pub fn embedded(&self, inputs: &[f32], out: &mut [f32]) {
+        self.on_f32(inputs, None, out);
     }
 
-    fn embedded(&self, inputs: &[f32], out: &mut [f32]) {
-        self.on_f32(inputs, out);
+    /// The values that a profile makes legal in the programmable stages.
+    pub fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+        profile.scope(|| widened(inputs, |row| self.on_accept(row, None, out)));
     }
 
-    fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
-        profile.scope(|| run(inputs, |row| self.on_accept(row, out)));
-    }
-
-    fn intervals(&self, rows: &[f32], stride: usize, profile: &Profile, out: &mut [Accept]) {
+    /// The same for many rows of inputs, `stride` numbers each.
+    pub fn intervals(&self, rows: &[f32], stride: usize, profile: &Profile, out: &mut [Accept]) {
         let outputs = out.len() / (rows.len() / stride);
         profile.scope(|| {
             for (inputs, out) in rows.chunks_exact(stride).zip(out.chunks_exact_mut(outputs)) {
-                run(inputs, |row| self.on_accept(row, out));
+                widened(inputs, |row| self.on_accept(row, None, out));
             }
         });
     }
 
-    #[inline(never)]
-    fn on_f64(&self, inputs: &[f64], out: &mut [f64]) {
-        self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
-    }
-
-    #[inline(never)]
-    fn on_f32(&self, inputs: &[f32], out: &mut [f32]) {
-        self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
-    }
-
-    #[inline(never)]
-    fn on_accept(&self, inputs: &[Accept], out: &mut [Accept]) {
-        self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
-    }
-
-    #[inline(never)]
-    fn on_draw(&self, inputs: &[RandomLegal], out: &mut [RandomLegal]) {
-        self.evaluate(&mut Reader::new(inputs), &mut Writer::new(out));
-    }
-
-    fn raster_interval(&self, kind: Raster, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+    /// The values that a profile makes legal as they leave a rasteriser, which snaps positions to the profile's subpixel bits.
+    pub fn raster_interval(&self, kind: Raster, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
         match kind {
             Raster::Flat { .. } | Raster::SameDepth(_) => self.interval(inputs, profile, out),
             _ => profile.scope(|| raster::interval(kind, inputs, profile.subpixel_bits, out)),
         }
     }
 
-    fn trace(&self, inputs: &[f32], profile: &Profile, out: &mut [Trace]) {
-        profile.scope(|| run(inputs, |row| self.evaluate(&mut Reader::new(row), &mut Writer::new(out))));
+    /// The values that a profile makes legal where nothing else is known: of a raster formula those of a rasteriser.
+    pub fn promised_interval(&self, kind: Kind, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+        match kind {
+            Kind::Raster(raster) => self.raster_interval(raster, inputs, profile, out),
+            Kind::Arithmetic | Kind::Blend(_) | Kind::Depth(_) => self.interval(inputs, profile, out),
+        }
     }
 
-    fn derivatives(&self, inputs: &[f32]) -> Vec<Vec<Dual>> {
-        let outputs = Formula::spec(self).output_len();
-        (0..inputs.len())
-            .map(|moved| {
-                let row: Vec<Dual> = inputs
-                    .iter()
-                    .enumerate()
-                    .map(|(k, &x)| if k == moved { Dual::variable(x.into()) } else { Dual::constant(x.into()) })
-                    .collect();
-                let mut out = vec![Dual::constant(0.0); outputs];
-                self.evaluate(&mut Reader::new(&row), &mut Writer::new(&mut out));
-                out
-            })
-            .collect()
-    }
-    fn reference_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f64]) {
-        run_along(self, along, inputs.iter().map(|&x| x.into()), out);
+    /// The reference and the interval of each output, with the steps that lead to them.
+    pub fn trace(&self, inputs: &[f32], profile: &Profile, out: &mut [Trace]) {
+        profile.scope(|| widened(inputs, |row| self.on_trace(row, out)));
     }
 
-    fn embedded_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f32]) {
-        run_along(self, along, inputs.iter().copied(), out);
+    /// The outputs with their derivatives with respect to each input in turn.
+    #[must_use]
+    pub fn derivatives(&self, inputs: &[f32]) -> Vec<Vec<Dual>> {
+        let outputs = self.spec().output_len();
+        let mut row: Vec<Dual> = inputs.iter().map(|&x| Dual::constant(x.into())).collect();
+        let with_respect_to = |(k, &input): (usize, &f32)| {
+            row[k] = Dual::variable(input.into());
+            let mut out = vec![Dual::constant(0.0); outputs];
+            self.on_dual(&row, &mut out);
+            row[k] = Dual::constant(input.into());
+            out
+        };
+        inputs.iter().enumerate().map(with_respect_to).collect()
     }
 
-    fn interval_along(&self, along: &Along<'_>, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
-        profile.scope(|| run_along(self, along, inputs.iter().map(|&x| Accept::input(x)), out));
+    /// The condition number of each output.
+    #[must_use]
+    pub fn condition(&self, inputs: &[f32]) -> Vec<f64> {
+        let by_input = self.derivatives(inputs);
+        let outputs = by_input.first().map_or(0, Vec::len);
+        (0..outputs).map(|output| dual::condition(inputs, &by_input, output)).collect()
     }
 
-    fn interval_between(&self, along: &Along<'_>, first: f32, last: f32, profile: &Profile) -> Accept {
+    /// One output of the reference along one input: for each of `inputs` in the place of the row's free number.
+    pub fn reference_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f64]) {
+        let inputs = inputs.iter().map(|&x| x.into());
+        evaluate_along(along, inputs, out, |row, only, out| self.on_f64(row, only, out));
+    }
+
+    /// The same of the embedded implementation.
+    pub fn embedded_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f32]) {
+        let inputs = inputs.iter().copied();
+        evaluate_along(along, inputs, out, |row, only, out| self.on_f32(row, only, out));
+    }
+
+    /// The values of that output that a profile makes legal in the programmable stages.
+    pub fn interval_along(&self, along: &Along<'_>, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
+        self.legal_along(along, inputs.iter().map(|&x| Accept::input(x)), profile, out);
+    }
+
+    /// What is legal of that output somewhere while the free number goes from `first` to `last`.
+    #[must_use]
+    pub fn interval_between(&self, along: &Along<'_>, first: f32, last: f32, profile: &Profile) -> Accept {
         let mut out = [Accept::ANY];
         let range = std::iter::once(Accept::from_bounds(first.into(), last.into()));
-        profile.scope(|| run_along(self, along, range, &mut out));
+        self.legal_along(along, range, profile, &mut out);
         out[0]
+    }
+
+    fn legal_along(
+        &self,
+        along: &Along<'_>,
+        inputs: impl Iterator<Item = Accept>,
+        profile: &Profile,
+        out: &mut [Accept],
+    ) {
+        profile.scope(|| evaluate_along(along, inputs, out, |row, only, out| self.on_accept(row, only, out)));
     }
 }
 
-/// Defines a formula of a fixed description.
+/// Takes inputs off a row by their names: `bind!(x, INPUTS => src, dst)` binds `src` and `dst`. A name that the inputs
+/// do not have is an error of compilation.
+#[macro_export]
+macro_rules! bind {
+    ($x:ident, $inputs:expr => $($name:ident),+) => {
+        $(let $name = $x.at(const { $crate::cases::place($inputs, stringify!($name)) });)+
+    };
+}
+pub use bind;
+
+/// Defines a formula of a fixed description. Its body names the inputs that it takes, and then where outputs go.
 #[macro_export]
 macro_rules! formula {
     (
@@ -219,19 +238,22 @@ macro_rules! formula {
         $(fit $fit:expr,)?
         $(kind $kind:expr,)?
         $(stable $bound:literal $size:ident $because:literal,)?
-        |$x:ident, $out:ident| $body:block
+        |$($taken:ident),+; $out:ident| $body:block
         $(, hard [$($hard:expr),* $(,)?])? $(,)?
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         struct $name;
 
+        impl $name {
+            const INPUTS: &[$crate::cases::Input] = &[$($input),*];
+        }
+
         impl $crate::cases::Formula for $name {
             fn spec(&self) -> $crate::cases::Spec {
                 const NORMALISED: &[bool] = &[$($normalised)?];
                 const FIT: &[fn(&mut [f32])] = &[$($fit)?];
                 const KIND: &[$crate::cases::Kind] = &[$($kind)?];
-                const INPUTS: &[$crate::cases::Input] = &[$($input),*];
                 const OUTPUTS: &[$crate::cases::Output] = &[$($output),*];
                 const HARD: &[$crate::cases::Hard] = &[$($($hard),*)?];
                 const STABLE: &[$crate::cases::Stable] = &[
@@ -244,7 +266,7 @@ macro_rules! formula {
                     function: $function,
                     kind: KIND.first().copied().unwrap_or($crate::cases::Kind::Arithmetic),
                     selectors: vec![],
-                    inputs: INPUTS,
+                    inputs: Self::INPUTS,
                     outputs: OUTPUTS,
                     fit: FIT.first().copied(),
                     hard: HARD,
@@ -255,9 +277,12 @@ macro_rules! formula {
 
             fn evaluate<R: $crate::Real>(
                 &self,
-                $x: &mut $crate::cases::Reader<'_, R>,
+                x: &$crate::cases::Reader<'_, R>,
                 $out: &mut $crate::cases::Writer<'_, R>,
-            ) $body
+            ) {
+                $crate::cases::formula::bind!(x, Self::INPUTS => $($taken),+);
+                $body
+            }
         }
     };
 }

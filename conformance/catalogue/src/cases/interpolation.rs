@@ -29,14 +29,14 @@ formula!(
     Line: "interpolation/line" by "interpolation_line",
     "attr = α·a + β·b", "000 §6.1",
     [Input::new("weights", Shape::Vec2, "1", Domain::Weights), attr("a"), attr("b")] -> [ATTR],
-    |x, out| { out.scalar(interpolation::line(x.array(), x.array())); },
+    |weights, a, b; out| { out.scalar(interpolation::line(weights, [a, b])); },
 );
 formula!(
     /// Over a triangle.
     Triangle: "interpolation/triangle" by "interpolation_triangle",
     "attr = α·a + β·b + γ·c", "000 §6.1",
     [WEIGHTS, attr("a"), attr("b"), attr("c")] -> [ATTR],
-    |x, out| { out.scalar(interpolation::triangle(x.array(), x.array())); },
+    |weights, a, b, c; out| { out.scalar(interpolation::triangle(weights, [a, b, c])); },
     hard [
         Hard::new("at-a-vertex", "the vertex's own value", &[("weights", &[0.0, 1.0, 0.0]), ("a", &[1e8]), ("b", &[1.0]), ("c", &[-1e8])]),
     ],
@@ -46,7 +46,7 @@ formula!(
     Weights: "interpolation/weights" by "interpolation_weights",
     "λ = area opposite each vertex over the whole", "000 §6.1",
     [window("a"), window("b"), window("c"), window("p")] -> [Output::new("lambda", Shape::Vec3, "1")],
-    |x, out| { out.vector(Vector(interpolation::weights(x.vectors(), x.vector()))); },
+    |a, b, c, p; out| { out.vector(Vector(interpolation::weights([a, b, c], p))); },
     hard [
         Hard::new("far-from-the-origin", "a unit triangle at 1e4: subtract a vertex first", &[("a", &[1e4, 1e4]), ("b", &[10001.0, 1e4]), ("c", &[1e4, 10001.0]), ("p", &[10000.25, 10000.25])]),
         Hard::new("no-area", "no value: nothing is promised", &[("a", &[0.0, 0.0]), ("b", &[1.0, 1.0]), ("c", &[2.0, 2.0]), ("p", &[1.0, 1.0])]),
@@ -60,14 +60,14 @@ formula!(
         window("v1"), window("v2"), window("v3"), Input::new("i", Shape::Vec3, "1", Domain::Unit), window("p"),
     ] -> [ATTR],
     fit within_the_scanlines,
-    |x, out| { out.scalar(interpolation::scanline(x.vectors(), x.array(), x.vector())); },
+    |v1, v2, v3, i, p; out| { out.scalar(interpolation::scanline([v1, v2, v3], i, p)); },
 );
 formula!(
     /// Forward differences.
     ForwardDifferences: "interpolation/forward-differences" by "interpolation_forward_differences",
     "a, then 16 times a step of (b − a)/16", "004",
     [attr("a"), attr("b")] -> [ATTR],
-    |x, out| { out.scalar(interpolation::forward_differences::<R, 17>(x.scalar(), x.scalar())); },
+    |a, b; out| { out.scalar(interpolation::forward_differences::<R, 17>(a, b)); },
 );
 formula!(
     /// Perspective-correct over a triangle.
@@ -78,7 +78,7 @@ formula!(
         Input::new("w", Shape::Vec3, "1", Domain::LogUniform(0.1, 100.0)),
         Input::new("attr", Shape::Vec3, "1", ATTRIBUTE),
     ] -> [ATTR],
-    |x, out| { out.scalar(interpolation::perspective(x.array(), x.array(), x.array())); },
+    |lambda, w, attr; out| { out.scalar(interpolation::perspective(lambda, w, attr)); },
     hard [
         Hard::new("near-zero-w", "1/w overflows: nothing is promised of the published form", &[("w", &[1e-39, 1.0, 1.0])]),
         Hard::new("equal-w", "the same as linear", &[("w", &[4.0, 4.0, 4.0])]),
@@ -93,21 +93,21 @@ formula!(
         Input::new("w", Shape::Vec2, "1", Domain::LogUniform(0.1, 100.0)),
         Input::new("attr", Shape::Vec2, "1", ATTRIBUTE),
     ] -> [ATTR],
-    |x, out| { out.scalar(interpolation::perspective_line(x.scalar(), x.array(), x.array())); },
+    |t, w, attr; out| { out.scalar(interpolation::perspective_line(t, w, attr)); },
 );
 formula!(
     /// The first vertex's attribute.
     FlatFirst: "interpolation/flat-first" by "interpolation_flat_first",
     "attr = the first vertex's", "000 §6.1; ruling 7",
     [Input::new("attr", Shape::Vec3, "1", ATTRIBUTE)] -> [ATTR],
-    |x, out| { out.scalar(interpolation::flat(x.array::<3>(), Provoking::First)); },
+    |attr; out| { out.scalar(interpolation::flat::<R, 3>(attr, Provoking::First)); },
 );
 formula!(
     /// The last vertex's attribute.
     FlatLast: "interpolation/flat-last" by "interpolation_flat_last",
     "attr = the last vertex's", "000 §6.1; ruling 7",
     [Input::new("attr", Shape::Vec3, "1", ATTRIBUTE)] -> [ATTR],
-    |x, out| { out.scalar(interpolation::flat(x.array::<3>(), Provoking::Last)); },
+    |attr; out| { out.scalar(interpolation::flat::<R, 3>(attr, Provoking::Last)); },
 );
 formula!(
     /// Coverage by the top-left rule.
@@ -115,7 +115,7 @@ formula!(
     "1 where p lies inside, or on a top or left edge", "000 §6.1",
     [half_pixels("a"), half_pixels("b"), half_pixels("c"), half_pixels("p")] -> [Output::new("covered", Shape::Scalar, "1")],
     fit near_the_triangle,
-    |x, out| { out.scalar(interpolation::coverage(x.vectors(), x.vector())); },
+    |a, b, c, p; out| { out.scalar(interpolation::coverage([a, b, c], p)); },
     hard [
         Hard::new("top-edge", "belongs to the triangle", &[("a", &[0.0, 0.0]), ("b", &[8.0, 0.0]), ("c", &[4.0, 8.0]), ("p", &[4.0, 0.0])]),
         Hard::new("bottom-edge", "does not", &[("a", &[0.0, 8.0]), ("b", &[8.0, 8.0]), ("c", &[4.0, 0.0]), ("p", &[4.0, 8.0])]),
@@ -138,10 +138,8 @@ macro_rules! viewport {
                 Input::new("size", Shape::Vec2, "pixel", Domain::Uniform(1.0, 4096.0)),
                 Input::new("depth", Shape::Vec2, "1", Domain::Unit),
             ] -> [Output::new("window", Shape::Vec3, "pixel")],
-            |x, out| {
-                let clip = x.vector();
-                let to = Viewport { origin: x.vector(), size: x.vector(), depth: x.vector() };
-                out.vector($formula(clip, &to));
+            |clip, origin, size, depth; out| {
+                out.vector($formula(clip, &Viewport { origin, size, depth }));
             },
         );
     };
@@ -168,7 +166,7 @@ macro_rules! clip_volume {
             /// The clip volume.
             $name: $id by $function, $text, "000 §6.1",
             [Input::new("clip", Shape::Vec4, "1", Domain::Uniform(-2.0, 4.0))] -> [Output::new("inside", Shape::Scalar, "1")],
-            |x, out| { out.scalar($formula(x.vector())); },
+            |clip; out| { out.scalar($formula(clip)); },
             hard [
                 Hard::new("on-a-plane", "the planes belong to the volume", &[("clip", &[2.0, -2.0, 2.0, 2.0])]),
                 Hard::new("on-the-near-plane", "z = 0 lies within WebGPU's volume and OpenGL's", &[("clip", &[0.0, 0.0, 0.0, 1.0])]),
@@ -198,7 +196,7 @@ formula!(
     FrontFacing: "interpolation/front-facing" by "interpolation_front_facing",
     "1 where the triangle is counter-clockwise as seen", "000 §6.1",
     [window("a"), window("b"), window("c")] -> [Output::new("front", Shape::Scalar, "1")],
-    |x, out| { out.scalar(interpolation::front_facing(x.vectors())); },
+    |a, b, c; out| { out.scalar(interpolation::front_facing([a, b, c])); },
     hard [Hard::new("no-area", "not front", &[("a", &[0.0, 0.0]), ("b", &[1.0, 1.0]), ("c", &[2.0, 2.0])])],
 );
 formula!(
@@ -206,7 +204,7 @@ formula!(
     FragDepth: "interpolation/frag-depth" by "interpolation_frag_depth",
     "clamp(depth, 0, 1)", "000 §6.1",
     [Input::scalar("depth", "1", Domain::Uniform(-0.5, 1.5))] -> [Output::new("depth", Shape::Scalar, "1")],
-    |x, out| { out.scalar(interpolation::frag_depth(x.scalar())); },
+    |depth; out| { out.scalar(interpolation::frag_depth(depth)); },
 );
 
 /// The point between the first vertex's line and the nearer of the other two, where both edges have a scan line.
@@ -239,7 +237,7 @@ formula!(
     "e = (b − a) × (p − a)", "000 §6.1; a vertex subtracted first",
     [window("a"), window("b"), window("p")] -> [TWICE_AREA],
     stable 8.0 Own "two exact differences, two products and a difference that does not cancel by more than 4",
-    |x, out| { out.scalar(interpolation::edge(x.vector(), x.vector(), x.vector())); },
+    |a, b, p; out| { out.scalar(interpolation::edge(a, b, p)); },
     hard [
         Hard::new("far-1e3", "a unit triangle at 1e3", &[("a", &[1000.0, 1000.0]), ("b", &[1001.0, 1000.25]), ("p", &[1000.25, 1000.75])])
             .naive("interpolation/edge-from-origin", "six products of 1e6 cancel to 1", 1e3),
@@ -254,7 +252,7 @@ formula!(
     EdgeFromOrigin: "interpolation/edge-from-origin" by "interpolation_edge_from_origin",
     "e = a × b + b × p + p × a", "000 §6.1; no vertex subtracted",
     [window("a"), window("b"), window("p")] -> [TWICE_AREA],
-    |x, out| { out.scalar(interpolation::edge_from_origin(x.vector(), x.vector(), x.vector())); },
+    |a, b, p; out| { out.scalar(interpolation::edge_from_origin(a, b, p)); },
 );
 formula!(
     /// The edge function of slivers.
@@ -262,7 +260,7 @@ formula!(
     "e = (b − a) × (p − a), a difference of products with their errors", "Cornea, Harrison & Tang 2002",
     [window("a"), window("b"), window("p")] -> [TWICE_AREA],
     stable 2.0 Own "2 roundings (Cornea, Harrison & Tang), for corners whose differences are exact: within a factor of 2 of each other, or from the origin",
-    |x, out| { out.scalar(interpolation::edge_compensated(x.vector(), x.vector(), x.vector())); },
+    |a, b, p; out| { out.scalar(interpolation::edge_compensated(a, b, p)); },
     hard [
         Hard::new("sliver-1e-5", "the products agree to 5 digits", &[("a", &[0.0, 0.0]), ("b", &[0.7, 0.3]), ("p", &[1.4, 0.600_01])])
             .naive("interpolation/edge", "the rounding of the products is what is left", 1e3),
@@ -280,7 +278,7 @@ formula!(
     "γ = (a b p)/(a b c), an area of its own", "000 §6.1",
     [window("a"), window("b"), window("c"), window("p")] -> [LAST_WEIGHT],
     stable 16.0 Own "two areas that do not cancel, and a division of at most 2½ ULP",
-    |x, out| { out.scalar(interpolation::last_weight(x.vectors(), x.vector())); },
+    |a, b, c, p; out| { out.scalar(interpolation::last_weight([a, b, c], p)); },
     hard [
         Hard::new("near-the-edge", "a weight of 1e-4", &[("a", &[0.0, 0.0]), ("b", &[100.0, 0.0]), ("c", &[30.0, 70.0]), ("p", &[41.3, 0.007])])
             .naive("interpolation/last-weight-by-difference", "1 − α − β cancels", 500.0),
@@ -293,7 +291,7 @@ formula!(
     LastWeightByDifference: "interpolation/last-weight-by-difference" by "interpolation_last_weight_by_difference",
     "γ = 1 − α − β", "a shortcut",
     [window("a"), window("b"), window("c"), window("p")] -> [LAST_WEIGHT],
-    |x, out| { out.scalar(interpolation::last_weight_by_difference(x.vectors(), x.vector())); },
+    |a, b, c, p; out| { out.scalar(interpolation::last_weight_by_difference([a, b, c], p)); },
 );
 formula!(
     /// Linear interpolation.
@@ -301,7 +299,7 @@ formula!(
     "attr = a(1 − t) + b·t", "WGSL, mix",
     [attr("a"), attr("b"), Input::scalar("t", "1", Domain::Unit)] -> [ATTR],
     stable 4.0 Own "two products and a sum of one sign, or of which one is 0",
-    |x, out| { out.scalar(interpolation::mix(x.scalar(), x.scalar(), x.scalar())); },
+    |a, b, t; out| { out.scalar(interpolation::mix(a, b, t)); },
     hard [
         Hard::new("the-end", "b itself at t = 1", &[("a", &[0.9]), ("b", &[1e-5]), ("t", &[1.0])])
             .naive("interpolation/mix-incremental", "misses b by the rounding of b − a", 1e3),
@@ -316,7 +314,7 @@ formula!(
     MixIncremental: "interpolation/mix-incremental" by "interpolation_mix_incremental",
     "attr = a + t(b − a)", "WGSL, mix, in its other form",
     [attr("a"), attr("b"), Input::scalar("t", "1", Domain::Unit)] -> [ATTR],
-    |x, out| { out.scalar(interpolation::mix_incremental(x.scalar(), x.scalar(), x.scalar())); },
+    |a, b, t; out| { out.scalar(interpolation::mix_incremental(a, b, t)); },
 );
 formula!(
     /// Perspective-correct by scaled weights.
@@ -328,7 +326,7 @@ formula!(
         Input::new("attr", Shape::Vec3, "1", ATTRIBUTE),
     ] -> [ATTR],
     stable 24.0 Own "two divisions of at most 2½ ULP, for attributes of one sign",
-    |x, out| { out.scalar(interpolation::perspective_scaled(x.array(), x.array(), x.array())); },
+    |lambda, w, attr; out| { out.scalar(interpolation::perspective_scaled(lambda, w, attr)); },
     hard [
         Hard::new("w-zero", "a vertex in the plane of the eye: all that is seen", &[("lambda", &[0.25, 0.25, 0.5]), ("w", &[0.0, 1.0, 1.0]), ("attr", &[0.75, 2.0, 1.0])])
             .naive("interpolation/perspective", "∞/∞ is NaN", f64::INFINITY),

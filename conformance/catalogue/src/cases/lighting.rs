@@ -3,9 +3,8 @@
 use super::Visitor;
 use super::attenuation::{CUTOFF, EXPONENT, KC, KL, KQ};
 use super::formula::formula;
-use super::rows::Reader;
 use super::spec::{Domain, Hard, Input, Output, Shape};
-use lightmeter_reference::Real;
+use lightmeter_reference::Vec3;
 use lightmeter_reference::lighting::{self, Falloff, Light, Material, Specular, SpecularGate, Vertex};
 
 const LA: Input = Input::rgb("la");
@@ -23,20 +22,12 @@ const RGB: Output = Output::new("color", Shape::Vec3, "color");
 const RGBA: Output = Output::new("color", Shape::Vec4, "color");
 const INTENSITY: Output = Output::new("intensity", Shape::Scalar, "color");
 
-fn light<R: Real>(x: &mut Reader<'_, R>) -> Light<R> {
-    Light { ambient: x.vector(), diffuse: x.vector(), specular: x.vector() }
+fn light<R>([ambient, diffuse, specular]: [Vec3<R>; 3]) -> Light<R> {
+    Light { ambient, diffuse, specular }
 }
 
-fn material<R: Real>(x: &mut Reader<'_, R>) -> Material<R> {
-    Material { ambient: x.vector(), diffuse: x.vector(), specular: x.vector(), shininess: x.scalar() }
-}
-
-fn falloff<R: Real>(x: &mut Reader<'_, R>) -> Falloff<R> {
-    Falloff { kc: x.scalar(), kl: x.scalar(), kq: x.scalar() }
-}
-
-fn vertex<R: Real>(x: &mut Reader<'_, R>) -> Vertex<R> {
-    Vertex { p: x.vector(), n: x.vector() }
+fn material<R>([ambient, diffuse, specular]: [Vec3<R>; 3], shininess: R) -> Material<R> {
+    Material { ambient, diffuse, specular, shininess }
 }
 
 formula!(
@@ -44,7 +35,7 @@ formula!(
     Ambient: "lighting/ambient" by "lighting_ambient",
     "CA = LA * MA", "000 §6.3; ruling 8, `product`",
     [LA, MA] -> [RGB],
-    |x, out| { out.vector(lighting::ambient(x.vector(), x.vector())); },
+    |la, ma; out| { out.vector(lighting::ambient(la, ma)); },
     hard [
         Hard::new("blue-under-white", "document 000's figure", &[("la", &[1.0, 1.0, 1.0]), ("ma", &[0.0, 0.0, 1.0])]),
         Hard::new("blue-under-red", "document 000's figure", &[("la", &[1.0, 0.0, 0.0]), ("ma", &[0.0, 0.0, 1.0])]),
@@ -55,14 +46,14 @@ formula!(
     AmbientConstant: "lighting/ambient-constant" by "lighting_ambient_constant",
     "ambient + CD, the ambient term a global constant", "004; ruling 8, `constant`",
     [Input::rgb("ambient"), Input::rgb("diffuse")] -> [RGB],
-    |x, out| { out.vector(lighting::ambient_constant(x.vector(), x.vector())); },
+    |ambient, diffuse; out| { out.vector(lighting::ambient_constant(ambient, diffuse)); },
 );
 formula!(
     /// The diffuse term from the vector to the light.
     DiffuseToward: "lighting/diffuse-toward" by "lighting_diffuse_toward",
     "CD = LD * MD * max(l·n, 0)", "004; ruling 13, `toward`",
     [LD, MD, Input::direction("l"), Input::direction("n")] -> [RGB],
-    |x, out| { out.vector(lighting::diffuse_toward(x.vector(), x.vector(), x.vector(), x.vector())); },
+    |ld, md, l, n; out| { out.vector(lighting::diffuse_toward(ld, md, l, n)); },
     hard [
         Hard::new("edge-on", "0 at a right angle", &[("l", &[1.0, 0.0, 0.0]), ("n", &[0.0, 0.0, 1.0])]),
         Hard::new("from-behind", "max, not abs and not the bare product", &[("l", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.0])]),
@@ -73,7 +64,7 @@ formula!(
     DiffuseTravel: "lighting/diffuse-travel" by "lighting_diffuse_travel",
     "CD = LD * MD * max((−i)·n, 0)", "000 §6.3; rulings 5, 13, 16",
     [LD, MD, Input::direction("i"), Input::direction("n")] -> [RGB],
-    |x, out| { out.vector(lighting::diffuse_travel(x.vector(), x.vector(), x.vector(), x.vector())); },
+    |ld, md, i, n; out| { out.vector(lighting::diffuse_travel(ld, md, i, n)); },
 );
 formula!(
     /// Phong's highlight.
@@ -81,7 +72,7 @@ formula!(
     "CS = LS * MS * max(r·v, 0)^shininess", "000 §6.3",
     [LS, MS, Input::direction("r"), Input::direction("v"), SHININESS] -> [RGB],
     fit facing_vectors,
-    |x, out| { out.vector(lighting::specular_phong(x.vector(), x.vector(), x.vector(), x.vector(), x.scalar())); },
+    |ls, ms, r, v, shininess; out| { out.vector(lighting::specular_phong(ls, ms, r, v, shininess)); },
     hard [
         Hard::new("mirror", "1 at any shininess", &[("r", &[0.0, 0.0, 1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1e6])]),
         Hard::new("slightly-above-one", "a cosine a few ULP above 1 under a great power", &[("r", &[0.0, 0.0, 1.000_000_2]), ("v", &[0.0, 0.0, 1.000_000_2]), ("shininess", &[1e6])]),
@@ -97,14 +88,14 @@ formula!(
     "CS = LS * MS * max(n·h, 0)^shininess", "000 §6.4, 004",
     [LS, MS, Input::direction("n"), Input::direction("h"), SHININESS] -> [RGB],
     fit facing_vectors,
-    |x, out| { out.vector(lighting::specular_blinn(x.vector(), x.vector(), x.vector(), x.vector(), x.scalar())); },
+    |ls, ms, n, h, shininess; out| { out.vector(lighting::specular_blinn(ls, ms, n, h, shininess)); },
 );
 formula!(
     /// The highlight of a viewer at infinity.
     SpecularNonlocal: "lighting/specular-nonlocal" by "lighting_specular_nonlocal",
     "CS = LS * MS * max(r.z, 0)^shininess", "000 §6.4",
     [LS, MS, Input::direction("r"), SHININESS] -> [RGB],
-    |x, out| { out.vector(lighting::specular_nonlocal(x.vector(), x.vector(), x.vector(), x.scalar())); },
+    |ls, ms, r, shininess; out| { out.vector(lighting::specular_nonlocal(ls, ms, r, shininess)); },
 );
 
 /// Half of all pairs of directions look away from each other, where the highlight is 0: keep a quarter of those.
@@ -123,9 +114,9 @@ macro_rules! directional {
             $name: $id by $function, $text, $source,
             [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, DIRECTION] -> [RGBA],
             $(stable $bound $size $because,)?
-            |x, out| {
-                let (light, material) = (light(x), material(x));
-                out.vector(lighting::directional($dialect, &light, &material, x.vectors()));
+            |la, ld, ls, ma, md, ms, shininess, p, normal, direction; out| {
+                let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
+                out.vector(lighting::directional($dialect, &light, &material, [p, normal, direction]));
             }
             $(, hard [$($hard),*])?
         );
@@ -167,10 +158,10 @@ formula!(
     BlinnUnnormalised: "lighting/blinn-unnormalised" by "lighting_blinn_unnormalised",
     "CF as lighting/blinn with h = v + l", "000 §6.4; ruling 3, a dialect",
     [LA, LD, LS, MA, MD, MS, Input::scalar("shininess", "1", Domain::Uniform(1.0, 16.0)), P, NORMAL, DIRECTION] -> [RGBA],
-    |x, out| {
-        let (light, material) = (light(x), material(x));
+    |la, ld, ls, ma, md, ms, shininess, p, normal, direction; out| {
+        let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
         let dialect = (Specular::BlinnUnnormalised, SpecularGate::Documents);
-        out.vector(lighting::directional(dialect, &light, &material, x.vectors()));
+        out.vector(lighting::directional(dialect, &light, &material, [p, normal, direction]));
     },
 );
 formula!(
@@ -178,9 +169,9 @@ formula!(
     PhongUnitLight: "lighting/phong-unit-light" by "lighting_phong_unit_light",
     "CF as lighting/phong, the light's direction not normalised", "000 §6.4",
     [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, Input::direction("direction")] -> [RGBA],
-    |x, out| {
-        let (light, material) = (light(x), material(x));
-        out.vector(lighting::unit_light(&light, &material, x.vectors()));
+    |la, ld, ls, ma, md, ms, shininess, p, normal, direction; out| {
+        let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
+        out.vector(lighting::unit_light(&light, &material, [p, normal, direction]));
     },
 );
 formula!(
@@ -188,9 +179,9 @@ formula!(
     PhongNonlocal: "lighting/phong-nonlocal" by "lighting_phong_nonlocal",
     "CF as lighting/phong-unit-light with v = (0, 0, 1)", "000 §6.4",
     [LA, LD, LS, MA, MD, MS, SHININESS, NORMAL, Input::direction("direction")] -> [RGBA],
-    |x, out| {
-        let (light, material) = (light(x), material(x));
-        out.vector(lighting::nonlocal(&light, &material, x.vector(), x.vector()));
+    |la, ld, ls, ma, md, ms, shininess, normal, direction; out| {
+        let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
+        out.vector(lighting::nonlocal(&light, &material, normal, direction));
     },
 );
 
@@ -200,9 +191,10 @@ macro_rules! point {
             /// A point light.
             $name: $id by $function, $text, "000 §6.4, 004; rulings 2 and 11", normalised true,
             [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, LIGHT_POSITION, KC, KL, KQ] -> [RGBA],
-            |x, out| {
-                let (light, material, vectors) = (light(x), material(x), x.vectors());
-                out.vector(lighting::point(($model, SpecularGate::Documents), &light, &material, vectors, &falloff(x)));
+            |la, ld, ls, ma, md, ms, shininess, p, normal, position, kc, kl, kq; out| {
+                let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
+                let (dialect, falloff) = (($model, SpecularGate::Documents), Falloff { kc, kl, kq });
+                out.vector(lighting::point(dialect, &light, &material, [p, normal, position], &falloff));
             },
         );
     };
@@ -230,9 +222,10 @@ formula!(
         LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, LIGHT_POSITION, KC, KL, KQ,
         Input::scalar("alpha", "color", Domain::Unit),
     ] -> [RGBA],
-    |x, out| {
-        let (light, material, vectors, falloff) = (light(x), material(x), x.vectors(), falloff(x));
-        out.vector(lighting::point_opengl(&light, &material, vectors, &falloff, x.scalar()));
+    |la, ld, ls, ma, md, ms, shininess, p, normal, position, kc, kl, kq, alpha; out| {
+        let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
+        let falloff = Falloff { kc, kl, kq };
+        out.vector(lighting::point_opengl(&light, &material, [p, normal, position], &falloff, alpha));
     },
 );
 formula!(
@@ -243,9 +236,10 @@ formula!(
         LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, LIGHT_POSITION, Input::vector("axis"), KC, KL, KQ, CUTOFF, EXPONENT,
     ] -> [RGBA],
     fit aimed,
-    |x, out| {
-        let (light, material, vectors, falloff) = (light(x), material(x), x.vectors(), falloff(x));
-        out.vector(lighting::spot(&light, &material, vectors, &falloff, x.array()));
+    |la, ld, ls, ma, md, ms, shininess, p, normal, position, axis, kc, kl, kq, cutoff_cosine, exponent; out| {
+        let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
+        let (vectors, falloff) = ([p, normal, position, axis], Falloff { kc, kl, kq });
+        out.vector(lighting::spot(&light, &material, vectors, &falloff, [cutoff_cosine, exponent]));
     },
 );
 
@@ -269,7 +263,7 @@ formula!(
         Input::scalar("ka", "1", Domain::Unit), Input::scalar("kd", "1", Domain::Unit), Input::scalar("ks", "1", Domain::Unit),
         SHININESS, P, NORMAL, LIGHT_POSITION,
     ] -> [RGBA],
-    |x, out| { out.vector(lighting::scalar_material(x.vectors(), x.array(), x.vectors())); },
+    |ambient_color, light_color, ka, kd, ks, shininess, p, normal, position; out| { out.vector(lighting::scalar_material([ambient_color, light_color], [ka, kd, ks, shininess], [p, normal, position])); },
 );
 formula!(
     /// Document 004's two lights.
@@ -279,9 +273,9 @@ formula!(
         Input::rgba("ambient"), Input::rgba("color0"), Input::rgba("color1"), Input::rgba("diffuse"),
         Input::rgba("specular"), SHININESS, P, NORMAL, DIRECTION, LIGHT_POSITION,
     ] -> [RGBA],
-    |x, out| {
-        let (ambient, colors, material, shininess) = (x.vector(), x.vectors(), x.vectors(), x.scalar());
-        out.vector(lighting::two_lights(ambient, colors, material, shininess, x.vectors()));
+    |ambient, color0, color1, diffuse, specular, shininess, p, normal, direction, position; out| {
+        let (colors, material, vectors) = ([color0, color1], [diffuse, specular], [p, normal, direction, position]);
+        out.vector(lighting::two_lights(ambient, colors, material, shininess, vectors));
     },
 );
 formula!(
@@ -292,21 +286,23 @@ formula!(
         Input::rgb("emissive"), Input::rgb("ambient"), Input::rgb("diffuse0"), Input::rgb("diffuse1"),
         Input::rgb("specular0"), Input::rgb("specular1"),
     ] -> [RGB],
-    |x, out| { out.vector(lighting::sum(x.vector(), x.vector(), x.vectors(), x.vectors())); },
+    |emissive, ambient, diffuse0, diffuse1, specular0, specular1; out| {
+        out.vector(lighting::sum(emissive, ambient, [diffuse0, diffuse1], [specular0, specular1]));
+    },
 );
 formula!(
     /// Plastic.
     Plastic: "lighting/highlight-plastic" by "lighting_highlight_plastic",
     "CS = LS·ks·FS", "004",
     [LS, Input::rgb("surface"), Input::scalar("ks", "1", Domain::Unit), Input::scalar("fs", "1", Domain::Unit)] -> [RGB],
-    |x, out| { out.vector(lighting::highlight_plastic(x.vector(), x.vector(), x.scalar(), x.scalar())); },
+    |ls, surface, ks, fs; out| { out.vector(lighting::highlight_plastic(ls, surface, ks, fs)); },
 );
 formula!(
     /// Metal.
     Metal: "lighting/highlight-metal" by "lighting_highlight_metal",
     "CS = LS * surface·ks·FS", "004",
     [LS, Input::rgb("surface"), Input::scalar("ks", "1", Domain::Unit), Input::scalar("fs", "1", Domain::Unit)] -> [RGB],
-    |x, out| { out.vector(lighting::highlight_metal(x.vector(), x.vector(), x.scalar(), x.scalar())); },
+    |ls, surface, ks, fs; out| { out.vector(lighting::highlight_metal(ls, surface, ks, fs)); },
 );
 
 const KD: Input = Input::scalar("kd", "1", Domain::Unit);
@@ -325,7 +321,10 @@ macro_rules! along_an_edge {
                 LIGHT_POSITION, KD, KS, SHININESS,
             ] -> [INTENSITY],
             $(stable $bound $size $because,)?
-            |x, out| { out.scalar($shading(vertex(x), vertex(x), x.scalar(), x.vector(), x.array())); }
+            |pa, na, pb, nb, t, position, kd, ks, shininess; out| {
+                let (a, b) = (Vertex { p: pa, n: na }, Vertex { p: pb, n: nb });
+                out.scalar($shading(a, b, t, position, [kd, ks, shininess]));
+            }
             $(, hard [$($hard),*])?
         );
     };
@@ -377,7 +376,7 @@ formula!(
     Flat: "lighting/flat" by "lighting_flat",
     "I of the face's own normal ⟨(b − a) × (c − a)⟩ at its first vertex", "004", normalised true,
     [Input::position("a"), Input::position("b"), Input::position("c"), LIGHT_POSITION, KD, KS, SHININESS] -> [INTENSITY],
-    |x, out| { out.scalar(lighting::flat(x.vectors(), x.vector(), x.array())); },
+    |a, b, c, position, kd, ks, shininess; out| { out.scalar(lighting::flat([a, b, c], position, [kd, ks, shininess])); },
     hard [
         Hard::new("no-area", "0, not NaN, for three points on a line", &[("a", &[0.0, 0.0, -1.0]), ("b", &[1.0, 1.0, -1.0]), ("c", &[2.0, 2.0, -1.0])]),
     ],
@@ -392,7 +391,7 @@ formula!(
     "FS = max(a·b, 0)^exponent", "000 §6.3, 004",
     [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 256.0))] -> [POWER],
     fit toward_each_other,
-    |x, out| { out.scalar(lighting::cosine_power(x.vector(), x.vector(), x.scalar())); },
+    |a, b, exponent; out| { out.scalar(lighting::cosine_power(a, b, exponent)); },
 );
 formula!(
     /// A highlight's power without its guard.
@@ -400,7 +399,7 @@ formula!(
     "FS = (a·b)^exponent", "000 §6.3 without its max",
     [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 256.0))] -> [POWER],
     fit toward_each_other_only,
-    |x, out| { out.scalar(lighting::cosine_power_unguarded(x.vector(), x.vector(), x.scalar())); },
+    |a, b, exponent; out| { out.scalar(lighting::cosine_power_unguarded(a, b, exponent)); },
 );
 formula!(
     /// A highlight's power by the chord.
@@ -409,7 +408,7 @@ formula!(
     [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 4096.0))] -> [POWER],
     fit toward_each_other,
     stable 32.0 Unit "above an exponent of 64: q errs by 8 roundings of itself, of which q·exponent·(1 − q)^exponent takes at most 0.37, and exp by 3 ULP and more; at 64 and below as pow",
-    |x, out| { out.scalar(lighting::cosine_power_by_chord(x.vector(), x.vector(), x.scalar())); },
+    |a, b, exponent; out| { out.scalar(lighting::cosine_power_by_chord(a, b, exponent)); },
     hard [
         Hard::new("mirror-1e4", "1 where a = b, however they are rounded", &[("a", MIRROR), ("b", MIRROR), ("exponent", &[1e4])])
             .naive("lighting/cosine-power", "a·b is a few ULP from 1", 1e3),
@@ -457,9 +456,9 @@ formula!(
     "CF as lighting/blinn, vectors of any length, the highlight 0 where l·n ≤ 0 and its power by the chord", "000 §6.4, 004; ruling 9, `opengl`",
     [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, DIRECTION] -> [RGBA],
     stable 2048.0 Unit "up to a shininess of 64 pow, whose log2 errs by 2⁻²¹, 5 roundings for each unit of it, on a cosine of 40; by the chord 16 roundings and more with √shininess",
-    |x, out| {
-        let (light, material) = (light(x), material(x));
-        out.vector(lighting::blinn_stable(&light, &material, x.vectors()));
+    |la, ld, ls, ma, md, ms, shininess, p, normal, direction; out| {
+        let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
+        out.vector(lighting::blinn_stable(&light, &material, [p, normal, direction]));
     },
     hard [
         Hard::new("eye-behind-the-light", "half a vector of nothing: no highlight", &[("ld", WHITE), ("ls", WHITE), ("md", GREY), ("ms", WHITE), ("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.001, 0.0, 1.0]), ("shininess", &[1.0])])

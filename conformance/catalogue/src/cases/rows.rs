@@ -1,54 +1,118 @@
-//! A formula's inputs taken off a row of numbers, and its outputs put on one.
+//! A formula's inputs taken off a row of numbers by their names, and its outputs put on one in order.
 
+use super::spec::Input;
 use lightmeter_reference::{Mat3, Mat4, Real, Vector};
 
-/// Takes inputs off a row, in order.
-#[derive(Debug)]
+/// Where an input stands in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    start: usize,
+    len: usize,
+}
+
+impl Place {
+    /// From this input to a later one, both included.
+    #[must_use]
+    pub const fn through(self, last: Self) -> Self {
+        Self { start: self.start, len: last.start + last.len - self.start }
+    }
+}
+
+/// The place of an input, by its name. It is asked for in `const { … }`, so that an evaluation looks nothing up.
+///
+/// # Panics
+/// Where no input has the name: in `const { … }` an error of compilation.
+#[must_use]
+pub const fn place(inputs: &[Input], name: &str) -> Place {
+    let (mut start, mut k) = (0, 0);
+    while k < inputs.len() {
+        let len = inputs[k].shape.components();
+        if is_same(inputs[k].name.as_bytes(), name.as_bytes()) {
+            return Place { start, len };
+        }
+        start += len;
+        k += 1;
+    }
+    panic!("the formula declares no input of this name");
+}
+
+/// `==`, which a constant cannot call.
+const fn is_same(a: &[u8], b: &[u8]) -> bool {
+    let mut k = 0;
+    while k < a.len() && k < b.len() && a[k] == b[k] {
+        k += 1;
+    }
+    k == a.len() && k == b.len()
+}
+
+/// Inputs as formulas take them, from as many numbers.
+pub trait FromNumbers<R> {
+    /// Takes the numbers, matrices column by column.
+    ///
+    /// # Panics
+    /// Where there are more or fewer than it has components.
+    fn from_numbers(numbers: &[R]) -> Self;
+}
+
+impl<R: Real, const N: usize> FromNumbers<R> for [R; N] {
+    fn from_numbers(numbers: &[R]) -> Self {
+        numbers.try_into().expect("an input is taken as what it was declared")
+    }
+}
+
+impl<R: Real> FromNumbers<R> for R {
+    fn from_numbers(numbers: &[R]) -> Self {
+        let [x] = FromNumbers::from_numbers(numbers);
+        x
+    }
+}
+
+impl<R: Real, const N: usize> FromNumbers<R> for Vector<R, N> {
+    fn from_numbers(numbers: &[R]) -> Self {
+        Self(FromNumbers::from_numbers(numbers))
+    }
+}
+
+/// Vectors one after the other, as the columns of a matrix are.
+impl<R: Real, const N: usize, const M: usize> FromNumbers<R> for [Vector<R, N>; M] {
+    fn from_numbers(numbers: &[R]) -> Self {
+        assert_eq!(numbers.len(), N * M, "an input is taken as what it was declared");
+        std::array::from_fn(|m| Vector::from_numbers(&numbers[m * N..(m + 1) * N]))
+    }
+}
+
+impl<R: Real> FromNumbers<R> for Mat3<R> {
+    fn from_numbers(numbers: &[R]) -> Self {
+        Self(FromNumbers::from_numbers(numbers))
+    }
+}
+
+impl<R: Real> FromNumbers<R> for Mat4<R> {
+    fn from_numbers(numbers: &[R]) -> Self {
+        Self(FromNumbers::from_numbers(numbers))
+    }
+}
+
+/// A formula's inputs, on a row of numbers.
+#[derive(Clone, Copy, Debug)]
 pub struct Reader<'a, R> {
     row: &'a [R],
 }
 
 impl<'a, R: Real> Reader<'a, R> {
-    /// Starts at the row's first number.
+    /// Of a row that begins with the first input.
     #[must_use]
     pub const fn new(row: &'a [R]) -> Self {
         Self { row }
     }
 
-    /// The next `N` numbers.
+    /// The input, or the inputs, at a place.
     ///
     /// # Panics
-    /// Where the row has fewer: a formula reads what its description declares.
-    pub fn array<const N: usize>(&mut self) -> [R; N] {
-        let (head, rest) = self.row.split_first_chunk().expect("a row holds every input that the formula declares");
-        self.row = rest;
-        *head
-    }
-
-    /// The next number.
-    pub fn scalar(&mut self) -> R {
-        let [x] = self.array();
-        x
-    }
-
-    /// The next vector or colour.
-    pub fn vector<const N: usize>(&mut self) -> Vector<R, N> {
-        Vector(self.array())
-    }
-
-    /// The next `M` vectors or colours.
-    pub fn vectors<const N: usize, const M: usize>(&mut self) -> [Vector<R, N>; M] {
-        std::array::from_fn(|_| self.vector())
-    }
-
-    /// The next 3 × 3 matrix.
-    pub fn mat3(&mut self) -> Mat3<R> {
-        Mat3(self.vectors())
-    }
-
-    /// The next 4 × 4 matrix.
-    pub fn mat4(&mut self) -> Mat4<R> {
-        Mat4(self.vectors())
+    /// Where that is beyond the row, or of another shape than is asked for.
+    #[must_use]
+    pub fn at<T: FromNumbers<R>>(&self, place: Place) -> T {
+        T::from_numbers(&self.row[place.start..place.start + place.len])
     }
 }
 
@@ -62,16 +126,10 @@ pub struct Writer<'a, R> {
 }
 
 impl<'a, R: Real> Writer<'a, R> {
-    /// Starts at the row's first number.
+    /// Starts at the row's first number; of all numbers `only` one may be wanted.
     #[must_use]
-    pub const fn new(row: &'a mut [R]) -> Self {
-        Self { row, filled: 0, only: None }
-    }
-
-    /// The same where one number alone is wanted.
-    #[must_use]
-    pub const fn only(row: &'a mut [R], number: usize) -> Self {
-        Self { row, filled: 0, only: Some(number) }
+    pub const fn new(row: &'a mut [R], only: Option<usize>) -> Self {
+        Self { row, filled: 0, only }
     }
 
     /// One number.
@@ -86,6 +144,7 @@ impl<'a, R: Real> Writer<'a, R> {
             self.scalar(x);
         }
     }
+
     /// A vector or colour that is worked out only where one of its numbers is wanted.
     pub fn lazy_vector<const N: usize>(&mut self, v: impl FnOnce() -> Vector<R, N>) {
         if self.only.is_none_or(|number| (self.filled..self.filled + N).contains(&number)) {

@@ -20,7 +20,7 @@ formula!(
     Reflect: "vector/reflect" by "vector_reflect",
     "r = i − 2(i·n)n", "000 §6.3",
     [Input::direction("i"), Input::direction("n")] -> [vec3("r")],
-    |x, out| { out.vector(vector::reflect(x.vector(), x.vector())); },
+    |i, n; out| { out.vector(vector::reflect(i, n)); },
     hard [
         Hard::new("straight-down", "comes back", &[("i", &[0.0, 0.0, -1.0])]),
         Hard::new("grazing", "goes on", &[("i", &[1.0, 0.0, 0.0])]),
@@ -33,7 +33,7 @@ formula!(
     ReflectToward: "vector/reflect-toward" by "vector_reflect_toward",
     "r = −l + 2(l·n)n", "004",
     [Input::direction("l"), Input::direction("n")] -> [vec3("r")],
-    |x, out| { out.vector(vector::reflect_toward(x.vector(), x.vector())); },
+    |l, n; out| { out.vector(vector::reflect_toward(l, n)); },
 );
 formula!(
     /// The halfway vector.
@@ -41,7 +41,7 @@ formula!(
     "h = ⟨v + l⟩", "004; ruling 3", normalised true,
     [Input::direction("v"), Input::direction("l")] -> [vec3("h")],
     stable 16.0 Own "an exact sum of opposite vectors, then a normalisation of 16",
-    |x, out| { out.vector(vector::halfway(x.vector(), x.vector())); },
+    |v, l; out| { out.vector(vector::halfway(v, l)); },
     hard [
         Hard::new("half-vector-of-nothing", "0 where v = −l, not NaN", &[("v", &[0.0, 0.0, 1.0]), ("l", &[0.0, 0.0, -1.0])])
             .naive("vector/halfway-unguarded", "0/0", f64::INFINITY),
@@ -54,14 +54,14 @@ formula!(
     HalfwayUnnormalised: "vector/halfway-unnormalised" by "vector_halfway_unnormalised",
     "h = v + l", "000 §6.4, a dialect",
     [Input::direction("v"), Input::direction("l")] -> [vec3("h")],
-    |x, out| { out.vector(vector::halfway_unnormalised(x.vector(), x.vector())); },
+    |v, l; out| { out.vector(vector::halfway_unnormalised(v, l)); },
 );
 formula!(
     /// normalize.
     Normalize: "vector/normalize" by "vector_normalize",
     "⟨v⟩ = v/|v|, 0 for the zero vector", "000 §6.3", normalised true,
     [Input::new("v", Shape::Vec3, "1", Domain::Vector(1e-6, 1e6))] -> [vec3("v")],
-    |x, out| { out.vector(vector::normalize(x.vector())); },
+    |v; out| { out.vector(vector::normalize(v)); },
     hard [
         Hard::new("zero", "0, not NaN", &[("v", &[0.0, 0.0, 0.0])]),
         Hard::new("tiny", "the square underflows: nothing is promised of the published form", &[("v", &[1e-23, 1e-23, 1e-23])]),
@@ -75,14 +75,14 @@ formula!(
     NormalModelview: "vector/normal-modelview" by "vector_normal_modelview",
     "n′ = modelview·(n, 0)", "000 §6.3, 003; a dialect",
     [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
-    |x, out| { out.vector(vector::normal_modelview(&x.mat3(), x.vector())); },
+    |modelview, n; out| { out.vector(vector::normal_modelview(&modelview, n)); },
 );
 formula!(
     /// Normals by the inverse transpose.
     NormalInverseTranspose: "vector/normal-inverse-transpose" by "vector_normal_inverse_transpose",
     "n′ = modelview⁻ᵀ·n", "004; ruling 6",
     [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
-    |x, out| { out.vector(vector::normal_inverse_transpose(&x.mat3(), x.vector())); },
+    |modelview, n; out| { out.vector(vector::normal_inverse_transpose(&modelview, n)); },
     hard [
         Hard::new("reflection", "a negative determinant", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]), ("n", &[0.6, 0.0, 0.8])]),
         Hard::new("flat", "a scale of 1e-3 along one axis", &[("modelview", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-3]), ("n", &[0.6, 0.0, 0.8])]),
@@ -93,7 +93,7 @@ formula!(
     LightDirection: "vector/light-direction" by "vector_light_direction",
     "view·(direction, 0)", "000 §6.3",
     [transform("view", Shape::Mat4), Input::direction("direction")] -> [vec3("direction")],
-    |x, out| { out.vector(vector::light_direction(&x.mat4(), x.vector())); },
+    |view, direction; out| { out.vector(vector::light_direction(&view, direction)); },
 );
 formula!(
     /// A light's position in eye space.
@@ -103,7 +103,7 @@ formula!(
         transform("modelview", Shape::Mat4),
         Input::new("position", Shape::Vec4, "unit", Domain::Uniform(0.5, 10.0)),
     ] -> [EYE],
-    |x, out| { out.vector(vector::light_position(&x.mat4(), x.vector())); },
+    |modelview, position; out| { out.vector(vector::light_position(&modelview, position)); },
     hard [
         Hard::new("at-infinity", "w = 0: a direction, undivided", &[("position", &[0.5, 0.0, 0.0, 0.0])]),
         Hard::new("behind-infinity", "a negative w turns it round", &[("position", &[1.0, 2.0, 3.0, -2.0])]),
@@ -114,14 +114,14 @@ formula!(
     LightWithModel: "vector/light-with-model" by "vector_light_with_model",
     "view·(model·(position, 1))", "004",
     [transform("view", Shape::Mat4), transform("model", Shape::Mat4), Input::position("position")] -> [EYE],
-    |x, out| { out.vector(vector::light_with_model(&x.mat4(), &x.mat4(), x.vector())); },
+    |view, model, position; out| { out.vector(vector::light_with_model(&view, &model, position)); },
 );
 formula!(
     /// From a surface point to a light.
     Toward: "vector/toward" by "vector_toward",
     "l = ⟨light − p⟩", "000 §6.4, 003; ruling 2", normalised true,
     [Input::position("light"), Input::position("p")] -> [vec3("l")],
-    |x, out| { out.vector(vector::toward(x.vector(), x.vector())); },
+    |light, p; out| { out.vector(vector::toward(light, p)); },
     hard [
         Hard::new("light-on-the-surface", "0, not NaN", &[("light", &[1.0, 2.0, -3.0]), ("p", &[1.0, 2.0, -3.0])]),
     ],
@@ -131,14 +131,14 @@ formula!(
     AverageNormal: "vector/average-normal" by "vector_average_normal",
     "⟨n0 + n1 + n2⟩", "004", normalised true,
     [Input::direction("n0"), Input::direction("n1"), Input::direction("n2")] -> [vec3("n")],
-    |x, out| { out.vector(vector::average_normal(x.vectors())); },
+    |n0, n1, n2; out| { out.vector(vector::average_normal([n0, n1, n2])); },
 );
 formula!(
     /// The normal of a face.
     FaceNormal: "vector/face-normal" by "vector_face_normal",
     "n = ⟨(b − a) × (c − a)⟩", "004", normalised true,
     [Input::position("a"), Input::position("b"), Input::position("c")] -> [vec3("n")],
-    |x, out| { out.vector(vector::face_normal(x.vector(), x.vector(), x.vector())); },
+    |a, b, c; out| { out.vector(vector::face_normal(a, b, c)); },
     hard [
         Hard::new("no-area", "0 for three points on a line", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1.0, 1.0, 1.0]), ("c", &[2.0, 2.0, 2.0])]),
     ],
@@ -152,7 +152,7 @@ formula!(
     NormalizeUnguarded: "vector/normalize-unguarded" by "vector_normalize_unguarded",
     "v/|v|", "WGSL, normalize",
     [V] -> [vec3("v")],
-    |x, out| { out.vector(vector::normalize_unguarded(x.vector())); },
+    |v; out| { out.vector(vector::normalize_unguarded(v)); },
 );
 formula!(
     /// normalize of any length.
@@ -160,7 +160,7 @@ formula!(
     "⟨v·2ᵏ⟩ with the largest component of v·2ᵏ in [2⁻²⁰, 2²⁰); 0 for the zero vector", "000 §6.3, at any length", normalised true,
     [V] -> [vec3("v")],
     stable 16.0 Own "an inverse root of 2 ULP or a division of 2½, and the half of three squares' errors",
-    |x, out| { out.vector(vector::normalize_scaled(x.vector())); },
+    |v; out| { out.vector(vector::normalize_scaled(v)); },
     hard [
         Hard::new("zero", "0, not NaN", &[("v", &[0.0, 0.0, 0.0])])
             .naive("vector/normalize-unguarded", "0/0", f64::INFINITY),
@@ -189,7 +189,7 @@ formula!(
     Length: "vector/length" by "vector_length",
     "|v| = √(v·v)", "WGSL, length",
     [V] -> [LENGTH],
-    |x, out| { out.scalar(vector::length(x.vector())); },
+    |v; out| { out.scalar(vector::length(v)); },
 );
 formula!(
     /// length at any length.
@@ -197,7 +197,7 @@ formula!(
     "|v·2ᵏ|·2⁻ᵏ", "at any length",
     [V] -> [LENGTH],
     stable 16.0 Own "a root as 1/inverseSqrt: 4½ ULP, and the half of three squares' errors",
-    |x, out| { out.scalar(vector::length_scaled(x.vector())); },
+    |v; out| { out.scalar(vector::length_scaled(v)); },
     hard [
         Hard::new("tiny", "the squares underflow", &[("v", &[3e-25, 4e-25, 0.0])])
             .naive("vector/length", "0", 1e7),
@@ -212,7 +212,7 @@ formula!(
     HalfwayUnguarded: "vector/halfway-unguarded" by "vector_halfway_unguarded",
     "h = (v + l)/|v + l|", "004, taken literally",
     [Input::direction("v"), Input::direction("l")] -> [vec3("h")],
-    |x, out| { out.vector(vector::halfway_unguarded(x.vector(), x.vector())); },
+    |v, l; out| { out.vector(vector::halfway_unguarded(v, l)); },
 );
 formula!(
     /// reflect about a normal of any length.
@@ -220,7 +220,7 @@ formula!(
     "r = i − 2(i·⟨n⟩)⟨n⟩", "000 §6.3, the normal normalised at any length", normalised true,
     [Input::direction("i"), Input::vector("n")] -> [vec3("r")],
     stable 64.0 Own "twice the normal's 16 roundings twice over",
-    |x, out| { out.vector(vector::reflect_any_normal(x.vector(), x.vector())); },
+    |i, n; out| { out.vector(vector::reflect_any_normal(i, n)); },
     hard [
         Hard::new("normal-of-0.9", "|r| = |i|", &[("i", &[0.6, 0.0, -0.8]), ("n", &[0.0, 0.0, 0.9])])
             .naive("vector/reflect", "|r| is 0.8", 1e6),
@@ -237,7 +237,7 @@ formula!(
     NormalByDeterminant: "vector/normal-by-determinant" by "vector_normal_by_determinant",
     "n′ = ⟨cofactors·n/determinant⟩", "004; ruling 6", normalised true,
     [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
-    |x, out| { out.vector(vector::normal_by_determinant(&x.mat3(), x.vector())); },
+    |modelview, n; out| { out.vector(vector::normal_by_determinant(&modelview, n)); },
 );
 formula!(
     /// Normals by the cofactors alone.
@@ -245,7 +245,7 @@ formula!(
     "n′ = ±⟨Σ nᵢ·sᵢ·cofactorᵢ⟩ of columns scaled by powers of two sᵢ, by the determinant's sign", "Lengyel; ruling 6", normalised true,
     [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
     stable 64.0 Own "nine cofactors and a product that do not cancel, then a normalisation of 16",
-    |x, out| { out.vector(vector::normal_by_cofactors(&x.mat3(), x.vector())); },
+    |modelview, n; out| { out.vector(vector::normal_by_cofactors(&modelview, n)); },
     hard [
         Hard::new("flattened-1e-20", "a scale of 1e-20 along one axis", &[("modelview", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-20]), ("n", &[0.6, 0.0, 0.8])])
             .naive("vector/normal-by-determinant", "cofactors over the determinant have a square of 1e40", 1e6),
@@ -271,7 +271,7 @@ formula!(
     "n = ⟨(b − a)·2ʲ × (c − a)·2ᵏ⟩, differences of products with their errors", "004, for faces of any size and slivers", normalised true,
     [Input::position("a"), Input::position("b"), Input::position("c")] -> [vec3("n")],
     stable 24.0 Own "2 roundings a component, then a normalisation of 16; for corners whose differences are exact",
-    |x, out| { out.vector(vector::face_normal_compensated(x.vector(), x.vector(), x.vector())); },
+    |a, b, c; out| { out.vector(vector::face_normal_compensated(a, b, c)); },
     hard [
         Hard::new("tiny", "edges of 1e-12", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1e-12, 2e-12, 0.0]), ("c", &[-1e-12, 1e-12, 3e-12])])
             .naive("vector/face-normal", "the square of the cross product underflows", 1e6),
@@ -292,9 +292,9 @@ formula!(
     InterpolatedNormal: "vector/interpolated-normal" by "vector_interpolated_normal",
     "n = ⟨mix(n0, n1, t)⟩", "000 §6.3, 004", normalised true,
     [Input::direction("n0"), Input::direction("n1"), FACE, BETWEEN] -> [vec3("n")],
-    |x, out| {
-        let [n0, n1, _] = x.vectors();
-        out.vector(vector::interpolated_normal(n0, n1, x.scalar()));
+    |n0, n1, face, t; out| {
+        let [n0, n1, _] = [n0, n1, face];
+        out.vector(vector::interpolated_normal(n0, n1, t));
     },
     hard [
         Hard::new("nearly-opposite", "ill-conditioned: what is left is 1e-3 of the normals", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.001, -0.6, -0.8]), ("t", &[0.5])]),
@@ -306,9 +306,9 @@ formula!(
     "n = ⟨mix(n0, n1, t)⟩, the face's normal where the mix is below 2⁻¹⁰", "000 §6.3, 004, with a rule for opposite normals", normalised true,
     [Input::direction("n0"), Input::direction("n1"), FACE, BETWEEN] -> [vec3("n")],
     stable 16.0 Own "a normalisation of 16; where the mix is used, twice its condition of at most 2¹⁰ besides",
-    |x, out| {
-        let [n0, n1, face] = x.vectors();
-        out.vector(vector::interpolated_normal_guarded(n0, n1, face, x.scalar()));
+    |n0, n1, face, t; out| {
+        let [n0, n1, face] = [n0, n1, face];
+        out.vector(vector::interpolated_normal_guarded(n0, n1, face, t));
     },
     hard [
         Hard::new("opposite", "nothing is left to normalise", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.0, -0.6, -0.8]), ("face", &[1.0, 0.0, 0.0]), ("t", &[0.5])])

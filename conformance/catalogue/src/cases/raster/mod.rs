@@ -5,7 +5,7 @@ mod bound;
 mod layout;
 
 use super::Visitor;
-use super::formula::{Formula, formula};
+use super::formula::{Formula, bind, formula};
 use super::interpolation::{ATTR, ATTRIBUTE, attr, half_pixels, window};
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Input, Kind, Output, Shape, Spec};
@@ -13,7 +13,7 @@ pub(super) use bound::interval;
 pub(super) use layout::triangle_around_the_pixel;
 use layout::{line_through_the_pixel, quad_around_the_pixel, quad_on_the_grid, triangle_across_the_volume};
 use lightmeter_reference::interpolation::{self, Viewport};
-use lightmeter_reference::{Real, Vec2, Vector};
+use lightmeter_reference::{Real, Vec2, Vec4, Vector};
 use lightmeter_scene::raster::{Provoking, Topology};
 use lightmeter_scene::raster::{Raster, TARGET_SIZE};
 
@@ -24,9 +24,9 @@ fn target<R: Real>() -> Viewport<R> {
     Viewport { origin: Vector([zero, zero]), size: Vector([size, size]), depth: Vector([zero, one]) }
 }
 
-/// The middle of the pixel that a row ends with.
-fn pixel_center<R: Real>(x: &mut Reader<'_, R>) -> Vec2<R> {
-    x.vector().map(|corner| corner + R::literal(0.5))
+/// The middle of a pixel.
+fn center<R: Real>(pixel: Vec2<R>) -> Vec2<R> {
+    pixel.map(|corner| corner + R::literal(0.5))
 }
 
 const fn around(name: &'static str) -> Input {
@@ -42,7 +42,7 @@ pub(super) const TRIANGLE: &[Input] =
     &[around("a"), around("b"), around("c"), Input::new("attr", Shape::Vec3, "1", ATTRIBUTE), PIXEL];
 
 macro_rules! raster_triangle {
-    ($name:ident, $id:literal, $kind:expr, $fit:expr, $text:literal, [$($output:expr),*], |$x:ident, $out:ident| $body:block) => {
+    ($name:ident, $id:literal, $kind:expr, $fit:expr, $text:literal, [$($output:expr),*], |$($input:ident),*; $out:ident| $body:block) => {
         formula!(
             /// A triangle by the rasteriser.
             $name: $id by "", $text, "000 §6.1",
@@ -51,7 +51,7 @@ macro_rules! raster_triangle {
             ] -> [$($output),*],
             fit $fit,
             kind Kind::Raster($kind),
-            |$x, $out| $body,
+            |$($input),*; $out| $body,
         );
     };
 }
@@ -63,9 +63,8 @@ raster_triangle!(
     triangle_around_the_pixel,
     "the attribute of a drawn triangle at a pixel: Σ λa/w / Σ λ/w, and Σ λa",
     [BOTH[0], BOTH[1]],
-    |x, out| {
-        let (clip, attr) = (x.vectors(), x.array());
-        let fragment = interpolation::fragment(clip, attr, &target(), pixel_center(x));
+    |a, b, c, attr, pixel; out| {
+        let fragment = interpolation::fragment([a, b, c], attr, &target(), center(pixel));
         out.scalar(fragment.perspective);
         out.scalar(fragment.linear);
     }
@@ -77,9 +76,9 @@ raster_triangle!(
     triangle_around_the_pixel,
     "gl_FragCoord of a drawn triangle: the pixel's centre from the upper left, window z, 1/w",
     [Output::new("position", Shape::Vec4, "pixel")],
-    |x, out| {
-        let (clip, attr, p) = (x.vectors(), x.array(), pixel_center(x));
-        let fragment = interpolation::fragment(clip, attr, &target(), p);
+    |a, b, c, attr, pixel; out| {
+        let p = center(pixel);
+        let fragment = interpolation::fragment([a, b, c], attr, &target(), p);
         out.vector(Vector([p.x(), p.y(), fragment.depth, fragment.inverse_w]));
     }
 );
@@ -90,8 +89,8 @@ raster_triangle!(
     triangle_around_the_pixel,
     "gl_FrontFacing of a drawn triangle: 1 where it is counter-clockwise as seen",
     [Output::new("front", Shape::Scalar, "1")],
-    |x, out| {
-        out.scalar(facing(x));
+    |a, b, c; out| {
+        out.scalar(facing([a, b, c]));
     }
 );
 raster_triangle!(
@@ -101,15 +100,13 @@ raster_triangle!(
     triangle_across_the_volume,
     "1 where a triangle that reaches out of the clip volume still covers the pixel",
     [COVERED],
-    |x, out| {
-        let (clip, _attr) = (x.vectors(), x.array::<3>());
-        out.scalar(interpolation::clipped_coverage(clip, &target(), pixel_center(x)));
+    |a, b, c, pixel; out| {
+        out.scalar(interpolation::clipped_coverage([a, b, c], &target(), center(pixel)));
     }
 );
 
-/// Whether a row's triangle faces front: the pixel, which lies inside, is not looked at.
-fn facing<R: Real>(x: &mut Reader<'_, R>) -> R {
-    let clip = x.vectors::<4, 3>();
+/// Whether a triangle faces front: the pixel, which lies inside, is not looked at.
+fn facing<R: Real>(clip: [Vec4<R>; 3]) -> R {
     interpolation::front_facing(clip.map(|v| {
         let window = interpolation::viewport(v, &target());
         Vector([window.x(), window.y()])
@@ -125,8 +122,8 @@ macro_rules! raster_culled {
             triangle_around_the_pixel,
             $text,
             [COVERED],
-            |x, out| {
-                let (shown, front) = ($back == $ccw, facing(x));
+            |a, b, c; out| {
+                let (shown, front) = ($back == $ccw, facing([a, b, c]));
                 out.scalar(if shown { front } else { R::literal(1.0) - front });
             }
         );
@@ -169,9 +166,9 @@ formula!(
     [around("a"), around("b"), attr("attr_a"), attr("attr_b"), PIXEL] -> [BOTH[0], BOTH[1]],
     fit line_through_the_pixel,
     kind Kind::Raster(Raster::LineAttributes),
-    |x, out| {
-        let (clip, attr) = (x.vectors(), x.array());
-        let [perspective, linear] = interpolation::fragment_of_line(clip, attr, &target(), pixel_center(x));
+    |a, b, attr_a, attr_b, pixel; out| {
+        let (clip, attr) = ([a, b], [attr_a, attr_b]);
+        let [perspective, linear] = interpolation::fragment_of_line(clip, attr, &target(), center(pixel));
         out.scalar(perspective);
         out.scalar(linear);
     },
@@ -186,8 +183,8 @@ macro_rules! raster_quad {
             [$($input),*, PIXEL] -> [COUNT],
             fit $fit,
             kind Kind::Raster(Raster::Quad),
-            |x, out| {
-                let ([a, b, c, d], p) = (x.vectors(), pixel_center(x));
+            |a, b, c, d, pixel; out| {
+                let p = center(pixel);
                 out.scalar(interpolation::coverage([a, b, c], p) + interpolation::coverage([a, c, d], p));
             },
         );
@@ -214,7 +211,7 @@ formula!(
     "the depth that a fragment wrote, read back from the depth buffer: clamp(depth, 0, 1)", "000 §6.1",
     [Input::scalar("depth", "1", Domain::Uniform(-0.5, 1.5)), PIXEL] -> [Output::new("depth", Shape::Scalar, "1")],
     kind Kind::Raster(Raster::OwnDepth),
-    |x, out| { out.scalar(interpolation::frag_depth(x.scalar())); },
+    |depth; out| { out.scalar(interpolation::frag_depth(depth)); },
 );
 
 /// A flat attribute of a drawn list or strip.
@@ -279,8 +276,10 @@ impl Formula for RasterFlat {
         }
     }
 
-    fn evaluate<R: Real>(&self, x: &mut Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let (attr, primitive) = (x.array::<6>(), x.scalar());
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        // The inputs of one topology stand for all: they differ in the primitives that are drawn.
+        bind!(x, flat_inputs!(5) => a0, a1, a2, a3, a4, a5, primitive);
+        let attr = [a0, a1, a2, a3, a4, a5];
         let step = match self.topology {
             Topology::LineList => 2,
             Topology::TriangleList => 3,
