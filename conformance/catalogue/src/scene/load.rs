@@ -1,18 +1,14 @@
 //! From JSON to a frame.
 
 use super::field::{At, SceneError};
+use super::files::{Files, read};
 use super::objects::{self, KnownObjects, Parts};
 use super::{camera, library, lights, mesh, texture};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::model::Scene;
-use std::io::{self, Read as _};
+use std::io;
 use std::path::Path;
 
-/// Gives the bytes of a file that a scene names.
-pub type Files<'a> = dyn Fn(&str) -> io::Result<Vec<u8>> + 'a;
-
-/// Bytes of a file, at most.
-const MOST_BYTES: u64 = 64 << 20;
 /// Texels of all textures.
 const MOST_TEXELS: usize = 1 << 24;
 /// Triangles of all meshes, and of all that is drawn.
@@ -159,21 +155,6 @@ pub fn frame(scene: &Scene, files: &Files<'_>) -> Result<Frame, SceneError> {
         textures,
         draws,
     })
-}
-
-/// The bytes of a file, unless it is too large.
-fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let about = std::fs::metadata(path)?;
-    // A pipe may wait for ever, and a device never end.
-    if !about.is_file() {
-        return Err(io::Error::other("it is no file"));
-    }
-    let mut bytes = vec![];
-    std::fs::File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MOST_BYTES {
-        return Err(io::Error::other(format!("it has more than {MOST_BYTES} bytes")));
-    }
-    Ok(bytes)
 }
 
 #[cfg(test)]

@@ -6,17 +6,14 @@
 mod blend;
 mod camera;
 mod field;
+pub mod files;
 pub mod library;
 mod lights;
 pub mod load;
 mod material;
 mod mesh;
-mod normals;
-mod obj;
 mod objects;
 pub mod select;
-mod shapes;
-mod teapot;
 mod texture;
 
 pub use field::SceneError;

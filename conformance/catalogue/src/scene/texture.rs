@@ -1,7 +1,7 @@
 //! Textures: read from PNG, written out, or generated.
 
 use super::field::{At, SceneError};
-use super::load::Files;
+use super::files::Files;
 use image::{ImageFormat, ImageReader, Limits};
 use lightmeter_scene::frame::Texture;
 use lightmeter_scene::model::Image;

@@ -1,22 +1,12 @@
-//! Shapes that the project generates, each from a grid over (u, v) of 0 to 1, with normals and texture coordinates.
-//!
-//! Points are computed in f64 and rounded once. Triangles without area, as at a sphere's poles, are left out.
+//! Shapes that the project generates, each from grids over (u, v) of 0 to 1, with normals and texture coordinates.
 
-use super::field::{At, SceneError};
-use super::mesh::{MOST_TRIANGLES, MOST_VERTICES};
+use super::grid::{Vertex, grid};
 use super::teapot;
+use crate::scene::field::{At, SceneError};
 use glam::DVec3;
 use lightmeter_scene::frame::Mesh;
 use lightmeter_scene::model::Shape;
 use std::f64::consts::TAU;
-
-/// A vertex that a grid makes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Vertex {
-    pub(super) position: DVec3,
-    pub(super) normal: DVec3,
-    pub(super) uv: [f64; 2],
-}
 
 /// The mesh of a generated shape.
 pub(super) fn shape(at: &At<'_>, shape: &Shape) -> Result<Mesh, SceneError> {
@@ -32,17 +22,7 @@ pub(super) fn shape(at: &At<'_>, shape: &Shape) -> Result<Mesh, SceneError> {
             rectangle(&at, &mut mesh, size, steps, repeat, |[x, y]| (DVec3::new(x, 0.0, -y), DVec3::Y))?;
         }
         Shape::Cube { size, steps } => cube(&at.field("cube"), &mut mesh, size, steps)?,
-        Shape::Sphere { radius, rings, segments } => {
-            let at = at.field("sphere");
-            at.field("radius").positive(radius)?;
-            parts(&at, "rings", rings, 2)?;
-            parts(&at, "segments", segments, 3)?;
-            grid(&at, &mut mesh, [segments, rings], |[u, v]| {
-                let (sin, cos) = turn(v / 2.0);
-                let normal = ring(u) * sin + DVec3::Y * cos;
-                Vertex { position: normal * radius, normal, uv: [u, v] }
-            })?;
-        }
+        Shape::Sphere { radius, rings, segments } => sphere(&at.field("sphere"), &mut mesh, radius, rings, segments)?,
         Shape::Disc { radius, segments } => {
             let at = at.field("disc");
             at.field("radius").positive(radius)?;
@@ -50,30 +30,10 @@ pub(super) fn shape(at: &At<'_>, shape: &Shape) -> Result<Mesh, SceneError> {
             disc(&at, &mut mesh, segments, |x, y| (DVec3::new(x * radius, y * radius, 0.0), DVec3::Z))?;
         }
         Shape::Cylinder { radius, height, segments } => {
-            let at = at.field("cylinder");
-            at.field("radius").positive(radius)?;
-            at.field("height").positive(height)?;
-            parts(&at, "segments", segments, 3)?;
-            grid(&at, &mut mesh, [segments, 1], |[u, v]| {
-                let position = ring(u) * radius + DVec3::Y * height * (0.5 - v);
-                Vertex { position, normal: ring(u), uv: [u, v] }
-            })?;
-            for y in [DVec3::Y, DVec3::NEG_Y] {
-                let end = |x: f64, z: f64| (DVec3::new(x * radius, 0.0, -z * radius * y.y) + y * height / 2.0, y);
-                disc(&at, &mut mesh, segments, end)?;
-            }
+            cylinder(&at.field("cylinder"), &mut mesh, radius, height, segments)?;
         }
         Shape::Torus { radius, tube, rings, segments } => {
-            let at = at.field("torus");
-            at.field("radius").positive(radius)?;
-            at.field("tube").positive(tube)?;
-            parts(&at, "rings", rings, 3)?;
-            parts(&at, "segments", segments, 3)?;
-            grid(&at, &mut mesh, [segments, rings], |[u, v]| {
-                let (sin, cos) = turn(v);
-                let normal = ring(u) * cos - DVec3::Y * sin;
-                Vertex { position: ring(u) * radius + normal * tube, normal, uv: [u, v] }
-            })?;
+            torus(&at.field("torus"), &mut mesh, [radius, tube], rings, segments)?;
         }
         Shape::Teapot { steps } => {
             let at = at.field("teapot");
@@ -159,6 +119,46 @@ fn cube(at: &At<'_>, mesh: &mut Mesh, size: f64, steps: u32) -> Result<(), Scene
     Ok(())
 }
 
+fn sphere(at: &At<'_>, mesh: &mut Mesh, radius: f64, rings: u32, segments: u32) -> Result<(), SceneError> {
+    at.field("radius").positive(radius)?;
+    parts(at, "rings", rings, 2)?;
+    parts(at, "segments", segments, 3)?;
+    grid(at, mesh, [segments, rings], |[u, v]| {
+        let (sin, cos) = turn(v / 2.0);
+        let normal = ring(u) * sin + DVec3::Y * cos;
+        Vertex { position: normal * radius, normal, uv: [u, v] }
+    })
+}
+
+/// A cylinder about the y axis: its side and its two ends.
+fn cylinder(at: &At<'_>, mesh: &mut Mesh, radius: f64, height: f64, segments: u32) -> Result<(), SceneError> {
+    at.field("radius").positive(radius)?;
+    at.field("height").positive(height)?;
+    parts(at, "segments", segments, 3)?;
+    grid(at, mesh, [segments, 1], |[u, v]| {
+        let position = ring(u) * radius + DVec3::Y * height * (0.5 - v);
+        Vertex { position, normal: ring(u), uv: [u, v] }
+    })?;
+    for y in [DVec3::Y, DVec3::NEG_Y] {
+        let end = |x: f64, z: f64| (DVec3::new(x * radius, 0.0, -z * radius * y.y) + y * height / 2.0, y);
+        disc(at, mesh, segments, end)?;
+    }
+    Ok(())
+}
+
+/// A torus about the y axis, of the radius of the tube's middle and of the tube.
+fn torus(at: &At<'_>, mesh: &mut Mesh, [radius, tube]: [f64; 2], rings: u32, segments: u32) -> Result<(), SceneError> {
+    at.field("radius").positive(radius)?;
+    at.field("tube").positive(tube)?;
+    parts(at, "rings", rings, 3)?;
+    parts(at, "segments", segments, 3)?;
+    grid(at, mesh, [segments, rings], |[u, v]| {
+        let (sin, cos) = turn(v);
+        let normal = ring(u) * cos - DVec3::Y * sin;
+        Vertex { position: ring(u) * radius + normal * tube, normal, uv: [u, v] }
+    })
+}
+
 /// A disc of a fan of triangles; `place` puts a point of the unit disc, y up, into space.
 fn disc(
     at: &At<'_>,
@@ -171,49 +171,6 @@ fn disc(
         let (position, normal) = place(cos * v, sin * v);
         Vertex { position, normal, uv: [0.5 + cos * v / 2.0, 0.5 - sin * v / 2.0] }
     })
-}
-
-/// Adds the vertices over a grid, and two triangles a cell that are counter-clockwise as seen from where u runs right
-/// and v down.
-fn grid(
-    at: &At<'_>,
-    mesh: &mut Mesh,
-    [columns, rows]: [u32; 2],
-    vertex: impl Fn([f64; 2]) -> Vertex,
-) -> Result<(), SceneError> {
-    let (columns, rows) = (u64::from(columns), u64::from(rows));
-    let vertices = mesh.positions.len() as u64 + (columns + 1) * (rows + 1);
-    let triangles = mesh.triangles.len() as u64 + 2 * columns * rows;
-    if vertices > MOST_VERTICES || triangles > MOST_TRIANGLES {
-        let holds = format_args!("makes {vertices} vertices and {triangles} triangles");
-        return Err(at.refuse(holds, format_args!("{MOST_VERTICES} and {MOST_TRIANGLES} at most")));
-    }
-    let first = u32::try_from(mesh.positions.len()).map_err(|_| at.refuse("is too large", "fewer parts"))?;
-    let (columns, rows) = (u32::try_from(columns).unwrap_or(0), u32::try_from(rows).unwrap_or(0));
-    for row in 0..=rows {
-        for column in 0..=columns {
-            let Vertex { position, normal, uv } =
-                vertex([f64::from(column) / f64::from(columns), f64::from(row) / f64::from(rows)]);
-            mesh.positions.push(at.numbers(position.into())?);
-            mesh.normals.push(at.numbers(normal.into())?);
-            mesh.uvs.push(at.numbers(uv)?);
-        }
-    }
-    for row in 0..rows {
-        for column in 0..columns {
-            let upper = first + row * (columns + 1) + column;
-            let lower = upper + columns + 1;
-            for triangle in [[upper, lower, lower + 1], [upper, lower + 1, upper + 1]] {
-                let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize]);
-                #[expect(clippy::float_cmp, reason = "a grid's points that meet are made equal")]
-                let has_area = a != b && b != c && c != a;
-                if has_area {
-                    mesh.triangles.push(triangle);
-                }
-            }
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

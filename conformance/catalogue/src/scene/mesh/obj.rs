@@ -3,11 +3,11 @@
 //! Of an MTL, Ka Kd Ks Ke Ns d and map_Kd are the material; what it leaves out is as in a material of a scene. The
 //! files that an OBJ names lie in its own folder.
 
-use super::field::{At, SceneError};
-use super::load::Files;
-use super::material::{Surface, of_file};
-use super::mesh::{Part, indices, size};
-use super::texture;
+use super::part::{Part, indices, size};
+use crate::scene::field::{At, SceneError};
+use crate::scene::files::Files;
+use crate::scene::material::{Surface, of_file};
+use crate::scene::texture;
 use lightmeter_scene::frame::{Mesh, Texture};
 use std::collections::HashMap;
 use std::io::BufReader;

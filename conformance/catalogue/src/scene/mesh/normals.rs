@@ -1,7 +1,7 @@
 //! Normals from the faces: one a face, or averaged at the vertices (004).
 
-use super::field::{At, SceneError};
-use super::mesh::MOST_VERTICES;
+use super::part::MOST_VERTICES;
+use crate::scene::field::{At, SceneError};
 use glam::DVec3;
 use lightmeter_scene::frame::Mesh;
 use std::collections::HashMap;

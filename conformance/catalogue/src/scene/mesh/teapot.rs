@@ -7,7 +7,7 @@
 //! The normal is `∂P/∂v × ∂P/∂u`. At the middle of the lid and of the bottom ∂P/∂u is 0; there its limit's direction is
 //! that of the mixed derivative ∂²P/∂u∂v.
 
-use super::shapes::Vertex;
+use super::grid::Vertex;
 use glam::DVec3;
 
 /// A profile's control points: radius, tangent, height.
