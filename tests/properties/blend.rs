@@ -2,10 +2,11 @@
 
 use crate::family;
 use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::blend_unit::draw::{Piece, draw};
+use lightmeter::blend_unit::draw::draw;
 use lightmeter::blend_unit::embedded;
 use lightmeter::blend_unit::expect::expect;
 use lightmeter::blend_unit::model::Model;
+use lightmeter::blend_unit::piece::Piece;
 use lightmeter::blend_unit::pixel::{Units, stored};
 use lightmeter::blend_unit::rules::{FAULTS, Rules, Store};
 use lightmeter::blend_unit::store::StoreCounts;

@@ -1,7 +1,7 @@
 //! What stands behind a subject that is not embedded: a device, which draws and computes what it is handed.
 
-use crate::blend_unit::draw::{Piece, Pixels};
-use crate::subject::Rows;
+use crate::blend_unit::piece::{Piece, Pixels};
+use crate::rows::Rows;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::Member;
 use lightmeter_catalogue::special::Probe;

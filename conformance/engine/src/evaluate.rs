@@ -1,7 +1,8 @@
 //! Formulas evaluated by a subject on rows of inputs from anywhere, apart from a run.
 
 use crate::device::{Code, DeviceError};
-use crate::subject::{Compiled, Rows, Subject};
+use crate::rows::Rows;
+use crate::subject::{Compiled, Subject};
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::Member;
 

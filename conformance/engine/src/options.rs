@@ -8,6 +8,7 @@ use lightmeter_catalogue::cases::blend::Samples;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
 use lightmeter_document::run::Report;
+use lightmeter_judge::tally::Judging;
 use lightmeter_scene::target::TargetFormat;
 use std::path::{Path, PathBuf};
 
@@ -55,6 +56,12 @@ impl Options {
         let filter = self.filter.globs().map(str::to_owned).collect();
         let adapters = subjects.iter().map(|subject| subject.identity.clone()).collect();
         Report::empty(self.seed, self.profile.name.into(), filter, adapters)
+    }
+
+    /// Whose answers are judged, and by what.
+    #[must_use]
+    pub fn judging<'a>(&'a self, subject: &'a Subject) -> Judging<'a> {
+        Judging { adapter: &subject.identity.name, known: &subject.known, profile: self.profile, rerun: &self.rerun }
     }
 
     /// A run of everything as it is without any option.

@@ -7,9 +7,10 @@ use crate::blend_unit;
 use crate::device::DeviceError;
 use crate::image;
 use crate::options::{Options, Progress};
+use crate::rows::Rows;
 use crate::selection::Selection;
 use crate::special::verdict::Table;
-use crate::subject::{Compiled, Job, Rows, Subject};
+use crate::subject::{Compiled, Job, Subject};
 use crate::witness;
 use crate::{special, stability};
 use lightmeter_catalogue::cases::Kind;
@@ -283,7 +284,7 @@ impl RowRun {
                 let waiting = clock.elapsed().as_secs_f64();
                 report.timing.devices += waiting;
                 let clock = Instant::now();
-                tally.merge(judge_chunk(chunk, &words, *stage, &subject.judging(options)));
+                tally.merge(judge_chunk(chunk, &words, *stage, &options.judging(subject)));
                 report.timing.judge += clock.elapsed().as_secs_f64();
                 tally.seconds += submitting + waiting + clock.elapsed().as_secs_f64();
             }

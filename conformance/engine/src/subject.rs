@@ -2,14 +2,11 @@
 
 use crate::blend_unit::rules::Rules;
 use crate::device::{Code, Device, DeviceError, Own, Stages};
-use crate::options::Options;
-use lightmeter_catalogue::cases::Kind;
+use crate::rows::Rows;
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::run::Identity;
 use lightmeter_judge::devices::Known;
-use lightmeter_judge::tally::Judging;
 use lightmeter_scene::blend::Route;
-use lightmeter_scene::depth::DepthTest;
 use lightmeter_scene::target::TargetFormat;
 
 /// An implementation under test.
@@ -35,40 +32,6 @@ pub enum Work {
     OnDevice(Own),
     /// The formulas in f32, on this processor.
     Embedded,
-}
-
-/// Rows of inputs of one group, and whose they are.
-pub struct Rows<'a> {
-    /// The formulas of the group.
-    pub members: &'a [&'a Member],
-    /// For each case, its formula's place among the members.
-    pub of: &'a [usize],
-    /// The inputs, row after row.
-    pub inputs: &'a [f32],
-    /// The same with selectors before each row, for the shaders.
-    pub selected: &'a [f32],
-    /// Numbers of a row of outputs.
-    pub outputs: usize,
-}
-
-impl Rows<'_> {
-    /// The depth test of a formula, by its place among the members.
-    ///
-    /// # Panics
-    /// Where the formula is no depth test.
-    #[must_use]
-    pub fn depth_test(&self, member: usize) -> DepthTest {
-        let Kind::Depth(test) = self.members[member].spec.kind else {
-            unreachable!("only depth tests reach the depth test")
-        };
-        test
-    }
-
-    /// Numbers of a row of inputs.
-    #[must_use]
-    pub fn stride(&self) -> usize {
-        self.inputs.len() / self.of.len()
-    }
 }
 
 /// Work that a device may still be doing.
@@ -102,12 +65,6 @@ impl Subject {
     #[must_use]
     pub fn faulty(rules: Rules) -> Self {
         Self { rules, ..Self::embedded() }
-    }
-
-    /// Whose answers are judged, and by what.
-    #[must_use]
-    pub fn judging<'a>(&'a self, options: &'a Options) -> Judging<'a> {
-        Judging { adapter: &self.identity.name, known: &self.known, profile: options.profile, rerun: &options.rerun }
     }
 
     /// The device; `None` of the embedded implementation.

@@ -14,9 +14,10 @@ use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::Member;
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::run::{Cost, EffectsCost, Identity};
-use lightmeter_engine::blend_unit::draw::{Piece, Pixels};
+use lightmeter_engine::blend_unit::piece::{Piece, Pixels};
 use lightmeter_engine::device::{Blocks, Code, Device, DeviceError, Own, Picture, Probed, Stages};
-use lightmeter_engine::subject::{Rows, Subject};
+use lightmeter_engine::rows::Rows;
+use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{

@@ -1,8 +1,11 @@
 //! The fixed-function blend unit under judgement: every state on every target format.
 //!
-//! `draw`, `run` and `standing` are the way of the data, and `selftest` tells whether faults are found.
+//! `chunk` cuts a group into pieces (`piece`), `draw` has a subject draw them, `standing` has what has come of them, and `run`
+//! takes a group through all of these; `selftest` tells whether faults are found.
 
+mod chunk;
 pub mod draw;
+pub mod piece;
 pub mod run;
 pub mod selftest;
 mod standing;

@@ -1,11 +1,12 @@
 //! What a group of blend states has come to on one subject and target: rows, verdicts, stores, failures.
 
-use super::draw::{Piece, Pixels, draw};
+use super::chunk::UnitChunk;
+use super::draw::draw;
 use super::model::Model;
+use super::piece::{Piece, Pixels};
 use super::pixel::{self, Units};
 use super::policy;
 use super::rules::Rules;
-use super::run::UnitChunk;
 use super::store::{ENOUGH, StoreCounts};
 use super::tally::{DrawnState, Sample, UnitTally, explain};
 use crate::device::DeviceError;

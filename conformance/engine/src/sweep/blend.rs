@@ -6,8 +6,9 @@
 use super::plan::Plan;
 use super::run::Work;
 use super::statistics::{Exact, Place, Seen, Statistics, Stored};
-use crate::blend_unit::draw::{Piece, draw};
+use crate::blend_unit::draw::draw;
 use crate::blend_unit::expect::expect;
+use crate::blend_unit::piece::Piece;
 use crate::blend_unit::pixel::{self, Units};
 use crate::blend_unit::rules::Rules;
 use crate::blend_unit::tally::count_tier;

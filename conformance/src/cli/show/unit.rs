@@ -1,8 +1,9 @@
 //! What a blend unit makes of a case.
 
 use lightmeter::arithmetic::Profile;
-use lightmeter::blend_unit::draw::{Piece, draw};
+use lightmeter::blend_unit::draw::draw;
 use lightmeter::blend_unit::expect::{ExpectedPixel, expect};
+use lightmeter::blend_unit::piece::Piece;
 use lightmeter::blend_unit::pixel::Units;
 use lightmeter::blend_unit::rules::{Rules, unit_name};
 use lightmeter::blend_unit::run::targets_of;
