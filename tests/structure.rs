@@ -131,6 +131,7 @@ fn a_profile_comes_into_force_where_formulas_are_evaluated_alone() {
         "conformance/judge/src/blend_unit/tally.rs",
         "conformance/judge/src/devices.rs",
         "conformance/judge/src/image/expect.rs",
+        "conformance/judge/src/image/prepared.rs",
     ];
     assert_eq!(files_with(".scope("), files);
 }

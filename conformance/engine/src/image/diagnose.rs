@@ -1,10 +1,10 @@
 //! Where a wrong image first departs: its intermediate results, drawn by the same shaders, against their own legal values.
 
 use super::drawn::intermediate;
-use super::expect::Expectation;
 use crate::device::{Code, DeviceError};
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
+use lightmeter_judge::image::expect::Expectation;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::stage::Intermediate;

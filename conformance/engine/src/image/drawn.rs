@@ -1,8 +1,8 @@
 //! One image of a frame as a subject draws it: its colours, or an intermediate result.
 
-use super::file::Stored;
 use crate::device::{Code, DeviceError, Picture};
 use crate::subject::Subject;
+use lightmeter_judge::image::file::Stored;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;

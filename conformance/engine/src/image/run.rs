@@ -3,9 +3,6 @@
 //! to end within a minute, draws them smaller and by the composed shaders alone.
 
 use super::diagnose::{self, Departure};
-use super::expect::{Expectation, Expected};
-use super::file::{self, Stored};
-use super::judge::{Judged, Miss, error, judge};
 use crate::device::{DeviceError, Own, Picture};
 use crate::options::{Options, Progress};
 use crate::subject::Subject;
@@ -15,6 +12,10 @@ use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
 use lightmeter_document::Number;
 use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
 use lightmeter_judge::devices::Deviation;
+use lightmeter_judge::image::Expected;
+use lightmeter_judge::image::expect::{Expectation, expect};
+use lightmeter_judge::image::file::{self, Stored};
+use lightmeter_judge::image::judge::{Judged, Miss, error, error_map, judge};
 use lightmeter_judge::is_worse;
 use lightmeter_judge::tally::KEPT_FAILURES;
 use lightmeter_judge::tally::problem;
@@ -184,7 +185,7 @@ impl<'a> Scene<'a> {
 
     fn expect(&mut self, profile: &Profile) {
         if !self.expected.iter().any(|(bits, _)| *bits == profile.subpixel_bits) {
-            let expected = super::expect(self.frame, None, None, profile);
+            let expected = expect(self.frame, None, None, profile);
             self.expected.push((profile.subpixel_bits, expected));
         }
     }
@@ -315,7 +316,7 @@ impl<'a> Scene<'a> {
     ) -> Vec<String> {
         let Some(folder) = &options.images else { return vec![] };
         let rounded = Stored::of(&render::<f64>(self.frame, None, None), self.frame.target.format);
-        let map = super::judge::error_map(image, &self.reference, expected);
+        let map = error_map(image, &self.reference, expected);
         let name = self.id.replace('/', "-");
         let place = format!("{name}-{}-{}", subject.identity.name, stage(picture));
         let _ = std::fs::create_dir_all(folder);

@@ -6,7 +6,7 @@ mod table;
 
 use lightmeter_arithmetic::Profile;
 use lightmeter_judge::blend_unit::pixel;
-use lightmeter_judge::image::expect::Expected;
+use lightmeter_judge::image::Expected;
 use lightmeter_judge::image::file::Stored;
 use lightmeter_judge::image::{expect, judge};
 use lightmeter_reference::Real;

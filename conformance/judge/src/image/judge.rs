@@ -1,7 +1,7 @@
 //! An image against what its pixels may hold.
 
-use super::expect::Expected;
 use super::file::Stored;
+use super::pixel::Expected;
 use crate::{is_worse, margin, worse};
 use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{F16, F32};

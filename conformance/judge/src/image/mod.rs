@@ -1,12 +1,14 @@
 //! What each pixel of a frame may hold, and how an image compares.
 //!
-//! `bound` is what a rasteriser may make of a triangle's place and attributes, `pixel` the ways in which one pixel may come about,
-//! `expect` the legal values of all of them; `judge` compares an image with them, and `file` writes PNG and EXR.
+//! `bound` is what a rasteriser may make of a triangle's place and attributes, `prepared` a draw with all of its triangles,
+//! `pixel` the ways in which one pixel may come about, `expect` the legal values of all of them; `judge` compares an image with them, and `file` writes PNG and EXR.
 
 mod bound;
 pub mod expect;
 pub mod file;
 pub mod judge;
 mod pixel;
+mod prepared;
 
-pub use expect::{Expected, expect};
+pub use expect::expect;
+pub use pixel::Expected;

@@ -4,7 +4,7 @@
 //! elsewhere each may or may not. Where the winner of a depth test is open, or a condition of the shading is, both outcomes
 //! are followed. Each way gives an interval of its own; what is legal is the hull of all.
 
-use super::expect::{Expected, Prepared};
+use super::prepared::Prepared;
 use crate::blend_unit::expect::over;
 use crate::blend_unit::pixel::Units;
 use lightmeter_arithmetic::{Accept, paths};
@@ -17,6 +17,18 @@ use lightmeter_scene::target::TargetFormat;
 
 /// Ways that are followed for one pixel; beyond, anything is legal there.
 const MOST: usize = 64;
+
+/// What a pixel may hold, in the units of its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// The least legal value of each component.
+    pub low: Units,
+    /// The greatest.
+    pub high: Units,
+    /// Whether its coverage, its depth's winner or another condition is open, and the outcomes differ by more than twice the
+    /// widest of them.
+    pub is_marked: bool,
+}
 
 /// A triangle that may cover a pixel.
 #[derive(Clone, Copy, Debug)]
