@@ -1,24 +1,15 @@
 //! Which mistake a renderer made, from its answers: mistakes, pairs of them and wrong parameters are tried as explanations.
 
-use super::catalogue::{Fault, concerning};
+use super::answered::Answered;
+use super::catalogue::concerning;
 use super::factor::{self, Scaled};
+use super::fault::Fault;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::Member;
 use serde::Serialize;
 use std::cmp::Ordering;
-
-/// A renderer's answer to one case.
-#[derive(Clone, Copy, Debug)]
-pub struct Answered<'a> {
-    /// The case's inputs.
-    pub inputs: &'a [f32],
-    /// What the renderer answered.
-    pub values: &'a [f32],
-    /// Whether a verdict on it failed.
-    pub is_wrong: bool,
-}
 
 /// What may have been done in a formula's place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -361,7 +352,7 @@ impl Wrong for (&Variation<'_>, &Scaled) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::catalogue::formulas;
+    use crate::fault::formulas;
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::CaseRef;
     use lightmeter_judge::{Outcome, judge};

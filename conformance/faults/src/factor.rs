@@ -1,7 +1,7 @@
 //! A parameter some factor times what was asked: found by a search over factors, refined by Gauss and Newton's method, and
 //! held against the interval of the scaled input.
 
-use super::diagnose::Answered;
+use super::answered::Answered;
 use super::row::Arithmetic;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};

@@ -1,7 +1,7 @@
 //! The group verdict: each answer may be legal and all of them together still wrong. Residuals are regressed on the formula's
 //! derivatives, so that a parameter that is a little off is told from rounding, and named.
 
-use super::diagnose::Answered;
+use super::answered::Answered;
 use super::factor::digits;
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Spec};
@@ -303,7 +303,7 @@ pub fn group_verdict(member: &Member, rows: &[Answered<'_>], profile: &Profile) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::catalogue::formulas;
+    use crate::fault::formulas;
     use lightmeter_arithmetic::RandomLegal;
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_arithmetic::random::seed;

@@ -3,6 +3,7 @@
 //! A mistake is a variation of a formula, stated over any arithmetic like the formula itself: in f32 it is an implementation
 //! that is wrong, in f64 its value, in intervals all that a renderer with the mistake may legally answer.
 
+mod answered;
 mod blend;
 mod body;
 pub mod calibrate;
@@ -10,6 +11,7 @@ mod catalogue;
 mod change;
 mod diagnose;
 mod factor;
+mod fault;
 mod fog;
 mod group;
 mod lighting;
@@ -19,9 +21,11 @@ pub mod selftest;
 mod table;
 mod variation;
 
-pub use catalogue::{Fault, concerning, faults};
-pub use diagnose::{Answered, Diagnosis, Explanation, diagnose};
+pub use answered::Answered;
+pub use catalogue::{concerning, faults};
+pub use diagnose::{Diagnosis, Explanation, diagnose};
 pub use factor::Scaled;
+pub use fault::Fault;
 pub use group::{LEAST_SHARE, LEAST_VALUES, LEAST_Z, group_verdict};
 pub use row::Arithmetic;
 pub use variation::Variation;
@@ -39,7 +43,7 @@ pub(crate) fn agrees_with_formulas(
     evaluate: impl Fn(&lightmeter_catalogue::cases::Spec, &[f64], &mut [f64]) -> Option<()>,
 ) -> usize {
     let mut seen = 0;
-    for member in catalogue::formulas().iter().filter(|member| is_of(&member.spec)) {
+    for member in fault::formulas().iter().filter(|member| is_of(&member.spec)) {
         for k in 0..256 {
             let mut row = vec![];
             member.inputs(lightmeter_catalogue::select::CaseRef::Random(k), 1, &mut row);

@@ -85,7 +85,7 @@ pub(super) fn put<R: Copy, const N: usize>(out: &mut [R], at: usize, v: Vector<R
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::catalogue::formulas;
+    use crate::fault::formulas;
 
     #[test]
     fn inputs_are_found_by_name_and_size() {

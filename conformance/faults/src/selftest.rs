@@ -3,8 +3,10 @@
 //! Each mistake is made by the embedded implementation and judged like any renderer; its answers are diagnosed. What is right,
 //! the embedded implementation and legal evaluations drawn at random, must be flagged by no verdict.
 
-use super::catalogue::{Fault, concerning};
-use super::diagnose::{Answered, Diagnosis, diagnose};
+use super::answered::Answered;
+use super::catalogue::concerning;
+use super::diagnose::{Diagnosis, diagnose};
+use super::fault::Fault;
 use super::group::group_verdict;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, Profile, RandomLegal, random};

@@ -2,7 +2,7 @@
 
 use super::blend;
 use super::body;
-use super::catalogue::{Fault, Step};
+use super::fault::{Fault, Step};
 use super::fog;
 use super::lighting;
 use super::row::Arithmetic;

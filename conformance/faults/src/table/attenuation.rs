@@ -1,10 +1,10 @@
 //! Mistakes of attenuation and spotlights.
 
 use super::super::body::Body as Wrong;
-use super::super::catalogue::Fault;
-use super::super::catalogue::Step::{After, Before, Body, Instead};
 use super::super::change::After as Out;
 use super::super::change::Before as In;
+use super::super::fault::Fault;
+use super::super::fault::Step::{After, Before, Body, Instead};
 use super::super::lighting::Twist as Lit;
 use super::{fault, lit};
 

@@ -1,9 +1,9 @@
 //! Mistakes of blending.
 
 use super::super::blend::Twist as Blended;
-use super::super::catalogue::Fault;
-use super::super::catalogue::Step::Before;
 use super::super::change::Before as In;
+use super::super::fault::Fault;
+use super::super::fault::Step::Before;
 use super::{blended, fault, where_colors_are_drawn};
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{Kind, Spec};

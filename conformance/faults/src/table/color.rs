@@ -1,9 +1,9 @@
 //! Mistakes of colours and their storage.
 
 use super::super::body::Body as Wrong;
-use super::super::catalogue::Fault;
-use super::super::catalogue::Step::{After, Body, Instead};
 use super::super::change::After as Out;
+use super::super::fault::Fault;
+use super::super::fault::Step::{After, Body, Instead};
 use super::fault;
 
 pub(super) const FAULTS: &[Fault] = &[

@@ -1,8 +1,8 @@
 //! Mistakes of the depth test.
 
 use super::super::body::Body as Wrong;
-use super::super::catalogue::Fault;
-use super::super::catalogue::Step::Body;
+use super::super::fault::Fault;
+use super::super::fault::Step::Body;
 use super::fault;
 
 pub(super) const FAULTS: &[Fault] = &[

@@ -1,9 +1,9 @@
 //! Mistakes of fog.
 
-use super::super::catalogue::Fault;
-use super::super::catalogue::Step::{After, Before};
 use super::super::change::After as Out;
 use super::super::change::Before as In;
+use super::super::fault::Fault;
+use super::super::fault::Step::{After, Before};
 use super::super::fog::Twist as Fogged;
 use super::{fault, fogged};
 

@@ -1,10 +1,10 @@
 //! Mistakes of interpolation, coverage and the viewport.
 
 use super::super::body::Body as Wrong;
-use super::super::catalogue::Fault;
-use super::super::catalogue::Step::{After, Before, Body, Instead};
 use super::super::change::After as Out;
 use super::super::change::Before as In;
+use super::super::fault::Fault;
+use super::super::fault::Step::{After, Before, Body, Instead};
 use super::fault;
 use lightmeter_catalogue::cases::{Kind, Spec};
 

@@ -12,7 +12,7 @@ mod output;
 mod vector;
 
 use super::blend::Twist as Blended;
-use super::catalogue::{Fault, Step};
+use super::fault::{Fault, Step};
 use super::fog::Twist as Fogged;
 use super::lighting::Twist as Lit;
 use lightmeter_catalogue::cases::blend::Program;

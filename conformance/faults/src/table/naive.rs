@@ -1,7 +1,7 @@
 //! Forms that lose what a stable one keeps.
 
-use super::super::catalogue::Fault;
-use super::super::catalogue::Step::Naive;
+use super::super::fault::Fault;
+use super::super::fault::Step::Naive;
 use super::fault;
 use lightmeter_catalogue::cases::Spec;
 

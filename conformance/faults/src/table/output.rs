@@ -1,9 +1,9 @@
 //! Mistakes in how a colour is given out, whatever it is of.
 
-use super::super::catalogue::Fault;
-use super::super::catalogue::Step::{After, Before};
 use super::super::change::After as Out;
 use super::super::change::Before as In;
+use super::super::fault::Fault;
+use super::super::fault::Step::{After, Before};
 use super::{fault, where_colors_are_drawn};
 use lightmeter_catalogue::cases::Spec;
 

@@ -1,9 +1,9 @@
 //! Mistakes of vectors and transforms.
 
 use super::super::body::Body as Wrong;
-use super::super::catalogue::Fault;
-use super::super::catalogue::Step::{Before, Body, Instead};
 use super::super::change::Before as In;
+use super::super::fault::Fault;
+use super::super::fault::Step::{Before, Body, Instead};
 use super::fault;
 
 pub(super) const FAULTS: &[Fault] = &[
