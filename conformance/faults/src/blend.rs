@@ -118,6 +118,23 @@ impl Model {
     /// Makes the mistake; `false` where the state has no such step, or the outcome is the same.
     fn twist(&mut self, twist: Twist) -> bool {
         let before = *self;
+        self.change(twist);
+        self.differs_from(&before)
+    }
+
+    /// Whether it computes or writes anything else than another model of the same program.
+    fn differs_from(&self, before: &Self) -> bool {
+        let same = |a: State, b: State| a.canonical() == b.canonical();
+        let state_differs = {
+            let color = !same(self.state.color, before.state.color) && (0..3).any(|k| self.shows(k));
+            let alpha = !same(self.state.alpha, before.state.alpha) && self.has_alpha() && self.shows(3);
+            color || alpha
+        };
+        state_differs || Self { state: before.state, ..*self } != *before
+    }
+
+    /// Changes the step that the mistake is about, if there is one.
+    fn change(&mut self, twist: Twist) {
         let is_plain = matches!(self.program, Program::Draw(state, _) if state.color == state.alpha);
         match twist {
             Twist::FactorsExchanged => self.each(|s| State { src: s.dst, dst: s.src, ..s }),
@@ -185,13 +202,6 @@ impl Model {
             Twist::LayersReversed => self.reversed = matches!(self.program, Program::Layers(_)),
             _ => {}
         }
-        let same = |a: State, b: State| a.canonical() == b.canonical();
-        let state_differs = {
-            let color = !same(self.state.color, before.state.color) && (0..3).any(|k| self.shows(k));
-            let alpha = !same(self.state.alpha, before.state.alpha) && self.has_alpha() && self.shows(3);
-            color || alpha
-        };
-        state_differs || Self { state: before.state, ..*self } != before
     }
 
     fn shows(&self, component: usize) -> bool {

@@ -194,8 +194,41 @@ pub(super) struct Model {
 
 /// The model of a formula, right throughout; `None` where there is none.
 pub(super) fn right(id: &str) -> Option<Model> {
+    let is = |ids: &[&str]| ids.iter().any(|name| id.strip_prefix("lighting/") == Some(name));
+    let attenuated = is(&["point-phong", "point-blinn", "point-opengl", "spot"]);
+    Some(Model {
+        arrangement: arrangement(id)?,
+        normal_normalised: true,
+        light_normalised: !is(&["phong-unit-light", "phong-nonlocal"]),
+        light_reversed: false,
+        position_as_direction: false,
+        direction_as_position: false,
+        view: if is(&["phong-nonlocal"]) { View::Infinity } else { View::Local },
+        cosine: cosine(id),
+        mirror: Mirror::Right,
+        incidence: Incidence::Max,
+        lobe: Lobe::Max,
+        by_chord: is(&["cosine-power-by-chord", "blinn-stable"]),
+        gated: is(&["phong-gated", "point-opengl", "blinn-stable"]),
+        strength: Strength::Plain,
+        over_pi: false,
+        alpha_of_material: false,
+        ambient: 1,
+        diffuse: true,
+        specular: true,
+        attenuation: if attenuated { Attenuation::Right } else { Attenuation::None },
+        attenuated: [is(&["point-opengl"]), attenuated, attenuated],
+        cone: if is(&["spot"]) { Cone::Right } else { Cone::None },
+        specular_in_cone: true,
+        lit_at: LitAt::First,
+        both_lights: true,
+    })
+}
+
+/// What a formula computes, and of what.
+fn arrangement(id: &str) -> Option<Arrangement> {
     use Arrangement::{Diffuse, Face, Power, Surface, TwoLights};
-    let arrangement = match id {
+    Some(match id {
         "lighting/diffuse-toward" => Diffuse(Source::Toward, "l"),
         "lighting/diffuse-travel" => Diffuse(Source::Travel, "i"),
         "lighting/specular-phong" => Power(["r", "v"], "shininess"),
@@ -221,43 +254,20 @@ pub(super) fn right(id: &str) -> Option<Model> {
         "lighting/phong-interpolated" => Arrangement::Edge(Edge::Interpolated),
         "lighting/flat" => Face,
         _ => return None,
-    };
-    let is = |ids: &[&str]| ids.iter().any(|name| id.strip_prefix("lighting/") == Some(name));
-    let attenuated = is(&["point-phong", "point-blinn", "point-opengl", "spot"]);
-    let cosine = if is(&["blinn", "point-blinn", "point-opengl", "blinn-stable", "two-lights"]) {
-        Cosine::Blinn
-    } else if is(&["blinn-unnormalised"]) {
-        Cosine::BlinnUnnormalised
-    } else {
-        Cosine::Phong
-    };
-    Some(Model {
-        arrangement,
-        normal_normalised: true,
-        light_normalised: !is(&["phong-unit-light", "phong-nonlocal"]),
-        light_reversed: false,
-        position_as_direction: false,
-        direction_as_position: false,
-        view: if is(&["phong-nonlocal"]) { View::Infinity } else { View::Local },
-        cosine,
-        mirror: Mirror::Right,
-        incidence: Incidence::Max,
-        lobe: Lobe::Max,
-        by_chord: is(&["cosine-power-by-chord", "blinn-stable"]),
-        gated: is(&["phong-gated", "point-opengl", "blinn-stable"]),
-        strength: Strength::Plain,
-        over_pi: false,
-        alpha_of_material: false,
-        ambient: 1,
-        diffuse: true,
-        specular: true,
-        attenuation: if attenuated { Attenuation::Right } else { Attenuation::None },
-        attenuated: [is(&["point-opengl"]), attenuated, attenuated],
-        cone: if is(&["spot"]) { Cone::Right } else { Cone::None },
-        specular_in_cone: true,
-        lit_at: LitAt::First,
-        both_lights: true,
     })
+}
+
+/// The vectors that a formula's highlight is the cosine between.
+fn cosine(id: &str) -> Cosine {
+    match id {
+        "lighting/blinn"
+        | "lighting/point-blinn"
+        | "lighting/point-opengl"
+        | "lighting/blinn-stable"
+        | "lighting/two-lights" => Cosine::Blinn,
+        "lighting/blinn-unnormalised" => Cosine::BlinnUnnormalised,
+        _ => Cosine::Phong,
+    }
 }
 
 impl Model {
