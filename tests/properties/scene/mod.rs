@@ -9,7 +9,7 @@ mod split;
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::device::Picture;
 use lightmeter::image::drawn::{drawn, intermediate};
-use lightmeter::image::run::profile_of;
+use lightmeter::image::verdict::profile_of;
 use lightmeter::image::{Expected, expect};
 use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_reference::render::{Image, render};

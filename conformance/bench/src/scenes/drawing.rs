@@ -8,7 +8,7 @@ use lightmeter_document::bench::Errors;
 use lightmeter_engine::blend_unit::pixel::linear;
 use lightmeter_engine::image::file::Stored;
 use lightmeter_engine::image::judge::judge;
-use lightmeter_engine::image::run::{excuse, profile_of};
+use lightmeter_engine::image::verdict::{excuse, profile_of};
 use lightmeter_engine::image::{Expected, expect};
 use lightmeter_gpu::compose::Recipe;
 use lightmeter_gpu::scene::SceneRenderer;

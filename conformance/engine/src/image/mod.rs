@@ -1,9 +1,11 @@
 //! Images under judgement: each scene as a subject draws it, against what is legal.
 //!
-//! `drawn` is one image by a subject, `diagnose` says where a wrong one first departs, and `run` takes scenes through both.
+//! `drawn` is one image by a subject, `diagnose` says where a wrong one first departs, `verdict` judges one, and `run` takes scenes
+//! through all of these.
 
 pub mod diagnose;
 pub mod drawn;
 pub mod run;
+pub mod verdict;
 
 pub use lightmeter_judge::image::*;

@@ -48,6 +48,9 @@ impl HardRows {
 /// The greatest error at each hard case, and at which row.
 type Worst = BTreeMap<usize, (f64, CaseRef)>;
 
+/// The same by the stage's name.
+type InStages = Vec<(&'static str, Worst)>;
+
 /// Examines hard cases, by their places, of a formula that has a stable form: each is evaluated with those near it, by its own
 /// shader function and by those of its naive forms, on every subject that has shaders.
 ///
@@ -61,49 +64,76 @@ pub fn examine(
     report: &mut Report,
 ) -> Result<(), DeviceError> {
     let Some(stable) = member.spec.stable else { return Ok(()) };
-    let naive = |place: usize| member.spec.hard[place].naive;
-    let places: Vec<usize> = hard.iter().copied().filter(|&place| naive(place).is_some()).collect();
+    let places: Vec<usize> = hard.iter().copied().filter(|&place| member.spec.hard[place].naive.is_some()).collect();
     if places.is_empty() {
         return Ok(());
     }
-    let rows = HardRows::of(member, &places, options.seed);
-    let conditions: BTreeMap<usize, f64> = rows
-        .cases
-        .iter()
-        .zip(rows.inputs.chunks_exact(member.spec.input_len()))
-        .filter(|(case, _)| matches!(case, CaseRef::Hard(_)))
-        .map(|(&case, inputs)| (HardRows::place(case), condition(member.formula.as_ref(), inputs, stable.size)))
-        .collect();
-    let exact = references(member, &rows);
-    let rivals = rivals(places.iter().filter_map(|&place| naive(place)));
+    let examination = Examination::new(member, stable, &places, options.seed);
     for subject in subjects {
-        let own = errors(member, stable, &rows, &exact, subject, options)?;
-        let mut others = BTreeMap::new();
-        for (id, rival) in &rivals {
-            let own = references(rival, &rows);
-            let against = |exact: &[f64], subject: &mut Subject| errors(rival, stable, &rows, exact, subject, options);
-            others.insert(*id, (against(&exact, subject)?, against(&own, subject)?));
-        }
+        let examined = examination.examined(subject, options)?;
         if options.again {
-            report.stable_costs.extend(costs(member, &rivals, subject, options)?);
+            report.stable_costs.extend(costs(member, &examination.rivals, subject, options)?);
         }
+        report.stability.extend(examined);
+    }
+    Ok(())
+}
+
+/// A formula's stable form, its naive ones, and the rows that all of them are tried on.
+struct Examination<'a> {
+    member: &'a Member,
+    stable: Stable,
+    rows: HardRows,
+    /// The condition of each hard case.
+    conditions: BTreeMap<usize, f64>,
+    /// The stable form's f64 reference at each row.
+    exact: Vec<f64>,
+    /// The naive formulas.
+    rivals: BTreeMap<&'static str, Member>,
+}
+
+impl<'a> Examination<'a> {
+    fn new(member: &'a Member, stable: Stable, places: &[usize], seed: u64) -> Self {
+        let rows = HardRows::of(member, places, seed);
+        let conditions = rows
+            .cases
+            .iter()
+            .zip(rows.inputs.chunks_exact(member.spec.input_len()))
+            .filter(|(case, _)| matches!(case, CaseRef::Hard(_)))
+            .map(|(&case, inputs)| (HardRows::place(case), condition(member.formula.as_ref(), inputs, stable.size)))
+            .collect();
+        let exact = references(member, &rows);
+        let rivals = rivals(places.iter().filter_map(|&place| member.spec.hard[place].naive));
+        Self { member, stable, rows, conditions, exact, rivals }
+    }
+
+    /// What a subject makes of each hard case by each form, in each stage that takes rows.
+    fn examined(&self, subject: &mut Subject, options: &Options) -> Result<Vec<Examined>, DeviceError> {
+        let own = self.errors(self.member, &self.exact, subject, options)?;
+        let mut others = BTreeMap::new();
+        for (id, rival) in &self.rivals {
+            let errors = self.errors(rival, &self.exact, subject, options)?;
+            let roundings = self.errors(rival, &references(rival, &self.rows), subject, options)?;
+            others.insert(*id, (errors, roundings));
+        }
+        let mut examined = vec![];
         for (stage, worst) in own {
-            for (&place, &(error, at)) in &worst {
-                let Some(naive) = naive(place) else { continue };
+            for (place, (error, at)) in worst {
+                let Some(naive) = self.member.spec.hard[place].naive else { continue };
                 let (errors, roundings) = &others[naive.formula];
-                let in_stage = |of: &[(&'static str, Worst)]| {
-                    let (_, worst) = of.iter().find(|(other, _)| *other == stage)?;
-                    worst.get(&place).map(|(error, _)| *error)
+                let (Some(error_of_naive), Some(rounding)) =
+                    (error_in(errors, stage, place), error_in(roundings, stage, place))
+                else {
+                    continue;
                 };
-                let (Some(error_of_naive), Some(rounding)) = (in_stage(errors), in_stage(roundings)) else { continue };
-                report.stability.push(Examined {
-                    id: member.case_id(CaseRef::Hard(place)),
+                examined.push(Examined {
+                    id: self.member.case_id(CaseRef::Hard(place)),
                     adapter: subject.identity.name.clone(),
                     stage: stage.into(),
-                    condition: Number(conditions[&place]),
-                    bound: stable.bound,
+                    condition: Number(self.conditions[&place]),
+                    bound: self.stable.bound,
                     stable: Number(error),
-                    stable_at: member.case_id(at),
+                    stable_at: self.member.case_id(at),
                     naive_formula: naive.formula.into(),
                     fails: naive.fails.into(),
                     naive_at_least: Number(naive.at_least),
@@ -112,8 +142,42 @@ pub fn examine(
                 });
             }
         }
+        Ok(examined)
     }
-    Ok(())
+
+    /// The greatest error of a form, against values that are exact, at each hard case in each stage that takes rows.
+    fn errors(
+        &self,
+        form: &Member,
+        exact: &[f64],
+        subject: &mut Subject,
+        options: &Options,
+    ) -> Result<InStages, DeviceError> {
+        let (members, outputs) = ([form], form.spec.output_len());
+        let evaluator = Evaluator::new(subject, &members, &options.code)?;
+        let mut found = vec![];
+        for (stage, words) in evaluator.run(subject, &vec![0; self.rows.cases.len()], &self.rows.inputs)? {
+            let Ok(words) = words else { continue };
+            let mut worst = Worst::new();
+            let of_rows = words.chunks_exact(outputs).zip(exact.chunks_exact(outputs)).zip(&self.rows.cases);
+            for ((words, exact), &case) in of_rows {
+                let values: Vec<f64> = words.iter().map(|&bits| f64::from(f32::from_bits(bits))).collect();
+                let error = roundings(&values, exact, self.stable.size);
+                let entry = worst.entry(HardRows::place(case)).or_insert((error, case));
+                if error > entry.0 {
+                    *entry = (error, case);
+                }
+            }
+            found.push((stage.name(), worst));
+        }
+        Ok(found)
+    }
+}
+
+/// The error at a hard case in a stage.
+fn error_in(stages: &InStages, stage: &str, place: usize) -> Option<f64> {
+    let (_, worst) = stages.iter().find(|(other, _)| *other == stage)?;
+    worst.get(&place).map(|(error, _)| *error)
 }
 
 /// What the form costs beside naive ones on a subject's device.
@@ -141,35 +205,6 @@ fn references(member: &Member, rows: &HardRows) -> Vec<f64> {
         member.formula.reference(inputs, exact);
     }
     exact
-}
-
-/// The greatest error of a form at each hard case, in each stage that takes rows.
-fn errors(
-    form: &Member,
-    stable: Stable,
-    rows: &HardRows,
-    exact: &[f64],
-    subject: &mut Subject,
-    options: &Options,
-) -> Result<Vec<(&'static str, Worst)>, DeviceError> {
-    let (members, outputs) = ([form], form.spec.output_len());
-    let evaluator = Evaluator::new(subject, &members, &options.code)?;
-    let mut found = vec![];
-    for (stage, words) in evaluator.run(subject, &vec![0; rows.cases.len()], &rows.inputs)? {
-        let Ok(words) = words else { continue };
-        let mut worst = Worst::new();
-        let of_rows = words.chunks_exact(outputs).zip(exact.chunks_exact(outputs)).zip(&rows.cases);
-        for ((words, exact), &case) in of_rows {
-            let values: Vec<f64> = words.iter().map(|&bits| f64::from(f32::from_bits(bits))).collect();
-            let error = roundings(&values, exact, stable.size);
-            let entry = worst.entry(HardRows::place(case)).or_insert((error, case));
-            if error > entry.0 {
-                *entry = (error, case);
-            }
-        }
-        found.push((stage.name(), worst));
-    }
-    Ok(found)
 }
 
 /// The group verdict: what a stable form that breaks its claim is told by.

@@ -7,7 +7,7 @@ use lightmeter::device::{Code, Picture};
 use lightmeter::document::Number;
 use lightmeter::image::expect::Expectation;
 use lightmeter::image::file::Stored;
-use lightmeter::image::run::profile_of;
+use lightmeter::image::verdict::profile_of;
 use lightmeter::image::{self, Expected};
 use lightmeter::scene::Loaded;
 use lightmeter::scene::library::SCENES;

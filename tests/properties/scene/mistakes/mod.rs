@@ -11,7 +11,7 @@ use lightmeter::image::diagnose::{Departure, departure};
 use lightmeter::image::drawn::drawn;
 use lightmeter::image::file::Stored;
 use lightmeter::image::judge::{Judged, judge};
-use lightmeter::image::run::profile_of;
+use lightmeter::image::verdict::profile_of;
 use lightmeter::image::{Expected, expect};
 use lightmeter::scene::load;
 use lightmeter::subject::Subject;

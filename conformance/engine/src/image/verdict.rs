@@ -1,0 +1,266 @@
+//! The verdict on an image of a scene: every pixel of it against what is legal, and where it is wrong, how.
+
+use super::diagnose::{self, Departure};
+use crate::device::{DeviceError, Picture};
+use crate::options::Options;
+use crate::subject::Subject;
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::scene::Loaded;
+use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
+use lightmeter_document::Number;
+use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
+use lightmeter_judge::devices::Deviation;
+use lightmeter_judge::image::Expected;
+use lightmeter_judge::image::expect::{Expectation, expect};
+use lightmeter_judge::image::file::{ImageFileError, Stored};
+use lightmeter_judge::image::judge::{Judged, Miss, error, error_map, judge};
+use lightmeter_judge::is_worse;
+use lightmeter_judge::tally::{KEPT_FAILURES, problem};
+use lightmeter_reference::render::render;
+use lightmeter_scene::effects::Called;
+use lightmeter_scene::frame::Frame;
+use serde_json::json;
+
+/// The accuracy rules for a subject: the profile's, with the subpixel bits that its rasteriser is known to have.
+#[must_use]
+pub fn profile_of(subject: &Subject, profile: &Profile) -> Profile {
+    subject.known.profile(profile)
+}
+
+/// Takes the misses out that a named deviation makes legal; how many there are.
+pub fn excuse(judged: &mut Judged, image: &Stored, frame: &Frame, deviation: &Deviation, profile: &Profile) -> u64 {
+    let granted = deviation.grant(*profile);
+    let expectation = Expectation::new(frame, None, None, &granted);
+    let before = judged.misses.len();
+    judged.misses.retain(|miss| {
+        let (x, y) = (miss.pixel % image.width, miss.pixel / image.width);
+        let legal = expectation.pixel(x, y);
+        let value = image.pixels[miss.pixel][miss.component];
+        !(legal.low[miss.component] <= value && value <= legal.high[miss.component])
+    });
+    (before - judged.misses.len()) as u64
+}
+
+/// Everything about a scene that does not depend on a subject.
+pub(super) struct JudgedScene<'a> {
+    id: String,
+    frame: &'a Frame,
+    pixels: Vec<usize>,
+    reference: Stored,
+    /// The legal values by subpixel bits.
+    expected: Vec<(u32, Vec<Expected>)>,
+}
+
+/// An image of a scene, who drew it, and by what it is judged.
+pub(super) struct Drawn<'a> {
+    pub(super) image: &'a Stored,
+    pub(super) subject: &'a Subject,
+    pub(super) picture: Picture,
+    pub(super) options: &'a Options,
+    /// The accuracy rules for the subject.
+    pub(super) profile: Profile,
+}
+
+impl<'a> JudgedScene<'a> {
+    pub(super) fn new(loaded: &'a Loaded, chosen: &Chosen) -> Self {
+        let frame = &loaded.frame;
+        let reference = Stored::unrounded(&render::<f64>(frame, None, None), frame.target.format);
+        let pixels = chosen.pixels.clone().unwrap_or_else(|| (0..reference.pixels.len()).collect());
+        Self { id: scene_id(chosen.place), frame, pixels, reference, expected: vec![] }
+    }
+
+    /// How many pixels are judged.
+    pub(super) const fn pixels(&self) -> usize {
+        self.pixels.len()
+    }
+
+    /// Works out what is legal by a profile.
+    pub(super) fn expect(&mut self, profile: &Profile) {
+        if !self.expected.iter().any(|(bits, _)| *bits == profile.subpixel_bits) {
+            let expected = expect(self.frame, None, None, profile);
+            self.expected.push((profile.subpixel_bits, expected));
+        }
+    }
+
+    fn expected(&self, profile: &Profile) -> &[Expected] {
+        let found = self.expected.iter().find(|(bits, _)| *bits == profile.subpixel_bits);
+        &found.expect("what is legal was worked out for every subject").1
+    }
+
+    /// The group of an image that a subject cannot draw.
+    pub(super) fn skipped(&self, subject: &Subject, picture: Picture, reason: &'static str) -> Group {
+        let cases = self.pixels.len() as u64;
+        Group {
+            skip_reason: Some(reason.into()),
+            ..self.group(subject, picture, Totals { cases, skipped: cases, ..Totals::default() })
+        }
+    }
+
+    fn group(&self, subject: &Subject, picture: Picture, totals: Totals) -> Group {
+        Group {
+            target: Some(self.frame.target.format.name().into()),
+            totals,
+            ..Group::new(self.id.clone(), subject.identity.name.clone(), stage(picture))
+        }
+    }
+
+    /// The group of an image. Where that is wrong, its failures go to the report, and its intermediate results, which everything
+    /// that the frame names takes part in, are drawn.
+    pub(super) fn judge(&self, drawn: &Drawn<'_>, named: &[Called], report: &mut Report) -> Result<Group, DeviceError> {
+        let expected = self.expected(&drawn.profile);
+        let mut judged = judge(drawn.image, &self.reference, expected, &self.pixels);
+        let excused = self.excuse(&mut judged, drawn, report);
+        let verdicts = 4 * self.pixels.len() as u64;
+        let problem = problem((verdicts, judged.indeterminate), verdicts, judged.indeterminate);
+        let totals = Totals {
+            cases: self.pixels.len() as u64,
+            verdicts,
+            passed: judged.passed,
+            failed: judged.misses.len() as u64,
+            expected_failures: excused,
+            indeterminate: judged.indeterminate,
+            failed_groups: u64::from(problem.is_some()),
+            ..Totals::default()
+        };
+        let mut used = self.image_use(drawn.image, expected);
+        let explanation = match worst(&judged) {
+            Some(worst) => Some(self.explain(drawn, named, (&judged, worst), &mut used, report)?),
+            None => None,
+        };
+        Ok(Group {
+            error_ulp_max: Number(judged.error_max),
+            margin_max: Number(judged.worst.map_or(0.0, |worst| worst.margin)),
+            worst: judged.worst.map(|worst| pixel_id(&self.id, drawn.image.width, worst.pixel)),
+            explanation,
+            problem,
+            image: Some(used),
+            ..self.group(drawn.subject, drawn.picture, totals)
+        })
+    }
+
+    /// Takes the misses out that a named deviation of the subject makes legal; how many there are.
+    fn excuse(&self, judged: &mut Judged, drawn: &Drawn<'_>, report: &mut Report) -> u64 {
+        let mut excused = 0;
+        for deviation in &drawn.subject.known.deviations {
+            if judged.misses.is_empty() {
+                break;
+            }
+            let count = excuse(judged, drawn.image, self.frame, deviation, &drawn.profile);
+            excused += count;
+            report.excuse(deviation.name, &drawn.subject.identity.name, count);
+        }
+        excused
+    }
+
+    /// What a report says of an image by itself; what is wrong with it comes later.
+    fn image_use(&self, image: &Stored, expected: &[Expected]) -> ImageUse {
+        ImageUse {
+            width: image.width,
+            height: image.pixels.len() / image.width,
+            marked: self.pixels.iter().filter(|&&pixel| expected[pixel].is_marked).count() as u64,
+            differs_from_composed: None,
+            cost: None,
+            departs_in: None,
+            files: vec![],
+        }
+    }
+
+    /// Where a wrong image departs, its files, the command that shows its worst pixel, and in the report its failures.
+    fn explain(
+        &self,
+        drawn: &Drawn<'_>,
+        named: &[Called],
+        (judged, worst): (&Judged, Miss),
+        used: &mut ImageUse,
+        report: &mut Report,
+    ) -> Result<String, DeviceError> {
+        let departure = self.departure(drawn, named, judged)?;
+        used.departs_in = Some(departure.stage.into());
+        used.files = self.write(drawn);
+        let kept = judged.misses.iter().filter(|miss| miss.component == 0 || **miss != worst).take(KEPT_FAILURES);
+        for miss in std::iter::once(worst).chain(kept.copied()).take(KEPT_FAILURES) {
+            report.failures.push(self.failure(drawn, miss));
+        }
+        let pixels = judged.pixels().len();
+        let command = self.rerun("show", drawn, worst.pixel);
+        Ok(format!("{pixels} pixels; {departure}; the worst: {command}{}", files_told(&used.files)))
+    }
+
+    fn departure(&self, drawn: &Drawn<'_>, named: &[Called], judged: &Judged) -> Result<Departure, DeviceError> {
+        // What a texture replaces is an intermediate result all the same.
+        let code = &drawn.options.code;
+        diagnose::departure(drawn.subject, code, self.frame, named, &drawn.profile, &judged.pixels())
+    }
+
+    /// Reference, result and error map; nothing where files are not asked for or cannot be written.
+    fn write(&self, drawn: &Drawn<'_>) -> Vec<String> {
+        let Some(folder) = &drawn.options.images else { return vec![] };
+        let rounded = Stored::of(&render::<f64>(self.frame, None, None), self.frame.target.format);
+        let map = error_map(drawn.image, &self.reference, self.expected(&drawn.profile));
+        let name = self.id.replace('/', "-");
+        let place = format!("{name}-{}-{}", drawn.subject.identity.name, stage(drawn.picture));
+        let _ = std::fs::create_dir_all(folder);
+        let mut files = vec![];
+        for (what, image) in [("reference", &rounded), ("result", drawn.image), ("error", &map)] {
+            let path = folder.join(format!("{place}-{what}.png"));
+            match image.write(&path) {
+                Ok(()) => files.push(path.display().to_string()),
+                Err(error) => {
+                    let _: ImageFileError = error;
+                }
+            }
+        }
+        files
+    }
+
+    fn rerun(&self, command: &str, drawn: &Drawn<'_>, pixel: usize) -> String {
+        let (id, options) = (pixel_id(&self.id, self.reference.width, pixel), drawn.options);
+        let size = size(&options.filter, options.size).map(|size| format!(" --size {size}")).unwrap_or_default();
+        format!("lightmeter {command} '{id}' --adapter {}{size}{}", drawn.subject.identity.name, options.rerun)
+    }
+
+    fn failure(&self, drawn: &Drawn<'_>, miss: Miss) -> Failure {
+        let (image, pixel, k) = (drawn.image, miss.pixel, miss.component);
+        let (value, exact) = (image.pixels[pixel][k], self.reference.pixels[pixel][k]);
+        let expected = &self.expected(&drawn.profile)[pixel];
+        let place = json!({ "x": pixel % image.width, "y": pixel / image.width });
+        let inputs = place.as_object().cloned().unwrap_or_default();
+        #[expect(clippy::cast_possible_truncation, reason = "a value that was read from a target fits binary32")]
+        let bits = (value as f32).to_bits();
+        Failure {
+            rerun: self.rerun("run", drawn, pixel),
+            id: pixel_id(&self.id, image.width, pixel),
+            adapter: drawn.subject.identity.name.clone(),
+            stage: stage(drawn.picture).into(),
+            target: Some(self.frame.target.format.name().into()),
+            route: None,
+            output: ["r", "g", "b", "a"][k].into(),
+            inputs,
+            inputs_hex: serde_json::Map::new(),
+            reference: Number(exact),
+            interval: [Number(expected.low[k]), Number(expected.high[k])],
+            promise: None,
+            value: Number(value),
+            value_hex: format!("0x{bits:08x}"),
+            unwritten: false,
+            error_ulp: Number(error(image.format, value, exact)),
+        }
+    }
+}
+
+/// Which shader drew an image, as reports name it.
+const fn stage(picture: Picture) -> &'static str {
+    match picture {
+        Picture::Composed => "image",
+        Picture::Full => "image-full",
+        Picture::Intermediate(stage) => stage.name(),
+    }
+}
+
+fn worst(judged: &Judged) -> Option<Miss> {
+    judged.misses.iter().copied().reduce(|a, b| if is_worse(b.margin, a.margin) { b } else { a })
+}
+
+fn files_told(files: &[String]) -> String {
+    if files.is_empty() { String::new() } else { format!("; see {}", files.join(", ")) }
+}
