@@ -138,16 +138,9 @@ impl Model {
         let is_plain = matches!(self.program, Program::Draw(state, _) if state.color == state.alpha);
         match twist {
             Twist::FactorsExchanged => self.each(|s| State { src: s.dst, dst: s.src, ..s }),
-            Twist::OperandsReversed => self.each(|s| State { equation: reversed(s.equation), ..s }),
-            Twist::AlwaysAdd => self.each(|s| match s.equation {
-                Equation::Subtract | Equation::ReverseSubtract => State { equation: Equation::Add, ..s },
-                _ => s,
-            }),
-            Twist::MinForMax => self.each(|s| match s.equation {
-                Equation::Min => State { equation: Equation::Max, ..s },
-                Equation::Max => State { equation: Equation::Min, ..s },
-                _ => s,
-            }),
+            Twist::OperandsReversed => self.equations(reversed),
+            Twist::AlwaysAdd => self.equations(addition_for_subtraction),
+            Twist::MinForMax => self.equations(min_for_max),
             Twist::ConstantAlphaForColor => self.factors(constant_of_the_other_kind),
             Twist::OneMinusForgotten => self.each(|s| State { dst: without_one_minus(s.dst), ..s }),
             Twist::OneMinusForgottenInSource => self.each(|s| State { src: without_one_minus(s.src), ..s }),
@@ -157,10 +150,7 @@ impl Model {
             Twist::ColorForAlpha => self.color_factors(color_for_alpha),
             Twist::MultipliedByCoverage => {
                 if matches!(self.program, Program::WithoutAlpha(_)) {
-                    self.each(|s| match (s.equation, s.src, s.dst) {
-                        (Equation::Add, Factor::DstColor, Factor::Zero) => State { dst: Factor::OneMinusSrcAlpha, ..s },
-                        _ => s,
-                    });
+                    self.each(multiplied_by_coverage);
                 }
             }
             Twist::AsPremultiplied => {
@@ -206,6 +196,10 @@ impl Model {
 
     fn shows(&self, component: usize) -> bool {
         self.writes(component) || !self.masked
+    }
+
+    fn equations(&mut self, f: impl Fn(Equation) -> Equation) {
+        self.each(|s| State { equation: f(s.equation), ..s });
     }
 
     fn factors(&mut self, f: impl Fn(Factor) -> Factor) {
@@ -286,6 +280,28 @@ const fn reversed(equation: Equation) -> Equation {
         Equation::Subtract => Equation::ReverseSubtract,
         Equation::ReverseSubtract => Equation::Subtract,
         other => other,
+    }
+}
+
+const fn addition_for_subtraction(equation: Equation) -> Equation {
+    match equation {
+        Equation::Subtract | Equation::ReverseSubtract => Equation::Add,
+        other => other,
+    }
+}
+
+const fn min_for_max(equation: Equation) -> Equation {
+    match equation {
+        Equation::Min => Equation::Max,
+        Equation::Max => Equation::Min,
+        other => other,
+    }
+}
+
+const fn multiplied_by_coverage(state: State) -> State {
+    match (state.equation, state.src, state.dst) {
+        (Equation::Add, Factor::DstColor, Factor::Zero) => State { dst: Factor::OneMinusSrcAlpha, ..state },
+        _ => state,
     }
 }
 
