@@ -1,9 +1,12 @@
-//! The probes, a row each.
+//! The probes, a row each, and what is looked up among them.
 
-use super::Class::{Infinity, Nan, Rounding, SignedZero, Subnormal};
-use super::Promise::{EitherZero, Exactly, Indeterminate, KeptOrFlushed, NearOrFlushed, OneOf};
-use super::Source::{Accuracy, Bitcast, Conversion, FiniteMath, Flush, Fusion, Packing, Selection, ZeroSign};
-use super::{Class, Gives, Probe, Promise, Source, Way};
+use super::gives::Gives;
+use super::probe::Class::{Infinity, Nan, Rounding, SignedZero, Subnormal};
+use super::probe::{Class, Probe, Way};
+use super::promise::Promise;
+use super::promise::Promise::{EitherZero, Exactly, Indeterminate, KeptOrFlushed, NearOrFlushed, OneOf};
+use super::source::Source;
+use super::source::Source::{Accuracy, Bitcast, Conversion, FiniteMath, Flush, Fusion, Packing, Selection, ZeroSign};
 
 const fn f(x: f32) -> u32 {
     x.to_bits()
@@ -255,3 +258,70 @@ pub const PROBES: &[Probe] = &[
     probe("greatest-from-u32", Rounding, "f32(2³² − 1)", "special_from_u32", &[u32::MAX], OneOf(&[0x4f7f_ffff, 0x4f80_0000]), Conversion),
     probe("quantize-between", Rounding, "quantizeToF16(1 + 2⁻¹²)", "special_quantize", &[f(1.0 + two(-12))], OneOf(&[ONE, f(1.0 + two(-10))]), Accuracy),
 ];
+
+impl Probe {
+    /// The probe of that id.
+    #[must_use]
+    pub fn by_id(id: &str) -> Option<&'static Self> {
+        PROBES.iter().find(|probe| probe.id() == id)
+    }
+
+    /// The probe of that name.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<&'static Self> {
+        PROBES.iter().find(|probe| probe.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_arithmetic::Accept;
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_reference::Real;
+
+    /// Where the acceptance intervals know an operation, table and intervals say the same.
+    #[test]
+    fn promises_agree_with_the_intervals() {
+        let mut compared = 0;
+        for probe in PROBES {
+            let Way::Function(function) = probe.way else { continue };
+            if probe.inputs.iter().any(|bits| !f32::from_bits(*bits).is_finite()) {
+                continue;
+            }
+            let x: Vec<Accept> = probe.inputs.iter().map(|bits| Accept::input(f32::from_bits(*bits))).collect();
+            let interval = WGSL.scope(|| {
+                Some(match function {
+                    "special_add" => x[0] + x[1],
+                    "special_subtract" => x[0] - x[1],
+                    "special_multiply" => x[0] * x[1],
+                    "special_divide" => x[0] / x[1],
+                    "special_multiply_add" => x[0] * x[1] + x[2],
+                    "special_sqrt" => x[0].sqrt(),
+                    "special_inverse_sqrt" => x[0].inverse_sqrt(),
+                    "special_exp" => x[0].exp(),
+                    "special_exp2" => x[0].exp2(),
+                    "special_pow" => x[0].pow(x[1]),
+                    "special_mix" => Accept::mix(x[0], x[1], x[2]),
+                    _ => return None,
+                })
+            });
+            let Some(interval): Option<Accept> = interval else { continue };
+            compared += 1;
+            let name = probe.name;
+            assert_eq!(interval.is_any(), !probe.promise.is_definite(), "{name}: {interval:?}");
+            let legal = |bits: u32| interval.contains(f32::from_bits(bits).into());
+            match probe.promise {
+                Promise::Exactly(bits) => assert!(legal(bits), "{name}"),
+                Promise::OneOf(all) => assert!(all.iter().all(|bits| legal(*bits)), "{name}: {interval:?}"),
+                Promise::KeptOrFlushed(bits) => assert!(legal(bits) && legal(0), "{name}: {interval:?}"),
+                Promise::NearOrFlushed(low, high) => {
+                    assert!(legal(low.to_bits()) && legal(high.to_bits()) && legal(0), "{name}: {interval:?}");
+                }
+                Promise::EitherZero => assert!(legal(0), "{name}: {interval:?}"),
+                Promise::Indeterminate => {}
+            }
+        }
+        assert!(compared >= 30, "{compared} probes were compared");
+    }
+}

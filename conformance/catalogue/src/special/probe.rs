@@ -1,0 +1,94 @@
+//! A probe: one operation on stated operands.
+
+use super::gives::Gives;
+use super::promise::Promise;
+use super::source::Source;
+
+/// The first segment of the ids.
+pub const FAMILY: &str = "special";
+
+/// What a probe is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Class {
+    /// NaN given, or what has no value.
+    Nan,
+    /// Infinity given, or overflow.
+    Infinity,
+    /// Subnormals given, or underflow.
+    Subnormal,
+    /// The sign of zero.
+    SignedZero,
+    /// Which neighbour a rounded result is.
+    Rounding,
+}
+
+impl Class {
+    /// All of them, in the order of reports.
+    pub const ALL: [Self; 5] = [Self::Nan, Self::Infinity, Self::Subnormal, Self::SignedZero, Self::Rounding];
+
+    /// The name in ids: `special/nan/nan-plus-one`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Nan => "nan",
+            Self::Infinity => "infinity",
+            Self::Subnormal => "subnormal",
+            Self::SignedZero => "signed-zero",
+            Self::Rounding => "rounding",
+        }
+    }
+
+    /// The heading in reports.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Nan => "NaN",
+            Self::Infinity => "Infinity and overflow",
+            Self::Subnormal => "Subnormals and underflow",
+            Self::SignedZero => "The sign of zero",
+            Self::Rounding => "Rounding",
+        }
+    }
+}
+
+/// How a probe is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// A function of `special.wgsl`, in the compute and in the fragment stage.
+    Function(&'static str),
+    /// A value that every vertex of a primitive has, read from its fragment.
+    Varying {
+        /// Flat, or else interpolated.
+        flat: bool,
+    },
+}
+
+/// One operation on stated operands.
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is about.
+    pub class: Class,
+    /// What is computed, for people.
+    pub what: &'static str,
+    /// How.
+    pub way: Way,
+    /// The operands' bits.
+    pub inputs: &'static [u32],
+    /// The result's type.
+    pub gives: Gives,
+    /// What is promised.
+    pub promise: Promise,
+    /// By which rule.
+    pub source: Source,
+}
+
+impl Probe {
+    /// Its id: `special/nan/nan-plus-one`.
+    #[must_use]
+    pub fn id(&self) -> String {
+        format!("{FAMILY}/{}/{}", self.class.name(), self.name)
+    }
+}
