@@ -5,7 +5,8 @@ pub use lightmeter_bench as bench;
 pub use lightmeter_catalogue::{cases, filter, scene, select};
 pub use lightmeter_document as document;
 pub use lightmeter_engine::{
-    blend_unit, device, evaluate, image, options, rows, run, selection, special, stability, subject, sweep, witness,
+    blend_unit, device, evaluate, image, options, piece, rows, run, selection, special, stability, subject, sweep,
+    witness,
 };
 pub use lightmeter_faults as faults;
 pub use lightmeter_gate as gate;

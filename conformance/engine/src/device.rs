@@ -1,6 +1,6 @@
 //! What stands behind a subject that is not embedded: a device, which draws and computes what it is handed.
 
-use crate::blend_unit::piece::{Piece, Pixels};
+use crate::piece::{Piece, Pixels};
 use crate::rows::Rows;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::Member;

@@ -6,6 +6,7 @@ pub mod device;
 pub mod evaluate;
 pub mod image;
 pub mod options;
+pub mod piece;
 pub mod rows;
 pub mod run;
 pub mod selection;

@@ -1,10 +1,10 @@
 //! What is judged: an adapter, or the embedded implementation, and how each of its stages evaluates a group of formulas.
 
-use crate::blend_unit::rules::Rules;
 use crate::device::{Code, Device, DeviceError, Own, Stages};
 use crate::rows::Rows;
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::run::Identity;
+use lightmeter_judge::blend_unit::rules::Rules;
 use lightmeter_judge::devices::Known;
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;

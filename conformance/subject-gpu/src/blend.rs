@@ -1,7 +1,7 @@
 //! Drawing by a device's blend unit: many states with many pixels each in a submission, one read-back.
 
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
-use lightmeter_engine::blend_unit::piece::{Piece, Pixels};
+use lightmeter_engine::piece::{Piece, Pixels};
 use lightmeter_gpu::{Batch, BlendUnit, GpuError, UnitDraw};
 use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_scene::target::TargetFormat;

@@ -1,6 +1,6 @@
 //! Blend states with their cases, cut into chunks that a submission holds.
 
-use super::piece::Piece;
+use crate::piece::Piece;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_scene::blend::{Route, routes};

@@ -1,7 +1,7 @@
 //! Drawing by a blend unit: many states with many pixels each in a submission, one read-back.
 
-use super::piece::{Piece, Pixels};
 use crate::device::{Code, DeviceError};
+use crate::piece::{Piece, Pixels};
 use crate::subject::Subject;
 use lightmeter_judge::blend_unit::embedded;
 use lightmeter_scene::target::TargetFormat;

@@ -1,7 +1,6 @@
 //! Whether the suite catches what it should: every fault on every target, made by the embedded blend unit and judged like any
 //! other, must be found and told by its name; without a fault nothing may be found.
 
-use super::rules::{FAULTS, Fault, Rules, Store};
 use super::run::run_group;
 use crate::device::{Code, DeviceError};
 use crate::options::{Options, Silent};
@@ -10,6 +9,7 @@ use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::{Program, Samples, every_state};
 use lightmeter_catalogue::select::{Member, Random, Selected, catalogue_of};
 use lightmeter_document::run::{Group, Report};
+use lightmeter_judge::blend_unit::rules::{FAULTS, Fault, Rules, Store};
 use lightmeter_scene::blend::{Separate, State};
 use lightmeter_scene::target::TargetFormat;
 use serde::Serialize;

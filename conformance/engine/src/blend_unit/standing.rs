@@ -2,20 +2,21 @@
 
 use super::chunk::UnitChunk;
 use super::draw::draw;
-use super::model::Model;
-use super::piece::{Piece, Pixels};
-use super::pixel::{self, Units};
-use super::policy;
-use super::rules::Rules;
-use super::store::{ENOUGH, StoreCounts};
-use super::tally::{DrawnState, Sample, UnitTally, explain};
 use crate::device::DeviceError;
 use crate::options::Options;
+use crate::piece::{Piece, Pixels};
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
 use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Totals};
+use lightmeter_judge::blend_unit::expect::expect;
+use lightmeter_judge::blend_unit::model::Model;
+use lightmeter_judge::blend_unit::pixel::{self, Units};
+use lightmeter_judge::blend_unit::policy;
+use lightmeter_judge::blend_unit::rules::Rules;
+use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts};
+use lightmeter_judge::blend_unit::tally::{DrawnState, Sample, UnitTally, explain};
 use lightmeter_judge::tally::{KEPT_FAILURES, by_name, keep_simplest, reported};
 use lightmeter_judge::{Outcome, is_worse, worse};
 use lightmeter_scene::target::{Encoding, TargetFormat};
@@ -329,7 +330,7 @@ fn failure(
     subject: &Subject,
     options: &Options,
 ) -> Failure {
-    let expected = super::expect::expect(piece.program, target, &piece.case(place), &Rules::RIGHT, options.profile);
+    let expected = expect(piece.program, target, &piece.case(place), &Rules::RIGHT, options.profile);
     let verdict = |k: usize| expected.judge(target, k, pixel[k]);
     let k = (0..4).find(|&k| verdict(k).outcome == Outcome::Fail).unwrap_or_default();
     let inputs = &piece.inputs[place * piece.stride..(place + 1) * piece.stride];

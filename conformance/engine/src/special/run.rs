@@ -1,12 +1,12 @@
 //! The probes on adapters, and their verdicts.
 
-use super::record::{DriverRecord, OnRecord};
-use super::{Deviation, PROBES, Probe, Promise};
 use crate::device::{Code, DeviceError, Probed};
 use crate::subject::Subject;
+use lightmeter_catalogue::special::{Deviation, PROBES, Probe, Promise};
 use lightmeter_document::Word;
 use lightmeter_document::run::Identity;
 use lightmeter_document::special::{self, ProbeResult, ProbeRow, ProbeVerdict, RecordUse, Skipped, SpecialReport};
+use lightmeter_judge::special::record::{DriverRecord, OnRecord};
 use lightmeter_scene::target::SENTINEL;
 
 /// Why the embedded implementation is skipped.

@@ -1,12 +1,12 @@
 //! The tables of special values as groups of a run: `special/nan`, `special/infinity`, …, a case for each probe.
 
 use super::run::{EMBEDDED, Results, evaluate};
-use super::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
 use crate::device::DeviceError;
 use crate::options::{Options, Progress};
 use crate::subject::Subject;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
+use lightmeter_catalogue::special::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
 use lightmeter_document::run::{DeviationUse, Failure, Group, Report, Totals};
 use lightmeter_document::special::{ProbeResult, ProbeVerdict, Skipped};
 use lightmeter_document::{Number, Word};

@@ -3,7 +3,6 @@
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::draw::draw;
 use lightmeter::blend_unit::expect::{ExpectedPixel, expect};
-use lightmeter::blend_unit::piece::Piece;
 use lightmeter::blend_unit::pixel::Units;
 use lightmeter::blend_unit::rules::{Rules, unit_name};
 use lightmeter::blend_unit::run::targets_of;
@@ -12,6 +11,7 @@ use lightmeter::cases::blend::Program;
 use lightmeter::device::Code;
 use lightmeter::document::Number;
 use lightmeter::judge::Outcome;
+use lightmeter::piece::Piece;
 use lightmeter::select::Member;
 use lightmeter::subject::Subject;
 use lightmeter_scene::blend::{Route, routes};
