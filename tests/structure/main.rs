@@ -1,12 +1,15 @@
-//! The house's rules that can be checked: a formula family has its four files, every shader function of the catalogue is
-//! there with the right signature, and no formula lacks hard data. None of this needs a GPU.
+//! The house's rules that can be checked: rooms and files import each other one way, a formula family has its four files, every shader
+//! function of the catalogue is there with the right signature, and no formula lacks hard data. None of this needs a GPU.
 
+mod imports;
+
+use imports::{Imports, imports};
 use lightmeter::cases::{FAMILIES, Kind};
 use lightmeter::select::{CaseRef, catalogue};
 use lightmeter_gpu::{FILES, Kernel, Shaders};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 #[test]
@@ -23,8 +26,8 @@ fn every_family_has_its_four_files() {
     }
 }
 
-/// The rooms and what each depends upon, as cargo has it: of the workspace alone; with what its tests need, or without.
-fn dependencies(with_tests: bool) -> BTreeMap<String, BTreeSet<String>> {
+/// The packages of the workspace as cargo has them.
+fn packages() -> Vec<Value> {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
         .current_dir(root())
@@ -32,12 +35,17 @@ fn dependencies(with_tests: bool) -> BTreeMap<String, BTreeSet<String>> {
         .expect("cargo starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let metadata: Value = serde_json::from_slice(&output.stdout).expect("cargo writes JSON");
+    metadata["packages"].as_array().expect("packages").clone()
+}
+
+/// The rooms and what each depends upon: of the workspace alone; with what its tests need, or without.
+fn dependencies(with_tests: bool) -> BTreeMap<String, BTreeSet<String>> {
     let folder = |package: &Value| {
         let manifest = Path::new(package["manifest_path"].as_str().expect("a path"));
         let folder = manifest.parent().expect("a folder").strip_prefix(root()).expect("a folder of the workspace");
         folder.to_str().expect("UTF-8").to_owned()
     };
-    let packages = metadata["packages"].as_array().expect("packages");
+    let packages = packages();
     let of_name: BTreeMap<&str, String> =
         packages.iter().map(|package| (package["name"].as_str().expect("a name"), folder(package))).collect();
     let needs = |package: &Value| {
@@ -93,6 +101,57 @@ fn rooms_depend_one_way_as_the_architecture_says() {
         assert!(!reached(&rooms, &room).contains("gpu"), "{room} reaches the GPU");
     }
     assert!(!reached(&rooms, "gpu").contains("reference") && !reached(&rooms, "reference").contains("gpu"));
+}
+
+/// The circles among the imports between files, each by one line for each import of it.
+fn circles(imports: &Imports) -> Vec<String> {
+    let mut files: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for (from, to) in imports.keys() {
+        files.entry(name_of(to)).or_default();
+        files.entry(name_of(from)).or_default().insert(name_of(to));
+    }
+    let line = |((from, to), names): (&(PathBuf, PathBuf), &BTreeSet<String>)| {
+        let (from, to) = (name_of(from), name_of(to));
+        let names = names.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
+        reached(&files, &to).contains(from.as_str()).then(|| format!("{from} -> {to}: {names}"))
+    };
+    imports.iter().filter_map(line).collect()
+}
+
+/// A file's path from the root of the workspace.
+fn name_of(file: &Path) -> String {
+    let file = file.canonicalize().expect("a source file");
+    file.strip_prefix(root()).expect("a file of the workspace").to_str().expect("UTF-8").to_owned()
+}
+
+/// Packages whose files still import each other in a circle.
+const IN_CIRCLES: [&str; 7] = [
+    "lightmeter-catalogue",
+    "lightmeter-engine",
+    "lightmeter-faults",
+    "lightmeter-gate",
+    "lightmeter-gpu",
+    "lightmeter-judge",
+    "lightmeter-reference",
+];
+
+/// A module and its descendants may import each other; other files import one way.
+#[test]
+fn files_import_each_other_one_way() {
+    let mut wrong = vec![];
+    for package in packages() {
+        let name = package["name"].as_str().expect("a name");
+        let targets = package["targets"].as_array().expect("targets");
+        for target in targets.iter().map(|target| target["src_path"].as_str().expect("a path")) {
+            for line in circles(&imports(Path::new(target))) {
+                eprintln!("{line}");
+                if !IN_CIRCLES.contains(&name) {
+                    wrong.push(line);
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "files import each other in a circle:\n{}", wrong.join("\n"));
 }
 
 /// Every Rust file below a folder of the workspace, with its text.

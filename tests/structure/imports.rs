@@ -1,0 +1,180 @@
+//! What the files of a crate import from each other, read from its sources. Tests (`#[cfg(test)]`) are left out.
+
+use proc_macro2::{TokenStream, TokenTree};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use syn::visit::{self, Visit};
+use syn::{Attribute, Item, ItemMod, ItemUse, Macro, UseTree, Visibility};
+
+/// The names that a file takes from another, by both files.
+pub(crate) type Imports = BTreeMap<(PathBuf, PathBuf), BTreeSet<String>>;
+
+/// Names that `::` joins.
+type Names = Vec<String>;
+
+/// A module as it is written.
+#[derive(Default)]
+struct Module {
+    file: PathBuf,
+    /// What stands behind each name that a `use` brings into scope.
+    uses: BTreeMap<String, Names>,
+    /// Every path that is written in it.
+    paths: Vec<Names>,
+}
+
+/// The modules of a crate, by their paths from its root.
+#[derive(Default)]
+struct Modules {
+    all: BTreeMap<Names, Module>,
+    /// The module that is being read.
+    here: Names,
+}
+
+/// The imports between the files of the crate with this root file. Those between a module and its descendants do not count.
+pub(crate) fn imports(root: &Path) -> Imports {
+    let mut modules = Modules::default();
+    modules.read(root.to_owned());
+    let mut imports = Imports::new();
+    for (here, module) in &modules.all {
+        for (there, name) in module.paths.iter().filter_map(|path| modules.definition(here, path)) {
+            let files = (module.file.clone(), modules.all[&there].file.clone());
+            if files.0 != files.1 && !here.starts_with(&there) && !there.starts_with(here) {
+                imports.entry(files).or_default().insert(name);
+            }
+        }
+    }
+    imports
+}
+
+impl Modules {
+    /// The module that defines what a path names, by way of re-exports, and its name there; `None` for a module. What belongs to
+    /// another crate counts as defined where it is named.
+    fn definition(&self, here: &[String], path: &[String]) -> Option<(Names, String)> {
+        let (first, rest) = path.split_first()?;
+        let child = [here, &[first.clone()]].concat();
+        match first.as_str() {
+            "crate" => self.definition(&[], rest),
+            "self" => self.definition(here, rest),
+            "super" => self.definition(&here[..here.len() - 1], rest),
+            _ if self.all.contains_key(&child) => self.definition(&child, rest),
+            name => match self.all[here].uses.get(name) {
+                Some(used) if used[0] != name => self.definition(here, &[used, rest].concat()),
+                _ => Some((here.to_vec(), name.to_owned())),
+            },
+        }
+    }
+
+    /// Reads a file as the module `here`, with its descendants.
+    fn read(&mut self, file: PathBuf) {
+        let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        let parsed = syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        self.all.insert(self.here.clone(), Module { file, ..Module::default() });
+        self.visit_file(&parsed);
+    }
+
+    fn module(&mut self) -> &mut Module {
+        self.all.get_mut(&self.here).expect("it is being read")
+    }
+
+    /// The file of a child of the module `here`.
+    fn file_of(&mut self, child: &str) -> PathBuf {
+        let is_root = self.here.is_empty();
+        let file = &self.module().file;
+        let folder =
+            if is_root || file.ends_with("mod.rs") { file.with_file_name("") } else { file.with_extension("") };
+        let plain = folder.join(child).with_extension("rs");
+        if plain.is_file() { plain } else { folder.join(child).join("mod.rs") }
+    }
+
+    /// Notes what a `use` names, each name after the path that stands before it.
+    fn note_use(&mut self, before: &[String], tree: &UseTree) {
+        let with = |name: &dyn ToString| [before, &[name.to_string()]].concat();
+        let (name, path) = match tree {
+            UseTree::Path(path) => return self.note_use(&with(&path.ident), &path.tree),
+            UseTree::Group(group) => return group.items.iter().for_each(|tree| self.note_use(before, tree)),
+            UseTree::Name(name) if name.ident == "self" => {
+                (before.last().cloned().unwrap_or_default(), before.to_vec())
+            }
+            UseTree::Name(name) => (name.ident.to_string(), with(&name.ident)),
+            UseTree::Rename(renamed) => (renamed.rename.to_string(), with(&renamed.ident)),
+            UseTree::Glob(_) => ("*".to_owned(), with(&"*")),
+        };
+        self.module().paths.push(path.clone());
+        self.module().uses.insert(name, path);
+    }
+
+    /// Notes the paths among the tokens of a macro.
+    fn note_tokens(&mut self, tokens: &TokenStream) {
+        let (mut path, mut colons) = (Names::new(), 0);
+        for token in tokens.clone() {
+            match token {
+                TokenTree::Punct(mark) if mark.as_char() == ':' => {
+                    colons += 1;
+                    continue;
+                }
+                TokenTree::Ident(name) => {
+                    if colons != 2 {
+                        self.module().paths.push(std::mem::take(&mut path));
+                    }
+                    path.push(name.to_string());
+                }
+                TokenTree::Group(group) => self.note_tokens(&group.stream()),
+                TokenTree::Punct(_) | TokenTree::Literal(_) => {}
+            }
+            colons = 0;
+        }
+        self.module().paths.push(path);
+    }
+}
+
+impl<'ast> Visit<'ast> for Modules {
+    fn visit_item(&mut self, item: &'ast Item) {
+        let attributes = match item {
+            Item::Fn(function) => &function.attrs[..],
+            Item::Mod(module) => &module.attrs[..],
+            Item::Use(used) => &used.attrs[..],
+            _ => &[],
+        };
+        if !attributes.iter().any(is_for_tests) {
+            visit::visit_item(self, item);
+        }
+    }
+
+    fn visit_item_mod(&mut self, module: &'ast ItemMod) {
+        // A file that is named by its path is a module of another target, too, and is read there.
+        if module.attrs.iter().any(|attribute| attribute.path().is_ident("path")) {
+            return;
+        }
+        let name = module.ident.to_string();
+        let file = if module.content.is_some() { self.module().file.clone() } else { self.file_of(&name) };
+        self.here.push(name);
+        if module.content.is_some() {
+            self.all.insert(self.here.clone(), Module { file, ..Module::default() });
+            visit::visit_item_mod(self, module);
+        } else {
+            self.read(file);
+        }
+        self.here.pop();
+    }
+
+    fn visit_item_use(&mut self, used: &'ast ItemUse) {
+        self.note_use(&[], &used.tree);
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let names = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+        self.module().paths.push(names);
+        visit::visit_path(self, path);
+    }
+
+    fn visit_macro(&mut self, called: &'ast Macro) {
+        visit::visit_macro(self, called);
+        self.note_tokens(&called.tokens);
+    }
+
+    fn visit_visibility(&mut self, _: &'ast Visibility) {}
+}
+
+fn is_for_tests(attribute: &Attribute) -> bool {
+    attribute.path().is_ident("cfg") && attribute.parse_args::<syn::Ident>().is_ok_and(|name| name == "test")
+}
