@@ -4,8 +4,8 @@
 //! 1/unit²; `l` the unit vector surface → light; `axis` the unit direction in which the spotlight points.
 
 use crate::algebra::Vec3;
-use crate::lighting::cosine_power_by_chord;
 use crate::real::Real;
+use crate::vector::cosine_power_by_chord;
 
 /// `atten = 1 / (kc + kl·d + kq·d²)`.
 ///

@@ -7,6 +7,7 @@
 use crate::algebra::{Rgb, Rgba, Vec3, Vector};
 use crate::attenuation;
 use crate::real::Real;
+pub use crate::vector::{cosine_power, cosine_power_by_chord};
 use crate::vector::{face_normal, halfway, halfway_unnormalised, reflect, toward};
 pub use lightmeter_scene::shading::{Specular, SpecularGate};
 
@@ -332,11 +333,6 @@ pub fn flat<R: Real>(face: [Vec3<R>; 3], position: Vec3<R>, material: [R; 3]) ->
     intensity([face_normal(a, b, c), toward(position, a), to_eye(a)], material)
 }
 
-/// `max(a·b, 0)^exponent` of two unit vectors: a highlight's power as published, the cosine by a dot product.
-pub fn cosine_power<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
-    a.dot(b).named("a·b").lobe(exponent)
-}
-
 /// `t/(S − S·t + t)` for `t = max(a·b, 0)`: an approximation of `t^S` without a power, of its value and slope at 1 and of its
 /// value at 0. Source: Schlick 1994.
 pub fn cosine_power_by_schlick<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
@@ -344,22 +340,9 @@ pub fn cosine_power_by_schlick<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> 
     t / R::sum([exponent, -(exponent * t), t])
 }
 
-/// The same without the `max`: no value where the cosine is negative.
+/// [`cosine_power`] without the `max`: no value where the cosine is negative.
 pub fn cosine_power_unguarded<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
     a.dot(b).named("a·b").pow(exponent)
-}
-
-/// The power of the cosine between two vectors that are unit but for rounding: `(1 − q)^exponent` with `q = ½|a − b|²`,
-/// which is as exact as a and b are, where 1 − q has lost all of q below 2⁻²⁴.
-///
-/// From an exponent of 64 and for angles below 60° by `exp(exponent·ln(1 − q))`; as published elsewhere.
-pub fn cosine_power_by_chord<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
-    let between = a - b;
-    let half = R::literal(0.5);
-    let q = (half * between.dot(between)).named("q");
-    let published = || cosine_power(a, b, exponent);
-    let chord = || (exponent * (-q).ln_1p().named("ln(1 − q)")).exp();
-    R::if_ge(R::literal(64.0), exponent, published, || R::if_ge(q, half, published, chord))
 }
 
 /// A directional light with Blinn's highlight, stable throughout: every vector normalised at any length, no highlight where

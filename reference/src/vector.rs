@@ -156,3 +156,21 @@ pub fn interpolated_normal_guarded<R: Real>(n0: Vec3<R>, n1: Vec3<R>, face: Vec3
     let n = n0.mix(n1, t).named("n");
     R::if_ge(n.dot(n), R::literal(1.0 / 1_048_576.0), || n.normalize(), || face.normalize())
 }
+
+/// `max(a·b, 0)^exponent` of two unit vectors: a highlight's power as published, the cosine by a dot product.
+pub fn cosine_power<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
+    a.dot(b).named("a·b").lobe(exponent)
+}
+
+/// The power of the cosine between two vectors that are unit but for rounding: `(1 − q)^exponent` with `q = ½|a − b|²`,
+/// which is as exact as a and b are, where 1 − q has lost all of q below 2⁻²⁴.
+///
+/// From an exponent of 64 and for angles below 60° by `exp(exponent·ln(1 − q))`; as published elsewhere.
+pub fn cosine_power_by_chord<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
+    let between = a - b;
+    let half = R::literal(0.5);
+    let q = (half * between.dot(between)).named("q");
+    let published = || cosine_power(a, b, exponent);
+    let chord = || (exponent * (-q).ln_1p().named("ln(1 − q)")).exp();
+    R::if_ge(R::literal(64.0), exponent, published, || R::if_ge(q, half, published, chord))
+}
