@@ -1,7 +1,7 @@
 //! What one draw calls for, and why.
 
 use super::{Called, Effect, Reason, Subject};
-use crate::frame::{Draw, Filter, FogForm, Frame, Light, Place, Sampled};
+use crate::frame::{Draw, Filter, FogForm, Frame, Light, Place, Sampled, Shading};
 use crate::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 use std::fmt;
 
@@ -42,20 +42,40 @@ impl Analysis<'_> {
     }
 
     fn lighting(&mut self) {
-        let (frame, draw) = (self.frame, self.draw);
-        let (Some(shading), material) = (draw.shading, &draw.material) else { return };
+        let Some(shading) = self.draw.shading else { return };
         if self.is_replaced() {
-            let why = "a texture stands in its place";
-            let light = |place| Reason { subject: Subject::Light(place), called: false, why: why.into() };
-            self.called.reasons.extend((0..frame.lights.len()).map(light));
-            let effect = match shading.frequency {
-                Frequency::Flat => Effect::Flat,
-                Frequency::Gouraud => Effect::Gouraud,
-                Frequency::Phong => Effect::Phong,
-            };
-            self.choice(effect, false, why);
-            return;
+            return self.replaced_lighting(shading.frequency);
         }
+        self.ambient();
+        let terms = self.lights();
+        self.choice(Effect::LightAmbient, terms.ambient, of_a_light(terms.ambient, "LA * MA"));
+        self.choice(Effect::Diffuse, terms.diffuse, of_a_light(terms.diffuse, "LD * MD"));
+        self.highlight(&shading, &terms);
+        self.kinds(&terms);
+        self.frequency(shading.frequency);
+        if terms.diffuse || terms.specular {
+            let by = shading.normals == Normals::InverseTranspose;
+            let why = if by { "the dialect of normals" } else { "normals are brought to eye space by the modelview" };
+            self.choice(Effect::InverseTranspose, by, why);
+        }
+    }
+
+    /// The lighting of a draw whose colour a texture replaces: none of it is called for.
+    fn replaced_lighting(&mut self, frequency: Frequency) {
+        let why = "a texture stands in its place";
+        let light = |place| Reason { subject: Subject::Light(place), called: false, why: why.into() };
+        self.called.reasons.extend((0..self.frame.lights.len()).map(light));
+        let effect = match frequency {
+            Frequency::Flat => Effect::Flat,
+            Frequency::Gouraud => Effect::Gouraud,
+            Frequency::Phong => Effect::Phong,
+        };
+        self.choice(effect, false, why);
+    }
+
+    /// The terms that no light gives: the emitted colour and the scene's ambient light.
+    fn ambient(&mut self) {
+        let (frame, material) = (self.frame, &self.draw.material);
         self.worth(Effect::Emissive, any(material.emissive), format!("CE is {}", triple(material.emissive)));
         match frame.ambient_form {
             Ambient::Product => self.worth(
@@ -68,30 +88,32 @@ impl Analysis<'_> {
                 self.worth(Effect::AmbientConstant, any(frame.ambient), why);
             }
         }
-        let terms = self.lights();
-        self.choice(Effect::LightAmbient, terms.ambient, of_a_light(terms.ambient, "LA * MA"));
-        self.choice(Effect::Diffuse, terms.diffuse, of_a_light(terms.diffuse, "LD * MD"));
+    }
+
+    /// The specular term by its form, where the viewer is for it, and OpenGL's gate.
+    fn highlight(&mut self, shading: &Shading, terms: &Terms) {
         let specular = match shading.specular {
             Specular::Phong => Effect::SpecularPhong,
             Specular::Blinn => Effect::SpecularBlinn,
             Specular::BlinnUnnormalised => Effect::SpecularUnnormalised,
         };
         self.choice(specular, terms.specular, of_a_light(terms.specular, "LS * MS"));
-        if terms.specular {
-            let local = shading.viewer == Viewer::Local;
-            let why = if local { "the viewer is at the eye" } else { "the viewer is infinitely far away" };
-            self.choice(Effect::LocalViewer, local, why);
-            let gated = shading.gate == SpecularGate::OpenGl;
-            let why = if gated {
-                "a face that is turned away has no highlight"
-            } else {
-                "one that is turned away may have one"
-            };
-            self.choice(Effect::Gate, gated, why);
+        if !terms.specular {
+            return;
         }
-        self.kinds(&terms);
+        let local = shading.viewer == Viewer::Local;
+        let why = if local { "the viewer is at the eye" } else { "the viewer is infinitely far away" };
+        self.choice(Effect::LocalViewer, local, why);
+        let gated = shading.gate == SpecularGate::OpenGl;
+        let why =
+            if gated { "a face that is turned away has no highlight" } else { "one that is turned away may have one" };
+        self.choice(Effect::Gate, gated, why);
+    }
+
+    /// Where the lighting is computed.
+    fn frequency(&mut self, frequency: Frequency) {
         let lit = !self.called.lights.is_empty();
-        match shading.frequency {
+        match frequency {
             Frequency::Flat => self.choice(Effect::Flat, lit, "its colour varies with the face"),
             // A constant colour that is interpolated is rounded, which leaving that out would change.
             Frequency::Gouraud => {
@@ -100,11 +122,6 @@ impl Analysis<'_> {
                 self.choice(Effect::Gouraud, any, "its colour is interpolated");
             }
             Frequency::Phong => self.choice(Effect::Phong, lit, "its colour varies with position and normal"),
-        }
-        if terms.diffuse || terms.specular {
-            let by = shading.normals == Normals::InverseTranspose;
-            let why = if by { "the dialect of normals" } else { "normals are brought to eye space by the modelview" };
-            self.choice(Effect::InverseTranspose, by, why);
         }
     }
 
