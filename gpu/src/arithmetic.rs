@@ -2,12 +2,9 @@
 
 use crate::device::Gpu;
 use crate::error::GpuError;
-use crate::kernel::Kernel;
+use crate::kernel::{FRAGMENT_WIDTH, Kernel};
 use crate::readback::{Pending, copy_target, sentinel_color, staging};
 use lightmeter_scene::target::SENTINEL;
-
-/// Pixels of a row of the fragment stage's target.
-pub(crate) const FRAGMENT_WIDTH: u32 = 256;
 
 const BITS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 

@@ -4,7 +4,7 @@
 //! one pixel are layers that overlap in order. Destinations are uploaded and results read back in the target's own bits, so
 //! that nothing but the unit itself converts them.
 
-use crate::device::{Gpu, middle};
+use crate::device::{Gpu, format, middle};
 use crate::error::GpuError;
 use crate::readback::{Pending, staging};
 use crate::shaders::Shaders;
@@ -204,16 +204,6 @@ impl Lane {
         );
         // The target's last row may have pixels of no case.
         Ok(Pending::submit(gpu, encoder, staging, (row_bytes / 4, row_bytes / 4)).of_bytes(batch.destinations.len()))
-    }
-}
-
-pub(crate) const fn format(target: TargetFormat) -> wgpu::TextureFormat {
-    match target {
-        TargetFormat::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
-        TargetFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
-        TargetFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
-        TargetFormat::Rgba8UnormSrgb => wgpu::TextureFormat::Rgba8UnormSrgb,
-        TargetFormat::Bgra8Unorm => wgpu::TextureFormat::Bgra8Unorm,
     }
 }
 

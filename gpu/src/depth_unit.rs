@@ -3,8 +3,8 @@
 use crate::arithmetic::read_target;
 use crate::device::{Gpu, middle};
 use crate::error::GpuError;
-use crate::raster::{draw_screen, screen_pipeline};
 use crate::readback::Pending;
+use crate::screen::{BITS, draw_screen, screen_pipeline};
 use crate::shaders::Shaders;
 use lightmeter_scene::depth::{Compare, DepthTest};
 use std::collections::HashMap;
@@ -94,7 +94,7 @@ impl DepthUnit {
                 pass.draw(cases, 0..1);
             }
         }
-        let bits = gpu.target(WIDTH, height, wgpu::TextureFormat::Rgba32Uint);
+        let bits = gpu.target(WIDTH, height, BITS);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &self.reader.get_bind_group_layout(0),

@@ -120,8 +120,7 @@ impl Gpu {
     /// Why a target cannot be blended on here; `None` where it can.
     #[must_use]
     pub fn lacks_blending(&self, target: TargetFormat) -> Option<&'static str> {
-        let format = crate::blend_unit::format(target);
-        let on_adapter = self.adapter.get_texture_format_features(format);
+        let on_adapter = self.adapter.get_texture_format_features(format(target));
         if target == TargetFormat::Rgba32Float && !self.features.contains(wgpu::Features::FLOAT32_BLENDABLE) {
             Some("the adapter lacks the feature FLOAT32_BLENDABLE")
         } else if !on_adapter.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
@@ -136,7 +135,7 @@ impl Gpu {
     /// Why a format cannot be drawn to here; `None` where it can.
     #[must_use]
     pub fn lacks_target(&self, target: TargetFormat) -> Option<&'static str> {
-        let on_adapter = self.adapter.get_texture_format_features(crate::blend_unit::format(target));
+        let on_adapter = self.adapter.get_texture_format_features(format(target));
         (!on_adapter.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT))
             .then_some("the adapter cannot draw to the format: it lacks RENDER_ATTACHMENT there")
     }
@@ -239,6 +238,17 @@ impl Gpu {
             label: Some(label),
             source: wgpu::ShaderSource::Wgsl(source.into()),
         })
+    }
+}
+
+/// A target's format in wgpu's terms.
+pub(crate) const fn format(target: TargetFormat) -> wgpu::TextureFormat {
+    match target {
+        TargetFormat::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
+        TargetFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        TargetFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+        TargetFormat::Rgba8UnormSrgb => wgpu::TextureFormat::Rgba8UnormSrgb,
+        TargetFormat::Bgra8Unorm => wgpu::TextureFormat::Bgra8Unorm,
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::error::GpuError;
 use crate::rung::{Asked, Dialect, Lowered, Rung, Shape, lower, rung_struct};
 use crate::shaders::{Shaders, validate, validate_lowered};
-use crate::sweep::{SWEEP_GROUP, SWEEP_WIDTH};
 use lightmeter_scene::target::SENTINEL;
 use naga::{Handle, Module, ScalarKind, Type, TypeInner};
 use std::fmt::Write as _;
@@ -25,6 +24,12 @@ pub struct Kernel {
     pub(crate) fragment: String,
 }
 
+/// Pixels of a row of the fragment stage's target.
+pub(crate) const FRAGMENT_WIDTH: u32 = 256;
+/// Inputs of a workgroup of a sweep.
+pub(crate) const SWEEP_GROUP: u32 = 64;
+/// Pixels of a row of the fragment stage's target in a sweep.
+pub(crate) const SWEEP_WIDTH: u32 = 2048;
 /// Words of a pixel of one target.
 const WORDS: usize = 4;
 
@@ -287,7 +292,7 @@ fn lightmeter_fragment(@builtin(position) lightmeter_position: vec4f) -> Lightme
     return LightmeterTargets({values});
 }}
 ",
-        width = crate::arithmetic::FRAGMENT_WIDTH,
+        width = FRAGMENT_WIDTH,
         values = values.join(", ")
     )
 }

@@ -5,11 +5,11 @@ use crate::depth_unit::compare_function;
 use crate::device::Gpu;
 use crate::error::GpuError;
 use crate::readback::Pending;
+use crate::screen::{BITS, draw_screen, screen_pipeline};
 use crate::shaders::Shaders;
 use lightmeter_scene::depth::Compare;
 use lightmeter_scene::raster::{Provoking, Raster, TARGET_SIZE, Topology};
 
-const BITS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 const COUNTS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const FILE: &str = "raster.wgsl";
@@ -248,60 +248,8 @@ fn pipeline(
     })
 }
 
-/// A pipeline that draws over a whole target of bits.
-pub(crate) fn screen_pipeline(
-    gpu: &Gpu,
-    module: &wgpu::ShaderModule,
-    vertex: &str,
-    fragment: &str,
-) -> wgpu::RenderPipeline {
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(fragment),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(vertex),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: Default::default(),
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(fragment),
-            compilation_options: Default::default(),
-            targets: &[Some(BITS.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
-}
-
-/// Draws over the whole of an integer target.
-pub(crate) fn draw_screen(
-    encoder: &mut wgpu::CommandEncoder,
-    pipeline: &wgpu::RenderPipeline,
-    group: &wgpu::BindGroup,
-    target: &wgpu::Texture,
-) {
-    let view = target.create_view(&Default::default());
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(cleared(&view))],
-        ..Default::default()
-    });
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, group, &[]);
-    pass.draw(0..3, 0..1);
-}
-
 /// A bind group of one texture.
-pub(crate) fn texture_group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    binding: u32,
-    view: &wgpu::TextureView,
-) -> wgpu::BindGroup {
+fn texture_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroup {
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout,

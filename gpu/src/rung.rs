@@ -5,11 +5,12 @@ mod dialect;
 mod lower;
 mod probe;
 mod widen;
+mod writer;
 
 use crate::device::Gpu;
 use crate::error::GpuError;
-pub(crate) use dialect::{Dialect, Shape};
-pub(crate) use lower::{Asked, Lowered, lower, rung_struct};
+pub(crate) use dialect::{Dialect, Shape, rung_struct};
+pub(crate) use lower::{Asked, Lowered, lower};
 
 /// A rung of the ladder: what a shader's f32 becomes, and by what its functions are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -7,10 +7,9 @@ mod geometry;
 mod pipeline;
 mod uniforms;
 
-use crate::blend_unit::format;
 use crate::clock::{Clock, Reading};
 use crate::compose::{Composer, Intermediate, MOST_TOWARD, Recipe, Shader, Technique, live};
-use crate::device::Gpu;
+use crate::device::{Gpu, format};
 use crate::error::GpuError;
 use crate::readback::{Pending, staging};
 use crate::shaders::Shaders;

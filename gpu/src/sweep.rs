@@ -7,17 +7,12 @@
 use crate::arithmetic::{Programmable, bind, cleared, compute_pipeline, render_pipeline};
 use crate::device::Gpu;
 use crate::error::GpuError;
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, SWEEP_GROUP, SWEEP_WIDTH};
 use crate::readback::staging;
 use crate::shaders::Shaders;
 use lightmeter_scene::along::Along;
 use lightmeter_scene::target::SENTINEL;
 use std::sync::mpsc;
-
-/// Inputs of a workgroup.
-pub(crate) const SWEEP_GROUP: u32 = 64;
-/// Pixels of a row of the fragment stage's target.
-pub(crate) const SWEEP_WIDTH: u32 = 2048;
 
 const BITS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 

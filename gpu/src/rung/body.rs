@@ -1,7 +1,7 @@
 //! A function's statements and expressions in a rung's arithmetic.
 
 use super::dialect::{Dialect, Shape, plain_vector};
-use super::lower::{READS_BITS, Writer, integer, is_position, literal, shape_of};
+use super::writer::{READS_BITS, Writer, integer, is_position, literal, shape_of};
 use naga::common::wgsl::TryToWgsl as _;
 use naga::front::Typifier;
 use naga::proc::{ResolveContext, TypeResolution};

@@ -43,6 +43,11 @@ pub(crate) fn plain_vector(size: u8) -> String {
     if size == 1 { "f32".into() } else { format!("vec{size}f") }
 }
 
+/// What a struct is called in the rung.
+pub(crate) fn rung_struct(rung: Rung, name: &str) -> String {
+    if Dialect::of(rung) == Dialect::Single { name.into() } else { format!("Rung{name}") }
+}
+
 impl Dialect {
     pub(crate) const fn of(rung: Rung) -> Self {
         match rung {

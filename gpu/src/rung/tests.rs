@@ -1,8 +1,9 @@
 //! Texts in every rung's arithmetic: that they are valid, and what they compute.
 
 use super::dialect::Prelude;
-use super::lower::{Asked, NOTHING_CHEAP, NOTHING_STABLE, READS_BITS, lower};
+use super::lower::{Asked, NOTHING_CHEAP, NOTHING_STABLE, lower};
 use super::probe::probe_with;
+use super::writer::READS_BITS;
 use super::*;
 use crate::adapters;
 use crate::compose::tests::sets;
