@@ -1,13 +1,15 @@
-//! The JSON of `run`, `special`, `bench` and `selftest`: each type reads what it writes. The types of the gate and of sweeps are still
-//! in their own rooms.
+//! The JSON that goes out and comes in again: each type reads what it writes.
 //!
 //! Nothing here judges or draws.
 
 pub mod bench;
+pub mod gate;
 mod number;
+pub mod pack;
 pub mod run;
 pub mod selftest;
 pub mod special;
+pub mod sweep;
 
 pub use number::{Number, thousands};
 

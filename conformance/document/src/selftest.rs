@@ -1,6 +1,32 @@
 //! The JSON of `selftest`.
 
+use crate::Word;
 use serde::{Deserialize, Serialize};
+
+/// The schema's name.
+pub const SCHEMA: &str = "lightmeter.selftest/1";
+
+/// The JSON of `selftest`: what was not asked for is left out.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SelftestDocument {
+    /// [`SCHEMA`].
+    pub schema: Word,
+    /// The faults of the blend unit.
+    #[serde(default)]
+    pub rows: Vec<UnitRow>,
+    /// Every mistake in every formula that it concerns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kills: Option<Vec<Kill>>,
+    /// Every formula without a mistake.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clean: Option<Vec<Clean>>,
+    /// The smallest errors that are named, of formulas.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Vec<Resolution>>,
+    /// The mistakes of whole renderers, in the scenes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scenes: Option<SceneRecord>,
+}
 
 /// What became of a mistake in a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,8 +80,8 @@ pub struct Clean {
     pub systematic: Option<Systematic>,
 }
 
-/// The outcome of the self-test.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// What the self-test of formulas came to.
+#[derive(Clone, Debug)]
 pub struct Record {
     /// Every mistake in every formula that it concerns.
     pub kills: Vec<Kill>,
@@ -189,5 +215,61 @@ impl SceneRow {
     #[must_use]
     pub fn is_caught(&self) -> bool {
         !self.caught.is_empty()
+    }
+}
+
+/// What became of a fault of the blend unit on a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum UnitFinding {
+    /// Found, and told by its name.
+    Named,
+    /// Found, and told by another name or none.
+    Caught,
+    /// Not found.
+    Survived,
+    /// It cannot be made on the target.
+    NotApplicable,
+    /// Nothing was found where nothing was wrong.
+    Clean,
+    /// Something was found where nothing was wrong.
+    FalseAlarm,
+}
+
+/// A fault of the blend unit on a target.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct UnitRow {
+    /// The fault's name, or `none`.
+    pub fault: Word,
+    /// The target's format.
+    pub target: Word,
+    /// What became of it.
+    pub finding: UnitFinding,
+    /// Verdicts.
+    pub verdicts: u64,
+    /// Those that failed by themselves.
+    pub failed: u64,
+    /// What was said of it.
+    pub said: Vec<String>,
+}
+
+impl UnitFinding {
+    /// The name in JSON and on pages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Named => "named",
+            Self::Caught => "caught",
+            Self::Survived => "survived",
+            Self::NotApplicable => "not-applicable",
+            Self::Clean => "clean",
+            Self::FalseAlarm => "false-alarm",
+        }
+    }
+
+    /// Whether it is as it should be.
+    #[must_use]
+    pub const fn is_good(self) -> bool {
+        matches!(self, Self::Named | Self::NotApplicable | Self::Clean)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::answer::{self, Hello, Unread};
 use super::ledger::Ledger;
+use super::problems::note;
 use super::{pack, process};
 use std::fs::File;
 use std::io::BufReader;
@@ -81,7 +82,7 @@ impl Answers {
                 Some(Ok(line)) => lines.push((self.number, line)),
                 Some(Err(error)) => {
                     let line = ledger.line(self.number);
-                    ledger.problems.add("oversized", || format!("{line}: {error}"));
+                    note(&mut ledger.problems, "oversized", || format!("{line}: {error}"));
                 }
                 None => {}
             }
@@ -120,7 +121,7 @@ pub fn judge(
         };
         if hello.is_some_and(|hello| hello != *first) {
             let what = format!("{}: another hello than that of the first file", ledger.line(1));
-            ledger.problems.add("malformed", || what);
+            note(&mut ledger.problems, "malformed", || what);
         }
         ledger.begin_again();
         answers.judge(ledger, progress)?;

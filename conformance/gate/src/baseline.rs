@@ -1,11 +1,10 @@
 //! An earlier result, than which nothing may be worse.
 
 use super::known::expanded;
-use super::plan::Choice;
-use super::report::{GateGroup, GateReport};
 use lightmeter_catalogue::cases::GENERATOR_VERSION;
+use lightmeter_document::gate::{GateGroup, GateReport, SCHEMA};
+use lightmeter_document::pack::Choice;
 use lightmeter_judge::image::file::whole;
-use serde::Deserialize;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -16,15 +15,9 @@ const MEAN_FLOOR: f64 = 0.05;
 /// Cases that are named, of each formula.
 const MOST_NAMED: usize = 8;
 
-/// What a baseline must have: a gate's JSON has it.
-#[derive(Debug, Deserialize)]
-pub struct Baseline {
-    schema: String,
-    choice: Choice,
-    generator: u64,
-    profile: String,
-    groups: Vec<GateGroup>,
-}
+/// An earlier result.
+#[derive(Debug)]
+pub struct Baseline(GateReport);
 
 /// Why a baseline cannot be compared with, or written.
 #[derive(Debug, thiserror::Error)]
@@ -72,9 +65,10 @@ impl Baseline {
         let failed = |message: String| BaselineError::Read { path: path.into(), message };
         let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
         let expected = "expected the JSON of `lightmeter gate --format json`, or of --update-baseline";
-        let baseline: Self = serde_json::from_str(&text).map_err(|error| failed(format!("{error}; {expected}")))?;
-        if baseline.schema == super::report::SCHEMA {
-            Ok(baseline)
+        let baseline: GateReport =
+            serde_json::from_str(&text).map_err(|error| failed(format!("{error}; {expected}")))?;
+        if baseline.schema == SCHEMA {
+            Ok(Self(baseline))
         } else {
             Err(failed(format!("its schema is `{}`; {expected}", baseline.schema)))
         }
@@ -87,7 +81,7 @@ impl Baseline {
     pub fn compare(&self, report: &GateReport, factor: f64, path: &Path) -> Result<Vec<String>, BaselineError> {
         self.is_of(&report.choice, Some(&report.profile), path)?;
         let mut worse = vec![];
-        for before in &self.groups {
+        for before in &self.0.groups {
             match report.groups.iter().find(|group| group.id == before.id) {
                 None => worse.push(format!("{}: it is not among the cases any more", before.id)),
                 Some(now) => worse.extend(compare(before, now, factor)),
@@ -107,14 +101,14 @@ impl Baseline {
                 differences.push(format!("{what} {before} there, {now} here"));
             }
         };
-        let before = &self.choice;
+        let before = &self.0.choice;
         differs("filter", format!("{:?}", before.filter), format!("{:?}", now.filter));
         differs("cases", before.cases.to_string(), now.cases.to_string());
         differs("seed", before.seed.to_string(), now.seed.to_string());
         differs("size", format!("{:?}", before.size), format!("{:?}", now.size));
-        differs("generator", self.generator.to_string(), GENERATOR_VERSION.to_string());
+        differs("generator", self.0.generator.to_string(), GENERATOR_VERSION.to_string());
         if let Some(profile) = profile {
-            differs("profile", self.profile.clone(), profile.clone());
+            differs("profile", self.0.profile.clone(), profile.clone());
         }
         if differences.is_empty() { Ok(()) } else { Err(BaselineError::Others { path: path.into(), differences }) }
     }

@@ -1,8 +1,9 @@
 //! Known failures, written down with their reason: they do not fail a gate, and it says so when they pass.
 
 use lightmeter_catalogue::filter::Filter;
+use lightmeter_document::gate::KnownFailure;
 use semver::{Version, VersionReq};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// A known failure, as the file has it.
@@ -32,36 +33,19 @@ struct File {
     expected: Vec<Written>,
 }
 
-/// A known failure, and what became of its cases.
-#[derive(Clone, Debug, Serialize)]
-pub struct KnownFailure {
-    /// A glob of cases.
-    pub id: String,
-    /// Why they fail.
-    pub reason: String,
-    /// Cases of it that failed.
-    pub failed: u64,
-    /// Cases of it that passed.
-    pub passed: u64,
-    /// Whether the renderer may end or hang at them.
-    pub crash: bool,
-    /// Whether they may pass.
-    pub may_pass: bool,
-    #[serde(skip)]
+/// A known failure of a renderer, and the filter of its glob.
+#[derive(Clone, Debug)]
+pub struct Expected {
+    /// What became of its cases.
+    pub known: KnownFailure,
     filter: Filter,
 }
 
-impl KnownFailure {
+impl Expected {
     /// Whether it has a case.
     #[must_use]
     pub fn has(&self, id: &str) -> bool {
         self.filter.selects(id)
-    }
-
-    /// Whether its cases were asked and none failed: it is to be taken out.
-    #[must_use]
-    pub const fn passes_unexpectedly(&self) -> bool {
-        self.failed == 0 && self.passed > 0 && !self.may_pass
     }
 }
 
@@ -114,19 +98,21 @@ impl Expectations {
 
     /// Those of a renderer.
     #[must_use]
-    pub fn of(&self, renderer: &str, version: &str) -> Vec<KnownFailure> {
+    pub fn of(&self, renderer: &str, version: &str) -> Vec<Expected> {
         let version = lenient(version);
         let concerns = |(written, _, range): &&(Written, Filter, Option<VersionReq>)| {
             let is_version = range.as_ref().is_none_or(|range| version.as_ref().is_some_and(|own| range.matches(own)));
             written.renderer.as_ref().is_none_or(|name| name == renderer) && is_version
         };
-        let of = |(written, filter, _): &(Written, Filter, _)| KnownFailure {
-            id: written.id.clone(),
-            reason: written.reason.clone(),
-            failed: 0,
-            passed: 0,
-            crash: written.crash,
-            may_pass: written.may_pass,
+        let of = |(written, filter, _): &(Written, Filter, _)| Expected {
+            known: KnownFailure {
+                id: written.id.clone(),
+                reason: written.reason.clone(),
+                failed: 0,
+                passed: 0,
+                crash: written.crash,
+                may_pass: written.may_pass,
+            },
             filter: filter.clone(),
         };
         self.written.iter().filter(concerns).map(of).collect()
@@ -161,7 +147,7 @@ mod tests {
         "#;
         let file = Expectations::parse(text).expect("it is valid");
         let ids = |renderer: &str, version: &str| -> Vec<String> {
-            file.of(renderer, version).into_iter().map(|one| one.id).collect()
+            file.of(renderer, version).into_iter().map(|one| one.known.id).collect()
         };
         assert_eq!(ids("three.js", "0.160.1"), ["fog/linear", "scene/**"]);
         assert_eq!(ids("three.js", "three r0.170"), ["scene/**"]);

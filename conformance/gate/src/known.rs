@@ -217,8 +217,8 @@ pub fn expanded(text: &str) -> impl Iterator<Item = String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::plan::Choice;
     use super::*;
+    use lightmeter_document::pack::Choice;
 
     fn plan() -> Plan {
         let filter = ["fog/exp", "blend/add/one/zero", "scene/flat"].map(str::to_owned).to_vec();

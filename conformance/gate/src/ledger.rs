@@ -1,52 +1,26 @@
 //! What was asked, and what was answered: each answer judged as it comes.
 
 use super::answer::{self, Hello, Line, clipped};
-use super::expectations::{Expectations, KnownFailure};
+use super::expectations::{Expectations, Expected};
 use super::known::{Register, State, Turn};
 use super::plan::{Place, Plan};
+use super::problems::note;
 use super::tally::AnswerTally;
-use super::verdict::{self, GateFailure, Verdicts};
+use super::verdict::{self, Verdicts};
 use super::{picture, process};
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::Number;
+use lightmeter_document::gate::{GateFailure, Problems};
 use rayon::prelude::*;
-use serde::Serialize;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::Path;
 use std::time::SystemTime;
 
-/// Problems of each kind, and unstable cases, that are kept.
-const KEPT_PROBLEMS: usize = 32;
+/// Unstable cases that are kept.
 const KEPT_UNSTABLE: usize = 1000;
 /// Failing cases of each formula that are asked once more.
 const MOST_AGAIN: usize = 1024;
-
-/// Answers that are none.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Problems {
-    /// How many of each kind.
-    pub counts: BTreeMap<&'static str, u64>,
-    /// The first of them, in words.
-    pub first: Vec<String>,
-}
-
-impl Problems {
-    /// Notes one.
-    pub fn add(&mut self, kind: &'static str, what: impl FnOnce() -> String) {
-        let count = self.counts.entry(kind).or_default();
-        *count += 1;
-        if *count <= KEPT_PROBLEMS as u64 {
-            self.first.push(clipped(&what()));
-        }
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.counts.is_empty()
-    }
-}
 
 /// The state of a gate. It grows with the number of cases by some bytes each, and not with their answers.
 pub struct Ledger<'a> {
@@ -64,7 +38,7 @@ pub struct Ledger<'a> {
     /// Register failures of any renderer.
     pub expected: Expectations,
     /// Those of this one.
-    pub expectations: Vec<KnownFailure>,
+    pub expectations: Vec<Expected>,
     /// Whether the accuracy rules stay, whatever the renderer asks for.
     pub is_held_to: bool,
     /// What lines are of, where there is more than one file: it stands before their numbers.
@@ -281,7 +255,7 @@ impl<'a> Ledger<'a> {
 
     fn count(&mut self, judged: Judged, folder: &Path) {
         match judged {
-            Judged::Problem(kind, what) => self.problems.add(kind, || what),
+            Judged::Problem(kind, what) => note(&mut self.problems, kind, || what),
             Judged::Skip(place, reason) => {
                 if self.is_first(place, State::Skipped, 0) {
                     self.tally(place).skip(reason);
@@ -302,7 +276,7 @@ impl<'a> Ledger<'a> {
                 tally.values(place, is_random, verdicts);
                 tally.expected += u64::from(is_expected);
                 if has_failed {
-                    tally.failure(|| GateFailure::of_values(plan, formula, case, &values, &profile));
+                    tally.failure(|| verdict::failure(plan, formula, case, &values, &profile));
                 }
                 tally.keep(case, &values, &inputs, has_failed);
             }
@@ -319,7 +293,7 @@ impl<'a> Ledger<'a> {
         let mut is_expected = false;
         for expected in self.expectations.iter_mut().filter(|expected| expected.has(&id)) {
             is_expected = true;
-            let count = if fails { &mut expected.failed } else { &mut expected.passed };
+            let count = if fails { &mut expected.known.failed } else { &mut expected.known.passed };
             *count += 1;
         }
         is_expected && fails
@@ -329,7 +303,7 @@ impl<'a> Ledger<'a> {
     #[must_use]
     pub fn expects_crash(&self, place: Place) -> bool {
         let id = self.plan.id(place);
-        self.expectations.iter().any(|expected| expected.crash && expected.has(&id))
+        self.expectations.iter().any(|expected| expected.known.crash && expected.has(&id))
     }
 
     /// Notes what was answered; whether it is the first answer.
@@ -341,7 +315,7 @@ impl<'a> Ledger<'a> {
             Turn::Twice => {
                 let id = self.plan.id(place);
                 let source = self.source.as_ref().map_or(String::new(), |source| format!("{source}: "));
-                self.problems.add("duplicate", || format!("{source}{id} is answered more than once"));
+                note(&mut self.problems, "duplicate", || format!("{source}{id} is answered more than once"));
             }
         }
         false
@@ -358,7 +332,7 @@ impl<'a> Ledger<'a> {
         tally.failed += 1;
         tally.unjudged += 1;
         tally.expected += u64::from(is_expected);
-        tally.failure(|| GateFailure::of_problem(id, clipped(message)));
+        tally.failure(|| verdict::unjudged(id, clipped(message)));
     }
 
     fn image(&mut self, scene: usize, file: &str, folder: &Path) {

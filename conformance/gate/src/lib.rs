@@ -14,6 +14,7 @@ pub mod outputs;
 pub mod pack;
 pub mod picture;
 pub mod plan;
+mod problems;
 pub mod process;
 pub mod renderer;
 pub mod report;

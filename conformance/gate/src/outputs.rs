@@ -1,8 +1,8 @@
 //! A gate's result for people, for CI servers and for GitHub.
 
-use super::report::{GateGroup, GateReport, cases};
-use super::verdict::GateFailure;
+use super::report::cases;
 use lightmeter_document::Number;
+use lightmeter_document::gate::{GateFailure, GateGroup, GateReport};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::fmt::{Result, Write};
 

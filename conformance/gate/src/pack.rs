@@ -2,57 +2,24 @@
 
 use super::frame;
 use super::picture::within;
-use super::plan::{Choice, Plan};
+use super::plan::Plan;
 use lightmeter_catalogue::cases::{GENERATOR_VERSION, Shape};
 use lightmeter_document::Number;
+use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
 use lightmeter_judge::image::file::{Stored, whole};
 use lightmeter_scene::frame::{Frame, Mesh, Texture};
 use lightmeter_scene::target::TargetFormat;
-use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
 
-/// The schema's name.
-pub const SCHEMA: &str = "lightmeter.pack/1";
 const MANIFEST: &str = "manifest.json";
 const CASES: &str = "cases.jsonl";
 /// Random cases for each formula, and pixels of a scene's longer side, at most.
 const MOST_CASES: u64 = 1_000_000_000;
 const MOST_PIXELS: u32 = 8192;
-
-/// What a pack holds.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Manifest {
-    /// [`SCHEMA`].
-    pub schema: String,
-    /// The version of what draws the cases: with another one they are others.
-    pub generator: u64,
-    /// The version of lightmeter that wrote it.
-    pub version: String,
-    /// What chose the cases.
-    #[serde(flatten)]
-    pub choice: Choice,
-    /// The formulas, with their inputs and outputs.
-    pub formulas: Vec<Value>,
-    /// The scenes.
-    pub scenes: Vec<Value>,
-    /// Each file's bytes and checksum.
-    pub files: Vec<Listed>,
-}
-
-/// A file of a pack.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Listed {
-    /// Its name within the pack.
-    pub name: String,
-    /// Its length.
-    pub bytes: u64,
-    /// Its CRC-32, as 8 digits of base 16.
-    pub crc32: String,
-}
 
 /// Why a pack was not written or read.
 #[derive(Debug, thiserror::Error)]
@@ -86,18 +53,21 @@ pub enum PackError {
     Plan(String),
 }
 
-/// What a formula takes and gives, as `lightmeter list --formulas` has it.
-#[must_use]
-pub fn formula(plan: &Plan, formula: usize) -> Value {
+/// What a formula of a plan takes and gives.
+fn formula(plan: &Plan, formula: usize) -> PackedFormula {
     let spec = &plan.member(formula).spec;
-    let value = |name: &str, shape: Shape, unit: &str| json!({ "name": name, "shape": shape, "unit": unit });
-    json!({
-        "id": spec.id,
-        "formula": spec.text,
-        "inputs": spec.inputs.iter().map(|input| value(input.name, input.shape, input.unit)).collect::<Vec<_>>(),
-        "outputs": spec.outputs.iter().map(|output| value(output.name, output.shape, output.unit)).collect::<Vec<_>>(),
-        "count": plan.formulas[formula].count(),
-    })
+    let value = |name: &'static str, shape: Shape, unit: &'static str| PackedValue {
+        name: name.into(),
+        shape: format!("{shape:?}").to_lowercase().into(),
+        unit: unit.into(),
+    };
+    PackedFormula {
+        id: spec.id.clone(),
+        formula: spec.text.into(),
+        inputs: spec.inputs.iter().map(|input| value(input.name, input.shape, input.unit)).collect(),
+        outputs: spec.outputs.iter().map(|output| value(output.name, output.shape, output.unit)).collect(),
+        count: plan.formulas[formula].count(),
+    }
 }
 
 /// A case as a renderer is asked it.
@@ -152,7 +122,7 @@ pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, PackError> {
             files.push(Listed { crc32: digits(&bytes), bytes: bytes.len() as u64, name });
         }
     }
-    let manifest = Manifest { files, ..Manifest::of(plan)? };
+    let manifest = Manifest { files, ..manifest(plan)? };
     let path = folder.join(MANIFEST);
     let text = serde_json::to_string_pretty(&manifest).map_err(|error| PackError::Plan(error.to_string()))? + "\n";
     whole(&path, text.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
@@ -183,20 +153,18 @@ fn clear(folder: &Path) -> Result<(), PackError> {
     Ok(())
 }
 
-impl Manifest {
-    /// That of a plan, as yet without files.
-    fn of(plan: &Plan) -> Result<Self, PackError> {
-        let scenes = (0..plan.scenes.len()).map(|scene| Ok(PackedDraw::new(plan, scene)?.listed()));
-        Ok(Self {
-            schema: SCHEMA.into(),
-            generator: GENERATOR_VERSION,
-            version: env!("CARGO_PKG_VERSION").into(),
-            choice: plan.choice.clone(),
-            formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
-            scenes: scenes.collect::<Result<_, PackError>>()?,
-            files: vec![],
-        })
-    }
+/// The manifest of a plan, as yet without files.
+fn manifest(plan: &Plan) -> Result<Manifest, PackError> {
+    let scenes = (0..plan.scenes.len()).map(|scene| Ok(PackedDraw::new(plan, scene)?.listed()));
+    Ok(Manifest {
+        schema: SCHEMA.into(),
+        generator: GENERATOR_VERSION,
+        version: env!("CARGO_PKG_VERSION").into(),
+        choice: plan.choice.clone(),
+        formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
+        scenes: scenes.collect::<Result<_, PackError>>()?,
+        files: vec![],
+    })
 }
 
 /// A scene of a pack.
@@ -217,16 +185,16 @@ impl PackedDraw {
     }
 
     /// As the manifest has it.
-    fn listed(&self) -> Value {
+    fn listed(&self) -> PackedScene {
         let target = &self.frame.target;
-        json!({
-            "id": self.id,
-            "title": self.title,
-            "file": format!("{}/scene.json", self.folder()),
-            "width": target.width,
-            "height": target.height,
-            "format": target.format.name(),
-        })
+        PackedScene {
+            id: self.id.clone(),
+            title: self.title.clone(),
+            file: format!("{}/scene.json", self.folder()),
+            width: target.width,
+            height: target.height,
+            format: target.format.name().into(),
+        }
     }
 
     /// Its files, by their names.
@@ -351,33 +319,31 @@ pub fn read(folder: &Path) -> Result<Plan, PackError> {
         }
     }
     let plan = Plan::new(manifest.choice.clone()).map_err(|error| refused(error.to_string()))?;
-    manifest.is_of(&plan)?.map_or(Ok(plan), |what| {
+    difference(&manifest, &plan)?.map_or(Ok(plan), |what| {
         Err(refused(format!(
             "its {what} are not those that its `filter`, `cases`, `seed` and `size` choose: write the pack again"
         )))
     })
 }
 
-impl Manifest {
-    /// What is not as this lightmeter would write it for the plan. The cases themselves go by the generator's version.
-    fn is_of(&self, plan: &Plan) -> Result<Option<&'static str>, PackError> {
-        let own = Self::of(plan)?;
-        if self.formulas != own.formulas {
-            return Ok(Some("formulas"));
-        }
-        if self.scenes != own.scenes {
-            return Ok(Some("scenes"));
-        }
-        let mut files: Vec<(String, Option<String>)> = vec![(CASES.into(), None)];
-        for scene in 0..plan.scenes.len() {
-            files.extend(PackedDraw::new(plan, scene)?.files().map(|(name, bytes)| (name, Some(digits(&bytes)))));
-        }
-        let is_same = |(listed, (name, sum)): (&Listed, &(String, Option<String>))| {
-            listed.name == *name && sum.as_ref().is_none_or(|sum| *sum == listed.crc32)
-        };
-        let are_same = files.len() == self.files.len() && self.files.iter().zip(&files).all(is_same);
-        Ok((!are_same).then_some("files"))
+/// What of a manifest is not as this lightmeter would write it for the plan. The cases themselves go by the generator's version.
+fn difference(listed: &Manifest, plan: &Plan) -> Result<Option<&'static str>, PackError> {
+    let own = manifest(plan)?;
+    if listed.formulas != own.formulas {
+        return Ok(Some("formulas"));
     }
+    if listed.scenes != own.scenes {
+        return Ok(Some("scenes"));
+    }
+    let mut files: Vec<(String, Option<String>)> = vec![(CASES.into(), None)];
+    for scene in 0..plan.scenes.len() {
+        files.extend(PackedDraw::new(plan, scene)?.files().map(|(name, bytes)| (name, Some(digits(&bytes)))));
+    }
+    let is_same = |(file, (name, sum)): (&Listed, &(String, Option<String>))| {
+        file.name == *name && sum.as_ref().is_none_or(|sum| *sum == file.crc32)
+    };
+    let are_same = files.len() == listed.files.len() && listed.files.iter().zip(&files).all(is_same);
+    Ok((!are_same).then_some("files"))
 }
 
 fn sum(path: &Path) -> std::io::Result<(u64, String)> {

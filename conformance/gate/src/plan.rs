@@ -6,22 +6,9 @@ use lightmeter_catalogue::filter::{Filter, FilterError};
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
 use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected, Shard, catalogue, select};
+use lightmeter_document::pack::Choice;
 use lightmeter_scene::frame::Frame;
-use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-
-/// What chooses the cases: the same of two gates means the same cases.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Choice {
-    /// Globs that match an id or an ancestor of it; all where there are none.
-    pub filter: Vec<String>,
-    /// Random cases for each formula.
-    pub cases: u64,
-    /// What they are drawn from.
-    pub seed: u64,
-    /// Pixels of the longer side of every scene; `None` for the scenes' own.
-    pub size: Option<u32>,
-}
 
 /// The cases that are chosen.
 pub struct Plan {

@@ -69,12 +69,13 @@ pub fn ask(
 
 #[cfg(test)]
 mod tests {
-    use super::super::plan::Choice;
     use super::super::process::Ending;
-    use super::super::report::GateReport;
+    use super::super::report::report;
     use super::*;
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::{Member, catalogue};
+    use lightmeter_document::gate::GateReport;
+    use lightmeter_document::pack::Choice;
     use lightmeter_faults::scene::{SCENE_FAULTS, draw};
     use lightmeter_faults::{Variation, concerning};
 
@@ -129,7 +130,7 @@ mod tests {
         let mut renderer = Wrong { catalogue: catalogue(), fault, scene_fault };
         ask(&mut ledger, &plan, &mut renderer, &folder).unwrap_or_else(|error| panic!("{error}"));
         let _ = std::fs::remove_dir_all(&folder);
-        GateReport::new(&mut ledger, Ending::default(), String::new(), 0.0)
+        report(&mut ledger, Ending::default(), String::new(), 0.0)
     }
 
     #[test]

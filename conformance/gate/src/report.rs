@@ -1,223 +1,70 @@
-//! What became of a gate: `lightmeter.gate/1`.
+//! What became of a gate, drawn up from its ledger.
 
 use super::answer::clipped;
-use super::expectations::KnownFailure;
-use super::ledger::{Ledger, Problems};
-use super::plan::{Choice, Place};
+use super::ledger::Ledger;
+use super::plan::Place;
 use super::process::Ending;
 use super::tally::{AnswerTally, Sample};
-use super::verdict::GateFailure;
+use super::verdict;
 use lightmeter_document::Number;
+use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, GateTotals, KnownFailure, Named, SCHEMA};
 use lightmeter_faults::{Answered, diagnose, group_verdict};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The schema's name.
-pub const SCHEMA: &str = "lightmeter.gate/1";
 /// Failures with their numbers in a report.
 const MOST_FAILURES: usize = 1000;
 /// The part of a group's random verdicts that may permit anything.
 const MOST_INDETERMINATE: f64 = 0.01;
 
-/// A gate's result.
-#[derive(Clone, Debug, Serialize)]
-pub struct GateReport {
-    /// [`SCHEMA`].
-    pub schema: &'static str,
-    /// The command.
-    pub command: String,
-    /// The version of lightmeter.
-    pub version: &'static str,
-    /// What chose the cases.
-    pub choice: Choice,
-    /// The version of what draws them.
-    pub generator: u64,
-    /// The accuracy rules.
-    pub profile: String,
-    /// Who answered.
-    pub renderer: Named,
-    /// How long it took.
-    pub seconds: f64,
-    /// Counts over all groups.
-    pub totals: GateTotals,
-    /// Lines that are no answers.
-    pub problems: Problems,
-    /// What went wrong with the process.
-    pub incidents: Vec<String>,
-    /// Crashes and hangs that are expected.
-    pub expected_incidents: Vec<String>,
-    /// How often it was started.
-    pub starts: u64,
-    /// Formulas and scenes.
-    pub groups: Vec<GateGroup>,
-    /// The first failures of each.
-    pub failures: Vec<GateFailure>,
-    /// Cases whose answer changed: the first 1,000 of them.
-    pub unstable: Vec<String>,
-    /// Known failures, and what became of them.
-    pub expectations: Vec<KnownFailure>,
-    /// What is worse than in the baseline.
-    pub regressions: Vec<String>,
-}
-
-/// A renderer.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Named {
-    /// Its name.
-    pub name: String,
-    /// Its version.
-    pub version: String,
-}
-
-/// Counts of cases, but for the verdicts, which are of scalars.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct GateTotals {
-    /// Asked for.
-    pub asked: u64,
-    /// Answered, and every verdict passed or permits anything.
-    pub passed: u64,
-    /// Failed.
-    pub failed: u64,
-    /// Failed as is expected.
-    pub expected_failures: u64,
-    /// Expectations none of whose cases failed, though one was to.
-    pub unexpected_passes: u64,
-    /// Skipped by the renderer.
-    pub skipped: u64,
-    /// Never answered.
-    pub missing: u64,
-    /// Answered in another way when asked once more.
-    pub unstable: u64,
-    /// Cases that the renderer does not declare, and that were not asked.
-    pub not_asked: u64,
-    /// Scalars judged.
-    pub verdicts: u64,
-    /// Of them, those where anything is legal.
-    pub indeterminate: u64,
-}
-
-/// A formula or a scene.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct GateGroup {
-    /// Its id.
-    pub id: String,
-    /// Cases that were asked.
-    pub asked: u64,
-    /// Failed.
-    pub failed: u64,
-    /// Of them, those that are expected to.
-    pub expected_failures: u64,
-    /// Skipped.
-    pub skipped: u64,
-    /// Never answered.
-    pub missing: u64,
-    /// Scalars judged.
-    pub verdicts: u64,
-    /// Of them, those where anything is legal.
-    pub indeterminate: u64,
-    /// The largest error in ULP of binary32; of a scene, in its target's ULP or steps.
-    pub error_max: Number,
-    /// The largest error of a case that passes.
-    pub error_passing: Number,
-    /// The mean error of the cases that pass.
-    pub error_mean: Number,
-    /// The largest margin.
-    pub margin_max: Number,
-    /// The case that it is of.
-    pub worst: Option<String>,
-    /// The cases that were asked and did not pass, by `failed`, `skipped` and `missing`: each by the end of its id, cases in a row
-    /// as `random/000003..000017`.
-    pub not_passed: BTreeMap<String, Vec<String>>,
-    /// Why it was not asked, or why its cases were skipped.
-    pub reason: Option<String>,
-    /// What is wrong with the whole, where no single case shows it.
-    pub problem: Option<String>,
-    /// What explains its failures.
-    pub diagnosis: Option<String>,
-    /// The failing case with the simplest inputs.
-    pub smallest: Option<String>,
-}
-
-impl GateGroup {
-    /// Whether something fails that is not expected to.
-    #[must_use]
-    pub const fn is_failed(&self) -> bool {
-        self.failed > self.expected_failures || self.missing > 0 || self.problem.is_some()
-    }
-}
-
-impl GateReport {
-    /// What a ledger holds.
-    #[must_use]
-    pub fn new(ledger: &mut Ledger<'_>, outcome: Ending, command: String, seconds: f64) -> Self {
-        ledger.close();
-        let plan = ledger.plan();
-        let mut totals = GateTotals { unstable: ledger.unstable_count, ..GateTotals::default() };
-        let (mut groups, mut failures) = (vec![], vec![]);
-        let told: Vec<(GateGroup, Option<GateFailure>)> =
-            ledger.tallies.par_iter().enumerate().map(|(k, tally)| group(ledger, k, tally)).collect();
-        for (k, (tally, (group, smallest))) in ledger.tallies.iter().zip(told).enumerate() {
-            totals.asked += tally.asked;
-            totals.failed += tally.failed;
-            totals.expected_failures += tally.expected;
-            totals.skipped += tally.skipped;
-            totals.missing += tally.missing;
-            totals.verdicts += tally.verdicts;
-            totals.indeterminate += tally.indeterminate;
-            totals.passed += tally.answered - (tally.failed - tally.unjudged);
-            if tally.undeclared.is_some() {
-                totals.not_asked += plan.formulas.get(k).map_or(1, |formula| formula.count() as u64);
-            }
-            // The smallest is there whatever else has no room.
-            let rest = tally.failures.iter().filter(|one| smallest.as_ref().is_none_or(|own| own.id != one.id));
-            let room = MOST_FAILURES.saturating_sub(failures.len());
-            failures.extend(smallest.iter().chain(rest.take(room)).cloned());
-            groups.push(group);
+/// What a ledger holds.
+#[must_use]
+pub fn report(ledger: &mut Ledger<'_>, outcome: Ending, command: String, seconds: f64) -> GateReport {
+    ledger.close();
+    let plan = ledger.plan();
+    let mut totals = GateTotals { unstable: ledger.unstable_count, ..GateTotals::default() };
+    let (mut groups, mut failures) = (vec![], vec![]);
+    let told: Vec<(GateGroup, Option<GateFailure>)> =
+        ledger.tallies.par_iter().enumerate().map(|(k, tally)| group(ledger, k, tally)).collect();
+    for (k, (tally, (group, smallest))) in ledger.tallies.iter().zip(told).enumerate() {
+        totals.asked += tally.asked;
+        totals.failed += tally.failed;
+        totals.expected_failures += tally.expected;
+        totals.skipped += tally.skipped;
+        totals.missing += tally.missing;
+        totals.verdicts += tally.verdicts;
+        totals.indeterminate += tally.indeterminate;
+        totals.passed += tally.answered - (tally.failed - tally.unjudged);
+        if tally.undeclared.is_some() {
+            totals.not_asked += plan.formulas.get(k).map_or(1, |formula| formula.count() as u64);
         }
-        let expectations = ledger.expectations.clone();
-        totals.unexpected_passes = expectations.iter().filter(|one| one.passes_unexpectedly()).count() as u64;
-        Self {
-            schema: SCHEMA,
-            command,
-            version: env!("CARGO_PKG_VERSION"),
-            choice: plan.choice.clone(),
-            generator: lightmeter_catalogue::cases::GENERATOR_VERSION,
-            profile: ledger.profile().name.into(),
-            renderer: Named { name: clipped(&outcome.hello.renderer), version: clipped(&outcome.hello.version) },
-            seconds,
-            totals,
-            problems: ledger.problems.clone(),
-            incidents: outcome.incidents,
-            expected_incidents: outcome.expected_incidents,
-            starts: outcome.starts,
-            groups,
-            failures,
-            unstable: ledger.unstable.clone(),
-            expectations,
-            regressions: vec![],
-        }
+        // The smallest is there whatever else has no room.
+        let rest = tally.failures.iter().filter(|one| smallest.as_ref().is_none_or(|own| own.id != one.id));
+        let room = MOST_FAILURES.saturating_sub(failures.len());
+        failures.extend(smallest.iter().chain(rest.take(room)).cloned());
+        groups.push(group);
     }
-
-    /// Whether the renderer broke off, or wrote what is no answer.
-    #[must_use]
-    pub fn is_broken(&self) -> bool {
-        !self.incidents.is_empty() || !self.problems.is_empty()
-    }
-
-    /// Whether anything fails that is not expected to, or passes that is.
-    #[must_use]
-    pub fn is_failed(&self) -> bool {
-        let totals = &self.totals;
-        totals.unstable + totals.unexpected_passes > 0
-            || !self.regressions.is_empty()
-            || self.groups.iter().any(GateGroup::is_failed)
-    }
-
-    /// Whether anything was judged at all.
-    #[must_use]
-    pub const fn has_judged(&self) -> bool {
-        self.totals.verdicts > self.totals.indeterminate
+    let expectations: Vec<KnownFailure> = ledger.expectations.iter().map(|expected| expected.known.clone()).collect();
+    totals.unexpected_passes = expectations.iter().filter(|one| one.passes_unexpectedly()).count() as u64;
+    GateReport {
+        schema: SCHEMA.into(),
+        command,
+        version: env!("CARGO_PKG_VERSION").into(),
+        choice: plan.choice.clone(),
+        generator: lightmeter_catalogue::cases::GENERATOR_VERSION,
+        profile: ledger.profile().name.into(),
+        renderer: Named { name: clipped(&outcome.hello.renderer), version: clipped(&outcome.hello.version) },
+        seconds,
+        totals,
+        problems: ledger.problems.clone(),
+        incidents: outcome.incidents,
+        expected_incidents: outcome.expected_incidents,
+        starts: outcome.starts,
+        groups,
+        failures,
+        unstable: ledger.unstable.clone(),
+        expectations,
+        regressions: vec![],
     }
 }
 
@@ -260,7 +107,7 @@ impl Told {
         if tally.unjudged > 0 {
             diagnosis += &format!("; besides, {} were not answered by values", cases(tally.unjudged));
         }
-        let smallest = GateFailure::of_values(plan, k, smallest.case, &smallest.values, ledger.profile());
+        let smallest = verdict::failure(plan, k, smallest.case, &smallest.values, ledger.profile());
         Self { diagnosis: Some(diagnosis), smallest: Some(smallest), ..Self::default() }
     }
 }

@@ -1,7 +1,8 @@
 //! What became of the cases of a formula, or of a scene.
 
 use super::plan::Place;
-use super::verdict::{GateFailure, Verdicts};
+use super::verdict::Verdicts;
+use lightmeter_document::gate::GateFailure;
 use lightmeter_faults::LEAST_VALUES;
 use lightmeter_judge::{is_worse, simplicity, worse};
 

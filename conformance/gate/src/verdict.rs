@@ -3,8 +3,8 @@
 use super::plan::{Place, Plan};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_document::Number;
+use lightmeter_document::gate::GateFailure;
 use lightmeter_judge::{Outcome, Verdict, judge, worse};
-use serde::Serialize;
 
 /// The verdicts of a case together.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,25 +21,6 @@ pub struct Verdicts {
     pub margin: f64,
     /// The sum of the finite errors, and how many there are.
     pub errors: (f64, u64),
-}
-
-/// A case that failed.
-#[derive(Clone, Debug, Serialize)]
-pub struct GateFailure {
-    /// The case.
-    pub id: String,
-    /// Its inputs, row by row of the formula's description.
-    pub inputs: Vec<Number>,
-    /// What the reference has.
-    pub reference: Vec<Number>,
-    /// From where to where values are legal.
-    pub interval: Vec<[Number; 2]>,
-    /// What was answered.
-    pub value: Vec<Number>,
-    /// The largest error in ULP.
-    pub error_ulp: Number,
-    /// What is wrong, where it is not a value.
-    pub problem: Option<String>,
 }
 
 /// The reference and what is legal, of a case.
@@ -90,35 +71,33 @@ pub fn values(plan: &Plan, formula: usize, case: usize, values: &[f32], profile:
     (expected.judge(values), expected.inputs)
 }
 
-impl GateFailure {
-    /// A case whose values are wrong.
-    #[must_use]
-    pub fn of_values(plan: &Plan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> Self {
-        let expected = ExpectedCase::new(plan, formula, case, profile);
-        let error = expected.judge(values).error;
-        let narrow = |numbers: &[f32]| numbers.iter().map(|&x| Number(x.into())).collect();
-        Self {
-            id: plan.id(Place::Case { formula, case }),
-            inputs: narrow(&expected.inputs),
-            reference: expected.reference.into_iter().map(Number).collect(),
-            interval: expected.legal.iter().map(|legal| [Number(legal.low()), Number(legal.high())]).collect(),
-            value: narrow(values),
-            error_ulp: Number(error),
-            problem: None,
-        }
+/// A case whose values are wrong.
+#[must_use]
+pub fn failure(plan: &Plan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> GateFailure {
+    let expected = ExpectedCase::new(plan, formula, case, profile);
+    let error = expected.judge(values).error;
+    let narrow = |numbers: &[f32]| numbers.iter().map(|&x| Number(x.into())).collect();
+    GateFailure {
+        id: plan.id(Place::Case { formula, case }),
+        inputs: narrow(&expected.inputs),
+        reference: expected.reference.into_iter().map(Number).collect(),
+        interval: expected.legal.iter().map(|legal| [Number(legal.low()), Number(legal.high())]).collect(),
+        value: narrow(values),
+        error_ulp: Number(error),
+        problem: None,
     }
+}
 
-    /// A case whose answer cannot be judged.
-    #[must_use]
-    pub const fn of_problem(id: String, problem: String) -> Self {
-        Self {
-            id,
-            inputs: vec![],
-            reference: vec![],
-            interval: vec![],
-            value: vec![],
-            error_ulp: Number(f64::INFINITY),
-            problem: Some(problem),
-        }
+/// A case whose answer cannot be judged.
+#[must_use]
+pub const fn unjudged(id: String, problem: String) -> GateFailure {
+    GateFailure {
+        id,
+        inputs: vec![],
+        reference: vec![],
+        interval: vec![],
+        value: vec![],
+        error_ulp: Number(f64::INFINITY),
+        problem: Some(problem),
     }
 }

@@ -7,6 +7,8 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::document::gate::GateReport;
+use lightmeter::document::pack::Choice;
 use lightmeter::filter::Filter;
 use lightmeter::gate::answers::{self, Answers};
 use lightmeter::gate::baseline::{self, Baseline};
@@ -14,9 +16,9 @@ use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::ledger::Ledger;
 use lightmeter::gate::outputs;
 use lightmeter::gate::pack;
-use lightmeter::gate::plan::{Choice, Place, Plan};
+use lightmeter::gate::plan::{Place, Plan};
 use lightmeter::gate::process::{self, Asking, Ending, Limits};
-use lightmeter::gate::report::GateReport;
+use lightmeter::gate::report;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -121,7 +123,7 @@ impl Gate {
             }
         };
         bar.finish_and_clear();
-        let mut report = GateReport::new(&mut ledger, outcome?, command(), start.elapsed().as_secs_f64());
+        let mut report = report::report(&mut ledger, outcome?, command(), start.elapsed().as_secs_f64());
         // What was asked is told, even where the baseline turns out to be of other accuracy rules.
         let regressions = known.as_ref().map(|(path, known)| known.compare(&report, self.growth, path)).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());

@@ -4,7 +4,8 @@ use super::options::Format;
 use super::sweep::{status, written};
 use super::{Status, emit};
 use clap::Args;
-use lightmeter::sweep::{Exact, SweepDocument};
+use lightmeter::document::sweep::{Exact, SweepDocument};
+use lightmeter::sweep::file;
 use std::path::PathBuf;
 
 /// Join the results of a sweep's shards.
@@ -25,9 +26,9 @@ impl Merge {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let mut parts = vec![];
         for path in &self.results {
-            parts.push((path.clone(), SweepDocument::read(path)?));
+            parts.push((path.clone(), file::read(path)?));
         }
-        let whole = SweepDocument::merge(&parts)?;
+        let whole = file::merge(&parts)?;
         emit(&written(&whole, self.format, &rerun(&whole))?, self.out.as_deref())?;
         Ok(status(&whole))
     }

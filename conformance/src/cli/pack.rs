@@ -4,8 +4,9 @@ use super::run::matching;
 use super::{NothingToRun, Status};
 use clap::Args;
 use lightmeter::cases::blend::Samples;
+use lightmeter::document::pack::Choice;
 use lightmeter::gate::pack;
-use lightmeter::gate::plan::{Choice, Plan};
+use lightmeter::gate::plan::Plan;
 use std::path::PathBuf;
 
 /// Which cases a renderer is asked.

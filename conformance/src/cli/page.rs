@@ -7,7 +7,7 @@ use lightmeter::bench::{page, plot};
 use lightmeter::document::bench::{BenchDocument, SCHEMA};
 use lightmeter::report;
 use lightmeter::report::page::{Run, markdown, scenes, selftest, special, stability, svg};
-use lightmeter::sweep;
+use lightmeter::sweep::file;
 use std::path::PathBuf;
 
 /// What a page is about.
@@ -70,7 +70,7 @@ impl Page {
     fn sweeps(&self) -> anyhow::Result<String> {
         let mut results = vec![];
         for path in &self.runs {
-            let result = sweep::SweepDocument::read(path)?;
+            let result = file::read(path)?;
             if !result.is_finished() {
                 bail!("{} is not finished; give it as --checkpoint to its command again", path.display());
             }

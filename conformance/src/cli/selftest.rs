@@ -5,15 +5,14 @@ use super::{NothingToRun, Status, emit};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
-use lightmeter::blend_unit::selftest::{UnitFinding, UnitRow, selftest};
-use lightmeter::document::selftest::{Record, SceneRecord};
+use lightmeter::blend_unit::selftest::selftest;
+use lightmeter::document::selftest::{Record, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow};
 use lightmeter::faults::calibrate::calibrate;
 use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
 use lightmeter::filter::Filter;
 use lightmeter::report::selftest as report;
 use lightmeter_scene::target::TargetFormat;
-use serde_json::json;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -116,16 +115,14 @@ impl Selftest {
         }
         let text = match self.format {
             Format::Json => {
-                let mut document =
-                    json!({ "schema": "lightmeter.selftest/1", "rows": rows.as_deref().unwrap_or_default() });
-                if let Some(record) = &record {
-                    document["kills"] = serde_json::to_value(&record.kills)?;
-                    document["clean"] = serde_json::to_value(&record.clean)?;
-                    document["calibration"] = serde_json::to_value(&resolutions)?;
-                }
-                if let Some(scenes) = &drawn {
-                    document["scenes"] = serde_json::to_value(scenes)?;
-                }
+                let document = SelftestDocument {
+                    schema: SCHEMA.into(),
+                    rows: rows.clone().unwrap_or_default(),
+                    kills: record.as_ref().map(|record| record.kills.clone()),
+                    clean: record.as_ref().map(|record| record.clean.clone()),
+                    calibration: record.is_some().then(|| resolutions.clone()),
+                    scenes: drawn.clone(),
+                };
                 serde_json::to_string_pretty(&document)? + "\n"
             }
             Format::Text | Format::Junit => {
@@ -174,9 +171,9 @@ fn table(targets: &[TargetFormat], rows: &[UnitRow]) -> anyhow::Result<String> {
     }
     writeln!(text)?;
     let first = targets.first().map(|target| target.name()).unwrap_or_default();
-    for name in rows.iter().filter(|row| row.target == first).map(|row| row.fault) {
+    for name in rows.iter().filter(|row| row.target == first).map(|row| &row.fault) {
         write!(text, "{name:<30}")?;
-        for row in rows.iter().filter(|row| row.fault == name) {
+        for row in rows.iter().filter(|row| row.fault == *name) {
             write!(text, " {:<17}", word(row.finding))?;
         }
         writeln!(text)?;

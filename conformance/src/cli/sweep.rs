@@ -7,11 +7,11 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::cases::Stage;
+use lightmeter::document::sweep::{SCHEMA, SweepDocument};
 use lightmeter::document::thousands;
 use lightmeter::select::{Shard, catalogue};
-use lightmeter::sweep::{
-    Asked, Description, Free, Over, PRESETS, Plan, SCHEMA, SweepDocument, SweepError, name_of, sweep, text,
-};
+use lightmeter::sweep::file::{self, name_of};
+use lightmeter::sweep::{Asked, Free, Over, PRESETS, Plan, SweepError, describe, span, sweep, text};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -105,13 +105,12 @@ impl Sweep {
         let [subject] = subjects.as_mut_slice() else {
             bail!("a sweep is of one adapter; expected its name");
         };
-        let description = Description::new(&plan, subject, self.profile, &code);
-        let resumed =
-            self.checkpoint.as_deref().map(|path| SweepDocument::resume(path, &description, shard)).transpose()?;
-        let mut document = resumed.flatten().unwrap_or_else(|| SweepDocument::new(description, shard));
+        let description = describe(&plan, subject, self.profile, &code);
+        let resumed = self.checkpoint.as_deref().map(|path| file::resume(path, &description, shard)).transpose()?;
+        let mut document = resumed.flatten().unwrap_or_else(|| file::begun(description, shard));
         // Not after hours of work.
         if let Some(path) = &self.checkpoint {
-            document.write(path)?;
+            file::write(&document, path)?;
         }
         if let Some(path) = &self.out {
             // What stands there stays until there is a result.
@@ -126,7 +125,7 @@ impl Sweep {
             if let Some(path) = &self.checkpoint
                 && saved.elapsed() >= SAVED_EVERY
             {
-                document.write(path)?;
+                file::write(document, path)?;
                 saved = Instant::now();
             }
             Ok(())
@@ -134,7 +133,7 @@ impl Sweep {
         let swept = sweep(&plan, subject, &code, self.profile, &mut document, self.blocks, &mut tell);
         bar.finish_and_clear();
         if let Some(path) = &self.checkpoint {
-            document.write(path)?;
+            file::write(&document, path)?;
         }
         match swept {
             Ok(()) => {}
@@ -213,7 +212,7 @@ impl Sweep {
 /// A result as text or JSON.
 pub(crate) fn written(document: &SweepDocument, format: Format, rerun: &str) -> anyhow::Result<String> {
     match format {
-        Format::Json => Ok(document.to_json()?),
+        Format::Json => Ok(file::to_json(document)?),
         Format::Junit => bail!("a sweep is written as text or json"),
         Format::Text => {
             let catalogue = catalogue();
@@ -267,7 +266,7 @@ fn presets(format: Format) -> anyhow::Result<String> {
 
 /// A bar on standard error, where that is a terminal.
 fn bar(document: &SweepDocument, shard: lightmeter::select::Shard) -> ProgressBar {
-    let inputs = document.sweep.span().inputs_of(shard, document.blocks);
+    let inputs = span(&document.sweep).inputs_of(shard, document.blocks);
     let bar = ProgressBar::with_draw_target(Some(inputs), ProgressDrawTarget::stderr());
     let template = "{bar:30} {human_pos}/{human_len} inputs  {rate} a second  {elapsed}, {eta} to go";
     if let Ok(style) = ProgressStyle::with_template(template) {

@@ -9,53 +9,10 @@ use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::{Program, Samples, every_state};
 use lightmeter_catalogue::select::{Member, Random, Selected, catalogue_of};
 use lightmeter_document::run::{Group, Report};
+use lightmeter_document::selftest::{UnitFinding, UnitRow};
 use lightmeter_judge::blend_unit::rules::{FAULTS, Fault, Rules, Store};
 use lightmeter_scene::blend::{Separate, State};
 use lightmeter_scene::target::TargetFormat;
-use serde::Serialize;
-
-/// What became of a fault on a target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum UnitFinding {
-    /// Found, and told by its name.
-    Named,
-    /// Found, and told by another name or none.
-    Caught,
-    /// Not found.
-    Survived,
-    /// It cannot be made on the target.
-    NotApplicable,
-    /// Nothing was found where nothing was wrong.
-    Clean,
-    /// Something was found where nothing was wrong.
-    FalseAlarm,
-}
-
-/// A fault on a target.
-#[derive(Clone, Debug, Serialize)]
-pub struct UnitRow {
-    /// The fault's name, or `none`.
-    pub fault: &'static str,
-    /// The target's format.
-    pub target: &'static str,
-    /// What became of it.
-    pub finding: UnitFinding,
-    /// Verdicts.
-    pub verdicts: u64,
-    /// Those that failed by themselves.
-    pub failed: u64,
-    /// What was said of it.
-    pub said: Vec<String>,
-}
-
-impl UnitFinding {
-    /// Whether it is as it should be.
-    #[must_use]
-    pub const fn is_good(self) -> bool {
-        matches!(self, Self::Named | Self::NotApplicable | Self::Clean)
-    }
-}
 
 /// Tries every fault, and none, on every target, with so many pairs a state.
 ///
@@ -156,8 +113,8 @@ fn row(
         said.extend(group.problem.iter().chain(&group.explanation).map(|text| format!("{}: {text}", group.id)));
     }
     UnitRow {
-        fault,
-        target: target.name(),
+        fault: fault.into(),
+        target: target.name().into(),
         finding: finding(&report.groups),
         verdicts: report.groups.iter().map(|group| group.totals.verdicts).sum(),
         failed: report.groups.iter().map(|group| group.totals.failed).sum(),

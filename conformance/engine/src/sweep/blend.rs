@@ -5,11 +5,11 @@
 
 use super::plan::Plan;
 use super::run::Work;
-use super::statistics::{Exact, Place, Seen, Statistics, Stored};
 use crate::blend_unit::draw::draw;
 use crate::blend_unit::expect::expect;
 use crate::blend_unit::pixel::{self, Units};
 use crate::blend_unit::rules::Rules;
+use crate::blend_unit::store::StoreCounts;
 use crate::blend_unit::tally::count_tier;
 use crate::device::{Code, DeviceError};
 use crate::piece::Piece;
@@ -18,6 +18,7 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_document::Number;
+use lightmeter_document::sweep::{self, Exact, Place, Seen, Statistics, Stored};
 use lightmeter_judge::Outcome;
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
@@ -72,6 +73,7 @@ impl<'a> BytesWork<'a> {
     fn judge(&self, piece: &Piece, pixels: &[Units], from: u64, to: u64) -> Statistics {
         let mut sum = Statistics::default();
         let mut stored = Stored::default();
+        let mut counts = StoreCounts::default();
         let (_, mask) = self.program.layer(0);
         for (place, (first, pixel)) in (from..to).step_by(COMPONENTS).zip(pixels).enumerate() {
             let case = piece.case(place);
@@ -107,7 +109,7 @@ impl<'a> BytesWork<'a> {
                 }
                 count_tier(&mut stored.tiers, expected.reference[component], value, verdict.outcome);
                 if mask.0[component] {
-                    stored.counts.count(expected.reference[component], value);
+                    counts.count(expected.reference[component], value);
                 }
                 if let Some(predicted) = predicted {
                     stored.predicted += 1;
@@ -115,6 +117,8 @@ impl<'a> BytesWork<'a> {
                 }
             }
         }
+        let StoreCounts { of, as_by, error } = counts;
+        stored.counts = sweep::StoreCounts { of, as_by, error };
         sum.stored = Some(stored);
         sum
     }

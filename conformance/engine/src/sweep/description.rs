@@ -2,127 +2,89 @@
 
 use super::plan::{Over, Plan};
 use super::span::Span;
-use super::statistics::Exact;
 use crate::device::Code;
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
-use lightmeter_document::run::Identity;
-use serde::{Deserialize, Serialize};
+use lightmeter_document::sweep::{Description, Exact};
 
-/// What is swept, on what, by which rules: files of the same sweep have the same.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Description {
-    /// The formula's id.
-    pub formula: String,
-    /// What is free.
-    pub over: String,
-    /// The least float.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub from: Option<Exact>,
-    /// The greatest.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub to: Option<Exact>,
-    /// The other inputs by name.
-    pub fixed: Vec<(String, Exact)>,
-    /// The output.
-    pub output: String,
-    /// What errors are counted in: `ULP` or `step`.
-    pub unit: String,
-    /// The stage.
-    pub stage: String,
-    /// The adapter.
-    pub adapter: Identity,
-    /// The accuracy rules.
-    pub profile: String,
-    /// A hash of the shader's text; of the version, where the embedded implementation is swept.
-    pub shader: String,
-    /// All inputs.
-    pub inputs: u64,
-    /// Inputs of a block.
-    pub block: u64,
+/// What a plan sweeps on an adapter.
+#[must_use]
+pub fn describe(plan: &Plan<'_>, subject: &Subject, profile: &Profile, code: &Code) -> Description {
+    let (from, to, unit, file) = match plan.over {
+        Over::Number { from, to, .. } => {
+            (Some(Exact(from)), Some(Exact(to)), "ULP", format!("{}.wgsl", plan.member.spec.family()))
+        }
+        Over::Bytes => (None, None, "step", super::blend::FILE.into()),
+    };
+    let adapter = &subject.identity;
+    let text = subject.device().map_or_else(|| adapter.driver.clone(), |device| device.source(code, &file));
+    let Span { inputs, block } = plan.span();
+    Description {
+        formula: plan.member.spec.id.clone(),
+        over: plan.over_name(),
+        from,
+        to,
+        fixed: plan.fixed(),
+        output: plan.output_name(),
+        unit: unit.into(),
+        stage: plan.stage.name().into(),
+        adapter: adapter.clone(),
+        profile: profile.name.into(),
+        shader: hash(text.as_bytes()),
+        inputs,
+        block,
+    }
 }
 
-impl Description {
-    /// What a plan sweeps on an adapter.
-    #[must_use]
-    pub fn new(plan: &Plan<'_>, subject: &Subject, profile: &Profile, code: &Code) -> Self {
-        let (from, to, unit, file) = match plan.over {
-            Over::Number { from, to, .. } => {
-                (Some(Exact(from)), Some(Exact(to)), "ULP", format!("{}.wgsl", plan.member.spec.family()))
-            }
-            Over::Bytes => (None, None, "step", super::blend::FILE.into()),
-        };
-        let adapter = &subject.identity;
-        let text = subject.device().map_or_else(|| adapter.driver.clone(), |device| device.source(code, &file));
-        let Span { inputs, block } = plan.span();
-        Self {
-            formula: plan.member.spec.id.clone(),
-            over: plan.over_name(),
-            from,
-            to,
-            fixed: plan.fixed(),
-            output: plan.output_name(),
-            unit: unit.into(),
-            stage: plan.stage.name().into(),
-            adapter: adapter.clone(),
-            profile: profile.name.into(),
-            shader: hash(text.as_bytes()),
-            inputs,
-            block,
+/// Whether a sweep is over the inputs of a plan, to the last bit.
+#[must_use]
+pub fn is_over_inputs_of(sweep: &Description, plan: &Plan<'_>) -> bool {
+    let bits = |x: Option<Exact>| x.map(|Exact(x)| x.to_bits());
+    let ends = match plan.over {
+        Over::Number { from, to, .. } => [Some(from), Some(to)].map(|x| x.map(f32::to_bits)),
+        Over::Bytes => [None, None],
+    };
+    let fixed = plan.fixed();
+    let pairs = || sweep.fixed.iter().zip(&fixed);
+    [bits(sweep.from), bits(sweep.to)] == ends
+        && (&sweep.over, &sweep.output) == (&plan.over_name(), &plan.output_name())
+        && sweep.fixed.len() == fixed.len()
+        && pairs().all(|((name, mine), (other, theirs))| name == other && mine.0.to_bits() == theirs.0.to_bits())
+}
+
+/// A sweep's inputs as options of the command line.
+#[must_use]
+pub fn options(sweep: &Description) -> String {
+    let (Some(Exact(from)), Some(Exact(to))) = (sweep.from, sweep.to) else { return String::new() };
+    let fixed: String = sweep.fixed.iter().map(|(name, Exact(x))| format!(" --set {name}={x}")).collect();
+    format!(" --over {} --from {from} --to {to}{fixed} --output {}", sweep.over, sweep.output)
+}
+
+/// A sweep's inputs in blocks.
+#[must_use]
+pub const fn span(sweep: &Description) -> Span {
+    Span { inputs: sweep.inputs, block: sweep.block }
+}
+
+/// What differs in two sweeps: `density: 0.01 there, 0.02 here`.
+#[must_use]
+pub(super) fn differences(sweep: &Description, other: &Description, [mine, others]: [&str; 2]) -> Vec<String> {
+    let (a, b) = (leaves(sweep), leaves(other));
+    let names = a.iter().chain(&b).map(|(name, _)| name.as_str());
+    let mut seen: Vec<&str> = vec![];
+    for name in names {
+        if !seen.contains(&name) {
+            seen.push(name);
         }
     }
-
-    /// Whether it is over the inputs of a plan, to the last bit.
-    #[must_use]
-    pub fn is_over_inputs_of(&self, plan: &Plan<'_>) -> bool {
-        let bits = |x: Option<Exact>| x.map(|Exact(x)| x.to_bits());
-        let ends = match plan.over {
-            Over::Number { from, to, .. } => [Some(from), Some(to)].map(|x| x.map(f32::to_bits)),
-            Over::Bytes => [None, None],
-        };
-        let fixed = plan.fixed();
-        let pairs = || self.fixed.iter().zip(&fixed);
-        [bits(self.from), bits(self.to)] == ends
-            && (&self.over, &self.output) == (&plan.over_name(), &plan.output_name())
-            && self.fixed.len() == fixed.len()
-            && pairs().all(|((name, mine), (other, theirs))| name == other && mine.0.to_bits() == theirs.0.to_bits())
-    }
-
-    /// Its inputs as options of the command line.
-    #[must_use]
-    pub fn options(&self) -> String {
-        let (Some(Exact(from)), Some(Exact(to))) = (self.from, self.to) else { return String::new() };
-        let fixed: String = self.fixed.iter().map(|(name, Exact(x))| format!(" --set {name}={x}")).collect();
-        format!(" --over {} --from {from} --to {to}{fixed} --output {}", self.over, self.output)
-    }
-
-    /// The inputs in blocks.
-    #[must_use]
-    pub const fn span(&self) -> Span {
-        Span { inputs: self.inputs, block: self.block }
-    }
-
-    /// What differs in another sweep's: `density: 0.01 there, 0.02 here`.
-    #[must_use]
-    pub fn differences(&self, other: &Self, [mine, others]: [&str; 2]) -> Vec<String> {
-        let (a, b) = (leaves(self), leaves(other));
-        let names = a.iter().chain(&b).map(|(name, _)| name.as_str());
-        let mut seen: Vec<&str> = vec![];
-        for name in names {
-            if !seen.contains(&name) {
-                seen.push(name);
-            }
-        }
-        let of = |leaves: &[(String, String)], name: &str| {
-            leaves.iter().find(|(other, _)| other == name).map_or("nothing".to_owned(), |(_, value)| value.clone())
-        };
-        seen.into_iter()
-            .map(|name| (name, of(&a, name), of(&b, name)))
-            .filter(|(_, a, b)| a != b)
-            .map(|(name, a, b)| format!("{name} is {a} {mine} and {b} {others}"))
-            .collect()
-    }
+    let of = |leaves: &[(String, String)], name: &str| {
+        leaves.iter().find(|(other, _)| other == name).map_or("nothing".to_owned(), |(_, value)| value.clone())
+    };
+    seen.into_iter()
+        .map(|name| (name, of(&a, name), of(&b, name)))
+        .filter(|(_, a, b)| a != b)
+        .map(|(name, a, b)| format!("{name} is {a} {mine} and {b} {others}"))
+        .collect()
 }
 
 /// A description's values by name.

@@ -10,11 +10,11 @@
 //! input anywhere between the first and the last: where that one is bounded, so is that of each input. Where it is not, each
 //! input's own is.
 
-use super::statistics::{Exact, Place, Seen, Statistics};
 use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::AnyFormula;
 use lightmeter_document::Number;
+use lightmeter_document::sweep::{Exact, Place, Seen, Statistics};
 use lightmeter_judge::devices::Deviation;
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_scene::along::{Along, float_of};

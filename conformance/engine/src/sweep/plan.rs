@@ -2,9 +2,9 @@
 
 use super::preset::{Free, PRESETS, Preset};
 use super::span::Span;
-use super::statistics::Exact;
 use lightmeter_catalogue::cases::{Domain, Kind, Spec, Stage};
 use lightmeter_catalogue::select::Member;
+use lightmeter_document::sweep::Exact;
 use lightmeter_scene::along::{float_of, key_of};
 
 /// What was asked for; what is missing is the preset's, or follows from the formula.

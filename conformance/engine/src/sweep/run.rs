@@ -1,13 +1,14 @@
 //! The way of a sweep's data: block after block, with the next ones under way on the device while one is judged.
 
 use super::blend::BytesWork;
-use super::document::{DocumentError, SweepDocument};
+use super::description::span;
+use super::file::{self, DocumentError};
 use super::judge::Judge;
 use super::plan::{Over, Plan, input};
-use super::statistics::Statistics;
 use crate::device::{Blocks, Code, DeviceError};
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
+use lightmeter_document::sweep::{Statistics, SweepDocument};
 use lightmeter_scene::along::{Along, key_of};
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -94,7 +95,7 @@ fn drive<W: Work>(
     tell: &mut dyn FnMut(&SweepDocument) -> Result<(), DocumentError>,
 ) -> Result<(), SweepError> {
     let (before, clock) = (document.seconds, Instant::now());
-    let (span, shard) = (document.sweep.span(), document.shard());
+    let (span, shard) = (span(&document.sweep), file::shard(document));
     let mut under_way = VecDeque::new();
     let mut next = document.done;
     while document.done < last {
@@ -173,7 +174,7 @@ impl Work for Embedded<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::{Asked, Description};
+    use crate::sweep::{Asked, describe};
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::{Shard, catalogue};
 
@@ -203,8 +204,8 @@ mod tests {
         let catalogue = catalogue();
         let asked = Asked { from: Some(1.0), to: Some(1.125), ..Asked::default() };
         let plan = Plan::new(&catalogue, "fog/exp", &asked).expect("a plan");
-        let sweep = Description::new(&plan, &Subject::embedded(), &WGSL, &Code::default());
-        let mut document = SweepDocument::new(sweep, Shard::WHOLE);
+        let sweep = describe(&plan, &Subject::embedded(), &WGSL, &Code::default());
+        let mut document = file::begun(sweep, Shard::WHOLE);
         let last = document.blocks;
         let mut told = 0;
         let lost = drive(&mut Lost(0), &mut document, last, &mut |_| {
@@ -213,7 +214,7 @@ mod tests {
         });
         assert!(matches!(lost, Err(SweepError::Device(DeviceError::Failed(_)))), "{lost:?}");
         assert_eq!((document.done, told), (3, 3));
-        let text = document.to_json().expect("JSON");
-        assert_eq!(SweepDocument::parse(&text).expect("it adds up").done, 3);
+        let text = file::to_json(&document).expect("JSON");
+        assert_eq!(file::parse(&text).expect("it adds up").done, 3);
     }
 }

@@ -1,9 +1,8 @@
 //! A sweep's result for people.
 
-use super::document::SweepDocument;
-use super::statistics::{Exact, Place, Seen};
-use lightmeter_document::Number;
-use lightmeter_document::thousands;
+use crate::blend_unit::store::StoreCounts;
+use lightmeter_document::sweep::{self, Exact, Place, Seen, SweepDocument};
+use lightmeter_document::{Number, thousands};
 use std::fmt::{Result, Write};
 
 /// Characters of the longest bar.
@@ -70,7 +69,7 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
         writeln!(out, "deviation  {name} says {} of what is outside the promised bound", thousands(*count))?;
     }
     if let Some(stored) = &found.stored {
-        let (store, share) = stored.counts.likeliest();
+        let (store, share) = likeliest(&stored.counts);
         let model = match (stored.predicted, stored.departing) {
             (0, _) => String::new(),
             (of, departing) => {
@@ -79,7 +78,7 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
         };
         let tiers = stored.tiers.named().map(|(name, count)| format!("{name} {}", percent(count, found.inputs)));
         writeln!(out, "tiers      {}", tiers.join(", "))?;
-        writeln!(out, "stored     {}: {:.2} % of the values that tell{model}", store.name(), 100.0 * share)?;
+        writeln!(out, "stored     {store}: {:.2} % of the values that tell{model}", 100.0 * share)?;
     }
     for (what, seen) in [("worst", &found.worst), ("at limit", &found.nearest_to_limit)] {
         if let Some(seen) = seen {
@@ -95,6 +94,14 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
     bars(document, out)?;
     let mark = if found.failed > 0 { "✗" } else { "✓" };
     writeln!(out, "{mark} {} of {} inputs outside the bound", thousands(found.failed), thousands(found.inputs))
+}
+
+/// The store that most values speak for, by its name, and their share.
+#[must_use]
+pub fn likeliest(counts: &sweep::StoreCounts) -> (&'static str, f64) {
+    let &sweep::StoreCounts { of, as_by, error } = counts;
+    let (store, share) = StoreCounts { of, as_by, error }.likeliest();
+    (store.name(), share)
 }
 
 fn write_seen(document: &SweepDocument, seen: &Seen, rerun: &str, out: &mut impl Write) -> Result {

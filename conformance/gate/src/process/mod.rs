@@ -11,6 +11,7 @@ use super::known::State;
 use super::ledger::Ledger;
 use super::pack;
 use super::plan::{Place, Plan};
+use super::problems::note;
 use running::{Event, Running};
 use serde_json::json;
 use std::collections::{HashMap, VecDeque};
@@ -454,7 +455,7 @@ impl Session<'_> {
                     surplus += 1;
                     self.outcome.lines += 1;
                     let number = self.outcome.lines;
-                    ledger.problems.add("oversized", || format!("line {number}: {}", Unread::TooLong));
+                    note(&mut ledger.problems, "oversized", || format!("line {number}: {}", Unread::TooLong));
                 }
                 Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => break Ended::Crashed,
                 // The next turn tells which time is over.

@@ -2,32 +2,21 @@
 
 use crate::selftest::smallest;
 use lightmeter_catalogue::cases::FAMILIES;
-use lightmeter_document::selftest::Resolution;
-use lightmeter_document::selftest::SceneRecord;
-use lightmeter_document::selftest::{Clean, Finding, Kill, Record};
+use lightmeter_document::selftest::{
+    Clean, Finding, Kill, OffBy, Record, Resolution, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow,
+};
 use lightmeter_faults::calibrate::CASES;
 use lightmeter_faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
-use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
 
-/// What the page needs of that JSON.
-#[derive(Clone, Debug, Deserialize)]
+/// What the page is of.
+#[derive(Clone, Debug)]
 pub struct Run {
-    #[serde(flatten)]
     record: Record,
-    #[serde(default)]
     calibration: Vec<Resolution>,
-    #[serde(default)]
     rows: Vec<UnitRow>,
     scenes: Option<SceneRecord>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-struct UnitRow {
-    fault: String,
-    target: String,
-    finding: String,
 }
 
 impl Run {
@@ -37,11 +26,21 @@ impl Run {
     /// Where it is another document, of the blend unit alone, or of mistakes that this version does not have.
     pub fn read(json: &str) -> Result<Self, String> {
         const EXPECTED: &str = "the JSON of `lightmeter selftest --format json`";
-        let value = super::document(json, "lightmeter.selftest/1", EXPECTED)?;
+        let value = super::document(json, SCHEMA, EXPECTED)?;
         if value["kills"].is_null() {
             return Err("it is of the blend unit alone; expected formulas too".into());
         }
-        let run: Self = serde_json::from_value(value).map_err(|error| format!("not {EXPECTED}: {error}"))?;
+        let document: SelftestDocument =
+            serde_json::from_value(value).map_err(|error| format!("not {EXPECTED}: {error}"))?;
+        let run = Self {
+            record: Record {
+                kills: document.kills.unwrap_or_default(),
+                clean: document.clean.ok_or_else(|| format!("not {EXPECTED}: missing field `clean`"))?,
+            },
+            calibration: document.calibration.unwrap_or_default(),
+            rows: document.rows,
+            scenes: document.scenes,
+        };
         match run.record.kills.iter().find(|kill| Fault::by_name(&kill.fault).is_none()) {
             Some(kill) => Err(format!("no mistake `{}`: the file is of another version", kill.fault)),
             None => Ok(run),
@@ -204,7 +203,7 @@ fn unit(rows: &[UnitRow], out: &mut impl Write) -> Written {
     let mut names: Vec<&str> = vec![];
     for row in rows {
         for (list, name) in [(&mut targets, &row.target), (&mut names, &row.fault)] {
-            if !list.contains(&name.as_str()) {
+            if !list.contains(&name.as_ref()) {
                 list.push(name);
             }
         }
@@ -215,8 +214,9 @@ fn unit(rows: &[UnitRow], out: &mut impl Write) -> Written {
         write!(out, "| {name} |")?;
         for target in &targets {
             let finding = rows.iter().find(|row| row.fault == name && row.target == *target);
-            let word = finding.map_or("", |row| row.finding.as_str());
-            write!(out, " {} |", if word == "not-applicable" { "–" } else { word })?;
+            let word = finding
+                .map_or("", |row| if row.finding == UnitFinding::NotApplicable { "–" } else { row.finding.name() });
+            write!(out, " {word} |")?;
         }
         writeln!(out)?;
     }
@@ -247,7 +247,7 @@ fn resolution(calibration: &[Resolution], out: &mut impl Write) -> Written {
             continue;
         }
         write!(out, "| {} | {name} |", resolution.formula)?;
-        for error in [lightmeter_document::selftest::OffBy::Scale, lightmeter_document::selftest::OffBy::Offset] {
+        for error in [OffBy::Scale, OffBy::Offset] {
             let found = calibration.iter().find(|other| {
                 other.formula == resolution.formula
                     && other.parameter == resolution.parameter

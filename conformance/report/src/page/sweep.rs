@@ -1,10 +1,10 @@
 //! The page on sweeps, made from their results.
 
 use lightmeter_catalogue::select::catalogue;
-use lightmeter_document::Number;
-use lightmeter_document::thousands;
-use lightmeter_engine::sweep::text::{bars, error, margin, rate};
-use lightmeter_engine::sweep::{Asked, Exact, PRESETS, Place, Plan, Seen, SweepDocument};
+use lightmeter_document::sweep::{Exact, Place, Seen, SweepDocument};
+use lightmeter_document::{Number, thousands};
+use lightmeter_engine::sweep::text::{bars, error, likeliest, margin, rate};
+use lightmeter_engine::sweep::{Asked, PRESETS, Plan, is_over_inputs_of, options};
 use std::fmt::{Result, Write};
 
 /// The page in Markdown.
@@ -51,9 +51,9 @@ fn command(result: &SweepDocument) -> String {
     let mut command = sweep.formula.clone();
     let catalogue = catalogue();
     let is_ready_made = PRESETS.iter().any(|preset| preset.formula == sweep.formula)
-        && Plan::new(&catalogue, &sweep.formula, &Asked::default()).is_ok_and(|plan| sweep.is_over_inputs_of(&plan));
+        && Plan::new(&catalogue, &sweep.formula, &Asked::default()).is_ok_and(|plan| is_over_inputs_of(sweep, &plan));
     if !is_ready_made {
-        command += &sweep.options();
+        command += &options(sweep);
     }
     if sweep.stage == "fragment" {
         command += " --stage fragment";
@@ -153,13 +153,13 @@ fn section(result: &SweepDocument, out: &mut impl Write) -> Result {
         writeln!(out, "Deviation *{name}*: {} inputs.", thousands(*count))?;
     }
     if let Some(stored) = &found.stored {
-        let (store, share) = stored.counts.likeliest();
+        let (store, share) = likeliest(&stored.counts);
         let tiers = stored.tiers.named().map(|(name, count)| format!("{name} {}", thousands(count)));
         writeln!(
             out,
             "\nTiers: {}. Stored: {}, {:.2} % of the values that tell.",
             tiers.join(", "),
-            store.name(),
+            store,
             100.0 * share
         )?;
         if stored.predicted > 0 {

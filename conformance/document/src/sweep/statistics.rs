@@ -2,11 +2,10 @@
 //! greatest values with the first input that has them, and the first inputs that fail.
 
 use super::histogram::Histogram;
-use crate::blend_unit::store::StoreCounts;
-use lightmeter_document::Number;
-use lightmeter_document::run::Tiers;
-use lightmeter_scene::along::key_of;
+use crate::Number;
+use crate::run::Tiers;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// Failing inputs that are kept.
@@ -67,12 +66,20 @@ pub enum Place {
 }
 
 impl Place {
-    /// Its number in the order of inputs.
+    /// How it stands to another in the order of inputs: that of floats, −0 before 0; of bytes by alpha, source and destination.
     #[must_use]
-    pub fn order(self) -> u32 {
+    pub fn order(self, other: Self) -> Ordering {
+        match (self, other) {
+            (Self::Float(Exact(a)), Self::Float(Exact(b))) => a.total_cmp(&b),
+            (a, b) => a.bytes().cmp(&b.bytes()),
+        }
+    }
+
+    /// Alpha, source and destination; of a float nothing.
+    const fn bytes(self) -> Option<[u8; 3]> {
         match self {
-            Self::Float(Exact(x)) => key_of(x),
-            Self::Bytes { source, destination, alpha } => u32::from_be_bytes([0, alpha, source, destination]),
+            Self::Float(_) => None,
+            Self::Bytes { source, destination, alpha } => Some([alpha, source, destination]),
         }
     }
 }
@@ -95,6 +102,29 @@ pub struct Seen {
     pub error: Number,
     /// The distance from the reference over the distance to the end of what is legal.
     pub margin: Number,
+}
+
+/// Values that tell the stores of a target of 8 bits apart, by the stores that would have given them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoreCounts {
+    /// How many.
+    pub of: u64,
+    /// How many are as each store would have them: nearest, truncated, ×256 for ×255, rounded up, one step up, one step down.
+    pub as_by: [u64; 6],
+    /// The sum of their distances from the nearest step, with the sign.
+    pub error: f64,
+}
+
+impl StoreCounts {
+    /// Adds another's counts.
+    pub fn add(&mut self, other: &Self) {
+        self.of += other.of;
+        self.error += other.error;
+        for (sum, count) in self.as_by.iter_mut().zip(other.as_by) {
+            *sum += count;
+        }
+    }
 }
 
 /// What the stores of a blend unit came to.
@@ -159,7 +189,7 @@ impl Statistics {
             self.see_margin(seen);
         }
         self.failures.extend(other.failures);
-        self.failures.sort_by_key(|seen| seen.input.order());
+        self.failures.sort_by(|a, b| a.input.order(b.input));
         self.failures.truncate(KEPT);
         if let Some(other) = other.stored {
             let stored = self.stored.get_or_insert_default();
@@ -171,21 +201,21 @@ impl Statistics {
     }
 
     /// Keeps it where its error is the greatest.
-    pub(super) fn see_error(&mut self, seen: Seen) {
+    pub fn see_error(&mut self, seen: Seen) {
         if is_beyond(&seen, self.worst.as_ref(), |seen| seen.error.0) {
             self.worst = Some(seen);
         }
     }
 
     /// Keeps it where its margin is the greatest.
-    pub(super) fn see_margin(&mut self, seen: Seen) {
+    pub fn see_margin(&mut self, seen: Seen) {
         if is_beyond(&seen, self.nearest_to_limit.as_ref(), |seen| seen.margin.0) {
             self.nearest_to_limit = Some(seen);
         }
     }
 
     /// Keeps it where few have failed before; inputs come in order.
-    pub(super) fn see_failure(&mut self, seen: Seen) {
+    pub fn see_failure(&mut self, seen: Seen) {
         if self.failures.len() < KEPT {
             self.failures.push(seen);
         }
@@ -216,16 +246,16 @@ impl Statistics {
 /// Whether it is greater, or as great at an earlier input.
 fn is_beyond(seen: &Seen, most: Option<&Seen>, of: impl Fn(&Seen) -> f64) -> bool {
     most.is_none_or(|most| match of(seen).total_cmp(&of(most)) {
-        std::cmp::Ordering::Equal => seen.input.order() < most.input.order(),
+        Ordering::Equal => seen.input.order(most.input).is_lt(),
         order => order.is_gt(),
     })
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
 
-    pub(in crate::sweep) fn seen(x: f32, error: f64) -> Seen {
+    fn seen(x: f32, error: f64) -> Seen {
         Seen {
             input: Place::Float(Exact(x)),
             value: Exact(1.0),

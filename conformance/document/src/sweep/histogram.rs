@@ -38,7 +38,7 @@ impl Histogram {
     }
 
     /// Counts errors that are 0, in (0, ½] and in (½, 1].
-    pub(super) fn count_near(&mut self, counts: [u64; ONE + 1]) {
+    pub fn count_near(&mut self, counts: [u64; ONE + 1]) {
         for (sum, count) in self.counts.iter_mut().zip(counts) {
             *sum += count;
         }

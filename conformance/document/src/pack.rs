@@ -1,0 +1,97 @@
+//! The manifest of a pack of cases: `lightmeter.pack/1`.
+
+use crate::Word;
+use serde::{Deserialize, Serialize};
+
+/// The schema's name.
+pub const SCHEMA: &str = "lightmeter.pack/1";
+
+/// What chooses the cases: the same of two gates means the same cases.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Choice {
+    /// Globs that match an id or an ancestor of it; all where there are none.
+    pub filter: Vec<String>,
+    /// Random cases for each formula.
+    pub cases: u64,
+    /// What they are drawn from.
+    pub seed: u64,
+    /// Pixels of the longer side of every scene; `None` for the scenes' own.
+    pub size: Option<u32>,
+}
+
+/// What a pack holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// [`SCHEMA`].
+    pub schema: Word,
+    /// The version of what draws the cases: with another one they are others.
+    pub generator: u64,
+    /// The version of lightmeter that wrote it.
+    pub version: Word,
+    /// What chose the cases.
+    #[serde(flatten)]
+    pub choice: Choice,
+    /// The formulas, with their inputs and outputs.
+    pub formulas: Vec<PackedFormula>,
+    /// The scenes.
+    pub scenes: Vec<PackedScene>,
+    /// Each file's bytes and checksum.
+    pub files: Vec<Listed>,
+}
+
+/// A formula of a pack.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PackedFormula {
+    /// Its id.
+    pub id: String,
+    /// It, on a line.
+    pub formula: Word,
+    /// What it takes, in the order of a case's numbers.
+    pub inputs: Vec<PackedValue>,
+    /// What it gives, in the order of an answer's numbers.
+    pub outputs: Vec<PackedValue>,
+    /// How many cases the pack has of it.
+    pub count: usize,
+}
+
+/// An input or an output of a formula.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PackedValue {
+    /// Its name.
+    pub name: Word,
+    /// `scalar`, `vec2`, `vec3`, `vec4`, `mat3` or `mat4`; matrices are column by column.
+    pub shape: Word,
+    /// Its unit.
+    pub unit: Word,
+}
+
+/// A scene of a pack.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PackedScene {
+    /// Its id.
+    pub id: String,
+    /// What it shows.
+    pub title: String,
+    /// Its file within the pack.
+    pub file: String,
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+    /// The format of the target that it is drawn on.
+    pub format: Word,
+}
+
+/// A file of a pack.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Listed {
+    /// Its name within the pack.
+    pub name: String,
+    /// Its length.
+    pub bytes: u64,
+    /// Its CRC-32, as 8 digits of base 16.
+    pub crc32: String,
+}
