@@ -1,7 +1,7 @@
 //! The certificate of the reference and of the intervals: it holds, the page is the present one, and each of its checks
 //! fails where it should.
 
-use lightmeter::cases::{Formula, Input, Kind, Output, Reader, Spec, Writer, place};
+use lightmeter::cases::{Formula, Input, Kind, Output, Reader, Spec, Writer, slot};
 use lightmeter::select::catalogue;
 use lightmeter_reference::Real;
 use lightmeter_tests::certificate::{CASES, EXCEPTIONS, Finding, certify, certify_one, groups, page, problems};
@@ -81,7 +81,7 @@ impl Formula for Wrong {
     }
 
     fn evaluate<R: Real>(&self, inputs: &Reader<'_, R>, out: &mut Writer<'_, R>) {
-        let [x, ..]: [R; 3] = inputs.at(const { place(INPUTS, "x") });
+        let [x, ..]: [R; 3] = inputs.at(const { slot(INPUTS, "x") });
         let number = R::literal;
         let is = |name: &str| type_name::<R>().contains(name);
         let (f64_alone, f64_too) = (type_name::<R>() == "f64", type_name::<R>() == "f64" || is("Running"));

@@ -125,13 +125,8 @@ fn name_of(file: &Path) -> String {
 }
 
 /// Packages whose files still import each other in a circle.
-const IN_CIRCLES: [&str; 5] = [
-    "lightmeter-catalogue",
-    "lightmeter-engine",
-    "lightmeter-faults",
-    "lightmeter-gate",
-    "lightmeter-judge",
-];
+const IN_CIRCLES: [&str; 5] =
+    ["lightmeter-catalogue", "lightmeter-engine", "lightmeter-faults", "lightmeter-gate", "lightmeter-judge"];
 
 /// A module and its descendants may import each other; other files import one way.
 #[test]

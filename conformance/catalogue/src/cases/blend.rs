@@ -10,7 +10,7 @@ pub use separate::{Samples, covering_array, separate_of};
 
 use super::Visitor;
 use super::formula::{AnyFormula, Formula, bind, formula};
-use super::rows::{Reader, Writer, place};
+use super::rows::{Reader, Writer, slot};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
 use lightmeter_reference::blend::{
     Mode, Operands, Saturate, alpha_clamped, blend, blend_separate, layers, masked, opacity_of_layers,
@@ -259,7 +259,7 @@ impl Formula for Layered {
 
     fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
         bind!(x, LAYER_INPUTS => dst, count);
-        let sources = x.at(const { place(LAYER_INPUTS, "src-1").through(place(LAYER_INPUTS, "src-16")) });
+        let sources = x.at(const { slot(LAYER_INPUTS, "src-1").through(slot(LAYER_INPUTS, "src-16")) });
         out.vector(layers::<R, MOST_LAYERS>(self.1, count, sources, dst));
     }
 }

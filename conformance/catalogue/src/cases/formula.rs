@@ -223,7 +223,7 @@ impl dyn AnyFormula + '_ {
 #[macro_export]
 macro_rules! bind {
     ($x:ident, $inputs:expr => $($name:ident),+) => {
-        $(let $name = $x.at(const { $crate::cases::place($inputs, stringify!($name)) });)+
+        $(let $name = $x.at(const { $crate::cases::slot($inputs, stringify!($name)) });)+
     };
 }
 pub use bind;

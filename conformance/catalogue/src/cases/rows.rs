@@ -5,12 +5,12 @@ use lightmeter_reference::{Mat3, Mat4, Real, Vector};
 
 /// Where an input stands in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct Slot {
     start: usize,
     len: usize,
 }
 
-impl Place {
+impl Slot {
     /// From this input to a later one, both included.
     #[must_use]
     pub const fn through(self, last: Self) -> Self {
@@ -18,17 +18,17 @@ impl Place {
     }
 }
 
-/// The place of an input, by its name. It is asked for in `const { … }`, so that an evaluation looks nothing up.
+/// The slot of an input, by its name. It is asked for in `const { … }`, so that an evaluation looks nothing up.
 ///
 /// # Panics
 /// Where no input has the name: in `const { … }` an error of compilation.
 #[must_use]
-pub const fn place(inputs: &[Input], name: &str) -> Place {
+pub const fn slot(inputs: &[Input], name: &str) -> Slot {
     let (mut start, mut k) = (0, 0);
     while k < inputs.len() {
         let len = inputs[k].shape.components();
         if is_same(inputs[k].name.as_bytes(), name.as_bytes()) {
-            return Place { start, len };
+            return Slot { start, len };
         }
         start += len;
         k += 1;
@@ -106,13 +106,13 @@ impl<'a, R: Real> Reader<'a, R> {
         Self { row }
     }
 
-    /// The input, or the inputs, at a place.
+    /// The input, or the inputs, in a slot.
     ///
     /// # Panics
     /// Where that is beyond the row, or of another shape than is asked for.
     #[must_use]
-    pub fn at<T: FromNumbers<R>>(&self, place: Place) -> T {
-        T::from_numbers(&self.row[place.start..place.start + place.len])
+    pub fn at<T: FromNumbers<R>>(&self, slot: Slot) -> T {
+        T::from_numbers(&self.row[slot.start..slot.start + slot.len])
     }
 }
 
