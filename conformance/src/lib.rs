@@ -11,7 +11,7 @@ pub use lightmeter_engine::{
 pub use lightmeter_faults as faults;
 pub use lightmeter_gate as gate;
 pub use lightmeter_judge as judge;
-pub use lightmeter_judge::{devices, tally};
+pub use lightmeter_judge::{devices, formula, tally};
 pub use lightmeter_report as report;
 pub use lightmeter_subject_gpu as subject_gpu;
 pub use lightmeter_subject_gpu::adapters;

@@ -6,15 +6,15 @@ use crate::filter::Filter;
 use lightmeter_scene::blend::Separate;
 use std::num::NonZeroU64;
 
-/// A case of a formula.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// A case of a formula, in the order in which a run takes them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum CaseRef {
-    /// The k-th random case.
-    Random(u64),
     /// A named hard case, by its place in the description.
     Hard(usize),
     /// The k-th case within a few ULP of a named one.
     Near(usize, u64),
+    /// The k-th random case.
+    Random(u64),
 }
 
 /// Cases near each hard one.

@@ -8,7 +8,7 @@ use lightmeter_catalogue::cases::blend::Samples;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
 use lightmeter_document::run::Report;
-use lightmeter_judge::tally::Judging;
+use lightmeter_judge::formula::Judging;
 use lightmeter_scene::target::TargetFormat;
 use std::path::{Path, PathBuf};
 

@@ -21,9 +21,8 @@ use lightmeter_document::Number;
 use lightmeter_document::run::{BlendPromise, Group, Interrupted, Report, Totals};
 use lightmeter_judge::blend_unit::policy::{PROMISES, Promise};
 use lightmeter_judge::chunk::{self, Chunk};
+use lightmeter_judge::formula::{RowPlace, RowTally, judge_chunk};
 use lightmeter_judge::stability::UNSTABLE;
-use lightmeter_judge::tally;
-use lightmeter_judge::tally::{Tally, judge_chunk, reported};
 use lightmeter_scene::blend::Equation;
 use std::time::Instant;
 
@@ -194,8 +193,8 @@ fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
 struct RowRun {
     /// The stages of each subject.
     compiled: Vec<Compiled>,
-    /// What each of them has come to.
-    tallies: Vec<Vec<Tally>>,
+    /// What each of them has come to, and in how many seconds.
+    tallies: Vec<Vec<(RowTally, f64)>>,
 }
 
 /// A job of a stage, and how long it took to hand it over; `None` where the stage is skipped.
@@ -237,7 +236,7 @@ fn run_rows(
         run.judge(subjects, &chunk, jobs, options, report)?;
         progress.advance(next.len() as u64);
     }
-    run.finish(members[0], subjects, report);
+    run.finish(members, subjects, report);
     Ok(())
 }
 
@@ -245,7 +244,7 @@ impl RowRun {
     fn new(member: &Member, subjects: &mut [Subject], options: &Options) -> Result<Self, DeviceError> {
         let compile = |subject: &mut Subject| subject.compile(&options.code, member);
         let compiled: Vec<Compiled> = subjects.iter_mut().map(compile).collect::<Result<_, _>>()?;
-        let blank = |compiled: &Compiled| compiled.stages.iter().map(|_| Tally::default()).collect();
+        let blank = |compiled: &Compiled| vec![(RowTally::default(), 0.0); compiled.stages.len()];
         Ok(Self { tallies: compiled.iter().map(blank).collect(), compiled })
     }
 
@@ -273,7 +272,7 @@ impl RowRun {
     ) -> Result<(), DeviceError> {
         let (mut jobs, cases) = (jobs.into_iter(), chunk.cases.len() as u64);
         for ((subject, compiled), tallies) in subjects.iter().zip(&self.compiled).zip(&mut self.tallies) {
-            for ((stage, work), tally) in compiled.stages.iter().zip(tallies) {
+            for ((stage, work), (tally, seconds)) in compiled.stages.iter().zip(tallies) {
                 let (Some((Some(job), submitting)), Ok(work)) = (jobs.next(), work) else {
                     tally.totals.cases += cases;
                     tally.totals.skipped += cases;
@@ -284,33 +283,34 @@ impl RowRun {
                 let waiting = clock.elapsed().as_secs_f64();
                 report.timing.devices += waiting;
                 let clock = Instant::now();
-                tally.merge(judge_chunk(chunk, &words, *stage, &options.judging(subject)));
+                tally.add(judge_chunk(chunk, &words, *stage, &options.judging(subject)));
                 report.timing.judge += clock.elapsed().as_secs_f64();
-                tally.seconds += submitting + waiting + clock.elapsed().as_secs_f64();
+                *seconds += submitting + waiting + clock.elapsed().as_secs_f64();
             }
         }
         Ok(())
     }
 
     /// Adds a group for each stage of each subject to the report.
-    fn finish(self, member: &Member, subjects: &[Subject], report: &mut Report) {
+    fn finish(self, members: &[&Member], subjects: &[Subject], report: &mut Report) {
         for ((subject, compiled), tallies) in subjects.iter().zip(self.compiled).zip(self.tallies) {
-            for ((stage, work), tally) in compiled.stages.into_iter().zip(tallies) {
+            for ((stage, work), (tally, seconds)) in compiled.stages.into_iter().zip(tallies) {
                 for (name, excused) in &tally.excused {
                     report.excuse(name, &subject.identity.name, *excused);
                 }
-                report.failures.extend(reported(tally.simplest, tally.failures));
-                let problem = tally::problem(tally.random, tally.totals.verdicts, tally.totals.indeterminate);
+                let problem = tally.problem();
+                let name_of = |place: RowPlace| members[place.member].case_id(place.case);
                 report.groups.push(Group {
                     totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
-                    error_ulp_max: Number(tally.error_ulp_max),
+                    error_ulp_max: Number(tally.error_max),
                     margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
-                    seconds: tally.seconds,
-                    worst: tally.worst.map(|(_, id)| id),
+                    seconds,
+                    worst: tally.worst.map(|(_, place)| name_of(place)),
                     skip_reason: work.err().map(Into::into),
                     problem,
-                    ..Group::new(member.spec.group().into(), subject.identity.name.clone(), stage.name())
+                    ..Group::new(members[0].spec.group().into(), subject.identity.name.clone(), stage.name())
                 });
+                report.failures.extend(tally.reported());
             }
         }
     }

@@ -52,7 +52,7 @@ enum Judged {
     Problem(&'static str, String),
     Skip(Place, String),
     Error(Place, String),
-    Case { formula: usize, case: usize, digest: u32, verdicts: Verdicts, values: Vec<f32>, inputs: Vec<f32> },
+    Case { formula: usize, case: usize, digest: u32, verdicts: Box<Verdicts>, values: Vec<f32>, inputs: Vec<f32> },
     Image(usize, String),
 }
 
@@ -102,7 +102,7 @@ impl<'a> Ledger<'a> {
     /// Counts what was asked and never answered.
     pub fn close(&mut self) {
         for tally in &mut self.tallies {
-            tally.missing = tally.asked.saturating_sub(tally.answered + tally.skipped + tally.unjudged);
+            tally.missing = tally.asked.saturating_sub(tally.answered() + tally.skipped + tally.unjudged);
         }
     }
 
@@ -250,7 +250,7 @@ impl<'a> Ledger<'a> {
         }
         let (verdicts, inputs) = verdict::values(self.plan, formula, case, &values, &self.profile);
         let digest = digest(values.iter().map(|value| u64::from(value.to_bits())));
-        Judged::Case { formula, case, digest, verdicts, values, inputs }
+        Judged::Case { formula, case, digest, verdicts: Box::new(verdicts), values, inputs }
     }
 
     fn count(&mut self, judged: Judged, folder: &Path) {
@@ -264,19 +264,18 @@ impl<'a> Ledger<'a> {
             Judged::Error(place, message) => self.fail(place, State::Unjudged, &message),
             Judged::Case { formula, case, digest, verdicts, values, inputs } => {
                 let place = Place::Case { formula, case };
-                let has_failed = verdicts.failed > 0;
+                let has_failed = verdicts.tally.totals.failed > 0;
                 let state = if has_failed { State::Failed } else { State::Passed };
                 if !self.is_first(place, state, digest) {
                     return;
                 }
                 let is_expected = self.expect(place, has_failed);
                 let (plan, profile) = (self.plan, self.profile);
-                let is_random = plan.formulas[formula].is_random(case);
                 let tally = self.tally(place);
-                tally.values(place, is_random, verdicts);
+                tally.values(*verdicts);
                 tally.expected += u64::from(is_expected);
                 if has_failed {
-                    tally.failure(|| verdict::failure(plan, formula, case, &values, &profile));
+                    tally.verdicts.fail_in_turn(place, || verdict::failure(plan, formula, case, &values, &profile));
                 }
                 tally.keep(case, &values, &inputs, has_failed);
             }
@@ -332,7 +331,7 @@ impl<'a> Ledger<'a> {
         tally.failed += 1;
         tally.unjudged += 1;
         tally.expected += u64::from(is_expected);
-        tally.failure(|| verdict::unjudged(id, clipped(message)));
+        tally.verdicts.fail_in_turn(place, || verdict::unjudged(id, clipped(message)));
     }
 
     fn image(&mut self, scene: usize, file: &str, folder: &Path) {
@@ -352,26 +351,19 @@ impl<'a> Ledger<'a> {
             return;
         }
         let found = picture::judge(&image, &frame, &self.profile);
-        let state = if found.failed > 0 { State::Failed } else { State::Passed };
+        let state = if found.totals.failed > 0 { State::Failed } else { State::Passed };
         if !self.is_first(place, state, digest) {
             return;
         }
         let id = self.plan.id(place);
-        let is_expected = self.expect(place, found.failed > 0);
+        let is_expected = self.expect(place, found.totals.failed > 0);
         let tally = self.tally(place);
-        tally.answered += 1;
+        tally.image(place, &found);
         tally.expected += u64::from(is_expected);
-        tally.verdicts += found.verdicts;
-        tally.indeterminate += found.indeterminate;
-        (tally.error_max, tally.margin_max) = (found.error_max, found.margin_max);
-        tally.worst = Some(place);
-        tally.diagnosis.clone_from(&found.diagnosis);
-        if found.failed == 0 {
-            tally.error_passing = found.error_max;
+        if found.totals.failed == 0 {
             return;
         }
-        tally.failed += 1;
-        tally.failure(|| GateFailure {
+        tally.verdicts.fail_in_turn(place, || GateFailure {
             id: format!("{id}/{}", found.worst),
             inputs: vec![],
             reference: found.reference.map(Number).to_vec(),
@@ -380,7 +372,7 @@ impl<'a> Ledger<'a> {
             error_ulp: Number(found.error_max),
             problem: Some(format!(
                 "{} of {} components of pixels are outside of what is legal",
-                found.failed, found.verdicts
+                found.totals.failed, found.totals.verdicts
             )),
         });
     }

@@ -3,6 +3,7 @@
 use super::ledger::digest;
 use image::{DynamicImage, ImageReader};
 use lightmeter_arithmetic::Profile;
+use lightmeter_document::run::Totals;
 use lightmeter_faults::scene::Trial;
 use lightmeter_judge::blend_unit::pixel;
 use lightmeter_judge::image::expect;
@@ -22,12 +23,8 @@ const WHOLE: f64 = 1e-3;
 
 /// How an image compares.
 pub struct Found {
-    /// Components that were judged.
-    pub verdicts: u64,
-    /// Of them, those outside.
-    pub failed: u64,
-    /// Of them, those where anything is legal.
-    pub indeterminate: u64,
+    /// Verdicts on components.
+    pub totals: Totals,
     /// The largest error: ULP on float targets, steps on those of 8 bits.
     pub error_max: f64,
     /// The largest margin.
@@ -196,20 +193,18 @@ pub fn judge(image: &Stored, frame: &Frame, profile: &Profile) -> Found {
     let expected = expect(frame, None, None, profile);
     let all: Vec<usize> = (0..image.pixels.len()).collect();
     let judged = judge::judge(image, &reference, &expected, &all);
-    let failed = judged.misses.len() as u64;
-    let worst = judged.misses.iter().max_by(|a, b| a.margin.total_cmp(&b.margin)).copied().or(judged.worst);
+    let worst = judged.misses.iter().max_by(|a, b| a.margin.total_cmp(&b.margin)).copied().or(judged.worst());
     let pixel = worst.map_or(0, |worst| worst.pixel);
     Found {
-        verdicts: judged.passed + judged.indeterminate + failed,
-        failed,
-        indeterminate: judged.indeterminate,
-        error_max: judged.error_max,
+        totals: judged.verdicts.totals,
+        error_max: judged.verdicts.error_max,
         margin_max: worst.map_or(0.0, |worst| worst.margin),
         worst: format!("{}-{}", pixel % image.width, pixel / image.width),
         reference: reference.pixels[pixel],
         interval: std::array::from_fn(|k| [expected[pixel].low[k], expected[pixel].high[k]]),
         value: image.pixels[pixel],
-        diagnosis: (failed > 0).then(|| Trial::new(frame, image, &expected, profile).diagnose().sentence),
+        diagnosis: (!judged.misses.is_empty())
+            .then(|| Trial::new(frame, image, &expected, profile).diagnose().sentence),
     }
 }
 

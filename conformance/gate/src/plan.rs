@@ -37,7 +37,7 @@ pub struct Formula {
 }
 
 /// A case of the plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Place {
     /// The formula's place among the plan's, and the case's among its own.
     Case {

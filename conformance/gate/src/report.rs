@@ -32,14 +32,14 @@ pub fn report(ledger: &mut Ledger<'_>, outcome: Ending, command: String, seconds
         totals.expected_failures += tally.expected;
         totals.skipped += tally.skipped;
         totals.missing += tally.missing;
-        totals.verdicts += tally.verdicts;
-        totals.indeterminate += tally.indeterminate;
-        totals.passed += tally.answered - (tally.failed - tally.unjudged);
+        totals.verdicts += tally.verdicts.totals.verdicts;
+        totals.indeterminate += tally.verdicts.totals.indeterminate;
+        totals.passed += tally.answered() - (tally.failed - tally.unjudged);
         if tally.undeclared.is_some() {
             totals.not_asked += plan.formulas.get(k).map_or(1, |formula| formula.count() as u64);
         }
         // The smallest is there whatever else has no room.
-        let rest = tally.failures.iter().filter(|one| smallest.as_ref().is_none_or(|own| own.id != one.id));
+        let rest = tally.verdicts.failures.values().filter(|one| smallest.as_ref().is_none_or(|own| own.id != one.id));
         let room = MOST_FAILURES.saturating_sub(failures.len());
         failures.extend(smallest.iter().chain(rest.take(room)).cloned());
         groups.push(group);
@@ -82,7 +82,7 @@ impl Told {
         if k >= plan.formulas.len() {
             return Self {
                 diagnosis: tally.diagnosis.clone(),
-                smallest: tally.failures.first().cloned(),
+                smallest: tally.verdicts.failures.values().next().cloned(),
                 ..Self::default()
             };
         }
@@ -126,7 +126,7 @@ fn group(ledger: &Ledger<'_>, k: usize, tally: &AnswerTally) -> (GateGroup, Opti
     } else {
         plan.id(Place::Scene(k - plan.formulas.len()))
     };
-    let [random, indeterminate] = tally.random;
+    let (random, indeterminate) = tally.verdicts.random;
     #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
     let ratio = |part: f64, whole: u64| if whole == 0 { 0.0 } else { part / whole as f64 };
     #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
@@ -144,13 +144,13 @@ fn group(ledger: &Ledger<'_>, k: usize, tally: &AnswerTally) -> (GateGroup, Opti
         expected_failures: tally.expected,
         skipped: tally.skipped,
         missing: tally.missing,
-        verdicts: tally.verdicts,
-        indeterminate: tally.indeterminate,
-        error_max: Number(tally.error_max),
+        verdicts: tally.verdicts.totals.verdicts,
+        indeterminate: tally.verdicts.totals.indeterminate,
+        error_max: Number(tally.verdicts.error_max),
         error_passing: Number(tally.error_passing),
         error_mean: Number(ratio(tally.errors.0, tally.errors.1)),
-        margin_max: Number(tally.margin_max),
-        worst: tally.worst.map(|place| plan.id(place)),
+        margin_max: Number(tally.verdicts.worst.map_or(0.0, |(margin, _)| margin)),
+        worst: tally.verdicts.worst.map(|(_, place)| plan.id(place)),
         not_passed,
         reason,
         problem: problem.or(told.systematic),

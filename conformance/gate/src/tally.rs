@@ -1,13 +1,14 @@
 //! What became of the cases of a formula, or of a scene.
 
+use super::picture::Found;
 use super::plan::Place;
 use super::verdict::Verdicts;
 use lightmeter_document::gate::GateFailure;
+use lightmeter_document::run::Totals;
 use lightmeter_faults::LEAST_VALUES;
-use lightmeter_judge::{is_worse, simplicity, worse};
+use lightmeter_judge::tally::Tally;
+use lightmeter_judge::{simplicity, worse};
 
-/// Failures that are kept with their numbers, of each formula.
-const KEPT: usize = 16;
 /// Failing rows that are kept of each formula, for the diagnosis.
 const KEPT_FAILING: usize = 2048;
 /// Values that are kept of passing rows, for the group verdict. Half as many are left where the sample gets thinner.
@@ -18,30 +19,19 @@ const KEPT_REASONS: usize = 16;
 /// Counts of cases, but for the verdicts, which are of scalars.
 #[derive(Clone, Debug, Default)]
 pub struct AnswerTally {
+    /// Verdicts on the cases that were answered with values or an image; errors in ULP of binary32, of a scene in its
+    /// target's. Its failures are of cases, whether what was answered could be judged or not.
+    pub verdicts: Tally<Place, GateFailure>,
     /// Cases that were asked for.
     pub asked: u64,
-    /// Cases that were answered with values or an image.
-    pub answered: u64,
     /// Cases that the renderer does not do.
     pub skipped: u64,
     /// Cases that failed: a value outside, an answer of a wrong form, an error.
     pub failed: u64,
-    /// Verdicts.
-    pub verdicts: u64,
-    /// Of them, those where anything is legal.
-    pub indeterminate: u64,
-    /// The largest error in ULP of binary32, of a scene in its target's.
-    pub error_max: f64,
-    /// The largest of a case that passes.
+    /// The largest error of a case that passes.
     pub error_passing: f64,
     /// The sum of the errors of cases that pass, and how many there are.
     pub errors: (f64, u64),
-    /// The largest margin.
-    pub margin_max: f64,
-    /// The place of the case that it is of.
-    pub worst: Option<Place>,
-    /// The first failures.
-    pub failures: Vec<GateFailure>,
     /// Why cases were skipped, each reason once.
     pub reasons: Vec<String>,
     /// Rows that fail and rows that do not, for the diagnosis.
@@ -54,8 +44,6 @@ pub struct AnswerTally {
     pub unjudged: u64,
     /// Failed cases that are expected to.
     pub expected: u64,
-    /// Verdicts on random cases, and of them those where anything is legal.
-    pub random: [u64; 2],
     /// What explains the failures of a scene.
     pub diagnosis: Option<String>,
     /// Why nothing was asked of it.
@@ -128,23 +116,35 @@ impl Sample {
 }
 
 impl AnswerTally {
+    /// Cases that were answered with values or an image.
+    #[must_use]
+    pub const fn answered(&self) -> u64 {
+        self.verdicts.totals.cases
+    }
+
     /// Counts an answer with values.
-    pub(super) fn values(&mut self, place: Place, is_random: bool, verdicts: Verdicts) {
-        self.answered += 1;
-        self.verdicts += verdicts.all;
-        self.indeterminate += verdicts.indeterminate;
-        if is_random {
-            self.random = [self.random[0] + verdicts.all, self.random[1] + verdicts.indeterminate];
-        }
-        self.error_max = worse(self.error_max, verdicts.error);
-        if self.worst.is_none() || is_worse(verdicts.margin, self.margin_max) {
-            (self.margin_max, self.worst) = (verdicts.margin, Some(place));
-        }
-        if verdicts.failed > 0 {
+    pub(super) fn values(&mut self, verdicts: Verdicts) {
+        let Verdicts { tally, errors } = verdicts;
+        if tally.totals.failed > 0 {
             self.failed += 1;
         } else {
-            self.error_passing = worse(self.error_passing, verdicts.error);
-            self.errors = (self.errors.0 + verdicts.errors.0, self.errors.1 + verdicts.errors.1);
+            self.error_passing = worse(self.error_passing, tally.error_max);
+            self.errors = (self.errors.0 + errors.0, self.errors.1 + errors.1);
+        }
+        self.verdicts.add(tally);
+    }
+
+    /// Counts an answer with an image.
+    pub(super) fn image(&mut self, place: Place, found: &Found) {
+        let Totals { verdicts, failed, indeterminate, .. } = found.totals;
+        self.verdicts.totals.add(&Totals { cases: 1, verdicts, failed, indeterminate, ..Totals::default() });
+        self.verdicts.see_error(found.error_max);
+        self.verdicts.see_margin(found.margin_max, place);
+        self.diagnosis.clone_from(&found.diagnosis);
+        if failed > 0 {
+            self.failed += 1;
+        } else {
+            self.error_passing = found.error_max;
         }
     }
 
@@ -157,13 +157,6 @@ impl AnswerTally {
             }
         }
         self.rows[usize::from(!has_failed)].push(case, values);
-    }
-
-    /// Keeps a failure, where there is room.
-    pub(super) fn failure(&mut self, failure: impl FnOnce() -> GateFailure) {
-        if self.failures.len() < KEPT {
-            self.failures.push(failure());
-        }
     }
 
     /// Counts a skip.

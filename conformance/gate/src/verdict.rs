@@ -4,21 +4,14 @@ use super::plan::{Place, Plan};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_document::Number;
 use lightmeter_document::gate::GateFailure;
-use lightmeter_judge::{Outcome, Verdict, judge, worse};
+use lightmeter_judge::tally::Tally;
+use lightmeter_judge::{Outcome, Verdict, judge};
 
 /// The verdicts of a case together.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Verdicts {
-    /// Scalars judged.
-    pub all: u64,
-    /// Of them, those outside of what is legal.
-    pub failed: u64,
-    /// Of them, those where anything is legal.
-    pub indeterminate: u64,
-    /// The largest error in ULP, where something is promised.
-    pub error: f64,
-    /// The largest margin.
-    pub margin: f64,
+    /// On its scalars; errors in ULP.
+    pub tally: Tally<Place, GateFailure>,
     /// The sum of the finite errors, and how many there are.
     pub errors: (f64, u64),
 }
@@ -41,26 +34,21 @@ impl ExpectedCase {
         Self { inputs, reference, legal }
     }
 
-    fn judge(&self, values: &[f32]) -> Verdicts {
-        let mut all = Verdicts::default();
+    fn judge(&self, values: &[f32], place: Place, is_random: bool) -> Verdicts {
+        let mut verdicts = Verdicts::default();
+        verdicts.tally.totals.cases = 1;
         for (k, value) in values.iter().enumerate() {
-            let Verdict { outcome, error: error_ulp, margin } =
-                judge(value.to_bits(), self.reference[k], &self.legal[k]);
-            all.all += 1;
-            match outcome {
-                Outcome::Indeterminate => all.indeterminate += 1,
-                Outcome::Fail => all.failed += 1,
-                Outcome::Pass => {}
-            }
+            let Verdict { outcome, error, margin } = judge(value.to_bits(), self.reference[k], &self.legal[k]);
+            verdicts.tally.count(outcome, None, is_random);
             if outcome != Outcome::Indeterminate {
-                all.error = worse(all.error, error_ulp);
-                all.margin = worse(all.margin, margin);
-                if error_ulp.is_finite() {
-                    all.errors = (all.errors.0 + error_ulp, all.errors.1 + 1);
+                verdicts.tally.see_error(error);
+                verdicts.tally.see_margin(margin, place);
+                if error.is_finite() {
+                    verdicts.errors = (verdicts.errors.0 + error, verdicts.errors.1 + 1);
                 }
             }
         }
-        all
+        verdicts
     }
 }
 
@@ -68,17 +56,19 @@ impl ExpectedCase {
 #[must_use]
 pub fn values(plan: &Plan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> (Verdicts, Vec<f32>) {
     let expected = ExpectedCase::new(plan, formula, case, profile);
-    (expected.judge(values), expected.inputs)
+    let is_random = plan.formulas[formula].is_random(case);
+    (expected.judge(values, Place::Case { formula, case }, is_random), expected.inputs)
 }
 
 /// A case whose values are wrong.
 #[must_use]
 pub fn failure(plan: &Plan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> GateFailure {
     let expected = ExpectedCase::new(plan, formula, case, profile);
-    let error = expected.judge(values).error;
+    let place = Place::Case { formula, case };
+    let error = expected.judge(values, place, false).tally.error_max;
     let narrow = |numbers: &[f32]| numbers.iter().map(|&x| Number(x.into())).collect();
     GateFailure {
-        id: plan.id(Place::Case { formula, case }),
+        id: plan.id(place),
         inputs: narrow(&expected.inputs),
         reference: expected.reference.into_iter().map(Number).collect(),
         interval: expected.legal.iter().map(|legal| [Number(legal.low()), Number(legal.high())]).collect(),

@@ -1,9 +1,11 @@
 //! What is legal, and what an answer is worth. Here a single verdict: a value against the reference and the interval of legal values.
-//! `tally` has the verdicts on the cases of formulas, `blend_unit` and `image` those on pixels, `devices` what is known of drivers.
+//! `formula` has the verdicts on the cases of formulas, `blend_unit` and `image` those on pixels, `tally` what they come to, `devices` what
+//! is known of drivers.
 
 pub mod blend_unit;
 pub mod chunk;
 pub mod devices;
+pub mod formula;
 pub mod image;
 pub mod special;
 pub mod stability;

@@ -9,7 +9,7 @@ use crate::subject::Subject;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
-use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Totals};
+use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Tiers, Totals};
 use lightmeter_judge::blend_unit::expect::expect;
 use lightmeter_judge::blend_unit::model::Model;
 use lightmeter_judge::blend_unit::pixel::{self, Units};
@@ -17,8 +17,9 @@ use lightmeter_judge::blend_unit::policy;
 use lightmeter_judge::blend_unit::rules::Rules;
 use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts};
 use lightmeter_judge::blend_unit::tally::{DrawnState, Sample, UnitTally, explain};
-use lightmeter_judge::tally::{KEPT_FAILURES, by_name, keep_simplest, reported};
-use lightmeter_judge::{Outcome, is_worse, worse};
+use lightmeter_judge::formula::by_name;
+use lightmeter_judge::tally::Tally;
+use lightmeter_judge::{Outcome, worse};
 use lightmeter_scene::target::{Encoding, TargetFormat};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -31,21 +32,24 @@ pub(super) struct UnitStanding {
     pub(super) target: TargetFormat,
     /// Why nothing is drawn.
     lacks: Option<&'static str>,
-    tally: UnitTally,
-    worst: Option<(f64, String)>,
+    /// Verdicts by the number of the piece that was drawn, the place of the case in it, and the case's id.
+    verdicts: Tally<(usize, usize, String), Failure>,
+    /// Pieces that were drawn.
+    pieces: usize,
+    tiers: Tiers,
+    /// What the values of each component say of how they are stored.
+    stores: [StoreCounts; 4],
+    /// Values that a declared model predicts, and how many are another.
+    model: (u64, u64),
     departure: Option<String>,
-    failures: Vec<Failure>,
-    simplest: Option<(u32, Failure)>,
     samples: Vec<Sample>,
     rows: Vec<BlendState>,
     /// For each row, what its values say of how they are stored.
-    stores: Vec<[StoreCounts; 4]>,
+    row_stores: Vec<[StoreCounts; 4]>,
     special: Vec<SpecialUse>,
     skipped: u64,
     seconds: f64,
     seconds_warm: Option<f64>,
-    /// Verdicts of drawn cases and of those the indeterminate ones.
-    random: (u64, u64),
 }
 
 /// The model that a subject is known to follow bit for bit on a target.
@@ -58,19 +62,19 @@ impl UnitStanding {
         Self {
             target,
             lacks,
-            tally: UnitTally::default(),
-            worst: None,
+            verdicts: Tally::default(),
+            pieces: 0,
+            tiers: Tiers::default(),
+            stores: <[StoreCounts; 4]>::default(),
+            model: (0, 0),
             departure: None,
-            failures: vec![],
-            simplest: None,
             samples: vec![],
             rows: vec![],
-            stores: vec![],
+            row_stores: vec![],
             special: vec![],
             skipped: 0,
             seconds: 0.0,
             seconds_warm: None,
-            random: (0, 0),
         }
     }
 
@@ -118,10 +122,10 @@ impl UnitStanding {
                 self.skipped += chunk.cases[k].len() as u64;
                 continue;
             };
-            row.cases += tally.cases;
-            row.failed += tally.failed;
-            row.error_max = Number(worse(row.error_max.0, tally.error_max));
-            self.stores[place].iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
+            row.cases += tally.verdicts.totals.cases;
+            row.failed += tally.verdicts.totals.failed;
+            row.error_max = Number(worse(row.error_max.0, tally.verdicts.error_max));
+            self.row_stores[place].iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
             if target.is_unorm() {
                 row.tiers.get_or_insert_default().add(&tally.tiers);
             }
@@ -150,7 +154,7 @@ impl UnitStanding {
             tiers: None,
             skip_reason: skip_reason.map(Into::into),
         });
-        self.stores.push(<[StoreCounts; 4]>::default());
+        self.row_stores.push(<[StoreCounts; 4]>::default());
         self.rows.len() - 1
     }
 
@@ -164,16 +168,10 @@ impl UnitStanding {
         options: &Options,
     ) {
         let (member, piece, cases) = (chunk.members[k], &chunk.pieces[k], &chunk.cases[k]);
-        self.tally.add_counts(tally);
-        let hard = cases.iter().filter(|case| matches!(case, CaseRef::Hard(_))).count() as u64;
-        self.random.0 += tally.verdicts - 4 * hard;
-        self.random.1 += tally.indeterminate.saturating_sub(4 * hard);
         let id = |place: usize| member.case_id(cases[place]);
-        if let Some((margin, place)) = tally.worst
-            && self.worst.as_ref().is_none_or(|(most, _)| is_worse(margin, *most))
-        {
-            self.worst = Some((margin, id(place)));
-        }
+        self.tiers.add(&tally.tiers);
+        self.stores.iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
+        self.model = (self.model.0 + tally.model.0, self.model.1 + tally.model.1);
         if self.departure.is_none() {
             self.departure = tally.departure.map(id);
         }
@@ -195,73 +193,66 @@ impl UnitStanding {
             DrawnState { program: piece.program, route: piece.route, target: self.target, profile: options.profile };
         let told =
             |place: usize| failure(member, &id(place), piece, place, pixels[place], drawn.target, subject, options);
-        if let Some((simple, place)) = tally.simplest {
-            keep_simplest(&mut self.simplest, Some((simple, told(place))));
-        }
-        for &place in &tally.failures {
-            if self.failures.len() < KEPT_FAILURES {
-                self.failures.push(told(place));
-            }
-            if self.samples.len() < SAMPLES {
-                self.samples.push(Sample { drawn, case: piece.case(place), pixel: pixels[place] });
-            }
-        }
+        let room = SAMPLES.saturating_sub(self.samples.len());
+        let sample = |&place: &usize| Sample { drawn, case: piece.case(place), pixel: pixels[place] };
+        self.samples.extend(tally.verdicts.failures.keys().take(room).map(sample));
+        let number = self.pieces;
+        self.pieces += 1;
+        let mut verdicts = tally.verdicts.within(|&place| (number, place, id(place)), |&place| told(place));
+        let hard = cases.iter().filter(|case| matches!(case, CaseRef::Hard(_))).count() as u64;
+        let totals = verdicts.totals;
+        verdicts.random = (totals.verdicts - 4 * hard, totals.indeterminate.saturating_sub(4 * hard));
+        self.verdicts.add(verdicts);
     }
 
     pub(super) fn finish(self, member: &Member, subject: &Subject, report: &mut Report) {
         if self.rows.is_empty() {
             return;
         }
-        let tally = &self.tally;
+        let totals = self.verdicts.totals;
         let explanation = explain(&self.samples)
             .map(|(says, count, of)| format!("{count} of {of} failing pixels are as if {says}"))
             .or_else(|| (!self.samples.is_empty()).then(|| "no mistake in the catalogue explains what failed".into()));
-        use_deviations(subject, self.target, tally, report);
-        let problem = self
-            .problem(subject)
-            .or_else(|| lightmeter_judge::tally::problem(self.random, tally.verdicts, tally.indeterminate));
-        let is_unorm = self.target.is_unorm() && tally.cases > 0;
+        for (name, excused) in &self.verdicts.excused {
+            report.excuse(name, &subject.identity.name, *excused);
+        }
+        let problem = self.problem(subject).or_else(|| self.verdicts.problem());
+        let is_unorm = self.target.is_unorm() && totals.cases > 0;
         let stage = Stage::FixedFunction.name();
         report.groups.push(Group {
             target: Some(self.target.name().into()),
-            tiers: is_unorm.then_some(tally.tiers),
+            tiers: is_unorm.then_some(self.tiers),
             store: self.store(subject).filter(|_| is_unorm),
             totals: Totals {
-                cases: tally.cases + self.skipped,
-                verdicts: tally.verdicts,
-                passed: tally.passed,
-                failed: tally.failed,
+                cases: totals.cases + self.skipped,
                 skipped: self.skipped,
-                indeterminate: tally.indeterminate,
-                expected_failures: tally.expected_failures,
                 failed_groups: u64::from(problem.is_some()),
-                ..Totals::default()
+                ..totals
             },
-            error_ulp_max: Number(tally.error_max),
-            margin_max: Number(self.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
+            error_ulp_max: Number(self.verdicts.error_max),
+            margin_max: Number(self.verdicts.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
             seconds: self.seconds,
             seconds_warm: self.seconds_warm,
-            worst: self.worst.map(|(_, id)| id),
+            worst: self.verdicts.worst.as_ref().map(|(_, (.., id))| id.clone()),
             skip_reason: self.lacks.map(Into::into),
             explanation,
             problem,
             ..Group::new(member.spec.group().into(), subject.identity.name.clone(), stage)
         });
         report.special.extend(self.special);
-        report.failures.extend(reported(self.simplest, self.failures));
+        report.failures.extend(self.verdicts.reported());
         report.blend_states.extend(self.rows);
     }
 
     /// How values are stored: as the declared model has them, if all are, or as most values say.
     fn store(&self, subject: &Subject) -> Option<StoreUse> {
-        let tally = &self.tally;
         let mut all = StoreCounts::default();
-        tally.stores.iter().for_each(|counts| all.add(counts));
+        self.stores.iter().for_each(|counts| all.add(counts));
         if let Some(model) = declared_model(subject, self.target)
-            && tally.model.0 > 0
-            && tally.model.1 == 0
+            && self.model.0 > 0
+            && self.model.1 == 0
         {
-            return Some(StoreUse { identified: model.name().into(), share: 1.0, of: tally.model.0, bias: all.bias() });
+            return Some(StoreUse { identified: model.name().into(), share: 1.0, of: self.model.0, bias: all.bias() });
         }
         let (store, share) = all.likeliest();
         (all.of >= ENOUGH).then(|| StoreUse { identified: store.name().into(), share, of: all.of, bias: all.bias() })
@@ -280,11 +271,11 @@ impl UnitStanding {
             let components: Vec<&str> = found.iter().map(|(name, _)| *name).collect();
             Some(format!("{} {} {first}", components.join(", "), if found.len() > 1 { "are" } else { "is" }))
         };
-        if let Some(problem) = wrong(&self.tally.stores, self.rows.len()) {
+        if let Some(problem) = wrong(&self.stores, self.rows.len()) {
             return Some(problem);
         }
         let mut states =
-            self.rows.iter().zip(&self.stores).filter_map(|(row, counts)| Some((&row.id, wrong(counts, 1)?)));
+            self.rows.iter().zip(&self.row_stores).filter_map(|(row, counts)| Some((&row.id, wrong(counts, 1)?)));
         let (id, problem) = states.next()?;
         let others = states.count();
         let others = if others > 0 { format!(", and so in {others} other states") } else { String::new() };
@@ -293,14 +284,13 @@ impl UnitStanding {
 
     /// The group verdict: each value may be legal and the whole still wrong.
     fn problem(&self, subject: &Subject) -> Option<String> {
-        let tally = &self.tally;
         if subject.known.special_record.is_some_and(|(_, this_version)| this_version)
             && let Some(other) = self.special.iter().find(|special| !special.is_as_recorded())
         {
             let recorded = other.recorded.as_deref().unwrap_or_default();
             return Some(format!("{} gives {}, where {recorded} is on record for this driver", other.id, other.seen));
         }
-        let (of, others) = tally.model;
+        let (of, others) = self.model;
         if let Some(model) = declared_model(subject, self.target)
             && others > 0
         {
@@ -309,13 +299,6 @@ impl UnitStanding {
             return Some(self.store_problem().map_or(departs.clone(), |stored| format!("{stored}; {departs}")));
         }
         if of > 0 { None } else { self.store_problem() }
-    }
-}
-
-/// Counts what the named deviations of a target's values excused.
-fn use_deviations(subject: &Subject, target: TargetFormat, tally: &UnitTally, report: &mut Report) {
-    for deviation in subject.known.blend_deviations.iter().filter(|deviation| deviation.target == target) {
-        report.excuse(deviation.name, &subject.identity.name, tally.expected_failures);
     }
 }
 

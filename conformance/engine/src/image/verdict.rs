@@ -15,7 +15,7 @@ use lightmeter_judge::image::expect::{Expectation, expect};
 use lightmeter_judge::image::file::{ImageFileError, Stored};
 use lightmeter_judge::image::judge::{Judged, Miss, error, error_map, judge};
 use lightmeter_judge::is_worse;
-use lightmeter_judge::tally::{KEPT_FAILURES, problem};
+use lightmeter_judge::tally::KEPT_FAILURES;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
@@ -31,14 +31,12 @@ pub fn profile_of(subject: &Subject, profile: &Profile) -> Profile {
 pub fn excuse(judged: &mut Judged, image: &Stored, frame: &Frame, deviation: &Deviation, profile: &Profile) -> u64 {
     let granted = deviation.grant(*profile);
     let expectation = Expectation::new(frame, None, None, &granted);
-    let before = judged.misses.len();
-    judged.misses.retain(|miss| {
+    judged.excuse(deviation.name, |miss| {
         let (x, y) = (miss.pixel % image.width, miss.pixel / image.width);
         let legal = expectation.pixel(x, y);
         let value = image.pixels[miss.pixel][miss.component];
-        !(legal.low[miss.component] <= value && value <= legal.high[miss.component])
-    });
-    (before - judged.misses.len()) as u64
+        legal.low[miss.component] <= value && value <= legal.high[miss.component]
+    })
 }
 
 /// Everything about a scene that does not depend on a subject.
@@ -109,28 +107,18 @@ impl<'a> JudgedScene<'a> {
     pub(super) fn judge(&self, drawn: &Drawn<'_>, named: &[Called], report: &mut Report) -> Result<Group, DeviceError> {
         let expected = self.expected(&drawn.profile);
         let mut judged = judge(drawn.image, &self.reference, expected, &self.pixels);
-        let excused = self.excuse(&mut judged, drawn, report);
-        let verdicts = 4 * self.pixels.len() as u64;
-        let problem = problem((verdicts, judged.indeterminate), verdicts, judged.indeterminate);
-        let totals = Totals {
-            cases: self.pixels.len() as u64,
-            verdicts,
-            passed: judged.passed,
-            failed: judged.misses.len() as u64,
-            expected_failures: excused,
-            indeterminate: judged.indeterminate,
-            failed_groups: u64::from(problem.is_some()),
-            ..Totals::default()
-        };
+        self.excuse(&mut judged, drawn, report);
+        let problem = judged.verdicts.problem();
+        let totals = Totals { failed_groups: u64::from(problem.is_some()), ..judged.verdicts.totals };
         let mut used = self.image_use(drawn.image, expected);
         let explanation = match worst(&judged) {
             Some(worst) => Some(self.explain(drawn, named, (&judged, worst), &mut used, report)?),
             None => None,
         };
         Ok(Group {
-            error_ulp_max: Number(judged.error_max),
-            margin_max: Number(judged.worst.map_or(0.0, |worst| worst.margin)),
-            worst: judged.worst.map(|worst| pixel_id(&self.id, drawn.image.width, worst.pixel)),
+            error_ulp_max: Number(judged.verdicts.error_max),
+            margin_max: Number(judged.worst().map_or(0.0, |worst| worst.margin)),
+            worst: judged.worst().map(|worst| pixel_id(&self.id, drawn.image.width, worst.pixel)),
             explanation,
             problem,
             image: Some(used),
@@ -138,18 +126,15 @@ impl<'a> JudgedScene<'a> {
         })
     }
 
-    /// Takes the misses out that a named deviation of the subject makes legal; how many there are.
-    fn excuse(&self, judged: &mut Judged, drawn: &Drawn<'_>, report: &mut Report) -> u64 {
-        let mut excused = 0;
+    /// Takes the misses out that a named deviation of the subject makes legal.
+    fn excuse(&self, judged: &mut Judged, drawn: &Drawn<'_>, report: &mut Report) {
         for deviation in &drawn.subject.known.deviations {
             if judged.misses.is_empty() {
                 break;
             }
             let count = excuse(judged, drawn.image, self.frame, deviation, &drawn.profile);
-            excused += count;
             report.excuse(deviation.name, &drawn.subject.identity.name, count);
         }
-        excused
     }
 
     /// What a report says of an image by itself; what is wrong with it comes later.

@@ -6,7 +6,8 @@ use super::pixel::Units;
 use super::rules::{FAULTS, Fault, Rules, Store};
 use super::store::{NEAR, StoreCounts};
 use crate::devices::{BlendDeviation, Known};
-use crate::{Outcome, Verdict, is_worse, margin, simplicity, worse};
+use crate::tally::Tally;
+use crate::{Outcome, Verdict, margin, simplicity};
 use lightmeter_arithmetic::{F16, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_document::run::Tiers;
@@ -62,32 +63,14 @@ fn distance(value: f64, reference: f64, most: f64) -> f64 {
 /// The pixels of a state, or of a group of them.
 #[derive(Clone, Debug, Default)]
 pub struct UnitTally {
-    /// Pixels.
-    pub cases: u64,
-    /// Components judged.
-    pub verdicts: u64,
-    /// Legal ones.
-    pub passed: u64,
-    /// Others.
-    pub failed: u64,
-    /// Where anything is legal.
-    pub indeterminate: u64,
-    /// Not legal, as a named deviation says.
-    pub expected_failures: u64,
+    /// Verdicts on components, by the places of the pixels' cases.
+    pub verdicts: Tally<usize>,
     /// On targets of 8 bits.
     pub tiers: Tiers,
     /// What the values of each component say of how they are stored.
     pub stores: [StoreCounts; 4],
     /// Values that a declared model predicts, and how many are another.
     pub model: (u64, u64),
-    /// The greatest error.
-    pub error_max: f64,
-    /// The greatest margin, and the place of its case.
-    pub worst: Option<(f64, usize)>,
-    /// The first pixels with a component that fails, by the place of their cases.
-    pub failures: Vec<usize>,
-    /// The place of the failing case of the simplest inputs, and how simple they are.
-    pub simplest: Option<(u32, usize)>,
     /// The first pixel that departs from the model.
     pub departure: Option<usize>,
 }
@@ -97,9 +80,6 @@ pub struct UnitTally {
 fn tells_stores(state: Separate, case: &UnitCase) -> bool {
     !state.reads_constant() || case.constant.iter().all(|c| !(0.0 < *c && *c < 1.0))
 }
-
-/// Failing pixels of a state that are kept.
-const KEPT: usize = 16;
 
 impl UnitTally {
     /// Judges pixels, each with its case, in their order.
@@ -121,37 +101,23 @@ impl UnitTally {
     pub fn pixel(&mut self, drawn: DrawnState, known: &Known, place: usize, case: &UnitCase, pixel: Units) {
         let DrawnState { program, route, target, profile } = drawn;
         let expected = expect(program, target, case, &Rules::RIGHT, profile);
-        self.cases += 1;
+        self.verdicts.totals.cases += 1;
         let (state, mask) = program.layer(0);
         let tells = tells_stores(state, case);
         let mut fails = false;
         for (k, value) in pixel.into_iter().enumerate() {
             let verdict = expected.judge(target, k, value);
-            self.verdicts += 1;
-            match verdict.outcome {
-                Outcome::Indeterminate => {
-                    self.indeterminate += 1;
-                    continue;
-                }
-                Outcome::Fail
-                    if deviates(known, target, expected.reference[k]).is_some_and(|known| known.grants(value)) =>
-                {
-                    self.expected_failures += 1;
-                    continue;
-                }
-                Outcome::Fail | Outcome::Pass => {}
+            let excused = match verdict.outcome {
+                Outcome::Fail => deviates(known, target, expected.reference[k]).filter(|known| known.grants(value)),
+                _ => None,
+            };
+            self.verdicts.count(verdict.outcome, excused.map(|deviation| deviation.name), false);
+            if verdict.outcome == Outcome::Indeterminate || excused.is_some() {
+                continue;
             }
-            match verdict.outcome {
-                Outcome::Fail => {
-                    self.failed += 1;
-                    fails = true;
-                }
-                _ => self.passed += 1,
-            }
-            self.error_max = worse(self.error_max, verdict.error);
-            if self.worst.is_none_or(|(most, _)| is_worse(verdict.margin, most)) {
-                self.worst = Some((verdict.margin, place));
-            }
+            fails |= verdict.outcome == Outcome::Fail;
+            self.verdicts.see_error(verdict.error);
+            self.verdicts.see_margin(verdict.margin, place);
             if target.is_unorm() {
                 count_tier(&mut self.tiers, expected.reference[k], value, verdict.outcome);
                 if mask.0[k] && tells {
@@ -162,12 +128,7 @@ impl UnitTally {
         if fails {
             let simple =
                 case.sources[..case.layers].iter().chain([&case.dst, &case.constant]).map(|x| simplicity(x)).sum();
-            if self.simplest.is_none_or(|(least, _)| simple < least) {
-                self.simplest = Some((simple, place));
-            }
-            if self.failures.len() < KEPT {
-                self.failures.push(place);
-            }
+            self.verdicts.fail(place, simple, || ());
         }
         if let Some(model) = known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8) {
             let predicted = model.predict(program, route, case, super::pixel::stored(target, case.dst));
@@ -178,23 +139,6 @@ impl UnitTally {
                 self.departure = Some(place);
             }
         }
-    }
-
-    /// Adds another's counts; places of cases stay its own.
-    pub fn add_counts(&mut self, other: &Self) {
-        self.cases += other.cases;
-        self.verdicts += other.verdicts;
-        self.passed += other.passed;
-        self.failed += other.failed;
-        self.indeterminate += other.indeterminate;
-        self.expected_failures += other.expected_failures;
-        self.tiers.add(&other.tiers);
-        for (counts, other) in self.stores.iter_mut().zip(&other.stores) {
-            counts.add(other);
-        }
-        self.model.0 += other.model.0;
-        self.model.1 += other.model.1;
-        self.error_max = worse(self.error_max, other.error_max);
     }
 }
 
@@ -266,7 +210,7 @@ mod tests {
         UnitCase { sources: [[src; 4]; MOST_LAYERS], layers: 1, dst: [dst; 4], constant: [0.0; 4] }
     }
 
-    fn tally(target: TargetFormat, case: &UnitCase, pixels: &[Units]) -> UnitTally {
+    fn tally(target: TargetFormat, case: &UnitCase, pixels: &[Units]) -> Tally<usize> {
         let drawn = DrawnState {
             program: one_plus_one(),
             route: Route::Native,
@@ -277,7 +221,7 @@ mod tests {
         for (place, pixel) in pixels.iter().enumerate() {
             tally.pixel(drawn, &Known::default(), place, case, *pixel);
         }
-        tally
+        tally.verdicts
     }
 
     #[test]
@@ -285,18 +229,16 @@ mod tests {
         for target in [TargetFormat::Rgba32Float, TargetFormat::Rgba16Float] {
             let case = case(0.25, 0.5);
             let right = [embedded::blend(one_plus_one(), target, &case, &Rules::RIGHT); PIXELS];
-            assert_eq!(tally(target, &case, &right).failed, 0);
+            assert_eq!(tally(target, &case, &right).totals.failed, 0);
             for place in [0, PIXELS / 2, PIXELS - 1] {
                 for k in [0, 2, 3] {
                     for bits in [0x7fc0_0000, 0xffc0_0000, 0x7fa0_0001, 0x7fc1_2345] {
                         let mut wrong = right;
                         wrong[place][k] = f32::from_bits(bits).into();
                         let tally = tally(target, &case, &wrong);
-                        assert_eq!((tally.failed, tally.passed), (1, 4 * PIXELS as u64 - 1));
-                        assert_eq!(
-                            (tally.worst, tally.failures.as_slice()),
-                            (Some((f64::INFINITY, place)), &[place][..])
-                        );
+                        assert_eq!((tally.totals.failed, tally.totals.passed), (1, 4 * PIXELS as u64 - 1));
+                        assert_eq!(tally.worst, Some((f64::INFINITY, place)));
+                        assert!(tally.failures.into_keys().eq([place]));
                         assert!(tally.error_max == f64::INFINITY);
                     }
                 }
@@ -313,7 +255,8 @@ mod tests {
                 DrawnState { program, route: Route::Native, target, profile: &lightmeter_arithmetic::profile::WGSL };
             let mut tally = UnitTally::default();
             tally.pixel(drawn, &Known::default(), 0, &case(src, dst), [f64::NAN; 4]);
-            assert_eq!((tally.passed, tally.failed, tally.indeterminate), (0, 0, 4));
+            let totals = tally.verdicts.totals;
+            assert_eq!((totals.passed, totals.failed, totals.indeterminate), (0, 0, 4));
         }
     }
 
@@ -323,7 +266,7 @@ mod tests {
         let (target, case) = (TargetFormat::Rgba16Float, case(60_000.0, 60_000.0));
         let infinite = [f64::INFINITY; 4];
         let tally = tally(target, &case, &[infinite, [f64::INFINITY, 1.0, f64::INFINITY, f64::NAN], infinite]);
-        assert_eq!((tally.failed, tally.passed), (2, 10));
+        assert_eq!((tally.totals.failed, tally.totals.passed), (2, 10));
         assert_eq!(tally.worst.map(|(_, place)| place), Some(1));
         assert!(tally.worst.is_some_and(|(margin, _)| margin > 1.0));
     }

@@ -2,7 +2,8 @@
 
 use super::file::Stored;
 use super::pixel::Expected;
-use crate::{is_worse, margin, worse};
+use crate::tally::Tally;
+use crate::{Outcome, margin, worse};
 use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{F16, F32};
 use lightmeter_scene::target::{Encoding, TargetFormat};
@@ -22,16 +23,11 @@ pub struct Miss {
 /// How an image compares.
 #[derive(Clone, Debug, Default)]
 pub struct Judged {
-    /// Components inside their intervals.
-    pub passed: u64,
-    /// Components where anything is legal.
-    pub indeterminate: u64,
-    /// Components outside.
+    /// Verdicts on components, by pixel and component. The greatest error leaves marked pixels out, and is in ULP on float
+    /// targets and in steps on those of 8 bits; the greatest margin leaves them out unless it is a miss.
+    pub verdicts: Tally<(usize, usize)>,
+    /// Components outside their intervals.
     pub misses: Vec<Miss>,
-    /// The greatest error, marked pixels apart: ULP on float targets, steps on those of 8 bits.
-    pub error_max: f64,
-    /// The greatest margin, and where; marked pixels apart, unless it is a miss.
-    pub worst: Option<Miss>,
 }
 
 impl Judged {
@@ -43,16 +39,23 @@ impl Judged {
         pixels
     }
 
-    fn merge(mut self, mut other: Self) -> Self {
-        self.passed += other.passed;
-        self.indeterminate += other.indeterminate;
-        self.misses.append(&mut other.misses);
-        self.error_max = worse(self.error_max, other.error_max);
-        self.worst = match (self.worst, other.worst) {
-            (Some(a), Some(b)) if is_worse(b.margin, a.margin) => Some(b),
-            (a, b) => a.or(b),
-        };
-        self
+    /// The component of the greatest margin.
+    #[must_use]
+    pub fn worst(&self) -> Option<Miss> {
+        self.verdicts.worst.map(|(margin, (pixel, component))| Miss { pixel, component, margin })
+    }
+
+    /// Takes the misses out that a named deviation makes legal; how many there are.
+    pub fn excuse(&mut self, deviation: &'static str, is_legal: impl Fn(&Miss) -> bool) -> u64 {
+        let before = self.misses.len();
+        self.misses.retain(|miss| !is_legal(miss));
+        let excused = (before - self.misses.len()) as u64;
+        if excused > 0 {
+            self.verdicts.totals.failed -= excused;
+            self.verdicts.totals.expected_failures += excused;
+            *self.verdicts.excused.entry(deviation).or_default() += excused;
+        }
+        excused
     }
 }
 
@@ -64,14 +67,19 @@ pub fn judge(image: &Stored, reference: &Stored, expected: &[Expected], pixels: 
     let chunks = pixels.par_chunks(4096).map(|pixels| {
         let mut judged = Judged::default();
         for &pixel in pixels {
+            judged.verdicts.totals.cases += 1;
             for component in 0..4 {
                 one(image, reference, expected, (pixel, component), &mut judged);
             }
         }
         judged
     });
-    let parts: Vec<Judged> = chunks.collect();
-    parts.into_iter().fold(Judged::default(), Judged::merge)
+    let mut all = Judged::default();
+    for part in chunks.collect::<Vec<Judged>>() {
+        all.verdicts.add(part.verdicts);
+        all.misses.extend(part.misses);
+    }
+    all
 }
 
 fn one(
@@ -83,24 +91,27 @@ fn one(
 ) {
     let (value, exact) = (image.pixels[pixel][component], reference.pixels[pixel][component]);
     let (low, high) = (expected[pixel].low[component], expected[pixel].high[component]);
-    if low == f64::NEG_INFINITY && high == f64::INFINITY {
-        judged.indeterminate += 1;
+    let outcome = if low == f64::NEG_INFINITY && high == f64::INFINITY {
+        Outcome::Indeterminate
+    } else if low <= value && value <= high && !exact.is_nan() {
+        Outcome::Pass
+    } else {
+        Outcome::Fail
+    };
+    judged.verdicts.count(outcome, None, true);
+    if outcome == Outcome::Indeterminate {
         return;
     }
     // Where outcomes differ by themselves, the distance from one of them says nothing.
     if !expected[pixel].is_marked {
-        judged.error_max = worse(judged.error_max, error(image.format, value, exact));
+        judged.verdicts.see_error(error(image.format, value, exact));
     }
     let miss = Miss { pixel, component, margin: margin(value, exact, low, high) };
-    if low <= value && value <= high && !exact.is_nan() {
-        judged.passed += 1;
-    } else {
+    if outcome == Outcome::Fail {
         judged.misses.push(miss);
     }
-    if (miss.margin > 1.0 || !expected[pixel].is_marked)
-        && judged.worst.is_none_or(|worst| is_worse(miss.margin, worst.margin))
-    {
-        judged.worst = Some(miss);
+    if miss.margin > 1.0 || !expected[pixel].is_marked {
+        judged.verdicts.see_margin(miss.margin, (pixel, component));
     }
 }
 
@@ -174,9 +185,9 @@ mod tests {
                     expected[pixel].is_marked = is_marked;
                     let judged = judge(&wrong, &reference, &expected, &all);
                     let miss = Miss { pixel, component, margin: f64::INFINITY };
-                    assert_eq!((judged.misses.as_slice(), judged.worst), (&[miss][..], Some(miss)));
-                    assert_eq!(judged.passed, 4 * PIXELS as u64 - 1);
-                    assert!(is_marked || judged.error_max == f64::INFINITY);
+                    assert_eq!((judged.misses.as_slice(), judged.worst()), (&[miss][..], Some(miss)));
+                    assert_eq!(judged.verdicts.totals.passed, 4 * PIXELS as u64 - 1);
+                    assert!(is_marked || judged.verdicts.error_max == f64::INFINITY);
                     let map = error_map(&wrong, &reference, &expected);
                     let red = [255.0_f64, 0.0, 0.0, 255.0].map(f64::to_bits);
                     assert_eq!(map.pixels[pixel].map(f64::to_bits), red, "a NaN is as red as can be");
@@ -195,8 +206,9 @@ mod tests {
             wrong.pixels[pixel][component] = nan;
             (expected[pixel].low[component], expected[pixel].high[component]) = (f64::NEG_INFINITY, f64::INFINITY);
             let judged = judge(&wrong, &reference, &expected, &all);
-            assert_eq!((judged.indeterminate, judged.misses.len()), (1, 0));
-            assert_eq!(judged.passed, 4 * PIXELS as u64 - 1);
+            let totals = judged.verdicts.totals;
+            assert_eq!((totals.indeterminate, totals.failed, judged.misses.len()), (1, 0, 0));
+            assert_eq!(totals.passed, 4 * PIXELS as u64 - 1);
         }
     }
 
@@ -207,8 +219,8 @@ mod tests {
             let mut reference = right.clone();
             reference.pixels[pixel][component] = nan;
             let judged = judge(&right, &reference, &expected, &[pixel]);
-            assert_eq!((judged.passed, judged.misses.len()), (3, 1));
-            assert!(judged.worst.is_some_and(|worst| worst.component == component && worst.margin == f64::INFINITY));
+            assert_eq!((judged.verdicts.totals.passed, judged.misses.len()), (3, 1));
+            assert!(judged.worst().is_some_and(|worst| worst.component == component && worst.margin == f64::INFINITY));
         }
     }
 }
