@@ -51,7 +51,7 @@ impl Modules {
     /// another crate counts as defined where it is named.
     fn definition(&self, here: &[String], path: &[String]) -> Option<(Names, String)> {
         let (first, rest) = path.split_first()?;
-        let child = [here, &[first.clone()]].concat();
+        let child = [here, std::slice::from_ref(first)].concat();
         match first.as_str() {
             "crate" => self.definition(&[], rest),
             "self" => self.definition(here, rest),
