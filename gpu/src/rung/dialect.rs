@@ -119,6 +119,14 @@ impl Dialect {
         }
     }
 
+    /// A vector of the same number again and again.
+    pub(crate) fn splat(self, size: u8, one: &str) -> String {
+        match self {
+            Self::Pair => format!("DF{size}(vec{size}f({one}.hi), vec{size}f({one}.lo))"),
+            _ => format!("{}({one})", self.type_of(Shape::Vector(size))),
+        }
+    }
+
     /// A number as a literal. What binary16 cannot hold becomes the nearest that it can, but nothing becomes 0 or infinite, so
     /// that a bound stays one.
     #[expect(clippy::cast_possible_truncation, reason = "rounding is what is wanted")]

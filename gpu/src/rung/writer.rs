@@ -4,8 +4,8 @@ use super::Rung;
 use super::dialect::{Dialect, Prelude, Shape, rung_struct};
 use naga::common::wgsl::{ToWgsl as _, TryToWgsl as _};
 use naga::{
-    AddressSpace, ArraySize, Binding, BuiltIn, Expression, Function, Handle, ImageClass, Interpolation, Literal,
-    Module, Sampling, ScalarKind, Type, TypeInner,
+    AddressSpace, ArraySize, BinaryOperator, Binding, BuiltIn, Expression, Function, Handle, ImageClass, Interpolation,
+    Literal, Module, Sampling, ScalarKind, Type, TypeInner,
 };
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -240,6 +240,31 @@ pub(super) const fn integer(kind: ScalarKind) -> &'static str {
         ScalarKind::Uint => "u32",
         ScalarKind::Bool => "bool",
         ScalarKind::Float | ScalarKind::AbstractFloat => "f32",
+    }
+}
+
+/// A binary operator's sign.
+pub(super) const fn operator(op: BinaryOperator) -> &'static str {
+    use BinaryOperator as B;
+    match op {
+        B::Add => "+",
+        B::Subtract => "-",
+        B::Multiply => "*",
+        B::Divide => "/",
+        B::Modulo => "%",
+        B::Equal => "==",
+        B::NotEqual => "!=",
+        B::Less => "<",
+        B::LessEqual => "<=",
+        B::Greater => ">",
+        B::GreaterEqual => ">=",
+        B::And => "&",
+        B::ExclusiveOr => "^",
+        B::InclusiveOr => "|",
+        B::LogicalAnd => "&&",
+        B::LogicalOr => "||",
+        B::ShiftLeft => "<<",
+        B::ShiftRight => ">>",
     }
 }
 
