@@ -7,10 +7,10 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::cases::Stage;
-use lightmeter::document::sweep::{SCHEMA, SweepDocument};
+use lightmeter::document::sweep::{Description, SCHEMA, SweepDocument};
 use lightmeter::document::thousands;
 use lightmeter::select::{Shard, catalogue};
-use lightmeter::sweep::file::{self, name_of};
+use lightmeter::sweep::file::{self, DocumentError, name_of};
 use lightmeter::sweep::{Asked, Free, Over, PRESETS, Plan, SweepError, describe, span, sweep, text};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -73,70 +73,38 @@ pub(crate) struct Sweep {
 
 impl Sweep {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let Some(formula) = &self.formula else {
-            let asks = self.asked() != Asked::default() || self.checkpoint.is_some() || self.shard.0 != Shard::WHOLE;
-            if asks {
-                bail!(
-                    "a formula is missing; expected one such as fog/exp: `lightmeter sweep` alone lists the ready-made"
-                );
-            }
-            emit(&presets(self.format)?, self.out.as_deref())?;
-            return Ok(Status::Success);
-        };
+        let Some(formula) = &self.formula else { return self.list() };
         if self.format == Format::Junit {
             bail!("a sweep is written as text or json");
         }
         let catalogue = catalogue();
         let plan = Plan::new(&catalogue, formula, &self.asked())?;
         let shard = self.shard.0;
-        if plan.span().blocks_of(shard) == 0 {
-            let (blocks, name) = (plan.span().blocks(), name_of(shard));
-            let many = if blocks == 1 { "one block".into() } else { format!("{blocks} blocks") };
-            bail!("shard {name} has no inputs: the range has {many}; expected at most so many shards");
-        }
-        if let (Some(out), Some(checkpoint)) = (&self.out, &self.checkpoint)
-            && place_of(out) == place_of(checkpoint)
-        {
-            bail!("--out and --checkpoint name one file; expected two");
-        }
+        check_shard(&plan, shard)?;
+        self.check_files()?;
         let choice = self.choice();
         let code = choice.code()?;
         let mut subjects = choice.subjects()?;
         let [subject] = subjects.as_mut_slice() else {
             bail!("a sweep is of one adapter; expected its name");
         };
-        let description = describe(&plan, subject, self.profile, &code);
-        let resumed = self.checkpoint.as_deref().map(|path| file::resume(path, &description, shard)).transpose()?;
-        let mut document = resumed.flatten().unwrap_or_else(|| file::begun(description, shard));
-        // Not after hours of work.
-        if let Some(path) = &self.checkpoint {
-            file::write(&document, path)?;
-        }
-        if let Some(path) = &self.out {
-            // What stands there stays until there is a result.
-            let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
-            opened.with_context(|| format!("cannot write {}", path.display()))?;
-        }
+        let mut document = self.start(describe(&plan, subject, self.profile, &code))?;
 
         let bar = bar(&document, shard);
         let mut saved = Instant::now();
         let mut tell = |document: &SweepDocument| {
             bar.set_position(document.statistics.inputs);
-            if let Some(path) = &self.checkpoint
-                && saved.elapsed() >= SAVED_EVERY
-            {
-                file::write(document, path)?;
+            if saved.elapsed() >= SAVED_EVERY {
+                self.save(document)?;
                 saved = Instant::now();
             }
             Ok(())
         };
         let swept = sweep(&plan, subject, &code, self.profile, &mut document, self.blocks, &mut tell);
         bar.finish_and_clear();
-        if let Some(path) = &self.checkpoint {
-            file::write(&document, path)?;
-        }
+        self.save(&document)?;
         match swept {
-            Ok(()) => {}
+            Ok(()) => self.finish(&document, &plan),
             Err(SweepError::Device(error)) => {
                 if let Some(path) = self.checkpoint.as_ref().filter(|_| error.is_of_device()) {
                     let (done, blocks) = (document.done, document.blocks);
@@ -144,21 +112,60 @@ impl Sweep {
                 }
                 // Closing a device that hangs would hang as well.
                 std::mem::forget(subjects);
-                return Err(error.into());
+                Err(error.into())
             }
-            Err(SweepError::Lacks { .. }) => {
-                let message = swept.err().map(|error| error.to_string()).unwrap_or_default();
-                return Err(NothingToRun(message).into());
-            }
-            Err(error) => return Err(error.into()),
+            Err(error @ SweepError::Lacks { .. }) => Err(NothingToRun(error.to_string()).into()),
+            Err(error) => Err(error.into()),
         }
-        emit(&written(&document, self.format, &self.rerun(&plan))?, self.out.as_deref())?;
+    }
+
+    /// Lists the ready-made sweeps.
+    fn list(&self) -> anyhow::Result<Status> {
+        if self.asked() != Asked::default() || self.checkpoint.is_some() || self.shard.0 != Shard::WHOLE {
+            bail!("a formula is missing; expected one such as fog/exp: `lightmeter sweep` alone lists the ready-made");
+        }
+        emit(&presets(self.format)?, self.out.as_deref())?;
+        Ok(Status::Success)
+    }
+
+    /// The result and the checkpoint are two files.
+    fn check_files(&self) -> anyhow::Result<()> {
+        if let (Some(out), Some(checkpoint)) = (&self.out, &self.checkpoint)
+            && place_of(out) == place_of(checkpoint)
+        {
+            bail!("--out and --checkpoint name one file; expected two");
+        }
+        Ok(())
+    }
+
+    /// The state to go on from: the checkpoint's, or a new one. Its files are written to now, not after hours of work.
+    fn start(&self, description: Description) -> anyhow::Result<SweepDocument> {
+        let shard = self.shard.0;
+        let resumed = self.checkpoint.as_deref().map(|path| file::resume(path, &description, shard)).transpose()?;
+        let document = resumed.flatten().unwrap_or_else(|| file::begun(description, shard));
+        self.save(&document)?;
+        if let Some(path) = &self.out {
+            // What stands there stays until there is a result.
+            let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
+            opened.with_context(|| format!("cannot write {}", path.display()))?;
+        }
+        Ok(document)
+    }
+
+    /// Writes the checkpoint, where one is kept.
+    fn save(&self, document: &SweepDocument) -> Result<(), DocumentError> {
+        self.checkpoint.as_deref().map_or(Ok(()), |path| file::write(document, path))
+    }
+
+    /// Writes the result.
+    fn finish(&self, document: &SweepDocument, plan: &Plan<'_>) -> anyhow::Result<Status> {
+        emit(&written(document, self.format, &self.rerun(plan))?, self.out.as_deref())?;
         if !document.is_finished()
             && let Some(path) = &self.checkpoint
         {
             eprintln!("not finished; the same command goes on from {}", path.display());
         }
-        Ok(status(&document))
+        Ok(status(document))
     }
 
     fn asked(&self) -> Asked {
@@ -207,6 +214,16 @@ impl Sweep {
         }
         rerun
     }
+}
+
+/// A shard has inputs.
+fn check_shard(plan: &Plan<'_>, shard: Shard) -> anyhow::Result<()> {
+    if plan.span().blocks_of(shard) == 0 {
+        let (blocks, name) = (plan.span().blocks(), name_of(shard));
+        let many = if blocks == 1 { "one block".into() } else { format!("{blocks} blocks") };
+        bail!("shard {name} has no inputs: the range has {many}; expected at most so many shards");
+    }
+    Ok(())
 }
 
 /// A result as text or JSON.
@@ -265,7 +282,7 @@ fn presets(format: Format) -> anyhow::Result<String> {
 }
 
 /// A bar on standard error, where that is a terminal.
-fn bar(document: &SweepDocument, shard: lightmeter::select::Shard) -> ProgressBar {
+fn bar(document: &SweepDocument, shard: Shard) -> ProgressBar {
     let inputs = span(&document.sweep).inputs_of(shard, document.blocks);
     let bar = ProgressBar::with_draw_target(Some(inputs), ProgressDrawTarget::stderr());
     let template = "{bar:30} {human_pos}/{human_len} inputs  {rate} a second  {elapsed}, {eta} to go";
