@@ -6,7 +6,7 @@ use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::selftest::selftest;
-use lightmeter::document::selftest::{Record, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow};
+use lightmeter::document::selftest::{Record, Resolution, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow};
 use lightmeter::faults::calibrate::calibrate;
 use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
@@ -69,86 +69,119 @@ pub(crate) struct Selftest {
     out: Option<PathBuf>,
 }
 
+/// What was found out; `None` of a part that was not tested.
+#[derive(Default)]
+struct Tested {
+    formulas: Option<Record>,
+    resolutions: Vec<Resolution>,
+    scenes: Option<SceneRecord>,
+    unit: Option<Vec<UnitRow>>,
+}
+
 impl Selftest {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         if self.format == Format::Junit {
             bail!("the self-test is written as text or json");
         }
-        let wants = |part: Part| self.only.is_none_or(|only| only == part);
-        if !wants(Part::Formulas) && !self.filter.is_empty() {
+        if !self.wants(Part::Formulas) && !self.filter.is_empty() {
             bail!("a filter selects formulas; expected none beside `--only` of anything else");
         }
-        let filter = Filter::new(&self.filter)?;
-        let shows = std::io::stderr().is_terminal();
-        let say = |what: &str| {
-            if shows {
-                eprintln!("{what}");
-            }
-        };
-        let (mut record, mut resolutions, mut rows) = (None, vec![], None);
-        if wants(Part::Formulas) {
-            say("every mistake in every formula that it concerns");
-            let options = formulas::Options {
-                filter: filter.clone(),
-                cases: self.formula_cases,
-                seed: self.seed,
-                draws: self.draws,
-                profile: self.profile,
-            };
-            let tried = formulas::selftest(&options);
-            if tried.clean.is_empty() {
-                return Err(NothingToRun("no formula matches the filter".into()).into());
-            }
-            record = Some(tried);
-            if self.calibrate {
-                say("the smallest errors that are named");
-                resolutions = calibrate(&options);
-            }
-        }
         let targets = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
-        let mut drawn = None;
-        if wants(Part::Scenes) && self.filter.is_empty() {
-            drawn = Some(scenes::selftest(SCENE_SIZE, self.profile, &|id| say(&format!("every mistake in {id}")))?);
-        }
-        if wants(Part::BlendUnit) && self.filter.is_empty() {
-            rows = Some(selftest(&targets, self.cases, &mut |target| say(&format!("every fault on {target}")))?);
-        }
+        let tested = self.test(&targets)?;
         let text = match self.format {
-            Format::Json => {
-                let document = SelftestDocument {
-                    schema: SCHEMA.into(),
-                    rows: rows.clone().unwrap_or_default(),
-                    kills: record.as_ref().map(|record| record.kills.clone()),
-                    clean: record.as_ref().map(|record| record.clean.clone()),
-                    calibration: record.is_some().then(|| resolutions.clone()),
-                    scenes: drawn.clone(),
-                };
-                serde_json::to_string_pretty(&document)? + "\n"
-            }
-            Format::Text | Format::Junit => {
-                let mut text = String::new();
-                if let Some(record) = &record {
-                    report::text(record, &resolutions, &mut text)?;
-                }
-                if let Some(scenes) = &drawn {
-                    if record.is_some() {
-                        text.push('\n');
-                    }
-                    scenes::text(scenes, &mut text)?;
-                }
-                if let Some(rows) = &rows {
-                    if record.is_some() || drawn.is_some() {
-                        text.push('\n');
-                    }
-                    text += &table(&targets, rows)?;
-                }
-                text
-            }
+            Format::Json => tested.json()?,
+            Format::Text | Format::Junit => tested.text(&targets)?,
         };
         emit(&text, self.out.as_deref())?;
-        let unit = rows.iter().flatten().all(|row| row.finding.is_good());
-        let good = unit && record.iter().all(Record::is_good) && drawn.iter().all(SceneRecord::is_good);
-        Ok(if good { Status::Success } else { Status::Failed })
+        Ok(if tested.is_good() { Status::Success } else { Status::Failed })
+    }
+
+    fn wants(&self, part: Part) -> bool {
+        self.only.is_none_or(|only| only == part)
+    }
+
+    fn test(&self, targets: &[TargetFormat]) -> anyhow::Result<Tested> {
+        let filter = Filter::new(&self.filter)?;
+        let mut tested = Tested::default();
+        if self.wants(Part::Formulas) {
+            self.test_formulas(filter, &mut tested)?;
+        }
+        if self.wants(Part::Scenes) && self.filter.is_empty() {
+            let progress = |id: &str| say(&format!("every mistake in {id}"));
+            tested.scenes = Some(scenes::selftest(SCENE_SIZE, self.profile, &progress)?);
+        }
+        if self.wants(Part::BlendUnit) && self.filter.is_empty() {
+            let mut progress = |target: &str| say(&format!("every fault on {target}"));
+            tested.unit = Some(selftest(targets, self.cases, &mut progress)?);
+        }
+        Ok(tested)
+    }
+
+    fn test_formulas(&self, filter: Filter, tested: &mut Tested) -> anyhow::Result<()> {
+        say("every mistake in every formula that it concerns");
+        let options = formulas::Options {
+            filter,
+            cases: self.formula_cases,
+            seed: self.seed,
+            draws: self.draws,
+            profile: self.profile,
+        };
+        let record = formulas::selftest(&options);
+        if record.clean.is_empty() {
+            return Err(NothingToRun("no formula matches the filter".into()).into());
+        }
+        tested.formulas = Some(record);
+        if self.calibrate {
+            say("the smallest errors that are named");
+            tested.resolutions = calibrate(&options);
+        }
+        Ok(())
+    }
+}
+
+impl Tested {
+    fn is_good(&self) -> bool {
+        self.unit.iter().flatten().all(|row| row.finding.is_good())
+            && self.formulas.iter().all(Record::is_good)
+            && self.scenes.iter().all(SceneRecord::is_good)
+    }
+
+    fn json(&self) -> anyhow::Result<String> {
+        let document = SelftestDocument {
+            schema: SCHEMA.into(),
+            rows: self.unit.clone().unwrap_or_default(),
+            kills: self.formulas.as_ref().map(|record| record.kills.clone()),
+            clean: self.formulas.as_ref().map(|record| record.clean.clone()),
+            calibration: self.formulas.is_some().then(|| self.resolutions.clone()),
+            scenes: self.scenes.clone(),
+        };
+        Ok(serde_json::to_string_pretty(&document)? + "\n")
+    }
+
+    /// The parts that were tested, an empty line between them.
+    fn text(&self, targets: &[TargetFormat]) -> anyhow::Result<String> {
+        let mut parts = vec![];
+        if let Some(record) = &self.formulas {
+            let mut text = String::new();
+            report::text(record, &self.resolutions, &mut text)?;
+            parts.push(text);
+        }
+        if let Some(scenes) = &self.scenes {
+            let mut text = String::new();
+            scenes::text(scenes, &mut text)?;
+            parts.push(text);
+        }
+        if let Some(rows) = &self.unit {
+            parts.push(table(targets, rows)?);
+        }
+        Ok(parts.join("\n"))
+    }
+}
+
+/// Says what is under way, where somebody reads it.
+fn say(what: &str) {
+    if std::io::stderr().is_terminal() {
+        eprintln!("{what}");
     }
 }
 
