@@ -202,15 +202,7 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
     if let CaseRef::Near(place, _) = case {
         writeln!(text, "  near: {} ({})", spec.hard[place].name, spec.hard[place].pins)?;
     }
-    writeln!(text, "\ninputs")?;
-    let mut rest = known.inputs.as_slice();
-    for input in spec.inputs {
-        let (these, others) = rest.split_at(input.shape.components());
-        rest = others;
-        let decimal: Vec<String> = these.iter().map(|&x| Number(x.into()).to_string()).collect();
-        let hex: Vec<String> = these.iter().map(|x| format!("0x{:08x}", x.to_bits())).collect();
-        writeln!(text, "  {:<22} {}  {}  {}", input.name, decimal.join(" "), hex.join(" "), input.unit)?;
-    }
+    text += &inputs_text(member, known)?;
     writeln!(text, "\nsteps                    f64                      legal")?;
     for (step, name) in known.steps.iter().zip(step_names(&known.steps)) {
         writeln!(text, "  {name:<22} {:<24} {}", Number(step.result.value).to_string(), range(&step.result.interval))?;
@@ -236,22 +228,42 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
             stable.bound
         )?;
     }
-    for Answer { adapter, stage, values } in answers {
-        writeln!(text, "\n{adapter}, {stage}")?;
-        match values {
-            Err(reason) => writeln!(text, "  skipped: {reason}")?,
-            Ok(values) => {
-                for (k, (bits, legal)) in values.iter().enumerate() {
-                    let value = Number(f32::from_bits(*bits).into()).to_string();
-                    let (outcome, error) = outcome(*bits, known.outputs[k].value, legal);
-                    let name = spec.output_name(k);
-                    writeln!(
-                        text,
-                        "  {name:<22} {value:<24} 0x{bits:08x}  {outcome}, {} ULP; legal here {}",
-                        Number(error),
-                        range(legal)
-                    )?;
-                }
+    for answer in answers {
+        text += &answer_text(member, known, answer)?;
+    }
+    Ok(text)
+}
+
+fn inputs_text(member: &Member, known: &Known) -> anyhow::Result<String> {
+    let mut text = String::new();
+    writeln!(text, "\ninputs")?;
+    let mut rest = known.inputs.as_slice();
+    for input in member.spec.inputs {
+        let (these, others) = rest.split_at(input.shape.components());
+        rest = others;
+        let decimal: Vec<String> = these.iter().map(|&x| Number(x.into()).to_string()).collect();
+        let hex: Vec<String> = these.iter().map(|x| format!("0x{:08x}", x.to_bits())).collect();
+        writeln!(text, "  {:<22} {}  {}  {}", input.name, decimal.join(" "), hex.join(" "), input.unit)?;
+    }
+    Ok(text)
+}
+
+fn answer_text(member: &Member, known: &Known, answer: &Answer) -> anyhow::Result<String> {
+    let mut text = String::new();
+    writeln!(text, "\n{}, {}", answer.adapter, answer.stage)?;
+    match &answer.values {
+        Err(reason) => writeln!(text, "  skipped: {reason}")?,
+        Ok(values) => {
+            for (k, (bits, legal)) in values.iter().enumerate() {
+                let value = Number(f32::from_bits(*bits).into()).to_string();
+                let (outcome, error) = outcome(*bits, known.outputs[k].value, legal);
+                let name = member.spec.output_name(k);
+                writeln!(
+                    text,
+                    "  {name:<22} {value:<24} 0x{bits:08x}  {outcome}, {} ULP; legal here {}",
+                    Number(error),
+                    range(legal)
+                )?;
             }
         }
     }
