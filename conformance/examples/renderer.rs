@@ -14,8 +14,9 @@ use lightmeter::select::{Member, catalogue};
 use lightmeter_reference::render::render;
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::io::{BufRead as _, Write as _};
+use std::io::{BufRead as _, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// What goes wrong, and at which case.
 struct Faults(HashMap<String, String>);
@@ -34,84 +35,126 @@ impl Faults {
 fn main() -> anyhow::Result<()> {
     let faults = Faults::read();
     let catalogue = catalogue();
-    let by_id: HashMap<&str, &Member> = catalogue.iter().map(|member| (member.spec.id.as_str(), member)).collect();
+    let by_id = catalogue.iter().map(|member| (member.spec.id.as_str(), member)).collect();
+    let mut renderer = Renderer { faults, by_id, folder: PathBuf::new(), answered: 0 };
     let mut out = std::io::BufWriter::with_capacity(1 << 20, std::io::stdout().lock());
-    let (mut folder, mut answered) = (PathBuf::new(), 0_u32);
     for line in std::io::stdin().lock().lines() {
         let request: Value = serde_json::from_str(&line?)?;
         if request.get("hello").is_some() {
-            folder = request["folder"].as_str().unwrap_or_default().into();
-            let hello = json!({
-                "hello": "lightmeter.protocol/1",
-                "renderer": "example",
-                "version": "1.0",
-                "formulas": ["**"],
-                "scenes": ["**"],
-            });
-            writeln!(out, "{}", if faults.has("no-hello", "") { json!("what?") } else { hello })?;
+            writeln!(out, "{}", renderer.hello(&request))?;
             out.flush()?;
         } else if request.get("batch").is_some() {
             out.flush()?;
         } else {
-            let id = request["id"].as_str().unwrap_or_default();
-            if faults.has("crash-at", id) {
-                // Like a renderer that loses what it had not written.
-                std::process::abort();
-            } else if faults.has("hang-at", id) {
-                out.flush()?;
-                loop {
-                    std::thread::sleep(std::time::Duration::from_secs(1));
-                }
-            }
-            let mut answer = match request.get("scene") {
-                Some(_) => draw(id, &folder, &faults)?,
-                None => evaluate(&request, &by_id, &faults),
-            };
-            answered += 1;
-            if faults.has("unstable-at", id) {
-                answer["value"][0] = json!(f64::from(answered));
-            }
-            if faults.has("long-at", id) {
-                out.write_all(&vec![b'x'; 64 << 20])?;
-                writeln!(out)?;
-            }
-            if faults.has("truncated-at", id) {
-                writeln!(out, "{{\"id\": \"{id}\", \"value\": [0.1, ")?;
-            }
-            if faults.has("unknown-at", id) {
-                writeln!(out, "{}", json!({ "id": "fog/none/random/000000", "value": [0] }))?;
-            }
-            if faults.has("twice-at", id) {
-                writeln!(out, "{answer}")?;
-            }
-            if faults.has("hello-at", id) {
-                writeln!(out, "{}", json!({ "hello": "lightmeter.protocol/1", "renderer": "another" }))?;
-            }
-            if faults.0.get("slow-at").is_some_and(|formula| id.strip_prefix(formula.as_str()).is_some()) {
-                std::thread::sleep(std::time::Duration::from_millis(10));
-            }
-            // Lines that answer nothing: without end, or one now and then for ever.
-            while faults.has("flood-at", id) {
-                writeln!(out, "{}", json!({ "id": "fog/none/random/000000", "value": [0] }))?;
-            }
-            while faults.has("trickle-at", id) {
-                writeln!(out)?;
-                out.flush()?;
-                std::thread::sleep(std::time::Duration::from_millis(50));
-            }
-            if !faults.has("drop-at", id) {
-                writeln!(out, "{answer}")?;
-            }
+            renderer.respond(&request, &mut out)?;
         }
     }
     out.flush()?;
-    if faults.has("lingers", "") {
-        std::thread::sleep(std::time::Duration::from_secs(600));
+    if renderer.faults.has("lingers", "") {
+        std::thread::sleep(Duration::from_secs(600));
     }
-    if let Some(code) = faults.0.get("exit") {
+    if let Some(code) = renderer.faults.0.get("exit") {
         std::process::exit(code.parse()?);
     }
     Ok(())
+}
+
+/// What a renderer knows between requests.
+struct Renderer<'a> {
+    faults: Faults,
+    by_id: HashMap<&'a str, &'a Member>,
+    /// Where images are written.
+    folder: PathBuf,
+    answered: u32,
+}
+
+impl Renderer<'_> {
+    fn hello(&mut self, request: &Value) -> Value {
+        self.folder = request["folder"].as_str().unwrap_or_default().into();
+        if self.faults.has("no-hello", "") {
+            return json!("what?");
+        }
+        json!({
+            "hello": "lightmeter.protocol/1",
+            "renderer": "example",
+            "version": "1.0",
+            "formulas": ["**"],
+            "scenes": ["**"],
+        })
+    }
+
+    /// Answers a case, unless it is told to fail at it.
+    fn respond(&mut self, request: &Value, out: &mut impl Write) -> anyhow::Result<()> {
+        let id = request["id"].as_str().unwrap_or_default();
+        self.faults.end(id, out)?;
+        let mut answer = match request.get("scene") {
+            Some(_) => draw(id, &self.folder, &self.faults)?,
+            None => evaluate(request, &self.by_id, &self.faults),
+        };
+        self.answered += 1;
+        if self.faults.has("unstable-at", id) {
+            answer["value"][0] = json!(f64::from(self.answered));
+        }
+        self.faults.write_besides(id, &answer, out)?;
+        self.faults.delay(id, out)?;
+        if !self.faults.has("drop-at", id) {
+            writeln!(out, "{answer}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Faults {
+    /// Ends at a case without an answer: crashes, or hangs.
+    fn end(&self, id: &str, out: &mut impl Write) -> anyhow::Result<()> {
+        if self.has("crash-at", id) {
+            // Like a renderer that loses what it had not written.
+            std::process::abort();
+        } else if self.has("hang-at", id) {
+            out.flush()?;
+            loop {
+                std::thread::sleep(Duration::from_secs(1));
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes lines besides the answer that the protocol does not allow.
+    fn write_besides(&self, id: &str, answer: &Value, out: &mut impl Write) -> anyhow::Result<()> {
+        if self.has("long-at", id) {
+            out.write_all(&vec![b'x'; 64 << 20])?;
+            writeln!(out)?;
+        }
+        if self.has("truncated-at", id) {
+            writeln!(out, "{{\"id\": \"{id}\", \"value\": [0.1, ")?;
+        }
+        if self.has("unknown-at", id) {
+            writeln!(out, "{}", json!({ "id": "fog/none/random/000000", "value": [0] }))?;
+        }
+        if self.has("twice-at", id) {
+            writeln!(out, "{answer}")?;
+        }
+        if self.has("hello-at", id) {
+            writeln!(out, "{}", json!({ "hello": "lightmeter.protocol/1", "renderer": "another" }))?;
+        }
+        Ok(())
+    }
+
+    /// Takes its time over an answer: a little, or for ever with lines that answer nothing, without end or now and then.
+    fn delay(&self, id: &str, out: &mut impl Write) -> anyhow::Result<()> {
+        if self.0.get("slow-at").is_some_and(|formula| id.strip_prefix(formula.as_str()).is_some()) {
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        while self.has("flood-at", id) {
+            writeln!(out, "{}", json!({ "id": "fog/none/random/000000", "value": [0] }))?;
+        }
+        while self.has("trickle-at", id) {
+            writeln!(out)?;
+            out.flush()?;
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        Ok(())
+    }
 }
 
 /// A formula's outputs.
