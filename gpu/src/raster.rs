@@ -180,43 +180,9 @@ fn pipeline(
 ) -> wgpu::RenderPipeline {
     let is_depth = kind == Raster::OwnDepth;
     let tests_depth = is_depth || matches!(kind, Raster::SameDepth(_));
-    let add = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::One,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Add,
-    };
-    let target = match kind {
-        Raster::OwnDepth => None,
-        Raster::Quad => Some(wgpu::ColorTargetState {
-            format: COUNTS,
-            blend: Some(wgpu::BlendState { color: add, alpha: add }),
-            write_mask: wgpu::ColorWrites::ALL,
-        }),
-        _ => Some(wgpu::ColorTargetState::from(BITS)),
-    };
-    let mut primitive = wgpu::PrimitiveState { topology, ..Default::default() };
-    if let Raster::Culled { back, front_is_ccw } = kind {
-        primitive.cull_mode = Some(if back { wgpu::Face::Back } else { wgpu::Face::Front });
-        primitive.front_face = if front_is_ccw { wgpu::FrontFace::Ccw } else { wgpu::FrontFace::Cw };
-    }
-    if matches!(kind, Raster::Flat { topology: Topology::TriangleStrip, .. }) {
-        // Every triangle of the strip faces front, unless the winding was lost on the way to the last vertex.
-        primitive.cull_mode = Some(wgpu::Face::Back);
-    }
-    let entries: Vec<wgpu::BindGroupLayoutEntry> =
-        [(0, wgpu::BufferBindingType::Storage { read_only: true }), (1, wgpu::BufferBindingType::Uniform)]
-            .into_iter()
-            .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-                binding,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-                count: None,
-            })
-            .collect();
-    let group =
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+    let target = (!is_depth).then(|| color_target(kind));
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        bind_group_layouts: &[Some(&group)],
+        bind_group_layouts: &[Some(&vertex_bindings(gpu))],
         ..Default::default()
     });
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -228,7 +194,7 @@ fn pipeline(
             compilation_options: Default::default(),
             buffers: &[],
         },
-        primitive,
+        primitive: primitive(kind, topology),
         depth_stencil: tests_depth.then(|| wgpu::DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(true),
@@ -246,6 +212,52 @@ fn pipeline(
         multiview_mask: None,
         cache: None,
     })
+}
+
+/// What a kind is drawn to: quads are counted by adding.
+fn color_target(kind: Raster) -> wgpu::ColorTargetState {
+    if kind != Raster::Quad {
+        return BITS.into();
+    }
+    let add = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    wgpu::ColorTargetState {
+        format: COUNTS,
+        blend: Some(wgpu::BlendState { color: add, alpha: add }),
+        write_mask: wgpu::ColorWrites::ALL,
+    }
+}
+
+/// The topology with the faces that are culled.
+fn primitive(kind: Raster, topology: wgpu::PrimitiveTopology) -> wgpu::PrimitiveState {
+    let mut primitive = wgpu::PrimitiveState { topology, ..Default::default() };
+    if let Raster::Culled { back, front_is_ccw } = kind {
+        primitive.cull_mode = Some(if back { wgpu::Face::Back } else { wgpu::Face::Front });
+        primitive.front_face = if front_is_ccw { wgpu::FrontFace::Ccw } else { wgpu::FrontFace::Cw };
+    }
+    if matches!(kind, Raster::Flat { topology: Topology::TriangleStrip, .. }) {
+        // Every triangle of the strip faces front, unless the winding was lost on the way to the last vertex.
+        primitive.cull_mode = Some(wgpu::Face::Back);
+    }
+    primitive
+}
+
+/// The bindings of the vertex stage: rows, and their stride.
+fn vertex_bindings(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entries: Vec<wgpu::BindGroupLayoutEntry> =
+        [(0, wgpu::BufferBindingType::Storage { read_only: true }), (1, wgpu::BufferBindingType::Uniform)]
+            .into_iter()
+            .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::VERTEX,
+                ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+                count: None,
+            })
+            .collect();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
 }
 
 /// A bind group of one texture.
