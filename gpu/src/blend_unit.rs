@@ -144,16 +144,9 @@ impl Lane {
     }
 
     fn submit(&mut self, target: TargetFormat, batch: &Batch) -> Result<Pending, GpuError> {
-        let gpu = &self.gpu;
         let lowered: Vec<Lowered> = batch.draws.iter().map(lower).collect();
-        for lowered in &lowered {
-            let module = match lowered.entry {
-                DUAL_SOURCE => self.dual.as_ref().expect("the route is open"),
-                _ => &self.module,
-            };
-            self.pipelines.entry((target, *lowered)).or_insert_with(|| pipeline(gpu, module, format(target), *lowered));
-        }
-        gpu.check_shader(FILE)?;
+        self.compile(target, &lowered)?;
+        let gpu = &self.gpu;
         let pixel_bytes = 4 * target.component_bytes();
         let count = batch.destinations.len() / pixel_bytes;
         let count = u32::try_from(count).unwrap_or(u32::MAX);
@@ -161,33 +154,8 @@ impl Lane {
         let height = count.div_ceil(WIDTH).next_power_of_two();
         let drawn = gpu.blend_target(WIDTH, height, format(target));
         gpu.upload(&drawn, &batch.destinations, pixel_bytes);
-        let vertex = wgpu::BufferUsages::VERTEX;
-        let sources = gpu.buffer(bytemuck::cast_slice(&batch.sources), vertex);
-        let places: Vec<[f32; 2]> = batch.pixels.iter().map(|&pixel| middle(pixel, WIDTH, height)).collect();
-        let places = gpu.buffer(bytemuck::cast_slice(&places), vertex);
-        let instances: Vec<u8> = batch.draws.iter().flat_map(|draw| instance(target, draw)).collect();
-        let instances = gpu.buffer(&instances, vertex);
-        let view = drawn.create_view(&Default::default());
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-                })],
-                ..Default::default()
-            });
-            for (slot, buffer) in (0..).zip([&sources, &places, &instances]) {
-                pass.set_vertex_buffer(slot, buffer.slice(..));
-            }
-            for (number, (draw, lowered)) in (0..).zip(batch.draws.iter().zip(&lowered)) {
-                pass.set_pipeline(&self.pipelines[&(target, *lowered)]);
-                pass.set_blend_constant(blend_constant(draw));
-                pass.draw(draw.points.clone(), number..number + 1);
-            }
-        }
+        self.draw(&mut encoder, target, batch, &lowered, &drawn);
         let row_bytes = pixel_bytes * WIDTH as usize;
         let staging = staging(gpu, row_bytes * height as usize / 4);
         encoder.copy_texture_to_buffer(
@@ -204,6 +172,56 @@ impl Lane {
         );
         // The target's last row may have pixels of no case.
         Ok(Pending::submit(gpu, encoder, staging, (row_bytes / 4, row_bytes / 4)).of_bytes(batch.destinations.len()))
+    }
+
+    /// Makes the pipelines that are not there yet.
+    fn compile(&mut self, target: TargetFormat, states: &[Lowered]) -> Result<(), GpuError> {
+        let gpu = &self.gpu;
+        for lowered in states {
+            let module = match lowered.entry {
+                DUAL_SOURCE => self.dual.as_ref().expect("the route is open"),
+                _ => &self.module,
+            };
+            self.pipelines.entry((target, *lowered)).or_insert_with(|| pipeline(gpu, module, format(target), *lowered));
+        }
+        gpu.check_shader(FILE)
+    }
+
+    /// Draws a batch over its destinations.
+    fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: TargetFormat,
+        batch: &Batch,
+        states: &[Lowered],
+        drawn: &wgpu::Texture,
+    ) {
+        let gpu = &self.gpu;
+        let vertex = wgpu::BufferUsages::VERTEX;
+        let sources = gpu.buffer(bytemuck::cast_slice(&batch.sources), vertex);
+        let places: Vec<[f32; 2]> =
+            batch.pixels.iter().map(|&pixel| middle(pixel, drawn.width(), drawn.height())).collect();
+        let places = gpu.buffer(bytemuck::cast_slice(&places), vertex);
+        let instances: Vec<u8> = batch.draws.iter().flat_map(|draw| instance(target, draw)).collect();
+        let instances = gpu.buffer(&instances, vertex);
+        let view = drawn.create_view(&Default::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        for (slot, buffer) in (0..).zip([&sources, &places, &instances]) {
+            pass.set_vertex_buffer(slot, buffer.slice(..));
+        }
+        for (number, (draw, lowered)) in (0..).zip(batch.draws.iter().zip(states)) {
+            pass.set_pipeline(&self.pipelines[&(target, *lowered)]);
+            pass.set_blend_constant(blend_constant(draw));
+            pass.draw(draw.points.clone(), number..number + 1);
+        }
     }
 }
 
