@@ -139,8 +139,6 @@ impl<'a> Pipelines<'a> {
                 })
             })
             .collect();
-        // No test is one that always passes and leaves nothing.
-        let depth = key.depth.unwrap_or(DepthTest { compare: Compare::Always, write: false });
         self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("scene"),
             // A binding is there exactly when the shader reads it.
@@ -160,13 +158,7 @@ impl<'a> Pipelines<'a> {
                 },
                 ..Default::default()
             },
-            depth_stencil: self.tests_depth.then(|| wgpu::DepthStencilState {
-                format: DEPTH,
-                depth_write_enabled: Some(depth.write),
-                depth_compare: Some(compare_function(depth.compare)),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
+            depth_stencil: self.tests_depth.then(|| depth_state(key.depth)),
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &program.module,
@@ -181,6 +173,18 @@ impl<'a> Pipelines<'a> {
             multiview_mask: None,
             cache: None,
         })
+    }
+}
+
+/// A depth test; no test is one that always passes and leaves nothing.
+fn depth_state(test: Option<DepthTest>) -> wgpu::DepthStencilState {
+    let test = test.unwrap_or(DepthTest { compare: Compare::Always, write: false });
+    wgpu::DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(test.write),
+        depth_compare: Some(compare_function(test.compare)),
+        stencil: Default::default(),
+        bias: Default::default(),
     }
 }
 
