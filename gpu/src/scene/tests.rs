@@ -21,29 +21,52 @@ const SIZE: usize = 33;
 
 /// Two triangles that face the eye, two units away, under every kind of light, in fog, textured, with holes.
 fn frame() -> Frame {
-    let light = |place| Light {
-        name: "light".into(),
-        ambient: [0.05, 0.04, 0.03],
-        diffuse: [0.6, 0.5, 0.4],
-        specular: [0.3, 0.4, 0.5],
-        place,
-    };
-    let falloff = [1.0, 0.1, 0.05];
-    let mesh = Mesh {
+    let mut projection = IDENTITY;
+    projection[2] = [0.0, 0.0, -1.1, -1.0];
+    projection[3] = [0.0, 0.0, -1.1, 0.0];
+    Frame {
+        target: Target {
+            width: u32::try_from(SIZE).expect("it is small"),
+            height: u32::try_from(SIZE).expect("it is small"),
+            format: TargetFormat::Rgba32Float,
+        },
+        background: [0.1, 0.2, 0.3, 0.4],
+        clear_depth: 1.0,
+        projection,
+        ambient: [0.2, 0.3, 0.4],
+        ambient_form: Ambient::Product,
+        departures: lightmeter_scene::frame::Departures::default(),
+        light_ambient: LightAmbient::OpenGl,
+        lights: lights(),
+        fog: Some(Fog {
+            color: [0.5, 0.5, 0.6],
+            form: FogForm::Linear { dmin: 1.5, dmax: 2.3 },
+            distance: Distance::Radial,
+        }),
+        meshes: vec![mesh()],
+        textures: vec![texture(0), texture(1)],
+        draws: vec![square()],
+    }
+}
+
+fn mesh() -> Mesh {
+    Mesh {
         positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.2], [1.0, 1.0, 0.0], [-1.0, 1.0, -0.3]],
         normals: vec![[-0.2, 0.0, 1.0], [0.3, 0.1, 2.0], [0.0, 0.4, 1.0], [0.1, -0.2, 0.7]],
         uvs: vec![[-0.3, 1.4], [1.2, 1.1], [1.3, -0.2], [0.0, 0.0]],
         lightmap_uvs: vec![[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]],
         colors: vec![[1.0, 0.5, 0.5, 1.0], [0.5, 1.0, 0.5, 0.9], [0.5, 0.5, 1.0, 0.8], [1.0; 4]],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
-    };
-    let texels = |seed: usize| {
-        (0..12).map(|k| std::array::from_fn(|c| [0.2, 0.9, 0.5, 0.7, 1.0][(k * (3 + seed) + c * 2) % 5])).collect()
-    };
-    let texture = |seed| Texture { width: 4, height: 3, texels: texels(seed) };
-    let mut projection = IDENTITY;
-    projection[2] = [0.0, 0.0, -1.1, -1.0];
-    projection[3] = [0.0, 0.0, -1.1, 0.0];
+    }
+}
+
+fn texture(seed: usize) -> Texture {
+    let texels =
+        (0..12).map(|k| std::array::from_fn(|c| [0.2, 0.9, 0.5, 0.7, 1.0][(k * (3 + seed) + c * 2) % 5])).collect();
+    Texture { width: 4, height: 3, texels }
+}
+
+fn square() -> Draw {
     let shading = Shading {
         frequency: Frequency::Phong,
         provoking: Provoking::First,
@@ -56,7 +79,7 @@ fn frame() -> Frame {
     modelview[0][0] = 1.2;
     modelview[1][0] = 0.1;
     modelview[3] = [0.0, 0.1, -2.0, 1.0];
-    let draw = Draw {
+    Draw {
         name: "square".into(),
         mesh: 0,
         modelview,
@@ -79,41 +102,31 @@ fn frame() -> Frame {
         blend: None,
         depth: Some(DepthTest { compare: Compare::Less, write: true }),
         cull: Cull::Back,
-    };
-    Frame {
-        target: Target {
-            width: u32::try_from(SIZE).expect("it is small"),
-            height: u32::try_from(SIZE).expect("it is small"),
-            format: TargetFormat::Rgba32Float,
-        },
-        background: [0.1, 0.2, 0.3, 0.4],
-        clear_depth: 1.0,
-        projection,
-        ambient: [0.2, 0.3, 0.4],
-        ambient_form: Ambient::Product,
-        departures: lightmeter_scene::frame::Departures::default(),
-        light_ambient: LightAmbient::OpenGl,
-        lights: vec![
-            light(Place::Directional { toward: [0.5, 0.5, 2.0], unit: false }),
-            light(Place::Directional { toward: [0.0, 0.6, 0.8], unit: true }),
-            light(Place::Point { position: [0.5, 1.0, -0.5], falloff }),
-            light(Place::Spot {
-                position: [-0.5, 0.5, 0.0],
-                falloff,
-                axis: [0.4, -0.2, -2.0],
-                cutoff_cosine: 0.95,
-                exponent: 4.0,
-            }),
-        ],
-        fog: Some(Fog {
-            color: [0.5, 0.5, 0.6],
-            form: FogForm::Linear { dmin: 1.5, dmax: 2.3 },
-            distance: Distance::Radial,
-        }),
-        meshes: vec![mesh],
-        textures: vec![texture(0), texture(1)],
-        draws: vec![draw],
     }
+}
+
+/// Lights of each kind.
+fn lights() -> Vec<Light> {
+    let light = |place| Light {
+        name: "light".into(),
+        ambient: [0.05, 0.04, 0.03],
+        diffuse: [0.6, 0.5, 0.4],
+        specular: [0.3, 0.4, 0.5],
+        place,
+    };
+    let falloff = [1.0, 0.1, 0.05];
+    vec![
+        light(Place::Directional { toward: [0.5, 0.5, 2.0], unit: false }),
+        light(Place::Directional { toward: [0.0, 0.6, 0.8], unit: true }),
+        light(Place::Point { position: [0.5, 1.0, -0.5], falloff }),
+        light(Place::Spot {
+            position: [-0.5, 0.5, 0.0],
+            falloff,
+            axis: [0.4, -0.2, -2.0],
+            cutoff_cosine: 0.95,
+            exponent: 4.0,
+        }),
+    ]
 }
 
 fn drawn(gpu: &Gpu, frame: &Frame, sets: &[Called], shader: Shader, stage: Option<Intermediate>) -> Vec<u8> {
