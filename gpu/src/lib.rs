@@ -14,6 +14,7 @@ mod device;
 mod error;
 mod kernel;
 mod library;
+mod pipeline;
 mod raster;
 mod readback;
 mod repeat;

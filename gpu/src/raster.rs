@@ -1,10 +1,10 @@
 //! Cases that only a rasteriser can answer: each draws its primitive and looks at one pixel of a target.
 
-use crate::arithmetic::{bind, cleared, read_target};
 use crate::depth_unit::compare_function;
 use crate::device::Gpu;
 use crate::error::GpuError;
-use crate::readback::Pending;
+use crate::pipeline::{bind, cleared};
+use crate::readback::{Pending, read_target};
 use crate::screen::{BITS, draw_screen, screen_pipeline};
 use crate::shaders::Shaders;
 use lightmeter_scene::depth::Compare;

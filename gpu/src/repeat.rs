@@ -2,11 +2,11 @@
 //! what comes out is folded into one word, so that nothing can be left out and little is read or written. The same pipeline
 //! hands back what it gives for the rows as they are.
 
-use crate::arithmetic::bind;
 use crate::clock::{Clock, Reading};
 use crate::device::Gpu;
 use crate::error::GpuError;
 use crate::kernel::Kernel;
+use crate::pipeline::bind;
 use crate::readback::{Pending, staging};
 use crate::rung::Rung;
 use crate::shaders::Shaders;

@@ -1,7 +1,7 @@
 //! What turns a drawn target into bits: a draw over the whole of a target of integers, which reads the first.
 
-use crate::arithmetic::cleared;
 use crate::device::Gpu;
+use crate::pipeline::cleared;
 
 /// The format of a target of bits.
 pub(crate) const BITS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;

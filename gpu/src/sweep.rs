@@ -4,10 +4,11 @@
 //! Floats are numbered in their order by [`key_of`](lightmeter_scene::along::key_of); −0 comes right before 0 and both are there. A device is told where a block
 //! begins and how long it is, and makes the inputs itself. Buffers are made once.
 
-use crate::arithmetic::{Programmable, bind, cleared, compute_pipeline, render_pipeline};
+use crate::arithmetic::Programmable;
 use crate::device::Gpu;
 use crate::error::GpuError;
 use crate::kernel::{Kernel, SWEEP_GROUP, SWEEP_WIDTH};
+use crate::pipeline::{bind, cleared, compute_pipeline, render_pipeline};
 use crate::readback::staging;
 use crate::shaders::Shaders;
 use lightmeter_scene::along::Along;

@@ -3,9 +3,9 @@
 
 use super::Rung;
 use super::dialect::Prelude;
-use crate::arithmetic::bind;
 use crate::device::Gpu;
 use crate::error::GpuError;
+use crate::pipeline::bind;
 use crate::readback::{Pending, staging};
 use lightmeter_scene::target::SENTINEL;
 
