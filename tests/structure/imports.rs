@@ -178,3 +178,37 @@ impl<'ast> Visit<'ast> for Modules {
 fn is_for_tests(attribute: &Attribute) -> bool {
     attribute.path().is_ident("cfg") && attribute.parse_args::<syn::Ident>().is_ok_and(|name| name == "test")
 }
+
+#[test]
+fn names_are_followed_to_the_files_that_define_them() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("imports");
+    std::fs::create_dir_all(folder.join("outer")).expect("a folder can be made");
+    let files = [
+        ("lib.rs", "mod a;\nmod b;\nmod outer;"),
+        (
+            "a.rs",
+            "use crate::outer::Inner;\nfn f() { print!(\"{}\", super::b::g()) }\n#[cfg(test)]\nmod t { use crate::b::T; }",
+        ),
+        ("b.rs", "use super::a::{f as renamed, self};\nuse std::fmt;\nfn g(x: impl fmt::Debug) -> a::F { renamed(x) }"),
+        ("outer/mod.rs", "mod inner;\npub use inner::Inner;\nfn parent() { inner::child() }"),
+        ("outer/inner.rs", "use crate::{a, outer::parent};\nstruct Inner { f: Vec<a::F>, x: i32 }"),
+    ];
+    for (name, text) in files {
+        std::fs::write(folder.join(name), text).expect("a file can be written");
+    }
+    let imports = imports(&folder.join("lib.rs"));
+    let found: Vec<String> = imports
+        .iter()
+        .map(|((from, to), names)| {
+            let [from, to] = [from, to].map(|file| file.strip_prefix(&folder).expect("a file of the folder").display());
+            format!("{from} -> {to}: {names:?}")
+        })
+        .collect();
+    let expected = [
+        "a.rs -> b.rs: {\"g\"}",
+        "a.rs -> outer/inner.rs: {\"Inner\"}",
+        "b.rs -> a.rs: {\"F\", \"f\"}",
+        "outer/inner.rs -> a.rs: {\"F\"}",
+    ];
+    assert_eq!(found, expected);
+}
