@@ -1,11 +1,10 @@
 //! Cases of blending: every distinct state of the 15 × 15 × 5, states with another one for alpha, the named modes, write
 //! masks, buffers without alpha and overlapping layers. Formulas: `lightmeter_reference::blend`.
 
-mod program;
 mod separate;
 mod special;
 
-pub use program::{MOST_LAYERS, Program, UnitCase};
+pub use super::program::{MOST_LAYERS, Program, UnitCase};
 pub use separate::{Samples, covering_array, separate_of};
 
 use super::Visitor;
@@ -66,24 +65,22 @@ impl Formula for BlendState {
     }
 }
 
+const OVER: &[Hard] = &[
+    Hard::new(
+        "blue-over-red",
+        "document 000's figure",
+        &[("src", &[0.0, 0.0, 1.0, 0.6]), ("dst", &[1.0, 0.0, 0.0, 1.0])],
+    ),
+    Hard::new(
+        "red-over-blue",
+        "document 002's figure",
+        &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0, 1.0])],
+    ),
+];
+
 fn hard(state: State) -> &'static [Hard] {
     match (state.equation, state.src, state.dst) {
-        (Equation::Add, Factor::SrcAlpha, Factor::OneMinusSrcAlpha) => {
-            const {
-                &[
-                    Hard::new(
-                        "blue-over-red",
-                        "document 000's figure",
-                        &[("src", &[0.0, 0.0, 1.0, 0.6]), ("dst", &[1.0, 0.0, 0.0, 1.0])],
-                    ),
-                    Hard::new(
-                        "red-over-blue",
-                        "document 002's figure",
-                        &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0, 1.0])],
-                    ),
-                ]
-            }
-        }
+        (Equation::Add, Factor::SrcAlpha, Factor::OneMinusSrcAlpha) => OVER,
         (Equation::Add, Factor::SrcAlphaSaturate, Factor::One) => {
             const {
                 &[

@@ -1,9 +1,10 @@
 //! Cases of the depth test: every compare function, with and without writing. Formulas: `lightmeter_reference::depth`.
 
+use super::Visitor;
 use super::formula::{Formula, bind, formula};
+use super::interpolation::raster;
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
-use super::{Visitor, raster};
 use lightmeter_reference::Real;
 use lightmeter_reference::depth::{passes, recovered, recovered_reversed, test};
 use lightmeter_scene::depth::{Compare, DepthTest};

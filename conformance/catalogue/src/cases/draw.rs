@@ -1,7 +1,7 @@
 //! Inputs drawn by counter: those of case k follow from the generator's version, the seed, the formula's id and k alone,
 //! so that shards, baselines and a case shown by itself agree.
 
-use super::blend::Program;
+use super::program::Program;
 use super::spec::{Domain, Hard, Input, Kind, Shape, Spec};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State};
 

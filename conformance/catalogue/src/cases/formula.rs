@@ -1,6 +1,6 @@
 //! A formula that is judged: its description, and its evaluation in any arithmetic.
 
-use super::raster;
+use super::rasteriser;
 use super::rows::{Reader, Writer};
 use super::spec::{Kind, Spec};
 use lightmeter_arithmetic::{Accept, Dual, Profile, RandomLegal, Trace, dual};
@@ -141,7 +141,7 @@ impl dyn AnyFormula + '_ {
     pub fn raster_interval(&self, kind: Raster, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
         match kind {
             Raster::Flat { .. } | Raster::SameDepth(_) => self.interval(inputs, profile, out),
-            _ => profile.scope(|| raster::interval(kind, inputs, profile.subpixel_bits, out)),
+            _ => profile.scope(|| rasteriser::interval(kind, inputs, profile.subpixel_bits, out)),
         }
     }
 

@@ -1,12 +1,14 @@
 //! Cases of interpolation as arithmetic; those of the rasteriser are in `raster`. Formulas:
 //! `lightmeter_reference::interpolation`.
 
+use super::Visitor;
 use super::formula::formula;
 use super::spec::{Domain, Hard, Input, Output, Shape};
-use super::{Visitor, raster};
 use lightmeter_reference::Vector;
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_scene::raster::Provoking;
+
+pub(super) mod raster;
 
 pub(super) const ATTRIBUTE: Domain = Domain::Uniform(-2.0, 2.0);
 pub(super) const ATTR: Output = Output::new("attr", Shape::Scalar, "1");

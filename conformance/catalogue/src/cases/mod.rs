@@ -13,7 +13,8 @@ pub mod vector;
 
 mod draw;
 pub mod formula;
-mod raster;
+mod program;
+mod rasteriser;
 mod rows;
 mod spec;
 

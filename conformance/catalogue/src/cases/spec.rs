@@ -1,6 +1,6 @@
 //! The description of a formula: what goes in, what comes out, where it is from, and its hard cases.
 
-use super::blend::Program;
+use super::program::Program;
 use lightmeter_scene::depth::DepthTest;
 use lightmeter_scene::raster::Raster;
 use serde::Serialize;

@@ -136,6 +136,7 @@ pub(super) enum Body {
 }
 
 /// Whether the formula has that step.
+#[expect(clippy::too_many_lines, reason = "one line for each kind of mistake")]
 pub(super) fn concerns(spec: &Spec, body: Body) -> bool {
     let is = |ids: &[&str]| ids.contains(&spec.id.as_str());
     let interpolated_normal = ["vector/interpolated-normal", "vector/interpolated-normal-guarded"];

@@ -293,6 +293,7 @@ impl Model {
     }
 
     /// Makes the mistake; `false` where the model has no such step, or does it so by right.
+    #[expect(clippy::too_many_lines, reason = "one line for each kind of mistake")]
     pub(super) fn twist(&mut self, twist: Twist) -> bool {
         let before = *self;
         let lit = self.is_lit();

@@ -1,6 +1,6 @@
 //! What a rasteriser may make of a triangle.
 //!
-//! The derivation is that of `cases::raster`, made fit for whole images:
+//! The derivation is that of `cases::rasteriser`, made fit for whole images:
 //!
 //! * *Place.* A vertex may be off by δ in x and in y: the step of the subpixel grid, and what its clip coordinates and the
 //!   viewport lose in binary32. A pixel whose middle lies within δ of an edge may be covered or not. A covered one holds

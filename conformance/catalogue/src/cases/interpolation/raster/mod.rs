@@ -1,28 +1,19 @@
 //! Cases that only a rasteriser can answer: drawn, and looked at in one pixel. They belong to the interpolation family.
-//! Formulas: `lightmeter_reference::interpolation`; what a rasteriser may give: `bound`.
+//! Formulas: `lightmeter_reference::interpolation`; what a rasteriser may give: `rasteriser`.
 
-mod bound;
 mod layout;
 
-use super::Visitor;
-use super::formula::{Formula, bind, formula};
-use super::interpolation::{ATTR, ATTRIBUTE, attr, half_pixels, window};
-use super::rows::{Reader, Writer};
-use super::spec::{Domain, Input, Kind, Output, Shape, Spec};
-pub(super) use bound::interval;
-pub(super) use layout::triangle_around_the_pixel;
+use super::{ATTR, ATTRIBUTE, attr, half_pixels, window};
+use crate::cases::Visitor;
+use crate::cases::formula::{Formula, bind, formula};
+use crate::cases::rasteriser::target;
+use crate::cases::rows::{Reader, Writer};
+use crate::cases::spec::{Domain, Input, Kind, Output, Shape, Spec};
+pub(in crate::cases) use layout::triangle_around_the_pixel;
 use layout::{line_through_the_pixel, quad_around_the_pixel, quad_on_the_grid, triangle_across_the_volume};
-use lightmeter_reference::interpolation::{self, Viewport};
+use lightmeter_reference::interpolation;
 use lightmeter_reference::{Real, Vec2, Vec4, Vector};
-use lightmeter_scene::raster::{Provoking, Topology};
-use lightmeter_scene::raster::{Raster, TARGET_SIZE};
-
-/// The whole target, depth from 0 to 1.
-fn target<R: Real>() -> Viewport<R> {
-    let size = R::literal(f64::from(TARGET_SIZE));
-    let (zero, one) = (R::literal(0.0), R::literal(1.0));
-    Viewport { origin: Vector([zero, zero]), size: Vector([size, size]), depth: Vector([zero, one]) }
-}
+use lightmeter_scene::raster::{Provoking, Raster, Topology};
 
 /// The middle of a pixel.
 fn center<R: Real>(pixel: Vec2<R>) -> Vec2<R> {
@@ -38,7 +29,7 @@ const COVERED: Output = Output::new("covered", Shape::Scalar, "1");
 const BOTH: [Output; 2] = [Output::new("perspective", Shape::Scalar, "1"), Output::new("linear", Shape::Scalar, "1")];
 
 /// A triangle around a pixel, with an attribute at each vertex.
-pub(super) const TRIANGLE: &[Input] =
+pub(in crate::cases) const TRIANGLE: &[Input] =
     &[around("a"), around("b"), around("c"), Input::new("attr", Shape::Vec3, "1", ATTRIBUTE), PIXEL];
 
 macro_rules! raster_triangle {

@@ -14,14 +14,20 @@
 //! Coverage follows from signs of linear functions: it is decided where those agree at the corners of the square, and may go
 //! either way elsewhere.
 
-use super::target as viewport;
 use lightmeter_arithmetic::{Accept, F32};
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::{Real, Vec2, Vec4, Vector};
-use lightmeter_scene::raster::Raster;
+use lightmeter_scene::raster::{Raster, TARGET_SIZE};
+
+/// The whole target, depth from 0 to 1.
+pub(super) fn target<R: Real>() -> Viewport<R> {
+    let size = R::literal(f64::from(TARGET_SIZE));
+    let (zero, one) = (R::literal(0.0), R::literal(1.0));
+    Viewport { origin: Vector([zero, zero]), size: Vector([size, size]), depth: Vector([zero, one]) }
+}
 
 /// The interval of each output of a raster case.
-pub(in crate::cases) fn interval(kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]) {
+pub(super) fn interval(kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &mut [Accept]) {
     let snap = f64::from(2.0_f32).powi(-i32::try_from(subpixel_bits).unwrap_or(0));
     match kind {
         Raster::TriangleAttributes => {
@@ -73,8 +79,8 @@ fn vertices<const N: usize>(inputs: &[f32], snap: f64) -> ([Vec4<f64>; N], [f64;
     let clip: [Vec4<f64>; N] = std::array::from_fn(|k| Vector(std::array::from_fn(|c| row[4 * k + c])));
     let mut off = [snap; 2];
     for vertex in clip {
-        let exact = interpolation::viewport(vertex, &viewport());
-        let legal = interpolation::viewport(Vector(vertex.0.map(|x| Accept::<F32>::from_bounds(x, x))), &viewport());
+        let exact = interpolation::viewport(vertex, &target());
+        let legal = interpolation::viewport(Vector(vertex.0.map(|x| Accept::<F32>::from_bounds(x, x))), &target());
         for (axis, off) in off.iter_mut().enumerate() {
             let rounding = (legal[axis].high() - exact[axis]).max(exact[axis] - legal[axis].low());
             *off = off.max(snap + rounding);
@@ -102,7 +108,7 @@ impl SnappedTriangle {
 
     fn window(&self) -> [Vec2<f64>; 3] {
         self.clip.map(|vertex| {
-            let window = interpolation::viewport(vertex, &viewport());
+            let window = interpolation::viewport(vertex, &target());
             Vector([window.x(), window.y()])
         })
     }
@@ -124,7 +130,7 @@ impl SnappedTriangle {
     /// Perspective-correct attribute, linear attribute, depth and 1/w.
     fn fragment(&self) -> [Accept; 4] {
         let values = |p| {
-            let fragment = interpolation::fragment(self.clip, self.attr, &viewport(), p);
+            let fragment = interpolation::fragment(self.clip, self.attr, &target(), p);
             [fragment.perspective, fragment.linear, fragment.depth, fragment.inverse_w]
         };
         let (exact, around) = (values(self.p), square(self.p, self.off).map(values));
@@ -170,11 +176,10 @@ fn line(inputs: &[f32], snap: f64, out: &mut [Accept]) {
     let (clip, off) = vertices::<2>(inputs, snap);
     let attr = [inputs[8], inputs[9]].map(f64::from);
     let p = pixel(inputs);
-    let around =
-        square(p, off.map(|off| off + 0.5)).map(|p| interpolation::fragment_of_line(clip, attr, &viewport(), p));
+    let around = square(p, off.map(|off| off + 0.5)).map(|p| interpolation::fragment_of_line(clip, attr, &target(), p));
     let number = |x: f64| Accept::from_bounds(x, x);
-    let exact = interpolation::fragment_of_line(clip, attr, &viewport(), p);
-    let to: Viewport<Accept> = viewport();
+    let exact = interpolation::fragment_of_line(clip, attr, &target(), p);
+    let to: Viewport<Accept> = target();
     let rounded = interpolation::fragment_of_line(
         clip.map(|v| Vector(v.0.map(number))),
         attr.map(number),
@@ -229,7 +234,7 @@ fn clipped(inputs: &[f32], snap: f64) -> Accept {
     let (clip, off) = vertices::<3>(inputs, snap);
     let behind = clip.iter().any(|v| v.w() <= 0.0);
     let reach = off.map(|off| 2.0 * off + if behind { 8.0 / 256.0 } else { 0.0 });
-    let at_corners = square(pixel(inputs), reach).map(|p| interpolation::clip_functions(clip, &viewport(), p));
+    let at_corners = square(pixel(inputs), reach).map(|p| interpolation::clip_functions(clip, &target(), p));
     let all = |sign: f64, function: usize| at_corners.iter().all(|values| sign * values[function] > 0.0);
     for sign in [1.0, -1.0] {
         if all(sign, 5) && (0..5).all(|function| all(sign, function)) {
