@@ -1,4 +1,4 @@
-//! What goes out as JSON is read again by the types that wrote it, and written once more it is the same.
+//! What goes out as JSON is as its schema says, is read again by the types that wrote it, and written once more it is the same.
 
 use super::{code, command, lightmeter, stderr};
 use lightmeter::document::bench::BenchDocument;
@@ -20,12 +20,63 @@ fn read_and_written<T: Serialize + DeserializeOwned>(args: &[&str]) -> (T, Value
     again(&output.stdout)
 }
 
-/// Reads a document by a type and writes it again.
+/// Holds a document to its schema, reads it by a type and writes it again.
 fn again<T: Serialize + DeserializeOwned>(text: &[u8]) -> (T, Value) {
     let written: Value = serde_json::from_slice(text).expect("it is JSON");
+    let schema = schema(written["schema"].as_str().expect("a document names its schema"));
+    assert_eq!(departure(&schema, &schema, &written, ""), None);
     let read: T = serde_json::from_slice(text).unwrap_or_else(|error| panic!("{}: {error}", written["schema"]));
     assert_eq!(serde_json::to_value(&read).expect("it is written"), written);
     (read, written)
+}
+
+/// The schema of a name such as `lightmeter.run/1`, as the command prints it.
+fn schema(name: &str) -> Value {
+    let name = name.strip_prefix("lightmeter.").and_then(|name| name.strip_suffix("/1")).expect("a name of version 1");
+    super::json(&["schema", name])
+}
+
+/// Where a value is not as a schema says, by the keywords that the schemas have; `root` is the whole schema.
+fn departure(root: &Value, schema: &Value, value: &Value, place: &str) -> Option<String> {
+    if let Some(target) = schema["$ref"].as_str() {
+        let target = root.pointer(target.trim_start_matches('#')).expect("a reference has a target");
+        return departure(root, target, value, place);
+    }
+    if let Some(any) = schema["anyOf"].as_array().or(schema["oneOf"].as_array()) {
+        let fits = any.iter().any(|one| departure(root, one, value, place).is_none());
+        return (!fits).then(|| format!("{place}: {value} fits none of {any:?}"));
+    }
+    let types = schema["type"].as_array().cloned().unwrap_or_else(|| vec![schema["type"].clone()]);
+    let is_of = |name: &Value| match name.as_str() {
+        None => true,
+        Some("null") => value.is_null(),
+        Some("boolean") => value.is_boolean(),
+        Some("integer") => value.is_u64() || value.is_i64(),
+        Some("number") => value.is_number(),
+        Some("string") => value.is_string(),
+        Some("array") => value.is_array(),
+        Some("object") => value.is_object(),
+        Some(other) => panic!("no type {other}"),
+    };
+    let is_listed = schema["enum"].as_array().is_none_or(|all| all.contains(value));
+    let is_constant = schema.get("const").is_none_or(|constant| constant == value);
+    if !(types.iter().any(is_of) && is_listed && is_constant) {
+        return Some(format!("{place}: {value} is not as {schema} says"));
+    }
+    let within = |schema: &Value, value: &Value, name: &str| departure(root, schema, value, &format!("{place}/{name}"));
+    if let Some(values) = value.as_array() {
+        let of = |k: usize| schema["prefixItems"].get(k).unwrap_or(&schema["items"]);
+        return values.iter().enumerate().find_map(|(k, value)| within(of(k), value, &k.to_string()));
+    }
+    let members = value.as_object()?;
+    let missing = schema["required"].as_array().into_iter().flatten();
+    if let Some(name) = missing.filter_map(Value::as_str).find(|name| !members.contains_key(*name)) {
+        return Some(format!("{place}: no {name}"));
+    }
+    members.iter().find_map(|(name, value)| {
+        let own = schema["properties"].get(name).unwrap_or(&schema["additionalProperties"]);
+        if own == false { Some(format!("{place}: {name} is too much")) } else { within(own, value, name) }
+    })
 }
 
 /// A pack, and answers to it of which some are wrong, some are skipped and one is not JSON.
@@ -124,4 +175,34 @@ fn a_self_test_is_read_again() {
     let args = ["selftest", "--only", "blend-unit", "--target", "rgba8unorm", "--cases", "16"];
     let (document, _) = read_and_written::<SelftestDocument>(&args);
     assert!(!document.rows.is_empty() && document.kills.is_none());
+}
+
+#[test]
+fn a_document_that_departs_from_its_schema_is_told() {
+    let (_, written) = read_and_written::<SweepDocument>(&["sweep", "fog/exp", "--adapter", "cpu", "--to", "1e-40"]);
+    let schema = schema("lightmeter.sweep/1");
+    let changes: [(&str, fn(&mut Value)); 5] = [
+        ("no done", |document| drop(document.as_object_mut().and_then(|all| all.remove("done")))),
+        (": more is too much", |document| document["more"] = 1.into()),
+        ("/schema: ", |document| document["schema"] = "lightmeter.run/1".into()),
+        ("/seconds: ", |document| document["seconds"] = "1 s".into()),
+        ("/statistics/worst: ", |document| document["statistics"]["worst"]["error"] = "much".into()),
+    ];
+    for (said, change) in changes {
+        let mut wrong = written.clone();
+        change(&mut wrong);
+        let departure = departure(&schema, &schema, &wrong, "").unwrap_or_default();
+        assert!(departure.contains(said), "{said}: {departure}");
+    }
+}
+
+#[test]
+fn the_published_schemas_are_current() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace's root");
+    for name in ["run", "special", "gate", "pack", "sweep", "bench", "selftest"] {
+        let path = format!("docs/schemas/{name}.json");
+        let published = std::fs::read_to_string(root.join(&path)).expect("the schema is published");
+        let current = super::stdout(&lightmeter(&["schema", name]));
+        assert!(current == published, "publish it again: cargo run -p lightmeter -- schema {name} --out {path}");
+    }
 }

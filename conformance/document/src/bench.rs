@@ -4,15 +4,17 @@
 //! rung of the ladder; rows of a *group* compute the same, and are measured in turns beside the group's baseline.
 
 use crate::Number;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The schema's name.
 pub const SCHEMA: &str = "lightmeter.bench/1";
 
 /// Everything that was found.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct BenchDocument {
-    /// [`SCHEMA`].
+    /// `lightmeter.bench/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: String,
     /// The command that made it.
     pub command: String,
@@ -31,7 +33,7 @@ pub struct BenchDocument {
 }
 
 /// What was measured on an adapter.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Measured {
     /// The adapter's short name.
     pub adapter: String,
@@ -58,7 +60,7 @@ pub struct Measured {
 }
 
 /// How GPU times were told.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ClockUse {
     /// `timestamps` or `wall`.
     pub kind: String,
@@ -79,7 +81,7 @@ impl ClockUse {
 }
 
 /// A rung of the ladder on an adapter.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct RungUse {
     /// `f16`, `f32-cheap`, `f32`, `f32-stable`, `double-float`, `f64`, `cpu-f32`, `cpu-f64`, `cpu-accept`.
     pub name: String,
@@ -90,7 +92,7 @@ pub struct RungUse {
 }
 
 /// What the rows of a group are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum GroupKind {
     /// A formula at the rungs of the ladder.
@@ -102,7 +104,7 @@ pub enum GroupKind {
 }
 
 /// Rows that compute the same.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct BenchGroup {
     /// `fog/exp`, `technique/viewer`, `scene/teapot`.
     pub id: String,
@@ -128,7 +130,7 @@ pub struct BenchGroup {
 }
 
 /// A technique or a rung.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct BenchRow {
     /// Its name, one of its own in its group.
     pub name: String,
@@ -154,7 +156,7 @@ pub struct BenchRow {
 }
 
 /// Errors over many values. `lost` values are in none of the statistics, whose maxima are infinite where there are any.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Errors {
     /// Values that were compared.
     pub values: u64,
@@ -171,7 +173,7 @@ pub struct Errors {
 }
 
 /// Statistics of errors.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Spread {
     /// The largest.
     pub max: Number,
@@ -182,7 +184,7 @@ pub struct Spread {
 }
 
 /// How long a row takes, for one of the group's `unit`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Time {
     /// `timestamps`, `wall`, or `processor` of the rungs on one core of the processor.
     pub clock: String,
@@ -206,7 +208,7 @@ pub struct Time {
 }
 
 /// What a ratio says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rank {
     /// It is the baseline itself.
@@ -220,7 +222,7 @@ pub enum Rank {
 }
 
 /// The formulas of a family at the rungs of the ladder, as a whole.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Family {
     /// The family.
     pub id: String,
@@ -231,7 +233,7 @@ pub struct Family {
 }
 
 /// A rung over a family's formulas.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct FamilyRung {
     /// The rung's name.
     pub name: String,
@@ -256,7 +258,7 @@ pub struct FamilyRung {
 }
 
 /// How time grows with work.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Scaling {
     /// `lights`, `vertices`, `pixels`, `cases`.
     pub id: String,
@@ -275,7 +277,7 @@ pub struct Scaling {
 }
 
 /// A step.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ScalingPoint {
     /// How much work.
     pub work: u64,
@@ -286,7 +288,7 @@ pub struct ScalingPoint {
 }
 
 /// A fitted law of growth.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Fit {
     /// Nanoseconds whatever the work.
     pub fixed_ns: f64,
@@ -299,7 +301,7 @@ pub struct Fit {
 }
 
 /// A sentence of the documents about cost or quality, and what was measured.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Claim {
     /// A name of its own.
     pub id: String,

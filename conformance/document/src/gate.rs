@@ -2,6 +2,7 @@
 
 use crate::pack::Choice;
 use crate::{Number, Word};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -9,9 +10,10 @@ use std::collections::BTreeMap;
 pub const SCHEMA: &str = "lightmeter.gate/1";
 
 /// A gate's result. What a baseline is compared by is required of a file; the rest may be missing.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct GateReport {
-    /// [`SCHEMA`].
+    /// `lightmeter.gate/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
     /// The command.
     #[serde(default)]
@@ -63,7 +65,7 @@ pub struct GateReport {
 }
 
 /// A renderer.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Named {
     /// Its name.
     pub name: String,
@@ -72,7 +74,7 @@ pub struct Named {
 }
 
 /// Counts of cases, but for the verdicts, which are of scalars.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct GateTotals {
     /// Asked for.
     pub asked: u64,
@@ -99,7 +101,7 @@ pub struct GateTotals {
 }
 
 /// A formula or a scene.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct GateGroup {
     /// Its id.
     pub id: String,
@@ -172,7 +174,7 @@ impl GateReport {
 }
 
 /// Answers that are none.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Problems {
     /// How many of each kind.
     pub counts: BTreeMap<Word, u64>,
@@ -189,7 +191,7 @@ impl Problems {
 }
 
 /// A case that failed.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct GateFailure {
     /// The case.
     pub id: String,
@@ -208,7 +210,7 @@ pub struct GateFailure {
 }
 
 /// A known failure, and what became of its cases.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct KnownFailure {
     /// A glob of cases.
     pub id: String,
@@ -230,4 +232,10 @@ impl KnownFailure {
     pub const fn passes_unexpectedly(&self) -> bool {
         self.failed == 0 && self.passed > 0 && !self.may_pass
     }
+}
+
+/// `1 case`, `12 cases`.
+#[must_use]
+pub fn cases(count: u64) -> String {
+    if count == 1 { "1 case".into() } else { format!("{count} cases") }
 }

@@ -1,6 +1,8 @@
 //! Numbers in JSON.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
 
 /// A number that may be NaN or infinite, which JSON writes as a string.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +31,19 @@ impl<'de> Deserialize<'de> for Number {
                 _ => Err(serde::de::Error::custom(format!("expected a number, NaN, Inf or -Inf, not {name:?}"))),
             },
         }
+    }
+}
+
+impl JsonSchema for Number {
+    fn schema_name() -> Cow<'static, str> {
+        "Number".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "A number that may be NaN or infinite, which JSON writes as a string.",
+            "anyOf": [{ "type": "number" }, { "enum": ["NaN", "Inf", "-Inf"] }]
+        })
     }
 }
 

@@ -1,13 +1,14 @@
 //! The manifest of a pack of cases: `lightmeter.pack/1`.
 
 use crate::Word;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The schema's name.
 pub const SCHEMA: &str = "lightmeter.pack/1";
 
 /// What chooses the cases: the same of two gates means the same cases.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Choice {
     /// Globs that match an id or an ancestor of it; all where there are none.
     pub filter: Vec<String>,
@@ -20,9 +21,10 @@ pub struct Choice {
 }
 
 /// What a pack holds.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Manifest {
-    /// [`SCHEMA`].
+    /// `lightmeter.pack/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
     /// The version of what draws the cases: with another one they are others.
     pub generator: u64,
@@ -40,7 +42,7 @@ pub struct Manifest {
 }
 
 /// A formula of a pack.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PackedFormula {
     /// Its id.
@@ -56,7 +58,7 @@ pub struct PackedFormula {
 }
 
 /// An input or an output of a formula.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PackedValue {
     /// Its name.
@@ -68,7 +70,7 @@ pub struct PackedValue {
 }
 
 /// A scene of a pack.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PackedScene {
     /// Its id.
@@ -86,7 +88,7 @@ pub struct PackedScene {
 }
 
 /// A file of a pack.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Listed {
     /// Its name within the pack.
     pub name: String,

@@ -1,13 +1,14 @@
 //! The JSON of `run`.
 
 use crate::{Number, Word};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The schema of [`Report`].
 pub const SCHEMA: &str = "lightmeter.run/1";
 
 /// How a subject is named in reports.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Identity {
     /// The short name.
@@ -21,7 +22,7 @@ pub struct Identity {
 }
 
 /// Counts of verdicts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Totals {
     /// Cases, each counted once for an adapter and stage.
     pub cases: u64,
@@ -59,7 +60,7 @@ impl Totals {
 }
 
 /// Values on a target of 8 bits by how near they come.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tiers {
     /// The formula gives a whole step, and it came out.
@@ -98,7 +99,7 @@ impl Tiers {
 }
 
 /// How a target's values are stored, told from many of them together.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct StoreUse {
     /// The store that most values speak for, or the model that all of them follow.
     pub identified: Word,
@@ -111,7 +112,7 @@ pub struct StoreUse {
 }
 
 /// A blend state by one route on a target.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct BlendState {
     /// The state's id.
     pub id: String,
@@ -150,7 +151,7 @@ impl BlendState {
 }
 
 /// NaN or infinity in a blend unit.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SpecialUse {
     /// The case.
     pub id: String,
@@ -174,7 +175,7 @@ impl SpecialUse {
 }
 
 /// What an interface says of NaN and infinity in blending.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct BlendPromise {
     /// The interface.
     pub interface: Word,
@@ -183,7 +184,7 @@ pub struct BlendPromise {
 }
 
 /// A group on an adapter in a stage.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Group {
     /// `family/formula`.
     pub id: String,
@@ -230,7 +231,7 @@ pub struct Group {
 }
 
 /// An image of a scene.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ImageUse {
     /// Pixels.
     pub width: usize,
@@ -284,7 +285,7 @@ impl Group {
 }
 
 /// What drawing a scene takes by composed shaders, and by the one with all effects, in turns.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct EffectsCost {
     /// Median of one drawing by composed shaders.
     pub composed_ms: f64,
@@ -297,7 +298,7 @@ pub struct EffectsCost {
 }
 
 /// A value outside its interval.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Failure {
     /// The case.
     pub id: String,
@@ -337,7 +338,7 @@ pub struct Failure {
 }
 
 /// A named deviation that was granted or asked for.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct DeviationUse {
     /// The deviation's name.
     pub name: Word,
@@ -352,7 +353,7 @@ pub struct DeviationUse {
 }
 
 /// Where the time of a run went, in seconds of this process.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Timing {
     /// Drawing inputs.
     pub generate: f64,
@@ -367,7 +368,7 @@ pub struct Timing {
 }
 
 /// A run that ended before its time.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Interrupted {
     /// What was under way.
     pub under_way: String,
@@ -376,9 +377,10 @@ pub struct Interrupted {
 }
 
 /// The JSON of `run`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
     /// `lightmeter.run/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
     /// The seed of random cases.
     pub seed: u64,
@@ -476,7 +478,7 @@ impl Report {
 
 /// A hard case by its stable and its naive form, on an adapter in a stage. Errors are in roundings, the greatest at the case
 /// and within a few ULP of it; infinite where a value is NaN or infinite.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Examined {
     /// The case, of the stable formula.
     pub id: String,
@@ -520,7 +522,7 @@ impl Examined {
 
 /// What a stable form takes beside a naive one, in the compute stage: nanoseconds of wall time for an evaluation, medians of
 /// turns in which each is measured, less what reading the inputs takes.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Cost {
     /// The stable formula.
     pub formula: String,

@@ -1,15 +1,17 @@
 //! The JSON of `selftest`.
 
 use crate::Word;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The schema's name.
 pub const SCHEMA: &str = "lightmeter.selftest/1";
 
 /// The JSON of `selftest`: what was not asked for is left out.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SelftestDocument {
-    /// [`SCHEMA`].
+    /// `lightmeter.selftest/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
     /// The faults of the blend unit.
     #[serde(default)]
@@ -29,7 +31,7 @@ pub struct SelftestDocument {
 }
 
 /// What became of a mistake in a formula.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Finding {
     /// Caught, and the first diagnosis is it, or one of the same values in every case.
@@ -41,7 +43,7 @@ pub enum Finding {
 }
 
 /// A mistake in a formula.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Kill {
     /// The mistake.
     pub fault: String,
@@ -68,7 +70,7 @@ pub struct Kill {
 }
 
 /// A formula without a mistake.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Clean {
     /// The formula.
     pub formula: String,
@@ -105,7 +107,7 @@ impl Record {
 }
 
 /// How a number is off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum OffBy {
     /// A relative error: x(1 + δ).
@@ -126,7 +128,7 @@ impl OffBy {
 }
 
 /// A systematic error that the answers show together.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Systematic {
     /// What is off: an input, one number of it, or an output.
     pub parameter: String,
@@ -147,7 +149,7 @@ pub struct Systematic {
 }
 
 /// The smallest errors of a parameter that are named.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Resolution {
     /// The formula.
     pub formula: String,
@@ -172,7 +174,7 @@ impl Resolution {
 }
 
 /// What became of a mistake in the scenes.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SceneRow {
     /// The mistake.
     pub fault: String,
@@ -187,7 +189,7 @@ pub struct SceneRow {
 }
 
 /// What the scenes catch.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SceneRecord {
     /// Each mistake.
     pub rows: Vec<SceneRow>,
@@ -219,7 +221,7 @@ impl SceneRow {
 }
 
 /// What became of a fault of the blend unit on a target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum UnitFinding {
     /// Found, and told by its name.
@@ -237,7 +239,7 @@ pub enum UnitFinding {
 }
 
 /// A fault of the blend unit on a target.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct UnitRow {
     /// The fault's name, or `none`.
     pub fault: Word,

@@ -2,13 +2,14 @@
 
 use crate::Word;
 use crate::run::Identity;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The schema of [`SpecialReport`].
 pub const SCHEMA: &str = "lightmeter.special/1";
 
 /// What became of a probe on an adapter in a stage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProbeVerdict {
     /// As promised.
@@ -44,7 +45,7 @@ impl ProbeVerdict {
 }
 
 /// A result of a probe.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ProbeResult {
     /// The probe's name.
     pub probe: Word,
@@ -54,6 +55,7 @@ pub struct ProbeResult {
     pub stage: Word,
     /// What came out.
     #[serde(with = "hex")]
+    #[schemars(with = "String")]
     pub bits: u32,
     /// The same in few letters.
     pub value: String,
@@ -61,11 +63,12 @@ pub struct ProbeResult {
     pub verdict: ProbeVerdict,
     /// What is on record for the driver.
     #[serde(default, with = "maybe_hex", skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String")]
     pub recorded: Option<u32>,
 }
 
 /// A stage that an adapter lacks.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Skipped {
     /// The adapter's short name.
     pub adapter: String,
@@ -76,7 +79,7 @@ pub struct Skipped {
 }
 
 /// What is on record for an adapter.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct RecordUse {
     /// The adapter's short name.
     pub adapter: String,
@@ -87,7 +90,7 @@ pub struct RecordUse {
 }
 
 /// A probe as JSON has it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ProbeRow {
     /// Its name.
     pub name: Word,
@@ -106,9 +109,10 @@ pub struct ProbeRow {
 }
 
 /// The JSON of `special`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SpecialReport {
     /// `lightmeter.special/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
     /// What was probed.
     pub adapters: Vec<Identity>,

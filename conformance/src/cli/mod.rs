@@ -68,7 +68,7 @@ enum Command {
     Page(page::Page),
     /// Print what a scene calls for, draw by draw and light by light, and why
     Effects(effects::Effects),
-    /// Print the JSON Schema of a file that lightmeter reads
+    /// Print the JSON Schema of a file that lightmeter reads or writes
     Schema(schema::Schema),
     /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out
     Eval(eval::Eval),

@@ -2,10 +2,18 @@
 
 use super::{Status, emit};
 use clap::{Args, ValueEnum};
+use lightmeter::document::bench::BenchDocument;
+use lightmeter::document::gate::GateReport;
+use lightmeter::document::pack::Manifest;
+use lightmeter::document::run::Report;
+use lightmeter::document::schema;
+use lightmeter::document::selftest::SelftestDocument;
+use lightmeter::document::special::SpecialReport;
+use lightmeter::document::sweep::SweepDocument;
 use lightmeter_scene::model::Scene;
 use std::path::PathBuf;
 
-/// Print the JSON Schema of a file that lightmeter reads.
+/// Print the JSON Schema of a file that lightmeter reads or writes.
 #[derive(Debug, Args)]
 pub(crate) struct Schema {
     /// Of what
@@ -19,12 +27,33 @@ pub(crate) struct Schema {
 enum Of {
     /// A scene
     Scene,
+    /// The JSON of `run`
+    Run,
+    /// The JSON of `special`
+    Special,
+    /// The JSON of `gate`
+    Gate,
+    /// The manifest that `pack` writes
+    Pack,
+    /// The JSON of `sweep` and `merge`
+    Sweep,
+    /// The JSON of `bench`
+    Bench,
+    /// The JSON of `selftest`
+    Selftest,
 }
 
 impl Schema {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let schema = match self.of {
             Of::Scene => schemars::schema_for!(Scene),
+            Of::Run => schema::<Report>(),
+            Of::Special => schema::<SpecialReport>(),
+            Of::Gate => schema::<GateReport>(),
+            Of::Pack => schema::<Manifest>(),
+            Of::Sweep => schema::<SweepDocument>(),
+            Of::Bench => schema::<BenchDocument>(),
+            Of::Selftest => schema::<SelftestDocument>(),
         };
         emit(&(serde_json::to_string_pretty(&schema)? + "\n"), self.out.as_deref())?;
         Ok(Status::Success)

@@ -1,7 +1,9 @@
 //! How often errors of each size were seen: exact, at most ½, at most 1, 2, 4, 8, … units, more, infinite, NaN.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The bin of at most 1 unit; the ones after it double.
@@ -102,6 +104,16 @@ fn name(bin: usize) -> String {
 impl Serialize for Histogram {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map((0..BINS).filter(|&bin| self.counts[bin] > 0).map(|bin| (name(bin), self.counts[bin])))
+    }
+}
+
+impl JsonSchema for Histogram {
+    fn schema_name() -> Cow<'static, str> {
+        "Histogram".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        BTreeMap::<String, u64>::json_schema(generator)
     }
 }
 

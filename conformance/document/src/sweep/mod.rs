@@ -8,16 +8,18 @@ pub use statistics::{Exact, Place, Seen, Statistics, StoreCounts, Stored};
 
 use crate::Word;
 use crate::run::Identity;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The schema of a sweep's file.
 pub const SCHEMA: &str = "lightmeter.sweep/1";
 
 /// A sweep's file.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepDocument {
-    /// [`SCHEMA`].
+    /// `lightmeter.sweep/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
     /// What is swept.
     pub sweep: Description,
@@ -45,7 +47,7 @@ impl SweepDocument {
 }
 
 /// What is swept, on what, by which rules: files of the same sweep have the same.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Description {
     /// The formula's id.

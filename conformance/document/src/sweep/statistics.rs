@@ -4,6 +4,7 @@
 use super::histogram::Histogram;
 use crate::Number;
 use crate::run::Tiers;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -12,8 +13,8 @@ use std::collections::BTreeMap;
 const KEPT: usize = 5;
 
 /// An f32 as it is read by people and as its bits, which are what counts.
-#[derive(Clone, Copy, Debug)]
-pub struct Exact(pub f32);
+#[derive(Clone, Copy, Debug, JsonSchema)]
+pub struct Exact(#[schemars(with = "ExactParts")] pub f32);
 
 impl PartialEq for Exact {
     fn eq(&self, other: &Self) -> bool {
@@ -21,9 +22,10 @@ impl PartialEq for Exact {
     }
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ExactParts {
+    #[schemars(with = "Number")]
     value: serde_json::Value,
     bits: String,
 }
@@ -49,7 +51,7 @@ impl<'de> Deserialize<'de> for Exact {
 }
 
 /// One input of a sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Place {
     /// A float.
@@ -85,7 +87,7 @@ impl Place {
 }
 
 /// A verdict with all that it rests on.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Seen {
     /// The input.
@@ -105,7 +107,7 @@ pub struct Seen {
 }
 
 /// Values that tell the stores of a target of 8 bits apart, by the stores that would have given them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StoreCounts {
     /// How many.
@@ -128,7 +130,7 @@ impl StoreCounts {
 }
 
 /// What the stores of a blend unit came to.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stored {
     /// By how near values come.
@@ -142,7 +144,7 @@ pub struct Stored {
 }
 
 /// What a sweep, or a part of one, has come to.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Statistics {
     /// Inputs.
