@@ -179,9 +179,10 @@ fn a_self_test_is_read_again() {
 
 #[test]
 fn a_document_that_departs_from_its_schema_is_told() {
+    type Change = (&'static str, fn(&mut Value));
     let (_, written) = read_and_written::<SweepDocument>(&["sweep", "fog/exp", "--adapter", "cpu", "--to", "1e-40"]);
     let schema = schema("lightmeter.sweep/1");
-    let changes: [(&str, fn(&mut Value)); 5] = [
+    let changes: [Change; 5] = [
         ("no done", |document| drop(document.as_object_mut().and_then(|all| all.remove("done")))),
         (": more is too much", |document| document["more"] = 1.into()),
         ("/schema: ", |document| document["schema"] = "lightmeter.run/1".into()),

@@ -246,6 +246,7 @@ fn blank(contender: &Contender<'_>) -> BenchRow {
         what: contender.what.clone(),
         claims_exact: contender.on.claims_exact(),
         unavailable: contender.unavailable.clone(),
+        as_f32: false,
         disqualified: None,
         random: None,
         hard: None,

@@ -4,21 +4,12 @@
 mod claims;
 mod contest;
 pub mod errors;
-mod figures;
 pub mod fit;
 mod formulas;
 mod growth;
-pub mod ladder;
-pub mod page;
-pub mod pareto;
-pub mod plot;
-pub mod recommend;
 pub mod scenes;
 mod sittings;
-#[cfg(test)]
-mod synthetic;
 mod techniques;
-pub mod text;
 pub mod turns;
 
 use lightmeter_arithmetic::Profile;
@@ -26,6 +17,7 @@ use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::select::{Member, catalogue};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, ClockUse, Family, GroupKind, Measured, SCHEMA, Scaling};
+use lightmeter_document::bench::{ladder, pareto};
 use lightmeter_engine::options::Progress;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Clock, ClockKind, Gpu, GpuError, Rung, Shaders};
@@ -156,6 +148,9 @@ fn measured(
     }
     let Sitting { mut groups, scalings, clock } = sittings::together(all);
     for group in &mut groups {
+        for row in &mut group.rows {
+            row.as_f32 = row.unavailable.as_deref().is_some_and(Rung::is_as_f32);
+        }
         group.front = pareto::front_of(group);
     }
     let identity = subject.identity.clone();

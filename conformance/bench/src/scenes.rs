@@ -212,6 +212,7 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
             what: (*what).into(),
             claims_exact: *name != "cpu-accept",
             unavailable: None,
+            as_f32: false,
             disqualified: image.as_ref().and_then(|image| drawer.outside(image, standard)),
             random: image.as_ref().or(reach.as_ref()).and_then(|image| drawing::errors(image, standard, &[standard])),
             hard: None,

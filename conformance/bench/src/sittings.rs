@@ -73,17 +73,62 @@ fn range(of: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic::{group, row};
     use super::*;
-    use lightmeter_document::bench::ClockUse;
+    use lightmeter_document::Number;
+    use lightmeter_document::bench::{BenchGroup, BenchRow, ClockUse, Errors, GroupKind, Spread, Time};
+
+    /// A row that was measured.
+    fn row(name: &str, ns: f64, ratio: f64) -> BenchRow {
+        let spread = Spread { max: Number(1.0), p99: Number(1.0), mean: Number(1.0) };
+        let errors = Errors { values: 1, lost: 0, nothing_promised: 0, ulp: spread, steps: spread, absolute: spread };
+        let time = Time {
+            clock: "timestamps".into(),
+            ns,
+            quartiles_ns: [ns * 0.98, ns * 1.02],
+            ratio,
+            spread: [ratio * 0.97, ratio * 1.03],
+            verdict: Rank::Tie,
+            turns: 15,
+            rejected: 0,
+            note: None,
+        };
+        BenchRow {
+            name: name.into(),
+            what: name.into(),
+            claims_exact: true,
+            unavailable: None,
+            as_f32: false,
+            disqualified: None,
+            random: Some(errors),
+            hard: None,
+            rounding: None,
+            time: Some(time),
+            compile_ms: None,
+        }
+    }
+
+    /// A group whose first row is the baseline.
+    fn group(mut rows: Vec<BenchRow>) -> BenchGroup {
+        if let Some(time) = rows[0].time.as_mut() {
+            time.verdict = Rank::Baseline;
+        }
+        BenchGroup {
+            id: "g".into(),
+            kind: GroupKind::Formula,
+            family: "g".into(),
+            title: "g".into(),
+            ideal: "g".into(),
+            baseline: rows[0].name.clone(),
+            unit: "evaluation".into(),
+            work: "g".into(),
+            rows,
+            front: vec![],
+        }
+    }
 
     fn sitting(ns: f64, ratio: f64) -> Sitting {
         let clock = ClockUse { kind: "timestamps".into(), note: None, readings: 10, rejected: 1 };
-        Sitting {
-            groups: vec![group("g", vec![row("f32", ns, 1.0, 1.0), row("x", ns, ratio, 2.0)])],
-            scalings: vec![],
-            clock,
-        }
+        Sitting { groups: vec![group(vec![row("f32", ns, 1.0), row("x", ns, ratio)])], scalings: vec![], clock }
     }
 
     #[test]

@@ -22,6 +22,12 @@ pub struct SelftestDocument {
     /// Every formula without a mistake.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clean: Option<Vec<Clean>>,
+    /// The mistakes that are known, in the order of reports, where formulas were tried.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mistakes: Vec<Mistake>,
+    /// What the smallest errors are of, where they were measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub named_from: Option<NamedFrom>,
     /// The smallest errors that are named, of formulas.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Vec<Resolution>>,
@@ -80,6 +86,29 @@ pub struct Clean {
     pub failed: u64,
     /// What a group verdict named, of the embedded implementation or of the draws.
     pub systematic: Option<Systematic>,
+}
+
+/// A known mistake.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Mistake {
+    /// Its name.
+    pub name: Word,
+    /// What it does, as the end of a sentence: "fog uses radial distance".
+    pub says: Word,
+    /// A renderer or a habit that has it, where one is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seen_in: Option<Word>,
+}
+
+/// From where on errors are named by a group verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct NamedFrom {
+    /// Cases of a run.
+    pub cases: u64,
+    /// Standard errors from 0.
+    pub least_z: f64,
+    /// The shift of the answers, as a share of the tolerance.
+    pub least_share: f64,
 }
 
 /// What the self-test of formulas came to.

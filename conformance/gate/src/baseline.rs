@@ -2,7 +2,7 @@
 
 use super::known::expanded;
 use lightmeter_catalogue::cases::GENERATOR_VERSION;
-use lightmeter_document::gate::{GateGroup, GateReport, SCHEMA};
+use lightmeter_document::gate::{GateGroup, GateReport, SCHEMA, cases};
 use lightmeter_document::pack::Choice;
 use lightmeter_judge::image::file::whole;
 use std::collections::HashSet;
@@ -151,7 +151,7 @@ fn compare(before: &GateGroup, now: &GateGroup, factor: f64) -> Vec<String> {
 }
 
 fn cases_of(count: usize) -> String {
-    super::report::cases(count as u64)
+    cases(count as u64)
 }
 
 /// Writes a report as a baseline, whole or not at all.

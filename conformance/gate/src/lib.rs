@@ -10,7 +10,6 @@ pub mod expectations;
 pub mod frame;
 pub mod known;
 pub mod ledger;
-pub mod outputs;
 pub mod pack;
 pub mod picture;
 pub mod plan;

@@ -7,7 +7,7 @@ use super::process::Ending;
 use super::tally::{AnswerTally, Sample};
 use super::verdict;
 use lightmeter_document::Number;
-use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, GateTotals, KnownFailure, Named, SCHEMA};
+use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, GateTotals, KnownFailure, Named, SCHEMA, cases};
 use lightmeter_faults::{Answered, diagnose, group_verdict};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -110,12 +110,6 @@ impl Told {
         let smallest = verdict::failure(plan, k, smallest.case, &smallest.values, ledger.profile());
         Self { diagnosis: Some(diagnosis), smallest: Some(smallest), ..Self::default() }
     }
-}
-
-/// So many cases, in words.
-#[must_use]
-pub(super) fn cases(count: u64) -> String {
-    if count == 1 { "1 case".into() } else { format!("{count} cases") }
 }
 
 fn group(ledger: &Ledger<'_>, k: usize, tally: &AnswerTally) -> (GateGroup, Option<GateFailure>) {

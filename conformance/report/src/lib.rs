@@ -1,7 +1,10 @@
-//! Reports for people and for servers, and pages made from the JSON of runs.
+//! Reports for people and for servers, pages and pictures: from the JSON of runs.
 
+pub mod bench;
+pub mod gate;
 pub mod junit;
 pub mod page;
 pub mod selftest;
 pub mod special;
+pub mod sweep;
 pub mod text;

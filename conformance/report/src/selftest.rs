@@ -1,22 +1,20 @@
 //! The self-test of formulas as text.
 
 use lightmeter_catalogue::cases::FAMILIES;
-use lightmeter_document::selftest::Resolution;
-use lightmeter_document::selftest::{Finding, Kill, Record};
-use lightmeter_faults::faults;
+use lightmeter_document::selftest::{Clean, Finding, Kill, Mistake, Record, Resolution};
 use std::fmt::{Result, Write};
 
 /// The kill matrix by mistake, what went wrong, and the resolution where it was measured.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn text(record: &Record, resolutions: &[Resolution], out: &mut impl Write) -> Result {
+pub fn text(record: &Record, mistakes: &[Mistake], resolutions: &[Resolution], out: &mut impl Write) -> Result {
     writeln!(
         out,
         "{:<34} {:>8} {:>8} {:>8} {:>10} {:>10}",
         "mistake", "formulas", "caught", "named", "cases", "at most"
     )?;
-    for fault in faults() {
+    for fault in mistakes {
         let kills: Vec<&Kill> = record.kills.iter().filter(|kill| kill.fault == fault.name).collect();
         if kills.is_empty() {
             continue;
@@ -67,10 +65,7 @@ pub fn text(record: &Record, resolutions: &[Resolution], out: &mut impl Write) -
     Ok(())
 }
 
-fn of_family<'a>(
-    record: &'a Record,
-    family: &'a str,
-) -> impl Iterator<Item = &'a lightmeter_document::selftest::Clean> {
+fn of_family<'a>(record: &'a Record, family: &'a str) -> impl Iterator<Item = &'a Clean> {
     record.clean.iter().filter(move |clean| clean.formula.split('/').next() == Some(family))
 }
 
@@ -79,4 +74,10 @@ pub(super) fn smallest(kills: &[&Kill]) -> (usize, usize) {
     let mut counts: Vec<usize> = kills.iter().filter_map(|kill| kill.smallest).collect();
     counts.sort_unstable();
     (counts.get(counts.len() / 2).copied().unwrap_or_default(), counts.last().copied().unwrap_or_default())
+}
+
+/// So many per cent; all of nothing.
+#[expect(clippy::cast_precision_loss, reason = "counts of mistakes")]
+pub(super) fn percent(part: usize, whole: usize) -> f64 {
+    if whole == 0 { 100.0 } else { 100.0 * part as f64 / whole as f64 }
 }

@@ -1,9 +1,8 @@
 //! The probes of NaN, infinity, subnormals and signed zero, for people to read.
 
+use lightmeter_catalogue::special::{Class, DEVIATIONS, Deviation, PROBES, Probe, Source};
 use lightmeter_document::run::Identity;
 use lightmeter_document::special::{ProbeResult, ProbeVerdict, SpecialReport};
-use lightmeter_engine::special::run::failure;
-use lightmeter_engine::special::{Class, DEVIATIONS, Deviation, PROBES, Probe, Source};
 use std::fmt::{Result, Write};
 
 /// Writes the report: a row for each probe, a column for each adapter.
@@ -97,4 +96,24 @@ fn verdict(report: &SpecialReport, out: &mut impl Write) -> Result {
         count(ProbeVerdict::Changed),
         report.outcomes.iter().filter(differ).count()
     )
+}
+
+/// A failure in a line.
+fn failure(report: &SpecialReport, outcome: &ProbeResult) -> Option<String> {
+    let probe = Probe::by_name(&outcome.probe)?;
+    let ProbeResult { adapter, stage, bits, value, .. } = outcome;
+    let is = format!("{} on {adapter}, {stage}: {} is {value} (0x{bits:08x})", probe.name, probe.what);
+    match outcome.verdict {
+        ProbeVerdict::Broken => {
+            let promised = probe.promise.words(probe.gives);
+            Some(format!("BROKEN {is}, where {} promises {promised}", probe.source.section()))
+        }
+        ProbeVerdict::Changed => {
+            let recorded = outcome.recorded.unwrap_or_default();
+            let whose = report.records.iter().find(|record| record.adapter == *adapter).map(|record| &record.of);
+            let (whose, word) = (whose.map_or("the driver", String::as_str), probe.gives.word(recorded));
+            Some(format!("CHANGED {is}, where {whose} is on record with {word} (0x{recorded:08x})"))
+        }
+        ProbeVerdict::Kept | ProbeVerdict::Indeterminate | ProbeVerdict::Deviates => None,
+    }
 }

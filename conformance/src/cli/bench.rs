@@ -6,11 +6,12 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
-use lightmeter::bench::recommend::{self, Inputs, Limit, recommend};
-use lightmeter::bench::{Options, bench, page, text};
+use lightmeter::bench::{Options, bench};
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::filter::Filter;
 use lightmeter::options::Progress;
+use lightmeter::report::bench::recommend::{self, Inputs, Limit, recommend};
+use lightmeter::report::bench::{page, text};
 use lightmeter::scene::load;
 use lightmeter::select::catalogue;
 use lightmeter::subject_gpu::device_error;
@@ -139,7 +140,7 @@ impl Bench {
             (None, Format::Text) => text::write(document, self.details, &mut out)?,
             (None, Format::Markdown) => page::readme(document, &mut out)?,
             (Some(limit), format) => {
-                let recommendation = recommend(document, &Filter::default(), limit, self.inputs);
+                let recommendation = recommend(document, limit, self.inputs);
                 match format {
                     Format::Json => out = serde_json::to_string_pretty(&recommendation)? + "\n",
                     Format::Text => recommend::write(&recommendation, &mut out)?,

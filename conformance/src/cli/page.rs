@@ -3,11 +3,13 @@
 use super::{Status, emit};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
-use lightmeter::bench::{page, plot};
 use lightmeter::document::bench::{BenchDocument, SCHEMA};
 use lightmeter::report;
+use lightmeter::report::bench::{page, plot};
+use lightmeter::report::page::sweep::Swept;
 use lightmeter::report::page::{Run, markdown, scenes, selftest, special, stability, svg};
-use lightmeter::sweep::file;
+use lightmeter::select::catalogue;
+use lightmeter::sweep::{Asked, PRESETS, Plan, file, is_over_inputs_of};
 use std::path::PathBuf;
 
 /// What a page is about.
@@ -68,13 +70,19 @@ impl Page {
     }
 
     fn sweeps(&self) -> anyhow::Result<String> {
+        let catalogue = catalogue();
         let mut results = vec![];
         for path in &self.runs {
             let result = file::read(path)?;
             if !result.is_finished() {
                 bail!("{} is not finished; give it as --checkpoint to its command again", path.display());
             }
-            results.push(result);
+            let formula = &result.sweep.formula;
+            let preset = PRESETS.iter().find(|preset| preset.formula == formula);
+            let is_ready_made = preset.is_some()
+                && Plan::new(&catalogue, formula, &Asked::default())
+                    .is_ok_and(|plan| is_over_inputs_of(&result.sweep, &plan));
+            results.push(Swept { what: preset.map(|preset| preset.what), is_ready_made, document: result });
         }
         let mut text = String::new();
         report::page::sweep::markdown(&results, &mut text)?;

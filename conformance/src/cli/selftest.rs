@@ -6,10 +6,13 @@ use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::selftest::selftest;
-use lightmeter::document::selftest::{Record, Resolution, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow};
-use lightmeter::faults::calibrate::calibrate;
+use lightmeter::document::selftest::{
+    Mistake, NamedFrom, Record, Resolution, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow,
+};
+use lightmeter::faults::calibrate::{CASES, calibrate};
 use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
+use lightmeter::faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
 use lightmeter::filter::Filter;
 use lightmeter::report::selftest as report;
 use lightmeter_scene::target::TargetFormat;
@@ -152,6 +155,8 @@ impl Tested {
             rows: self.unit.clone().unwrap_or_default(),
             kills: self.formulas.as_ref().map(|record| record.kills.clone()),
             clean: self.formulas.as_ref().map(|record| record.clean.clone()),
+            mistakes: if self.formulas.is_some() { mistakes() } else { vec![] },
+            named_from: (!self.resolutions.is_empty()).then_some(NAMED_FROM),
             calibration: self.formulas.is_some().then(|| self.resolutions.clone()),
             scenes: self.scenes.clone(),
         };
@@ -163,7 +168,7 @@ impl Tested {
         let mut parts = vec![];
         if let Some(record) = &self.formulas {
             let mut text = String::new();
-            report::text(record, &self.resolutions, &mut text)?;
+            report::text(record, &mistakes(), &self.resolutions, &mut text)?;
             parts.push(text);
         }
         if let Some(scenes) = &self.scenes {
@@ -183,6 +188,19 @@ fn say(what: &str) {
     if std::io::stderr().is_terminal() {
         eprintln!("{what}");
     }
+}
+
+/// From where on the suite names errors.
+const NAMED_FROM: NamedFrom = NamedFrom { cases: CASES, least_z: LEAST_Z, least_share: LEAST_SHARE };
+
+/// The mistakes that the suite knows.
+fn mistakes() -> Vec<Mistake> {
+    let mistake = |fault: &&Fault| Mistake {
+        name: fault.name.into(),
+        says: fault.says.into(),
+        seen_in: fault.seen_in.map(Into::into),
+    };
+    faults().iter().map(mistake).collect()
 }
 
 fn word(finding: UnitFinding) -> &'static str {

@@ -117,6 +117,7 @@ impl<'a> Drawer<'a> {
             what: plan.what.clone(),
             claims_exact: plan.claims_exact,
             unavailable: plan.unavailable.clone(),
+            as_f32: false,
             disqualified: None,
             random: None,
             hard: None,

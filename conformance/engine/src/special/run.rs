@@ -42,27 +42,6 @@ pub fn record(report: &SpecialReport, adapter: &Identity) -> DriverRecord {
     record
 }
 
-/// A failure in a line.
-#[must_use]
-pub fn failure(report: &SpecialReport, outcome: &ProbeResult) -> Option<String> {
-    let probe = Probe::by_name(&outcome.probe)?;
-    let ProbeResult { adapter, stage, bits, value, .. } = outcome;
-    let is = format!("{} on {adapter}, {stage}: {} is {value} (0x{bits:08x})", probe.name, probe.what);
-    match outcome.verdict {
-        ProbeVerdict::Broken => {
-            let promised = probe.promise.words(probe.gives);
-            Some(format!("BROKEN {is}, where {} promises {promised}", probe.source.section()))
-        }
-        ProbeVerdict::Changed => {
-            let recorded = outcome.recorded.unwrap_or_default();
-            let whose = report.records.iter().find(|record| record.adapter == *adapter).map(|record| &record.of);
-            let (whose, word) = (whose.map_or("the driver", String::as_str), probe.gives.word(recorded));
-            Some(format!("CHANGED {is}, where {whose} is on record with {word} (0x{recorded:08x})"))
-        }
-        ProbeVerdict::Kept | ProbeVerdict::Indeterminate | ProbeVerdict::Deviates => None,
-    }
-}
-
 /// Evaluates every probe on every device. The embedded implementation has no shading language and is left out.
 ///
 /// # Errors

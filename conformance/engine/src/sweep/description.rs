@@ -52,14 +52,6 @@ pub fn is_over_inputs_of(sweep: &Description, plan: &Plan<'_>) -> bool {
         && pairs().all(|((name, mine), (other, theirs))| name == other && mine.0.to_bits() == theirs.0.to_bits())
 }
 
-/// A sweep's inputs as options of the command line.
-#[must_use]
-pub fn options(sweep: &Description) -> String {
-    let (Some(Exact(from)), Some(Exact(to))) = (sweep.from, sweep.to) else { return String::new() };
-    let fixed: String = sweep.fixed.iter().map(|(name, Exact(x))| format!(" --set {name}={x}")).collect();
-    format!(" --over {} --from {from} --to {to}{fixed} --output {}", sweep.over, sweep.output)
-}
-
 /// A sweep's inputs in blocks.
 #[must_use]
 pub const fn span(sweep: &Description) -> Span {

@@ -3,7 +3,7 @@
 //!
 //! `preset` has the ready-made sweeps, `plan` works out what is swept, `span` cuts it into blocks and shares them out, `run` has
 //! a device evaluate them, `judge` and `blend` judge, `description` says what is swept,
-//! `file` is the document that holds what is found, which is a checkpoint meanwhile, and `text` writes it for people.
+//! `file` is the document that holds what is found, which is a checkpoint meanwhile.
 
 mod blend;
 mod description;
@@ -13,9 +13,8 @@ mod plan;
 mod preset;
 mod run;
 mod span;
-pub mod text;
 
-pub use description::{describe, is_over_inputs_of, options, span};
+pub use description::{describe, is_over_inputs_of, span};
 pub use file::DocumentError;
 pub use judge::Judge;
 pub use plan::{Asked, Over, Plan, Refused};

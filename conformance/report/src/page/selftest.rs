@@ -1,12 +1,11 @@
 //! The page on the self-test, made from the JSON of `lightmeter selftest`: the kill matrix, and the suite's resolution.
 
-use crate::selftest::smallest;
+use crate::selftest::{percent, smallest};
 use lightmeter_catalogue::cases::FAMILIES;
 use lightmeter_document::selftest::{
-    Clean, Finding, Kill, OffBy, Record, Resolution, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow,
+    Clean, Finding, Kill, Mistake, NamedFrom, OffBy, Record, Resolution, SCHEMA, SceneRecord, SelftestDocument,
+    UnitFinding, UnitRow,
 };
-use lightmeter_faults::calibrate::CASES;
-use lightmeter_faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
 
@@ -14,6 +13,8 @@ use std::fmt::{Result as Written, Write};
 #[derive(Clone, Debug)]
 pub struct Run {
     record: Record,
+    mistakes: Vec<Mistake>,
+    named_from: Option<NamedFrom>,
     calibration: Vec<Resolution>,
     rows: Vec<UnitRow>,
     scenes: Option<SceneRecord>,
@@ -37,11 +38,14 @@ impl Run {
                 kills: document.kills.unwrap_or_default(),
                 clean: document.clean.ok_or_else(|| format!("not {EXPECTED}: missing field `clean`"))?,
             },
+            mistakes: document.mistakes,
+            named_from: document.named_from,
             calibration: document.calibration.unwrap_or_default(),
             rows: document.rows,
             scenes: document.scenes,
         };
-        match run.record.kills.iter().find(|kill| Fault::by_name(&kill.fault).is_none()) {
+        let is_told = |kill: &&Kill| run.mistakes.iter().any(|mistake| mistake.name == kill.fault);
+        match run.record.kills.iter().find(|kill| !is_told(kill)) {
             Some(kill) => Err(format!("no mistake `{}`: the file is of another version", kill.fault)),
             None => Ok(run),
         }
@@ -62,21 +66,21 @@ pub fn markdown(run: &Run, out: &mut impl Write) -> Written {
     writeln!(out, "```\n./x selftest --calibrate --format json --out selftest.json")?;
     writeln!(out, "./x page selftest selftest.json --out docs/selftest.md\n```\n")?;
     totals(&run.record, out)?;
-    matrix(&run.record, out)?;
+    matrix(run, out)?;
     aliases(&run.record, out)?;
     clean(&run.record, out)?;
     if let Some(scenes) = &run.scenes {
         drawn(scenes, out)?;
     }
     unit(&run.rows, out)?;
-    resolution(&run.calibration, out)
+    resolution(run, out)
 }
 
 fn totals(record: &Record, out: &mut impl Write) -> Written {
     let (total, survived) = (record.kills.len(), record.count(Finding::Survived));
     let named = record.count(Finding::Named);
     let aliases = record.kills.iter().filter(|kill| kill.alias).count();
-    let percent = lightmeter_faults::percent(named, total);
+    let percent = percent(named, total);
     let made: BTreeSet<&str> = record.kills.iter().map(|kill| kill.fault.as_str()).collect();
     writeln!(
         out,
@@ -88,7 +92,7 @@ fn totals(record: &Record, out: &mut impl Write) -> Written {
     )
 }
 
-fn matrix(record: &Record, out: &mut impl Write) -> Written {
+fn matrix(Run { record, mistakes, .. }: &Run, out: &mut impl Write) -> Written {
     writeln!(out, "## The mistakes\n")?;
     writeln!(
         out,
@@ -101,7 +105,7 @@ fn matrix(record: &Record, out: &mut impl Write) -> Written {
         .collect();
     writeln!(out, "| mistake | | {} | cases | most | seen in |", families.join(" | "))?;
     writeln!(out, "|---|---|{}--:|--:|---|", "--:|".repeat(families.len()))?;
-    for fault in faults() {
+    for fault in mistakes {
         let kills: Vec<&Kill> = record.kills.iter().filter(|kill| kill.fault == fault.name).collect();
         if kills.is_empty() {
             continue;
@@ -117,7 +121,7 @@ fn matrix(record: &Record, out: &mut impl Write) -> Written {
             }
         }
         let (median, most) = smallest(&kills);
-        writeln!(out, " {median} | {most} | {} |", fault.seen_in.unwrap_or_default())?;
+        writeln!(out, " {median} | {most} | {} |", fault.seen_in.as_deref().unwrap_or_default())?;
     }
     let missed: Vec<&Kill> = record.kills.iter().filter(|kill| kill.finding != Finding::Named).collect();
     if !missed.is_empty() {
@@ -181,7 +185,7 @@ fn drawn(record: &SceneRecord, out: &mut impl Write) -> Written {
          {} mistakes\nare caught in {caught} images; the first diagnosis names {named} of them, {:.1} %, or one that draws the \
          same image.\n",
         record.rows.len(),
-        lightmeter_faults::percent(named, caught)
+        percent(named, caught)
     )?;
     writeln!(out, "| mistake | | scenes that catch it | named in | taken for another in |\n|---|---|--:|--:|---|")?;
     for row in &record.rows {
@@ -223,16 +227,16 @@ fn unit(rows: &[UnitRow], out: &mut impl Write) -> Written {
     writeln!(out)
 }
 
-fn resolution(calibration: &[Resolution], out: &mut impl Write) -> Written {
-    if calibration.is_empty() {
+fn resolution(Run { calibration, named_from, .. }: &Run, out: &mut impl Write) -> Written {
+    let Some(NamedFrom { cases, least_z, least_share }) = named_from.filter(|_| !calibration.is_empty()) else {
         return Ok(());
-    }
+    };
     writeln!(out, "## Resolution\n")?;
     writeln!(
         out,
-        "The smallest error of a parameter that a run of {CASES} cases names: relative (*scale*) or absolute (*offset*), by a\n\
+        "The smallest error of a parameter that a run of {cases} cases names: relative (*scale*) or absolute (*offset*), by a\n\
          *single* verdict, some case leaving its interval, and by the *group* verdict, a regression of the residuals on the\n\
-         formula's derivatives that names what lies {LEAST_Z} standard errors from 0 and shifts the answers by {LEAST_SHARE} of \
+         formula's derivatives that names what lies {least_z} standard errors from 0 and shifts the answers by {least_share} of \
          their\ntolerance at least. Inputs as a whole; the JSON has each of their numbers.\n"
     )?;
     writeln!(
@@ -286,7 +290,9 @@ mod tests {
     fn a_survivor_stands_out() {
         let kill = r#"{"fault":"fog-radial","formula":"fog/exp","finding":"survived","cases":9,"failing":0,"smallest":null,
             "first_case":null,"smallest_random":null,"diagnosis":[],"sentence":"nothing fails","alias":false}"#;
-        let json = format!(r#"{{"schema":"lightmeter.selftest/1","kills":[{kill}],"clean":[]}}"#);
+        let mistake = r#"{"name":"fog-radial","says":"fog uses radial distance"}"#;
+        let json =
+            format!(r#"{{"schema":"lightmeter.selftest/1","kills":[{kill}],"clean":[],"mistakes":[{mistake}]}}"#);
         let mut page = String::new();
         markdown(&Run::read(&json).expect("a run"), &mut page).expect("a string takes it");
         assert!(page.contains("fog-radial in fog/exp: **survived**: nothing fails"), "{page}");

@@ -1,8 +1,8 @@
 //! The page on NaN, infinity, subnormals and signed zero, made from the JSON of `lightmeter special`.
 
+use lightmeter_catalogue::special::{Class, DEVIATIONS, PROBES, Probe, Source};
 use lightmeter_document::run::Identity;
 use lightmeter_document::special::{ProbeResult, SpecialReport};
-use lightmeter_engine::special::{Class, DEVIATIONS, PROBES, Probe, Source};
 use std::fmt::{Result as Written, Write};
 use std::ops::Deref;
 

@@ -1,17 +1,35 @@
 //! The page on sweeps, made from their results.
 
-use lightmeter_catalogue::select::catalogue;
-use lightmeter_document::sweep::{Exact, Place, Seen, SweepDocument};
+use crate::sweep::{bars, error, likeliest, margin, rate};
+use lightmeter_document::sweep::{Description, Exact, Place, Seen, SweepDocument};
 use lightmeter_document::{Number, thousands};
-use lightmeter_engine::sweep::text::{bars, error, likeliest, margin, rate};
-use lightmeter_engine::sweep::{Asked, PRESETS, Plan, is_over_inputs_of, options};
 use std::fmt::{Result, Write};
+use std::ops::Deref;
+
+/// A finished sweep.
+#[derive(Clone, Debug)]
+pub struct Swept {
+    /// Its result.
+    pub document: SweepDocument,
+    /// What its formula's ready-made sweep shows, where there is one.
+    pub what: Option<&'static str>,
+    /// Whether it is over the inputs of that one.
+    pub is_ready_made: bool,
+}
+
+impl Deref for Swept {
+    type Target = SweepDocument;
+
+    fn deref(&self) -> &SweepDocument {
+        &self.document
+    }
+}
 
 /// The page in Markdown.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(results: &[SweepDocument], out: &mut impl Write) -> Result {
+pub fn markdown(results: &[Swept], out: &mut impl Write) -> Result {
     writeln!(out, "# Sweeps: every float of a range, every byte of a blend mode\n")?;
     writeln!(out, "Made from the results of `lightmeter sweep`, one file each:\n\n```")?;
     for (place, result) in results.iter().enumerate() {
@@ -46,13 +64,10 @@ pub fn markdown(results: &[SweepDocument], out: &mut impl Write) -> Result {
 }
 
 /// What a result was asked for by, as on the command line: what its ready-made sweep says is left out.
-fn command(result: &SweepDocument) -> String {
+fn command(result: &Swept) -> String {
     let sweep = &result.sweep;
     let mut command = sweep.formula.clone();
-    let catalogue = catalogue();
-    let is_ready_made = PRESETS.iter().any(|preset| preset.formula == sweep.formula)
-        && Plan::new(&catalogue, &sweep.formula, &Asked::default()).is_ok_and(|plan| is_over_inputs_of(sweep, &plan));
-    if !is_ready_made {
+    if !result.is_ready_made {
         command += &options(sweep);
     }
     if sweep.stage == "fragment" {
@@ -67,9 +82,16 @@ fn command(result: &SweepDocument) -> String {
     command + &format!(" --adapter {}", sweep.adapter.name)
 }
 
+/// A sweep's inputs as options of the command line.
+fn options(sweep: &Description) -> String {
+    let (Some(Exact(from)), Some(Exact(to))) = (sweep.from, sweep.to) else { return String::new() };
+    let fixed: String = sweep.fixed.iter().map(|(name, Exact(x))| format!(" --set {name}={x}")).collect();
+    format!(" --over {} --from {from} --to {to}{fixed} --output {}", sweep.over, sweep.output)
+}
+
 /// A file's name that no other of these results has.
-fn stem(results: &[SweepDocument], place: usize) -> String {
-    let named = |result: &SweepDocument| {
+fn stem(results: &[Swept], place: usize) -> String {
+    let named = |result: &Swept| {
         format!("{}-{}-{}", result.sweep.formula.replace('/', "-"), result.sweep.adapter.name, result.sweep.stage)
     };
     let name = named(&results[place]);
@@ -77,7 +99,7 @@ fn stem(results: &[SweepDocument], place: usize) -> String {
     if earlier == 0 { name } else { format!("{name}-{}", earlier + 1) }
 }
 
-fn table(results: &[SweepDocument], out: &mut impl Write) -> Result {
+fn table(results: &[Swept], out: &mut impl Write) -> Result {
     writeln!(
         out,
         "| formula | over | adapter, stage | inputs | outside | deviations | indeterminate | NaN | worst error | at | margin | inputs a second |"
@@ -106,7 +128,7 @@ fn table(results: &[SweepDocument], out: &mut impl Write) -> Result {
     Ok(())
 }
 
-fn range(result: &SweepDocument) -> String {
+fn range(result: &Swept) -> String {
     let sweep = &result.sweep;
     let part = if result.shard == "1/1" { String::new() } else { format!(", shard {}", result.shard) };
     match (sweep.from, sweep.to) {
@@ -124,14 +146,13 @@ fn place(seen: &Seen) -> String {
     }
 }
 
-fn section(result: &SweepDocument, out: &mut impl Write) -> Result {
+fn section(result: &Swept, out: &mut impl Write) -> Result {
     let (sweep, found) = (&result.sweep, &result.statistics);
-    let what = PRESETS.iter().find(|preset| preset.formula == sweep.formula).map(|preset| preset.what);
     writeln!(out, "\n## {} on {}, {}\n", sweep.formula, sweep.adapter.name, sweep.stage)?;
     let fixed: Vec<String> =
         sweep.fixed.iter().map(|(name, Exact(x))| format!("{name} {}", Number((*x).into()))).collect();
     let fixed = if fixed.is_empty() { String::new() } else { format!("; {}", fixed.join(", ")) };
-    let what = what.map_or(String::new(), |what| format!("{what}: "));
+    let what = result.what.map_or(String::new(), |what| format!("{what}: "));
     writeln!(out, "{what}{}, output {}{fixed}.\n", range(result), sweep.output)?;
     for (name, seen) in [("Worst", found.worst), ("Nearest to its limit", found.nearest_to_limit)] {
         if let Some(seen) = seen {

@@ -11,8 +11,8 @@ mod mark;
 mod panels;
 mod svg;
 
-use super::ladder::{Rung, rungs};
 use super::text::is_stable_form;
+use lightmeter_document::bench::ladder::{Rung, rungs};
 use lightmeter_document::bench::{BenchDocument, GroupKind, Measured};
 
 /// A picture.
@@ -59,10 +59,10 @@ pub fn pictures(document: &BenchDocument) -> Result<Vec<Picture>, std::fmt::Erro
         let techniques = measured.groups.iter().filter(|group| group.kind == GroupKind::Technique);
         let title = format!("Techniques on {}: error against time", measured.adapter);
         let groups: Vec<_> = techniques.filter(|group| !is_stable_form(group)).collect();
-        push(measured, "techniques", &title, panels::svg(&groups, &title)?, &mut pictures);
+        push(measured, "techniques", &title, panels::svg(&groups, &measured.rungs, &title)?, &mut pictures);
         let scenes = measured.groups.iter().filter(|group| group.kind == GroupKind::Scene);
         let rungs = rungs(scenes, |errors| errors.steps.max.0);
-        let front = super::ladder::front(&rungs);
+        let front = lightmeter_document::bench::ladder::front(&rungs);
         let title = format!("Scenes on {}: error against time", measured.adapter);
         let error = "largest error of a pixel, 1/255";
         let cloud = cloud::Cloud { title, rungs: &rungs, front: &front, of: "scene", error };

@@ -4,8 +4,8 @@ use super::axis::{Axis, ErrorAxis};
 use super::label::{Area, Room};
 use super::mark::{mark, style};
 use super::svg::{Named, SIZE, WIDTH, across, errors, frame, markers, open, shortened, text, upward};
-use crate::figures::count;
-use crate::ladder::Rung;
+use crate::bench::figures::count;
+use lightmeter_document::bench::ladder::Rung;
 use std::fmt::{Error, Result as Written, Write};
 
 /// What is drawn.

@@ -1,10 +1,10 @@
 //! The page on what accuracy costs, and the README's part of it, in Markdown.
 
 use super::figures::{compilation, count, digits, error, holding, spread, standing, time};
-use super::ladder::{Rung, rungs};
-use super::pareto::is_processor;
 use super::plot::Picture;
 use super::text::{is_stable_form, law, steps};
+use lightmeter_document::bench::ladder::{Rung, rungs};
+use lightmeter_document::bench::pareto::is_processor;
 use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Claim, Family, GroupKind, Measured};
 use lightmeter_document::thousands;
 use std::fmt::{Result, Write};
@@ -409,7 +409,7 @@ pub fn readme(document: &BenchDocument, out: &mut impl Write) -> Result {
         write!(out, "| rung | time over f32 | ns | error |")?;
         shown.iter().try_for_each(|group| write!(out, " `{0}`, ns | error |", group.id))?;
         writeln!(out, "\n|---|--:|--:|--:|{}", "--:|--:|".repeat(shown.len()))?;
-        let front = super::ladder::front(&all);
+        let front = lightmeter_document::bench::ladder::front(&all);
         for name in names(measured) {
             let Some(rung) = all.iter().find(|rung| rung.name == name) else { continue };
             let figures = |figure: fn(&Rung) -> String| if rung.groups > 0 { figure(rung) } else { "—".into() };

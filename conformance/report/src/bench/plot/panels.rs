@@ -4,9 +4,9 @@ use super::axis::{Axis, ErrorAxis};
 use super::label::{Area, Room};
 use super::mark::{mark, style};
 use super::svg::{Named, SIZE, WIDTH, across, errors, escaped, frame, markers, open, shortened, text, text_width};
-use crate::pareto::is_processor;
-use lightmeter_document::bench::{BenchGroup, BenchRow};
-use lightmeter_gpu::Rung;
+use lightmeter_document::bench::ladder::BASELINE;
+use lightmeter_document::bench::pareto::is_processor;
+use lightmeter_document::bench::{BenchGroup, BenchRow, RungUse};
 use std::fmt::{Error, Result as Written, Write};
 
 const COLUMNS: usize = 2;
@@ -14,8 +14,8 @@ const PANEL: f64 = WIDTH / 2.0;
 const HEIGHT: f64 = 286.0;
 const HEAD: f64 = 58.0;
 
-/// A picture with a panel for each group that has rows to show.
-pub(super) fn svg(groups: &[&BenchGroup], title: &str) -> Result<Option<String>, Error> {
+/// A picture with a panel for each group that has rows to show, and a mark for each of the rungs.
+pub(super) fn svg(groups: &[&BenchGroup], rungs: &[RungUse], title: &str) -> Result<Option<String>, Error> {
     let groups: Vec<&&BenchGroup> =
         groups.iter().filter(|group| group.rows.iter().any(|row| place(row).is_some())).collect();
     if groups.is_empty() {
@@ -37,9 +37,9 @@ pub(super) fn svg(groups: &[&BenchGroup], title: &str) -> Result<Option<String>,
         "line and bold names: nothing else is both faster and closer; whiskers: the middle half of the turns; small:";
     text([12.0, height - 32.0], "start", false, words, &mut out)?;
     let mut x = 18.0;
-    for rung in Rung::ALL.into_iter().filter(|rung| *rung != Rung::F32) {
-        mark(style(rung.name(), 0), [x, height - 15.0], 5.0, false, &mut out)?;
-        let name = format!("at {}", rung.name());
+    for rung in rungs.iter().filter(|rung| rung.name != BASELINE && !is_processor(&rung.name)) {
+        mark(style(&rung.name, 0), [x, height - 15.0], 5.0, false, &mut out)?;
+        let name = format!("at {}", rung.name);
         text([x + 10.0, height - 11.0], "start", false, &name, &mut out)?;
         x += 38.0 + text_width(&name, SIZE);
     }

@@ -3,6 +3,9 @@
 //! Times are nanoseconds, errors are against the f64 reference of what a group's `ideal` says. A *row* is a technique or a
 //! rung of the ladder; rows of a *group* compute the same, and are measured in turns beside the group's baseline.
 
+pub mod ladder;
+pub mod pareto;
+
 use crate::Number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -140,6 +143,9 @@ pub struct BenchRow {
     pub claims_exact: bool,
     /// Why it was not measured.
     pub unavailable: Option<String>,
+    /// Whether it is not there because no step of it has a form of its own at the rung: f32's figures count for it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub as_f32: bool,
     /// What is wrong in value with it: such a row is on no front and never recommended.
     pub disqualified: Option<String>,
     /// On random inputs; of a scene, its pixels.

@@ -1,10 +1,9 @@
 //! The cheapest row of each group whose largest error is at most so much: `lightmeter.recommendation/1`.
 
 use super::figures::{digits, error, time};
-use super::pareto::refusal;
 use super::text::wrapped;
-use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::Number;
+use lightmeter_document::bench::pareto::refusal;
 use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Errors};
 use serde::Serialize;
 use std::fmt::{Display, Formatter, Result as Written, Write};
@@ -172,13 +171,13 @@ pub struct Candidate {
     pub error: Number,
 }
 
-/// The cheapest row of each group that the filter selects, on each adapter, whose largest error on `inputs` is at most `limit`.
+/// The cheapest row of each group on each adapter whose largest error on `inputs` is at most `limit`.
 #[must_use]
-pub fn recommend(document: &BenchDocument, filter: &Filter, limit: Limit, inputs: Inputs) -> Recommendation {
-    let groups = document.adapters.iter().flat_map(|measured| {
-        let selected = measured.groups.iter().filter(|group| filter.selects(&group.id));
-        selected.map(|group| advice(&measured.adapter, group, limit, inputs))
-    });
+pub fn recommend(document: &BenchDocument, limit: Limit, inputs: Inputs) -> Recommendation {
+    let groups = document
+        .adapters
+        .iter()
+        .flat_map(|measured| measured.groups.iter().map(|group| advice(&measured.adapter, group, limit, inputs)));
     let groups = groups.collect();
     Recommendation { schema: SCHEMA, limit: limit.to_string(), inputs, groups, unit: limit.unit() }
 }
@@ -356,8 +355,7 @@ mod tests {
     #[test]
     fn it_is_written_for_people_and_programs() {
         let document = document();
-        let filter = Filter::new(&["technique", "fog/*"]).expect("globs");
-        let found = recommend(&document, &filter, Limit::Ulp(4.0), Inputs::All);
+        let found = recommend(&document, Limit::Ulp(4.0), Inputs::All);
         assert!(
             found.groups.iter().any(|one| one.chosen.is_some()) && found.groups.iter().any(|one| one.chosen.is_none())
         );
@@ -365,7 +363,6 @@ mod tests {
         write(&found, &mut text).expect("a string takes all");
         let mut lines = text.lines();
         for one in &found.groups {
-            assert!(filter.selects(&one.group));
             let line =
                 lines.find(|line| line.split_whitespace().next() == Some(&one.group)).expect("a line each, in order");
             let named = one.chosen.as_ref().or(one.closest.as_ref());

@@ -1,18 +1,17 @@
 //! Figures and words as reports show them.
 
-use super::ladder::median;
+use lightmeter_document::bench::ladder::median;
 use lightmeter_document::bench::{Measured, Rank, Time};
-use lightmeter_gpu::Rung;
 
 /// How long compilation took, rung by rung.
 pub(super) fn compilation(measured: &Measured) -> Option<String> {
     let rows = || measured.groups.iter().flat_map(|group| &group.rows);
-    let of = |rung: Rung| {
-        let is_of = |name: &str| name == rung.name() || name.ends_with(&format!(" {}", rung.name()));
+    let of = |rung: &str| {
+        let is_of = |name: &str| name == rung || name.ends_with(&format!(" {rung}"));
         let taken: Vec<f64> = rows().filter(|row| is_of(&row.name)).filter_map(|row| row.compile_ms).collect();
-        (!taken.is_empty()).then(|| format!("{} {}", rung.name(), time(1e6 * median(taken.into_iter()))))
+        (!taken.is_empty()).then(|| format!("{rung} {}", time(1e6 * median(taken.into_iter()))))
     };
-    let medians: Vec<String> = Rung::ALL.into_iter().filter_map(of).collect();
+    let medians: Vec<String> = measured.rungs.iter().filter_map(|rung| of(&rung.name)).collect();
     let all: Vec<f64> = rows().filter_map(|row| row.compile_ms).collect();
     let total = time(1e6 * all.iter().sum::<f64>());
     let shaders = count(all.len(), "shader");

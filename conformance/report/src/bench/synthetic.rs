@@ -1,8 +1,8 @@
 //! A made-up document with everything that a real one may have in it, for tests of what is made of one.
 
-use super::ladder::family;
-use super::pareto::front_of;
 use lightmeter_document::Number;
+use lightmeter_document::bench::ladder::family;
+use lightmeter_document::bench::pareto::front_of;
 use lightmeter_document::bench::*;
 
 /// SplitMix64.
@@ -67,6 +67,7 @@ pub(crate) fn row(name: &str, ns: f64, ratio: f64, ulp: f64) -> BenchRow {
         what: format!("{name}, in a line"),
         claims_exact: true,
         unavailable: None,
+        as_f32: false,
         disqualified: None,
         random: Some(errors(ulp)),
         hard: None,

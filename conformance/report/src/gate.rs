@@ -1,8 +1,7 @@
 //! A gate's result for people, for CI servers and for GitHub.
 
-use super::report::cases;
 use lightmeter_document::Number;
-use lightmeter_document::gate::{GateFailure, GateGroup, GateReport};
+use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, cases};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::fmt::{Result, Write};
 

@@ -1,8 +1,11 @@
 //! Rungs over many groups: the geometric mean of times, the median of largest errors.
 
 use super::pareto::{self, Point, is_processor};
-use lightmeter_document::Number;
-use lightmeter_document::bench::{BenchGroup, BenchRow, Errors, Family, FamilyRung};
+use super::{BenchGroup, BenchRow, Errors, Family, FamilyRung};
+use crate::Number;
+
+/// The rung that the others are measured against.
+pub const BASELINE: &str = "f32";
 
 /// A rung over many groups.
 #[derive(Clone, Debug)]
@@ -54,7 +57,7 @@ fn rung<'a>(
     let (mut points, mut figures) = (vec![], vec![]);
     for (group, row) in rows {
         let mut own = row;
-        if row.unavailable.as_deref().is_some_and(lightmeter_gpu::Rung::is_as_f32) {
+        if row.as_f32 {
             // Means are of the same groups whatever the rung.
             let Some(base) = group.rows.iter().find(|base| base.name == group.baseline) else { continue };
             own = base;
@@ -97,7 +100,7 @@ pub fn front(rungs: &[Rung]) -> Vec<String> {
         time: rung.spread,
         ratio: rung.ratio,
         error: rung.error,
-        is_baseline: rung.name == lightmeter_gpu::Rung::F32.name(),
+        is_baseline: rung.name == BASELINE,
     });
     pareto::front(points.collect())
 }
@@ -165,41 +168,7 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic::{errors, group, row};
     use super::*;
-
-    #[test]
-    fn a_family_is_of_what_was_measured_and_is_right() {
-        let mut groups: Vec<BenchGroup> = [2.0, 8.0, 3.0, 5.0]
-            .map(|ns| group("fog/made-up", vec![row("f32", 1.0, 1.0, 4.0), row("f16", ns, ns, 100.0 * ns)]))
-            .into();
-        groups[2].rows[1].disqualified = Some("wrong".into());
-        groups[3].rows[1].unavailable = Some("no such feature".into());
-        groups[0].rows[0].random = Some(errors(f64::INFINITY));
-        let family = family("fog", groups.iter());
-        let [f32, f16] = family.rungs.as_slice() else { panic!("two rungs: {family:?}") };
-        assert_eq!((f16.formulas, f16.disqualified, f16.unavailable, f16.points.len()), (2, 1, 1, 2));
-        assert!((f16.ratio - 4.0).abs() < 1e-12 && (f16.ns - 4.0).abs() < 1e-12, "{f16:?}");
-        let absolute = |ulp: f64| errors(ulp).absolute.max;
-        assert_eq!((f16.error_max, f32.error_max), (absolute(500.0), absolute(4.0)));
-        assert_eq!((f32.formulas, family.front.as_slice()), (4, ["f32".to_owned()].as_slice()));
-        // Where no step has such a form, the rung is f32: means are of the same formulas.
-        let reason = "no step of it has a cheap approximation";
-        groups.iter_mut().for_each(|group| group.rows.truncate(1));
-        for (place, group) in groups.iter_mut().enumerate() {
-            let mut cheap = row("f32-cheap", 1.0, 0.5, 100.0);
-            if place > 0 {
-                cheap = BenchRow { unavailable: Some(reason.into()), time: None, random: None, ..cheap };
-            }
-            group.rows.push(cheap);
-        }
-        let own = super::family("fog", groups.iter());
-        let cheap = &own.rungs[1];
-        assert_eq!((cheap.formulas, cheap.as_f32, cheap.unavailable, cheap.points.len()), (1, 3, 0, 1));
-        assert!((cheap.ratio - 0.5_f64.powf(0.25)).abs() < 1e-12 && cheap.error_max == absolute(4.0), "{cheap:?}");
-        let again: Vec<Rung> = family.rungs.iter().map(Rung::from).collect();
-        assert_eq!(front(&again), family.front);
-    }
 
     #[test]
     fn means_and_medians() {

@@ -5,7 +5,7 @@ use super::label::Area;
 use super::mark::{mark, style};
 use super::panels::unit;
 use super::svg::{SIZE, WIDTH, across, escaped, frame, open, shortened, text, up, upward};
-use crate::text::law;
+use crate::bench::text::law;
 use lightmeter_document::bench::{Fit, Scaling};
 use lightmeter_document::thousands;
 use std::fmt::{Error, Result as Written, Write};

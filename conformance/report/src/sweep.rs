@@ -1,8 +1,8 @@
 //! A sweep's result for people.
 
-use crate::blend_unit::store::StoreCounts;
 use lightmeter_document::sweep::{self, Exact, Place, Seen, SweepDocument};
 use lightmeter_document::{Number, thousands};
+use lightmeter_judge::blend_unit::store::StoreCounts;
 use std::fmt::{Result, Write};
 
 /// Characters of the longest bar.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::synthetic::document;
+use crate::bench::synthetic::document;
 
 #[test]
 fn every_adapter_has_a_picture_of_everything() {

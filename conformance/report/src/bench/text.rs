@@ -1,7 +1,7 @@
 //! A bench for people to read on a terminal, 120 columns wide.
 
 use super::figures::{compilation, count, digits, error, spread, standing, time};
-use super::ladder::{Rung, rungs};
+use lightmeter_document::bench::ladder::{Rung, rungs};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Family, GroupKind, Measured, Scaling};
 use lightmeter_document::thousands;
 use std::fmt::{Result, Write};
