@@ -1,9 +1,10 @@
 //! Answers as files.
 
 use super::answer::{self, Hello, Unread};
+use super::error::ProcessError;
 use super::ledger::Ledger;
+use super::pack;
 use super::problems::note;
-use super::{pack, process};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -106,7 +107,7 @@ pub fn judge(
     ledger: &mut Ledger<'_>,
     all: Vec<Answers>,
     progress: &mut impl FnMut(u64),
-) -> Result<Hello, process::ProcessError> {
+) -> Result<Hello, ProcessError> {
     let mut who: Option<Hello> = None;
     let is_one = all.len() == 1;
     for mut answers in all {

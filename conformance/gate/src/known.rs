@@ -2,6 +2,7 @@
 
 use super::plan::{Place, Plan};
 use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 /// What became of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -172,6 +173,15 @@ pub fn ending(plan: &Plan, place: Place) -> String {
         Place::Scene(_) => "scene",
     };
     id.strip_prefix(formula).and_then(|rest| rest.strip_prefix('/')).unwrap_or(&id).to_owned()
+}
+
+/// A hash of what was answered.
+pub(super) fn digest(numbers: impl Iterator<Item = u64>) -> u32 {
+    let mut hasher = DefaultHasher::new();
+    numbers.for_each(|number| number.hash(&mut hasher));
+    #[expect(clippy::cast_possible_truncation, reason = "a part of a hash")]
+    let digest = hasher.finish() as u32;
+    digest
 }
 
 /// Cases in a row.

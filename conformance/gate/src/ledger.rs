@@ -1,19 +1,19 @@
 //! What was asked, and what was answered: each answer judged as it comes.
 
 use super::answer::{self, Hello, Line, clipped};
+use super::error::ProcessError;
 use super::expectations::{Expectations, Expected};
-use super::known::{Register, State, Turn};
+use super::known::{Register, State, Turn, digest};
+use super::picture;
 use super::plan::{Place, Plan};
 use super::problems::note;
 use super::tally::AnswerTally;
 use super::verdict::{self, Verdicts};
-use super::{picture, process};
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::Number;
 use lightmeter_document::gate::{GateFailure, Problems};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::Path;
 use std::time::SystemTime;
 
@@ -115,10 +115,10 @@ impl<'a> Ledger<'a> {
     ///
     /// # Errors
     /// Where what it declares cannot be read.
-    pub fn begin(&mut self, hello: &Hello) -> Result<Vec<Place>, process::ProcessError> {
+    pub fn begin(&mut self, hello: &Hello) -> Result<Vec<Place>, ProcessError> {
         self.expectations = self.expected.of(&hello.renderer, &hello.version);
         if let Some(name) = hello.profile.as_ref().filter(|_| !self.is_held_to) {
-            let profile = Profile::by_name(name).ok_or_else(|| process::ProcessError::Profile(name.clone()))?;
+            let profile = Profile::by_name(name).ok_or_else(|| ProcessError::Profile(name.clone()))?;
             self.profile = *profile;
         }
         let [formulas, scenes] = hello.filters()?;
@@ -376,13 +376,4 @@ impl<'a> Ledger<'a> {
             )),
         });
     }
-}
-
-/// A hash of numbers.
-pub(super) fn digest(numbers: impl Iterator<Item = u64>) -> u32 {
-    let mut hasher = DefaultHasher::new();
-    numbers.for_each(|number| number.hash(&mut hasher));
-    #[expect(clippy::cast_possible_truncation, reason = "a part of a hash")]
-    let digest = hasher.finish() as u32;
-    digest
 }

@@ -6,6 +6,7 @@
 pub mod answer;
 pub mod answers;
 pub mod baseline;
+pub mod error;
 pub mod expectations;
 pub mod frame;
 pub mod known;

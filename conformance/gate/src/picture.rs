@@ -1,6 +1,6 @@
 //! Images that renderers write: PNG of 8 or 16 bits, EXR, NPY.
 
-use super::ledger::digest;
+use super::known::digest;
 use image::{DynamicImage, ImageReader};
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::run::Totals;

@@ -38,7 +38,7 @@ pub fn ask(
     plan: &Plan,
     renderer: &mut impl Renderer,
     folder: &Path,
-) -> Result<(), super::process::ProcessError> {
+) -> Result<(), super::error::ProcessError> {
     let hello = renderer.hello();
     for batch in ledger.begin(&hello)?.chunks(super::answers::LINES) {
         let mut lines = vec![];

@@ -129,7 +129,7 @@ impl Status {
         if error.downcast_ref::<NothingToRun>().is_some() {
             return Self::Nothing;
         }
-        if let Some(lightmeter::gate::process::ProcessError::Start { .. }) = error.downcast_ref() {
+        if let Some(lightmeter::gate::error::ProcessError::Start { .. }) = error.downcast_ref() {
             return Self::Device;
         }
         let device = match error.downcast_ref::<AdapterError>() {

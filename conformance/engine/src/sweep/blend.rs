@@ -4,7 +4,7 @@
 //! source, then destination.
 
 use super::plan::Plan;
-use super::run::Work;
+use super::work::Work;
 use crate::blend_unit::draw::draw;
 use crate::blend_unit::expect::expect;
 use crate::blend_unit::pixel::{self, Units};
@@ -24,8 +24,6 @@ use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
 
-/// The shader that hands source colours to the unit.
-pub(super) const FILE: &str = "blend_unit.wgsl";
 const TARGET: TargetFormat = TargetFormat::Rgba8Unorm;
 /// Inputs of one alpha, which one piece draws.
 const PLANE: u64 = 1 << 16;

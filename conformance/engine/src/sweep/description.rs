@@ -7,6 +7,9 @@ use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::sweep::{Description, Exact};
 
+/// The shader that hands source colours to the blend unit.
+const BLEND_FILE: &str = "blend_unit.wgsl";
+
 /// What a plan sweeps on an adapter.
 #[must_use]
 pub fn describe(plan: &Plan<'_>, subject: &Subject, profile: &Profile, code: &Code) -> Description {
@@ -14,7 +17,7 @@ pub fn describe(plan: &Plan<'_>, subject: &Subject, profile: &Profile, code: &Co
         Over::Number { from, to, .. } => {
             (Some(Exact(from)), Some(Exact(to)), "ULP", format!("{}.wgsl", plan.member.spec.family()))
         }
-        Over::Bytes => (None, None, "step", super::blend::FILE.into()),
+        Over::Bytes => (None, None, "step", BLEND_FILE.into()),
     };
     let adapter = &subject.identity;
     let text = subject.device().map_or_else(|| adapter.driver.clone(), |device| device.source(code, &file));

@@ -13,6 +13,7 @@ mod plan;
 mod preset;
 mod run;
 mod span;
+mod work;
 
 pub use description::{describe, is_over_inputs_of, span};
 pub use file::DocumentError;

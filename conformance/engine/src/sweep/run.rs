@@ -5,6 +5,7 @@ use super::description::span;
 use super::file::{self, DocumentError};
 use super::judge::Judge;
 use super::plan::{Over, Plan, input};
+use super::work::Work;
 use crate::device::{Blocks, Code, DeviceError};
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
@@ -34,16 +35,6 @@ pub enum SweepError {
         /// What.
         reason: &'static str,
     },
-}
-
-/// What does a block's work: starts it, and later says what came of it.
-pub(super) trait Work {
-    /// A block under way.
-    type Job;
-    /// Starts on so many inputs from the one of that number on.
-    fn start(&mut self, first: u64, count: u64) -> Self::Job;
-    /// What came of it.
-    fn finish(&mut self, job: Self::Job) -> Result<Statistics, DeviceError>;
 }
 
 /// Sweeps on from where the document stands, at most so many blocks of its shard, and hands the document on after each.

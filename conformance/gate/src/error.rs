@@ -1,0 +1,37 @@
+//! Why a renderer could not be asked.
+
+use super::pack;
+use std::path::PathBuf;
+
+/// Why a renderer could not be asked at all.
+#[derive(Debug, thiserror::Error)]
+pub enum ProcessError {
+    /// The command cannot be started, or says nothing that can be read.
+    #[error("`{command}` {message}")]
+    Start {
+        /// The command.
+        command: String,
+        /// What it does in the place of its hello.
+        message: String,
+    },
+    /// What it declares cannot be read.
+    #[error("the renderer's hello: {0}")]
+    Hello(#[from] lightmeter_catalogue::filter::FilterError),
+    /// It asks for accuracy rules that are unknown.
+    #[error("the renderer's hello: no profile `{0}`; expected {profiles}", profiles = lightmeter_arithmetic::profile::PROFILES.map(|profile| profile.name).join(", "))]
+    Profile(String),
+    /// A scene is refused, which a test rules out.
+    #[error("{0}")]
+    Scene(#[from] lightmeter_catalogue::scene::SceneError),
+    /// A pack's or a scene's file cannot be written.
+    #[error("{0}")]
+    Pack(#[from] pack::PackError),
+    /// A folder for images cannot be made.
+    #[error("cannot write {}: {message}", .path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+}
