@@ -225,6 +225,11 @@ pub(super) fn contest(
         }
     }
     let idle = time_rows(bench, sample, contenders, &compiled, idle.as_ref(), baseline, &mut rows)?;
+    Ok((rows, work(sample, idle)))
+}
+
+/// What errors and times are over; `idle` is what reading the inputs takes, and whether it is taken off.
+fn work(sample: &Sample<'_>, idle: Option<(f64, bool)>) -> String {
     let mut work = format!("{} random rows, and {} hard ones and near them", sample.random(), sample.hard());
     match idle {
         None => {}
@@ -237,7 +242,7 @@ pub(super) fn contest(
             );
         }
     }
-    Ok((rows, work))
+    work
 }
 
 fn blank(contender: &Contender<'_>) -> BenchRow {

@@ -262,37 +262,16 @@ fn sitting(
         profile: options.profile,
         setting,
     };
-    let (mut groups, mut scalings): (Vec<BenchGroup>, Vec<Scaling>) = (vec![], vec![]);
+    let mut groups = vec![];
     for (id, members) in &asked.formulas {
         progress.group(id);
         groups.push(formulas::formula(&bench, id, members)?);
         progress.advance(1);
     }
+    let mut scalings = vec![];
     if bench.gpu.is_some() {
-        for group in &asked.techniques {
-            progress.group(group.id);
-            groups.push(techniques::techniques(&bench, group)?);
-            progress.advance(1);
-        }
-        groups.extend(scenes::techniques(&on, &asked.ladder, &asked.drawn, progress)?);
-        for member in &asked.stable {
-            progress.group(&member.spec.id);
-            groups.extend(techniques::stable(&bench, member)?);
-            progress.advance(1);
-        }
-        groups.extend(scenes::scenes(&on, &asked.ladder, &asked.scenes, progress)?);
-        for (name, loaded) in asked.files {
-            progress.group(name);
-            let (title, frame) = (loaded.title.clone(), loaded.frame.clone());
-            groups.extend(scenes::scene(&on, &asked.ladder, format!("scene/{name}"), title, frame)?);
-            progress.advance(1);
-        }
-        scalings.extend(scenes::scalings(&on, &asked.scalings, progress)?);
-        if asked.by_cases {
-            progress.group("scaling/cases");
-            scalings.extend(growth::cases(&bench)?);
-            progress.advance(1);
-        }
+        groups.extend(on_device(&bench, &on, asked, progress)?);
+        scalings.extend(growths(&bench, &on, asked, progress)?);
     }
     let (readings, rejected) = bench.clock.readings();
     let of_drawing = drawing.readings();
@@ -303,6 +282,51 @@ fn sitting(
         rejected: rejected + of_drawing.1,
     };
     Ok(Sitting { groups, scalings, clock })
+}
+
+/// What needs a device: techniques, stable forms and scenes.
+fn on_device(
+    bench: &Bench<'_>,
+    on: &scenes::On<'_>,
+    asked: &Asked<'_>,
+    progress: &mut impl Progress,
+) -> Result<Vec<BenchGroup>, GpuError> {
+    let mut groups = vec![];
+    for group in &asked.techniques {
+        progress.group(group.id);
+        groups.push(techniques::techniques(bench, group)?);
+        progress.advance(1);
+    }
+    groups.extend(scenes::techniques(on, &asked.ladder, &asked.drawn, progress)?);
+    for member in &asked.stable {
+        progress.group(&member.spec.id);
+        groups.extend(techniques::stable(bench, member)?);
+        progress.advance(1);
+    }
+    groups.extend(scenes::scenes(on, &asked.ladder, &asked.scenes, progress)?);
+    for (name, loaded) in asked.files {
+        progress.group(name);
+        let (title, frame) = (loaded.title.clone(), loaded.frame.clone());
+        groups.extend(scenes::scene(on, &asked.ladder, format!("scene/{name}"), title, frame)?);
+        progress.advance(1);
+    }
+    Ok(groups)
+}
+
+/// How time grows with work on a device.
+fn growths(
+    bench: &Bench<'_>,
+    on: &scenes::On<'_>,
+    asked: &Asked<'_>,
+    progress: &mut impl Progress,
+) -> Result<Vec<Scaling>, GpuError> {
+    let mut scalings = scenes::scalings(on, &asked.scalings, progress)?;
+    if asked.by_cases {
+        progress.group("scaling/cases");
+        scalings.extend(growth::cases(bench)?);
+        progress.advance(1);
+    }
+    Ok(scalings)
 }
 
 /// Of the stable forms, those of a quick bench.

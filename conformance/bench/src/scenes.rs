@@ -160,11 +160,9 @@ const fn what(rung: Rung) -> &'static str {
 /// What a row of the processor draws.
 type Draw = Box<dyn Fn(&Frame) + Send + Sync>;
 
-/// The reference renderer on one core, in turns of its own.
-fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result<Vec<BenchRow>, GpuError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
-    let (frame, profile) = (&standard.frame, drawer.profile);
-    let kinds: [(&str, &str, Draw); 3] = [
+/// The rows of the processor: a name, what it is, and what it draws.
+fn kinds(profile: Profile) -> [(&'static str, &'static str, Draw); 3] {
+    [
         (
             "cpu-f32",
             "the reference renderer in f32, on one core",
@@ -180,7 +178,14 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
             "the legal values of every pixel by the accuracy rules, on one core; its error is how far they reach",
             Box::new(move |frame| drop(black_box(lightmeter_engine::image::expect(frame, None, None, &profile)))),
         ),
-    ];
+    ]
+}
+
+/// The reference renderer on one core, in turns of its own.
+fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result<Vec<BenchRow>, GpuError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
+    let frame = &standard.frame;
+    let kinds = kinds(drawer.profile);
     // A larger frame than the errors' is the device's alone: the processor's time is brought to it.
     let share = drawer.share(frame);
     let mut entries: Vec<Entry<'_>> = vec![];

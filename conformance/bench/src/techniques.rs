@@ -247,13 +247,13 @@ fn technique(name: &'static str, what: &'static str, formula: impl Formula) -> T
 
 /// All of them.
 pub(super) fn all() -> Vec<Techniques> {
-    let spans = |id, direct: Technique, by: Technique| Techniques {
-        id,
-        title: "a span of pixels, each computed against forward differences; a time is of a whole span",
-        ideal: "the last pixel's value in f64",
-        baseline: "direct",
-        techniques: vec![direct, by],
-    };
+    let mut all = points();
+    all.extend(spans());
+    all
+}
+
+/// What is computed at a point.
+fn points() -> Vec<Techniques> {
     vec![
         Techniques {
             id: "technique/viewer",
@@ -305,15 +305,28 @@ pub(super) fn all() -> Vec<Techniques> {
             baseline: "radial",
             techniques: vec![technique("radial", "|p|", Radial), technique("planar", "|z|", Planar)],
         },
-        spans("technique/span-16", technique("direct", DIRECT, Span16), technique("differences", DIFFERENCES, By16)),
-        spans("technique/span-64", technique("direct", DIRECT, Span64), technique("differences", DIFFERENCES, By64)),
-        spans("technique/span-256", technique("direct", DIRECT, Span256), technique("differences", DIFFERENCES, By256)),
-        spans(
+    ]
+}
+
+/// Spans of pixels, by their lengths.
+fn spans() -> Vec<Techniques> {
+    let span = |id, direct: Technique, by: Technique| Techniques {
+        id,
+        title: "a span of pixels, each computed against forward differences; a time is of a whole span",
+        ideal: "the last pixel's value in f64",
+        baseline: "direct",
+        techniques: vec![direct, by],
+    };
+    vec![
+        span("technique/span-16", technique("direct", DIRECT, Span16), technique("differences", DIFFERENCES, By16)),
+        span("technique/span-64", technique("direct", DIRECT, Span64), technique("differences", DIFFERENCES, By64)),
+        span("technique/span-256", technique("direct", DIRECT, Span256), technique("differences", DIFFERENCES, By256)),
+        span(
             "technique/span-1024",
             technique("direct", DIRECT, Span1024),
             technique("differences", DIFFERENCES, By1024),
         ),
-        spans(
+        span(
             "technique/span-4096",
             technique("direct", DIRECT, Span4096),
             technique("differences", DIFFERENCES, By4096),

@@ -1,6 +1,7 @@
 //! A sweep's result for people.
 
-use lightmeter_document::sweep::{self, Exact, Place, Seen, SweepDocument};
+use lightmeter_document::run::Identity;
+use lightmeter_document::sweep::{self, Description, Exact, Place, Seen, Statistics, SweepDocument};
 use lightmeter_document::{Number, thousands};
 use lightmeter_judge::blend_unit::store::StoreCounts;
 use std::fmt::{Result, Write};
@@ -14,8 +15,26 @@ const BAR: usize = 40;
 /// Where the writer fails.
 pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl Write) -> Result {
     let (sweep, found) = (&document.sweep, &document.statistics);
-    let unit = &sweep.unit;
     writeln!(out, "{}: {text}", sweep.formula)?;
+    inputs(sweep, out)?;
+    place_and_progress(document, out)?;
+    verdicts(found, out)?;
+    for (what, seen) in [("worst", &found.worst), ("at limit", &found.nearest_to_limit)] {
+        if let Some(seen) = seen {
+            write_seen(document, &format!("{what:<10}"), seen, rerun, out)?;
+        }
+    }
+    for seen in &found.failures {
+        write_seen(document, "FAIL      ", seen, rerun, out)?;
+    }
+    writeln!(out)?;
+    bars(document, out)?;
+    let mark = if found.failed > 0 { "✗" } else { "✓" };
+    writeln!(out, "{mark} {} of {} inputs outside the bound", thousands(found.failed), thousands(found.inputs))
+}
+
+/// Over what is swept, and what is fixed.
+fn inputs(sweep: &Description, out: &mut impl Write) -> Result {
     match (sweep.from, sweep.to) {
         (Some(Exact(from)), Some(Exact(to))) => writeln!(
             out,
@@ -34,15 +53,14 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
     }
     let fixed: Vec<String> =
         sweep.fixed.iter().map(|(name, Exact(x))| format!("{name} {}", Number((*x).into()))).collect();
-    if !fixed.is_empty() {
-        writeln!(out, "fixed      {}", fixed.join(", "))?;
-    }
-    let adapter = &sweep.adapter;
-    writeln!(
-        out,
-        "on         {}, {}: {} · {} · {}",
-        adapter.name, sweep.stage, adapter.device, adapter.backend, adapter.driver
-    )?;
+    if fixed.is_empty() { Ok(()) } else { writeln!(out, "fixed      {}", fixed.join(", ")) }
+}
+
+/// On what it is swept, and how far that came.
+fn place_and_progress(document: &SweepDocument, out: &mut impl Write) -> Result {
+    let (stage, adapter) = (&document.sweep.stage, &document.sweep.adapter);
+    let Identity { name, device, backend, driver } = adapter;
+    writeln!(out, "on         {name}, {stage}: {device} · {backend} · {driver}")?;
     if document.shard != "1/1" {
         writeln!(out, "shard      {}", document.shard)?;
     }
@@ -54,10 +72,14 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
     writeln!(
         out,
         "done       {} inputs in {:.1} s, {} a second{state}",
-        thousands(found.inputs),
+        thousands(document.statistics.inputs),
         document.seconds,
         thousands(rate(document))
-    )?;
+    )
+}
+
+/// The counts.
+fn verdicts(found: &Statistics, out: &mut impl Write) -> Result {
     writeln!(
         out,
         "outside    {} inputs; {} indeterminate, {} NaN",
@@ -68,32 +90,17 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
     for (name, count) in &found.excused {
         writeln!(out, "deviation  {name} says {} of what is outside the promised bound", thousands(*count))?;
     }
-    if let Some(stored) = &found.stored {
-        let (store, share) = likeliest(&stored.counts);
-        let model = match (stored.predicted, stored.departing) {
-            (0, _) => String::new(),
-            (of, departing) => {
-                format!("; {} of {} values depart from the known model", thousands(departing), thousands(of))
-            }
-        };
-        let tiers = stored.tiers.named().map(|(name, count)| format!("{name} {}", percent(count, found.inputs)));
-        writeln!(out, "tiers      {}", tiers.join(", "))?;
-        writeln!(out, "stored     {store}: {:.2} % of the values that tell{model}", 100.0 * share)?;
-    }
-    for (what, seen) in [("worst", &found.worst), ("at limit", &found.nearest_to_limit)] {
-        if let Some(seen) = seen {
-            writeln!(out, "\n{what:<10} {} {unit}, margin {}", error(seen.error), margin(seen.margin))?;
-            write_seen(document, seen, rerun, out)?;
+    let Some(stored) = &found.stored else { return Ok(()) };
+    let (store, share) = likeliest(&stored.counts);
+    let model = match (stored.predicted, stored.departing) {
+        (0, _) => String::new(),
+        (of, departing) => {
+            format!("; {} of {} values depart from the known model", thousands(departing), thousands(of))
         }
-    }
-    for seen in &found.failures {
-        writeln!(out, "\nFAIL       {} {unit}, margin {}", error(seen.error), margin(seen.margin))?;
-        write_seen(document, seen, rerun, out)?;
-    }
-    writeln!(out)?;
-    bars(document, out)?;
-    let mark = if found.failed > 0 { "✗" } else { "✓" };
-    writeln!(out, "{mark} {} of {} inputs outside the bound", thousands(found.failed), thousands(found.inputs))
+    };
+    let tiers = stored.tiers.named().map(|(name, count)| format!("{name} {}", percent(count, found.inputs)));
+    writeln!(out, "tiers      {}", tiers.join(", "))?;
+    writeln!(out, "stored     {store}: {:.2} % of the values that tell{model}", 100.0 * share)
 }
 
 /// The store that most values speak for, by its name, and their share.
@@ -104,8 +111,10 @@ pub fn likeliest(counts: &sweep::StoreCounts) -> (&'static str, f64) {
     (store.name(), share)
 }
 
-fn write_seen(document: &SweepDocument, seen: &Seen, rerun: &str, out: &mut impl Write) -> Result {
+/// A verdict, under what it is.
+fn write_seen(document: &SweepDocument, what: &str, seen: &Seen, rerun: &str, out: &mut impl Write) -> Result {
     let sweep = &document.sweep;
+    writeln!(out, "\n{what} {} {}, margin {}", error(seen.error), sweep.unit, margin(seen.margin))?;
     let Exact(value) = seen.value;
     let unwritten = if value.to_bits() == lightmeter_scene::target::SENTINEL { ", never written" } else { "" };
     writeln!(out, "  input      {}", place(&sweep.over, seen.input))?;

@@ -74,6 +74,21 @@ enum Ended {
     Stopped,
 }
 
+impl Ended {
+    /// It in words.
+    const fn message(&self) -> &'static str {
+        match self {
+            Self::Answered => "it answered",
+            Self::Crashed => "it ended",
+            Self::Hung => "it took longer than a case may",
+            Self::Flooded => "it wrote many lines that answer nothing",
+            Self::Deaf => "it answered, and did not read what it was asked",
+            Self::OutOfTime => "time for all is over",
+            Self::Stopped => "it was stopped",
+        }
+    }
+}
+
 /// What a gate over a process came to, besides the ledger.
 #[derive(Clone, Debug, Default)]
 pub struct Ending {
@@ -164,6 +179,60 @@ struct Session<'a> {
     culprits: u64,
 }
 
+/// What is still to be asked of a process.
+struct Queue {
+    open: VecDeque<Place>,
+    /// Cases that are asked alone, to find the one that it fails at.
+    alone: usize,
+    /// What was told of them, by its places among the incidents, as long as the culprit is not found.
+    untold: Vec<usize>,
+    /// Since when they are asked so, where it was said to take too long.
+    since: Option<Instant>,
+}
+
+impl Queue {
+    /// The cases that are asked next, `size` at once at most.
+    fn next(&self, size: usize) -> Vec<Place> {
+        let is_case = |place: &&Place| matches!(place, Place::Case { .. });
+        let is_one = self.alone > 0 || size == 1 || !self.open.front().is_some_and(|place| is_case(&place));
+        let count = if is_one { 1 } else { self.open.iter().take(size).take_while(is_case).count() };
+        self.open.iter().take(count).copied().collect()
+    }
+}
+
+/// A batch that is asked.
+struct Waiting {
+    /// What is not answered, by its id.
+    open: HashMap<String, Place>,
+    /// How long an answer may take.
+    limit: Duration,
+    /// Until when the next must come: answers must come all the time, and nothing else counts.
+    until: Instant,
+    /// Lines that wait to be judged, and their bytes.
+    lines: Vec<(u64, Vec<u8>)>,
+    bytes: usize,
+    /// Lines that answer nothing.
+    surplus: usize,
+}
+
+impl Waiting {
+    /// Takes a line, and counts it where it is not blank.
+    fn hear(&mut self, line: Vec<u8>, count: &mut u64) {
+        if line.iter().all(u8::is_ascii_whitespace) {
+            self.surplus += 1;
+            return;
+        }
+        if answer::id(&line).is_some_and(|id| self.open.remove(id.as_ref()).is_some()) {
+            self.until = Instant::now() + self.limit;
+        } else {
+            self.surplus += 1;
+        }
+        self.bytes += line.len();
+        *count += 1;
+        self.lines.push((*count, line));
+    }
+}
+
 impl Session<'_> {
     fn is_stopped(&self) -> bool {
         self.asking.stop.load(Ordering::Relaxed)
@@ -238,89 +307,101 @@ impl Session<'_> {
         asked: Vec<Place>,
         progress: &mut impl FnMut(u64),
     ) -> Result<bool, ProcessError> {
-        let mut open: VecDeque<Place> = asked.into();
-        // Cases that are asked alone, to find the one that it fails at.
-        let mut alone = 0;
-        // What was told of them, by its places among the incidents, as long as the culprit is not found; and since when they are
-        // asked so, where it was said to take too long.
-        let (mut untold, mut since): (Vec<usize>, Option<Instant>) = (vec![], None);
-        while !open.is_empty() {
-            if self.running.is_none() && !self.starts_again(open.len()) {
+        let mut queue = Queue { open: asked.into(), alone: 0, untold: vec![], since: None };
+        while !queue.open.is_empty() {
+            if self.running.is_none() && !self.starts_again(queue.open.len()) {
                 return Ok(false);
             }
-            let count = if alone > 0 || matches!(open[0], Place::Scene(_)) { 1 } else { self.size };
-            let is_case = |place: &&Place| matches!(place, Place::Case { .. });
-            let count = if count == 1 { 1 } else { open.iter().take(count).take_while(is_case).count() };
-            let batch: Vec<Place> = open.iter().take(count).copied().collect();
+            let batch = queue.next(self.size);
             let (ended, rest) = self.batch(ledger, &batch)?;
             let done = batch.len() - rest.len();
             self.answered += done;
             progress(done as u64);
-            open.drain(..batch.len());
-            alone = if alone > 0 { alone - done.min(alone) } else { 0 };
-            let message = match ended {
+            queue.open.drain(..batch.len());
+            queue.alone = queue.alone.saturating_sub(done);
+            let left = queue.open.len() + rest.len();
+            let goes_on = match ended {
                 Ended::Answered => {
-                    if alone == 0 {
-                        // There is no culprit. Together they may take longer than one of them may: that is no hang.
-                        let limit = self.asking.limits.case;
-                        if since.take().is_some_and(|since| since.elapsed() * 2 >= limit) {
-                            untold.drain(..).rev().for_each(|place| drop(self.outcome.incidents.remove(place)));
-                        }
-                        untold.clear();
-                    }
-                    continue;
+                    self.forgets_culprit(&mut queue);
+                    true
                 }
-                Ended::OutOfTime | Ended::Stopped => {
-                    let what = if matches!(ended, Ended::Stopped) { "it was stopped" } else { "time for all is over" };
-                    self.end(what);
-                    let left = open.len() + rest.len();
-                    self.outcome.incidents.push(format!("{what}: {left} cases were not asked or not answered"));
-                    return Ok(false);
+                Ended::OutOfTime | Ended::Stopped => self.breaks_off(ended.message(), left),
+                Ended::Crashed | Ended::Hung | Ended::Flooded | Ended::Deaf => {
+                    self.failed(ledger, &mut queue, &ended, rest, progress)
                 }
-                Ended::Crashed => "it ended",
-                Ended::Hung => "it took longer than a case may",
-                Ended::Flooded => "it wrote many lines that answer nothing",
-                Ended::Deaf => "it answered, and did not read what it was asked",
             };
-            let how = self.end(message);
-            let is_hung = matches!(ended, Ended::Hung);
-            if let [culprit] = rest[..] {
-                if matches!(ended, Ended::Crashed) && self.answered > 0 {
-                    // It may be an earlier case that it ended of: one that it is asked first is the culprit.
-                    untold.push(self.outcome.incidents.len());
-                    let id = self.plan.id(culprit);
-                    self.outcome.incidents.push(format!("before it answered {id} {message}: {how}; it is asked again"));
-                    alone = alone.max(1);
-                    open.push_front(culprit);
-                    continue;
-                }
-                // It is known now: what was told of its batch is told of it.
-                alone = alone.saturating_sub(1);
-                since = None;
-                self.failed_at(ledger, culprit, &format!("{message}: {how}"), std::mem::take(&mut untold));
-                self.culprits += 1;
-                progress(1);
-                if self.culprits >= MOST_CRASHES {
-                    let left = open.len();
-                    let what =
-                        format!("{MOST_CRASHES} crashes and hangs: nothing more is asked, {left} cases are left");
-                    self.outcome.incidents.push(what);
-                    return Ok(false);
-                }
-            } else {
-                // Nothing is retried into green: that it ended is told, whatever it answers afterwards.
-                let count = rest.len();
-                untold = vec![self.outcome.incidents.len()];
-                since = is_hung.then(Instant::now);
-                self.outcome
-                    .incidents
-                    .push(format!("with {count} cases open {message}: {how}; they are asked one by one"));
-                self.size = BATCH[0];
-                alone = count;
-                rest.into_iter().rev().for_each(|place| open.push_front(place));
+            if !goes_on {
+                return Ok(false);
             }
         }
         Ok(true)
+    }
+
+    /// Where all cases that were asked alone are answered, there is no culprit. Together they may take longer than one of them
+    /// may: that is no hang.
+    fn forgets_culprit(&mut self, queue: &mut Queue) {
+        if queue.alone > 0 {
+            return;
+        }
+        let limit = self.asking.limits.case;
+        if queue.since.take().is_some_and(|since| since.elapsed() * 2 >= limit) {
+            queue.untold.drain(..).rev().for_each(|place| drop(self.outcome.incidents.remove(place)));
+        }
+        queue.untold.clear();
+    }
+
+    /// Ends the process before all was asked, and tells what is left; nothing more is asked.
+    fn breaks_off(&mut self, what: &str, left: usize) -> bool {
+        self.end(what);
+        self.outcome.incidents.push(format!("{what}: {left} cases were not asked or not answered"));
+        false
+    }
+
+    /// Ends a process that failed with cases open, and finds out which of them it failed at; whether more is to be asked.
+    fn failed(
+        &mut self,
+        ledger: &mut Ledger<'_>,
+        queue: &mut Queue,
+        ended: &Ended,
+        rest: Vec<Place>,
+        progress: &mut impl FnMut(u64),
+    ) -> bool {
+        let message = ended.message();
+        let how = self.end(message);
+        let [culprit] = rest[..] else {
+            // Nothing is retried into green: that it ended is told, whatever it answers afterwards.
+            let count = rest.len();
+            queue.untold = vec![self.outcome.incidents.len()];
+            queue.since = matches!(ended, Ended::Hung).then(Instant::now);
+            let incident = format!("with {count} cases open {message}: {how}; they are asked one by one");
+            self.outcome.incidents.push(incident);
+            self.size = BATCH[0];
+            queue.alone = count;
+            rest.into_iter().rev().for_each(|place| queue.open.push_front(place));
+            return true;
+        };
+        if matches!(ended, Ended::Crashed) && self.answered > 0 {
+            // It may be an earlier case that it ended of: one that it is asked first is the culprit.
+            queue.untold.push(self.outcome.incidents.len());
+            let id = self.plan.id(culprit);
+            self.outcome.incidents.push(format!("before it answered {id} {message}: {how}; it is asked again"));
+            queue.alone = queue.alone.max(1);
+            queue.open.push_front(culprit);
+            return true;
+        }
+        // It is known now: what was told of its batch is told of it.
+        queue.alone = queue.alone.saturating_sub(1);
+        queue.since = None;
+        self.failed_at(ledger, culprit, &format!("{message}: {how}"), std::mem::take(&mut queue.untold));
+        self.culprits += 1;
+        progress(1);
+        if self.culprits < MOST_CRASHES {
+            return true;
+        }
+        let left = queue.open.len();
+        let what = format!("{MOST_CRASHES} crashes and hangs: nothing more is asked, {left} cases are left");
+        self.outcome.incidents.push(what);
+        false
     }
 
     /// Starts the process once more, or tells that it will not.
@@ -365,91 +446,106 @@ impl Session<'_> {
 
     /// Asks cases at once; how that ended, and what is left unanswered.
     fn batch(&mut self, ledger: &mut Ledger<'_>, batch: &[Place]) -> Result<(Ended, Vec<Place>), ProcessError> {
-        let mut text = String::new();
-        for &place in batch {
-            text += &self.request(ledger, place)?;
-            text.push('\n');
-        }
-        self.number += 1;
-        text += &format!("{{\"batch\": {}}}\n", self.number);
-        let stop = self.asking.stop;
-        let is_stopped = || stop.load(Ordering::Relaxed);
-        let Some(running) = &mut self.running else { return Ok((Ended::Crashed, batch.to_vec())) };
-        let mut writing = running.send(text);
-        let limit =
-            if matches!(batch[0], Place::Scene(_)) { self.asking.limits.scene } else { self.asking.limits.case };
-        let mut open: HashMap<String, Place> = batch.iter().map(|&place| (self.plan.id(place), place)).collect();
-        let (mut lines, mut bytes, mut surplus) = (vec![], 0, 0);
+        let text = self.requests(ledger, batch)?;
+        let Some(mut running) = self.running.take() else { return Ok((Ended::Crashed, batch.to_vec())) };
+        let writing = running.send(text);
+        let limits = self.asking.limits;
+        let limit = if matches!(batch[0], Place::Scene(_)) { limits.scene } else { limits.case };
         let start = Instant::now();
-        // Answers must come all the time, and nothing else counts.
-        let mut until = start + limit;
-        let ended = loop {
-            if open.is_empty() {
-                break Ended::Answered;
-            }
-            if surplus > SURPLUS {
-                break Ended::Flooded;
-            }
-            if lines.len() >= WAITING.0 || bytes >= WAITING.1 {
-                ledger.lines(&lines, self.asking.folder);
-                lines.clear();
-                bytes = 0;
-            }
-            if is_stopped() {
-                break Ended::Stopped;
-            }
-            let over = self.deadline.map_or(until, |deadline| until.min(deadline));
-            let wait = over.saturating_duration_since(Instant::now());
-            if wait.is_zero() {
-                let is_over = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
-                break if is_over { Ended::OutOfTime } else { Ended::Hung };
-            }
-            match running.events.recv_timeout(wait.min(MOMENT)) {
-                Ok(Event::Line(line)) => {
-                    if line.iter().all(u8::is_ascii_whitespace) {
-                        surplus += 1;
-                        continue;
-                    }
-                    if answer::id(&line).is_some_and(|id| open.remove(id.as_ref()).is_some()) {
-                        until = Instant::now() + limit;
-                    } else {
-                        surplus += 1;
-                    }
-                    bytes += line.len();
-                    self.outcome.lines += 1;
-                    lines.push((self.outcome.lines, line));
-                }
-                Ok(Event::TooLong) => {
-                    surplus += 1;
-                    self.outcome.lines += 1;
-                    let number = self.outcome.lines;
-                    note(&mut ledger.problems, "oversized", || format!("line {number}: {}", Unread::TooLong));
-                }
-                Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => break Ended::Crashed,
-                // The next turn tells which time is over.
-                Err(RecvTimeoutError::Timeout) => {}
-            }
+        let mut waiting = Waiting {
+            open: batch.iter().map(|&place| (self.plan.id(place), place)).collect(),
+            limit,
+            until: start + limit,
+            lines: vec![],
+            bytes: 0,
+            surplus: 0,
         };
-        ledger.lines(&lines, self.asking.folder);
-        let mut ended = ended;
+        let mut ended = self.listen(ledger, &running, &mut waiting);
+        ledger.lines(&waiting.lines, self.asking.folder);
         if matches!(ended, Ended::Answered) {
-            let is_written =
-                |thread: &Option<JoinHandle<Option<ChildStdin>>>| thread.as_ref().is_none_or(JoinHandle::is_finished);
-            let over = self.deadline.map_or(until, |deadline| until.min(deadline));
-            while !is_written(&writing) && Instant::now() < over && !is_stopped() {
-                std::thread::sleep(Duration::from_millis(1));
-            }
-            if is_written(&writing) {
-                running.input = writing.take().and_then(|thread| thread.join().ok().flatten());
-            } else {
+            if !self.has_read(&mut running, writing, waiting.until) {
                 ended = Ended::Deaf;
             }
             if start.elapsed() * 8 < limit {
                 self.size = (2 * self.size).min(BATCH[1]);
             }
         }
-        let left = batch.iter().copied().filter(|place| open.values().any(|open| open == place)).collect();
-        Ok((ended, left))
+        self.running = Some(running);
+        let is_open = |place: &Place| waiting.open.values().any(|open| open == place);
+        Ok((ended, batch.iter().copied().filter(is_open).collect()))
+    }
+
+    /// What a batch is asked by, a line each, with its number behind them.
+    fn requests(&mut self, ledger: &mut Ledger<'_>, batch: &[Place]) -> Result<String, ProcessError> {
+        let mut text = String::new();
+        for &place in batch {
+            text += &self.request(ledger, place)?;
+            text.push('\n');
+        }
+        self.number += 1;
+        Ok(text + &format!("{{\"batch\": {}}}\n", self.number))
+    }
+
+    /// Takes answers until all that is open is answered, or the process fails.
+    fn listen(&mut self, ledger: &mut Ledger<'_>, running: &Running, waiting: &mut Waiting) -> Ended {
+        loop {
+            if waiting.open.is_empty() {
+                return Ended::Answered;
+            }
+            if waiting.surplus > SURPLUS {
+                return Ended::Flooded;
+            }
+            if waiting.lines.len() >= WAITING.0 || waiting.bytes >= WAITING.1 {
+                ledger.lines(&waiting.lines, self.asking.folder);
+                waiting.lines.clear();
+                waiting.bytes = 0;
+            }
+            if self.is_stopped() {
+                return Ended::Stopped;
+            }
+            let wait = self.over(waiting.until).saturating_duration_since(Instant::now());
+            if wait.is_zero() {
+                let is_over = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
+                return if is_over { Ended::OutOfTime } else { Ended::Hung };
+            }
+            match running.events.recv_timeout(wait.min(MOMENT)) {
+                Ok(Event::Line(line)) => waiting.hear(line, &mut self.outcome.lines),
+                Ok(Event::TooLong) => {
+                    waiting.surplus += 1;
+                    self.outcome.lines += 1;
+                    let number = self.outcome.lines;
+                    note(&mut ledger.problems, "oversized", || format!("line {number}: {}", Unread::TooLong));
+                }
+                Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Ended::Crashed,
+                // The next turn tells which time is over.
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    /// A moment, or that at which time for all is over.
+    fn over(&self, until: Instant) -> Instant {
+        self.deadline.map_or(until, |deadline| until.min(deadline))
+    }
+
+    /// Whether the process reads all that it was asked, as one that answers does.
+    fn has_read(
+        &self,
+        running: &mut Running,
+        mut writing: Option<JoinHandle<Option<ChildStdin>>>,
+        until: Instant,
+    ) -> bool {
+        let is_written =
+            |thread: &Option<JoinHandle<Option<ChildStdin>>>| thread.as_ref().is_none_or(JoinHandle::is_finished);
+        let over = self.over(until);
+        while !is_written(&writing) && Instant::now() < over && !self.is_stopped() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let has_read = is_written(&writing);
+        if has_read {
+            running.input = writing.take().and_then(|thread| thread.join().ok().flatten());
+        }
+        has_read
     }
 
     fn request(&self, ledger: &mut Ledger<'_>, place: Place) -> Result<String, ProcessError> {

@@ -148,44 +148,61 @@ fn drivers(run: &Run, out: &mut impl Write) -> Result {
     writeln!(out, "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|")?;
     for adapter in &run.adapters {
         for target in run.targets() {
-            let groups = || {
-                let of = |group: &&Group| group.adapter == adapter.name && group.target.as_deref() == Some(target);
-                run.groups.iter().filter(of)
-            };
-            if let Some(reason) = groups().find_map(|group| group.skip_reason.as_ref()) {
-                writeln!(out, "| {} | {target} | — | | | | | | | | | skipped: {reason} |", adapter.name)?;
-                continue;
-            }
-            let drawn: Vec<&BlendState> = run.rows(adapter, target).filter(|row| row.skip_reason.is_none()).collect();
-            let sum = |of: fn(&BlendState) -> u64| drawn.iter().map(|row| of(row)).sum::<u64>();
-            let error = drawn.iter().map(|row| row.error_max.0).fold(0.0, f64::max);
-            let tier = |of: fn(&Tiers) -> u64| drawn.iter().filter_map(|row| row.tiers).map(|t| of(&t)).sum::<u64>();
-            let tiers: [u64; 5] =
-                [tier(|t| t.exact), tier(|t| t.nearest), tier(|t| t.neighbour), tier(|t| t.bound), tier(|t| t.outside)];
-            let all = tiers.iter().sum::<u64>();
-            #[expect(clippy::cast_precision_loss, reason = "shares")]
-            let shares = tiers.map(|n| match (100.0 * n as f64 / all.max(1) as f64, n) {
-                _ if all == 0 => String::new(),
-                (share, 1..) if share < 0.005 => "< 0.01 %".into(),
-                (share, _) => format!("{share:.2} %"),
-            });
-            let mut stores: Vec<&str> =
-                groups().filter_map(|group| Some(group.store.as_ref()?.identified.as_ref())).collect();
-            stores.sort_unstable();
-            stores.dedup();
-            let error = if error < 1000.0 { format!("{error:.2}") } else { format!("{error:.1e}") };
-            writeln!(
-                out,
-                "| {} | {target} | {} | {} | {} | {error} | {} | {} |",
-                adapter.name,
-                drawn.len(),
-                lightmeter_document::thousands(sum(|row| row.cases)),
-                sum(|row| row.failed),
-                shares.join(" | "),
-                stores.join(", ")
-            )?;
+            driver(run, adapter, target, out)?;
         }
     }
+    skipped(run, out)?;
+    for deviation in run.deviations.iter().filter(|deviation| deviation.excused > 0) {
+        let DeviationUse { name, adapter, reason, excused, .. } = deviation;
+        writeln!(out, "\nDeviation *{name}* of {adapter}, {excused} verdicts: {reason}.")?;
+    }
+    Ok(())
+}
+
+/// A driver on a target, on a row.
+fn driver(run: &Run, adapter: &Identity, target: &str, out: &mut impl Write) -> Result {
+    let groups = || {
+        let of = |group: &&Group| group.adapter == adapter.name && group.target.as_deref() == Some(target);
+        run.groups.iter().filter(of)
+    };
+    if let Some(reason) = groups().find_map(|group| group.skip_reason.as_ref()) {
+        return writeln!(out, "| {} | {target} | — | | | | | | | | | skipped: {reason} |", adapter.name);
+    }
+    let drawn: Vec<&BlendState> = run.rows(adapter, target).filter(|row| row.skip_reason.is_none()).collect();
+    let sum = |of: fn(&BlendState) -> u64| drawn.iter().map(|row| of(row)).sum::<u64>();
+    let error = drawn.iter().map(|row| row.error_max.0).fold(0.0, f64::max);
+    let mut stores: Vec<&str> = groups().filter_map(|group| Some(group.store.as_ref()?.identified.as_ref())).collect();
+    stores.sort_unstable();
+    stores.dedup();
+    let error = if error < 1000.0 { format!("{error:.2}") } else { format!("{error:.1e}") };
+    writeln!(
+        out,
+        "| {} | {target} | {} | {} | {} | {error} | {} | {} |",
+        adapter.name,
+        drawn.len(),
+        lightmeter_document::thousands(sum(|row| row.cases)),
+        sum(|row| row.failed),
+        shares(&drawn).join(" | "),
+        stores.join(", ")
+    )
+}
+
+/// The share of the values of each tier; nothing where the target has none.
+fn shares(drawn: &[&BlendState]) -> [String; 5] {
+    let mut sum = Tiers::default();
+    drawn.iter().for_each(|row| sum.add(&row.tiers()));
+    let tiers = sum.named().map(|(_, count)| count);
+    let all = tiers.iter().sum::<u64>();
+    #[expect(clippy::cast_precision_loss, reason = "shares")]
+    tiers.map(|n| match (100.0 * n as f64 / all.max(1) as f64, n) {
+        _ if all == 0 => String::new(),
+        (share, 1..) if share < 0.005 => "< 0.01 %".into(),
+        (share, _) => format!("{share:.2} %"),
+    })
+}
+
+/// Drawings of states that were skipped one by one, by adapter, route and reason.
+fn skipped(run: &Run, out: &mut impl Write) -> Result {
     let mut skipped = BTreeMap::<_, usize>::new();
     let fully = |row: &BlendState| {
         let of = |group: &Group| group.adapter == row.adapter && group.target.as_deref() == Some(&row.target);
@@ -201,10 +218,6 @@ fn drivers(run: &Run, out: &mut impl Write) -> Result {
             out,
             "\n{count} drawings by {route} were skipped on {adapter}: {reason}. The states were drawn by another route."
         )?;
-    }
-    for deviation in run.deviations.iter().filter(|deviation| deviation.excused > 0) {
-        let DeviationUse { name, adapter, reason, excused, .. } = deviation;
-        writeln!(out, "\nDeviation *{name}* of {adapter}, {excused} verdicts: {reason}.")?;
     }
     Ok(())
 }
