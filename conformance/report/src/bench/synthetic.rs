@@ -351,6 +351,7 @@ fn scalings(scale: f64, draw: &mut SyntheticDraw) -> Vec<Scaling> {
     rows.into_iter().map(of).collect()
 }
 
+#[expect(clippy::too_many_lines, reason = "a table of claims")]
 fn claims() -> Vec<Claim> {
     type BenchRow<'a> = (&'a str, &'a str, &'a str, &'a str, [&'a str; 2], f64, Option<bool>);
     let rows: [BenchRow; 7] = [
