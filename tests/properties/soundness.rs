@@ -4,7 +4,7 @@
 use lightmeter::arithmetic::profile::{VULKAN, WGSL};
 use lightmeter::arithmetic::random::{seed, share};
 use lightmeter::arithmetic::{Accept, F32, Format as _, Hardware, Profile, RandomLegal};
-use lightmeter::cases::{Formula, Kind, Reader, Spec, Visitor, Writer, visit};
+use lightmeter::cases::{Formula, Kind, Reader, Spec, Visitor, Wanted, Writer, visit};
 use lightmeter::select::{CaseRef, catalogue};
 use lightmeter_reference::Real;
 use std::collections::HashMap;
@@ -58,12 +58,12 @@ impl Check {
         let outputs = spec.output_len();
         let mut legal = vec![Accept::<F32>::ANY; outputs];
         let inputs: Vec<Accept> = row.iter().map(|&x| Accept::input(x)).collect();
-        self.profile.scope(|| formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut legal, None)));
+        self.profile.scope(|| formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut legal, Wanted::ALL)));
         let mut seen = vec![(f64::INFINITY, f64::NEG_INFINITY); outputs];
         for _ in 0..self.draws {
             let inputs: Vec<RandomLegal> = row.iter().map(|&x| RandomLegal::input(x)).collect();
             let mut out = vec![RandomLegal::of(0.0); outputs];
-            self.profile.scope(|| formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut out, None)));
+            self.profile.scope(|| formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut out, Wanted::ALL)));
             self.drawn += outputs as u64;
             for ((out, legal), seen) in out.iter().zip(&legal).zip(&mut seen) {
                 assert!(legal.contains(out.value), "{}: {} outside {legal:?}, inputs {row:?}", spec.id, out.value);

@@ -3,7 +3,7 @@
 
 use lightmeter::arithmetic::Accept;
 use lightmeter::arithmetic::profile::WGSL;
-use lightmeter::cases::{FAMILIES, Formula, Kind, Reader, Spec, Visitor, Writer, visit};
+use lightmeter::cases::{FAMILIES, Formula, Kind, Reader, Spec, Visitor, Wanted, Writer, visit};
 use lightmeter::device::Code;
 use lightmeter::filter::Filter;
 use lightmeter::options::{Options, Silent};
@@ -217,7 +217,7 @@ impl Visitor for InExact<'_> {
             exact::clear();
             let inputs: Vec<Exact> = row.iter().map(|&x| Exact::input(x)).collect();
             let mut out = vec![Exact::literal(0.0); spec.output_len()];
-            formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut out, None));
+            formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut out, Wanted::ALL));
             out.iter().map(|y| y.get().map(|(value, _)| value.to_f64().value())).collect()
         });
         self.found.insert(spec.id.clone(), outputs.collect());

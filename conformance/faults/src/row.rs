@@ -1,7 +1,7 @@
 //! A row of inputs by name, in any arithmetic.
 
 use lightmeter_arithmetic::{Accept, RandomLegal};
-use lightmeter_catalogue::cases::{AnyFormula, Spec};
+use lightmeter_catalogue::cases::{AnyFormula, Spec, Wanted};
 use lightmeter_reference::{Mat3, Mat4, Real, Vector};
 
 /// An arithmetic that the formulas of the catalogue can be evaluated in once their types are forgotten.
@@ -12,19 +12,19 @@ pub trait Arithmetic: Real {
 
 impl Arithmetic for f64 {
     fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_f64(inputs, None, out);
+        formula.on_f64(inputs, Wanted::ALL, out);
     }
 }
 
 impl Arithmetic for f32 {
     fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_f32(inputs, None, out);
+        formula.on_f32(inputs, Wanted::ALL, out);
     }
 }
 
 impl Arithmetic for Accept {
     fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_accept(inputs, None, out);
+        formula.on_accept(inputs, Wanted::ALL, out);
     }
 }
 

@@ -49,18 +49,28 @@ impl<P, F> Default for Tally<P, F> {
 impl<P: Ord + Clone, F: Clone> Tally<P, F> {
     /// Counts a verdict. Where it is that of a failure, a named deviation may excuse it.
     pub fn count(&mut self, outcome: Outcome, excused: Option<&'static str>, is_random: bool) {
-        self.totals.verdicts += 1;
-        self.random.0 += u64::from(is_random);
-        match (outcome, excused) {
-            (Outcome::Pass, _) => self.totals.passed += 1,
-            (Outcome::Indeterminate, _) => {
-                self.totals.indeterminate += 1;
-                self.random.1 += u64::from(is_random);
-            }
-            (Outcome::Fail, None) => self.totals.failed += 1,
-            (Outcome::Fail, Some(name)) => {
+        match excused.filter(|_| outcome == Outcome::Fail) {
+            None => self.count_many(outcome, 1, is_random),
+            Some(name) => {
+                self.totals.verdicts += 1;
+                self.random.0 += u64::from(is_random);
                 self.totals.expected_failures += 1;
                 *self.excused.entry(name).or_default() += 1;
+            }
+        }
+    }
+
+    /// Counts verdicts of one outcome, none of them excused.
+    pub fn count_many(&mut self, outcome: Outcome, many: u64, are_random: bool) {
+        let random = if are_random { many } else { 0 };
+        self.totals.verdicts += many;
+        self.random.0 += random;
+        match outcome {
+            Outcome::Pass => self.totals.passed += many,
+            Outcome::Fail => self.totals.failed += many,
+            Outcome::Indeterminate => {
+                self.totals.indeterminate += many;
+                self.random.1 += random;
             }
         }
     }
@@ -72,12 +82,11 @@ impl<P: Ord + Clone, F: Clone> Tally<P, F> {
 
     /// Keeps a margin where it is the greatest.
     pub fn see_margin(&mut self, margin: f64, place: P) {
-        let is_greatest = self
-            .worst
-            .as_ref()
-            .is_none_or(|(most, first)| is_worse(margin, *most) || (!is_worse(*most, margin) && place < *first));
-        if is_greatest {
-            self.worst = Some((margin, place));
+        match &self.worst {
+            // Most margins are smaller: told by one comparison.
+            Some((most, _)) if margin < *most => {}
+            Some((most, first)) if !is_worse(margin, *most) && (is_worse(*most, margin) || place >= *first) => {}
+            _ => self.worst = Some((margin, place)),
         }
     }
 

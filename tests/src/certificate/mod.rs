@@ -21,7 +21,7 @@ use crate::running::{self, Choice, Running};
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::arithmetic::{Accept, Dual, F16, F32, Format, Hardware};
 use lightmeter::cases::blend::Samples;
-use lightmeter::cases::{Formula, Kind, Reader, Spec, Visitor, Writer, visit_all};
+use lightmeter::cases::{Formula, Kind, Reader, Spec, Visitor, Wanted, Writer, visit_all};
 use lightmeter::select::{Member, catalogue};
 use lightmeter_reference::Real;
 use rayon::prelude::*;
@@ -87,7 +87,7 @@ impl<F: Formula> Certify for F {
 
 fn evaluate<F: Formula, R: Real>(formula: &F, inputs: impl Iterator<Item = R>, outputs: usize) -> Vec<R> {
     let (inputs, mut out): (Vec<R>, _) = (inputs.collect(), vec![R::literal(0.0); outputs]);
-    formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut out, None));
+    formula.evaluate(&Reader::new(&inputs), &mut Writer::new(&mut out, Wanted::ALL));
     out
 }
 

@@ -1,7 +1,7 @@
 //! A formula that is judged: its description, and its evaluation in any arithmetic.
 
 use super::rasteriser;
-use super::rows::{Reader, Writer};
+use super::rows::{Reader, Wanted, Writer};
 use super::spec::{Kind, Spec};
 use lightmeter_arithmetic::{Accept, Dual, Profile, RandomLegal, Trace, dual};
 use lightmeter_reference::Real;
@@ -24,19 +24,19 @@ pub trait Visitor {
 }
 
 /// A formula in the arithmetics of the suite, its type forgotten: here alone, and in each of them once, is its code made.
-/// Outputs are for a row of inputs; where `only` names a number, that one alone need be worked out.
+/// Outputs are for a row of inputs; numbers that are not wanted need not be worked out.
 pub trait AnyFormula: Send + Sync {
     /// Its description.
     fn spec(&self) -> Spec;
 
     /// In f64: the reference.
-    fn on_f64(&self, inputs: &[f64], only: Option<usize>, out: &mut [f64]);
+    fn on_f64(&self, inputs: &[f64], wanted: Wanted, out: &mut [f64]);
 
     /// In f32: the embedded implementation.
-    fn on_f32(&self, inputs: &[f32], only: Option<usize>, out: &mut [f32]);
+    fn on_f32(&self, inputs: &[f32], wanted: Wanted, out: &mut [f32]);
 
     /// In intervals of legal values, inside [`Profile::scope`].
-    fn on_accept(&self, inputs: &[Accept], only: Option<usize>, out: &mut [Accept]);
+    fn on_accept(&self, inputs: &[Accept], wanted: Wanted, out: &mut [Accept]);
 
     /// In legal values drawn at random, inside [`Profile::scope`].
     fn on_draw(&self, inputs: &[RandomLegal], out: &mut [RandomLegal]);
@@ -53,28 +53,28 @@ impl<F: Formula> AnyFormula for F {
         Formula::spec(self)
     }
 
-    fn on_f64(&self, inputs: &[f64], only: Option<usize>, out: &mut [f64]) {
-        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, only));
+    fn on_f64(&self, inputs: &[f64], wanted: Wanted, out: &mut [f64]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, wanted));
     }
 
-    fn on_f32(&self, inputs: &[f32], only: Option<usize>, out: &mut [f32]) {
-        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, only));
+    fn on_f32(&self, inputs: &[f32], wanted: Wanted, out: &mut [f32]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, wanted));
     }
 
-    fn on_accept(&self, inputs: &[Accept], only: Option<usize>, out: &mut [Accept]) {
-        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, only));
+    fn on_accept(&self, inputs: &[Accept], wanted: Wanted, out: &mut [Accept]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, wanted));
     }
 
     fn on_draw(&self, inputs: &[RandomLegal], out: &mut [RandomLegal]) {
-        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, None));
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, Wanted::ALL));
     }
 
     fn on_trace(&self, inputs: &[Trace], out: &mut [Trace]) {
-        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, None));
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, Wanted::ALL));
     }
 
     fn on_dual(&self, inputs: &[Dual], out: &mut [Dual]) {
-        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, None));
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, Wanted::ALL));
     }
 }
 
@@ -97,7 +97,7 @@ fn evaluate_along<R: Real>(
     along: &Along<'_>,
     inputs: impl Iterator<Item = R>,
     out: &mut [R],
-    evaluate: impl Fn(&[R], Option<usize>, &mut [R]),
+    evaluate: impl Fn(&[R], Wanted, &mut [R]),
 ) {
     let mut row = [R::literal(0.0); MOST_INPUTS];
     for (wide, &narrow) in row.iter_mut().zip(along.row) {
@@ -106,25 +106,28 @@ fn evaluate_along<R: Real>(
     let mut outputs = [R::literal(0.0); MOST_OUTPUTS];
     for (input, out) in inputs.zip(out) {
         row[along.free] = input;
-        evaluate(&row[..along.row.len()], Some(along.output), &mut outputs);
+        evaluate(&row[..along.row.len()], Wanted::only(along.output), &mut outputs);
         *out = outputs[along.output];
     }
 }
 
 impl dyn AnyFormula + '_ {
     /// The reference.
+    #[inline]
     pub fn reference(&self, inputs: &[f32], out: &mut [f64]) {
-        widened(inputs, |row| self.on_f64(row, None, out));
+        widened(inputs, |row| self.on_f64(row, Wanted::ALL, out));
     }
 
     /// The embedded implementation in f32.
+    #[inline]
     pub fn embedded(&self, inputs: &[f32], out: &mut [f32]) {
-        self.on_f32(inputs, None, out);
+        self.on_f32(inputs, Wanted::ALL, out);
     }
 
     /// The values that a profile makes legal in the programmable stages.
+    #[inline]
     pub fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
-        profile.scope(|| widened(inputs, |row| self.on_accept(row, None, out)));
+        profile.scope(|| widened(inputs, |row| self.on_accept(row, Wanted::ALL, out)));
     }
 
     /// The same for many rows of inputs, `stride` numbers each.
@@ -132,7 +135,7 @@ impl dyn AnyFormula + '_ {
         let outputs = out.len() / (rows.len() / stride);
         profile.scope(|| {
             for (inputs, out) in rows.chunks_exact(stride).zip(out.chunks_exact_mut(outputs)) {
-                widened(inputs, |row| self.on_accept(row, None, out));
+                widened(inputs, |row| self.on_accept(row, Wanted::ALL, out));
             }
         });
     }
@@ -184,13 +187,13 @@ impl dyn AnyFormula + '_ {
     /// One output of the reference along one input: for each of `inputs` in the place of the row's free number.
     pub fn reference_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f64]) {
         let inputs = inputs.iter().map(|&x| x.into());
-        evaluate_along(along, inputs, out, |row, only, out| self.on_f64(row, only, out));
+        evaluate_along(along, inputs, out, |row, wanted, out| self.on_f64(row, wanted, out));
     }
 
     /// The same of the embedded implementation.
     pub fn embedded_along(&self, along: &Along<'_>, inputs: &[f32], out: &mut [f32]) {
         let inputs = inputs.iter().copied();
-        evaluate_along(along, inputs, out, |row, only, out| self.on_f32(row, only, out));
+        evaluate_along(along, inputs, out, |row, wanted, out| self.on_f32(row, wanted, out));
     }
 
     /// The values of that output that a profile makes legal in the programmable stages.
@@ -214,7 +217,7 @@ impl dyn AnyFormula + '_ {
         profile: &Profile,
         out: &mut [Accept],
     ) {
-        profile.scope(|| evaluate_along(along, inputs, out, |row, only, out| self.on_accept(row, only, out)));
+        profile.scope(|| evaluate_along(along, inputs, out, |row, wanted, out| self.on_accept(row, wanted, out)));
     }
 }
 

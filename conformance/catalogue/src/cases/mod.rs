@@ -20,7 +20,7 @@ mod spec;
 
 pub use draw::{GENERATOR_VERSION, inputs, move_by_ulps};
 pub use formula::{AnyFormula, Formula, Visitor};
-pub use rows::{FromNumbers, Reader, Slot, Writer, slot};
+pub use rows::{FromNumbers, Reader, Slot, Wanted, Writer, slot};
 pub use spec::{Domain, Hard, Input, Kind, Naive, Output, Shape, Size, Spec, Stable, Stage, Values};
 
 /// The families, in the order of reports.

@@ -116,20 +116,38 @@ impl<'a, R: Real> Reader<'a, R> {
     }
 }
 
+/// The numbers of an output row that are wanted: all, or one alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted(usize);
+
+impl Wanted {
+    /// All of them.
+    pub const ALL: Self = Self(usize::MAX);
+
+    /// One, by its place in the row.
+    #[must_use]
+    pub const fn only(number: usize) -> Self {
+        Self(number)
+    }
+
+    fn is_among(self, first: usize, count: usize) -> bool {
+        self == Self::ALL || (first..first + count).contains(&self.0)
+    }
+}
+
 /// Puts outputs on a row, in order.
 #[derive(Debug)]
 pub struct Writer<'a, R> {
     row: &'a mut [R],
     filled: usize,
-    /// The only number that is wanted, where not all are.
-    only: Option<usize>,
+    wanted: Wanted,
 }
 
 impl<'a, R: Real> Writer<'a, R> {
-    /// Starts at the row's first number; of all numbers `only` one may be wanted.
+    /// Starts at the row's first number.
     #[must_use]
-    pub const fn new(row: &'a mut [R], only: Option<usize>) -> Self {
-        Self { row, filled: 0, only }
+    pub const fn new(row: &'a mut [R], wanted: Wanted) -> Self {
+        Self { row, filled: 0, wanted }
     }
 
     /// One number.
@@ -147,7 +165,7 @@ impl<'a, R: Real> Writer<'a, R> {
 
     /// A vector or colour that is worked out only where one of its numbers is wanted.
     pub fn lazy_vector<const N: usize>(&mut self, v: impl FnOnce() -> Vector<R, N>) {
-        if self.only.is_none_or(|number| (self.filled..self.filled + N).contains(&number)) {
+        if self.wanted.is_among(self.filled, N) {
             self.vector(v());
         } else {
             self.filled += N;

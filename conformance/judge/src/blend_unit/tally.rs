@@ -111,7 +111,10 @@ impl UnitTally {
                 Outcome::Fail => deviates(known, target, expected.reference[k]).filter(|known| known.grants(value)),
                 _ => None,
             };
-            self.verdicts.count(verdict.outcome, excused.map(|deviation| deviation.name), false);
+            match excused {
+                Some(deviation) => self.verdicts.count(verdict.outcome, Some(deviation.name), false),
+                None => self.verdicts.count_many(verdict.outcome, 1, false),
+            }
             if verdict.outcome == Outcome::Indeterminate || excused.is_some() {
                 continue;
             }

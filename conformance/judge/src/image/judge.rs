@@ -66,12 +66,18 @@ impl Judged {
 pub fn judge(image: &Stored, reference: &Stored, expected: &[Expected], pixels: &[usize]) -> Judged {
     let chunks = pixels.par_chunks(4096).map(|pixels| {
         let mut judged = Judged::default();
+        let mut indeterminate = 0;
         for &pixel in pixels {
-            judged.verdicts.totals.cases += 1;
             for component in 0..4 {
-                one(image, reference, expected, (pixel, component), &mut judged);
+                let outcome = one(image, reference, expected, (pixel, component), &mut judged);
+                indeterminate += u64::from(outcome == Outcome::Indeterminate);
             }
         }
+        let (cases, failed) = (pixels.len() as u64, judged.misses.len() as u64);
+        judged.verdicts.totals.cases = cases;
+        judged.verdicts.count_many(Outcome::Pass, 4 * cases - failed - indeterminate, true);
+        judged.verdicts.count_many(Outcome::Fail, failed, true);
+        judged.verdicts.count_many(Outcome::Indeterminate, indeterminate, true);
         judged
     });
     let mut all = Judged::default();
@@ -82,13 +88,14 @@ pub fn judge(image: &Stored, reference: &Stored, expected: &[Expected], pixels: 
     all
 }
 
+/// The outcome of a component; what else it says is noted.
 fn one(
     image: &Stored,
     reference: &Stored,
     expected: &[Expected],
     (pixel, component): (usize, usize),
     judged: &mut Judged,
-) {
+) -> Outcome {
     let (value, exact) = (image.pixels[pixel][component], reference.pixels[pixel][component]);
     let (low, high) = (expected[pixel].low[component], expected[pixel].high[component]);
     let outcome = if low == f64::NEG_INFINITY && high == f64::INFINITY {
@@ -98,9 +105,8 @@ fn one(
     } else {
         Outcome::Fail
     };
-    judged.verdicts.count(outcome, None, true);
     if outcome == Outcome::Indeterminate {
-        return;
+        return outcome;
     }
     // Where outcomes differ by themselves, the distance from one of them says nothing.
     if !expected[pixel].is_marked {
@@ -113,6 +119,7 @@ fn one(
     if miss.margin > 1.0 || !expected[pixel].is_marked {
         judged.verdicts.see_margin(miss.margin, (pixel, component));
     }
+    outcome
 }
 
 /// ULP of a float format, or steps.
