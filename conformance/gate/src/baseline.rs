@@ -2,6 +2,7 @@
 
 use super::known::expanded;
 use lightmeter_catalogue::cases::GENERATOR_VERSION;
+use lightmeter_document::Document as _;
 use lightmeter_document::gate::{GateGroup, GateReport, SCHEMA, cases};
 use lightmeter_document::pack::Choice;
 use lightmeter_judge::image::file::whole;
@@ -168,6 +169,6 @@ pub fn update(report: &GateReport, path: &Path) -> Result<(), BaselineError> {
         return Err(BaselineError::Unfit { path: path.into(), why });
     }
     let failed = |message: String| BaselineError::Write { path: path.into(), message };
-    let text = serde_json::to_string_pretty(report).map_err(|error| failed(error.to_string()))? + "\n";
+    let text = report.to_json().map_err(|error| failed(error.to_string()))?;
     whole(path, text.as_bytes()).map_err(|error| failed(error.to_string()))
 }

@@ -4,6 +4,7 @@ use super::frame;
 use super::picture::within;
 use super::plan::Plan;
 use lightmeter_catalogue::cases::{GENERATOR_VERSION, Shape};
+use lightmeter_document::Document as _;
 use lightmeter_document::Number;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
 use lightmeter_judge::image::file::{Stored, whole};
@@ -124,7 +125,7 @@ pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, PackError> {
     }
     let manifest = Manifest { files, ..manifest(plan)? };
     let path = folder.join(MANIFEST);
-    let text = serde_json::to_string_pretty(&manifest).map_err(|error| PackError::Plan(error.to_string()))? + "\n";
+    let text = manifest.to_json().map_err(|error| PackError::Plan(error.to_string()))?;
     whole(&path, text.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
     Ok(manifest)
 }

@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
 use lightmeter::bench::{Options, bench};
+use lightmeter::document::Document as _;
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::filter::Filter;
 use lightmeter::options::Progress;
@@ -136,7 +137,7 @@ impl Bench {
     fn write(&self, document: &BenchDocument) -> anyhow::Result<String> {
         let mut out = String::new();
         match (self.recommend, self.format) {
-            (None, Format::Json) => out = serde_json::to_string_pretty(document)? + "\n",
+            (None, Format::Json) => out = document.to_json()?,
             (None, Format::Text) => text::write(document, self.details, &mut out)?,
             (None, Format::Markdown) => page::readme(document, &mut out)?,
             (Some(limit), format) => {

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::document::Document as _;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::pack::Choice;
 use lightmeter::filter::Filter;
@@ -187,7 +188,7 @@ impl Gate {
 
     fn write(&self, report: &GateReport) -> anyhow::Result<String> {
         Ok(match self.format {
-            Format::Json => serde_json::to_string_pretty(report)? + "\n",
+            Format::Json => report.to_json()?,
             Format::Junit => outputs::junit(report)?,
             Format::Github => outputs::github(report),
             Format::Text => {

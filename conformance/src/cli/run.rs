@@ -5,6 +5,7 @@ use super::{NothingToRun, Status, emit, writable};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::cases::blend::{Samples, separate_of};
+use lightmeter::document::Document as _;
 use lightmeter::document::run::{Interrupted, Report};
 use lightmeter::filter::Filter;
 use lightmeter::options::Progress;
@@ -75,7 +76,7 @@ impl Run {
 
     fn write(&self, report: &Report) -> anyhow::Result<String> {
         Ok(match self.format {
-            Format::Json => serde_json::to_string_pretty(report)? + "\n",
+            Format::Json => report.to_json()?,
             Format::Junit => junit::to_string(report)?,
             Format::Text => {
                 let detail = if self.groups { text::Detail::Groups } else { text::Detail::Families };

@@ -2,11 +2,11 @@
 
 use super::{Status, emit};
 use clap::{Args, ValueEnum};
+use lightmeter::document::Document as _;
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::pack::Manifest;
 use lightmeter::document::run::Report;
-use lightmeter::document::schema;
 use lightmeter::document::selftest::SelftestDocument;
 use lightmeter::document::special::SpecialReport;
 use lightmeter::document::sweep::SweepDocument;
@@ -47,13 +47,13 @@ impl Schema {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let schema = match self.of {
             Of::Scene => schemars::schema_for!(Scene),
-            Of::Run => schema::<Report>(),
-            Of::Special => schema::<SpecialReport>(),
-            Of::Gate => schema::<GateReport>(),
-            Of::Pack => schema::<Manifest>(),
-            Of::Sweep => schema::<SweepDocument>(),
-            Of::Bench => schema::<BenchDocument>(),
-            Of::Selftest => schema::<SelftestDocument>(),
+            Of::Run => Report::schema(),
+            Of::Special => SpecialReport::schema(),
+            Of::Gate => GateReport::schema(),
+            Of::Pack => Manifest::schema(),
+            Of::Sweep => SweepDocument::schema(),
+            Of::Bench => BenchDocument::schema(),
+            Of::Selftest => SelftestDocument::schema(),
         };
         emit(&(serde_json::to_string_pretty(&schema)? + "\n"), self.out.as_deref())?;
         Ok(Status::Success)

@@ -6,6 +6,7 @@ use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::selftest::selftest;
+use lightmeter::document::Document as _;
 use lightmeter::document::selftest::{
     Mistake, NamedFrom, Record, Resolution, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow,
 };
@@ -160,7 +161,7 @@ impl Tested {
             calibration: self.formulas.is_some().then(|| self.resolutions.clone()),
             scenes: self.scenes.clone(),
         };
-        Ok(serde_json::to_string_pretty(&document)? + "\n")
+        Ok(document.to_json()?)
     }
 
     /// The parts that were tested, an empty line between them.

@@ -5,6 +5,7 @@ use super::{NothingToRun, Status, emit};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::adapters;
+use lightmeter::document::Document as _;
 use lightmeter::document::special::SpecialReport;
 use lightmeter::report::special;
 use lightmeter::special::run::{record, run};
@@ -48,7 +49,7 @@ impl Special {
             write_records(&report, dir)?;
         }
         let text = if self.format == Format::Json {
-            serde_json::to_string_pretty(&report)? + "\n"
+            report.to_json()?
         } else {
             let mut text = String::new();
             special::write(&report, &mut text)?;
