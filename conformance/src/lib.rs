@@ -4,10 +4,7 @@ pub use lightmeter_arithmetic as arithmetic;
 pub use lightmeter_bench as bench;
 pub use lightmeter_catalogue::{cases, filter, scene, select};
 pub use lightmeter_document as document;
-pub use lightmeter_engine::{
-    blend_unit, device, evaluate, image, options, piece, rows, run, selection, special, stability, subject, sweep,
-    witness,
-};
+pub use lightmeter_engine::{device, evaluate, options, piece, rows, run, selection, subject, sweep, witness};
 pub use lightmeter_faults as faults;
 pub use lightmeter_gate as gate;
 pub use lightmeter_judge as judge;
@@ -15,3 +12,32 @@ pub use lightmeter_judge::{devices, formula, tally};
 pub use lightmeter_report as report;
 pub use lightmeter_subject_gpu as subject_gpu;
 pub use lightmeter_subject_gpu::adapters;
+
+/// Blend units: what is legal of them, and how they are run.
+pub mod blend_unit {
+    pub use lightmeter_engine::blend_unit::{draw, run, selftest};
+    pub use lightmeter_judge::blend_unit::{embedded, expect, model, pixel, policy, rules, store, tally};
+}
+
+/// Images: what is legal of them, and how they are drawn and judged.
+pub mod image {
+    pub use lightmeter_engine::image::{diagnose, drawn, run, verdict};
+    pub use lightmeter_judge::image::{Expected, expect, file, judge};
+}
+
+/// Special values: what is asked and promised, what is on record, and how they are run.
+pub mod special {
+    pub use lightmeter_catalogue::special::{
+        Class, DEVIATIONS, Deviation, FAMILY, Gives, PROBES, Probe, Promise, Source, Way,
+    };
+    pub use lightmeter_engine::special::{run, verdict};
+    pub use lightmeter_judge::special::record;
+}
+
+/// Hard cases on both sides, and the conditions of formulas.
+pub mod stability {
+    pub use lightmeter_engine::stability::*;
+    pub use lightmeter_judge::stability::{
+        Conditioning, FormStanding, ILL_CONDITIONED, ROUNDING, UNSTABLE, condition, roundings, size,
+    };
+}

@@ -20,12 +20,12 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
 use lightmeter_document::bench::{BenchGroup, BenchRow, GroupKind};
-use lightmeter_engine::image::file::Stored;
 use lightmeter_engine::options::Progress;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, Gpu, GpuError, Reading, Rung, Shaders};
+use lightmeter_judge::image::file::Stored;
 use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
@@ -176,7 +176,7 @@ fn kinds(profile: Profile) -> [(&'static str, &'static str, Draw); 3] {
         (
             "cpu-accept",
             "the legal values of every pixel by the accuracy rules, on one core; its error is how far they reach",
-            Box::new(move |frame| drop(black_box(lightmeter_engine::image::expect(frame, None, None, &profile)))),
+            Box::new(move |frame| drop(black_box(lightmeter_judge::image::expect(frame, None, None, &profile)))),
         ),
     ]
 }

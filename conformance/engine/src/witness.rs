@@ -9,9 +9,11 @@ use lightmeter_judge::devices::BlendDeviation;
 use lightmeter_judge::{Outcome, judge};
 
 use crate::device::{Code, DeviceError};
-use crate::special::{self, Probe};
+use crate::special;
 use crate::subject::Subject;
 use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected};
+use lightmeter_catalogue::special as special_values;
+use lightmeter_catalogue::special::Probe;
 use lightmeter_document::run::{DeviationUse, Report, Totals};
 use lightmeter_document::special::ProbeResult;
 
@@ -26,7 +28,7 @@ pub enum NamedDeviation {
     /// Of a blend unit.
     Blend(&'static BlendDeviation),
     /// Of what is promised of NaN, infinity, subnormals and signed zero.
-    Special(&'static special::Deviation),
+    Special(&'static special_values::Deviation),
 }
 
 impl NamedDeviation {
@@ -35,7 +37,7 @@ impl NamedDeviation {
     pub fn all() -> Vec<Self> {
         let accuracy = devices::DEVIATIONS.iter().map(Self::Accuracy);
         let blend = devices::BLEND_DEVIATIONS.iter().map(Self::Blend);
-        accuracy.chain(blend).chain(special::DEVIATIONS.iter().map(Self::Special)).collect()
+        accuracy.chain(blend).chain(special_values::DEVIATIONS.iter().map(Self::Special)).collect()
     }
 
     /// Those that a filter selects by their ids.
@@ -139,7 +141,7 @@ fn blend(
 
 /// Each result that breaks its promise on record. The witness is asked for where a record binds the driver: elsewhere the deviation is
 /// granted, not required.
-fn special(deviation: &special::Deviation, subject: &Subject, code: &Code) -> Result<Option<bool>, DeviceError> {
+fn special(deviation: &special_values::Deviation, subject: &Subject, code: &Code) -> Result<Option<bool>, DeviceError> {
     if subject.identity.backend != deviation.backend {
         return Ok(None);
     }
@@ -195,7 +197,7 @@ mod tests {
                     let case = catalogue.iter().find_map(|member| member.case(witness));
                     assert!(matches!(case, Some(CaseRef::Hard(_))), "{name}: {witness}");
                 }
-                NamedDeviation::Special(special::Deviation { name, probes, .. }) => {
+                NamedDeviation::Special(special_values::Deviation { name, probes, .. }) => {
                     let missing: Vec<_> = probes.iter().filter(|probe| Probe::by_name(probe).is_none()).collect();
                     assert!(!probes.is_empty() && missing.is_empty(), "{name}: {missing:?}");
                 }

@@ -9,7 +9,6 @@ mod split;
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::device::Picture;
 use lightmeter::image::drawn::{drawn, intermediate};
-use lightmeter::image::verdict::profile_of;
 use lightmeter::image::{Expected, expect};
 use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_reference::render::{Image, render};
@@ -118,7 +117,7 @@ fn devices_draw_random_frames_within_what_is_legal() {
     let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
     let subject = open_device(adapter).expect("the adapter gives a device");
     let code = code_of(None).expect("the built-in shaders are valid");
-    let profile = profile_of(&subject, &WGSL);
+    let profile = subject.known.profile(&WGSL);
     let mut judged = 0;
     for seed in 0..FRAMES {
         let frame = frame(seed);
@@ -143,7 +142,7 @@ fn devices_draw_intermediate_results_within_what_is_legal() {
     let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
     let subject = open_device(adapter).expect("the adapter gives a device");
     let code = code_of(None).expect("the built-in shaders are valid");
-    let profile = profile_of(&subject, &WGSL);
+    let profile = subject.known.profile(&WGSL);
     let mut judged = 0;
     for seed in 0..FRAMES / 2 {
         let frame = frame(seed);

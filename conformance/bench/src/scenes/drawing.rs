@@ -5,15 +5,15 @@ use crate::turns;
 use crate::turns::{Effort, Entry};
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::bench::Errors;
-use lightmeter_engine::blend_unit::pixel::linear;
-use lightmeter_engine::image::file::Stored;
-use lightmeter_engine::image::judge::judge;
-use lightmeter_engine::image::verdict::{excuse, profile_of};
-use lightmeter_engine::image::{Expected, expect};
+use lightmeter_engine::image::verdict::excuse;
 use lightmeter_gpu::compose::Recipe;
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, Gpu, GpuError, Shaders};
+use lightmeter_judge::blend_unit::pixel::linear;
 use lightmeter_judge::devices::Deviation;
+use lightmeter_judge::image::file::Stored;
+use lightmeter_judge::image::judge::judge;
+use lightmeter_judge::image::{Expected, expect};
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::effects;
 use lightmeter_scene::frame::Frame;
@@ -96,7 +96,7 @@ impl<'a> Drawer<'a> {
             gpu: on.gpu?,
             shaders: on.shaders,
             clock: on.clock,
-            profile: profile_of(on.subject, on.profile),
+            profile: on.subject.known.profile(on.profile),
             deviations: &on.subject.known.deviations,
             judges: on.setting.judges,
         })

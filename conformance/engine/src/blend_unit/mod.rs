@@ -8,5 +8,3 @@ pub mod draw;
 pub mod run;
 pub mod selftest;
 mod standing;
-
-pub use lightmeter_judge::blend_unit::*;

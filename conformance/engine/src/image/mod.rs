@@ -7,5 +7,3 @@ pub mod diagnose;
 pub mod drawn;
 pub mod run;
 pub mod verdict;
-
-pub use lightmeter_judge::image::*;

@@ -2,7 +2,7 @@
 //! with all effects behind switches; every pixel of both must be legal by the full reference. A run of everything, which is
 //! to end within a minute, draws them smaller and by the composed shaders alone.
 
-use super::verdict::{Drawn, JudgedScene, profile_of};
+use super::verdict::{Drawn, JudgedScene};
 use crate::device::{DeviceError, Own, Picture};
 use crate::options::{Options, Progress};
 use crate::subject::Subject;
@@ -56,7 +56,7 @@ pub(crate) fn run_scene(
     let clock = Instant::now();
     let mut scene = JudgedScene::new(loaded, chosen);
     for subject in subjects.iter() {
-        scene.expect(&profile_of(subject, options.profile));
+        scene.expect(&subject.known.profile(options.profile));
     }
     report.timing.reference += clock.elapsed().as_secs_f64();
     let mut composed: Vec<Option<Stored>> = vec![None; subjects.len()];
@@ -129,7 +129,7 @@ impl Asked<'_> {
         report.timing.devices += clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
-        let profile = profile_of(subject, options.profile);
+        let profile = subject.known.profile(options.profile);
         let mut group =
             scene.judge(&Drawn { image: &image, subject, picture, options, profile }, &self.named, report)?;
         if picture == Picture::Full

@@ -21,12 +21,6 @@ use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
 use serde_json::json;
 
-/// The accuracy rules for a subject: the profile's, with the subpixel bits that its rasteriser is known to have.
-#[must_use]
-pub fn profile_of(subject: &Subject, profile: &Profile) -> Profile {
-    subject.known.profile(profile)
-}
-
 /// Takes the misses out that a named deviation makes legal; how many there are.
 pub fn excuse(judged: &mut Judged, image: &Stored, frame: &Frame, deviation: &Deviation, profile: &Profile) -> u64 {
     let granted = deviation.grant(*profile);

@@ -2,6 +2,3 @@
 
 pub mod run;
 pub mod verdict;
-
-pub use lightmeter_catalogue::special::*;
-pub use lightmeter_judge::special::record;

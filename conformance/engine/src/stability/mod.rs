@@ -4,9 +4,7 @@
 //! vector. `exact` is the stable formula's f64 reference, which the certificate holds against many digits. What no method can
 //! do better than is the *condition*: so many roundings of the result come of one rounding of each input.
 
-pub use lightmeter_judge::stability::{
-    Conditioning, FormStanding, ILL_CONDITIONED, ROUNDING, UNSTABLE, condition, roundings, size,
-};
+use lightmeter_judge::stability::{condition, roundings};
 
 use crate::device::DeviceError;
 use crate::evaluate::Evaluator;

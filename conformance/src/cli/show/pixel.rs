@@ -7,7 +7,6 @@ use lightmeter::device::{Code, Picture};
 use lightmeter::document::Number;
 use lightmeter::image::expect::Expectation;
 use lightmeter::image::file::Stored;
-use lightmeter::image::verdict::profile_of;
 use lightmeter::image::{self, Expected};
 use lightmeter::scene::Loaded;
 use lightmeter::scene::library::SCENES;
@@ -64,7 +63,7 @@ fn rows(frame: &Frame, pixel: usize, profile: &Profile, subjects: &[Subject], co
             let mut seen = vec![];
             for subject in subjects {
                 let image = drawn(subject, code, frame, stage)?;
-                let legal = legal(&profile_of(subject, profile));
+                let legal = legal(&subject.known.profile(profile));
                 seen.push((subject.identity.name.clone(), legal, image.map(|image| image.pixels[pixel])));
             }
             if seen.is_empty() {

@@ -11,7 +11,6 @@ use lightmeter::image::diagnose::{Departure, departure};
 use lightmeter::image::drawn::drawn;
 use lightmeter::image::file::Stored;
 use lightmeter::image::judge::{Judged, judge};
-use lightmeter::image::verdict::profile_of;
 use lightmeter::image::{Expected, expect};
 use lightmeter::scene::load;
 use lightmeter::subject::Subject;
@@ -91,7 +90,7 @@ fn with(place: usize, (mistake, file, what, by, ..): Mistake) -> Code {
 #[test]
 fn each_mistake_is_seen_and_said_to_be_where_it_was_made() {
     let subject = subject();
-    let profile = profile_of(&subject, &WGSL);
+    let profile = subject.known.profile(&WGSL);
     let right = code_of(None).expect("the built-in shaders are valid");
     let mut scenes: BTreeMap<&str, Prepared> = BTreeMap::new();
     let mut wrong = vec![];
@@ -119,7 +118,7 @@ fn each_mistake_is_seen_and_said_to_be_where_it_was_made() {
 #[test]
 fn intermediate_results_show_what_pixels_do_not() {
     let subject = subject();
-    let profile = profile_of(&subject, &WGSL);
+    let profile = subject.known.profile(&WGSL);
     for (place, row) in UNSEEN.iter().enumerate() {
         let &(mistake, .., scene, stage) = row;
         let prepared = Prepared::new(scene, &profile);
@@ -133,7 +132,7 @@ fn intermediate_results_show_what_pixels_do_not() {
 #[test]
 fn right_shaders_depart_nowhere() {
     let subject = subject();
-    let profile = profile_of(&subject, &WGSL);
+    let profile = subject.known.profile(&WGSL);
     let code = code_of(None).expect("the built-in shaders are valid");
     for (scene, stage) in RIGHT {
         let prepared = Prepared::new(scene, &profile);
