@@ -25,7 +25,7 @@ use std::time::Instant;
 use turns::Effort;
 
 /// What is measured, and how.
-pub struct Options {
+pub struct BenchOptions {
     /// Which groups, by their ids.
     pub filter: Filter,
     /// Scenes from files, by a name of their own; where there are some and no filter, nothing else is measured.
@@ -107,7 +107,11 @@ const QUICK: [&str; 12] = [
 ///
 /// # Errors
 /// Where a shader is invalid or a device fails.
-pub fn bench(subjects: &[Subject], options: &Options, progress: &mut impl Progress) -> Result<BenchDocument, GpuError> {
+pub fn bench(
+    subjects: &[Subject],
+    options: &BenchOptions,
+    progress: &mut impl Progress,
+) -> Result<BenchDocument, GpuError> {
     let start = Instant::now();
     let setting = Setting::new(options.quick, options.seed);
     let adapters = subjects
@@ -128,7 +132,7 @@ pub fn bench(subjects: &[Subject], options: &Options, progress: &mut impl Progre
 
 fn measured(
     subject: &Subject,
-    options: &Options,
+    options: &BenchOptions,
     setting: Setting,
     progress: &mut impl Progress,
 ) -> Result<Measured, GpuError> {
@@ -186,7 +190,7 @@ struct Asked<'a> {
 }
 
 impl<'a> Asked<'a> {
-    fn new(options: &'a Options, catalogue: &'a [Member], ladder: Vec<(Rung, Option<String>)>) -> Self {
+    fn new(options: &'a BenchOptions, catalogue: &'a [Member], ladder: Vec<(Rung, Option<String>)>) -> Self {
         // What is asked for by name is measured in a quick bench, too.
         let quick = options.quick && options.filter.is_empty() && options.scenes.is_empty();
         let all = options.scenes.is_empty() || !options.filter.is_empty();
@@ -234,7 +238,7 @@ struct Sitting {
 
 fn sitting(
     subject: &Subject,
-    options: &Options,
+    options: &BenchOptions,
     setting: Setting,
     asked: &Asked<'_>,
     use_wall: bool,

@@ -2,7 +2,7 @@
 //! verdict and by the group verdict.
 
 use super::group::{Design, Parameter};
-use super::selftest::Options;
+use super::selftest::SelftestOptions;
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
@@ -27,7 +27,7 @@ const MOST_STEPS: u32 = 16;
 /// Measures every parameter of every formula that a filter selects. Of the many blend states, which have their operands in
 /// common, the named modes stand for all.
 #[must_use]
-pub fn calibrate(options: &Options) -> Vec<Resolution> {
+pub fn calibrate(options: &SelftestOptions) -> Vec<Resolution> {
     let members = catalogue();
     let selected = select(&members, &options.filter, 1, Shard::WHOLE);
     let is_measured = |member: &&Member| match member.spec.kind {
@@ -51,7 +51,7 @@ struct Scale<'a> {
 }
 
 impl<'a> Scale<'a> {
-    fn new(member: &'a Member, options: &'a Options) -> Self {
+    fn new(member: &'a Member, options: &'a SelftestOptions) -> Self {
         let spec = &member.spec;
         let profile: &Profile = options.profile;
         let inputs = (0..CASES).map(|k| {

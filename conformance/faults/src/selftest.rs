@@ -21,7 +21,7 @@ use std::cell::LazyCell;
 
 /// What is tried.
 #[derive(Clone, Debug)]
-pub struct Options {
+pub struct SelftestOptions {
     /// Which formulas.
     pub filter: Filter,
     /// Random cases for each formula; a quarter of them for each of the many blend states.
@@ -36,7 +36,7 @@ pub struct Options {
 
 /// Tries every mistake, and none, in every formula that a filter selects.
 #[must_use]
-pub fn selftest(options: &Options) -> Record {
+pub fn selftest(options: &SelftestOptions) -> Record {
     let members = catalogue();
     let selected = select(&members, &options.filter, options.cases, Shard::WHOLE);
     let tried: Vec<(Vec<Kill>, Clean)> =
@@ -49,7 +49,7 @@ pub fn selftest(options: &Options) -> Record {
 const CASES_OF_A_RUN: u64 = 4096;
 
 /// Every mistake in a formula, and none.
-fn try_all(member: &Member, options: &Options) -> (Vec<Kill>, Clean) {
+fn try_all(member: &Member, options: &SelftestOptions) -> (Vec<Kill>, Clean) {
     let spec = &member.spec;
     let is_state = matches!(spec.kind, Kind::Blend(_));
     let few = Bench::new(member, options, if is_state { options.cases.div_ceil(4) } else { options.cases });
@@ -69,7 +69,7 @@ fn try_all(member: &Member, options: &Options) -> (Vec<Kill>, Clean) {
 /// The cases of one formula, with what is right and what is legal in each.
 struct Bench<'a> {
     member: &'a Member,
-    options: &'a Options,
+    options: &'a SelftestOptions,
     cases: Vec<CaseRef>,
     inputs: Vec<Vec<f32>>,
     reference: Vec<f64>,
@@ -77,7 +77,7 @@ struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    fn new(member: &'a Member, options: &'a Options, random: u64) -> Self {
+    fn new(member: &'a Member, options: &'a SelftestOptions, random: u64) -> Self {
         let spec = &member.spec;
         let hard = (0..spec.hard.len()).map(CaseRef::Hard);
         let near = (0..spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));

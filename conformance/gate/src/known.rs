@@ -1,6 +1,6 @@
 //! What is known of each case: a few bytes, so that a gate does not grow with what is answered.
 
-use super::plan::{Place, Plan};
+use super::plan::{CasePlace, GatePlan};
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
@@ -68,7 +68,7 @@ struct RegisterGroup {
 impl Register {
     /// Nothing is known of the cases of a plan.
     #[must_use]
-    pub fn new(plan: &Plan) -> Self {
+    pub fn new(plan: &GatePlan) -> Self {
         let counts = plan.formulas.iter().map(super::plan::Formula::count).chain(plan.scenes.iter().map(|_| 1));
         let group =
             |count: usize| RegisterGroup { states: vec![State::Open; count], digests: vec![0; count], again: vec![] };
@@ -77,29 +77,33 @@ impl Register {
 
     /// The number of a place's formula, or of its scene behind the formulas.
     #[must_use]
-    pub const fn group(&self, place: Place) -> usize {
+    pub const fn group(&self, place: CasePlace) -> usize {
         match place {
-            Place::Case { formula, .. } => formula,
-            Place::Scene(scene) => self.formulas + scene,
+            CasePlace::Case { formula, .. } => formula,
+            CasePlace::Scene(scene) => self.formulas + scene,
         }
     }
 
-    const fn case(place: Place) -> usize {
+    const fn case(place: CasePlace) -> usize {
         match place {
-            Place::Case { case, .. } => case,
-            Place::Scene(_) => 0,
+            CasePlace::Case { case, .. } => case,
+            CasePlace::Scene(_) => 0,
         }
     }
 
     /// The place of a case of a group.
     #[must_use]
-    pub const fn place(&self, group: usize, case: usize) -> Place {
-        if group < self.formulas { Place::Case { formula: group, case } } else { Place::Scene(group - self.formulas) }
+    pub const fn place(&self, group: usize, case: usize) -> CasePlace {
+        if group < self.formulas {
+            CasePlace::Case { formula: group, case }
+        } else {
+            CasePlace::Scene(group - self.formulas)
+        }
     }
 
     /// What became of a case.
     #[must_use]
-    pub fn state(&self, place: Place) -> State {
+    pub fn state(&self, place: CasePlace) -> State {
         self.groups[self.group(place)].states[Self::case(place)]
     }
 
@@ -112,7 +116,7 @@ impl Register {
     }
 
     /// Notes an answer.
-    pub fn answer(&mut self, place: Place, state: State, digest: u32) -> Turn {
+    pub fn answer(&mut self, place: CasePlace, state: State, digest: u32) -> Turn {
         let (group, case) = (self.group(place), Self::case(place));
         let is_again = self.is_again;
         let group = &mut self.groups[group];
@@ -134,13 +138,13 @@ impl Register {
     }
 
     /// The cases of a group in some states.
-    pub fn of(&self, group: usize, is_one: impl Fn(State) -> bool) -> impl Iterator<Item = Place> {
+    pub fn of(&self, group: usize, is_one: impl Fn(State) -> bool) -> impl Iterator<Item = CasePlace> {
         let states = &self.groups[group].states;
         (0..states.len()).filter(move |&case| is_one(states[case])).map(move |case| self.place(group, case))
     }
 
     /// The cases that an earlier run answered and this one did not.
-    pub fn unanswered_again(&self) -> impl Iterator<Item = Place> {
+    pub fn unanswered_again(&self) -> impl Iterator<Item = CasePlace> {
         self.groups.iter().enumerate().flat_map(move |(number, group)| {
             let is_left = |&case: &usize| group.states[case] != State::Open && !group.again[case];
             (0..group.again.len()).filter(is_left).map(move |case| self.place(number, case))
@@ -149,7 +153,7 @@ impl Register {
 
     /// The cases of a group that did not pass, by what became of them: each by the end of its id, and cases in a row as `000003..000017`.
     #[must_use]
-    pub fn not_passed(&self, plan: &Plan, group: usize) -> BTreeMap<String, Vec<String>> {
+    pub fn not_passed(&self, plan: &GatePlan, group: usize) -> BTreeMap<String, Vec<String>> {
         let mut all: BTreeMap<String, Vec<Run>> = BTreeMap::new();
         for (case, &state) in self.groups[group].states.iter().enumerate() {
             let Some(name) = state.name() else { continue };
@@ -166,11 +170,11 @@ impl Register {
 
 /// The end of a case's id behind that of its formula; a scene's name.
 #[must_use]
-pub fn ending(plan: &Plan, place: Place) -> String {
+pub fn ending(plan: &GatePlan, place: CasePlace) -> String {
     let id = plan.id(place);
     let formula = match place {
-        Place::Case { formula, .. } => plan.member(formula).spec.id.as_str(),
-        Place::Scene(_) => "scene",
+        CasePlace::Case { formula, .. } => plan.member(formula).spec.id.as_str(),
+        CasePlace::Scene(_) => "scene",
     };
     id.strip_prefix(formula).and_then(|rest| rest.strip_prefix('/')).unwrap_or(&id).to_owned()
 }
@@ -230,28 +234,28 @@ mod tests {
     use super::*;
     use lightmeter_document::pack::Choice;
 
-    fn plan() -> Plan {
+    fn plan() -> GatePlan {
         let filter = ["fog/exp", "blend/add/one/zero", "scene/flat"].map(str::to_owned).to_vec();
-        Plan::new(Choice { filter, cases: 30, seed: 1, size: Some(32) }).expect("the globs are valid")
+        GatePlan::new(Choice { filter, cases: 30, seed: 1, size: Some(32) }).expect("the globs are valid")
     }
 
     #[test]
     fn an_answer_is_first_the_same_changed_or_given_twice() {
         let plan = plan();
         let mut known = Register::new(&plan);
-        let at = |case| Place::Case { formula: 0, case };
+        let at = |case| CasePlace::Case { formula: 0, case };
         assert_eq!(known.answer(at(0), State::Passed, 7), Turn::First);
         assert_eq!(known.answer(at(0), State::Passed, 7), Turn::Twice);
         known.answer(at(1), State::Failed, 8);
         known.answer(at(2), State::Passed, 9);
-        known.answer(Place::Scene(0), State::Passed, 1);
+        known.answer(CasePlace::Scene(0), State::Passed, 1);
         known.begin_again();
         assert_eq!(known.answer(at(0), State::Passed, 7), Turn::Same);
         assert_eq!(known.answer(at(0), State::Passed, 7), Turn::Twice);
         assert_eq!(known.answer(at(1), State::Failed, 9), Turn::Changed);
         // Answered in this run only.
         assert_eq!(known.answer(at(3), State::Passed, 9), Turn::Changed);
-        assert_eq!(known.unanswered_again().collect::<Vec<_>>(), [at(2), Place::Scene(0)]);
+        assert_eq!(known.unanswered_again().collect::<Vec<_>>(), [at(2), CasePlace::Scene(0)]);
     }
 
     #[test]

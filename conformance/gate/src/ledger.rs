@@ -5,7 +5,7 @@ use super::error::ProcessError;
 use super::expectations::{Expectations, Expected};
 use super::known::{Register, State, Turn, digest};
 use super::picture;
-use super::plan::{Place, Plan};
+use super::plan::{CasePlace, GatePlan};
 use super::problems::note;
 use super::tally::AnswerTally;
 use super::verdict::{self, Verdicts};
@@ -24,7 +24,7 @@ const MOST_AGAIN: usize = 1024;
 
 /// The state of a gate. It grows with the number of cases by some bytes each, and not with their answers.
 pub struct Ledger<'a> {
-    plan: &'a Plan,
+    plan: &'a GatePlan,
     profile: Profile,
     known: Register,
     /// Of each formula, and then of each scene.
@@ -50,8 +50,8 @@ pub struct Ledger<'a> {
 /// What an answer comes to, before it is counted.
 enum Judged {
     Problem(&'static str, String),
-    Skip(Place, String),
-    Error(Place, String),
+    Skip(CasePlace, String),
+    Error(CasePlace, String),
     Case { formula: usize, case: usize, digest: u32, verdicts: Box<Verdicts>, values: Vec<f32>, inputs: Vec<f32> },
     Image(usize, String),
 }
@@ -59,7 +59,7 @@ enum Judged {
 impl<'a> Ledger<'a> {
     /// Nothing is answered yet.
     #[must_use]
-    pub fn new(plan: &'a Plan, profile: &Profile) -> Self {
+    pub fn new(plan: &'a GatePlan, profile: &Profile) -> Self {
         let outputs = |formula: usize| plan.member(formula).spec.output_len();
         Self {
             plan,
@@ -89,7 +89,7 @@ impl<'a> Ledger<'a> {
 
     /// The plan.
     #[must_use]
-    pub const fn plan(&self) -> &'a Plan {
+    pub const fn plan(&self) -> &'a GatePlan {
         self.plan
     }
 
@@ -106,7 +106,7 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    fn tally(&mut self, place: Place) -> &mut AnswerTally {
+    fn tally(&mut self, place: CasePlace) -> &mut AnswerTally {
         let group = self.known.group(place);
         &mut self.tallies[group]
     }
@@ -115,7 +115,7 @@ impl<'a> Ledger<'a> {
     ///
     /// # Errors
     /// Where what it declares cannot be read.
-    pub fn begin(&mut self, hello: &Hello) -> Result<Vec<Place>, ProcessError> {
+    pub fn begin(&mut self, hello: &Hello) -> Result<Vec<CasePlace>, ProcessError> {
         self.expectations = self.expected.of(&hello.renderer, &hello.version);
         if let Some(name) = hello.profile.as_ref().filter(|_| !self.is_held_to) {
             let profile = Profile::by_name(name).ok_or_else(|| ProcessError::Profile(name.clone()))?;
@@ -131,10 +131,10 @@ impl<'a> Ledger<'a> {
             }
             let count = self.plan.formulas[formula].count();
             self.tallies[formula].asked = count as u64;
-            asked.extend((0..count).map(|case| Place::Case { formula, case }));
+            asked.extend((0..count).map(|case| CasePlace::Case { formula, case }));
         }
         for scene in 0..self.plan.scenes.len() {
-            let place = Place::Scene(scene);
+            let place = CasePlace::Scene(scene);
             let (id, (_, frame)) = (self.plan.id(place), self.plan.frame(scene)?);
             let lacks = if scenes.as_ref().is_some_and(|filter| filter.selects(&id)) {
                 hello.lacks(&frame)
@@ -159,9 +159,9 @@ impl<'a> Ledger<'a> {
 
     /// What failed, to be asked once more: of each formula so many at most, evenly spread.
     #[must_use]
-    pub fn failing(&self) -> Vec<Place> {
+    pub fn failing(&self) -> Vec<CasePlace> {
         let of = |group: usize| {
-            let failing: Vec<Place> =
+            let failing: Vec<CasePlace> =
                 self.known.of(group, |state| matches!(state, State::Failed | State::Unjudged)).collect();
             let stride = failing.len().div_ceil(MOST_AGAIN).max(1);
             failing.into_iter().step_by(stride)
@@ -171,12 +171,12 @@ impl<'a> Ledger<'a> {
 
     /// What an earlier run answered and this one did not has changed.
     pub fn end_again(&mut self) {
-        let left: Vec<Place> = self.known.unanswered_again().collect();
+        let left: Vec<CasePlace> = self.known.unanswered_again().collect();
         left.into_iter().for_each(|place| self.changed(place));
     }
 
     /// Notes that a case's answer has changed.
-    pub(super) fn changed(&mut self, place: Place) {
+    pub(super) fn changed(&mut self, place: CasePlace) {
         self.unstable_count += 1;
         if self.unstable.len() < KEPT_UNSTABLE {
             self.unstable.push(self.plan.id(place));
@@ -233,9 +233,9 @@ impl<'a> Ledger<'a> {
         match (line, place) {
             (Line::Skip(_, reason), _) => Judged::Skip(place, clipped(&reason)),
             (Line::Error(_, reason), _) => Judged::Error(place, reason.into_owned()),
-            (Line::Image(_, file), Place::Scene(scene)) => Judged::Image(scene, file.into_owned()),
-            (Line::Value(_, values), Place::Case { formula, case }) => self.values(formula, case, values),
-            (Line::Value(..), Place::Scene(_)) => Judged::Error(place, "a scene is answered by `image`".into()),
+            (Line::Image(_, file), CasePlace::Scene(scene)) => Judged::Image(scene, file.into_owned()),
+            (Line::Value(_, values), CasePlace::Case { formula, case }) => self.values(formula, case, values),
+            (Line::Value(..), CasePlace::Scene(_)) => Judged::Error(place, "a scene is answered by `image`".into()),
             _ => Judged::Error(place, "a formula is answered by `value`".into()),
         }
     }
@@ -246,7 +246,7 @@ impl<'a> Ledger<'a> {
         if values.len() != outputs {
             let names = spec.outputs.iter().map(|output| output.name).collect::<Vec<_>>().join(", ");
             let message = format!("{} numbers; expected {outputs}: {names}", values.len());
-            return Judged::Error(Place::Case { formula, case }, message);
+            return Judged::Error(CasePlace::Case { formula, case }, message);
         }
         let (verdicts, inputs) = verdict::values(self.plan, formula, case, &values, &self.profile);
         let digest = digest(values.iter().map(|value| u64::from(value.to_bits())));
@@ -263,7 +263,7 @@ impl<'a> Ledger<'a> {
             }
             Judged::Error(place, message) => self.fail(place, State::Unjudged, &message),
             Judged::Case { formula, case, digest, verdicts, values, inputs } => {
-                let place = Place::Case { formula, case };
+                let place = CasePlace::Case { formula, case };
                 let has_failed = verdicts.tally.totals.failed > 0;
                 let state = if has_failed { State::Failed } else { State::Passed };
                 if !self.is_first(place, state, digest) {
@@ -284,7 +284,7 @@ impl<'a> Ledger<'a> {
     }
 
     /// Notes at the expectations whether a case failed; whether that was expected.
-    fn expect(&mut self, place: Place, fails: bool) -> bool {
+    fn expect(&mut self, place: CasePlace, fails: bool) -> bool {
         if self.expectations.is_empty() {
             return false;
         }
@@ -300,13 +300,13 @@ impl<'a> Ledger<'a> {
 
     /// Whether the renderer is expected to end or to hang at a case.
     #[must_use]
-    pub fn expects_crash(&self, place: Place) -> bool {
+    pub fn expects_crash(&self, place: CasePlace) -> bool {
         let id = self.plan.id(place);
         self.expectations.iter().any(|expected| expected.known.crash && expected.has(&id))
     }
 
     /// Notes what was answered; whether it is the first answer.
-    fn is_first(&mut self, place: Place, state: State, digest: u32) -> bool {
+    fn is_first(&mut self, place: CasePlace, state: State, digest: u32) -> bool {
         match self.known.answer(place, state, digest) {
             Turn::First => return true,
             Turn::Same => {}
@@ -321,7 +321,7 @@ impl<'a> Ledger<'a> {
     }
 
     /// Notes that a case could not be judged, or that the renderer ended at it.
-    pub fn fail(&mut self, place: Place, state: State, message: &str) {
+    pub fn fail(&mut self, place: CasePlace, state: State, message: &str) {
         if !self.is_first(place, state, 0) {
             return;
         }
@@ -335,7 +335,7 @@ impl<'a> Ledger<'a> {
     }
 
     fn image(&mut self, scene: usize, file: &str, folder: &Path) {
-        let place = Place::Scene(scene);
+        let place = CasePlace::Scene(scene);
         let frame = match self.plan.frame(scene) {
             Ok((_, frame)) => frame,
             Err(error) => return self.fail(place, State::Unjudged, &error.to_string()),

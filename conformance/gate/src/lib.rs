@@ -1,6 +1,6 @@
 //! The gate: any renderer, in any language, judged by the cases of the catalogue and the built-in scenes.
 //!
-//! A [`plan::Plan`] says which cases there are; a renderer is asked them by a [`pack`], by a [`process`] or through the trait
+//! A [`plan::GatePlan`] says which cases there are; a renderer is asked them by a [`pack`], by a [`process`] or through the trait
 //! [`renderer::Renderer`]; a [`ledger::Ledger`] judges its answers as they come, and a [`report`] says what became of them.
 
 pub mod answer;

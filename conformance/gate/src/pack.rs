@@ -2,7 +2,7 @@
 
 use super::frame;
 use super::picture::within;
-use super::plan::Plan;
+use super::plan::GatePlan;
 use lightmeter_catalogue::cases::{GENERATOR_VERSION, Shape};
 use lightmeter_document::Document as _;
 use lightmeter_document::Number;
@@ -55,7 +55,7 @@ pub enum PackError {
 }
 
 /// What a formula of a plan takes and gives.
-fn formula(plan: &Plan, formula: usize) -> PackedFormula {
+fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {
     let spec = &plan.member(formula).spec;
     let value = |name: &'static str, shape: Shape, unit: &'static str| PackedValue {
         name: name.into(),
@@ -73,7 +73,7 @@ fn formula(plan: &Plan, formula: usize) -> PackedFormula {
 
 /// A case as a renderer is asked it.
 #[must_use]
-pub fn case(plan: &Plan, formula: usize, case: usize) -> Value {
+pub fn case(plan: &GatePlan, formula: usize, case: usize) -> Value {
     let spec = &plan.member(formula).spec;
     let row = plan.inputs(formula, case);
     let mut inputs = Map::new();
@@ -85,14 +85,14 @@ pub fn case(plan: &Plan, formula: usize, case: usize) -> Value {
         let value = if let [one] = numbers.as_slice() { one.clone() } else { numbers.into() };
         inputs.insert(input.name.to_owned(), value);
     }
-    json!({ "id": plan.id(super::plan::Place::Case { formula, case }), "formula": spec.id, "inputs": inputs })
+    json!({ "id": plan.id(super::plan::CasePlace::Case { formula, case }), "formula": spec.id, "inputs": inputs })
 }
 
 /// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go.
 ///
 /// # Errors
 /// Where a file cannot be written, or the folder holds something else.
-pub fn write(plan: &Plan, folder: &Path) -> Result<Manifest, PackError> {
+pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
     let failed = |path: &Path| {
         let path = path.to_owned();
         move |error: std::io::Error| PackError::Write { path, message: error.to_string() }
@@ -155,7 +155,7 @@ fn clear(folder: &Path) -> Result<(), PackError> {
 }
 
 /// The manifest of a plan, as yet without files.
-fn manifest(plan: &Plan) -> Result<Manifest, PackError> {
+fn manifest(plan: &GatePlan) -> Result<Manifest, PackError> {
     let scenes = (0..plan.scenes.len()).map(|scene| Ok(PackedDraw::new(plan, scene)?.listed()));
     Ok(Manifest {
         schema: SCHEMA.into(),
@@ -176,9 +176,9 @@ struct PackedDraw {
 }
 
 impl PackedDraw {
-    fn new(plan: &Plan, scene: usize) -> Result<Self, PackError> {
+    fn new(plan: &GatePlan, scene: usize) -> Result<Self, PackError> {
         let (title, frame) = plan.frame(scene).map_err(|error| PackError::Plan(error.to_string()))?;
-        Ok(Self { id: plan.id(super::plan::Place::Scene(scene)), title, frame })
+        Ok(Self { id: plan.id(super::plan::CasePlace::Scene(scene)), title, frame })
     }
 
     fn folder(&self) -> String {
@@ -276,7 +276,7 @@ fn png(texture: &Texture) -> Vec<u8> {
 ///
 /// # Errors
 /// Where it is damaged, another version's, not what this lightmeter would write, or leads out of its folder.
-pub fn read(folder: &Path) -> Result<Plan, PackError> {
+pub fn read(folder: &Path) -> Result<GatePlan, PackError> {
     let path = folder.join(MANIFEST);
     let text = std::fs::read_to_string(&path).map_err(|error| PackError::Read {
         path: path.clone(),
@@ -319,7 +319,7 @@ pub fn read(folder: &Path) -> Result<Plan, PackError> {
             return Err(PackError::Manifest { path: file, message });
         }
     }
-    let plan = Plan::new(manifest.choice.clone()).map_err(|error| refused(error.to_string()))?;
+    let plan = GatePlan::new(manifest.choice.clone()).map_err(|error| refused(error.to_string()))?;
     difference(&manifest, &plan)?.map_or(Ok(plan), |what| {
         Err(refused(format!(
             "its {what} are not those that its `filter`, `cases`, `seed` and `size` choose: write the pack again"
@@ -328,7 +328,7 @@ pub fn read(folder: &Path) -> Result<Plan, PackError> {
 }
 
 /// What of a manifest is not as this lightmeter would write it for the plan. The cases themselves go by the generator's version.
-fn difference(listed: &Manifest, plan: &Plan) -> Result<Option<&'static str>, PackError> {
+fn difference(listed: &Manifest, plan: &GatePlan) -> Result<Option<&'static str>, PackError> {
     let own = manifest(plan)?;
     if listed.formulas != own.formulas {
         return Ok(Some("formulas"));

@@ -11,7 +11,7 @@ use lightmeter_scene::frame::Frame;
 use std::collections::HashMap;
 
 /// The cases that are chosen.
-pub struct Plan {
+pub struct GatePlan {
     /// What chose them.
     pub choice: Choice,
     /// Every formula.
@@ -38,7 +38,7 @@ pub struct Formula {
 
 /// A case of the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Place {
+pub enum CasePlace {
     /// The formula's place among the plan's, and the case's among its own.
     Case {
         /// Of the formula.
@@ -50,7 +50,7 @@ pub enum Place {
     Scene(usize),
 }
 
-impl Plan {
+impl GatePlan {
     /// The cases of a choice. NaN and infinity, of which nothing is promised, are no cases here.
     ///
     /// # Errors
@@ -101,28 +101,29 @@ impl Plan {
 
     /// The place of an id; `None` where the plan has no such case.
     #[must_use]
-    pub fn find(&self, id: &str) -> Option<Place> {
+    pub fn find(&self, id: &str) -> Option<CasePlace> {
         if let Some(name) = id.strip_prefix("scene/") {
             let scene = self.scenes.iter().position(|&place| SCENES[place].0 == name)?;
-            return Some(Place::Scene(scene));
+            return Some(CasePlace::Scene(scene));
         }
         if let Some(&(formula, case)) = self.named.get(id) {
             let case = *self.formulas[formula].places.get(&case)?;
-            return Some(Place::Case { formula, case });
+            return Some(CasePlace::Case { formula, case });
         }
         let (path, number) = id.rsplit_once('/')?;
         let &formula = self.random.get(path)?;
         let case = self.formulas[formula].random(number.parse().ok()?)?;
         // `17` is no id of case `000017`.
-        (self.member(formula).case_id(self.formulas[formula].case(case)) == id).then_some(Place::Case { formula, case })
+        (self.member(formula).case_id(self.formulas[formula].case(case)) == id)
+            .then_some(CasePlace::Case { formula, case })
     }
 
     /// The id at a place.
     #[must_use]
-    pub fn id(&self, place: Place) -> String {
+    pub fn id(&self, place: CasePlace) -> String {
         match place {
-            Place::Scene(scene) => scene_id(self.scenes[scene]),
-            Place::Case { formula, case } => self.member(formula).case_id(self.formulas[formula].case(case)),
+            CasePlace::Scene(scene) => scene_id(self.scenes[scene]),
+            CasePlace::Case { formula, case } => self.member(formula).case_id(self.formulas[formula].case(case)),
         }
     }
 
@@ -188,9 +189,9 @@ impl Formula {
 mod tests {
     use super::*;
 
-    fn plan(filter: &[&str]) -> Plan {
+    fn plan(filter: &[&str]) -> GatePlan {
         let filter = filter.iter().map(|&glob| glob.to_owned()).collect();
-        Plan::new(Choice { filter, cases: 5, seed: 1, size: Some(32) }).expect("the globs are valid")
+        GatePlan::new(Choice { filter, cases: 5, seed: 1, size: Some(32) }).expect("the globs are valid")
     }
 
     #[test]
@@ -199,14 +200,14 @@ mod tests {
         let mut seen = 0;
         for formula in 0..plan.formulas.len() {
             for case in 0..plan.formulas[formula].count() {
-                let place = Place::Case { formula, case };
+                let place = CasePlace::Case { formula, case };
                 assert_eq!(plan.find(&plan.id(place)), Some(place), "{}", plan.id(place));
                 assert_eq!(plan.inputs(formula, case).len(), plan.member(formula).spec.input_len());
                 seen += 1;
             }
         }
         assert_eq!(seen, plan.cases());
-        assert_eq!(plan.find("scene/phong"), Some(Place::Scene(0)));
+        assert_eq!(plan.find("scene/phong"), Some(CasePlace::Scene(0)));
         for id in
             ["fog/exp/random/17", "fog/exp/random/000005", "fog/exp", "scene/teapot", "blend/add/one/one/0002", ""]
         {

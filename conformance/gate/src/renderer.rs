@@ -2,7 +2,7 @@
 
 use super::answer::{Hello, Line};
 use super::ledger::Ledger;
-use super::plan::{Place, Plan};
+use super::plan::{CasePlace, GatePlan};
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_scene::frame::Frame;
 use std::borrow::Cow;
@@ -35,7 +35,7 @@ pub trait Renderer {
 /// Where a glob of what it declares cannot be read, or a scene is refused.
 pub fn ask(
     ledger: &mut Ledger<'_>,
-    plan: &Plan,
+    plan: &GatePlan,
     renderer: &mut impl Renderer,
     folder: &Path,
 ) -> Result<(), super::error::ProcessError> {
@@ -45,14 +45,14 @@ pub fn ask(
         for (number, &place) in (1..).zip(batch) {
             let id = plan.id(place);
             let line = match place {
-                Place::Case { formula, case } => {
+                CasePlace::Case { formula, case } => {
                     let spec = &plan.member(formula).spec;
                     match renderer.evaluate(spec, &plan.inputs(formula, case)) {
                         Ok(values) => Line::Value(Cow::Owned(id), values),
                         Err(reason) => Line::Skip(Cow::Owned(id), Cow::Owned(reason)),
                     }
                 }
-                Place::Scene(scene) => {
+                CasePlace::Scene(scene) => {
                     let (_, frame) = plan.frame(scene)?;
                     match renderer.draw(&id, &frame, folder) {
                         Ok(file) => Line::Image(Cow::Owned(id), Cow::Owned(file)),
@@ -125,7 +125,7 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("lightmeter-renderer-{}-{name}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder can be made");
         let filter = filter.iter().map(|&glob| glob.to_owned()).collect();
-        let plan = Plan::new(Choice { filter, cases: 64, seed: 1, size: Some(48) }).expect("the globs are valid");
+        let plan = GatePlan::new(Choice { filter, cases: 64, seed: 1, size: Some(48) }).expect("the globs are valid");
         let mut ledger = Ledger::new(&plan, &WGSL);
         let mut renderer = Wrong { catalogue: catalogue(), fault, scene_fault };
         ask(&mut ledger, &plan, &mut renderer, &folder).unwrap_or_else(|error| panic!("{error}"));

@@ -2,7 +2,7 @@
 
 use super::answer::clipped;
 use super::ledger::Ledger;
-use super::plan::Place;
+use super::plan::CasePlace;
 use super::process::Ending;
 use super::tally::{AnswerTally, Sample};
 use super::verdict;
@@ -118,7 +118,7 @@ fn group(ledger: &Ledger<'_>, k: usize, tally: &AnswerTally) -> (GateGroup, Opti
     let id = if k < plan.formulas.len() {
         plan.member(k).spec.id.clone()
     } else {
-        plan.id(Place::Scene(k - plan.formulas.len()))
+        plan.id(CasePlace::Scene(k - plan.formulas.len()))
     };
     let (random, indeterminate) = tally.verdicts.random;
     #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]

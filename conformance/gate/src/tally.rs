@@ -1,7 +1,7 @@
 //! What became of the cases of a formula, or of a scene.
 
 use super::picture::Found;
-use super::plan::Place;
+use super::plan::CasePlace;
 use super::verdict::Verdicts;
 use lightmeter_document::gate::GateFailure;
 use lightmeter_document::run::Totals;
@@ -21,7 +21,7 @@ const KEPT_REASONS: usize = 16;
 pub struct AnswerTally {
     /// Verdicts on the cases that were answered with values or an image; errors in ULP of binary32, of a scene in its
     /// target's. Its failures are of cases, whether what was answered could be judged or not.
-    pub verdicts: Tally<Place, GateFailure>,
+    pub verdicts: Tally<CasePlace, GateFailure>,
     /// Cases that were asked for.
     pub asked: u64,
     /// Cases that the renderer does not do.
@@ -135,7 +135,7 @@ impl AnswerTally {
     }
 
     /// Counts an answer with an image.
-    pub(super) fn image(&mut self, place: Place, found: &Found) {
+    pub(super) fn image(&mut self, place: CasePlace, found: &Found) {
         let Totals { verdicts, failed, indeterminate, .. } = found.totals;
         self.verdicts.totals.add(&Totals { cases: 1, verdicts, failed, indeterminate, ..Totals::default() });
         self.verdicts.see_error(found.error_max);

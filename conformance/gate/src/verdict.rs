@@ -1,6 +1,6 @@
 //! What an answer to a case is worth.
 
-use super::plan::{Place, Plan};
+use super::plan::{CasePlace, GatePlan};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_document::Number;
 use lightmeter_document::gate::GateFailure;
@@ -11,7 +11,7 @@ use lightmeter_judge::{Outcome, Verdict, judge};
 #[derive(Clone, Debug, Default)]
 pub struct Verdicts {
     /// On its scalars; errors in ULP.
-    pub tally: Tally<Place, GateFailure>,
+    pub tally: Tally<CasePlace, GateFailure>,
     /// The sum of the finite errors, and how many there are.
     pub errors: (f64, u64),
 }
@@ -24,7 +24,7 @@ struct ExpectedCase {
 }
 
 impl ExpectedCase {
-    fn new(plan: &Plan, formula: usize, case: usize, profile: &Profile) -> Self {
+    fn new(plan: &GatePlan, formula: usize, case: usize, profile: &Profile) -> Self {
         let member = plan.member(formula);
         let outputs = member.spec.output_len();
         let inputs = plan.inputs(formula, case);
@@ -34,7 +34,7 @@ impl ExpectedCase {
         Self { inputs, reference, legal }
     }
 
-    fn judge(&self, values: &[f32], place: Place, is_random: bool) -> Verdicts {
+    fn judge(&self, values: &[f32], place: CasePlace, is_random: bool) -> Verdicts {
         let mut verdicts = Verdicts::default();
         verdicts.tally.totals.cases = 1;
         for (k, value) in values.iter().enumerate() {
@@ -54,17 +54,17 @@ impl ExpectedCase {
 
 /// Judges the values that were answered to a case, as many as it has outputs; and its inputs.
 #[must_use]
-pub fn values(plan: &Plan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> (Verdicts, Vec<f32>) {
+pub fn values(plan: &GatePlan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> (Verdicts, Vec<f32>) {
     let expected = ExpectedCase::new(plan, formula, case, profile);
     let is_random = plan.formulas[formula].is_random(case);
-    (expected.judge(values, Place::Case { formula, case }, is_random), expected.inputs)
+    (expected.judge(values, CasePlace::Case { formula, case }, is_random), expected.inputs)
 }
 
 /// A case whose values are wrong.
 #[must_use]
-pub fn failure(plan: &Plan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> GateFailure {
+pub fn failure(plan: &GatePlan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> GateFailure {
     let expected = ExpectedCase::new(plan, formula, case, profile);
-    let place = Place::Case { formula, case };
+    let place = CasePlace::Case { formula, case };
     let error = expected.judge(values, place, false).tally.error_max;
     let narrow = |numbers: &[f32]| numbers.iter().map(|&x| Number(x.into())).collect();
     GateFailure {

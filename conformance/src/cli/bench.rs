@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
-use lightmeter::bench::{Options, bench};
+use lightmeter::bench::{BenchOptions, bench};
 use lightmeter::document::Document as _;
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::filter::Filter;
@@ -91,7 +91,7 @@ impl Bench {
             let loaded = load::scene(file).map_err(|error| anyhow::anyhow!("{file}: {error}"))?;
             Ok((name, loaded))
         });
-        let options = Options {
+        let options = BenchOptions {
             filter: Filter::new(&globs)?,
             scenes: scenes.collect::<anyhow::Result<_>>()?,
             quick: self.quick,

@@ -16,7 +16,7 @@ use lightmeter::gate::baseline::{self, Baseline};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::ledger::Ledger;
 use lightmeter::gate::pack;
-use lightmeter::gate::plan::{Place, Plan};
+use lightmeter::gate::plan::{CasePlace, GatePlan};
 use lightmeter::gate::process::{self, Asking, Ending, Limits};
 use lightmeter::gate::report;
 use lightmeter::report::gate as outputs;
@@ -142,7 +142,7 @@ impl Gate {
     }
 
     /// The cases, and the files of answers.
-    fn asked(&self) -> anyhow::Result<(Plan, Vec<Answers>)> {
+    fn asked(&self) -> anyhow::Result<(GatePlan, Vec<Answers>)> {
         if self.exec.is_some() {
             return Ok((self.cases.plan(&self.given)?, vec![]));
         }
@@ -160,7 +160,7 @@ impl Gate {
     fn process(
         &self,
         ledger: &mut Ledger<'_>,
-        plan: &Plan,
+        plan: &GatePlan,
         command: &str,
         expectations: Expectations,
         bar: &ProgressBar,
@@ -212,7 +212,7 @@ fn stopped_by_signals() -> anyhow::Result<Arc<AtomicBool>> {
 
 /// An expectation of what no renderer is ever asked is a mistake in its file.
 fn matches_something(expectations: &Expectations) -> anyhow::Result<()> {
-    let all = Plan::new(Choice { filter: vec![], cases: 1, seed: 1, size: None })?;
+    let all = GatePlan::new(Choice { filter: vec![], cases: 1, seed: 1, size: None })?;
     for id in expectations.ids() {
         let filter = Filter::new(&[id])?;
         // Any number of a random case may be meant.
@@ -224,10 +224,10 @@ fn matches_something(expectations: &Expectations) -> anyhow::Result<()> {
             filter.selects(member) || filter.reaches_below(member) || is_random(member) || {
                 let cases = 0..all.formulas[formula].count();
                 id.starts_with(member.as_str())
-                    && cases.into_iter().any(|case| filter.selects(&all.id(Place::Case { formula, case })))
+                    && cases.into_iter().any(|case| filter.selects(&all.id(CasePlace::Case { formula, case })))
             }
         });
-        let has_scene = || (0..all.scenes.len()).any(|scene| filter.selects(&all.id(Place::Scene(scene))));
+        let has_scene = || (0..all.scenes.len()).any(|scene| filter.selects(&all.id(CasePlace::Scene(scene))));
         if !has_formula && !has_scene() {
             bail!("the expectation `{id}` matches no case of any formula and no scene: see `lightmeter list`");
         }

@@ -6,7 +6,7 @@ use clap::Args;
 use lightmeter::cases::blend::Samples;
 use lightmeter::document::pack::Choice;
 use lightmeter::gate::pack;
-use lightmeter::gate::plan::Plan;
+use lightmeter::gate::plan::GatePlan;
 use std::path::PathBuf;
 
 /// Which cases a renderer is asked.
@@ -25,10 +25,10 @@ pub(crate) struct Cases {
 
 impl Cases {
     /// The plan of globs, each of which must match something.
-    pub(crate) fn plan(&self, globs: &[String]) -> anyhow::Result<Plan> {
+    pub(crate) fn plan(&self, globs: &[String]) -> anyhow::Result<GatePlan> {
         matching(globs, self.cases, &Samples::default(), self.size)?;
         let choice = Choice { filter: globs.to_vec(), cases: self.cases, seed: self.seed, size: self.size };
-        let plan = Plan::new(choice)?;
+        let plan = GatePlan::new(choice)?;
         if plan.cases() == 0 && plan.scenes.is_empty() {
             let message = "of these cases nothing is promised, so that no renderer is asked them";
             return Err(NothingToRun(message.into()).into());

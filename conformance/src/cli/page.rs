@@ -9,7 +9,7 @@ use lightmeter::report::bench::{page, plot};
 use lightmeter::report::page::sweep::Swept;
 use lightmeter::report::page::{Run, markdown, scenes, selftest, special, stability, svg};
 use lightmeter::select::catalogue;
-use lightmeter::sweep::{Asked, PRESETS, Plan, file, is_over_inputs_of};
+use lightmeter::sweep::{Asked, PRESETS, SweepPlan, file, is_over_inputs_of};
 use std::path::PathBuf;
 
 /// What a page is about.
@@ -80,7 +80,7 @@ impl Page {
             let formula = &result.sweep.formula;
             let preset = PRESETS.iter().find(|preset| preset.formula == formula);
             let is_ready_made = preset.is_some()
-                && Plan::new(&catalogue, formula, &Asked::default())
+                && SweepPlan::new(&catalogue, formula, &Asked::default())
                     .is_ok_and(|plan| is_over_inputs_of(&result.sweep, &plan));
             results.push(Swept { what: preset.map(|preset| preset.what), is_ready_made, document: result });
         }

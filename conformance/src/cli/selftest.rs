@@ -123,7 +123,7 @@ impl Selftest {
 
     fn test_formulas(&self, filter: Filter, tested: &mut Tested) -> anyhow::Result<()> {
         say("every mistake in every formula that it concerns");
-        let options = formulas::Options {
+        let options = formulas::SelftestOptions {
             filter,
             cases: self.formula_cases,
             seed: self.seed,

@@ -12,7 +12,7 @@ use lightmeter::document::thousands;
 use lightmeter::report::sweep as text;
 use lightmeter::select::{Shard, catalogue};
 use lightmeter::sweep::file::{self, DocumentError, name_of};
-use lightmeter::sweep::{Asked, Free, Over, PRESETS, Plan, SweepError, describe, span, sweep};
+use lightmeter::sweep::{Asked, Free, Over, PRESETS, SweepError, SweepPlan, describe, span, sweep};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -79,7 +79,7 @@ impl Sweep {
             bail!("a sweep is written as text or json");
         }
         let catalogue = catalogue();
-        let plan = Plan::new(&catalogue, formula, &self.asked())?;
+        let plan = SweepPlan::new(&catalogue, formula, &self.asked())?;
         let shard = self.shard.0;
         check_shard(&plan, shard)?;
         self.check_files()?;
@@ -159,7 +159,7 @@ impl Sweep {
     }
 
     /// Writes the result.
-    fn finish(&self, document: &SweepDocument, plan: &Plan<'_>) -> anyhow::Result<Status> {
+    fn finish(&self, document: &SweepDocument, plan: &SweepPlan<'_>) -> anyhow::Result<Status> {
         emit(&written(document, self.format, &self.rerun(plan))?, self.out.as_deref())?;
         if !document.is_finished()
             && let Some(path) = &self.checkpoint
@@ -192,7 +192,7 @@ impl Sweep {
     }
 
     /// What a command that sweeps one input again is given besides the formula and the range.
-    fn rerun(&self, plan: &Plan<'_>) -> String {
+    fn rerun(&self, plan: &SweepPlan<'_>) -> String {
         let mut rerun = String::new();
         if let Over::Number { .. } = plan.over {
             let _ = write!(rerun, " --over {} --output {}", plan.over_name(), plan.output_name());
@@ -218,7 +218,7 @@ impl Sweep {
 }
 
 /// A shard has inputs.
-fn check_shard(plan: &Plan<'_>, shard: Shard) -> anyhow::Result<()> {
+fn check_shard(plan: &SweepPlan<'_>, shard: Shard) -> anyhow::Result<()> {
     if plan.span().blocks_of(shard) == 0 {
         let (blocks, name) = (plan.span().blocks(), name_of(shard));
         let many = if blocks == 1 { "one block".into() } else { format!("{blocks} blocks") };

@@ -10,7 +10,7 @@ use lightmeter_catalogue::cases::blend::{Program, Samples, every_state};
 use lightmeter_catalogue::select::{Member, Random, Selected, catalogue_of};
 use lightmeter_document::run::{Group, Report};
 use lightmeter_document::selftest::{UnitFinding, UnitRow};
-use lightmeter_judge::blend_unit::rules::{FAULTS, Fault, Rules, Store};
+use lightmeter_judge::blend_unit::rules::{FAULTS, Rules, Store, UnitFault};
 use lightmeter_scene::blend::{Separate, State};
 use lightmeter_scene::target::TargetFormat;
 
@@ -124,7 +124,7 @@ fn row(
 
 /// A wrong store must be named by the verdict on each group that has enough values to tell; any fault by each group that it
 /// fails values in.
-fn finding(fault: &Fault, groups: &[Group]) -> UnitFinding {
+fn finding(fault: &UnitFault, groups: &[Group]) -> UnitFinding {
     let is_found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
     let says = |text: &Option<String>, what: &str| text.as_ref().is_some_and(|text| text.contains(what));
     let is_store = fault.rules.store != Store::Nearest;

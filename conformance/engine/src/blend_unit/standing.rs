@@ -16,7 +16,7 @@ use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_judge::blend_unit::policy;
 use lightmeter_judge::blend_unit::rules::Rules;
 use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts};
-use lightmeter_judge::blend_unit::tally::{DrawnState, Sample, UnitTally, explain};
+use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, explain};
 use lightmeter_judge::formula::by_name;
 use lightmeter_judge::tally::Tally;
 use lightmeter_judge::{Outcome, worse};
@@ -42,7 +42,7 @@ pub(super) struct UnitStanding {
     /// Values that a declared model predicts, and how many are another.
     model: (u64, u64),
     departure: Option<String>,
-    samples: Vec<Sample>,
+    samples: Vec<FailingPixel>,
     rows: Vec<BlendState>,
     /// For each row, what its values say of how they are stored.
     row_stores: Vec<[StoreCounts; 4]>,
@@ -194,7 +194,7 @@ impl UnitStanding {
         let told =
             |place: usize| failure(member, &id(place), piece, place, pixels[place], drawn.target, subject, options);
         let room = SAMPLES.saturating_sub(self.samples.len());
-        let sample = |&place: &usize| Sample { drawn, case: piece.case(place), pixel: pixels[place] };
+        let sample = |&place: &usize| FailingPixel { drawn, case: piece.case(place), pixel: pixels[place] };
         self.samples.extend(tally.verdicts.failures.keys().take(room).map(sample));
         let number = self.pieces;
         self.pieces += 1;

@@ -3,7 +3,7 @@
 //! A pixel carries three inputs, one in each of its colour components, which share its alpha. Inputs are numbered by alpha, then
 //! source, then destination.
 
-use super::plan::Plan;
+use super::plan::SweepPlan;
 use super::work::Work;
 use crate::blend_unit::draw::draw;
 use crate::device::{Code, DeviceError};
@@ -42,7 +42,7 @@ pub(super) struct BytesWork<'a> {
 impl<'a> BytesWork<'a> {
     /// The unit of a subject; `Err` says what it lacks.
     pub(super) fn new(
-        plan: &Plan<'_>,
+        plan: &SweepPlan<'_>,
         subject: &'a mut Subject,
         code: &'a Code,
         profile: &'static Profile,

@@ -1,6 +1,6 @@
 //! What a sweep is: inputs, device and rules, by which files of the same sweep are told from others.
 
-use super::plan::{Over, Plan};
+use super::plan::{Over, SweepPlan};
 use super::span::Span;
 use crate::device::Code;
 use crate::subject::Subject;
@@ -12,7 +12,7 @@ const BLEND_FILE: &str = "blend_unit.wgsl";
 
 /// What a plan sweeps on an adapter.
 #[must_use]
-pub fn describe(plan: &Plan<'_>, subject: &Subject, profile: &Profile, code: &Code) -> Description {
+pub fn describe(plan: &SweepPlan<'_>, subject: &Subject, profile: &Profile, code: &Code) -> Description {
     let (from, to, unit, file) = match plan.over {
         Over::Number { from, to, .. } => {
             (Some(Exact(from)), Some(Exact(to)), "ULP", format!("{}.wgsl", plan.member.spec.family()))
@@ -41,7 +41,7 @@ pub fn describe(plan: &Plan<'_>, subject: &Subject, profile: &Profile, code: &Co
 
 /// Whether a sweep is over the inputs of a plan, to the last bit.
 #[must_use]
-pub fn is_over_inputs_of(sweep: &Description, plan: &Plan<'_>) -> bool {
+pub fn is_over_inputs_of(sweep: &Description, plan: &SweepPlan<'_>) -> bool {
     let bits = |x: Option<Exact>| x.map(|Exact(x)| x.to_bits());
     let ends = match plan.over {
         Over::Number { from, to, .. } => [Some(from), Some(to)].map(|x| x.map(f32::to_bits)),

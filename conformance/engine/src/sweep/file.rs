@@ -243,7 +243,7 @@ mod tests {
     use super::*;
     use crate::device::Code;
     use crate::subject::Subject;
-    use crate::sweep::{Asked, Plan, describe};
+    use crate::sweep::{Asked, SweepPlan, describe};
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::catalogue;
     use lightmeter_document::Number;
@@ -265,7 +265,7 @@ mod tests {
     fn document(shard: Shard) -> SweepDocument {
         let catalogue = catalogue();
         let asked = Asked { from: Some(1.0), to: Some(1.002), ..Asked::default() };
-        let plan = Plan::new(&catalogue, "fog/exp", &asked).expect("a plan");
+        let plan = SweepPlan::new(&catalogue, "fog/exp", &asked).expect("a plan");
         let sweep = describe(&plan, &Subject::embedded(), &WGSL, &Code::default());
         let mut document = begun(sweep, shard);
         document.done = document.blocks;

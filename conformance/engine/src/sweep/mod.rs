@@ -18,7 +18,7 @@ mod work;
 pub use description::{describe, is_over_inputs_of, span};
 pub use file::DocumentError;
 pub use judge::Judge;
-pub use plan::{Asked, Over, Plan, Refused};
+pub use plan::{Asked, Over, Refused, SweepPlan};
 pub use preset::{Free, PRESETS, Preset};
 pub use run::{SweepError, UNDER_WAY, sweep};
 pub use span::Span;

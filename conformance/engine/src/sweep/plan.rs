@@ -25,7 +25,7 @@ pub struct Asked {
 }
 
 /// What is swept.
-pub struct Plan<'a> {
+pub struct SweepPlan<'a> {
     /// The formula.
     pub member: &'a Member,
     /// Where it is evaluated.
@@ -63,7 +63,7 @@ fn refuse<T>(message: String) -> Result<T, Refused> {
     Err(Refused(message))
 }
 
-impl<'a> Plan<'a> {
+impl<'a> SweepPlan<'a> {
     /// What is swept of a formula.
     ///
     /// # Errors
@@ -263,14 +263,14 @@ mod tests {
     use lightmeter_catalogue::select::catalogue;
 
     fn refusal(formula: &str, asked: &Asked) -> String {
-        Plan::new(&catalogue(), formula, asked).err().map(|refused| refused.to_string()).unwrap_or_default()
+        SweepPlan::new(&catalogue(), formula, asked).err().map(|refused| refused.to_string()).unwrap_or_default()
     }
 
     #[test]
     fn every_preset_is_a_plan() {
         let catalogue = catalogue();
         for preset in PRESETS {
-            let plan = Plan::new(&catalogue, preset.formula, &Asked::default());
+            let plan = SweepPlan::new(&catalogue, preset.formula, &Asked::default());
             let plan = plan.unwrap_or_else(|error| panic!("{}: {error}", preset.formula));
             if let (Free::Number { set, .. }, Over::Number { row, .. }) = (preset.free, &plan.over) {
                 for (name, values) in set {
@@ -286,7 +286,7 @@ mod tests {
         let catalogue = catalogue();
         let count = |from: f32, to: f32| {
             let asked = Asked { from: Some(from), to: Some(to), ..Asked::default() };
-            Plan::new(&catalogue, "fog/exp", &asked).expect("a range").span().inputs
+            SweepPlan::new(&catalogue, "fog/exp", &asked).expect("a range").span().inputs
         };
         assert_eq!(count(0.0, f32::from_bits(1)), 3);
         assert_eq!(count(-f32::from_bits(1), 0.0), 3);

@@ -4,7 +4,7 @@ use super::blend::BytesWork;
 use super::description::span;
 use super::file::{self, DocumentError};
 use super::judge::Judge;
-use super::plan::{Over, Plan, input};
+use super::plan::{Over, SweepPlan, input};
 use super::work::Work;
 use crate::device::{Blocks, Code, DeviceError};
 use crate::subject::Subject;
@@ -43,7 +43,7 @@ pub enum SweepError {
 /// Where the shader is invalid, the device refuses it or fails, or the document's receiver fails. What is done stands in the
 /// document.
 pub fn sweep(
-    plan: &Plan<'_>,
+    plan: &SweepPlan<'_>,
     subject: &mut Subject,
     code: &Code,
     profile: &'static Profile,
@@ -194,7 +194,7 @@ mod tests {
     fn what_was_judged_before_a_device_was_lost_is_kept() {
         let catalogue = catalogue();
         let asked = Asked { from: Some(1.0), to: Some(1.125), ..Asked::default() };
-        let plan = Plan::new(&catalogue, "fog/exp", &asked).expect("a plan");
+        let plan = SweepPlan::new(&catalogue, "fog/exp", &asked).expect("a plan");
         let sweep = describe(&plan, &Subject::embedded(), &WGSL, &Code::default());
         let mut document = file::begun(sweep, Shard::WHOLE);
         let last = document.blocks;

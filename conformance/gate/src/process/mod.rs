@@ -11,7 +11,7 @@ use super::error::ProcessError;
 use super::known::State;
 use super::ledger::Ledger;
 use super::pack;
-use super::plan::{Place, Plan};
+use super::plan::{CasePlace, GatePlan};
 use super::problems::note;
 use running::{Event, Running};
 use serde_json::json;
@@ -125,7 +125,7 @@ pub struct Asking<'a> {
 /// Where it cannot be started, or says nothing of itself.
 pub fn ask(
     ledger: &mut Ledger<'_>,
-    plan: &Plan,
+    plan: &GatePlan,
     asking: Asking<'_>,
     progress: &mut impl FnMut(u64),
 ) -> Result<Ending, ProcessError> {
@@ -165,7 +165,7 @@ pub fn ask(
 }
 
 struct Session<'a> {
-    plan: &'a Plan,
+    plan: &'a GatePlan,
     asking: Asking<'a>,
     deadline: Option<Instant>,
     running: Option<Running>,
@@ -181,7 +181,7 @@ struct Session<'a> {
 
 /// What is still to be asked of a process.
 struct Queue {
-    open: VecDeque<Place>,
+    open: VecDeque<CasePlace>,
     /// Cases that are asked alone, to find the one that it fails at.
     alone: usize,
     /// What was told of them, by its places among the incidents, as long as the culprit is not found.
@@ -192,8 +192,8 @@ struct Queue {
 
 impl Queue {
     /// The cases that are asked next, `size` at once at most.
-    fn next(&self, size: usize) -> Vec<Place> {
-        let is_case = |place: &&Place| matches!(place, Place::Case { .. });
+    fn next(&self, size: usize) -> Vec<CasePlace> {
+        let is_case = |place: &&CasePlace| matches!(place, CasePlace::Case { .. });
         let is_one = self.alone > 0 || size == 1 || !self.open.front().is_some_and(|place| is_case(&place));
         let count = if is_one { 1 } else { self.open.iter().take(size).take_while(is_case).count() };
         self.open.iter().take(count).copied().collect()
@@ -203,7 +203,7 @@ impl Queue {
 /// A batch that is asked.
 struct Waiting {
     /// What is not answered, by its id.
-    open: HashMap<String, Place>,
+    open: HashMap<String, CasePlace>,
     /// How long an answer may take.
     limit: Duration,
     /// Until when the next must come: answers must come all the time, and nothing else counts.
@@ -304,7 +304,7 @@ impl Session<'_> {
     fn all(
         &mut self,
         ledger: &mut Ledger<'_>,
-        asked: Vec<Place>,
+        asked: Vec<CasePlace>,
         progress: &mut impl FnMut(u64),
     ) -> Result<bool, ProcessError> {
         let mut queue = Queue { open: asked.into(), alone: 0, untold: vec![], since: None };
@@ -363,7 +363,7 @@ impl Session<'_> {
         ledger: &mut Ledger<'_>,
         queue: &mut Queue,
         ended: &Ended,
-        rest: Vec<Place>,
+        rest: Vec<CasePlace>,
         progress: &mut impl FnMut(u64),
     ) -> bool {
         let message = ended.message();
@@ -419,7 +419,7 @@ impl Session<'_> {
     }
 
     /// Notes the case that the process failed at, and what was told of its batch before, by places among the incidents.
-    fn failed_at(&mut self, ledger: &mut Ledger<'_>, culprit: Place, message: &str, before: Vec<usize>) {
+    fn failed_at(&mut self, ledger: &mut Ledger<'_>, culprit: CasePlace, message: &str, before: Vec<usize>) {
         let told = format!("{}: {message}", self.plan.id(culprit));
         if ledger.expects_crash(culprit) {
             let mut before: Vec<String> =
@@ -445,12 +445,12 @@ impl Session<'_> {
     }
 
     /// Asks cases at once; how that ended, and what is left unanswered.
-    fn batch(&mut self, ledger: &mut Ledger<'_>, batch: &[Place]) -> Result<(Ended, Vec<Place>), ProcessError> {
+    fn batch(&mut self, ledger: &mut Ledger<'_>, batch: &[CasePlace]) -> Result<(Ended, Vec<CasePlace>), ProcessError> {
         let text = self.requests(ledger, batch)?;
         let Some(mut running) = self.running.take() else { return Ok((Ended::Crashed, batch.to_vec())) };
         let writing = running.send(text);
         let limits = self.asking.limits;
-        let limit = if matches!(batch[0], Place::Scene(_)) { limits.scene } else { limits.case };
+        let limit = if matches!(batch[0], CasePlace::Scene(_)) { limits.scene } else { limits.case };
         let start = Instant::now();
         let mut waiting = Waiting {
             open: batch.iter().map(|&place| (self.plan.id(place), place)).collect(),
@@ -471,12 +471,12 @@ impl Session<'_> {
             }
         }
         self.running = Some(running);
-        let is_open = |place: &Place| waiting.open.values().any(|open| open == place);
+        let is_open = |place: &CasePlace| waiting.open.values().any(|open| open == place);
         Ok((ended, batch.iter().copied().filter(is_open).collect()))
     }
 
     /// What a batch is asked by, a line each, with its number behind them.
-    fn requests(&mut self, ledger: &mut Ledger<'_>, batch: &[Place]) -> Result<String, ProcessError> {
+    fn requests(&mut self, ledger: &mut Ledger<'_>, batch: &[CasePlace]) -> Result<String, ProcessError> {
         let mut text = String::new();
         for &place in batch {
             text += &self.request(ledger, place)?;
@@ -548,10 +548,10 @@ impl Session<'_> {
         has_read
     }
 
-    fn request(&self, ledger: &mut Ledger<'_>, place: Place) -> Result<String, ProcessError> {
+    fn request(&self, ledger: &mut Ledger<'_>, place: CasePlace) -> Result<String, ProcessError> {
         Ok(match place {
-            Place::Case { formula, case } => pack::case(self.plan, formula, case).to_string(),
-            Place::Scene(scene) => {
+            CasePlace::Case { formula, case } => pack::case(self.plan, formula, case).to_string(),
+            CasePlace::Scene(scene) => {
                 let (title, frame) = self.plan.frame(scene)?;
                 let id = self.plan.id(place);
                 let path = self.asking.folder.join(format!("{}.json", id.replace('/', "-")));

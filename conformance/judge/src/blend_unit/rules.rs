@@ -203,7 +203,7 @@ impl Rules {
 
 /// A mistake that a blend unit, or who sets it up, may make.
 #[derive(Clone, Copy, Debug)]
-pub struct Fault {
+pub struct UnitFault {
     /// Its name.
     pub name: &'static str,
     /// It is as if …
@@ -212,7 +212,7 @@ pub struct Fault {
     pub rules: Rules,
 }
 
-impl Fault {
+impl UnitFault {
     const fn new(name: &'static str, says: &'static str, rules: Rules) -> Self {
         Self { name, says, rules }
     }
@@ -230,14 +230,14 @@ impl Fault {
 }
 
 /// The mistakes that are told by name.
-pub const FAULTS: &[Fault] = &[
-    Fault::new("truncate", "results were truncated", Rules { store: Store::Truncated, ..Rules::RIGHT }),
-    Fault::new(
+pub const FAULTS: &[UnitFault] = &[
+    UnitFault::new("truncate", "results were truncated", Rules { store: Store::Truncated, ..Rules::RIGHT }),
+    UnitFault::new(
         "truncate-alpha",
         "alpha were truncated",
         Rules { store: Store::Truncated, only_alpha: true, ..Rules::RIGHT },
     ),
-    Fault::new(
+    UnitFault::new(
         "truncate-one-state",
         "results of DST_COLOR, SRC_COLOR were truncated",
         Rules {
@@ -246,17 +246,25 @@ pub const FAULTS: &[Fault] = &[
             ..Rules::RIGHT
         },
     ),
-    Fault::new("times-256", "results were multiplied by 256 for 255", Rules { store: Store::Times256, ..Rules::RIGHT }),
-    Fault::new("round-up", "results were rounded up", Rules { store: Store::RoundedUp, ..Rules::RIGHT }),
-    Fault::new("step-up", "a step were added", Rules { store: Store::StepUp, ..Rules::RIGHT }),
-    Fault::new("step-down", "a step were taken off", Rules { store: Store::StepDown, ..Rules::RIGHT }),
-    Fault::new(
+    UnitFault::new(
+        "times-256",
+        "results were multiplied by 256 for 255",
+        Rules { store: Store::Times256, ..Rules::RIGHT },
+    ),
+    UnitFault::new("round-up", "results were rounded up", Rules { store: Store::RoundedUp, ..Rules::RIGHT }),
+    UnitFault::new("step-up", "a step were added", Rules { store: Store::StepUp, ..Rules::RIGHT }),
+    UnitFault::new("step-down", "a step were taken off", Rules { store: Store::StepDown, ..Rules::RIGHT }),
+    UnitFault::new(
         "clamp-after",
         "the result alone were clamped, and not the operands",
         Rules { clamp: Clamp::Result, ..Rules::RIGHT },
     ),
-    Fault::new("clamp-on-float", "a float target clamped its result", Rules { clamp: Clamp::Result, ..Rules::RIGHT }),
-    Fault::new(
+    UnitFault::new(
+        "clamp-on-float",
+        "a float target clamped its result",
+        Rules { clamp: Clamp::Result, ..Rules::RIGHT },
+    ),
+    UnitFault::new(
         "src-alpha-for-one",
         "SRC_ALPHA and ONE were exchanged",
         Rules {
@@ -268,7 +276,7 @@ pub const FAULTS: &[Fault] = &[
             ..Rules::RIGHT
         },
     ),
-    Fault::new(
+    UnitFault::new(
         "one-minus-src-alpha-for-zero",
         "ONE_MINUS_SRC_ALPHA and ZERO were exchanged",
         Rules {
@@ -280,12 +288,12 @@ pub const FAULTS: &[Fault] = &[
             ..Rules::RIGHT
         },
     ),
-    Fault::new(
+    UnitFault::new(
         "saturate-by-source",
         "SRC_ALPHA_SATURATE were min(As, 1 − As)",
         Rules { saturate: Saturate::SourceOnly, ..Rules::RIGHT },
     ),
-    Fault::new(
+    UnitFault::new(
         "subtract-reversed",
         "the two subtractions were exchanged",
         Rules {
@@ -297,7 +305,7 @@ pub const FAULTS: &[Fault] = &[
             ..Rules::RIGHT
         },
     ),
-    Fault::new(
+    UnitFault::new(
         "constant-color-for-alpha",
         "the constant's colour were read for its alpha",
         Rules {
@@ -309,7 +317,7 @@ pub const FAULTS: &[Fault] = &[
             ..Rules::RIGHT
         },
     ),
-    Fault::new(
+    UnitFault::new(
         "alpha-factor-for-color",
         "colour factors gave their alpha to every component",
         Rules {
@@ -325,30 +333,34 @@ pub const FAULTS: &[Fault] = &[
             ..Rules::RIGHT
         },
     ),
-    Fault::new(
+    UnitFault::new(
         "alpha-state-for-color",
         "the alpha's factors and equation were used for the colour",
         Rules { alpha_state_for_color: true, ..Rules::RIGHT },
     ),
-    Fault::new(
+    UnitFault::new(
         "factors-in-min",
         "MIN and MAX were of colours multiplied by their factors",
         Rules { factors_in_min_and_max: true, ..Rules::RIGHT },
     ),
-    Fault::new(
+    UnitFault::new(
         "red-and-blue-exchanged",
         "red and blue were exchanged",
         Rules { red_and_blue_exchanged: true, ..Rules::RIGHT },
     ),
-    Fault::new("layers-reversed", "layers were drawn last one first", Rules { layers_reversed: true, ..Rules::RIGHT }),
-    Fault::new("mask-ignored", "every component were written", Rules { mask_ignored: true, ..Rules::RIGHT }),
-    Fault::new("alpha-encoded", "alpha were encoded too", Rules { alpha_encoded: true, ..Rules::RIGHT }),
-    Fault::new(
+    UnitFault::new(
+        "layers-reversed",
+        "layers were drawn last one first",
+        Rules { layers_reversed: true, ..Rules::RIGHT },
+    ),
+    UnitFault::new("mask-ignored", "every component were written", Rules { mask_ignored: true, ..Rules::RIGHT }),
+    UnitFault::new("alpha-encoded", "alpha were encoded too", Rules { alpha_encoded: true, ..Rules::RIGHT }),
+    UnitFault::new(
         "factors-exchanged",
         "each side were multiplied by the other's factor",
         Rules { factors_exchanged: true, ..Rules::RIGHT },
     ),
-    Fault::new("srgb-ignored", "the target were not encoded", Rules { srgb_ignored: true, ..Rules::RIGHT }),
+    UnitFault::new("srgb-ignored", "the target were not encoded", Rules { srgb_ignored: true, ..Rules::RIGHT }),
 ];
 
 /// The encoding's name where errors are told in it.

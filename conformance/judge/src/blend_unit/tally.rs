@@ -3,7 +3,7 @@
 use super::embedded;
 use super::expect::{ExpectedPixel, expect};
 use super::pixel::Units;
-use super::rules::{FAULTS, Fault, Rules, Store};
+use super::rules::{FAULTS, Rules, Store, UnitFault};
 use super::store::{NEAR, StoreCounts};
 use crate::devices::{BlendDeviation, Known};
 use crate::tally::Tally;
@@ -161,7 +161,7 @@ pub fn count_tier(tiers: &mut Tiers, reference: f64, value: f64, outcome: Outcom
 
 /// A failing pixel, kept so that faults can be tried as its explanation.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct FailingPixel {
     /// What was drawn.
     pub drawn: DrawnState,
     /// The case.
@@ -170,9 +170,9 @@ pub struct Sample {
     pub pixel: Units,
 }
 
-impl Sample {
+impl FailingPixel {
     /// Whether a fault would have left what was left: a value that its rules allow, or the very step that a store gives.
-    fn is_as_by(&self, fault: &Fault) -> bool {
+    fn is_as_by(&self, fault: &UnitFault) -> bool {
         let DrawnState { program, target, profile, .. } = self.drawn;
         if fault.rules.store != Store::Nearest {
             let stored = embedded::blend(program, target, &self.case, &fault.rules);
@@ -186,10 +186,10 @@ impl Sample {
 /// The faults that explain the most of the failing pixels, if nine in ten are explained: what it is as if, how many, and of
 /// how many. In some states two faults come to the same.
 #[must_use]
-pub fn explain(samples: &[Sample]) -> Option<(String, usize, usize)> {
+pub fn explain(samples: &[FailingPixel]) -> Option<(String, usize, usize)> {
     let target = samples.first()?.drawn.target;
     let tried = FAULTS.iter().filter(|fault| fault.concerns(target));
-    let explained: Vec<(&Fault, usize)> =
+    let explained: Vec<(&UnitFault, usize)> =
         tried.map(|fault| (fault, samples.iter().filter(|sample| sample.is_as_by(fault)).count())).collect();
     let most = explained.iter().map(|(_, count)| *count).max()?;
     let alike: Vec<&str> = explained.iter().filter(|(_, count)| *count == most).map(|(fault, _)| fault.says).collect();
