@@ -175,7 +175,7 @@ fn records_and_the_page_are_made_from_a_run() {
     let text = std::fs::read_to_string(&page).expect("the page was written");
     assert!(text.contains("| nan-plus-one | NaN + 1 | nothing | NaN 0x"), "{text}");
     let other = lightmeter(&["page", "blend", &run]);
-    assert!(code(&other) == 2 && stderr(&other).contains("schema `lightmeter.special/1`"), "{}", stderr(&other));
+    assert!(code(&other) == 2 && stderr(&other).contains("schema is `lightmeter.special/1`"), "{}", stderr(&other));
 }
 
 /// The bits of the inputs of a case of fog/exp that tell it from every other.

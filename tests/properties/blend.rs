@@ -8,7 +8,7 @@ use lightmeter::blend_unit::expect::expect;
 use lightmeter::blend_unit::model::Model;
 use lightmeter::blend_unit::pixel::{Units, stored};
 use lightmeter::blend_unit::rules::{FAULTS, Rules, Store};
-use lightmeter::blend_unit::store::StoreCounts;
+use lightmeter::blend_unit::store::{StoreCounts, Stores as _};
 use lightmeter::blend_unit::tally::{DrawnState, UnitTally};
 use lightmeter::cases::blend::Program;
 use lightmeter::devices::Known;

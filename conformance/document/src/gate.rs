@@ -36,7 +36,7 @@ pub struct GateReport {
     /// Counts over all groups.
     #[serde(default)]
     pub totals: GateTotals,
-    /// Lines that are no answers.
+    /// Lines that cannot be read as answers, or answer what nobody asked.
     #[serde(default)]
     pub problems: Problems,
     /// What went wrong with the process.
@@ -173,7 +173,7 @@ impl GateReport {
     }
 }
 
-/// Answers that are none.
+/// Answers that cannot be read, or that nobody asked for.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Problems {
     /// How many of each kind.

@@ -13,19 +13,56 @@ pub mod sweep;
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 pub use number::{Number, thousands};
 
 /// A word that is written from a constant and read from a file.
 pub type Word = std::borrow::Cow<'static, str>;
 
-/// What a command writes as a whole. The code that writes it is made here, once, and not in each room that does.
-pub trait Document {
+/// Why a text is not the document that it should be.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// It is not JSON.
+    #[error("not JSON: {0}; expected {1}")]
+    Json(String, &'static str),
+    /// It is another document.
+    #[error("its schema is {found}; expected {schema}, {what}")]
+    Schema {
+        /// The schema that it names, in backquotes, or `none`.
+        found: String,
+        /// The schema that is expected.
+        schema: &'static str,
+        /// What has that schema.
+        what: &'static str,
+    },
+    /// A field is missing, or is not what it should be.
+    #[error("not {1}: {0}")]
+    Field(String, &'static str),
+    /// It was changed after it was written.
+    #[error("its checksum does not hold")]
+    Checksum,
+}
+
+/// What a command writes as a whole. The code that writes and reads it is made here, once, and not in each room that does.
+pub trait Document: Sized {
+    /// The name of its schema.
+    const SCHEMA: &'static str;
+    /// What it is, in words: `the JSON of …`.
+    const WHAT: &'static str;
+
     /// The JSON, for people to read too, with a line feed at its end.
     ///
     /// # Errors
     /// Where a map has a key that is no text: none does.
     fn to_json(&self) -> serde_json::Result<String>;
+
+    /// Reads the JSON. The schema is looked at first, so that another document is told by its name.
+    ///
+    /// # Errors
+    /// Where it is another document, or damaged.
+    fn read(json: &str) -> Result<Self, ReadError>;
 
     /// The JSON Schema of the document as it is written.
     fn schema() -> Schema;
@@ -35,11 +72,27 @@ fn schema<T: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>()
 }
 
+fn read<T: Document + DeserializeOwned>(json: &str) -> Result<T, ReadError> {
+    let value: Value = serde_json::from_str(json).map_err(|error| ReadError::Json(error.to_string(), T::WHAT))?;
+    if value["schema"] != T::SCHEMA {
+        let found = value["schema"].as_str().map_or_else(|| "none".into(), |name| format!("`{name}`"));
+        return Err(ReadError::Schema { found, schema: T::SCHEMA, what: T::WHAT });
+    }
+    serde_json::from_value(value).map_err(|error| ReadError::Field(error.to_string(), T::WHAT))
+}
+
 macro_rules! documents {
-    ($($document:ty),+ $(,)?) => {
-        $(impl Document for $document {
+    ($($room:ident::$document:ident, $what:literal;)+) => {
+        $(impl Document for $room::$document {
+            const SCHEMA: &'static str = $room::SCHEMA;
+            const WHAT: &'static str = $what;
+
             fn to_json(&self) -> serde_json::Result<String> {
                 Ok(serde_json::to_string_pretty(self)? + "\n")
+            }
+
+            fn read(json: &str) -> Result<Self, ReadError> {
+                read(json)
             }
 
             fn schema() -> Schema {
@@ -49,12 +102,31 @@ macro_rules! documents {
     };
 }
 
-documents!(
-    bench::BenchDocument,
-    gate::GateReport,
-    pack::Manifest,
-    run::Report,
-    selftest::SelftestDocument,
-    special::SpecialReport,
-    sweep::SweepDocument,
-);
+documents! {
+    bench::BenchDocument, "the JSON of `lightmeter bench --format json`";
+    gate::GateReport, "the JSON of `lightmeter gate --format json`";
+    pack::Manifest, "the manifest of `lightmeter pack`";
+    run::Report, "the JSON of `lightmeter run --format json`";
+    selftest::SelftestDocument, "the JSON of `lightmeter selftest --format json`";
+    special::SpecialReport, "the JSON of `lightmeter special --format json`";
+}
+
+/// A sweep takes hours, so that it is signed by a checksum over all else.
+impl Document for sweep::SweepDocument {
+    const SCHEMA: &'static str = sweep::SCHEMA;
+    const WHAT: &'static str = "the JSON of `lightmeter sweep --format json`";
+
+    fn to_json(&self) -> serde_json::Result<String> {
+        let signed = Self { checksum: self.sum()?, ..self.clone() };
+        Ok(serde_json::to_string_pretty(&signed)? + "\n")
+    }
+
+    fn read(json: &str) -> Result<Self, ReadError> {
+        let document: Self = read(json)?;
+        if document.sum().ok().as_deref() == Some(&document.checksum) { Ok(document) } else { Err(ReadError::Checksum) }
+    }
+
+    fn schema() -> Schema {
+        schema::<Self>()
+    }
+}

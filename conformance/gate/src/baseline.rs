@@ -3,7 +3,7 @@
 use super::known::expanded;
 use lightmeter_catalogue::cases::GENERATOR_VERSION;
 use lightmeter_document::Document as _;
-use lightmeter_document::gate::{GateGroup, GateReport, SCHEMA, cases};
+use lightmeter_document::gate::{GateGroup, GateReport, cases};
 use lightmeter_document::pack::Choice;
 use lightmeter_judge::image::file::whole;
 use std::collections::HashSet;
@@ -65,14 +65,8 @@ impl Baseline {
     pub fn read(path: &Path) -> Result<Self, BaselineError> {
         let failed = |message: String| BaselineError::Read { path: path.into(), message };
         let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
-        let expected = "expected the JSON of `lightmeter gate --format json`, or of --update-baseline";
-        let baseline: GateReport =
-            serde_json::from_str(&text).map_err(|error| failed(format!("{error}; {expected}")))?;
-        if baseline.schema == SCHEMA {
-            Ok(Self(baseline))
-        } else {
-            Err(failed(format!("its schema is `{}`; {expected}", baseline.schema)))
-        }
+        let baseline = GateReport::read(&text).map_err(|error| failed(error.to_string()))?;
+        Ok(Self(baseline))
     }
 
     /// What is worse in the report, beyond `factor` where it is an error.

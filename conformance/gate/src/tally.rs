@@ -51,7 +51,7 @@ pub struct AnswerTally {
 }
 
 impl AnswerTally {
-    /// Nothing is answered, of so many outputs.
+    /// Of a formula with that many outputs, before anything is answered.
     #[must_use]
     pub fn new(outputs: usize) -> Self {
         let outputs = outputs.max(1);
@@ -152,7 +152,7 @@ impl AnswerTally {
     pub(super) fn keep(&mut self, case: usize, values: &[f32], inputs: &[f32], has_failed: bool) {
         if has_failed {
             let simple = simplicity(inputs);
-            if self.smallest.as_ref().is_none_or(|(least, _)| simple < *least) {
+            if self.smallest.as_ref().is_none_or(|(least, row)| (simple, case) < (*least, row.case)) {
                 self.smallest = Some((simple, AnswerRow { case, values: values.to_vec() }));
             }
         }

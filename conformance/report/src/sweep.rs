@@ -1,9 +1,9 @@
 //! A sweep's result for people.
 
 use lightmeter_document::run::Identity;
-use lightmeter_document::sweep::{self, Description, Exact, Place, Seen, Statistics, SweepDocument};
+use lightmeter_document::sweep::{Description, Exact, Place, Seen, Statistics, SweepDocument};
 use lightmeter_document::{Number, thousands};
-use lightmeter_judge::blend_unit::store::StoreCounts;
+use lightmeter_judge::blend_unit::store::{StoreCounts, Stores as _};
 use std::fmt::{Result, Write};
 
 /// Characters of the longest bar.
@@ -105,9 +105,8 @@ fn verdicts(found: &Statistics, out: &mut impl Write) -> Result {
 
 /// The store that most values speak for, by its name, and their share.
 #[must_use]
-pub fn likeliest(counts: &sweep::StoreCounts) -> (&'static str, f64) {
-    let &sweep::StoreCounts { of, as_by, error } = counts;
-    let (store, share) = StoreCounts { of, as_by, error }.likeliest();
+pub fn likeliest(counts: &StoreCounts) -> (&'static str, f64) {
+    let (store, share) = counts.likeliest();
     (store.name(), share)
 }
 

@@ -3,7 +3,8 @@
 use super::{Status, emit};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
-use lightmeter::document::bench::{BenchDocument, SCHEMA};
+use lightmeter::document::Document as _;
+use lightmeter::document::bench::BenchDocument;
 use lightmeter::report;
 use lightmeter::report::bench::{page, plot};
 use lightmeter::report::page::sweep::Swept;
@@ -90,10 +91,7 @@ impl Page {
     }
 
     fn bench(&self, json: &str) -> anyhow::Result<String> {
-        let document: BenchDocument = serde_json::from_str(json)?;
-        if document.schema != SCHEMA {
-            bail!("its schema is {}; expected {SCHEMA}", document.schema);
-        }
+        let document = BenchDocument::read(json)?;
         let mut pictures = vec![];
         let mut folder = String::new();
         if let Some(out) = &self.out {

@@ -7,7 +7,8 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::cases::Stage;
-use lightmeter::document::sweep::{Description, SCHEMA, SweepDocument};
+use lightmeter::document::Document as _;
+use lightmeter::document::sweep::{Description, SweepDocument};
 use lightmeter::document::thousands;
 use lightmeter::report::sweep as text;
 use lightmeter::select::{Shard, catalogue};
@@ -230,7 +231,7 @@ fn check_shard(plan: &SweepPlan<'_>, shard: Shard) -> anyhow::Result<()> {
 /// A result as text or JSON.
 pub(crate) fn written(document: &SweepDocument, format: Format, rerun: &str) -> anyhow::Result<String> {
     match format {
-        Format::Json => Ok(file::to_json(document)?),
+        Format::Json => Ok(document.to_json()?),
         Format::Junit => bail!("a sweep is written as text or json"),
         Format::Text => {
             let catalogue = catalogue();
@@ -270,7 +271,8 @@ fn presets(format: Format) -> anyhow::Result<String> {
                     serde_json::json!({ "formula": preset.formula, "over": range(preset.free), "what": preset.what })
                 })
                 .collect();
-            Ok(serde_json::to_string_pretty(&serde_json::json!({ "schema": SCHEMA, "presets": rows }))? + "\n")
+            Ok(serde_json::to_string_pretty(&serde_json::json!({ "schema": "lightmeter.presets/1", "presets": rows }))?
+                + "\n")
         }
         Format::Text => {
             let mut out = String::new();

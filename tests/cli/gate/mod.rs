@@ -85,6 +85,35 @@ fn right_answers_pass_and_the_report_is_whole() {
 }
 
 #[test]
+fn the_order_of_answers_changes_nothing_that_is_told() {
+    let (pack, answers) = answered("order", &["fog/exp", "vector/reflect"]);
+    let wrong = edit_as(&answers, "wrong", |k, line| {
+        let mut answer: Value = serde_json::from_str(line).expect("it is JSON");
+        if k % 3 > 0 {
+            answer["value"][1] = 0.75.into();
+        }
+        format!("{answer}\n")
+    });
+    let lines = std::fs::read_to_string(&wrong).expect("it was written");
+    let backwards = answers.with_extension("backwards.jsonl");
+    std::fs::write(&backwards, lines.lines().rev().map(|line| format!("{line}\n")).collect::<String>())
+        .expect("a file");
+    let told = |answers: &Path| {
+        let (status, mut report) = judged(&pack, answers, &[]);
+        for group in report["groups"].as_array_mut().expect("groups") {
+            // A sum of floats.
+            group["error_mean"] = Value::Null;
+        }
+        (status, report["totals"].clone(), report["groups"].clone(), report["failures"].clone())
+    };
+    let (status, totals, groups, failures) = told(&wrong);
+    assert!(status == 1 && totals["failed"].as_u64() > Some(50), "{totals}");
+    let back = told(&backwards);
+    assert_eq!((status, totals, groups), (back.0, back.1, back.2));
+    assert_eq!(failures, back.3);
+}
+
+#[test]
 fn each_wrong_line_is_named_and_every_good_answer_is_judged() {
     let (pack, answers) = answered("wrong", &["fog/exp"]);
     let all = std::fs::read_to_string(&answers).expect("there are answers").lines().count() as u64;

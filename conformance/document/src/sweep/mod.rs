@@ -79,3 +79,23 @@ pub struct Description {
     /// Inputs of a block.
     pub block: u64,
 }
+
+impl SweepDocument {
+    /// The checksum of all but the checksum itself.
+    ///
+    /// # Errors
+    /// Where it is no JSON, which cannot be.
+    pub(crate) fn sum(&self) -> serde_json::Result<String> {
+        let unsigned = Self { checksum: String::new(), ..self.clone() };
+        Ok(hash(serde_json::to_string(&unsigned)?.as_bytes()))
+    }
+}
+
+/// FNV-1a of 64 bits: against damage and mix-ups, not against forgery.
+#[must_use]
+pub fn hash(bytes: &[u8]) -> String {
+    let hash = bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("fnv1a:{hash:016x}")
+}

@@ -15,7 +15,7 @@ use lightmeter_judge::blend_unit::model::Model;
 use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_judge::blend_unit::policy;
 use lightmeter_judge::blend_unit::rules::Rules;
-use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts};
+use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts, Stores as _};
 use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, explain};
 use lightmeter_judge::formula::by_name;
 use lightmeter_judge::tally::Tally;

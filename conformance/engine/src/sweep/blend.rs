@@ -13,12 +13,12 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_document::Number;
-use lightmeter_document::sweep::{self, Exact, Place, Seen, Statistics, Stored};
+use lightmeter_document::sweep::{Exact, Place, Seen, Statistics, Stored};
 use lightmeter_judge::Outcome;
 use lightmeter_judge::blend_unit::expect::expect;
 use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_judge::blend_unit::rules::Rules;
-use lightmeter_judge::blend_unit::store::StoreCounts;
+use lightmeter_judge::blend_unit::store::{StoreCounts, Stores as _};
 use lightmeter_judge::blend_unit::tally::count_tier;
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
@@ -115,8 +115,7 @@ impl<'a> BytesWork<'a> {
                 }
             }
         }
-        let StoreCounts { of, as_by, error } = counts;
-        stored.counts = sweep::StoreCounts { of, as_by, error };
+        stored.counts = counts;
         sum.stored = Some(stored);
         sum
     }

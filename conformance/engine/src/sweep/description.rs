@@ -5,7 +5,7 @@ use super::span::Span;
 use crate::device::Code;
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
-use lightmeter_document::sweep::{Description, Exact};
+use lightmeter_document::sweep::{Description, Exact, hash};
 
 /// The shader that hands source colours to the blend unit.
 const BLEND_FILE: &str = "blend_unit.wgsl";
@@ -105,12 +105,4 @@ fn leaves(description: &Description) -> Vec<(String, String)> {
     ];
     leaves.extend(rest.map(|(name, value)| (name.to_owned(), value)));
     leaves
-}
-
-/// FNV-1a of 64 bits: against damage and mix-ups, not against forgery.
-pub(super) fn hash(bytes: &[u8]) -> String {
-    let hash = bytes
-        .iter()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
-    format!("fnv1a:{hash:016x}")
 }

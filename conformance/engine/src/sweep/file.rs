@@ -2,11 +2,11 @@
 //!
 //! A file is trusted where its checksum holds and its counts add up to the blocks that it says are done.
 
-use super::description::{differences, hash, span};
+use super::description::{differences, span};
 use super::span::Span;
 use lightmeter_catalogue::select::Shard;
+use lightmeter_document::Document as _;
 use lightmeter_document::sweep::{Description, SCHEMA, Statistics, SweepDocument};
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
@@ -76,35 +76,12 @@ pub fn shard(document: &SweepDocument) -> Shard {
     shard_of(&document.shard).expect("a document is made with a shard")
 }
 
-/// A document as a file's text.
-///
-/// # Errors
-/// Where it is no JSON, which cannot be.
-pub fn to_json(document: &SweepDocument) -> serde_json::Result<String> {
-    let signed = SweepDocument { checksum: checksum(document)?, ..document.clone() };
-    Ok(serde_json::to_string_pretty(&signed)? + "\n")
-}
-
-/// A hash of all but the checksum itself.
-fn checksum(document: &SweepDocument) -> serde_json::Result<String> {
-    let unsigned = SweepDocument { checksum: String::new(), ..document.clone() };
-    Ok(hash(serde_json::to_string(&unsigned)?.as_bytes()))
-}
-
 /// Reads a file's text.
 ///
 /// # Errors
 /// What is wrong with it.
 pub fn parse(text: &str) -> Result<SweepDocument, String> {
-    let value: Value = serde_json::from_str(text).map_err(|error| format!("not JSON: {error}"))?;
-    if value["schema"] != SCHEMA {
-        let schema = value["schema"].as_str().unwrap_or("none").to_owned();
-        return Err(format!("its schema is {schema}; expected {SCHEMA}"));
-    }
-    let document: SweepDocument = serde_json::from_value(value).map_err(|error| error.to_string())?;
-    if checksum(&document).ok().as_deref() != Some(&document.checksum) {
-        return Err("its checksum does not hold".into());
-    }
+    let document = SweepDocument::read(text).map_err(|error| error.to_string())?;
     problem(&document).map_or(Ok(document), Err)
 }
 
@@ -167,7 +144,7 @@ pub fn write(document: &SweepDocument, path: &Path) -> Result<(), DocumentError>
     let mut beside = path.as_os_str().to_owned();
     beside.push(format!(".{}.tmp", std::process::id()));
     let beside = PathBuf::from(beside);
-    let text = to_json(document).map_err(|error| unwritable(error.to_string()))?;
+    let text = document.to_json().map_err(|error| unwritable(error.to_string()))?;
     let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
     written.map_err(|error| {
         let _ = std::fs::remove_file(&beside);
@@ -281,9 +258,9 @@ mod tests {
     #[test]
     fn a_file_is_read_back_as_it_was_written() {
         let document = document(Shard::WHOLE);
-        let text = to_json(&document).expect("JSON");
+        let text = document.to_json().expect("JSON");
         let back = parse(&text).expect("it is whole");
-        assert_eq!(to_json(&back).expect("JSON"), text);
+        assert_eq!(back.to_json().expect("JSON"), text);
         assert_eq!(back.statistics, document.statistics);
         assert_eq!(back.statistics.worst, Some(seen(1.001, 9.0)));
     }
@@ -304,20 +281,20 @@ mod tests {
         for (says, change) in change {
             let mut document = document(Shard::WHOLE);
             change(&mut document);
-            let message = parse(&to_json(&document).expect("JSON")).err().unwrap_or_default();
+            let message = parse(&document.to_json().expect("JSON")).err().unwrap_or_default();
             assert!(message.contains(says), "{says}: {message}");
         }
     }
 
     #[test]
     fn a_flipped_bit_is_seen() {
-        let text = to_json(&document(Shard::WHOLE)).expect("JSON");
+        let text = document(Shard::WHOLE).to_json().expect("JSON");
         for at in (0..text.len()).step_by(7) {
             let mut bytes = text.clone().into_bytes();
             bytes[at] ^= 1;
             // What is read as the same numbers, as with other white space, is no damage.
             let read = String::from_utf8(bytes).ok().and_then(|text| parse(&text).ok());
-            let differs = read.is_some_and(|read| to_json(&read).expect("JSON") != text);
+            let differs = read.is_some_and(|read| read.to_json().expect("JSON") != text);
             assert!(!differs, "byte {at} of {text}");
         }
     }

@@ -205,7 +205,7 @@ mod tests {
         });
         assert!(matches!(lost, Err(SweepError::Device(DeviceError::Failed(_)))), "{lost:?}");
         assert_eq!((document.done, told), (3, 3));
-        let text = file::to_json(&document).expect("JSON");
+        let text = lightmeter_document::Document::to_json(&document).expect("JSON");
         assert_eq!(file::parse(&text).expect("it adds up").done, 3);
     }
 }

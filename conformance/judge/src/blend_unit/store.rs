@@ -12,19 +12,7 @@
 //! and 0.09 at worst).
 
 use super::rules::Store;
-use serde::{Deserialize, Serialize};
-
-/// Values that tell stores apart, of a component.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StoreCounts {
-    /// How many.
-    pub of: u64,
-    /// How many are as each of [`Store::ALL`] would have them.
-    pub as_by: [u64; Store::ALL.len()],
-    /// The sum of their distances from the nearest step, with the sign.
-    pub error: f64,
-}
+pub use lightmeter_document::sweep::StoreCounts;
 
 /// References this near to a whole step are that step; those this near to the middle between two have no nearest.
 pub const NEAR: f64 = 1e-3;
@@ -41,9 +29,31 @@ const MOST_BIAS_OF_A_STATE: f64 = 0.4;
 /// A store is named where this share of the values is as it would have them.
 const CLEAR: f64 = 0.9;
 
-impl StoreCounts {
+/// What counted values say of how they are stored.
+pub trait Stores {
     /// Counts a value. At whole steps and halfway between two stores cannot be told apart.
-    pub fn count(&mut self, reference: f64, value: f64) {
+    fn count(&mut self, reference: f64, value: f64);
+
+    /// The share of nearest values.
+    fn nearest(&self) -> f64;
+
+    /// The mean distance from the nearest step, with its sign.
+    fn bias(&self) -> f64;
+
+    /// The store that most values speak for, and their share; the first of equals, which is the right one.
+    fn likeliest(&self) -> (Store, f64);
+
+    /// What is wrong with how these values of so many states are stored; `None` where nothing is, or where they are too few to tell.
+    fn problem(&self, states: usize) -> Option<String>;
+}
+
+#[expect(clippy::cast_precision_loss, reason = "shares and means")]
+fn share(count: u64, of: u64) -> f64 {
+    count as f64 / of.max(1) as f64
+}
+
+impl Stores for StoreCounts {
+    fn count(&mut self, reference: f64, value: f64) {
         let fraction = reference - reference.floor();
         if !(NEAR..=1.0 - NEAR).contains(&fraction) || (fraction - 0.5).abs() < NEAR {
             return;
@@ -55,45 +65,23 @@ impl StoreCounts {
         }
     }
 
-    /// Adds another's counts.
-    pub fn add(&mut self, other: &Self) {
-        self.of += other.of;
-        self.error += other.error;
-        for (sum, count) in self.as_by.iter_mut().zip(other.as_by) {
-            *sum += count;
-        }
+    fn nearest(&self) -> f64 {
+        share(self.as_by[0], self.of)
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "shares and means")]
-    fn share(&self, count: u64) -> f64 {
-        count as f64 / self.of.max(1) as f64
-    }
-
-    /// The share of nearest values.
-    #[must_use]
-    pub fn nearest(&self) -> f64 {
-        self.share(self.as_by[0])
-    }
-
-    /// The mean distance from the nearest step, with its sign.
-    #[must_use]
-    pub fn bias(&self) -> f64 {
+    fn bias(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a mean")]
         let of = self.of.max(1) as f64;
         self.error / of
     }
 
-    /// The store that most values speak for, and their share; the first of equals, which is the right one.
-    #[must_use]
-    pub fn likeliest(&self) -> (Store, f64) {
+    fn likeliest(&self) -> (Store, f64) {
         let counts = Store::ALL.into_iter().zip(self.as_by).rev();
         let (store, count) = counts.max_by_key(|(_, count)| *count).unwrap_or((Store::Nearest, 0));
-        (store, self.share(count))
+        (store, share(count, self.of))
     }
 
-    /// What is wrong with how these values of so many states are stored; `None` where nothing is, or where they are too few to tell.
-    #[must_use]
-    pub fn problem(&self, states: usize) -> Option<String> {
+    fn problem(&self, states: usize) -> Option<String> {
         if self.of < ENOUGH {
             return None;
         }

@@ -4,7 +4,7 @@ use super::embedded;
 use super::expect::{ExpectedPixel, expect};
 use super::pixel::Units;
 use super::rules::{FAULTS, Rules, Store, UnitFault};
-use super::store::{NEAR, StoreCounts};
+use super::store::{NEAR, StoreCounts, Stores as _};
 use crate::devices::{BlendDeviation, Known};
 use crate::tally::Tally;
 use crate::{Outcome, Verdict, margin, simplicity};

@@ -10,22 +10,13 @@ pub mod sweep;
 pub use picture::svg;
 
 use lightmeter_document::run::{BlendState, DeviationUse, Group, Identity, Report, Tiers};
+use lightmeter_document::{Document as _, ReadError};
 use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::blend::{Route, routes};
 use lightmeter_scene::target::TargetFormat;
 use std::collections::BTreeMap;
 use std::fmt::{Result, Write};
 use std::ops::Deref;
-
-/// A JSON document of a schema, which is expected to be what the words say.
-fn document(json: &str, schema: &str, expected: &str) -> std::result::Result<serde_json::Value, String> {
-    let value: serde_json::Value = serde_json::from_str(json).map_err(|error| format!("not {expected}: {error}"))?;
-    if value["schema"] != schema {
-        let found = value["schema"].as_str().unwrap_or("none");
-        return Err(format!("schema `{found}`; expected {schema}, {expected}"));
-    }
-    Ok(value)
-}
 
 /// A run that blend states were drawn in.
 #[derive(Clone, Debug)]
@@ -43,11 +34,8 @@ impl Deref for Run {
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
     /// It is not a run's JSON.
-    #[error("not the JSON of `lightmeter run --format json`: {0}")]
-    Json(#[from] serde_json::Error),
-    /// It is something else's.
-    #[error("schema `{0}`; expected lightmeter.run/1, the JSON of `lightmeter run --format json`")]
-    Schema(String),
+    #[error(transparent)]
+    Read(#[from] ReadError),
     /// Nothing was blended.
     #[error("no blend state was drawn in that run; make one with `lightmeter run blend --target all --format json`")]
     Empty,
@@ -59,11 +47,7 @@ impl Run {
     /// # Errors
     /// Where it is another document, or a run without blend states.
     pub fn read(json: &str) -> std::result::Result<Self, PageError> {
-        let value: serde_json::Value = serde_json::from_str(json)?;
-        if value["schema"] != "lightmeter.run/1" {
-            return Err(PageError::Schema(value["schema"].as_str().unwrap_or("none").into()));
-        }
-        let run = Self(serde_json::from_value(value)?);
+        let run = Self(Report::read(json)?);
         if run.blend_states.iter().all(|state| state.skip_reason.is_some()) {
             return Err(PageError::Empty);
         }

@@ -4,6 +4,7 @@ use lightmeter_catalogue::scene::SceneError;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::load;
 use lightmeter_catalogue::scene::load::Loaded;
+use lightmeter_document::Document as _;
 use lightmeter_document::run::{EffectsCost, Group, Report};
 use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::image::file::Stored;
@@ -38,7 +39,7 @@ impl Run {
     /// # Errors
     /// Where it is none, or has no scene.
     pub fn read(json: &str) -> std::result::Result<Self, String> {
-        let run = Self(serde_json::from_str(json).map_err(|error| error.to_string())?);
+        let run = Self(Report::read(json).map_err(|error| error.to_string())?);
         if run.groups.iter().any(|group| group.image.is_some()) {
             Ok(run)
         } else {

@@ -2,9 +2,10 @@
 
 use crate::selftest::{percent, smallest};
 use lightmeter_catalogue::cases::FAMILIES;
+use lightmeter_document::Document as _;
 use lightmeter_document::selftest::{
-    Clean, Finding, Kill, Mistake, NamedFrom, OffBy, Record, Resolution, SCHEMA, SceneRecord, SelftestDocument,
-    UnitFinding, UnitRow,
+    Clean, Finding, Kill, Mistake, NamedFrom, OffBy, Record, Resolution, SceneRecord, SelftestDocument, UnitFinding,
+    UnitRow,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
@@ -26,18 +27,15 @@ impl Run {
     /// # Errors
     /// Where it is another document, of the blend unit alone, or of mistakes that this version does not have.
     pub fn read(json: &str) -> Result<Self, String> {
-        const EXPECTED: &str = "the JSON of `lightmeter selftest --format json`";
-        let value = super::document(json, SCHEMA, EXPECTED)?;
-        if value["kills"].is_null() {
+        let document = SelftestDocument::read(json).map_err(|error| error.to_string())?;
+        let (Some(kills), Some(clean)) = (document.kills, document.clean) else {
             return Err("it is of the blend unit alone; expected formulas too".into());
+        };
+        if document.mistakes.is_empty() {
+            return Err("it does not name its mistakes, as older versions did not; run the self-test anew".into());
         }
-        let document: SelftestDocument =
-            serde_json::from_value(value).map_err(|error| format!("not {EXPECTED}: {error}"))?;
         let run = Self {
-            record: Record {
-                kills: document.kills.unwrap_or_default(),
-                clean: document.clean.ok_or_else(|| format!("not {EXPECTED}: missing field `clean`"))?,
-            },
+            record: Record { kills, clean },
             mistakes: document.mistakes,
             named_from: document.named_from,
             calibration: document.calibration.unwrap_or_default(),
@@ -277,7 +275,7 @@ mod tests {
     #[test]
     fn another_document_makes_no_page() {
         for (json, message) in [
-            ("{", "not the JSON"),
+            ("{", "not JSON"),
             (r#"{"schema":"lightmeter.run/1"}"#, "expected lightmeter.selftest/1"),
             (r#"{"schema":"lightmeter.selftest/1","rows":[]}"#, "of the blend unit alone"),
         ] {

@@ -1,6 +1,7 @@
 //! The page on NaN, infinity, subnormals and signed zero, made from the JSON of `lightmeter special`.
 
 use lightmeter_catalogue::special::{Class, DEVIATIONS, PROBES, Probe, Source};
+use lightmeter_document::Document as _;
 use lightmeter_document::run::Identity;
 use lightmeter_document::special::{ProbeResult, SpecialReport};
 use std::fmt::{Result as Written, Write};
@@ -24,9 +25,7 @@ impl Run {
     /// # Errors
     /// Where it is another document, or of probes that this version does not have.
     pub fn read(json: &str) -> Result<Self, String> {
-        const EXPECTED: &str = "the JSON of `lightmeter special --format json`";
-        let value = super::document(json, "lightmeter.special/1", EXPECTED)?;
-        let run = Self(serde_json::from_value(value).map_err(|error| format!("not {EXPECTED}: {error}"))?);
+        let run = Self(SpecialReport::read(json).map_err(|error| error.to_string())?);
         let unknown = run.outcomes.iter().find(|outcome| Probe::by_name(&outcome.probe).is_none());
         match unknown {
             Some(outcome) => Err(format!("no probe `{}`: the file is of another version", outcome.probe)),
@@ -169,7 +168,7 @@ mod tests {
     #[test]
     fn another_document_makes_no_page() {
         for (json, message) in [
-            ("{", "not the JSON"),
+            ("{", "not JSON"),
             (r#"{"schema":"lightmeter.run/1"}"#, "expected lightmeter.special/1"),
             (r#"{"schema":"lightmeter.special/1","adapters":[],"outcomes":[]}"#, "nothing was probed"),
         ] {

@@ -3,6 +3,7 @@
 
 use lightmeter_catalogue::cases::Stable;
 use lightmeter_catalogue::select::{Member, catalogue};
+use lightmeter_document::Document as _;
 use lightmeter_document::run::{Examined, Report};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
@@ -55,16 +56,11 @@ impl Run {
     /// # Errors
     /// Where it is another document, or of a run without hard cases.
     pub fn read(json: &str) -> Result<Self, String> {
-        let value: serde_json::Value =
-            serde_json::from_str(json).map_err(|error| format!("not a run's JSON: {error}"))?;
-        if value["schema"] != "lightmeter.run/1" {
-            let schema = value["schema"].as_str().unwrap_or("none");
-            return Err(format!("schema `{schema}`; expected lightmeter.run/1, the JSON of `lightmeter run`"));
-        }
-        if value.get("stability").is_none() {
+        let run = Report::read(json).map_err(|error| error.to_string())?;
+        if run.stability.is_empty() {
             return Err("the run examined no hard case; expected one of `lightmeter run '*/*/hard'`".into());
         }
-        serde_json::from_value(value).map(Self).map_err(|error| format!("not a run's JSON: {error}"))
+        Ok(Self(run))
     }
 
     fn cases(&self) -> Vec<Case<'_>> {
