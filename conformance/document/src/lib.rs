@@ -58,7 +58,7 @@ pub trait Document: Sized {
     /// Where a map has a key that is no text: none does.
     fn to_json(&self) -> serde_json::Result<String>;
 
-    /// Reads the JSON. The schema is looked at first, so that another document is told by its name.
+    /// Reads the JSON. The schema is compared first, so that the error for another kind of document names that kind.
     ///
     /// # Errors
     /// Where it is another document, or damaged.

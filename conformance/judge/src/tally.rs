@@ -13,7 +13,7 @@ pub const KEPT: usize = 16;
 /// Failures that are reported of each group.
 pub const KEPT_FAILURES: usize = 5;
 
-/// What verdicts come to. `P` is the place of a case in its group's order, `F` what is told of a failure.
+/// Counts of verdicts, and the cases to report. `P` is a case's place in the order of its group, `F` what a report says of a failure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tally<P, F = ()> {
     /// The counts.

@@ -222,8 +222,9 @@ impl Sweep {
 fn check_shard(plan: &SweepPlan<'_>, shard: Shard) -> anyhow::Result<()> {
     if plan.span().blocks_of(shard) == 0 {
         let (blocks, name) = (plan.span().blocks(), name_of(shard));
-        let many = if blocks == 1 { "one block".into() } else { format!("{blocks} blocks") };
-        bail!("shard {name} has no inputs: the range has {many}; expected at most so many shards");
+        let most =
+            if blocks == 1 { "one block, so one shard".into() } else { format!("{blocks} blocks, so {blocks} shards") };
+        bail!("shard {name} has no inputs: the range has {most} at most");
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use lightmeter_document::sweep::Statistics;
 pub(super) trait Work {
     /// A block under way.
     type Job;
-    /// Starts on so many inputs from the one of that number on.
+    /// Starts on `count` inputs, from the one numbered `first`.
     fn start(&mut self, first: u64, count: u64) -> Self::Job;
     /// What came of it.
     fn finish(&mut self, job: Self::Job) -> Result<Statistics, DeviceError>;

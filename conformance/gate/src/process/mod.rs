@@ -369,7 +369,7 @@ impl Session<'_> {
         let message = ended.message();
         let how = self.end(message);
         let [culprit] = rest[..] else {
-            // Nothing is retried into green: that it ended is told, whatever it answers afterwards.
+            // A retry hides nothing: that the process ended is reported, whatever it answers afterwards.
             let count = rest.len();
             queue.untold = vec![self.outcome.incidents.len()];
             queue.since = matches!(ended, Ended::Hung).then(Instant::now);
@@ -389,7 +389,7 @@ impl Session<'_> {
             queue.open.push_front(culprit);
             return true;
         }
-        // It is known now: what was told of its batch is told of it.
+        // The case that ended the process is found: what was kept for its batch is reported of it alone.
         queue.alone = queue.alone.saturating_sub(1);
         queue.since = None;
         self.failed_at(ledger, culprit, &format!("{message}: {how}"), std::mem::take(&mut queue.untold));

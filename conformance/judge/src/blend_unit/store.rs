@@ -43,7 +43,7 @@ pub trait Stores {
     /// The store that most values speak for, and their share; the first of equals, which is the right one.
     fn likeliest(&self) -> (Store, f64);
 
-    /// What is wrong with how these values of so many states are stored; `None` where nothing is, or where they are too few to tell.
+    /// What is wrong with how these values of `states` blend states are stored; `None` where nothing is, or where there are too few.
     fn problem(&self, states: usize) -> Option<String>;
 }
 
