@@ -4,8 +4,9 @@
 mod mistakes;
 
 use lightmeter::adapters;
+use lightmeter::document::event::Silent;
 use lightmeter::document::run::Totals;
-use lightmeter::options::{Options, Silent};
+use lightmeter::options::Options;
 use lightmeter::run::{run, run_selection};
 use lightmeter::select::catalogue;
 use lightmeter::selection::Selection;

@@ -18,7 +18,7 @@ use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::select::{Member, catalogue};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, ClockUse, Family, GroupKind, Measured, SCHEMA, Scaling};
 use lightmeter_document::bench::{ladder, pareto};
-use lightmeter_engine::options::Progress;
+use lightmeter_document::event::{Event, Observer};
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Clock, ClockKind, Gpu, GpuError, Rung, Shaders};
 use std::time::Instant;
@@ -110,13 +110,13 @@ const QUICK: [&str; 12] = [
 pub fn bench(
     subjects: &[Subject],
     options: &BenchOptions,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<BenchDocument, GpuError> {
     let start = Instant::now();
     let setting = Setting::new(options.quick, options.seed);
     let adapters = subjects
         .iter()
-        .map(|subject| measured(subject, options, setting, progress))
+        .map(|subject| measured(subject, options, setting, observer))
         .collect::<Result<_, GpuError>>()?;
     Ok(BenchDocument {
         schema: SCHEMA.into(),
@@ -134,16 +134,16 @@ fn measured(
     subject: &Subject,
     options: &BenchOptions,
     setting: Setting,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<Measured, GpuError> {
     let catalogue = catalogue();
     let asked = Asked::new(options, &catalogue, ladder_of(subject)?);
-    progress.start(setting.sittings as u64 * asked.count(subject));
+    observer.see(&Event::Begun(setting.sittings as u64 * asked.count(subject)));
     let mut all = vec![];
     let mut use_wall = false;
     while all.len() < setting.sittings {
         let setting = Setting { judges: all.is_empty(), ..setting };
-        let sitting = sitting(subject, options, setting, &asked, use_wall, progress)?;
+        let sitting = sitting(subject, options, setting, &asked, use_wall, observer)?;
         if all.is_empty() && !use_wall && options.clock.is_none() && sitting.clock.tells_nothing() {
             use_wall = true;
         } else {
@@ -242,7 +242,7 @@ fn sitting(
     setting: Setting,
     asked: &Asked<'_>,
     use_wall: bool,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<Sitting, GpuError> {
     let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
     // What computes and what draws have devices of their own: Mesa 22.3's llvmpipe loses the time of a dispatch once it has drawn.
@@ -268,14 +268,14 @@ fn sitting(
     };
     let mut groups = vec![];
     for (id, members) in &asked.formulas {
-        progress.group(id);
+        observer.see(&Event::Group(id));
         groups.push(formulas::formula(&bench, id, members)?);
-        progress.advance(1);
+        observer.see(&Event::Advanced(1));
     }
     let mut scalings = vec![];
     if bench.gpu.is_some() {
-        groups.extend(on_device(&bench, &on, asked, progress)?);
-        scalings.extend(growths(&bench, &on, asked, progress)?);
+        groups.extend(on_device(&bench, &on, asked, observer)?);
+        scalings.extend(growths(&bench, &on, asked, observer)?);
     }
     let (readings, rejected) = bench.clock.readings();
     let of_drawing = drawing.readings();
@@ -293,26 +293,26 @@ fn on_device(
     bench: &Bench<'_>,
     on: &scenes::On<'_>,
     asked: &Asked<'_>,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<Vec<BenchGroup>, GpuError> {
     let mut groups = vec![];
     for group in &asked.techniques {
-        progress.group(group.id);
+        observer.see(&Event::Group(group.id));
         groups.push(techniques::techniques(bench, group)?);
-        progress.advance(1);
+        observer.see(&Event::Advanced(1));
     }
-    groups.extend(scenes::techniques(on, &asked.ladder, &asked.drawn, progress)?);
+    groups.extend(scenes::techniques(on, &asked.ladder, &asked.drawn, observer)?);
     for member in &asked.stable {
-        progress.group(&member.spec.id);
+        observer.see(&Event::Group(&member.spec.id));
         groups.extend(techniques::stable(bench, member)?);
-        progress.advance(1);
+        observer.see(&Event::Advanced(1));
     }
-    groups.extend(scenes::scenes(on, &asked.ladder, &asked.scenes, progress)?);
+    groups.extend(scenes::scenes(on, &asked.ladder, &asked.scenes, observer)?);
     for (name, loaded) in asked.files {
-        progress.group(name);
+        observer.see(&Event::Group(name));
         let (title, frame) = (loaded.title.clone(), loaded.frame.clone());
         groups.extend(scenes::scene(on, &asked.ladder, format!("scene/{name}"), title, frame)?);
-        progress.advance(1);
+        observer.see(&Event::Advanced(1));
     }
     Ok(groups)
 }
@@ -322,13 +322,13 @@ fn growths(
     bench: &Bench<'_>,
     on: &scenes::On<'_>,
     asked: &Asked<'_>,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<Vec<Scaling>, GpuError> {
-    let mut scalings = scenes::scalings(on, &asked.scalings, progress)?;
+    let mut scalings = scenes::scalings(on, &asked.scalings, observer)?;
     if asked.by_cases {
-        progress.group("scaling/cases");
+        observer.see(&Event::Group("scaling/cases"));
         scalings.extend(growth::cases(bench)?);
-        progress.advance(1);
+        observer.see(&Event::Advanced(1));
     }
     Ok(scalings)
 }

@@ -20,7 +20,7 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
 use lightmeter_document::bench::{BenchGroup, BenchRow, GroupKind};
-use lightmeter_engine::options::Progress;
+use lightmeter_document::event::{Event, Observer};
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
@@ -77,16 +77,16 @@ pub fn scenes(
     on: &On<'_>,
     ladder: &[(Rung, Option<String>)],
     names: &[&str],
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<Vec<BenchGroup>, GpuError> {
     let size = if on.setting.quick { SIZE_QUICK } else { SIZE };
     let mut groups = vec![];
     for name in names {
         let place = SCENES.iter().position(|(own, _)| own == name).expect("the scene is built in");
-        progress.group(&scene_id(place));
+        observer.see(&Event::Group(&scene_id(place)));
         let loaded = builtin(place, Some(size)).expect("built-in scenes are loaded by a test");
         groups.extend(scene(on, ladder, scene_id(place), loaded.title, loaded.frame)?);
-        progress.advance(1);
+        observer.see(&Event::Advanced(1));
     }
     Ok(groups)
 }
@@ -234,7 +234,7 @@ mod tests {
     use super::*;
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_document::bench::Rank;
-    use lightmeter_engine::options::Silent;
+    use lightmeter_document::event::Silent;
     use lightmeter_gpu::adapters;
 
     #[test]

@@ -178,6 +178,17 @@ impl Selected {
         }
     }
 
+    /// A few of them: the hard cases and the first random ones.
+    #[must_use]
+    pub fn few(&self, random: usize) -> Self {
+        let number = |case| match case {
+            CaseRef::Random(number) => Some(number),
+            CaseRef::Hard(_) | CaseRef::Near(..) => None,
+        };
+        let random = Random::Some(self.cases().filter_map(number).take(random).collect());
+        Self { random, near: vec![], ..self.clone() }
+    }
+
     /// How many cases there are.
     #[must_use]
     pub fn count(&self) -> u64 {

@@ -48,6 +48,9 @@ pub struct GateReport {
     /// How often it was started.
     #[serde(default)]
     pub starts: u64,
+    /// The number of the signal that ended the gate before its time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub signal: Option<i32>,
     /// Formulas and scenes.
     pub groups: Vec<GateGroup>,
     /// The first failures of each.

@@ -3,6 +3,7 @@
 //! Nothing here judges or draws.
 
 pub mod bench;
+pub mod event;
 pub mod gate;
 mod number;
 pub mod pack;

@@ -367,13 +367,27 @@ pub struct Timing {
     pub judge: f64,
 }
 
+impl Timing {
+    /// The sum.
+    pub fn add(&mut self, other: &Self) {
+        self.generate += other.generate;
+        self.compile += other.compile;
+        self.reference += other.reference;
+        self.devices += other.devices;
+        self.judge += other.judge;
+    }
+}
+
 /// A run that ended before its time.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Interrupted {
     /// What was under way.
     pub under_way: String,
-    /// What the device said.
+    /// What the device said, or who stopped the run.
     pub message: String,
+    /// The number of the signal that stopped it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub signal: Option<i32>,
 }
 
 /// The JSON of `run`.

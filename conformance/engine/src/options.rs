@@ -1,4 +1,4 @@
-//! What a run is asked for, and who is told how far it has come.
+//! What a run is asked for.
 
 use crate::device::Code;
 use crate::subject::Subject;
@@ -7,7 +7,9 @@ use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::cases::blend::Samples;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
+use lightmeter_document::event::Stop;
 use lightmeter_document::run::Report;
+use lightmeter_judge::diagnose::Diagnose;
 use lightmeter_judge::formula::Judging;
 use lightmeter_scene::target::TargetFormat;
 use std::path::{Path, PathBuf};
@@ -47,6 +49,10 @@ pub struct Options {
     pub code: Code,
     /// What to add to a command that runs one case again.
     pub rerun: String,
+    /// Who is asked which mistake explains what fails; `None` for nobody.
+    pub diagnose: Option<&'static dyn Diagnose>,
+    /// Whether to stop.
+    pub stop: Stop,
 }
 
 impl Options {
@@ -80,6 +86,8 @@ impl Options {
             profile: PROFILES[0],
             code,
             rerun: String::new(),
+            diagnose: None,
+            stop: Stop::default(),
         }
     }
 
@@ -98,23 +106,4 @@ impl Options {
         }
         Self { seed, samples: Samples { seed, ..Samples::default() }, profile, rerun, ..Self::new(code) }
     }
-}
-
-/// Is told how far a run has come.
-pub trait Progress {
-    /// So many cases in all are about to be run.
-    fn start(&mut self, cases: u64);
-    /// A group begins.
-    fn group(&mut self, id: &str);
-    /// So many more cases are done.
-    fn advance(&mut self, cases: u64);
-}
-
-/// Nobody looks.
-pub struct Silent;
-
-impl Progress for Silent {
-    fn start(&mut self, _cases: u64) {}
-    fn group(&mut self, _id: &str) {}
-    fn advance(&mut self, _cases: u64) {}
 }

@@ -6,35 +6,40 @@
 use crate::blend_unit;
 use crate::device::DeviceError;
 use crate::image;
-use crate::options::{Options, Progress};
-use crate::rows::Rows;
+use crate::options::Options;
+use crate::row_run::RowRun;
+use crate::scout;
 use crate::selection::Selection;
 use crate::special::verdict::Table;
-use crate::subject::{Compiled, Job, Subject};
+use crate::subject::{Compiled, Subject};
 use crate::witness;
 use crate::{special, stability};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend;
+use lightmeter_catalogue::scene;
 use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
-use lightmeter_document::Number;
-use lightmeter_document::run::{BlendPromise, Group, Interrupted, Report, Totals};
+use lightmeter_document::event::{Event, Observer};
+use lightmeter_document::run::{BlendPromise, Failure, Group, Interrupted, Report};
 use lightmeter_judge::blend_unit::policy::{PROMISES, Promise};
-use lightmeter_judge::chunk::{self, Chunk};
-use lightmeter_judge::formula::{RowPlace, RowTally, judge_chunk};
 use lightmeter_judge::stability::UNSTABLE;
 use lightmeter_scene::blend::Equation;
+use std::collections::HashMap;
 use std::time::Instant;
 
 /// Cases of a chunk.
 const CHUNK: usize = 1 << 16;
+
+/// The stages of every subject that are compiled already, by group.
+pub(crate) type CompiledGroups = HashMap<String, Vec<Compiled>>;
+
 /// Runs what the options select on every subject. Where a device fails, what was judged until then is the report, which says
 /// what was under way.
 ///
 /// # Errors
 /// Where a shader is invalid, or a device fails before anything ran.
-pub fn run(subjects: &mut [Subject], options: &Options, progress: &mut impl Progress) -> Result<Report, DeviceError> {
-    run_selection(&Selection::of(options), subjects, options, progress)
+pub fn run(subjects: &mut [Subject], options: &Options, observer: &mut dyn Observer) -> Result<Report, DeviceError> {
+    run_selection(&Selection::of(options), subjects, options, observer)
 }
 
 /// Runs a selection, or a part of one, on every subject. Where a device fails, what was judged until then is the report, which
@@ -46,15 +51,17 @@ pub fn run_selection(
     selection: &Selection,
     subjects: &mut [Subject],
     options: &Options,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<Report, DeviceError> {
     let started = Instant::now();
-    progress.start(work(selection, subjects, options));
+    observer.see(&Event::Begun(work(selection, subjects, options)));
     let mut report = options.report(subjects);
-    for &deviation in &selection.deviations {
-        witness::ask(deviation, &selection.catalogue, subjects, options, &mut report)?;
+    if let Some(compiled) = scout::scout(selection, subjects, options, &mut report, observer)? {
+        for &deviation in &selection.deviations {
+            witness::ask(deviation, &selection.catalogue, subjects, options, &mut report)?;
+        }
+        judge_in_turn(selection, subjects, options, compiled, &mut report, observer)?;
     }
-    judge_in_turn(selection, subjects, options, &mut report, progress)?;
     for group in &report.groups {
         report.totals.add(&group.totals);
     }
@@ -73,58 +80,115 @@ pub fn run_selection(
     Ok(report)
 }
 
-/// Tables of special values, formulas and scenes, one after the other, until a device fails.
+/// What is judged in one go.
+#[derive(Clone, Copy)]
+enum Turn<'a> {
+    Table(&'a Table),
+    /// The formulas of a group.
+    Formulas(&'a [Selected]),
+    Scene(&'a Chosen),
+}
+
+impl Turn<'_> {
+    fn id(self, catalogue: &[Member]) -> String {
+        match self {
+            Self::Table(table) => table.id(),
+            Self::Formulas(group) => catalogue[group[0].member].spec.group().to_owned(),
+            Self::Scene(chosen) => scene::select::scene_id(chosen.place),
+        }
+    }
+
+    /// Blend states, whose pipelines take a driver's compiler longest, come last.
+    fn is_slow(self, catalogue: &[Member]) -> bool {
+        matches!(self, Self::Formulas(group) if matches!(catalogue[group[0].member].spec.kind, Kind::Blend(_)))
+    }
+}
+
+/// All that a selection judges, in the order of reports.
+fn turns(selection: &Selection) -> Vec<Turn<'_>> {
+    let group = |chosen: &Selected| selection.catalogue[chosen.member].spec.group();
+    // First: Mesa 22.3's lavapipe no longer flushes subnormals in fragments once it has drawn certain scenes.
+    let tables = selection.tables.iter().map(Turn::Table);
+    let formulas = selection.formulas.chunk_by(|a, b| group(a) == group(b)).map(Turn::Formulas);
+    tables.chain(formulas).chain(selection.scenes.iter().map(Turn::Scene)).collect()
+}
+
+/// Judges one after the other, until a device fails or the run is stopped. In the report all stands in the order of reports.
 fn judge_in_turn(
     selection: &Selection,
     subjects: &mut [Subject],
     options: &Options,
+    mut compiled: CompiledGroups,
     report: &mut Report,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<(), DeviceError> {
-    // First: Mesa 22.3's lavapipe no longer flushes subnormals in fragments once it has drawn certain scenes.
-    for table in &selection.tables {
-        let id = table.id();
-        progress.group(&id);
-        let judged = special::verdict::run_table(table, subjects, options, report, progress);
-        if is_interrupted(judged, &id, report)? {
-            return Ok(());
-        }
-    }
     let catalogue = &selection.catalogue;
-    for group in
-        selection.formulas.chunk_by(|a, b| catalogue[a.member].spec.group() == catalogue[b.member].spec.group())
-    {
-        let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
-        let id = members[0].spec.group();
-        progress.group(id);
-        let judged = judge_group(&members, group, subjects, options, report, progress);
-        if is_interrupted(judged, id, report)? {
-            return Ok(());
+    let mut turns: Vec<(usize, Turn<'_>)> = turns(selection).into_iter().enumerate().collect();
+    turns.sort_by_key(|(_, turn)| turn.is_slow(catalogue));
+    let mut judged: Vec<(usize, Vec<Group>, Vec<Failure>)> = vec![];
+    for (place, turn) in turns {
+        let id = turn.id(catalogue);
+        observer.see(&Event::Group(&id));
+        let result = match turn {
+            Turn::Table(table) => special::verdict::run_table(table, subjects, options, report, observer),
+            Turn::Formulas(group) => {
+                let compiled = compiled.remove(&id);
+                judge_group(catalogue, group, subjects, (options, compiled), report, observer)
+            }
+            Turn::Scene(chosen) => {
+                let size = scene::select::size(&options.filter, options.size);
+                let loaded =
+                    scene::select::builtin(chosen.place, size).expect("a test loads every scene that is built in");
+                image::run::run_scene(&loaded, chosen, subjects, options, report, observer)
+            }
+        };
+        let (groups, failures) = (std::mem::take(&mut report.groups), std::mem::take(&mut report.failures));
+        tell(&groups, &failures, false, observer);
+        judged.push((place, groups, failures));
+        if is_over(result, &id, options, report)? {
+            break;
         }
     }
-    let size = lightmeter_catalogue::scene::select::size(&options.filter, options.size);
-    for chosen in &selection.scenes {
-        let id = lightmeter_catalogue::scene::select::scene_id(chosen.place);
-        progress.group(&id);
-        let loaded = lightmeter_catalogue::scene::select::builtin(chosen.place, size)
-            .expect("a test loads every scene that is built in");
-        let judged = image::run::run_scene(&loaded, chosen, subjects, options, report, progress);
-        if is_interrupted(judged, &id, report)? {
-            return Ok(());
-        }
+    judged.sort_by_key(|(place, ..)| *place);
+    for (_, groups, failures) in judged {
+        report.groups.extend(groups);
+        report.failures.extend(failures);
     }
     Ok(())
 }
 
-/// Whether a device failed while something was judged, which is noted then.
-fn is_interrupted(judged: Result<(), DeviceError>, under_way: &str, report: &mut Report) -> Result<bool, DeviceError> {
-    match judged {
-        Err(error) if error.is_of_device() => {
-            let (under_way, message) = (under_way.to_owned(), error.to_string());
-            report.interrupted.get_or_insert(Interrupted { under_way, message });
+/// Tells each group with its failures.
+pub(crate) fn tell(groups: &[Group], failures: &[Failure], is_scouted: bool, observer: &mut dyn Observer) {
+    for group in groups {
+        let is_of_group = |failure: &&Failure| {
+            let place = (&failure.adapter, &failure.stage) == (&group.adapter, &group.stage);
+            place && failure.target == group.target && failure.id.starts_with(&group.id)
+        };
+        let failures = failures.iter().filter(is_of_group).collect();
+        observer.see(&Event::Judged { group, failures, is_scouted });
+    }
+}
+
+/// Whether nothing more is to be judged: a device failed, or somebody stopped the run. The report says what was under way.
+pub(crate) fn is_over(
+    judged: Result<(), DeviceError>,
+    under_way: &str,
+    options: &Options,
+    report: &mut Report,
+) -> Result<bool, DeviceError> {
+    let under_way = under_way.to_owned();
+    match (judged, options.stop.signal()) {
+        (Err(error), _) if error.is_of_device() => {
+            report.interrupted.get_or_insert(Interrupted { under_way, message: error.to_string(), signal: None });
             Ok(true)
         }
-        judged => judged.map(|()| false),
+        (Err(error), _) => Err(error),
+        (Ok(()), None) => Ok(false),
+        (Ok(()), Some(signal)) => {
+            let message = "a signal ended the run".into();
+            report.interrupted.get_or_insert(Interrupted { under_way, message, signal: Some(signal) });
+            Ok(true)
+        }
     }
 }
 
@@ -145,23 +209,24 @@ fn work(selection: &Selection, subjects: &[Subject], options: &Options) -> u64 {
     formulas + others * subjects.len() as u64
 }
 
-/// Judges a group in the blend unit, if that draws it, and in the stages that take rows.
+/// Judges a group in the blend unit, if that draws it, and in the stages that take rows, which may be compiled already.
 fn judge_group(
-    members: &[&Member],
+    catalogue: &[Member],
     group: &[Selected],
     subjects: &mut [Subject],
-    options: &Options,
+    (options, compiled): (&Options, Option<Vec<Compiled>>),
     report: &mut Report,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<(), DeviceError> {
+    let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
     if matches!(members[0].spec.kind, Kind::Blend(_)) {
-        blend_unit::run::run_group(members, group, subjects, options, report, progress)?;
+        blend_unit::run::run_group(&members, group, subjects, options, report, observer)?;
     }
-    if members[0].spec.row_stages().is_empty() {
+    if members[0].spec.row_stages().is_empty() || options.stop.is_set() {
         return Ok(());
     }
     let first = report.groups.len();
-    run_rows(members, group, subjects, options, report, progress)?;
+    run_rows(&members, group, subjects, (options, compiled), report, observer)?;
     for (member, chosen) in members.iter().zip(group) {
         stability::examine(member, &chosen.hard, subjects, options, report)?;
     }
@@ -189,140 +254,33 @@ fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
     routes.into_iter().map(|(route, states)| (route.into(), states.len().into())).collect()
 }
 
-/// A group of formulas in the stages that take rows.
-struct RowRun {
-    /// The stages of each subject.
-    compiled: Vec<Compiled>,
-    /// What each of them has come to, and in how many seconds.
-    tallies: Vec<Vec<(RowTally, f64)>>,
-}
-
-/// A job of a stage, and how long it took to hand it over; `None` where the stage is skipped.
-type Submitted = (Option<Job>, f64);
-
+/// Judges cases of formulas of one group, chunk by chunk, in the stages that take rows.
 fn run_rows(
     members: &[&Member],
     group: &[Selected],
     subjects: &mut [Subject],
-    options: &Options,
+    (options, compiled): (&Options, Option<Vec<Compiled>>),
     report: &mut Report,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<(), DeviceError> {
     let group: Vec<Selected> = group.iter().zip(members).map(|(chosen, member)| chosen.rows(member)).collect();
     let clock = Instant::now();
-    let mut run = RowRun::new(members[0], subjects, options)?;
+    let compiled = compiled.map_or_else(|| RowRun::compile(members[0], subjects, options), Ok)?;
+    let mut run = RowRun::new(members, compiled, usize::MAX);
     report.timing.compile += clock.elapsed().as_secs_f64();
 
     let mut all = group.iter().enumerate().flat_map(|(of, chosen)| chosen.cases().map(move |case| (of, case)));
     let mut next: Vec<(usize, CaseRef)> = vec![];
-    loop {
+    while !options.stop.is_set() {
         next.clear();
         next.extend(all.by_ref().take(CHUNK));
         if next.is_empty() {
             break;
         }
-        let clock = Instant::now();
-        let mut chunk = chunk::draw(members, &next, options.seed);
-        report.timing.generate += clock.elapsed().as_secs_f64();
-
-        let clock = Instant::now();
-        let jobs = run.submit(subjects, &chunk)?;
-        report.timing.devices += clock.elapsed().as_secs_f64();
-
-        let clock = Instant::now();
-        chunk::refer(&mut chunk, options.profile);
-        report.timing.reference += clock.elapsed().as_secs_f64();
-
-        run.judge(subjects, &chunk, jobs, options, report)?;
-        progress.advance(next.len() as u64);
+        let begun = run.begin(&next, subjects, options, report)?;
+        run.end(begun, subjects, options, report)?;
+        observer.see(&Event::Advanced(next.len() as u64));
     }
-    run.finish(members, subjects, report);
+    run.finish(subjects, options, report);
     Ok(())
-}
-
-impl RowRun {
-    fn new(member: &Member, subjects: &mut [Subject], options: &Options) -> Result<Self, DeviceError> {
-        let compile = |subject: &mut Subject| subject.compile(&options.code, member);
-        let compiled: Vec<Compiled> = subjects.iter_mut().map(compile).collect::<Result<_, _>>()?;
-        let blank = |compiled: &Compiled| vec![(RowTally::default(), 0.0); compiled.stages.len()];
-        Ok(Self { tallies: compiled.iter().map(blank).collect(), compiled })
-    }
-
-    /// Hands a chunk to every stage of every subject, in the order in which the jobs are finished.
-    fn submit(&self, subjects: &mut [Subject], chunk: &Chunk<'_>) -> Result<Vec<Submitted>, DeviceError> {
-        let mut jobs = vec![];
-        for (subject, compiled) in subjects.iter_mut().zip(&self.compiled) {
-            for (_, work) in &compiled.stages {
-                let clock = Instant::now();
-                let job = work.as_ref().ok().map(|work| subject.submit(work, &rows(chunk))).transpose()?;
-                jobs.push((job, clock.elapsed().as_secs_f64()));
-            }
-        }
-        Ok(jobs)
-    }
-
-    /// Waits for every stage of every subject, and judges what it gave.
-    fn judge(
-        &mut self,
-        subjects: &[Subject],
-        chunk: &Chunk<'_>,
-        jobs: Vec<Submitted>,
-        options: &Options,
-        report: &mut Report,
-    ) -> Result<(), DeviceError> {
-        let (mut jobs, cases) = (jobs.into_iter(), chunk.cases.len() as u64);
-        for ((subject, compiled), tallies) in subjects.iter().zip(&self.compiled).zip(&mut self.tallies) {
-            for ((stage, work), (tally, seconds)) in compiled.stages.iter().zip(tallies) {
-                let (Some((Some(job), submitting)), Ok(work)) = (jobs.next(), work) else {
-                    tally.totals.cases += cases;
-                    tally.totals.skipped += cases;
-                    continue;
-                };
-                let clock = Instant::now();
-                let words = subject.finish(work, job, &rows(chunk))?;
-                let waiting = clock.elapsed().as_secs_f64();
-                report.timing.devices += waiting;
-                let clock = Instant::now();
-                tally.add(judge_chunk(chunk, &words, *stage, &options.judging(subject)));
-                report.timing.judge += clock.elapsed().as_secs_f64();
-                *seconds += submitting + waiting + clock.elapsed().as_secs_f64();
-            }
-        }
-        Ok(())
-    }
-
-    /// Adds a group for each stage of each subject to the report.
-    fn finish(self, members: &[&Member], subjects: &[Subject], report: &mut Report) {
-        for ((subject, compiled), tallies) in subjects.iter().zip(self.compiled).zip(self.tallies) {
-            for ((stage, work), (tally, seconds)) in compiled.stages.into_iter().zip(tallies) {
-                for (name, excused) in &tally.excused {
-                    report.excuse(name, &subject.identity.name, *excused);
-                }
-                let problem = tally.problem();
-                let name_of = |place: RowPlace| members[place.member].case_id(place.case);
-                report.groups.push(Group {
-                    totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
-                    error_ulp_max: Number(tally.error_max),
-                    margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
-                    seconds,
-                    worst: tally.worst.map(|(_, place)| name_of(place)),
-                    skip_reason: work.err().map(Into::into),
-                    problem,
-                    ..Group::new(members[0].spec.group().into(), subject.identity.name.clone(), stage.name())
-                });
-                report.failures.extend(tally.reported());
-            }
-        }
-    }
-}
-
-/// The rows of a chunk, as a stage takes them.
-fn rows<'a>(chunk: &'a Chunk<'_>) -> Rows<'a> {
-    Rows {
-        members: chunk.members,
-        of: &chunk.of,
-        inputs: &chunk.inputs,
-        selected: &chunk.selected,
-        outputs: chunk.members[0].spec.output_len(),
-    }
 }

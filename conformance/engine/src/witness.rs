@@ -2,7 +2,7 @@
 //! shows it, the deviation is no longer needed.
 
 use crate::blend_unit;
-use crate::options::{Options, Silent};
+use crate::options::Options;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_judge::devices;
 use lightmeter_judge::devices::BlendDeviation;
@@ -14,6 +14,7 @@ use crate::subject::Subject;
 use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected};
 use lightmeter_catalogue::special as special_values;
 use lightmeter_catalogue::special::Probe;
+use lightmeter_document::event::Silent;
 use lightmeter_document::run::{DeviationUse, Report, Totals};
 use lightmeter_document::special::ProbeResult;
 

@@ -1,6 +1,5 @@
 //! Which mistake a renderer made, from its answers: mistakes, pairs of them and wrong parameters are tried as explanations.
 
-use super::answered::Answered;
 use super::catalogue::concerning;
 use super::factor::{self, Scaled};
 use super::fault::Fault;
@@ -8,6 +7,7 @@ use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::Member;
+use lightmeter_judge::diagnose::Answered;
 use serde::Serialize;
 use std::cmp::Ordering;
 

@@ -1,12 +1,12 @@
 //! A parameter some factor times what was asked: found by a search over factors, refined by Gauss and Newton's method, and
 //! held against the interval of the scaled input.
 
-use super::answered::Answered;
 use super::row::Arithmetic;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::{Domain, Spec};
 use lightmeter_catalogue::select::Member;
+use lightmeter_judge::diagnose::Answered;
 use lightmeter_reference::Real as _;
 use serde::Serialize;
 use std::ops::Range;

@@ -1,12 +1,12 @@
 //! The group verdict: each answer may be legal and all of them together still wrong. Residuals are regressed on the formula's
 //! derivatives, so that a parameter that is a little off is told from rounding, and named.
 
-use super::answered::Answered;
 use super::factor::digits;
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::selftest::{OffBy, Systematic};
+use lightmeter_judge::diagnose::Answered;
 use std::ops::Range;
 
 /// A number of a formula's that may be off: an input as a whole, one number of an input, or an output.

@@ -3,7 +3,6 @@
 //! A mistake is a variation of a formula, stated over any arithmetic like the formula itself: in f32 it is an implementation
 //! that is wrong, in f64 its value, in intervals all that a renderer with the mistake may legally answer.
 
-mod answered;
 mod blend;
 mod body;
 pub mod calibrate;
@@ -15,18 +14,19 @@ mod fault;
 mod fog;
 mod group;
 mod lighting;
+mod mistakes;
 mod row;
 pub mod scene;
 pub mod selftest;
 mod table;
 mod variation;
 
-pub use answered::Answered;
 pub use catalogue::{concerning, faults};
 pub use diagnose::{Diagnosis, Explanation, diagnose};
 pub use factor::Scaled;
 pub use fault::Fault;
 pub use group::{LEAST_SHARE, LEAST_VALUES, LEAST_Z, group_verdict};
+pub use mistakes::Mistakes;
 pub use row::Arithmetic;
 pub use variation::Variation;
 

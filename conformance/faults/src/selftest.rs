@@ -3,7 +3,6 @@
 //! Each mistake is made by the embedded implementation and judged like any renderer; its answers are diagnosed. What is right,
 //! the embedded implementation and legal evaluations drawn at random, must be flagged by no verdict.
 
-use super::answered::Answered;
 use super::catalogue::concerning;
 use super::diagnose::{Diagnosis, diagnose};
 use super::fault::Fault;
@@ -14,6 +13,7 @@ use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::{CaseRef, Member, Shard, catalogue, select};
 use lightmeter_document::selftest::{Clean, Finding, Kill, Record};
+use lightmeter_judge::diagnose::Answered;
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_reference::Real as _;
 use rayon::prelude::*;

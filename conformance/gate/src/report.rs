@@ -2,13 +2,15 @@
 
 use super::answer::clipped;
 use super::ledger::Ledger;
-use super::plan::CasePlace;
+use super::plan::{CasePlace, GatePlan};
 use super::process::Ending;
-use super::tally::{AnswerTally, Sample};
+use super::tally::AnswerTally;
 use super::verdict;
 use lightmeter_document::Number;
 use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, GateTotals, KnownFailure, Named, SCHEMA, cases};
-use lightmeter_faults::{Answered, diagnose, group_verdict};
+use lightmeter_faults::Mistakes;
+use lightmeter_judge::diagnose::{self as explained, Row};
+use lightmeter_judge::sample::Sample;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -60,6 +62,7 @@ pub fn report(ledger: &mut Ledger<'_>, outcome: Ending, command: String, seconds
         incidents: outcome.incidents,
         expected_incidents: outcome.expected_incidents,
         starts: outcome.starts,
+        signal: outcome.signal,
         groups,
         failures,
         unstable: ledger.unstable.clone(),
@@ -87,29 +90,31 @@ impl Told {
             };
         }
         let member = plan.member(k);
-        let of = |is_wrong: bool, sample: &Sample| -> Vec<(usize, Vec<f32>, Vec<f32>, bool)> {
-            sample.rows().map(|(case, values)| (case, plan.inputs(k, case), values.to_vec(), is_wrong)).collect()
-        };
         let [failing, passing] = &tally.rows;
-        let rows: Vec<_> = of(true, failing).into_iter().chain(of(false, passing)).collect();
-        let answered: Vec<Answered<'_>> =
-            rows.iter().map(|(_, inputs, values, is_wrong)| Answered { inputs, values, is_wrong: *is_wrong }).collect();
+        let told = explained::Told::of(
+            &Mistakes,
+            member,
+            [&rows(plan, k, failing), &rows(plan, k, passing)],
+            failing.seen,
+            ledger.profile(),
+        );
         let Some((_, smallest)) = &tally.smallest else {
-            // Hard cases are where formulas are steep, and say nothing of a parameter.
-            let random: Vec<Answered<'_>> = (rows.iter().zip(&answered))
-                .filter(|(row, _)| plan.formulas[k].is_random(row.0))
-                .map(|(_, answered)| *answered)
-                .collect();
-            let systematic = group_verdict(member, &random, ledger.profile()).map(|systematic| systematic.says);
-            return Self { systematic, ..Self::default() };
+            return Self { systematic: told.systematic, ..Self::default() };
         };
-        let mut diagnosis = diagnose(member, &answered, ledger.profile()).sentence_of(failing.seen);
+        let mut diagnosis = told.explanation.unwrap_or_default();
         if tally.unjudged > 0 {
             diagnosis += &format!("; besides, {} were not answered by values", cases(tally.unjudged));
         }
         let smallest = verdict::failure(plan, k, smallest.case, &smallest.values, ledger.profile());
         Self { diagnosis: Some(diagnosis), smallest: Some(smallest), ..Self::default() }
     }
+}
+
+/// The rows of a sample of a formula, with their inputs.
+fn rows<'a>(plan: &GatePlan, formula: usize, sample: &'a Sample<usize>) -> Vec<Row<'a>> {
+    let is_random = |case| plan.formulas[formula].is_random(case);
+    let row = |(case, values)| (plan.inputs(formula, case), values, is_random(case));
+    sample.rows().into_iter().map(row).collect()
 }
 
 fn group(ledger: &Ledger<'_>, k: usize, tally: &AnswerTally) -> (GateGroup, Option<GateFailure>) {

@@ -5,19 +5,16 @@ use super::plan::CasePlace;
 use super::verdict::Verdicts;
 use lightmeter_document::gate::GateFailure;
 use lightmeter_document::run::Totals;
-use lightmeter_faults::LEAST_VALUES;
+use lightmeter_judge::formula::{KEPT_FAILING, KEPT_PASSING};
+use lightmeter_judge::sample::Sample;
 use lightmeter_judge::tally::Tally;
 use lightmeter_judge::{simplicity, worse};
 
-/// Failing rows that are kept of each formula, for the diagnosis.
-const KEPT_FAILING: usize = 2048;
-/// Values that are kept of passing rows, for the group verdict. Half as many are left where the sample gets thinner.
-const KEPT_PASSING: usize = 2 * LEAST_VALUES;
 /// Reasons of skips that are kept.
 const KEPT_REASONS: usize = 16;
 
 /// Counts of cases, but for the verdicts, which are of scalars.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct AnswerTally {
     /// Verdicts on the cases that were answered with values or an image; errors in ULP of binary32, of a scene in its
     /// target's. Its failures are of cases, whether what was answered could be judged or not.
@@ -34,8 +31,8 @@ pub struct AnswerTally {
     pub errors: (f64, u64),
     /// Why cases were skipped, each reason once.
     pub reasons: Vec<String>,
-    /// Rows that fail and rows that do not, for the diagnosis.
-    pub rows: [Sample; 2],
+    /// Rows that fail and rows that do not, for the diagnosis, by the places of their cases.
+    pub rows: [Sample<usize>; 2],
     /// The failing row with the simplest inputs, and how simple they are.
     pub smallest: Option<(u32, AnswerRow)>,
     /// Cases that were asked for and never answered.
@@ -56,7 +53,22 @@ impl AnswerTally {
     pub fn new(outputs: usize) -> Self {
         let outputs = outputs.max(1);
         let rows = [KEPT_FAILING, KEPT_PASSING / outputs].map(|most| Sample::new(outputs, most));
-        Self { rows, ..Self::default() }
+        Self {
+            verdicts: Tally::default(),
+            asked: 0,
+            skipped: 0,
+            failed: 0,
+            error_passing: 0.0,
+            errors: (0.0, 0),
+            reasons: vec![],
+            rows,
+            smallest: None,
+            missing: 0,
+            unjudged: 0,
+            expected: 0,
+            diagnosis: None,
+            undeclared: None,
+        }
     }
 }
 
@@ -67,52 +79,6 @@ pub struct AnswerRow {
     pub case: usize,
     /// What was answered.
     pub values: Vec<f32>,
-}
-
-/// So many rows at most, evenly spread over all that came.
-#[derive(Clone, Debug, Default)]
-pub struct Sample {
-    cases: Vec<usize>,
-    /// The rows' values, one after the other.
-    values: Vec<f32>,
-    outputs: usize,
-    /// How many came.
-    pub seen: usize,
-    stride: usize,
-    most: usize,
-}
-
-impl Sample {
-    const fn new(outputs: usize, most: usize) -> Self {
-        Self { cases: vec![], values: vec![], outputs, seen: 0, stride: 1, most }
-    }
-
-    /// The cases' places and what was answered to each.
-    pub fn rows(&self) -> impl Iterator<Item = (usize, &[f32])> {
-        self.cases.iter().copied().zip(self.values.chunks_exact(self.outputs.max(1)))
-    }
-
-    fn push(&mut self, case: usize, values: &[f32]) {
-        if self.seen.is_multiple_of(self.stride) {
-            if self.cases.len() == self.most {
-                // Every other one.
-                let kept = self.cases.len().div_ceil(2);
-                for k in 0..kept {
-                    self.cases[k] = self.cases[2 * k];
-                    let from = 2 * k * self.outputs;
-                    self.values.copy_within(from..from + self.outputs, k * self.outputs);
-                }
-                self.cases.truncate(kept);
-                self.values.truncate(kept * self.outputs);
-                self.stride *= 2;
-            }
-            if self.seen.is_multiple_of(self.stride) {
-                self.cases.push(case);
-                self.values.extend_from_slice(values);
-            }
-        }
-        self.seen += 1;
-    }
 }
 
 impl AnswerTally {
@@ -156,7 +122,7 @@ impl AnswerTally {
                 self.smallest = Some((simple, AnswerRow { case, values: values.to_vec() }));
             }
         }
-        self.rows[usize::from(!has_failed)].push(case, values);
+        self.rows[usize::from(!has_failed)].push(case, values.iter().copied());
     }
 
     /// Counts a skip.
@@ -164,26 +130,6 @@ impl AnswerTally {
         self.skipped += 1;
         if !self.reasons.contains(&reason) && self.reasons.len() < KEPT_REASONS {
             self.reasons.push(reason);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_sample_is_spread_over_all_that_came() {
-        for count in [0, 5, 8, 9, 100, 12_345] {
-            let mut sample = Sample::new(2, 8);
-            let value = |case: usize| f32::from(u16::try_from(case).expect("it is small"));
-            (0..count).for_each(|case| sample.push(case, &[value(case), -1.0]));
-            let cases: Vec<usize> = sample.rows().map(|(case, _)| case).collect();
-            assert_eq!(sample.seen, count);
-            assert!(sample.rows().all(|(case, values)| values == [value(case), -1.0]));
-            assert!(cases.len() == count.min(8) || (4..=8).contains(&cases.len()), "{cases:?}");
-            assert!(cases.windows(2).all(|pair| pair[1] - pair[0] == sample.stride), "{cases:?}");
-            assert!(cases.last().is_none_or(|last| last + sample.stride >= count), "{cases:?} of {count}");
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::chunk::{Chunk, TASK};
 use crate::devices::Known;
+use crate::sample::Sample;
 use crate::tally::Tally;
 use crate::{Outcome, judge, simplicity};
 use lightmeter_arithmetic::{Accept, Profile};
@@ -35,24 +36,61 @@ pub struct RowPlace {
     pub output: usize,
 }
 
-/// What a group's rows have come to in a stage of a subject.
+/// Verdicts on a group's rows in a stage of a subject.
 pub type RowTally = Tally<RowPlace, Failure>;
+/// Rows of a group, by the formula's place among the group's and the case.
+pub type RowSample = Sample<(usize, CaseRef)>;
 
-/// Judges the words that a stage gave for a chunk, on all cores.
-#[must_use]
-pub fn judge_chunk(chunk: &Chunk<'_>, words: &[u32], stage: Stage, by: &Judging<'_>) -> RowTally {
-    let tallies: Vec<RowTally> = (0..chunk.cases.len().div_ceil(TASK))
-        .into_par_iter()
-        .map(|task| {
-            let cases = task * TASK..chunk.cases.len().min((task + 1) * TASK);
-            let mut tally = RowTally::default();
-            for case in cases {
-                judge_case(chunk, words, case, stage, by, &mut tally);
-            }
-            tally
-        })
-        .collect();
-    tallies.into_iter().sum()
+/// Failing rows that are kept for the diagnosis.
+pub const KEPT_FAILING: usize = 2048;
+/// Values of rows without a failure that are kept for it, and for the verdict on all of them together.
+pub const KEPT_PASSING: usize = 8192;
+
+/// What a group's rows have come to in a stage of a subject.
+#[derive(Clone, Debug)]
+pub struct RowStanding {
+    /// The verdicts.
+    pub tally: RowTally,
+    /// Some of the rows that fail.
+    pub wrong: RowSample,
+    /// Some of the others. A row that a named deviation excuses is in neither.
+    pub right: RowSample,
+}
+
+impl RowStanding {
+    /// Of formulas with so many outputs, before anything is judged.
+    #[must_use]
+    pub fn new(outputs: usize) -> Self {
+        let outputs = outputs.max(1);
+        Self {
+            tally: RowTally::default(),
+            wrong: Sample::new(outputs, KEPT_FAILING),
+            right: Sample::new(outputs, KEPT_PASSING / outputs),
+        }
+    }
+
+    fn part(&self) -> Self {
+        Self { tally: RowTally::default(), wrong: self.wrong.part(), right: self.right.part() }
+    }
+
+    /// Judges the words that a stage gave for a chunk, on all cores, and adds the verdicts.
+    pub fn judge(&mut self, chunk: &Chunk<'_>, words: &[u32], stage: Stage, by: &Judging<'_>) {
+        let parts: Vec<Self> = (0..chunk.cases.len().div_ceil(TASK))
+            .into_par_iter()
+            .map(|task| {
+                let mut part = self.part();
+                for case in task * TASK..chunk.cases.len().min((task + 1) * TASK) {
+                    judge_case(chunk, words, case, stage, by, &mut part);
+                }
+                part
+            })
+            .collect();
+        for part in parts {
+            self.tally.add(part.tally);
+            self.wrong.add(&part.wrong);
+            self.right.add(&part.right);
+        }
+    }
 }
 
 /// The intervals of one case as a profile makes them for a stage of a subject.
@@ -65,7 +103,14 @@ pub fn intervals(member: &Member, inputs: &[f32], stage: Stage, known: &Known, p
     }
 }
 
-fn judge_case(chunk: &Chunk<'_>, words: &[u32], case: usize, stage: Stage, by: &Judging<'_>, tally: &mut RowTally) {
+fn judge_case(
+    chunk: &Chunk<'_>,
+    words: &[u32],
+    case: usize,
+    stage: Stage,
+    by: &Judging<'_>,
+    standing: &mut RowStanding,
+) {
     let (member, outputs) = (chunk.members[chunk.of[case]], chunk.members[0].spec.output_len());
     let range = case * outputs..(case + 1) * outputs;
     let mut own = [Accept::ANY; 16];
@@ -77,8 +122,10 @@ fn judge_case(chunk: &Chunk<'_>, words: &[u32], case: usize, stage: Stage, by: &
         &own[..outputs]
     };
     let is_random = matches!(chunk.cases[case], CaseRef::Random(_));
+    let tally = &mut standing.tally;
+    let (failed, pardoned) = (tally.totals.failed, tally.totals.expected_failures);
     tally.totals.cases += 1;
-    for (output, at) in range.enumerate() {
+    for (output, at) in range.clone().enumerate() {
         let (bits, reference) = (words[at], chunk.references[at]);
         let verdict = judge(bits, reference, &legal[output]);
         let excused = match verdict.outcome {
@@ -99,6 +146,12 @@ fn judge_case(chunk: &Chunk<'_>, words: &[u32], case: usize, stage: Stage, by: &
         }
         tally.see_error(verdict.error);
         tally.see_margin(verdict.margin, place);
+    }
+    let values = words[range].iter().map(|&bits| f32::from_bits(bits));
+    if standing.tally.totals.failed > failed {
+        standing.wrong.push((chunk.of[case], chunk.cases[case]), values);
+    } else if standing.tally.totals.expected_failures == pardoned {
+        standing.right.push((chunk.of[case], chunk.cases[case]), values);
     }
 }
 
@@ -204,9 +257,15 @@ mod tests {
     }
 
     fn judged(chunk: &Chunk<'_>, words: &[u32]) -> RowTally {
+        standing(chunk, words).tally
+    }
+
+    fn standing(chunk: &Chunk<'_>, words: &[u32]) -> RowStanding {
         let known = Known::default();
         let by = Judging { adapter: "cpu", known: &known, profile: &WGSL, rerun: "" };
-        judge_chunk(chunk, words, Stage::Compute, &by)
+        let mut standing = RowStanding::new(chunk.members[0].spec.output_len());
+        standing.judge(chunk, words, Stage::Compute, &by);
+        standing
     }
 
     /// The first, a middle and the last of so many.

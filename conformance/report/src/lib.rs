@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod gate;
 pub mod junit;
+pub mod live;
 pub mod page;
 pub mod selftest;
 pub mod special;

@@ -16,24 +16,39 @@ pub enum Detail {
     Groups,
 }
 
+/// How a report is written.
+#[derive(Clone, Copy, Debug)]
+pub struct Style {
+    /// How much is told.
+    pub detail: Detail,
+    /// Whether it is said where the time went.
+    pub timing: bool,
+    /// Whether failing cases were told already, as they were judged.
+    pub is_told: bool,
+}
+
 /// Writes the report.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write) -> Result {
+pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
     for adapter in &report.adapters {
         writeln!(out, "{:<14} {} · {} · {}", adapter.name, adapter.device, adapter.backend, adapter.driver)?;
     }
     writeln!(out)?;
-    let rows = match detail {
+    let rows = match style.detail {
         Detail::Families => families(&report.groups),
         Detail::Groups => report.groups.iter().map(TableRow::of).collect(),
     };
     table(&rows, out)?;
-    failures(report, out)?;
+    if style.is_told {
+        failing_groups(report, out)?;
+    } else {
+        failures(report, out)?;
+    }
     writeln!(out)?;
     notes(report, out)?;
-    if timing {
+    if style.timing {
         let t = report.timing;
         blend_timing(report, out)?;
         writeln!(
@@ -54,24 +69,11 @@ pub fn write(report: &Report, detail: Detail, timing: bool, out: &mut impl Write
 /// # Errors
 /// Where the writer fails.
 pub fn failures(report: &Report, out: &mut impl Write) -> Result {
-    for group in report.groups.iter().filter(|group| group.totals.failed > 0 || group.problem.is_some()) {
-        let (failed, verdicts) = (thousands(group.totals.failed), thousands(group.totals.verdicts));
-        write!(out, "\n✗ {} on {}, {}: {failed} of {verdicts} failed", group.id, group.adapter, group.place())?;
-        if let Some(explanation) = &group.explanation {
-            write!(out, "; {explanation}")?;
-        }
-        if let Some(problem) = &group.problem {
-            write!(out, "; {problem}")?;
-        }
-    }
-    if !report.failures.is_empty() {
-        writeln!(out)?;
-    }
+    failing_groups(report, out)?;
     // One failure a formula and adapter explains more than many; the JSON has the first of every stage.
     let mut told: Vec<(&str, &str)> = vec![];
     for failure in &report.failures {
-        let path = failure.id.rsplit_once('/').map_or(failure.id.as_str(), |(path, _)| path);
-        let formula = path.split("/hard").next().unwrap_or(path).trim_end_matches("/random");
+        let formula = formula_of(failure);
         if !told.contains(&(formula, &failure.adapter)) {
             told.push((formula, &failure.adapter));
             writeln!(out)?;
@@ -79,6 +81,36 @@ pub fn failures(report: &Report, out: &mut impl Write) -> Result {
         }
     }
     Ok(())
+}
+
+fn failing_groups(report: &Report, out: &mut impl Write) -> Result {
+    let fails = |group: &&Group| group.totals.failed > 0 || group.problem.is_some();
+    for (place, group) in report.groups.iter().filter(fails).enumerate() {
+        if place == 0 {
+            writeln!(out)?;
+        }
+        failing_group(group, " of", out)?;
+    }
+    Ok(())
+}
+
+/// Writes a line on a group that fails, whose counts are of some of its verdicts.
+pub(crate) fn failing_group(group: &Group, of: &str, out: &mut impl Write) -> Result {
+    let (failed, verdicts) = (thousands(group.totals.failed), thousands(group.totals.verdicts));
+    write!(out, "✗ {} on {}, {}: {failed}{of} {verdicts} failed", group.id, group.adapter, group.place())?;
+    if let Some(explanation) = &group.explanation {
+        write!(out, "; {explanation}")?;
+    }
+    if let Some(problem) = &group.problem {
+        write!(out, "; {problem}")?;
+    }
+    writeln!(out)
+}
+
+/// The formula, or the scene, that a failure is of.
+pub(crate) fn formula_of(failure: &Failure) -> &str {
+    let path = failure.id.rsplit_once('/').map_or(failure.id.as_str(), |(path, _)| path);
+    path.split("/hard").next().unwrap_or(path).trim_end_matches("/random")
 }
 
 /// What the first drawing of the blend states costs, and the second, by adapter: the product of factors and equations, and

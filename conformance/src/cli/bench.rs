@@ -1,16 +1,15 @@
 //! `lightmeter bench`.
 
 use super::options::Choice;
+use super::progress::Bar;
 use super::{NothingToRun, Status, emit, writable};
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
 use lightmeter::bench::{BenchOptions, bench};
 use lightmeter::document::Document as _;
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::filter::Filter;
-use lightmeter::options::Progress;
 use lightmeter::report::bench::recommend::{self, Inputs, Limit, recommend};
 use lightmeter::report::bench::{page, text};
 use lightmeter::scene::load;
@@ -121,9 +120,9 @@ impl Bench {
             let message = "the embedded implementation has no shaders: formulas alone are measured of it";
             return Err(NothingToRun(message.into()).into());
         }
-        let mut bar = Bar::default();
+        let mut bar = Bar::new(None, "groups");
         let document = bench(&subjects, &options, &mut bar);
-        bar.0.finish_and_clear();
+        bar.bar.finish_and_clear();
         let document = document.map_err(device_error)?;
         if document.adapters.iter().all(|adapter| adapter.groups.is_empty() && adapter.scalings.is_empty()) {
             let message =
@@ -185,29 +184,5 @@ impl Bench {
         let has_files = self.filter.len() > filter.globs().count();
         (!has_files || !filter.is_empty())
             && catalogue().iter().any(|member| asked(&member.spec.id) || asked(member.spec.group()))
-    }
-}
-
-/// A bar on standard error, where that is a terminal.
-struct Bar(ProgressBar);
-
-impl Default for Bar {
-    fn default() -> Self {
-        Self(ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()))
-    }
-}
-
-impl Progress for Bar {
-    fn start(&mut self, groups: u64) {
-        self.0.set_length(groups);
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} groups  {elapsed}  {msg}") {
-            self.0.set_style(style);
-        }
-    }
-    fn group(&mut self, id: &str) {
-        self.0.set_message(id.to_owned());
-    }
-    fn advance(&mut self, groups: u64) {
-        self.0.inc(groups);
     }
 }

@@ -1,10 +1,12 @@
 //! `lightmeter gate`.
 
 use super::pack::Cases;
+use super::progress::Bar;
+use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit, writable};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::ProgressBar;
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::document::Document as _;
@@ -20,10 +22,7 @@ use lightmeter::gate::plan::{CasePlace, GatePlan};
 use lightmeter::gate::process::{self, Asking, Ending, Limits};
 use lightmeter::gate::report;
 use lightmeter::report::gate as outputs;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Judge another renderer, by its files or as a process: see docs/gate.md.
@@ -114,7 +113,7 @@ impl Gate {
         writable(self.out.as_deref())?;
         let mut ledger = Ledger::new(&plan, self.profile.unwrap_or(&WGSL));
         ledger.is_held_to = self.profile.is_some();
-        let bar = bar(plan.cases() + plan.scenes.len() as u64);
+        let bar = Bar::new(Some(plan.cases() + plan.scenes.len() as u64), "cases").bar;
         let outcome = match &self.exec {
             Some(command) => self.process(&mut ledger, &plan, command, expectations, &bar),
             None => {
@@ -200,16 +199,6 @@ impl Gate {
     }
 }
 
-/// Set by the first signal that ends a program; the second ends this one at once.
-fn stopped_by_signals() -> anyhow::Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM, SIGHUP] {
-        signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, stop.clone())?;
-        signal_hook::flag::register(signal, stop.clone())?;
-    }
-    Ok(stop)
-}
-
 /// An expectation of what no renderer is ever asked is a mistake in its file.
 fn matches_something(expectations: &Expectations) -> anyhow::Result<()> {
     let all = GatePlan::new(Choice { filter: vec![], cases: 1, seed: 1, size: None })?;
@@ -235,14 +224,6 @@ fn matches_something(expectations: &Expectations) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn bar(cases: u64) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} cases  {elapsed}") {
-        bar.set_style(style);
-    }
-    bar
-}
-
 /// The command, but for where its result goes.
 fn command() -> String {
     let mut words = vec!["lightmeter".to_owned()];
@@ -261,6 +242,9 @@ fn command() -> String {
 
 /// A renderer that broke off, or wrote what is no answer, ends with 4 whatever else is right.
 fn status(report: &GateReport) -> Status {
+    if let Some(signal) = report.signal {
+        return Status::of_signal(signal);
+    }
     if report.is_broken() {
         Status::Device
     } else if report.is_failed() {

@@ -10,17 +10,20 @@ mod merge;
 mod options;
 mod pack;
 mod page;
+mod progress;
 mod render;
 mod run;
 mod schema;
 mod selftest;
 mod show;
+mod signals;
 mod special;
 mod sweep;
 
 use clap::{Parser, Subcommand};
 use lightmeter::adapters::AdapterError;
 use lightmeter::device::DeviceError;
+use signal_hook::consts::{SIGHUP, SIGTERM};
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -31,7 +34,8 @@ use std::process::ExitCode;
     name = "lightmeter",
     version,
     after_help = "Exit codes: 0 all as expected · 1 something failed or passed unexpectedly · 2 bad usage or input · \
-    3 nothing could run · 4 the device failed or was lost, or the renderer under test crashed, hung or broke the protocol"
+    3 nothing could run · 4 the device failed or was lost, or the renderer under test crashed, hung or broke the protocol · \
+    130 and 143 interrupted by SIGINT and SIGTERM: what was judged is reported"
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
@@ -110,6 +114,12 @@ pub(crate) enum Status {
     Nothing = 3,
     /// The device failed or was lost, or the renderer under test crashed, hung or broke the protocol.
     Device = 4,
+    /// SIGHUP ended it before its time.
+    HungUp = 129,
+    /// SIGINT did.
+    Interrupted = 130,
+    /// SIGTERM did.
+    Terminated = 143,
 }
 
 impl From<Status> for ExitCode {
@@ -124,6 +134,15 @@ impl From<Status> for ExitCode {
 pub(crate) struct NothingToRun(pub(crate) String);
 
 impl Status {
+    /// The status of what a signal ended, as shells have it.
+    pub(crate) const fn of_signal(signal: i32) -> Self {
+        match signal {
+            SIGHUP => Self::HungUp,
+            SIGTERM => Self::Terminated,
+            _ => Self::Interrupted,
+        }
+    }
+
     /// The status that an error ends with.
     pub(crate) fn of(error: &anyhow::Error) -> Self {
         if error.downcast_ref::<NothingToRun>().is_some() {

@@ -1,14 +1,15 @@
 //! `lightmeter run`.
 
 use super::options::{Amount, Choice, Format};
+use super::progress::{Bar, Stream};
+use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit, writable};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::document::Document as _;
 use lightmeter::document::run::{Interrupted, Report};
+use lightmeter::faults::Mistakes;
 use lightmeter::filter::Filter;
-use lightmeter::options::Progress;
 use lightmeter::report::{junit, text};
 use lightmeter::run::run;
 use lightmeter::select::{catalogue_of, select};
@@ -54,11 +55,14 @@ impl Run {
         options.images = Some(self.images.clone());
         options.again = self.timing;
         options.samples = samples;
+        options.diagnose = Some(&Mistakes);
+        options.stop = stopped_by_signals()?;
         writable(self.out.as_deref())?;
         let mut subjects = self.choice.subjects()?;
-        let mut bar = Bar::default();
+        let mut bar =
+            Bar::new(None, "cases").live(if self.is_read_by_people() { Stream::Output } else { Stream::Error });
         let report = run(&mut subjects, &options, &mut bar);
-        bar.0.finish_and_clear();
+        bar.bar.finish_and_clear();
         let report = match report {
             // Closing a device that hangs would hang as well.
             Err(error) if error.is_of_device() => {
@@ -74,6 +78,11 @@ impl Run {
         Ok(status(&report))
     }
 
+    /// Whether the result is text on standard output.
+    fn is_read_by_people(&self) -> bool {
+        self.format == Format::Text && self.out.is_none()
+    }
+
     fn write(&self, report: &Report) -> anyhow::Result<String> {
         Ok(match self.format {
             Format::Json => report.to_json()?,
@@ -81,7 +90,8 @@ impl Run {
             Format::Text => {
                 let detail = if self.groups { text::Detail::Groups } else { text::Detail::Families };
                 let mut out = String::new();
-                text::write(report, detail, self.timing, &mut out)?;
+                let style = text::Style { detail, timing: self.timing, is_told: self.is_read_by_people() };
+                text::write(report, style, &mut out)?;
                 out
             }
         })
@@ -90,9 +100,9 @@ impl Run {
 
 /// Nothing ran where every case was skipped, or every verdict permits anything.
 fn status(report: &Report) -> Status {
-    if let Some(Interrupted { under_way, message }) = &report.interrupted {
+    if let Some(Interrupted { under_way, message, signal }) = &report.interrupted {
         eprintln!("error: {message}\n  {under_way} was under way; what was judged before stands in the result");
-        return Status::Device;
+        return signal.map_or(Status::Device, Status::of_signal);
     }
     if !report.is_success() {
         return Status::Failed;
@@ -132,30 +142,6 @@ pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples, size: Op
     Ok(Filter::new(globs)?)
 }
 
-/// A bar on standard error, where that is a terminal.
-struct Bar(ProgressBar);
-
-impl Default for Bar {
-    fn default() -> Self {
-        Self(ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()))
-    }
-}
-
-impl Progress for Bar {
-    fn start(&mut self, cases: u64) {
-        self.0.set_length(cases);
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} cases  {elapsed}  {msg}") {
-            self.0.set_style(style);
-        }
-    }
-    fn group(&mut self, id: &str) {
-        self.0.set_message(id.to_owned());
-    }
-    fn advance(&mut self, cases: u64) {
-        self.0.inc(cases);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -164,10 +150,15 @@ mod tests {
     #[test]
     fn a_run_that_a_device_ended_says_so_and_ends_with_4() {
         let mut report = Report::empty(1, "wgsl".into(), vec![], vec![]);
-        report.interrupted = Some(Interrupted { under_way: "blend/max".into(), message: "the device failed".into() });
+        let interrupted =
+            |signal| Some(Interrupted { under_way: "blend/max".into(), message: "the device failed".into(), signal });
+        report.interrupted = interrupted(Some(signal_hook::consts::SIGTERM));
+        assert_eq!(status(&report), Status::Terminated);
+        report.interrupted = interrupted(None);
         assert_eq!(status(&report), Status::Device);
         let mut text = String::new();
-        text::write(&report, text::Detail::Families, false, &mut text).expect("a string takes it");
+        let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false };
+        text::write(&report, style, &mut text).expect("a string takes it");
         assert!(text.contains("interrupted: ") && text.contains("✗ "), "{text}");
     }
 }

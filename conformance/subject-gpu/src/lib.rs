@@ -333,22 +333,21 @@ impl Device for GpuDevice {
 mod tests {
     use super::*;
     use lightmeter_catalogue::filter::Filter;
+    use lightmeter_document::event::{Event, Observer};
     use lightmeter_document::run::Report;
-    use lightmeter_engine::options::{Options, Progress};
+    use lightmeter_engine::options::Options;
     use lightmeter_engine::run::run;
     use lightmeter_gpu::vulkan_adapters;
     use lightmeter_scene::target::TargetFormat;
 
     struct LoseAt<F>(&'static str, F);
 
-    impl<F: Fn()> Progress for LoseAt<F> {
-        fn start(&mut self, _cases: u64) {}
-        fn group(&mut self, id: &str) {
-            if id == self.0 {
+    impl<F: Fn()> Observer for LoseAt<F> {
+        fn see(&mut self, event: &Event<'_>) {
+            if matches!(event, Event::Group(id) if *id == self.0) {
                 (self.1)();
             }
         }
-        fn advance(&mut self, _cases: u64) {}
     }
 
     /// Loses the devices of the blend unit when a group begins.

@@ -1,8 +1,9 @@
 //! The one device of each adapter in a process, which all trials on that adapter share.
 
 use lightmeter::adapters;
+use lightmeter::document::event::Silent;
 use lightmeter::document::run::Report;
-use lightmeter::options::{Options, Silent};
+use lightmeter::options::Options;
 use lightmeter::run::run_selection;
 use lightmeter::selection::Selection;
 use lightmeter::subject::Subject;

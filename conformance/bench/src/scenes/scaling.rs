@@ -6,7 +6,7 @@ use crate::fit::fit;
 use crate::turns;
 use crate::turns::{Effort, Entry, Laps};
 use lightmeter_document::bench::{Scaling, ScalingPoint};
-use lightmeter_engine::options::Progress;
+use lightmeter_document::event::{Event, Observer};
 use lightmeter_gpu::compose::{Recipe, Shader};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, GpuError};
@@ -31,7 +31,7 @@ pub const SCALINGS: [&str; 3] = ["lights", "vertices", "pixels"];
 ///
 /// # Errors
 /// Where a shader is invalid or the device fails.
-pub fn scalings(on: &On<'_>, names: &[&str], progress: &mut impl Progress) -> Result<Vec<Scaling>, GpuError> {
+pub fn scalings(on: &On<'_>, names: &[&str], observer: &mut dyn Observer) -> Result<Vec<Scaling>, GpuError> {
     let Some(drawer) = Drawer::new(on) else { return Ok(vec![]) };
     let (gpu, setting) = (drawer.gpu, &on.setting);
     let most = usize::from(setting.quick);
@@ -72,9 +72,9 @@ pub fn scalings(on: &On<'_>, names: &[&str], progress: &mut impl Progress) -> Re
     ];
     let mut scalings = vec![];
     for kind in kinds.into_iter().filter(|kind| names.contains(&kind.id)) {
-        progress.group(&format!("scaling/{}", kind.id));
+        observer.see(&Event::Group(&format!("scaling/{}", kind.id)));
         scalings.push(kind.measure(&drawer, setting)?);
-        progress.advance(1);
+        observer.see(&Event::Advanced(1));
     }
     Ok(scalings)
 }

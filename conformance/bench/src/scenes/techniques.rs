@@ -3,7 +3,7 @@
 use super::drawing::{Drawer, Plan, Standard, side, sized};
 use super::{On, Setting, frames};
 use lightmeter_document::bench::{BenchGroup, GroupKind};
-use lightmeter_engine::options::Progress;
+use lightmeter_document::event::{Event, Observer};
 use lightmeter_gpu::compose::{Recipe, Shader, Technique};
 use lightmeter_gpu::{GpuError, Rung};
 use lightmeter_scene::frame::Frame;
@@ -30,14 +30,14 @@ pub fn techniques(
     on: &On<'_>,
     ladder: &[(Rung, Option<String>)],
     ids: &[&str],
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<Vec<BenchGroup>, GpuError> {
     let Some(drawer) = Drawer::new(on) else { return Ok(vec![]) };
     let mut groups = vec![];
     for comparison in comparisons().into_iter().filter(|comparison| ids.contains(&comparison.id)) {
-        progress.group(comparison.id);
+        observer.see(&Event::Group(comparison.id));
         groups.push(comparison.measure(&drawer, ladder, &on.setting)?);
-        progress.advance(1);
+        observer.see(&Event::Advanced(1));
     }
     Ok(groups)
 }

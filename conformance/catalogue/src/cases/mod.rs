@@ -18,7 +18,7 @@ mod rasteriser;
 mod rows;
 mod spec;
 
-pub use draw::{GENERATOR_VERSION, inputs, move_by_ulps};
+pub use draw::{GENERATOR_VERSION, inputs, mix, move_by_ulps};
 pub use formula::{AnyFormula, Formula, Visitor};
 pub use rows::{FromNumbers, Reader, Slot, Wanted, Writer, slot};
 pub use spec::{Domain, Hard, Input, Kind, Naive, Output, Shape, Size, Spec, Stable, Stage, Values};

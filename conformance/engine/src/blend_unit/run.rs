@@ -4,10 +4,11 @@ use super::chunk::{self, UnitChunk};
 use super::draw::draw;
 use super::standing::UnitStanding;
 use crate::device::{Code, DeviceError};
-use crate::options::{Options, Progress};
+use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{Member, Selected};
+use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::{Interrupted, Report};
 use lightmeter_scene::target::TargetFormat;
 use std::time::Instant;
@@ -19,7 +20,7 @@ pub(crate) fn run_group(
     subjects: &mut [Subject],
     options: &Options,
     report: &mut Report,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<(), DeviceError> {
     let targets = targets_of(members[0], &options.targets);
     let mut standings: Vec<Vec<UnitStanding>> = subjects
@@ -30,7 +31,7 @@ pub(crate) fn run_group(
         .collect();
     let mut result = Ok(());
     let mut parts = chunk::parts(members, group).peekable();
-    'chunks: while parts.peek().is_some() {
+    'chunks: while parts.peek().is_some() && !options.stop.is_set() {
         let clock = Instant::now();
         let chunk = UnitChunk::next(&mut parts, options.seed);
         report.timing.generate += clock.elapsed().as_secs_f64();
@@ -40,11 +41,12 @@ pub(crate) fn run_group(
                     report.interrupted = Some(Interrupted {
                         under_way: under_way(&chunk, subject, standing.target, &options.code, &error),
                         message: error.to_string(),
+                        signal: None,
                     });
                     result = Err(error);
                     break 'chunks;
                 }
-                progress.advance(chunk.cases.iter().map(|cases| cases.len() as u64).sum());
+                observer.see(&Event::Advanced(chunk.cases.iter().map(|cases| cases.len() as u64).sum()));
             }
         }
     }

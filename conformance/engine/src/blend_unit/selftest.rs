@@ -3,11 +3,12 @@
 
 use super::run::run_group;
 use crate::device::{Code, DeviceError};
-use crate::options::{Options, Silent};
+use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::{Program, Samples, every_state};
 use lightmeter_catalogue::select::{Member, Random, Selected, catalogue_of};
+use lightmeter_document::event::Silent;
 use lightmeter_document::run::{Group, Report};
 use lightmeter_document::selftest::{UnitFinding, UnitRow};
 use lightmeter_judge::blend_unit::rules::{FAULTS, Rules, Store, UnitFault};

@@ -4,10 +4,11 @@
 
 use super::verdict::{Drawn, JudgedScene};
 use crate::device::{DeviceError, Own, Picture};
-use crate::options::{Options, Progress};
+use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::Chosen;
+use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::Report;
 use lightmeter_judge::image::file::Stored;
 use lightmeter_reference::render::render;
@@ -48,7 +49,7 @@ pub(crate) fn run_scene(
     subjects: &mut [Subject],
     options: &Options,
     report: &mut Report,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<(), DeviceError> {
     let frame = &loaded.frame;
     let asked = Asked { frame, called: effects(frame), named: named(frame) };
@@ -64,7 +65,7 @@ pub(crate) fn run_scene(
         let place = started.subject;
         asked.finish(started, &scene, &subjects[place], &mut composed[place], options, report)?;
     }
-    progress.advance((scene.pixels() * subjects.len()) as u64);
+    observer.see(&Event::Advanced((scene.pixels() * subjects.len()) as u64));
     Ok(())
 }
 

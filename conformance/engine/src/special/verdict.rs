@@ -2,11 +2,12 @@
 
 use super::run::{EMBEDDED, Results, evaluate};
 use crate::device::DeviceError;
-use crate::options::{Options, Progress};
+use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
 use lightmeter_catalogue::special::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
+use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::{DeviationUse, Failure, Group, Report, Totals};
 use lightmeter_document::special::{ProbeResult, ProbeVerdict, Skipped};
 use lightmeter_document::{Number, Word};
@@ -69,7 +70,7 @@ pub(crate) fn run_table(
     subjects: &[Subject],
     options: &Options,
     report: &mut Report,
-    progress: &mut impl Progress,
+    observer: &mut dyn Observer,
 ) -> Result<(), DeviceError> {
     for subject in subjects {
         let clock = Instant::now();
@@ -84,7 +85,7 @@ pub(crate) fn run_table(
             }
             Some(results) => table.judge(&results, subject, seconds, options, report),
         }
-        progress.advance(table.work());
+        observer.see(&Event::Advanced(table.work()));
     }
     Ok(())
 }

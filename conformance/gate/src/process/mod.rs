@@ -13,12 +13,12 @@ use super::ledger::Ledger;
 use super::pack;
 use super::plan::{CasePlace, GatePlan};
 use super::problems::note;
+use lightmeter_document::event::Stop;
 use running::{Event, Running};
 use serde_json::json;
 use std::collections::{HashMap, VecDeque};
 use std::path::Path;
 use std::process::ChildStdin;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::RecvTimeoutError;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -102,6 +102,8 @@ pub struct Ending {
     pub expected_incidents: Vec<String>,
     /// Lines that it wrote after its hello.
     pub lines: u64,
+    /// The signal that ended the gate before its time.
+    pub signal: Option<i32>,
 }
 
 /// How a renderer is asked.
@@ -116,7 +118,7 @@ pub struct Asking<'a> {
     /// How often all is asked. Of one run, what failed is asked once more.
     pub runs: u64,
     /// Whether to stop, which a signal says.
-    pub stop: &'a AtomicBool,
+    pub stop: &'a Stop,
 }
 
 /// Asks a renderer all that it declares, and again: an answer that changes is no answer.
@@ -161,6 +163,7 @@ pub fn ask(
         session.all(ledger, again, progress)?;
     }
     session.finish();
+    session.outcome.signal = asking.stop.signal();
     Ok(session.outcome)
 }
 
@@ -235,14 +238,14 @@ impl Waiting {
 
 impl Session<'_> {
     fn is_stopped(&self) -> bool {
-        self.asking.stop.load(Ordering::Relaxed)
+        self.asking.stop.is_set()
     }
 
     /// Ends the process once it has nothing more to do; where it ends otherwise than well, that is told.
     fn finish(&mut self) {
         if let Some(running) = self.running.take() {
             let stop = self.asking.stop;
-            let wrong = running.finish(self.asking.limits.case, || stop.load(Ordering::Relaxed));
+            let wrong = running.finish(self.asking.limits.case, || stop.is_set());
             self.outcome.incidents.extend(wrong);
         }
     }

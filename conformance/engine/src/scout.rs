@@ -1,0 +1,124 @@
+//! The scouts of a run: a few cases of everything, so that what is broken is known within seconds. What they judge is told and not
+//! counted: the run judges these cases again with all others, by the shaders that were compiled here.
+
+use crate::device::DeviceError;
+use crate::options::Options;
+use crate::row_run::{Begun, RowRun};
+use crate::run::{CompiledGroups, is_over, tell};
+use crate::selection::Selection;
+use crate::subject::Subject;
+use lightmeter_catalogue::cases::Kind;
+use lightmeter_catalogue::select::{CaseRef, Member, Selected};
+use lightmeter_document::event::{Event, Observer};
+use lightmeter_document::run::Report;
+
+/// Random cases of a group that are scouted, besides its hard cases; of a group of many formulas, one of each at least.
+const SCOUTED: usize = 32;
+/// Groups that subjects are at work on at once: a driver compiles one while others are judged.
+const AT_ONCE: usize = 4;
+/// In a selection of fewer groups everything is judged as soon.
+const LEAST_GROUPS: usize = 8;
+
+/// A group whose cases subjects are at work on.
+struct UnderWay<'a> {
+    run: RowRun<'a>,
+    begun: Begun<'a>,
+}
+
+/// Judges a few cases of each group in the first of its stages that take rows. Gives the stages of every group, compiled; `None` where
+/// a device failed or the run was stopped.
+pub(crate) fn scout(
+    selection: &Selection,
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut Report,
+    observer: &mut dyn Observer,
+) -> Result<Option<CompiledGroups>, DeviceError> {
+    let catalogue = &selection.catalogue;
+    let group_of = |chosen: &Selected| catalogue[chosen.member].spec.group();
+    let has_rows = |group: &&[Selected]| !catalogue[group[0].member].spec.row_stages().is_empty();
+    let mut groups: Vec<&[Selected]> =
+        selection.formulas.chunk_by(|a, b| group_of(a) == group_of(b)).filter(has_rows).collect();
+    if groups.len() < LEAST_GROUPS {
+        return Ok(Some(CompiledGroups::new()));
+    }
+    // Few formulas, and so simple shaders, first.
+    groups.sort_by_key(|group| matches!(catalogue[group[0].member].spec.kind, Kind::Blend(_)));
+    let members: Vec<Vec<&Member>> =
+        groups.iter().map(|group| group.iter().map(|chosen| &catalogue[chosen.member]).collect()).collect();
+    let mut scouts = Scouts { options, compiled: CompiledGroups::new(), report: options.report(subjects) };
+    let mut under_way = std::collections::VecDeque::new();
+    for (group, members) in groups.iter().zip(&members) {
+        let id = members[0].spec.group();
+        let begun = scouts.begin(members, group, subjects);
+        let judged = begun.and_then(|begun| {
+            under_way.push_back(begun);
+            if under_way.len() < AT_ONCE { Ok(()) } else { scouts.end(under_way.pop_front(), subjects, observer) }
+        });
+        if is_over(judged, id, options, report)? {
+            return Ok(None);
+        }
+    }
+    while let Some(begun) = under_way.pop_front() {
+        let id = begun.run.id().to_owned();
+        let judged = scouts.end(Some(begun), subjects, observer);
+        if is_over(judged, &id, options, report)? {
+            return Ok(None);
+        }
+    }
+    report.timing.add(&scouts.report.timing);
+    Ok(Some(scouts.compiled))
+}
+
+struct Scouts<'a> {
+    options: &'a Options,
+    compiled: CompiledGroups,
+    /// What is told and not counted.
+    report: Report,
+}
+
+impl Scouts<'_> {
+    fn begin<'a>(
+        &mut self,
+        members: &'a [&'a Member],
+        group: &[Selected],
+        subjects: &mut [Subject],
+    ) -> Result<UnderWay<'a>, DeviceError> {
+        let clock = std::time::Instant::now();
+        let compiled = RowRun::compile(members[0], subjects, self.options)?;
+        self.report.timing.compile += clock.elapsed().as_secs_f64();
+        let run = RowRun::new(members, compiled, 1);
+        let begun = run.begin(&cases(members, group), subjects, self.options, &mut self.report)?;
+        Ok(UnderWay { run, begun })
+    }
+
+    /// Judges what the subjects gave, and tells of what fails.
+    fn end(
+        &mut self,
+        under_way: Option<UnderWay<'_>>,
+        subjects: &[Subject],
+        observer: &mut dyn Observer,
+    ) -> Result<(), DeviceError> {
+        let Some(UnderWay { mut run, begun }) = under_way else { return Ok(()) };
+        observer.see(&Event::Group(run.id()));
+        run.end(begun, subjects, self.options, &mut self.report)?;
+        let id = run.id().to_owned();
+        self.compiled.insert(id, run.finish(subjects, self.options, &mut self.report));
+        // Of so few cases nothing but a single wrong value tells anything.
+        self.report.groups.retain(|group| group.totals.failed > 0);
+        tell(&self.report.groups, &self.report.failures, true, observer);
+        self.report.groups.clear();
+        self.report.failures.clear();
+        Ok(())
+    }
+}
+
+/// Hard cases, and the first random ones, each with its formula's place among the group's.
+fn cases(members: &[&Member], group: &[Selected]) -> Vec<(usize, CaseRef)> {
+    let random = (SCOUTED / members.len()).max(1);
+    let few = |chosen: &Selected, member: &Member| chosen.rows(member).few(random);
+    let formulas = group.iter().zip(members).enumerate();
+    formulas
+        .flat_map(|(of, (chosen, member))| few(chosen, member).cases().map(|case| (of, case)).collect::<Vec<_>>())
+        .collect()
+}

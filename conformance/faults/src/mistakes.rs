@@ -1,0 +1,29 @@
+//! The mistakes of the catalogue, as those who judge ask for them.
+
+use crate::diagnose::diagnose;
+use crate::group::group_verdict;
+use crate::scene::Trial;
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::select::Member;
+use lightmeter_judge::diagnose::{Answered, Diagnose};
+use lightmeter_judge::image::Expected;
+use lightmeter_judge::image::file::Stored;
+use lightmeter_scene::frame::Frame;
+
+/// All mistakes of the catalogue.
+#[derive(Clone, Copy, Debug)]
+pub struct Mistakes;
+
+impl Diagnose for Mistakes {
+    fn formula(&self, member: &Member, answered: &[Answered<'_>], failing: u64, profile: &Profile) -> String {
+        diagnose(member, answered, profile).sentence_of(usize::try_from(failing).unwrap_or(usize::MAX))
+    }
+
+    fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<String> {
+        group_verdict(member, answered, profile).map(|systematic| systematic.says)
+    }
+
+    fn image(&self, frame: &Frame, image: &Stored, expected: &[Expected], profile: &Profile) -> String {
+        Trial::new(frame, image, expected, profile).diagnose().sentence
+    }
+}

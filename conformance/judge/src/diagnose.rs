@@ -1,0 +1,68 @@
+//! What is asked of whoever knows mistakes: which one explains wrong answers.
+
+use crate::image::Expected;
+use crate::image::file::Stored;
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::select::Member;
+use lightmeter_scene::frame::Frame;
+
+/// An answer to one case.
+#[derive(Clone, Copy, Debug)]
+pub struct Answered<'a> {
+    /// The case's inputs.
+    pub inputs: &'a [f32],
+    /// What was answered.
+    pub values: &'a [f32],
+    /// Whether a verdict on it failed.
+    pub is_wrong: bool,
+}
+
+/// Knows mistakes, and tells which one explains answers. `lightmeter_faults` has the one that commands use.
+pub trait Diagnose: Sync {
+    /// What explains the wrong ones of the answers to a formula, as a sentence. They are a sample of `failing` ones that are wrong.
+    fn formula(&self, member: &Member, answered: &[Answered<'_>], failing: u64, profile: &Profile) -> String;
+
+    /// What is wrong with answers of which each is legal: a parameter that is a little off. `None` where nothing is found.
+    fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<String>;
+
+    /// What explains a wrong image of a frame, as a sentence.
+    fn image(&self, frame: &Frame, image: &Stored, expected: &[Expected], profile: &Profile) -> String;
+}
+
+/// A row that was answered: its inputs, the values, and whether it is a random case.
+pub type Row<'a> = (Vec<f32>, &'a [f32], bool);
+
+/// What is told of all answers to a formula.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Told {
+    /// What explains those that are wrong.
+    pub explanation: Option<String>,
+    /// What is wrong with all of them together, where none is wrong by itself.
+    pub systematic: Option<String>,
+}
+
+impl Told {
+    /// What somebody who knows mistakes tells of answers: of some of the `failing` ones that are wrong, and of some others.
+    #[must_use]
+    pub fn of(
+        diagnose: &dyn Diagnose,
+        member: &Member,
+        [wrong, right]: [&[Row<'_>]; 2],
+        failing: u64,
+        profile: &Profile,
+    ) -> Self {
+        if failing == 0 {
+            // Hard cases are where formulas are steep, and say nothing of a parameter.
+            let random: Vec<Answered<'_>> = right
+                .iter()
+                .filter(|(.., is_random)| *is_random)
+                .map(|(inputs, values, _)| Answered { inputs, values, is_wrong: false })
+                .collect();
+            return Self { systematic: diagnose.systematic(member, &random, profile), ..Self::default() };
+        }
+        let all = wrong.iter().map(|row| (row, true)).chain(right.iter().map(|row| (row, false)));
+        let answered: Vec<Answered<'_>> =
+            all.map(|((inputs, values, _), is_wrong)| Answered { inputs, values, is_wrong }).collect();
+        Self { explanation: Some(diagnose.formula(member, &answered, failing, profile)), ..Self::default() }
+    }
+}

@@ -1,0 +1,63 @@
+//! What fails, as text, as soon as it is judged.
+
+use crate::text::{failing_group, failure, formula_of};
+use lightmeter_document::event::Event;
+use lightmeter_document::run::{Failure, Group};
+use std::collections::BTreeSet;
+use std::fmt::{Result, Write};
+
+/// Tells each group that fails once, and of each formula on an adapter one failing case.
+#[derive(Debug, Default)]
+pub struct Live {
+    groups: BTreeSet<(String, String, String)>,
+    formulas: BTreeSet<(String, String)>,
+}
+
+impl Live {
+    /// What there is to say of an event; nothing of most.
+    #[must_use]
+    pub fn text(&mut self, event: &Event<'_>) -> String {
+        let mut out = String::new();
+        if let Event::Judged { group, failures, is_scouted } = event
+            && (group.totals.failed > 0 || group.problem.is_some())
+        {
+            let Ok(()) = self.group(group, failures, *is_scouted, &mut out) else { unreachable!("a string takes all") };
+        }
+        out
+    }
+
+    fn group(&mut self, group: &Group, failures: &[&Failure], is_scouted: bool, out: &mut String) -> Result {
+        let key = (group.id.clone(), group.adapter.clone(), group.place());
+        if !self.groups.insert(key) {
+            return Ok(());
+        }
+        failing_group(group, if is_scouted { " of the first" } else { " of" }, out)?;
+        for one in failures {
+            if self.formulas.insert((formula_of(one).to_owned(), one.adapter.clone())) {
+                failure(one, out)?;
+            }
+        }
+        writeln!(out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_document::run::Totals;
+
+    #[test]
+    fn a_group_that_fails_is_told_once() {
+        let mut group = Group::new("fog/linear".into(), "lavapipe".into(), "compute");
+        group.explanation = Some("2 of 2 failing cases are explained by: it clamps".into());
+        let (mut live, mut said) = (Live::default(), String::new());
+        for (failed, is_scouted) in [(0, true), (2, true), (400, false)] {
+            group.totals = Totals { verdicts: 10 * failed, failed, ..Totals::default() };
+            said += &live.text(&Event::Judged { group: &group, failures: vec![], is_scouted });
+        }
+        let lines: Vec<&str> = said.lines().filter(|line| !line.is_empty()).collect();
+        assert_eq!(lines.len(), 1, "{said}");
+        assert!(lines[0].contains("2 of the first 20") && lines[0].contains("it clamps"), "{said}");
+        assert_eq!(live.text(&Event::Group("fog/linear")), "");
+    }
+}

@@ -1,0 +1,18 @@
+//! What ends a command before its work is done.
+
+use lightmeter::document::event::Stop;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Set by the first signal that ends a program: what was judged is then reported. The second ends this one at once.
+pub(crate) fn stopped_by_signals() -> anyhow::Result<Stop> {
+    let (stop, is_second) = (Stop::default(), Arc::new(AtomicBool::new(false)));
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        let number = usize::try_from(signal)?;
+        signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, is_second.clone())?;
+        signal_hook::flag::register(signal, is_second.clone())?;
+        signal_hook::flag::register_usize(signal, stop.flag(), number)?;
+    }
+    Ok(stop)
+}
