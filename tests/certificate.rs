@@ -4,7 +4,7 @@
 use lightmeter::cases::{Formula, Input, Kind, Output, Reader, Spec, Writer, slot};
 use lightmeter::select::catalogue;
 use lightmeter_reference::Real;
-use lightmeter_tests::certificate::{CASES, EXCEPTIONS, Finding, certify, certify_one, groups, page, problems};
+use lightmeter_tests::certificate::{CASES, EXCEPTIONS, FormulaFinding, certify, certify_one, groups, page, problems};
 use std::any::type_name;
 use std::path::Path;
 
@@ -32,10 +32,12 @@ fn missing(page: &str) -> Vec<String> {
 
 #[test]
 fn a_formula_that_is_left_out_is_missed() {
-    let findings: Vec<Finding> =
-        catalogue().iter().map(|member| Finding { id: member.spec.id.clone(), ..Finding::default() }).collect();
+    let findings: Vec<FormulaFinding> = catalogue()
+        .iter()
+        .map(|member| FormulaFinding { id: member.spec.id.clone(), ..FormulaFinding::default() })
+        .collect();
     assert_eq!(missing(&page(&findings)), Vec::<String>::new());
-    let rest: Vec<Finding> = findings.into_iter().filter(|finding| finding.id != "vector/face-normal").collect();
+    let rest: Vec<FormulaFinding> = findings.into_iter().filter(|finding| finding.id != "vector/face-normal").collect();
     assert_eq!(missing(&page(&rest)), ["vector/face-normal"]);
     assert_eq!(groups(&rest).len() + 1, missing("").len());
 }
@@ -63,7 +65,7 @@ const INPUTS: &[Input] = &[Input::rgb("x")];
 
 impl Formula for Wrong {
     fn spec(&self) -> Spec {
-        const OUTPUTS: &[Output] = &[Output::new("y", lightmeter::cases::Shape::Scalar, "1")];
+        const OUTPUTS: &[Output] = &[Output::new("y", lightmeter::cases::ValueShape::Scalar, "1")];
         Spec {
             id: "control/wrong".into(),
             text: "y = x",
@@ -125,7 +127,7 @@ fn what_cannot_be_compared_is_counted() {
 
 #[test]
 fn an_exception_must_be_granted_and_needed() {
-    let loses = |id: &str| Finding { id: id.into(), by_steps: 1, ..Finding::default() };
+    let loses = |id: &str| FormulaFinding { id: id.into(), by_steps: 1, ..FormulaFinding::default() };
     let said = problems(&[loses("vector/reflect"), loses("lighting/two-lights")]);
     assert!(said[0].contains("above condition"), "{said:?}");
     assert_eq!(said.iter().filter(|problem| problem.contains("no longer needed")).count(), EXCEPTIONS.len() - 1);

@@ -8,7 +8,7 @@
 //! ```
 
 use lightmeter::document::Number;
-use lightmeter::image::file::Stored;
+use lightmeter::image::file::StoredImage;
 use lightmeter::scene::load;
 use lightmeter::select::{Member, catalogue};
 use lightmeter_reference::render::render;
@@ -193,7 +193,7 @@ fn draw(id: &str, folder: &Path, faults: &Faults) -> anyhow::Result<Value> {
     }
     let name = format!("{}.exr", id.replace('/', "-"));
     if !faults.has("stale-at", id) {
-        Stored::of(&render::<f32>(&frame, None, None), frame.target.format).write(&folder.join(&name))?;
+        StoredImage::of(&render::<f32>(&frame, None, None), frame.target.format).write(&folder.join(&name))?;
     }
     let name = if faults.has("elsewhere-at", id) { "../elsewhere.exr".to_owned() } else { name };
     Ok(json!({ "id": id, "image": name }))

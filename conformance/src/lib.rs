@@ -22,13 +22,13 @@ pub mod blend_unit {
 /// Images: what is legal of them, and how they are drawn and judged.
 pub mod image {
     pub use lightmeter_engine::image::{diagnose, drawn, run, verdict};
-    pub use lightmeter_judge::image::{Expected, expect, file, judge};
+    pub use lightmeter_judge::image::{LegalPixel, expect, file, judge};
 }
 
 /// Special values: what is asked and promised, what is on record, and how they are run.
 pub mod special {
     pub use lightmeter_catalogue::special::{
-        Class, DEVIATIONS, Deviation, FAMILY, Gives, PROBES, Probe, Promise, Source, Way,
+        Class, DEVIATIONS, FAMILY, Gives, PROBES, Probe, Promise, Source, SpecialDeviation, Way,
     };
     pub use lightmeter_engine::special::{run, verdict};
     pub use lightmeter_judge::special::record;

@@ -31,14 +31,14 @@ impl ClockKind {
 
 /// A reading of a clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reading {
+pub enum ClockReading {
     /// Seconds.
     Seconds(f64),
     /// A reading that cannot be true, and why.
     Rejected(&'static str),
 }
 
-impl Reading {
+impl ClockReading {
     /// The seconds; `None` of what was rejected.
     #[must_use]
     pub const fn seconds(self) -> Option<f64> {
@@ -162,7 +162,7 @@ impl Clock {
         &self,
         gpu: &Gpu,
         encode: impl FnOnce(&mut wgpu::CommandEncoder, Span<'_>),
-    ) -> Result<Reading, GpuError> {
+    ) -> Result<ClockReading, GpuError> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encode(&mut encoder, self.stamps.as_ref().map_or(Span::NONE, |stamps| Span(Some(&stamps.queries))));
         if let Some(stamps) = &self.stamps {
@@ -176,8 +176,8 @@ impl Clock {
         gpu.wait()?;
         let wall = start.elapsed().as_secs_f64();
         let reading = match &self.stamps {
-            None => Reading::Seconds(wall),
-            Some(stamps) => Reading::of_ticks(stamps.read(gpu)?, stamps.period, wall),
+            None => ClockReading::Seconds(wall),
+            Some(stamps) => ClockReading::of_ticks(stamps.read(gpu)?, stamps.period, wall),
         };
         self.readings.fetch_add(1, Ordering::Relaxed);
         self.rejected.fetch_add(u64::from(reading.seconds().is_none()), Ordering::Relaxed);
@@ -228,17 +228,20 @@ mod tests {
     #[test]
     fn what_cannot_be_true_is_rejected() {
         let nanosecond = 1e-9;
-        assert_eq!(Reading::of_ticks([1_000, 3_000], nanosecond, 0.01), Reading::Seconds(2_000.0 * nanosecond));
+        assert_eq!(
+            ClockReading::of_ticks([1_000, 3_000], nanosecond, 0.01),
+            ClockReading::Seconds(2_000.0 * nanosecond)
+        );
         for ticks in [[0, 5], [5, 0], [0, 0], [7, 5], [u64::MAX, 1], [5, 5]] {
-            assert_eq!(Reading::of_ticks(ticks, nanosecond, 0.01).seconds(), None, "{ticks:?}");
+            assert_eq!(ClockReading::of_ticks(ticks, nanosecond, 0.01).seconds(), None, "{ticks:?}");
         }
         // A millisecond of a second.
-        assert_eq!(Reading::of_ticks([1, 1_000_001], nanosecond, 1.0).seconds(), None);
-        assert!(Reading::of_ticks([1, 1_000_001], nanosecond, 0.04).seconds().is_some());
+        assert_eq!(ClockReading::of_ticks([1, 1_000_001], nanosecond, 1.0).seconds(), None);
+        assert!(ClockReading::of_ticks([1, 1_000_001], nanosecond, 0.04).seconds().is_some());
         // Two seconds by a device, of one on the wall.
-        assert_eq!(Reading::of_ticks([1, 2_000_000_001], nanosecond, 1.0).seconds(), None);
+        assert_eq!(ClockReading::of_ticks([1, 2_000_000_001], nanosecond, 1.0).seconds(), None);
         for period in [0.0, -1e-9, f64::NAN, f64::INFINITY] {
-            assert_eq!(Reading::of_ticks([1, 2], period, 0.01).seconds(), None, "{period}");
+            assert_eq!(ClockReading::of_ticks([1, 2], period, 0.01).seconds(), None, "{period}");
         }
     }
 }

@@ -8,8 +8,8 @@
 //! | line | meaning |
 //! |---|---|
 //! | `//@ let name = condition` | a name for a condition |
-//! | `//@ when condition` … `//@ end` | these lines where it holds; [`Shader::Full`] counts as having every effect |
-//! | `//@ if condition` … `//@ end` | these statements where it holds; in [`Shader::Full`] an `if` on the switches |
+//! | `//@ when condition` … `//@ end` | these lines where it holds; [`ShaderForm::Full`] counts as having every effect |
+//! | `//@ if condition` … `//@ end` | these statements where it holds; in [`ShaderForm::Full`] an `if` on the switches |
 //! | `//@ slot name` | the statements that the effects have for it |
 //! | `//@ members name` | the same of members of a struct: no switch surrounds them |
 //! | `//@ choose name: type from slot else expression` | a value by the one effect's expression, or by this |
@@ -36,14 +36,14 @@ use template::{Template, Wanted};
 
 /// How much a draw's shader holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Shader {
+pub enum ShaderForm {
     /// The effects that are called for.
     Composed,
     /// Every effect behind a uniform switch: one shader for all draws.
     Full,
 }
 
-impl Shader {
+impl ShaderForm {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Composed, Self::Full];
 
@@ -113,7 +113,7 @@ pub const MOST_TOWARD: usize = 4;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Recipe {
     /// How much of the effects a shader holds.
-    pub shader: Shader,
+    pub shader: ShaderForm,
     /// The intermediate result that is drawn in place of the colour.
     pub stage: Option<Intermediate>,
     /// The arithmetic.
@@ -125,14 +125,14 @@ pub struct Recipe {
 impl Recipe {
     /// In f32, as the scene asks for.
     #[must_use]
-    pub const fn of(shader: Shader) -> Self {
+    pub const fn of(shader: ShaderForm) -> Self {
         Self { shader, stage: None, rung: Rung::F32, technique: Technique::Plain }
     }
 
     /// An intermediate result.
     #[must_use]
     pub const fn stage(stage: Intermediate) -> Self {
-        Self { stage: Some(stage), ..Self::of(Shader::Composed) }
+        Self { stage: Some(stage), ..Self::of(ShaderForm::Composed) }
     }
 }
 
@@ -210,7 +210,7 @@ pub fn live(effects: Effects, stage: Option<Intermediate>) -> Effects {
 pub struct Composition {
     /// The WGSL.
     pub source: String,
-    /// The effects that it computes: see [`live`]; with [`Shader::Full`] those that are switched on.
+    /// The effects that it computes: see [`live`]; with [`ShaderForm::Full`] those that are switched on.
     pub effects: Effects,
     /// The file and the line in it of each line.
     origins: Vec<(String, usize)>,
@@ -274,7 +274,7 @@ impl Composer {
         Ok(Self { template: Template::new(shaders)?, families, forms: shaders.stable_forms() })
     }
 
-    /// The shader of a draw of these effects. A stage goes with [`Shader::Composed`], and so does a technique, which changes
+    /// The shader of a draw of these effects. A stage goes with [`ShaderForm::Composed`], and so does a technique, which changes
     /// nothing where the effects have no use for it. `toward` lights stand at a point or in a cone: as many vectors are
     /// interpolated where the technique says so.
     ///
@@ -282,17 +282,17 @@ impl Composer {
     /// Where the effects' files do not go together, with the file and the line.
     ///
     /// # Panics
-    /// Where a stage or a technique is asked of [`Shader::Full`], or more vectors than [`MOST_TOWARD`] are interpolated.
+    /// Where a stage or a technique is asked of [`ShaderForm::Full`], or more vectors than [`MOST_TOWARD`] are interpolated.
     pub fn compose(&self, effects: Effects, recipe: Recipe, toward: usize) -> Result<Composition, GpuError> {
         let Recipe { shader, stage, technique, .. } = recipe;
-        assert!(shader == Shader::Composed || stage.is_none(), "the full shader has no stages");
-        assert!(shader == Shader::Composed || technique == Technique::Plain, "the full shader has no techniques");
+        assert!(shader == ShaderForm::Composed || stage.is_none(), "the full shader has no stages");
+        assert!(shader == ShaderForm::Composed || technique == Technique::Plain, "the full shader has no techniques");
         let live = live(effects, stage);
         let technique = if technique.concerns(live) { technique } else { Technique::Plain };
         let toward = if technique.has_vectors() { toward } else { 0 };
         assert!(toward <= MOST_TOWARD, "{toward} lights' vectors are interpolated, and {MOST_TOWARD} can be");
         let has_normals = effects.has_normals();
-        let wanted = Wanted { effects: live, stage, has_normals, full: shader == Shader::Full, technique, toward };
+        let wanted = Wanted { effects: live, stage, has_normals, full: shader == ShaderForm::Full, technique, toward };
         let own = split(self.template.expand(&wanted)?);
         let items = reached(&own, &self.families);
         let (mut source, mut origins) = (String::new(), vec![]);
@@ -340,11 +340,11 @@ impl Composer {
     pub fn check(&self) -> Result<(), GpuError> {
         for effects in covering() {
             for technique in Technique::ALL.into_iter().filter(|technique| technique.concerns(live(effects, None))) {
-                let recipe = Recipe { technique, ..Recipe::of(Shader::Composed) };
+                let recipe = Recipe { technique, ..Recipe::of(ShaderForm::Composed) };
                 self.compose(effects, recipe, toward(effects))?.validate()?;
             }
         }
-        self.compose(Effects::NONE, Recipe::of(Shader::Full), 0)?.validate()?;
+        self.compose(Effects::NONE, Recipe::of(ShaderForm::Full), 0)?.validate()?;
         Ok(())
     }
 }

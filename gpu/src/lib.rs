@@ -27,7 +27,7 @@ mod sweep;
 pub use adapters::{Adapter, adapters, vulkan_adapters};
 pub use arithmetic::{ArithmeticPipeline, Programmable};
 pub use blend_unit::{Batch, BlendUnit, UnitDraw};
-pub use clock::{Clock, ClockKind, Reading};
+pub use clock::{Clock, ClockKind, ClockReading};
 pub use depth_unit::{DEPTH_OUTPUTS, DepthUnit};
 pub use device::Gpu;
 pub use error::GpuError;

@@ -2,7 +2,7 @@
 //! what comes out is folded into one word, so that nothing can be left out and little is read or written. The same pipeline
 //! hands back what it gives for the rows as they are.
 
-use crate::clock::{Clock, Reading};
+use crate::clock::{Clock, ClockReading};
 use crate::device::Gpu;
 use crate::error::GpuError;
 use crate::kernel::Kernel;
@@ -107,7 +107,7 @@ impl RepeatPipeline {
     ///
     /// # Errors
     /// Where the device fails.
-    pub fn time(&self, gpu: &Gpu, clock: &Clock, groups: u32) -> Result<Reading, GpuError> {
+    pub fn time(&self, gpu: &Gpu, clock: &Clock, groups: u32) -> Result<ClockReading, GpuError> {
         let (_, bindings) = self.bindings(gpu, &self.rows, self.words + 1);
         clock.time(gpu, |encoder, span| self.encode(encoder, span.compute(), &bindings, groups))
     }

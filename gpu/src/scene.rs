@@ -7,8 +7,8 @@ mod geometry;
 mod pipeline;
 mod uniforms;
 
-use crate::clock::{Clock, Reading};
-use crate::compose::{Composer, Intermediate, MOST_TOWARD, Recipe, Shader, Technique, live};
+use crate::clock::{Clock, ClockReading};
+use crate::compose::{Composer, Intermediate, MOST_TOWARD, Recipe, ShaderForm, Technique, live};
 use crate::device::{Gpu, format};
 use crate::error::GpuError;
 use crate::readback::{Pending, staging};
@@ -61,7 +61,7 @@ impl SceneRenderer {
     /// shader is invalid, or the device refuses a pipeline.
     ///
     /// # Panics
-    /// Where a stage is asked of [`Shader::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
+    /// Where a stage is asked of [`ShaderForm::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
     pub fn new(gpu: &Gpu, shaders: &Shaders, frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<Self, GpuError> {
         let stage = recipe.stage;
         if sets.len() != frame.draws.len() {
@@ -155,7 +155,7 @@ impl SceneRenderer {
     ///
     /// # Errors
     /// Where the device failed or was lost.
-    pub fn time(&self, gpu: &Gpu, clock: &Clock, repeats: u32) -> Result<Reading, GpuError> {
+    pub fn time(&self, gpu: &Gpu, clock: &Clock, repeats: u32) -> Result<ClockReading, GpuError> {
         clock.time(gpu, |encoder, span| {
             for k in 0..repeats {
                 self.encode(encoder, span.render(k == 0, k + 1 == repeats));
@@ -219,7 +219,7 @@ fn check_technique(frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<(),
     if technique == Technique::Plain {
         return Ok(());
     }
-    if recipe.shader == Shader::Full {
+    if recipe.shader == ShaderForm::Full {
         return refused("the shader with all effects is drawn plainly alone".into());
     }
     if !sets.iter().any(|called| technique.concerns(live(called.effects, recipe.stage))) {

@@ -220,7 +220,7 @@ fn xy<R: Real>(window: [Vec3<R>; 3]) -> [Vec2<R>; 3] {
 
 /// What a rasteriser makes of a triangle at a point in window coordinates.
 #[derive(Clone, Copy, Debug)]
-pub struct Fragment<R> {
+pub struct InterpolatedValues<R> {
     /// The attribute, perspective-correct.
     pub perspective: R,
     /// The attribute, linear in screen space.
@@ -233,10 +233,10 @@ pub struct Fragment<R> {
 
 /// The attribute, depth and 1/w of a triangle at p, from its vertices in clip coordinates. Ruling 15: the depth is that of
 /// the window.
-pub fn fragment<R: Real>(clip: [Vec4<R>; 3], attr: [R; 3], to: &Viewport<R>, p: Vec2<R>) -> Fragment<R> {
+pub fn fragment<R: Real>(clip: [Vec4<R>; 3], attr: [R; 3], to: &Viewport<R>, p: Vec2<R>) -> InterpolatedValues<R> {
     let vertices = window(clip, to);
     let lambda = weights(xy(vertices), p).map(|weight| weight.named("λ"));
-    Fragment {
+    InterpolatedValues {
         perspective: perspective(lambda, clip.map(|v| v.w()), attr),
         linear: triangle(lambda, attr),
         depth: triangle(lambda, vertices.map(|v| v.z())),

@@ -6,13 +6,13 @@
 
 use crate::algebra::{Rgba, Vec2, Vector};
 use crate::real::Real;
-use lightmeter_scene::frame::{Filter, Texture, Wrap};
+use lightmeter_scene::frame::{Texture, TextureFilter, Wrap};
 
 /// The texture at (u, v).
-pub fn sample<R: Real>(texture: &Texture, filter: Filter, wrap: Wrap, uv: Vec2<R>) -> Rgba<R> {
+pub fn sample<R: Real>(texture: &Texture, filter: TextureFilter, wrap: Wrap, uv: Vec2<R>) -> Rgba<R> {
     match filter {
-        Filter::Nearest => nearest(texture, wrap, uv),
-        Filter::Bilinear => bilinear(texture, wrap, uv),
+        TextureFilter::Nearest => nearest(texture, wrap, uv),
+        TextureFilter::Bilinear => bilinear(texture, wrap, uv),
     }
 }
 

@@ -5,7 +5,7 @@ use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::blend_unit::draw::draw;
 use lightmeter::blend_unit::embedded;
 use lightmeter::blend_unit::expect::expect;
-use lightmeter::blend_unit::model::Model;
+use lightmeter::blend_unit::model::BlendUnitModel;
 use lightmeter::blend_unit::pixel::{Units, stored};
 use lightmeter::blend_unit::rules::{FAULTS, Rules, Store};
 use lightmeter::blend_unit::store::{StoreCounts, Stores as _};
@@ -248,7 +248,8 @@ fn every_legal_unit_lies_inside() {
                     }
                 }
                 if target.encoding() == Encoding::Unorm8 {
-                    let narrow = Model::Llvmpipe.predict(piece.program, piece.route, &case, stored(target, case.dst));
+                    let narrow =
+                        BlendUnitModel::Llvmpipe.predict(piece.program, piece.route, &case, stored(target, case.dst));
                     assert!(inside(narrow), "{} {piece:?} {place}: {narrow:?} {expected:?}", target.name());
                 }
             }
@@ -295,7 +296,7 @@ fn tally(rules: &Rules, known: &Known, target: TargetFormat) -> UnitTally {
 
 #[test]
 fn a_store_is_identified_and_a_declared_model_holds_to_the_bit() {
-    let known = Known { blend_model: Some(Model::Llvmpipe), ..Known::default() };
+    let known = Known { blend_model: Some(BlendUnitModel::Llvmpipe), ..Known::default() };
     for (store, name) in Store::ALL.into_iter().zip(["", "truncate", "times-256", "round-up", "step-up", "step-down"]) {
         let rules = FAULTS.iter().find(|fault| fault.name == name).map_or(Rules::RIGHT, |fault| fault.rules);
         assert_eq!(rules.stores_as(), store, "{name}");

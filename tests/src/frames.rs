@@ -11,8 +11,8 @@
 use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::frame::{
-    Blend, Cull, Draw, Filter, Fog, FogForm, Frame, Light, Material, Mesh, Place, Sampled, Shading, Target, Texture,
-    Textured, Wrap,
+    Blend, Cull, Draw, Fog, FogForm, Frame, Light, Material, Mesh, Place, Sampled, Shading, Target, Texture,
+    TextureFilter, Textured, Wrap,
 };
 use lightmeter_scene::raster::Provoking;
 use lightmeter_scene::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
@@ -199,7 +199,7 @@ fn mesh(n: &mut Numbers) -> Mesh {
 fn draw(n: &mut Numbers, number: usize, reversed: bool, format: TargetFormat) -> Draw {
     let sampled = |n: &mut Numbers| Sampled {
         texture: n.below(2),
-        filter: n.of(&[Filter::Nearest, Filter::Bilinear]),
+        filter: n.of(&[TextureFilter::Nearest, TextureFilter::Bilinear]),
         wrap: n.of(&[Wrap::Repeat, Wrap::Clamp]),
     };
     let blend = (n.once_in(3) && format != TargetFormat::Rgba32Float).then(|| {

@@ -19,7 +19,7 @@ pub struct Running {
 
 /// A choice that the reference made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Choice {
+pub struct TakenChoice {
     /// The side or the whole number; 1 for `then`.
     pub taken: i64,
     /// Whether the other lies within the bound.
@@ -27,17 +27,17 @@ pub struct Choice {
 }
 
 thread_local! {
-    static CHOICES: RefCell<Vec<Choice>> = const { RefCell::new(Vec::new()) };
+    static CHOICES: RefCell<Vec<TakenChoice>> = const { RefCell::new(Vec::new()) };
 }
 
 /// The choices on this thread since they were last taken.
 #[must_use]
-pub fn take_choices() -> Vec<Choice> {
+pub fn take_choices() -> Vec<TakenChoice> {
     CHOICES.take()
 }
 
 fn choose(taken: i64, is_close: bool) {
-    CHOICES.with_borrow_mut(|choices| choices.push(Choice { taken, is_close }));
+    CHOICES.with_borrow_mut(|choices| choices.push(TakenChoice { taken, is_close }));
 }
 
 /// Half a unit in the last place, relative to the value.

@@ -1,4 +1,5 @@
-//! What the files of a crate import from each other, read from its sources. Tests (`#[cfg(test)]`) are left out.
+//! What the files of a crate import from each other, and its public types, read from its sources. Tests (`#[cfg(test)]`) are left
+//! out.
 
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,6 +21,8 @@ struct Module {
     uses: BTreeMap<String, Names>,
     /// Every path that is written in it.
     paths: Vec<Names>,
+    /// The types and traits that it declares `pub`.
+    types: Vec<String>,
 }
 
 /// The modules of a crate, by their paths from its root.
@@ -44,6 +47,15 @@ pub(crate) fn imports(root: &Path) -> Imports {
         }
     }
     imports
+}
+
+/// The types and traits that the crate with this root file declares `pub`, with their files. The compiler's lint `unreachable_pub`
+/// ensures that they are visible outside of the crate. Types that a macro declares are left out.
+pub(crate) fn public_types(root: &Path) -> Vec<(String, PathBuf)> {
+    let mut modules = Modules::default();
+    modules.read(root.to_owned());
+    let types = |module: Module| module.types.into_iter().map(move |name| (name, module.file.clone()));
+    modules.all.into_values().flat_map(types).collect()
 }
 
 impl Modules {
@@ -136,6 +148,9 @@ impl<'ast> Visit<'ast> for Modules {
             _ => &[],
         };
         if !attributes.iter().any(is_for_tests) {
+            if let Some(name) = public_type(item) {
+                self.module().types.push(name);
+            }
             visit::visit_item(self, item);
         }
     }
@@ -175,6 +190,19 @@ impl<'ast> Visit<'ast> for Modules {
     fn visit_visibility(&mut self, _: &'ast Visibility) {}
 }
 
+/// The name of an item that is a type or a trait and `pub`.
+fn public_type(item: &Item) -> Option<String> {
+    let (visibility, name) = match item {
+        Item::Enum(item) => (&item.vis, &item.ident),
+        Item::Struct(item) => (&item.vis, &item.ident),
+        Item::Trait(item) => (&item.vis, &item.ident),
+        Item::Type(item) => (&item.vis, &item.ident),
+        Item::Union(item) => (&item.vis, &item.ident),
+        _ => return None,
+    };
+    matches!(visibility, Visibility::Public(_)).then(|| name.to_string())
+}
+
 fn is_for_tests(attribute: &Attribute) -> bool {
     attribute.path().is_ident("cfg") && attribute.parse_args::<syn::Ident>().is_ok_and(|name| name == "test")
 }
@@ -211,4 +239,28 @@ fn names_are_followed_to_the_files_that_define_them() {
         "outer/inner.rs -> a.rs: {\"F\"}",
     ];
     assert_eq!(found, expected);
+}
+
+#[test]
+fn public_types_are_found_in_every_module() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("types");
+    std::fs::create_dir_all(&folder).expect("a folder can be made");
+    let files = [
+        (
+            "lib.rs",
+            "mod a;\npub struct A;\npub(crate) struct B;\nstruct C;\npub mod inner { pub trait D {} pub enum E {} }",
+        ),
+        (
+            "a.rs",
+            "pub type A = u8;\npub union U { f: u8 }\npub fn f() {}\npub use crate::B;\n#[cfg(test)]\nmod t { pub struct T; }",
+        ),
+    ];
+    for (name, text) in files {
+        std::fs::write(folder.join(name), text).expect("a file can be written");
+    }
+    let found: Vec<String> = public_types(&folder.join("lib.rs"))
+        .into_iter()
+        .map(|(name, file)| format!("{} {name}", file.strip_prefix(&folder).expect("a file of the folder").display()))
+        .collect();
+    assert_eq!(found, ["lib.rs A", "a.rs A", "a.rs U", "lib.rs D", "lib.rs E"]);
 }

@@ -1,9 +1,10 @@
-//! The house's rules that can be checked: rooms and files import each other one way, a formula family has its four files, every shader
-//! function of the catalogue is there with the right signature, and no formula lacks hard data. None of this needs a GPU.
+//! The house's rules that can be checked: rooms and files import each other one way, no two public types share a name, a formula
+//! family has its four files, every shader function of the catalogue is there with the right signature, and no formula lacks hard data.
+//! None of this needs a GPU.
 
 mod imports;
 
-use imports::{Imports, imports};
+use imports::{Imports, imports, public_types};
 use lightmeter::cases::{FAMILIES, Kind};
 use lightmeter::select::{CaseRef, catalogue};
 use lightmeter_gpu::{FILES, Kernel, Shaders};
@@ -135,6 +136,48 @@ fn files_import_each_other_one_way() {
         }
     }
     assert!(wrong.is_empty(), "files import each other in a circle:\n{}", wrong.join("\n"));
+}
+
+/// Names that several public types share because they mean one thing in several representations: in a scene as it is written
+/// (`lightmeter_scene::model`), in a frame with everything resolved (`lightmeter_scene::frame`, `depth`), and as the operands of a
+/// formula (`lightmeter_reference::lighting`).
+const SHARED_NAMES: [&str; 8] = ["Blend", "DepthTest", "Fog", "Light", "Material", "Mesh", "Shading", "Target"];
+
+/// The names that more than one public type bears, each with the places of its types.
+fn shared_names(types: impl IntoIterator<Item = (String, PathBuf)>) -> BTreeMap<String, Vec<PathBuf>> {
+    let mut places: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+    for (name, file) in types {
+        places.entry(name).or_default().push(file);
+    }
+    places.retain(|_, files| files.len() > 1);
+    places
+}
+
+#[test]
+fn no_two_public_types_have_one_name() {
+    let mut roots = vec![];
+    for package in packages() {
+        let targets = package["targets"].as_array().expect("targets").iter();
+        let libraries = targets.filter(|target| target["kind"][0] == "lib");
+        roots.extend(libraries.map(|target| PathBuf::from(target["src_path"].as_str().expect("a path"))));
+    }
+    assert!(roots.len() > 10, "libraries of the workspace: {roots:?}");
+    let mut shared = shared_names(roots.iter().flat_map(|root| public_types(root)));
+    for name in SHARED_NAMES {
+        assert!(shared.remove(name).is_some(), "`{name}` is one type's name alone: strike it from SHARED_NAMES");
+    }
+    let line = |(name, files): (String, Vec<PathBuf>)| {
+        let files: Vec<String> = files.iter().map(|file| name_of(file)).collect();
+        format!("{name}: {}", files.join(", "))
+    };
+    let wrong: Vec<String> = shared.into_iter().map(line).collect();
+    assert!(wrong.is_empty(), "these names belong to more than one public type:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_name_that_two_types_bear_is_found() {
+    let types = [("A", "a.rs"), ("B", "b.rs"), ("A", "c.rs")].map(|(name, file)| (name.to_owned(), file.into()));
+    assert_eq!(shared_names(types), BTreeMap::from([("A".to_owned(), vec!["a.rs".into(), "c.rs".into()])]));
 }
 
 /// Every Rust file below a folder of the workspace, with its text.

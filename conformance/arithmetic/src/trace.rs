@@ -16,7 +16,7 @@ pub struct Trace {
 
 /// One recorded step.
 #[derive(Clone, Debug)]
-pub struct Step {
+pub struct TraceStep {
     /// The formula's own name for it.
     pub name: &'static str,
     /// What it was.
@@ -24,11 +24,11 @@ pub struct Step {
 }
 
 thread_local! {
-    static STEPS: RefCell<Vec<Step>> = const { RefCell::new(Vec::new()) };
+    static STEPS: RefCell<Vec<TraceStep>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Runs `f` and returns what it named, in order, beside its result.
-pub fn record<T>(f: impl FnOnce() -> T) -> (T, Vec<Step>) {
+pub fn record<T>(f: impl FnOnce() -> T) -> (T, Vec<TraceStep>) {
     STEPS.with_borrow_mut(Vec::clear);
     let result = f();
     (result, STEPS.with_borrow_mut(std::mem::take))
@@ -144,7 +144,7 @@ impl Real for Trace {
         }
     }
     fn named(self, name: &'static str) -> Self {
-        STEPS.with_borrow_mut(|steps| steps.push(Step { name, result: self }));
+        STEPS.with_borrow_mut(|steps| steps.push(TraceStep { name, result: self }));
         self
     }
 }

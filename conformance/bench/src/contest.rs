@@ -7,7 +7,7 @@ use super::turns::{self, Entry, Laps};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::bench::{BenchRow, Errors};
-use lightmeter_gpu::{Clock, Gpu, GpuError, Kernel, Reading, RepeatPipeline, Rung};
+use lightmeter_gpu::{Clock, ClockReading, Gpu, GpuError, Kernel, RepeatPipeline, Rung};
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_subject_gpu::kernel;
 use rayon::prelude::*;
@@ -463,6 +463,6 @@ fn processor_entry<'a>(
                 }
             }
         }
-        Ok(Reading::Seconds(start.elapsed().as_secs_f64()))
+        Ok(ClockReading::Seconds(start.elapsed().as_secs_f64()))
     })
 }

@@ -22,10 +22,10 @@ use lightmeter_catalogue::scene::select::{builtin, scene_id};
 use lightmeter_document::bench::{BenchGroup, BenchRow, GroupKind};
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_engine::subject::Subject;
-use lightmeter_gpu::compose::{Recipe, Shader};
+use lightmeter_gpu::compose::{Recipe, ShaderForm};
 use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Clock, Gpu, GpuError, Reading, Rung, Shaders};
-use lightmeter_judge::image::file::Stored;
+use lightmeter_gpu::{Clock, ClockReading, Gpu, GpuError, Rung, Shaders};
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
@@ -120,7 +120,7 @@ pub fn scene(
             name: rung.name().into(),
             what: what(*rung).into(),
             frame: &standard.frame,
-            recipe: Recipe { rung: *rung, ..Recipe::of(Shader::Composed) },
+            recipe: Recipe { rung: *rung, ..Recipe::of(ShaderForm::Composed) },
             claims_exact: rung.is_exact(),
             own: rung.is_exact().then_some(&standard),
             unavailable: unavailable.clone(),
@@ -195,7 +195,7 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
             Ok(pool.install(|| {
                 let start = Instant::now();
                 (0..amount).for_each(|_| draw(frame));
-                Reading::Seconds(start.elapsed().as_secs_f64())
+                ClockReading::Seconds(start.elapsed().as_secs_f64())
             }))
         }));
     }
@@ -203,7 +203,7 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
     let rows = kinds.iter().enumerate().map(|(k, (name, what, _))| {
         let image = match *name {
             _ if !drawer.judges => None,
-            "cpu-f32" => Some(Stored::unrounded(&render::<f32>(frame, None, None), frame.target.format)),
+            "cpu-f32" => Some(StoredImage::unrounded(&render::<f32>(frame, None, None), frame.target.format)),
             "cpu-f64" => Some(standard.reference.clone()),
             _ => None,
         };

@@ -2,14 +2,14 @@
 //! alike, and a ratio is of two times of the same turn. What is measured in a turn is the least of a few readings.
 
 use lightmeter_document::bench::{Rank, Time};
-use lightmeter_gpu::{GpuError, Reading};
+use lightmeter_gpu::{ClockReading, GpuError};
 
 /// Something that is timed, and how much of it at once.
 pub struct Entry<'a> {
     /// The clock, as reports name it.
     clock: &'static str,
     /// Seconds of so much work at once.
-    run: Box<dyn FnMut(u32) -> Result<Reading, GpuError> + 'a>,
+    run: Box<dyn FnMut(u32) -> Result<ClockReading, GpuError> + 'a>,
     /// Units, in which times are given, of one of that.
     units: f64,
     /// The most at once.
@@ -38,7 +38,7 @@ impl<'a> Entry<'a> {
         clock: &'static str,
         units: f64,
         most: u32,
-        run: impl FnMut(u32) -> Result<Reading, GpuError> + 'a,
+        run: impl FnMut(u32) -> Result<ClockReading, GpuError> + 'a,
     ) -> Self {
         Self { clock, run: Box::new(run), units, most, amount: 1 }
     }
@@ -245,7 +245,7 @@ mod tests {
         let mut most_at_once = 0;
         let mut entries = [Entry::new("wall", 1.0, 1 << 20, |amount| {
             most_at_once = most_at_once.max(amount);
-            Ok(Reading::Seconds(f64::from(amount) * 1e-6))
+            Ok(ClockReading::Seconds(f64::from(amount) * 1e-6))
         })];
         let laps = measure(&mut entries, Effort { turns: 3, readings: 1, seconds: 1e-3 }).expect("nothing fails");
         assert!(laps[0].iter().all(|lap| (lap.expect("it is read") - 1e-6).abs() < 1e-12));

@@ -16,7 +16,7 @@ use lightmeter::blend_unit::tally::{DrawnState, UnitTally};
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::UnitCase;
 use lightmeter::devices::Known;
-use lightmeter::image::file::Stored;
+use lightmeter::image::file::StoredImage;
 use lightmeter::image::{self, expect};
 use lightmeter::judge::judge;
 use lightmeter::scene::load;
@@ -186,8 +186,8 @@ fn images() -> [Workload; 3] {
     let exact = render::<f64>(&frame, Some(&called), None);
     let fragments = usize::try_from(exact.fragments).expect("few fragments");
     let format = frame.target.format;
-    let reference = Stored::unrounded(&exact, format);
-    let image = Stored::of(&render::<f32>(&frame, Some(&called), None), format);
+    let reference = StoredImage::unrounded(&exact, format);
+    let image = StoredImage::of(&render::<f32>(&frame, Some(&called), None), format);
     let legal = expect(&frame, Some(&called), None, &WGSL);
     let pixels: Vec<usize> = (0..legal.len()).collect();
     let judged = move || {
@@ -219,10 +219,10 @@ fn store(target: TargetFormat, cases: &[UnitCase]) -> Workload {
     let image = Image { width: CASES, height: 1, pixels, fragments: 0 };
     Workload::new(format!("store/{}", target.name()), "pixel", CASES, move || {
         let mut bytes = vec![];
-        for &pixel in &Stored::of(black_box(&image), target).pixels {
+        for &pixel in &StoredImage::of(black_box(&image), target).pixels {
             pixel::write(target, pixel, &mut bytes);
         }
-        black_box(Stored::read(CASES, target, &bytes));
+        black_box(StoredImage::read(CASES, target, &bytes));
     })
 }
 

@@ -29,7 +29,7 @@ pub struct GateReport {
     pub profile: String,
     /// Who answered.
     #[serde(default)]
-    pub renderer: Named,
+    pub renderer: RendererIdentity,
     /// How long it took.
     #[serde(default)]
     pub seconds: f64,
@@ -69,7 +69,7 @@ pub struct GateReport {
 
 /// A renderer.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
-pub struct Named {
+pub struct RendererIdentity {
     /// Its name.
     pub name: String,
     /// Its version.

@@ -21,7 +21,7 @@ use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::{BlendPromise, Failure, Group, Interrupted, Report};
-use lightmeter_judge::blend_unit::policy::{PROMISES, Promise};
+use lightmeter_judge::blend_unit::policy::{InterfacePromise, PROMISES};
 use lightmeter_judge::stability::UNSTABLE;
 use lightmeter_scene::blend::Equation;
 use std::collections::HashMap;
@@ -72,7 +72,10 @@ pub fn run_selection(
         .count() as u64;
     report.routes = routes(&report);
     if !report.special.is_empty() {
-        let told = |promise: &Promise| BlendPromise { interface: promise.interface.into(), says: promise.says.into() };
+        let told = |promise: &InterfacePromise| BlendPromise {
+            interface: promise.interface.into(),
+            says: promise.says.into(),
+        };
         report.blend_promises = PROMISES.iter().map(told).collect();
     }
     report.unstable_beyond = (!report.stability.is_empty()).then_some(UNSTABLE);

@@ -30,7 +30,7 @@ pub struct Selection {
 }
 
 /// A part of a selection.
-pub struct Part {
+pub struct SelectionPart {
     /// Its path in the tree of cases: `fog/linear`, `blend/add/src-alpha`, `scene/teapot`, `deviation/llvmpipe-exp`.
     pub path: String,
     /// The filters that select it.
@@ -39,7 +39,7 @@ pub struct Part {
     pub selection: Selection,
 }
 
-impl Part {
+impl SelectionPart {
     /// The command that runs it alone on an adapter, as it is in a run of everything.
     #[must_use]
     pub fn command(&self, adapter: &str) -> String {
@@ -85,7 +85,7 @@ impl Selection {
     /// Its parts, in the order of reports: each formula, group of blend states, depth test, table of special values, scene and
     /// deviation. Together they judge what the whole does, each case once.
     #[must_use]
-    pub fn parts(&self) -> Vec<Part> {
+    pub fn parts(&self) -> Vec<SelectionPart> {
         let nothing = Self { formulas: vec![], tables: vec![], scenes: vec![], deviations: vec![], ..self.clone() };
         let mut parts = Parts { nothing, parts: vec![], places: HashMap::new() };
         for deviation in &self.deviations {
@@ -118,7 +118,7 @@ impl Selection {
 struct Parts {
     /// A selection of nothing.
     nothing: Selection,
-    parts: Vec<Part>,
+    parts: Vec<SelectionPart>,
     places: HashMap<String, usize>,
 }
 
@@ -126,7 +126,7 @@ impl Parts {
     /// What the part of a path judges.
     fn of(&mut self, path: String, filters: Vec<String>) -> &mut Selection {
         let place = *self.places.entry(path.clone()).or_insert_with(|| {
-            self.parts.push(Part { path, filters, selection: self.nothing.clone() });
+            self.parts.push(SelectionPart { path, filters, selection: self.nothing.clone() });
             self.parts.len() - 1
         });
         &mut self.parts[place].selection

@@ -29,7 +29,7 @@ pub enum NamedDeviation {
     /// Of a blend unit.
     Blend(&'static BlendDeviation),
     /// Of what is promised of NaN, infinity, subnormals and signed zero.
-    Special(&'static special_values::Deviation),
+    Special(&'static special_values::SpecialDeviation),
 }
 
 impl NamedDeviation {
@@ -142,7 +142,11 @@ fn blend(
 
 /// Each result that breaks its promise on record. The witness is asked for where a record binds the driver: elsewhere the deviation is
 /// granted, not required.
-fn special(deviation: &special_values::Deviation, subject: &Subject, code: &Code) -> Result<Option<bool>, DeviceError> {
+fn special(
+    deviation: &special_values::SpecialDeviation,
+    subject: &Subject,
+    code: &Code,
+) -> Result<Option<bool>, DeviceError> {
     if subject.identity.backend != deviation.backend {
         return Ok(None);
     }
@@ -198,7 +202,7 @@ mod tests {
                     let case = catalogue.iter().find_map(|member| member.case(witness));
                     assert!(matches!(case, Some(CaseRef::Hard(_))), "{name}: {witness}");
                 }
-                NamedDeviation::Special(special_values::Deviation { name, probes, .. }) => {
+                NamedDeviation::Special(special_values::SpecialDeviation { name, probes, .. }) => {
                     let missing: Vec<_> = probes.iter().filter(|probe| Probe::by_name(probe).is_none()).collect();
                     assert!(!probes.is_empty() && missing.is_empty(), "{name}: {missing:?}");
                 }

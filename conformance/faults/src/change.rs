@@ -1,6 +1,6 @@
 //! What a mistake does to a formula's inputs before it, and to its outputs after it.
 
-use lightmeter_catalogue::cases::{Shape, Spec};
+use lightmeter_catalogue::cases::{Spec, ValueShape};
 use lightmeter_reference::Real;
 use lightmeter_reference::color::{srgb_decode, srgb_encode};
 use lightmeter_scene::raster::TARGET_SIZE;
@@ -51,11 +51,11 @@ impl Before {
         let shape = |name: &str| spec.inputs.iter().find(|input| input.name == name).map(|input| input.shape);
         match self {
             Self::Swap(a, b) | Self::Copy(a, b) => shape(a).is_some() && shape(a) == shape(b),
-            Self::Rotate(x) => shape(x).is_some_and(|shape| shape != Shape::Scalar),
-            Self::Decode(x) => matches!(shape(x), Some(Shape::Vec3 | Shape::Vec4)),
-            Self::Premultiply(x) => shape(x) == Some(Shape::Vec4),
-            Self::Transpose(x) => matches!(shape(x), Some(Shape::Mat3 | Shape::Mat4)),
-            Self::NoTranslation(x) => shape(x) == Some(Shape::Mat4),
+            Self::Rotate(x) => shape(x).is_some_and(|shape| shape != ValueShape::Scalar),
+            Self::Decode(x) => matches!(shape(x), Some(ValueShape::Vec3 | ValueShape::Vec4)),
+            Self::Premultiply(x) => shape(x) == Some(ValueShape::Vec4),
+            Self::Transpose(x) => matches!(shape(x), Some(ValueShape::Mat3 | ValueShape::Mat4)),
+            Self::NoTranslation(x) => shape(x) == Some(ValueShape::Mat4),
             Self::Negate(x)
             | Self::Scale(x, _)
             | Self::Offset(x, _)
@@ -180,15 +180,15 @@ impl After {
     /// Whether a formula has the outputs that it needs.
     pub(super) fn fits(self, spec: &Spec) -> bool {
         let shape = |name: &str| spec.outputs.iter().find(|output| output.name == name).map(|output| output.shape);
-        let color = |fits: fn(Shape) -> bool| {
+        let color = |fits: fn(ValueShape) -> bool| {
             spec.outputs.iter().any(|output| output.unit == "color" && output.name != "opacity" && fits(output.shape))
         };
         match self {
             Self::Gamma | Self::Srgb | Self::Decode | Self::Clamp | Self::Truncate | Self::Round => color(|_| true),
             Self::FromBelow => spec.id == "interpolation/raster-position",
             Self::RoundAll => color(|_| true) && spec.outputs.iter().any(|output| output.unit != "color"),
-            Self::RedBlue => color(|shape| shape != Shape::Scalar),
-            Self::Premultiply | Self::Opaque => color(|shape| shape == Shape::Vec4),
+            Self::RedBlue => color(|shape| shape != ValueShape::Scalar),
+            Self::Premultiply | Self::Opaque => color(|shape| shape == ValueShape::Vec4),
             Self::Copy(a, b) => shape(a).is_some() && shape(a) == shape(b),
             Self::Set(name, _)
             | Self::OneMinus(name)

@@ -6,8 +6,8 @@ use crate::scene::Trial;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::select::Member;
 use lightmeter_judge::diagnose::{Answered, Diagnose};
-use lightmeter_judge::image::Expected;
-use lightmeter_judge::image::file::Stored;
+use lightmeter_judge::image::LegalPixel;
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
 
 /// All mistakes of the catalogue.
@@ -23,7 +23,7 @@ impl Diagnose for Mistakes {
         group_verdict(member, answered, profile).map(|systematic| systematic.says)
     }
 
-    fn image(&self, frame: &Frame, image: &Stored, expected: &[Expected], profile: &Profile) -> String {
+    fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> String {
         Trial::new(frame, image, expected, profile).diagnose().sentence
     }
 }

@@ -35,13 +35,13 @@ struct File {
 
 /// A known failure of a renderer, and the filter of its glob.
 #[derive(Clone, Debug)]
-pub struct Expected {
+pub struct ExpectedFailure {
     /// What became of its cases.
     pub known: KnownFailure,
     filter: Filter,
 }
 
-impl Expected {
+impl ExpectedFailure {
     /// Whether it has a case.
     #[must_use]
     pub fn has(&self, id: &str) -> bool {
@@ -98,13 +98,13 @@ impl Expectations {
 
     /// Those of a renderer.
     #[must_use]
-    pub fn of(&self, renderer: &str, version: &str) -> Vec<Expected> {
+    pub fn of(&self, renderer: &str, version: &str) -> Vec<ExpectedFailure> {
         let version = lenient(version);
         let concerns = |(written, _, range): &&(Written, Filter, Option<VersionReq>)| {
             let is_version = range.as_ref().is_none_or(|range| version.as_ref().is_some_and(|own| range.matches(own)));
             written.renderer.as_ref().is_none_or(|name| name == renderer) && is_version
         };
-        let of = |(written, filter, _): &(Written, Filter, _)| Expected {
+        let of = |(written, filter, _): &(Written, Filter, _)| ExpectedFailure {
             known: KnownFailure {
                 id: written.id.clone(),
                 reason: written.reason.clone(),

@@ -7,7 +7,7 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 /// What became of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
-pub enum State {
+pub enum CaseState {
     /// Nothing has been answered.
     #[default]
     Open,
@@ -23,7 +23,7 @@ pub enum State {
     Broken,
 }
 
-impl State {
+impl CaseState {
     /// Its name in a report; none for what passed.
     const fn name(self) -> Option<&'static str> {
         match self {
@@ -58,7 +58,7 @@ pub struct Register {
 }
 
 struct RegisterGroup {
-    states: Vec<State>,
+    states: Vec<CaseState>,
     /// What was answered, hashed.
     digests: Vec<u32>,
     /// Whether a run that follows another one has answered it.
@@ -69,9 +69,12 @@ impl Register {
     /// Nothing is known of the cases of a plan.
     #[must_use]
     pub fn new(plan: &GatePlan) -> Self {
-        let counts = plan.formulas.iter().map(super::plan::Formula::count).chain(plan.scenes.iter().map(|_| 1));
-        let group =
-            |count: usize| RegisterGroup { states: vec![State::Open; count], digests: vec![0; count], again: vec![] };
+        let counts = plan.formulas.iter().map(super::plan::PlannedFormula::count).chain(plan.scenes.iter().map(|_| 1));
+        let group = |count: usize| RegisterGroup {
+            states: vec![CaseState::Open; count],
+            digests: vec![0; count],
+            again: vec![],
+        };
         Self { groups: counts.map(group).collect(), formulas: plan.formulas.len(), is_again: false }
     }
 
@@ -103,7 +106,7 @@ impl Register {
 
     /// What became of a case.
     #[must_use]
-    pub fn state(&self, place: CasePlace) -> State {
+    pub fn state(&self, place: CasePlace) -> CaseState {
         self.groups[self.group(place)].states[Self::case(place)]
     }
 
@@ -116,13 +119,13 @@ impl Register {
     }
 
     /// Notes an answer.
-    pub fn answer(&mut self, place: CasePlace, state: State, digest: u32) -> Turn {
+    pub fn answer(&mut self, place: CasePlace, state: CaseState, digest: u32) -> Turn {
         let (group, case) = (self.group(place), Self::case(place));
         let is_again = self.is_again;
         let group = &mut self.groups[group];
         let (own, known) = (&mut group.states[case], &mut group.digests[case]);
         if !is_again {
-            if *own != State::Open {
+            if *own != CaseState::Open {
                 return Turn::Twice;
             }
             (*own, *known) = (state, digest);
@@ -138,7 +141,7 @@ impl Register {
     }
 
     /// The cases of a group in some states.
-    pub fn of(&self, group: usize, is_one: impl Fn(State) -> bool) -> impl Iterator<Item = CasePlace> {
+    pub fn of(&self, group: usize, is_one: impl Fn(CaseState) -> bool) -> impl Iterator<Item = CasePlace> {
         let states = &self.groups[group].states;
         (0..states.len()).filter(move |&case| is_one(states[case])).map(move |case| self.place(group, case))
     }
@@ -146,7 +149,7 @@ impl Register {
     /// The cases that an earlier run answered and this one did not.
     pub fn unanswered_again(&self) -> impl Iterator<Item = CasePlace> {
         self.groups.iter().enumerate().flat_map(move |(number, group)| {
-            let is_left = |&case: &usize| group.states[case] != State::Open && !group.again[case];
+            let is_left = |&case: &usize| group.states[case] != CaseState::Open && !group.again[case];
             (0..group.again.len()).filter(is_left).map(move |case| self.place(number, case))
         })
     }
@@ -244,17 +247,17 @@ mod tests {
         let plan = plan();
         let mut known = Register::new(&plan);
         let at = |case| CasePlace::Case { formula: 0, case };
-        assert_eq!(known.answer(at(0), State::Passed, 7), Turn::First);
-        assert_eq!(known.answer(at(0), State::Passed, 7), Turn::Twice);
-        known.answer(at(1), State::Failed, 8);
-        known.answer(at(2), State::Passed, 9);
-        known.answer(CasePlace::Scene(0), State::Passed, 1);
+        assert_eq!(known.answer(at(0), CaseState::Passed, 7), Turn::First);
+        assert_eq!(known.answer(at(0), CaseState::Passed, 7), Turn::Twice);
+        known.answer(at(1), CaseState::Failed, 8);
+        known.answer(at(2), CaseState::Passed, 9);
+        known.answer(CasePlace::Scene(0), CaseState::Passed, 1);
         known.begin_again();
-        assert_eq!(known.answer(at(0), State::Passed, 7), Turn::Same);
-        assert_eq!(known.answer(at(0), State::Passed, 7), Turn::Twice);
-        assert_eq!(known.answer(at(1), State::Failed, 9), Turn::Changed);
+        assert_eq!(known.answer(at(0), CaseState::Passed, 7), Turn::Same);
+        assert_eq!(known.answer(at(0), CaseState::Passed, 7), Turn::Twice);
+        assert_eq!(known.answer(at(1), CaseState::Failed, 9), Turn::Changed);
         // Answered in this run only.
-        assert_eq!(known.answer(at(3), State::Passed, 9), Turn::Changed);
+        assert_eq!(known.answer(at(3), CaseState::Passed, 9), Turn::Changed);
         assert_eq!(known.unanswered_again().collect::<Vec<_>>(), [at(2), CasePlace::Scene(0)]);
     }
 
@@ -263,20 +266,22 @@ mod tests {
         let plan = plan();
         let mut known = Register::new(&plan);
         for group in 0..plan.formulas.len() + plan.scenes.len() {
-            let count = plan.formulas.get(group).map_or(1, super::super::plan::Formula::count);
+            let count = plan.formulas.get(group).map_or(1, super::super::plan::PlannedFormula::count);
             for case in 0..count {
                 let state = match case % 11 {
-                    0..3 => State::Passed,
-                    3..9 => State::Failed,
-                    9 => State::Skipped,
+                    0..3 => CaseState::Passed,
+                    3..9 => CaseState::Failed,
+                    9 => CaseState::Skipped,
                     _ => continue,
                 };
                 known.answer(known.place(group, case), state, 1);
             }
             let written = known.not_passed(&plan, group);
-            for (name, states) in
-                [("failed", &[State::Failed][..]), ("skipped", &[State::Skipped]), ("missing", &[State::Open])]
-            {
+            for (name, states) in [
+                ("failed", &[CaseState::Failed][..]),
+                ("skipped", &[CaseState::Skipped]),
+                ("missing", &[CaseState::Open]),
+            ] {
                 let expected: Vec<String> =
                     known.of(group, |state| states.contains(&state)).map(|place| ending(&plan, place)).collect();
                 let texts = written.get(name).cloned().unwrap_or_default();

@@ -2,8 +2,8 @@
 
 use super::answer::{self, Hello, Line, clipped};
 use super::error::ProcessError;
-use super::expectations::{Expectations, Expected};
-use super::known::{Register, State, Turn, digest};
+use super::expectations::{Expectations, ExpectedFailure};
+use super::known::{CaseState, Register, Turn, digest};
 use super::picture;
 use super::plan::{CasePlace, GatePlan};
 use super::problems::note;
@@ -38,7 +38,7 @@ pub struct Ledger<'a> {
     /// Register failures of any renderer.
     pub expected: Expectations,
     /// Those of this one.
-    pub expectations: Vec<Expected>,
+    pub expectations: Vec<ExpectedFailure>,
     /// Whether the accuracy rules stay, whatever the renderer asks for.
     pub is_held_to: bool,
     /// What lines are of, where there is more than one file: it stands before their numbers.
@@ -162,7 +162,7 @@ impl<'a> Ledger<'a> {
     pub fn failing(&self) -> Vec<CasePlace> {
         let of = |group: usize| {
             let failing: Vec<CasePlace> =
-                self.known.of(group, |state| matches!(state, State::Failed | State::Unjudged)).collect();
+                self.known.of(group, |state| matches!(state, CaseState::Failed | CaseState::Unjudged)).collect();
             let stride = failing.len().div_ceil(MOST_AGAIN).max(1);
             failing.into_iter().step_by(stride)
         };
@@ -257,15 +257,15 @@ impl<'a> Ledger<'a> {
         match judged {
             Judged::Problem(kind, what) => note(&mut self.problems, kind, || what),
             Judged::Skip(place, reason) => {
-                if self.is_first(place, State::Skipped, 0) {
+                if self.is_first(place, CaseState::Skipped, 0) {
                     self.tally(place).skip(reason);
                 }
             }
-            Judged::Error(place, message) => self.fail(place, State::Unjudged, &message),
+            Judged::Error(place, message) => self.fail(place, CaseState::Unjudged, &message),
             Judged::Case { formula, case, digest, verdicts, values, inputs } => {
                 let place = CasePlace::Case { formula, case };
                 let has_failed = verdicts.tally.totals.failed > 0;
-                let state = if has_failed { State::Failed } else { State::Passed };
+                let state = if has_failed { CaseState::Failed } else { CaseState::Passed };
                 if !self.is_first(place, state, digest) {
                     return;
                 }
@@ -306,7 +306,7 @@ impl<'a> Ledger<'a> {
     }
 
     /// Notes what was answered; whether it is the first answer.
-    fn is_first(&mut self, place: CasePlace, state: State, digest: u32) -> bool {
+    fn is_first(&mut self, place: CasePlace, state: CaseState, digest: u32) -> bool {
         match self.known.answer(place, state, digest) {
             Turn::First => return true,
             Turn::Same => {}
@@ -321,7 +321,7 @@ impl<'a> Ledger<'a> {
     }
 
     /// Notes that a case could not be judged, or that the renderer ended at it.
-    pub fn fail(&mut self, place: CasePlace, state: State, message: &str) {
+    pub fn fail(&mut self, place: CasePlace, state: CaseState, message: &str) {
         if !self.is_first(place, state, 0) {
             return;
         }
@@ -338,10 +338,10 @@ impl<'a> Ledger<'a> {
         let place = CasePlace::Scene(scene);
         let frame = match self.plan.frame(scene) {
             Ok((_, frame)) => frame,
-            Err(error) => return self.fail(place, State::Unjudged, &error.to_string()),
+            Err(error) => return self.fail(place, CaseState::Unjudged, &error.to_string()),
         };
         let (image, digest) = match picture::read(folder, file, &frame, self.asked.get(&scene).copied()) {
-            Err(message) => return self.fail(place, State::Unjudged, &message),
+            Err(message) => return self.fail(place, CaseState::Unjudged, &message),
             Ok(read) => read,
         };
         if self.known.is_again {
@@ -351,7 +351,7 @@ impl<'a> Ledger<'a> {
             return;
         }
         let found = picture::judge(&image, &frame, &self.profile);
-        let state = if found.totals.failed > 0 { State::Failed } else { State::Passed };
+        let state = if found.totals.failed > 0 { CaseState::Failed } else { CaseState::Passed };
         if !self.is_first(place, state, digest) {
             return;
         }

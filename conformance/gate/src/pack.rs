@@ -3,11 +3,11 @@
 use super::frame;
 use super::picture::within;
 use super::plan::GatePlan;
-use lightmeter_catalogue::cases::{GENERATOR_VERSION, Shape};
+use lightmeter_catalogue::cases::{GENERATOR_VERSION, ValueShape};
 use lightmeter_document::Document as _;
 use lightmeter_document::Number;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
-use lightmeter_judge::image::file::{Stored, whole};
+use lightmeter_judge::image::file::{StoredImage, whole};
 use lightmeter_scene::frame::{Frame, Mesh, Texture};
 use lightmeter_scene::target::TargetFormat;
 use serde_json::{Map, Value, json};
@@ -57,7 +57,7 @@ pub enum PackError {
 /// What a formula of a plan takes and gives.
 fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {
     let spec = &plan.member(formula).spec;
-    let value = |name: &'static str, shape: Shape, unit: &'static str| PackedValue {
+    let value = |name: &'static str, shape: ValueShape, unit: &'static str| PackedValue {
         name: name.into(),
         shape: format!("{shape:?}").to_lowercase().into(),
         unit: unit.into(),
@@ -268,7 +268,7 @@ fn obj(mesh: &Mesh) -> String {
 /// A texture as PNG of 8 bits.
 fn png(texture: &Texture) -> Vec<u8> {
     let pixels = texture.texels.iter().map(|texel| texel.map(|c| f64::from(c) * 255.0)).collect();
-    let image = Stored { width: texture.width as usize, format: TargetFormat::Rgba8Unorm, pixels };
+    let image = StoredImage { width: texture.width as usize, format: TargetFormat::Rgba8Unorm, pixels };
     image.encode(Path::new("texture.png")).unwrap_or_default()
 }
 

@@ -7,7 +7,7 @@ use lightmeter_document::run::Totals;
 use lightmeter_faults::scene::Trial;
 use lightmeter_judge::blend_unit::pixel;
 use lightmeter_judge::image::expect;
-use lightmeter_judge::image::file::Stored;
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_judge::image::judge;
 use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;
@@ -63,7 +63,7 @@ pub fn within(folder: &Path, file: &str) -> Result<PathBuf, String> {
 ///
 /// # Errors
 /// Where it lies elsewhere, is no image, is of another size, or was there before.
-pub fn read(folder: &Path, file: &str, frame: &Frame, asked: Option<SystemTime>) -> Result<(Stored, u32), String> {
+pub fn read(folder: &Path, file: &str, frame: &Frame, asked: Option<SystemTime>) -> Result<(StoredImage, u32), String> {
     let path = within(folder, file)?;
     let unread = |error: &dyn std::fmt::Display| format!("cannot read `{file}`: {error}");
     let metadata = path.metadata().map_err(|error| unread(&error))?;
@@ -86,7 +86,7 @@ pub fn read(folder: &Path, file: &str, frame: &Frame, asked: Option<SystemTime>)
         if fits { Ok(()) } else { Err(format!("`{file}` is {w} × {h}; the scene is {width} × {height}")) }
     };
     let values = if is_npy { npy(&bytes, file, &fits)? } else { decoded(&bytes, file, &fits)? };
-    let image = Stored { width: width as usize, format: frame.target.format, pixels: values.units(frame) };
+    let image = StoredImage { width: width as usize, format: frame.target.format, pixels: values.units(frame) };
     let digest = digest(image.pixels.iter().flatten().map(|c| c.to_bits()));
     Ok((image, digest))
 }
@@ -188,8 +188,8 @@ fn npy(bytes: &[u8], name: &str, fits: Fits<'_>) -> Result<Values, String> {
 
 /// Judges every pixel by the full reference.
 #[must_use]
-pub fn judge(image: &Stored, frame: &Frame, profile: &Profile) -> Found {
-    let reference = Stored::unrounded(&render::<f64>(frame, None, None), frame.target.format);
+pub fn judge(image: &StoredImage, frame: &Frame, profile: &Profile) -> Found {
+    let reference = StoredImage::unrounded(&render::<f64>(frame, None, None), frame.target.format);
     let expected = expect(frame, None, None, profile);
     let all: Vec<usize> = (0..image.pixels.len()).collect();
     let judged = judge::judge(image, &reference, &expected, &all);

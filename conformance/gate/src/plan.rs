@@ -17,7 +17,7 @@ pub struct GatePlan {
     /// Every formula.
     pub catalogue: Vec<Member>,
     /// The formulas that have cases in it.
-    pub formulas: Vec<Formula>,
+    pub formulas: Vec<PlannedFormula>,
     /// The scenes, by their places among the built-in ones.
     pub scenes: Vec<usize>,
     /// The formula of a path of random cases.
@@ -27,7 +27,7 @@ pub struct GatePlan {
 }
 
 /// A formula with the cases that are chosen of it.
-pub struct Formula {
+pub struct PlannedFormula {
     /// What is chosen.
     pub selected: Selected,
     /// Hard cases and those near them come first, and how many those are.
@@ -82,7 +82,7 @@ impl GatePlan {
                 plan.named.insert(member.case_id(case), (formula, case));
                 places.insert(case, place);
             }
-            plan.formulas.push(Formula { selected, named: places.len(), places });
+            plan.formulas.push(PlannedFormula { selected, named: places.len(), places });
         }
         Ok(plan)
     }
@@ -146,7 +146,7 @@ impl GatePlan {
     }
 }
 
-impl Formula {
+impl PlannedFormula {
     /// How many cases it has.
     #[must_use]
     pub fn count(&self) -> usize {

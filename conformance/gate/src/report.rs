@@ -7,7 +7,9 @@ use super::process::Ending;
 use super::tally::AnswerTally;
 use super::verdict;
 use lightmeter_document::Number;
-use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, GateTotals, KnownFailure, Named, SCHEMA, cases};
+use lightmeter_document::gate::{
+    GateFailure, GateGroup, GateReport, GateTotals, KnownFailure, RendererIdentity, SCHEMA, cases,
+};
 use lightmeter_faults::Mistakes;
 use lightmeter_judge::diagnose::{self as explained, Row};
 use lightmeter_judge::sample::Sample;
@@ -55,7 +57,7 @@ pub fn report(ledger: &mut Ledger<'_>, outcome: Ending, command: String, seconds
         choice: plan.choice.clone(),
         generator: lightmeter_catalogue::cases::GENERATOR_VERSION,
         profile: ledger.profile().name.into(),
-        renderer: Named { name: clipped(&outcome.hello.renderer), version: clipped(&outcome.hello.version) },
+        renderer: RendererIdentity { name: clipped(&outcome.hello.renderer), version: clipped(&outcome.hello.version) },
         seconds,
         totals,
         problems: ledger.problems.clone(),

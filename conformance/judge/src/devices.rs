@@ -4,7 +4,7 @@
 //! A deviation is scoped by driver and by version range. Within its range it is granted, and the run fails when its
 //! witness shows that it is no longer needed; outside it is neither granted nor asked for.
 
-use crate::blend_unit::model::Model;
+use crate::blend_unit::model::BlendUnitModel;
 use lightmeter_arithmetic::profile::Excess;
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_reference::Real;
@@ -119,12 +119,12 @@ pub struct BlendModel {
     /// The first version no longer concerned.
     pub until: Version,
     /// What it computes.
-    pub model: Model,
+    pub model: BlendUnitModel,
 }
 
 /// Every known blend unit.
 pub const BLEND_MODELS: &[BlendModel] =
-    &[BlendModel { driver: "llvmpipe", from: [22, 3, 0], until: [22, 4, 0], model: Model::Llvmpipe }];
+    &[BlendModel { driver: "llvmpipe", from: [22, 3, 0], until: [22, 4, 0], model: BlendUnitModel::Llvmpipe }];
 
 impl BlendModel {
     fn concerns(&self, driver: &str) -> bool {
@@ -205,7 +205,7 @@ pub struct Known {
     /// Bits after the point to which its rasteriser snaps; `None` where only the profile's promise is known.
     pub subpixel_bits: Option<u32>,
     /// The integer model that its blend unit is known to follow on 8 bits, bit for bit.
-    pub blend_model: Option<Model>,
+    pub blend_model: Option<BlendUnitModel>,
     /// Its deviations.
     pub deviations: Vec<&'static Deviation>,
     /// Under which name its treatment of NaN and infinity is on record, and whether for this very version: if so, another

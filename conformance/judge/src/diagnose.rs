@@ -1,7 +1,7 @@
 //! What is asked of whoever knows mistakes: which one explains wrong answers.
 
-use crate::image::Expected;
-use crate::image::file::Stored;
+use crate::image::LegalPixel;
+use crate::image::file::StoredImage;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::select::Member;
 use lightmeter_scene::frame::Frame;
@@ -26,7 +26,7 @@ pub trait Diagnose: Sync {
     fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<String>;
 
     /// What explains a wrong image of a frame, as a sentence.
-    fn image(&self, frame: &Frame, image: &Stored, expected: &[Expected], profile: &Profile) -> String;
+    fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> String;
 }
 
 /// A row that was answered: its inputs, the values, and whether it is a random case.

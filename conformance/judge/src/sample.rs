@@ -4,19 +4,19 @@ use lightmeter_catalogue::cases::mix;
 use lightmeter_catalogue::select::CaseRef;
 
 /// What tells a row from all others.
-pub trait Place: Copy + Ord {
+pub trait RowNumber: Copy + Ord {
     /// A number for it, which another row hardly ever has.
     fn number(self) -> u64;
 }
 
-impl Place for usize {
+impl RowNumber for usize {
     fn number(self) -> u64 {
         self as u64
     }
 }
 
 /// The formula's place among its group's, and the case.
-impl Place for (usize, CaseRef) {
+impl RowNumber for (usize, CaseRef) {
     fn number(self) -> u64 {
         let (member, case) = self;
         let [kind, first, second] = match case {
@@ -44,7 +44,7 @@ pub struct Sample<P> {
     bound: u64,
 }
 
-impl<P: Place> Sample<P> {
+impl<P: RowNumber> Sample<P> {
     /// No row yet; of so many values each, and so many rows at most.
     #[must_use]
     pub const fn new(outputs: usize, most: usize) -> Self {

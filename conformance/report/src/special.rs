@@ -1,6 +1,6 @@
 //! The probes of NaN, infinity, subnormals and signed zero, for people to read.
 
-use lightmeter_catalogue::special::{Class, DEVIATIONS, Deviation, PROBES, Probe, Source};
+use lightmeter_catalogue::special::{Class, DEVIATIONS, PROBES, Probe, Source, SpecialDeviation};
 use lightmeter_document::run::Identity;
 use lightmeter_document::special::{ProbeResult, ProbeVerdict, SpecialReport};
 use std::fmt::{Result, Write};
@@ -33,7 +33,7 @@ pub fn write(report: &SpecialReport, out: &mut impl Write) -> Result {
         writeln!(out, "{}: {}", source.section(), source.says())?;
     }
     for deviation in DEVIATIONS {
-        let Deviation { name, backend, reason, .. } = deviation;
+        let SpecialDeviation { name, backend, reason, .. } = deviation;
         if report.adapters.iter().any(|adapter| adapter.backend == *backend) {
             writeln!(out, "deviation {name} on {backend}: {reason}")?;
         }

@@ -1,7 +1,7 @@
 //! A sweep's result for people.
 
 use lightmeter_document::run::Identity;
-use lightmeter_document::sweep::{Description, Exact, Place, Seen, Statistics, SweepDocument};
+use lightmeter_document::sweep::{Description, ExactFloat, Statistics, SweepDocument, SweepInput, SweepVerdict};
 use lightmeter_document::{Number, thousands};
 use lightmeter_judge::blend_unit::store::{StoreCounts, Stores as _};
 use std::fmt::{Result, Write};
@@ -36,7 +36,7 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
 /// Over what is swept, and what is fixed.
 fn inputs(sweep: &Description, out: &mut impl Write) -> Result {
     match (sweep.from, sweep.to) {
-        (Some(Exact(from)), Some(Exact(to))) => writeln!(
+        (Some(ExactFloat(from)), Some(ExactFloat(to))) => writeln!(
             out,
             "over       every {} from {} to {}: {} floats, output {}",
             sweep.over,
@@ -52,7 +52,7 @@ fn inputs(sweep: &Description, out: &mut impl Write) -> Result {
         )?,
     }
     let fixed: Vec<String> =
-        sweep.fixed.iter().map(|(name, Exact(x))| format!("{name} {}", Number((*x).into()))).collect();
+        sweep.fixed.iter().map(|(name, ExactFloat(x))| format!("{name} {}", Number((*x).into()))).collect();
     if fixed.is_empty() { Ok(()) } else { writeln!(out, "fixed      {}", fixed.join(", ")) }
 }
 
@@ -111,10 +111,10 @@ pub fn likeliest(counts: &StoreCounts) -> (&'static str, f64) {
 }
 
 /// A verdict, under what it is.
-fn write_seen(document: &SweepDocument, what: &str, seen: &Seen, rerun: &str, out: &mut impl Write) -> Result {
+fn write_seen(document: &SweepDocument, what: &str, seen: &SweepVerdict, rerun: &str, out: &mut impl Write) -> Result {
     let sweep = &document.sweep;
     writeln!(out, "\n{what} {} {}, margin {}", error(seen.error), sweep.unit, margin(seen.margin))?;
-    let Exact(value) = seen.value;
+    let ExactFloat(value) = seen.value;
     let unwritten = if value.to_bits() == lightmeter_scene::target::SENTINEL { ", never written" } else { "" };
     writeln!(out, "  input      {}", place(&sweep.over, seen.input))?;
     if sweep.from.is_some() {
@@ -124,7 +124,7 @@ fn write_seen(document: &SweepDocument, what: &str, seen: &Seen, rerun: &str, ou
     }
     writeln!(out, "  reference  {}", seen.reference)?;
     writeln!(out, "  legal      {} to {}", seen.low, seen.high)?;
-    if let Place::Float(Exact(x)) = seen.input {
+    if let SweepInput::Float(ExactFloat(x)) = seen.input {
         let bits = x.to_bits();
         writeln!(out, "  again      lightmeter sweep {}{rerun} --from 0x{bits:08x} --to 0x{bits:08x}", sweep.formula)?;
     }
@@ -133,10 +133,10 @@ fn write_seen(document: &SweepDocument, what: &str, seen: &Seen, rerun: &str, ou
 
 /// An input as it is told.
 #[must_use]
-pub fn place(over: &str, place: Place) -> String {
+pub fn place(over: &str, place: SweepInput) -> String {
     match place {
-        Place::Float(Exact(x)) => format!("{over} {}  0x{:08x}", Number(x.into()), x.to_bits()),
-        Place::Bytes { source, destination, alpha } => {
+        SweepInput::Float(ExactFloat(x)) => format!("{over} {}  0x{:08x}", Number(x.into()), x.to_bits()),
+        SweepInput::Bytes { source, destination, alpha } => {
             format!("source {source}/255, destination {destination}/255, alpha {alpha}/255")
         }
     }

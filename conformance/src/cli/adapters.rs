@@ -4,7 +4,7 @@ use super::options::Format;
 use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
-use lightmeter::blend_unit::model::Model;
+use lightmeter::blend_unit::model::BlendUnitModel;
 use lightmeter::devices::known;
 use std::fmt::Write as _;
 
@@ -29,7 +29,7 @@ impl Adapters {
                         serde_json::json!({
                             "name": a.name, "device": a.device, "backend": a.backend, "driver": a.driver,
                             "is_cpu": a.is_cpu, "subpixel_bits": known.subpixel_bits, "deviations": known.deviations,
-                            "blend_model": known.blend_model.map(Model::name),
+                            "blend_model": known.blend_model.map(BlendUnitModel::name),
                             "blend_deviations": known.blend_deviations,
                         })
                     })

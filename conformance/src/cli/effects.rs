@@ -5,7 +5,7 @@ use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
 use lightmeter::scene::{Loaded, load};
-use lightmeter_scene::effects::{Called, Reason, Subject, effects};
+use lightmeter_scene::effects::{Called, Reason, ReasonSubject, effects};
 use lightmeter_scene::frame::Frame;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -59,10 +59,10 @@ fn in_json(loaded: &Loaded, called: &[Called]) -> Value {
     let frame = &loaded.frame;
     let draws = frame.draws.iter().zip(called).map(|(draw, called)| {
         let reasons = called.reasons.iter().map(|reason| {
-            let key = if matches!(reason.subject, Subject::Light(_)) { "light" } else { "effect" };
+            let key = if matches!(reason.subject, ReasonSubject::Light(_)) { "light" } else { "effect" };
             let name = match reason.subject {
-                Subject::Effect(effect) => effect.name(),
-                Subject::Light(place) => &frame.lights[place].name,
+                ReasonSubject::Effect(effect) => effect.name(),
+                ReasonSubject::Light(place) => &frame.lights[place].name,
             };
             json!({ key: name, "called": reason.called, "why": reason.why })
         });
@@ -81,9 +81,9 @@ fn in_json(loaded: &Loaded, called: &[Called]) -> Value {
     })
 }
 
-fn subject(frame: &Frame, subject: Subject) -> String {
+fn subject(frame: &Frame, subject: ReasonSubject) -> String {
     match subject {
-        Subject::Effect(effect) => effect.name().to_owned(),
-        Subject::Light(place) => format!("light `{}`", frame.lights[place].name),
+        ReasonSubject::Effect(effect) => effect.name().to_owned(),
+        ReasonSubject::Light(place) => format!("light `{}`", frame.lights[place].name),
     }
 }

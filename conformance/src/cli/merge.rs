@@ -4,7 +4,7 @@ use super::options::Format;
 use super::sweep::{status, written};
 use super::{Status, emit};
 use clap::Args;
-use lightmeter::document::sweep::{Exact, SweepDocument};
+use lightmeter::document::sweep::{ExactFloat, SweepDocument};
 use lightmeter::sweep::file;
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ impl Merge {
 fn rerun(document: &SweepDocument) -> String {
     let sweep = &document.sweep;
     let mut rerun = format!(" --over {} --output {} --adapter {}", sweep.over, sweep.output, sweep.adapter.name);
-    for (name, Exact(x)) in &sweep.fixed {
+    for (name, ExactFloat(x)) in &sweep.fixed {
         rerun += &format!(" --set {name}=0x{:08x}", x.to_bits());
     }
     for (option, value, usual) in [("stage", &sweep.stage, "compute"), ("profile", &sweep.profile, "wgsl")] {

@@ -8,7 +8,7 @@ use lightmeter::document::bench::BenchDocument;
 use lightmeter::report;
 use lightmeter::report::bench::{page, plot};
 use lightmeter::report::page::sweep::Swept;
-use lightmeter::report::page::{Run, markdown, scenes, selftest, special, stability, svg};
+use lightmeter::report::page::{BlendRun, markdown, scenes, selftest, special, stability, svg};
 use lightmeter::select::catalogue;
 use lightmeter::sweep::{Asked, PRESETS, SweepPlan, file, is_over_inputs_of};
 use std::path::PathBuf;
@@ -109,7 +109,7 @@ impl Page {
     }
 
     fn blend(&self, json: &str) -> anyhow::Result<String> {
-        let run = Run::read(json)?;
+        let run = BlendRun::read(json)?;
         let picture = self.picture("svg");
         if let Some((path, _)) = &picture {
             let mut text = String::new();
@@ -122,7 +122,7 @@ impl Page {
     }
 
     fn stability(&self, json: &str) -> anyhow::Result<String> {
-        let run = stability::Run::read(json).map_err(|message| anyhow!(message))?;
+        let run = stability::StabilityRun::read(json).map_err(|message| anyhow!(message))?;
         let picture = self.picture("svg");
         if let Some((path, _)) = &picture {
             let mut text = String::new();
@@ -135,7 +135,7 @@ impl Page {
     }
 
     fn scenes(&self, json: &str) -> anyhow::Result<String> {
-        let run = scenes::Run::read(json).map_err(|message| anyhow!(message))?;
+        let run = scenes::SceneRun::read(json).map_err(|message| anyhow!(message))?;
         let loaded = scenes::scenes()?;
         let picture = self.picture("png");
         if let Some((path, _)) = &picture {
@@ -155,14 +155,14 @@ impl Page {
 }
 
 fn special(json: &str) -> anyhow::Result<String> {
-    let run = special::Run::read(json).map_err(|message| anyhow!(message))?;
+    let run = special::SpecialRun::read(json).map_err(|message| anyhow!(message))?;
     let mut text = String::new();
     special::markdown(&run, &mut text)?;
     Ok(text)
 }
 
 fn caught(json: &str) -> anyhow::Result<String> {
-    let run = selftest::Run::read(json).map_err(|message| anyhow!(message))?;
+    let run = selftest::SelftestRun::read(json).map_err(|message| anyhow!(message))?;
     let mut text = String::new();
     selftest::markdown(&run, &mut text)?;
     Ok(text)

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::device::Picture;
 use lightmeter::image::drawn::drawn;
-use lightmeter::image::file::Stored;
+use lightmeter::image::file::StoredImage;
 use lightmeter::scene::load;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{effects, named};
@@ -58,7 +58,7 @@ fn stage(name: &str) -> Result<Intermediate, String> {
 impl Render {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         // Not after minutes of work.
-        Stored::check_name(&self.out)?;
+        StoredImage::check_name(&self.out)?;
         let of_adapters = self.adapter.is_some() || self.full || self.shaders.is_some();
         if self.with == With::Reference && of_adapters {
             bail!("`--adapter`, `--full` and `--shaders` are of adapters; ask for one with `--with gpu`");
@@ -70,7 +70,7 @@ impl Render {
         let image = match self.with {
             With::Reference => {
                 let format = self.stage.map_or(frame.target.format, |_| TargetFormat::Rgba32Float);
-                Stored::of(&render::<f64>(&frame, None, self.stage), format)
+                StoredImage::of(&render::<f64>(&frame, None, self.stage), format)
             }
             With::Gpu => self.drawn(&frame)?,
         };
@@ -78,7 +78,7 @@ impl Render {
         Ok(Status::Success)
     }
 
-    fn drawn(&self, frame: &Frame) -> anyhow::Result<Stored> {
+    fn drawn(&self, frame: &Frame) -> anyhow::Result<StoredImage> {
         let choice = Choice {
             adapter: self.adapter.iter().cloned().collect(),
             profile: &WGSL,

@@ -1,7 +1,7 @@
 //! What effects cost that a scene does not call for: composed shaders against the one with all effects.
 
 use lightmeter_document::run::EffectsCost;
-use lightmeter_gpu::compose::{Recipe, Shader};
+use lightmeter_gpu::compose::{Recipe, ShaderForm};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, Gpu, GpuError, Shaders};
 use lightmeter_scene::effects::Called;
@@ -25,8 +25,8 @@ pub(super) fn effects_cost(
     frame: &Frame,
     called: &[Called],
 ) -> Result<EffectsCost, GpuError> {
-    let composed = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(Shader::Composed))?;
-    let full = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(Shader::Full))?;
+    let composed = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(ShaderForm::Composed))?;
+    let full = SceneRenderer::new(gpu, shaders, frame, called, Recipe::of(ShaderForm::Full))?;
     let clock = Clock::wall(None);
     let time = |renderer: &SceneRenderer, repeats: u32| {
         let reading = renderer.time(gpu, &clock, repeats)?;

@@ -18,7 +18,7 @@ use lightmeter_engine::device::{Blocks, Code, Device, DeviceError, Own, Picture,
 use lightmeter_engine::piece::{Piece, Pixels};
 use lightmeter_engine::rows::Rows;
 use lightmeter_engine::subject::Subject;
-use lightmeter_gpu::compose::{Recipe, Shader};
+use lightmeter_gpu::compose::{Recipe, ShaderForm};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{
     Adapter, ArithmeticPipeline, BlendUnit, DepthUnit, Gpu, GpuError, Kernel, Pending, RasterPipeline, Shaders,
@@ -291,8 +291,8 @@ impl Device for GpuDevice {
 
     fn draw(&self, code: &Code, frame: &Frame, sets: &[Called], picture: Picture) -> Result<Own, DeviceError> {
         let recipe = match picture {
-            Picture::Composed => Recipe::of(Shader::Composed),
-            Picture::Full => Recipe::of(Shader::Full),
+            Picture::Composed => Recipe::of(ShaderForm::Composed),
+            Picture::Full => Recipe::of(ShaderForm::Full),
             Picture::Intermediate(stage) => Recipe::stage(stage),
         };
         let renderer = SceneRenderer::new(&self.gpu, shaders(code)?, frame, sets, recipe).map_err(device_error)?;

@@ -129,7 +129,7 @@ fn each<T: Sync>(items: &[T], check: impl Fn(&T) + Sync) {
 }
 
 fn composed(composer: &Composer, effects: Effects, stage: Option<Intermediate>) -> Composition {
-    let composition = composer.compose(effects, Recipe { stage, ..Recipe::of(Shader::Composed) }, 0);
+    let composition = composer.compose(effects, Recipe { stage, ..Recipe::of(ShaderForm::Composed) }, 0);
     composition.unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -339,7 +339,7 @@ fn a_technique_is_in_no_shader_that_it_is_not_asked_of() {
         }
         for technique in Technique::ALL {
             let what = format!("{} of {set}", technique.name());
-            let recipe = Recipe { technique, ..Recipe::of(Shader::Composed) };
+            let recipe = Recipe { technique, ..Recipe::of(ShaderForm::Composed) };
             let one = composer.compose(*set, recipe, toward(plain.effects)).unwrap_or_else(|e| panic!("{what}: {e}"));
             let (module, _) = one.validate().unwrap_or_else(|error| panic!("{error}"));
             assert_compact(&module, &what);
@@ -367,7 +367,7 @@ fn every_number_of_vectors_up_to_the_most_is_valid() {
     for kinds in [&[E::Point][..], &[E::Spot], &[E::Point, E::Spot]] {
         let set: Effects = [E::Phong, E::Diffuse, E::SpecularBlinn].into_iter().chain(kinds.iter().copied()).collect();
         for number in kinds.len()..=MOST_TOWARD {
-            let recipe = Recipe { technique: Technique::VectorsInterpolated, ..Recipe::of(Shader::Composed) };
+            let recipe = Recipe { technique: Technique::VectorsInterpolated, ..Recipe::of(ShaderForm::Composed) };
             let one = composer.compose(set, recipe, number).unwrap_or_else(|error| panic!("{error}"));
             let (module, _) = one.validate().unwrap_or_else(|error| panic!("{error}"));
             assert_compact(&module, &format!("{number} vectors of {set}"));
@@ -433,7 +433,7 @@ fn a_shader_never_grows_when_an_effect_leaves() {
 #[test]
 fn the_full_shader_is_one_and_holds_everything() {
     let composer = composer();
-    let full = |set| composer.compose(set, Recipe::of(Shader::Full), 0).unwrap_or_else(|error| panic!("{error}"));
+    let full = |set| composer.compose(set, Recipe::of(ShaderForm::Full), 0).unwrap_or_else(|error| panic!("{error}"));
     let (one, other) = (full(Effects::NONE), full(sets()[4321]));
     assert_eq!(one.source, other.source);
     let (module, _) = one.validate().unwrap_or_else(|error| panic!("{error}"));

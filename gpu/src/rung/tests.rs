@@ -7,7 +7,7 @@ use super::writer::READS_BITS;
 use super::*;
 use crate::adapters;
 use crate::compose::tests::sets;
-use crate::compose::{Composer, Recipe, Shader};
+use crate::compose::{Composer, Recipe, ShaderForm};
 use crate::shaders::{Shaders, validate_lowered};
 use crate::{Kernel, RepeatPipeline};
 use lightmeter_scene::effects::Effects;
@@ -123,9 +123,9 @@ fn functions_that_are_wrong_are_found_out() {
 fn shaders_of_scenes_are_valid_at_every_rung() {
     let composer = Composer::new(&built_in()).unwrap_or_else(|error| panic!("{error}"));
     let sets = sets();
-    let sample = sets.iter().step_by(sets.len() / 300).map(|&effects| (effects, Shader::Composed));
+    let sample = sets.iter().step_by(sets.len() / 300).map(|&effects| (effects, ShaderForm::Composed));
     let mut nothing_stable = 0;
-    for (effects, shader) in sample.chain([(Effects::NONE, Shader::Full)]) {
+    for (effects, shader) in sample.chain([(Effects::NONE, ShaderForm::Full)]) {
         let composition = composer.compose(effects, Recipe::of(shader), 0).unwrap_or_else(|error| panic!("{error}"));
         for rung in Rung::ALL {
             match composer.lower(&composition, rung) {

@@ -1,7 +1,7 @@
 //! Pipelines, shared by draws that differ in numbers alone.
 
 use super::geometry::Input;
-use super::{Effects, Gpu, GpuError, Intermediate, Recipe, Shader};
+use super::{Effects, Gpu, GpuError, Intermediate, Recipe, ShaderForm};
 use crate::blend_unit;
 use crate::compose::{Composer, Composition, live};
 use crate::depth_unit::compare_function;
@@ -71,7 +71,7 @@ impl<'a> Pipelines<'a> {
         let has_normals = key.effects.has_normals();
         let called = key.effects;
         let Recipe { shader, stage, .. } = self.recipe;
-        key.effects = if shader == Shader::Full { Effects::NONE } else { live(called, stage) };
+        key.effects = if shader == ShaderForm::Full { Effects::NONE } else { live(called, stage) };
         if let Some(found) = self.pipelines.get(&(key, has_normals)) {
             return Ok(found.clone());
         }

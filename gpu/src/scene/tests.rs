@@ -9,8 +9,8 @@ use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::{
-    Blend, Cull, Draw, Filter, Fog, FogForm, Light, Material, Matrix, Mesh, Place, Sampled, Shading, Target, Textured,
-    Wrap,
+    Blend, Cull, Draw, Fog, FogForm, Light, Material, Matrix, Mesh, Place, Sampled, Shading, Target, TextureFilter,
+    Textured, Wrap,
 };
 use lightmeter_scene::raster::Provoking;
 use lightmeter_scene::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
@@ -94,10 +94,10 @@ fn square() -> Draw {
         alpha: 0.9,
         vertex_colors: true,
         texture: Some(Textured {
-            sampled: Sampled { texture: 0, filter: Filter::Bilinear, wrap: Wrap::Repeat },
+            sampled: Sampled { texture: 0, filter: TextureFilter::Bilinear, wrap: Wrap::Repeat },
             replaces: false,
         }),
-        lightmap: Some(Sampled { texture: 1, filter: Filter::Nearest, wrap: Wrap::Clamp }),
+        lightmap: Some(Sampled { texture: 1, filter: TextureFilter::Nearest, wrap: Wrap::Clamp }),
         cutout: Some(0.08),
         blend: None,
         depth: Some(DepthTest { compare: Compare::Less, write: true }),
@@ -129,7 +129,7 @@ fn lights() -> Vec<Light> {
     ]
 }
 
-fn drawn(gpu: &Gpu, frame: &Frame, sets: &[Called], shader: Shader, stage: Option<Intermediate>) -> Vec<u8> {
+fn drawn(gpu: &Gpu, frame: &Frame, sets: &[Called], shader: ShaderForm, stage: Option<Intermediate>) -> Vec<u8> {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let renderer = SceneRenderer::new(gpu, &shaders, frame, sets, Recipe { stage, ..Recipe::of(shader) })
         .unwrap_or_else(|error| panic!("{error}"));
@@ -201,12 +201,12 @@ fn frames() -> Vec<(String, Frame)> {
             (shading.viewer, shading.gate, shading.normals) =
                 (Viewer::NonLocal, SpecularGate::Documents, Normals::Modelview);
             frame.fog.as_mut().expect("there is fog").form = FogForm::Exp { density: 0.4 };
-            frame.draws[0].texture.as_mut().expect("it is textured").sampled.filter = Filter::Nearest;
+            frame.draws[0].texture.as_mut().expect("it is textured").sampled.filter = TextureFilter::Nearest;
             frame.ambient_form = Ambient::Constant;
         }
         if number == 2 {
             frame.fog.as_mut().expect("there is fog").form = FogForm::Exp2Document { density: 0.3 };
-            frame.draws[0].lightmap.as_mut().expect("it has a lightmap").filter = Filter::Bilinear;
+            frame.draws[0].lightmap.as_mut().expect("it has a lightmap").filter = TextureFilter::Bilinear;
             frame.light_ambient = LightAmbient::Documents;
         }
         if number == 3 {
@@ -231,9 +231,9 @@ fn composed_and_full_shaders_draw_alike_on_every_adapter() {
             frame.target.format = format;
             let what = format!("{what} on {name}");
             assert_eq!(SceneRenderer::lacks(&gpu, &frame), None, "{what}");
-            let composed = drawn(&gpu, &frame, &effects(&frame), Shader::Composed, None);
-            assert_alike(&composed, &drawn(&gpu, &frame, &effects(&frame), Shader::Full, None), &what);
-            assert_alike(&composed, &drawn(&gpu, &frame, &named(&frame), Shader::Composed, None), &what);
+            let composed = drawn(&gpu, &frame, &effects(&frame), ShaderForm::Composed, None);
+            assert_alike(&composed, &drawn(&gpu, &frame, &effects(&frame), ShaderForm::Full, None), &what);
+            assert_alike(&composed, &drawn(&gpu, &frame, &named(&frame), ShaderForm::Composed, None), &what);
             let values = floats(&composed);
             let corner = &values[..4];
             let inside = values.chunks_exact(4).filter(|pixel| *pixel != corner).count();
@@ -251,7 +251,7 @@ fn composed_and_full_shaders_draw_alike_for_sets_of_all_sorts() {
     for set in crate::compose::tests::sets().into_iter().step_by(431) {
         let mut called = named(&frame);
         called[0].effects = set;
-        let [composed, full] = Shader::ALL.map(|shader| {
+        let [composed, full] = ShaderForm::ALL.map(|shader| {
             let renderer = SceneRenderer::new(&gpu, &shaders, &frame, &called, Recipe::of(shader));
             let renderer = renderer.unwrap_or_else(|error| panic!("{set}: {error}"));
             SceneRenderer::pixels(&gpu, renderer.submit(&gpu)).unwrap_or_else(|error| panic!("{set}: {error}"))
@@ -269,8 +269,8 @@ fn stages_are_steps_towards_the_colour() {
         // Intermediate results are 0 where nothing is drawn.
         frame.background = [0.0; 4];
         let called = named(&frame);
-        let of = |stage| drawn(&gpu, &frame, &called, Shader::Composed, Some(stage));
-        let color = drawn(&gpu, &frame, &called, Shader::Composed, None);
+        let of = |stage| drawn(&gpu, &frame, &called, ShaderForm::Composed, Some(stage));
+        let color = drawn(&gpu, &frame, &called, ShaderForm::Composed, None);
         assert_alike(&of(Intermediate::Fog), &color, &what);
         let [_, _, z, w] = middle(&of(Intermediate::Position));
         assert!((-2.4..-1.8).contains(&z) && (w - 1.0).abs() < 1e-6, "{what}: p.z is {z}");
@@ -283,7 +283,7 @@ fn stages_are_steps_towards_the_colour() {
         let mut bare = frame.clone();
         let draw = &mut bare.draws[0];
         (draw.vertex_colors, draw.texture, draw.lightmap, draw.cutout, bare.fog) = (false, None, None, None, None);
-        let lit = middle(&drawn(&gpu, &bare, &effects(&bare), Shader::Composed, None));
+        let lit = middle(&drawn(&gpu, &bare, &effects(&bare), ShaderForm::Composed, None));
         let (diffuse, specular) = (middle(&of(Intermediate::Diffuse)), middle(&of(Intermediate::Specular)));
         for k in 0..3 {
             assert!((diffuse[k] + specular[k] - lit[k]).abs() < 1e-5, "{what}: {diffuse:?} {specular:?} {lit:?}");
@@ -296,7 +296,7 @@ fn stages_are_steps_towards_the_colour() {
 /// PreparedDraw by a technique.
 fn by(gpu: &Gpu, frame: &Frame, technique: Technique) -> Result<Vec<u8>, GpuError> {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
-    let recipe = Recipe { technique, ..Recipe::of(Shader::Composed) };
+    let recipe = Recipe { technique, ..Recipe::of(ShaderForm::Composed) };
     let renderer = SceneRenderer::new(gpu, &shaders, frame, &effects(frame), recipe)?;
     SceneRenderer::pixels(gpu, renderer.submit(gpu))
 }
@@ -381,7 +381,7 @@ fn a_frame_that_has_no_use_for_a_technique_is_refused() {
     bright.lights.extend([2, 2, 2].map(|light: usize| bright.lights[light].clone()));
     assert!(refused(&bright, Technique::UnitVectorsInterpolated).contains("5 lights"));
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
-    let recipe = Recipe { technique: Technique::FogAtVertex, ..Recipe::of(Shader::Full) };
+    let recipe = Recipe { technique: Technique::FogAtVertex, ..Recipe::of(ShaderForm::Full) };
     let full = SceneRenderer::new(&gpu, &shaders, &frame(), &effects(&frame()), recipe);
     assert!(matches!(full, Err(GpuError::Technique { .. })));
 }
@@ -398,7 +398,7 @@ fn timestamps_tell_the_time_that_a_frame_takes() {
         }
         let mut frame = frame();
         frame.target = Target { width: 512, height: 512, format };
-        let renderer = SceneRenderer::new(&gpu, &shaders, &frame, &effects(&frame), Recipe::of(Shader::Composed));
+        let renderer = SceneRenderer::new(&gpu, &shaders, &frame, &effects(&frame), Recipe::of(ShaderForm::Composed));
         let renderer = renderer.unwrap_or_else(|error| panic!("{error}"));
         let time = |clock: &Clock| renderer.time(&gpu, clock, 4).unwrap_or_else(|error| panic!("{error}"));
         time(&clock);
@@ -429,9 +429,9 @@ fn a_flat_face_has_the_colour_of_its_provoking_vertex() {
             frame.meshes[0].triangles.truncate(1);
             frame.meshes[0].normals = vec![[0.0, 0.0, -1.0]; 4];
             frame.draws[0].material.emissive = [0.0; 3];
-            let dark = drawn(&gpu, &frame, &effects(&frame), Shader::Composed, None);
+            let dark = drawn(&gpu, &frame, &effects(&frame), ShaderForm::Composed, None);
             frame.meshes[0].normals[vertex] = [0.0, 0.0, 1.0];
-            let bright = drawn(&gpu, &frame, &effects(&frame), Shader::Composed, None);
+            let bright = drawn(&gpu, &frame, &effects(&frame), ShaderForm::Composed, None);
             assert!(middle(&bright)[0] > middle(&dark)[0] + 0.1, "{provoking:?} on {name}");
         }
     }
@@ -444,7 +444,7 @@ fn what_the_unit_cannot_blend_and_sets_of_another_frame_are_errors() {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let mut frame = frame();
     let says = |frame: &Frame, sets: &[Called]| {
-        let made = SceneRenderer::new(&gpu, &shaders, frame, sets, Recipe::of(Shader::Composed));
+        let made = SceneRenderer::new(&gpu, &shaders, frame, sets, Recipe::of(ShaderForm::Composed));
         made.expect_err("it cannot be drawn").to_string()
     };
     assert!(says(&frame, &[]).contains("1 draws"), "{}", says(&frame, &[]));
@@ -478,7 +478,7 @@ fn word(module: &naga::Module, binding: &str, path: &[&str]) -> usize {
 fn numbers_lie_where_naga_reads_them() {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let composer = Composer::new(&shaders).expect("the files can be read");
-    let full = composer.compose(Effects::NONE, Recipe::of(Shader::Full), 0).expect("it can be composed");
+    let full = composer.compose(Effects::NONE, Recipe::of(ShaderForm::Full), 0).expect("it can be composed");
     let (module, _) = full.validate().unwrap_or_else(|error| panic!("{error}"));
     let mut frame = frame();
     frame.lights.push(frame.lights[2].clone());
@@ -538,7 +538,7 @@ fn numbers_lie_where_naga_reads_them() {
 fn every_uniform_is_as_long_as_its_struct() {
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     let composer = Composer::new(&shaders).expect("the files can be read");
-    let full = composer.compose(Effects::NONE, Recipe::of(Shader::Full), 0).expect("it can be composed");
+    let full = composer.compose(Effects::NONE, Recipe::of(ShaderForm::Full), 0).expect("it can be composed");
     let (module, _) = full.validate().unwrap_or_else(|error| panic!("{error}"));
     let frame = frame();
     let called = &named(&frame)[0];
@@ -577,7 +577,7 @@ fn a_frame_is_drawn_at_every_rung() {
     frame.draws[0].material.shininess = 100.0;
     for (name, gpu, format) in devices().filter(|(_, _, format)| *format == TargetFormat::Rgba32Float) {
         frame.target.format = format;
-        let recipe = |rung| Recipe { rung, ..Recipe::of(Shader::Composed) };
+        let recipe = |rung| Recipe { rung, ..Recipe::of(ShaderForm::Composed) };
         // With few digits another texel is the nearest, and a cone's edge is elsewhere.
         let mut smooth = frame.clone();
         smooth.lights.truncate(3);
@@ -632,7 +632,7 @@ fn exponential_fog_and_all_effects_are_drawn_at_every_rung() {
         // All effects in double-floats take half a minute to compile.
         for rung in [Rung::F16, Rung::Cheap, Rung::Stable, Rung::F64] {
             let drawn = |shader| at_rung(&gpu, &frame, Recipe { rung, ..Recipe::of(shader) });
-            let (Some(composed), Some(full)) = (drawn(Shader::Composed), drawn(Shader::Full)) else { continue };
+            let (Some(composed), Some(full)) = (drawn(ShaderForm::Composed), drawn(ShaderForm::Full)) else { continue };
             let off = composed.iter().zip(&full).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             let most = if rung == Rung::F16 { 0.01 } else { 1e-5 };
             assert!(off <= most, "{name}, {}: {off:e}", rung.name());

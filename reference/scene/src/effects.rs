@@ -221,7 +221,7 @@ pub struct Called {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reason {
     /// What.
-    pub subject: Subject,
+    pub subject: ReasonSubject,
     /// Whether it is.
     pub called: bool,
     /// Why.
@@ -230,7 +230,7 @@ pub struct Reason {
 
 /// What a reason is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subject {
+pub enum ReasonSubject {
     /// An effect.
     Effect(Effect),
     /// A light, by its place in the frame.

@@ -263,14 +263,14 @@ pub struct Sampled {
     /// Its place among the textures.
     pub texture: usize,
     /// Between texels.
-    pub filter: Filter,
+    pub filter: TextureFilter,
     /// Beyond its edges.
     pub wrap: Wrap,
 }
 
 /// What is read between the middles of texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Filter {
+pub enum TextureFilter {
     /// The texel that the coordinates lie in.
     Nearest,
     /// The four around, mixed by their distances.

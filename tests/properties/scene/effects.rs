@@ -5,7 +5,9 @@
 use super::laws::opaque;
 use super::{cases, difference};
 use lightmeter_reference::render::{Image, render};
-use lightmeter_scene::frame::{Cull, Draw, Filter, Fog, FogForm, Frame, Mesh, Place, Sampled, Texture, Textured, Wrap};
+use lightmeter_scene::frame::{
+    Cull, Draw, Fog, FogForm, Frame, Mesh, Place, Sampled, Texture, TextureFilter, Textured, Wrap,
+};
 use lightmeter_scene::raster::Provoking;
 use lightmeter_scene::shading::{Distance, Frequency, LightAmbient};
 use lightmeter_scene::stage::Intermediate;
@@ -185,7 +187,7 @@ fn unlit(frame: &mut Frame, color: [f32; 3]) {
 /// A texture of one grey on everything.
 fn texture(frame: &mut Frame, grey: f32, replaces: bool) {
     frame.textures.push(Texture { width: 2, height: 1, texels: vec![[grey, grey, grey, 1.0]; 2] });
-    let sampled = Sampled { texture: frame.textures.len() - 1, filter: Filter::Nearest, wrap: Wrap::Repeat };
+    let sampled = Sampled { texture: frame.textures.len() - 1, filter: TextureFilter::Nearest, wrap: Wrap::Repeat };
     frame.draws.iter_mut().for_each(|draw| draw.texture = Some(Textured { sampled, replaces }));
 }
 
@@ -263,7 +265,7 @@ proptest! {
         let mut scaled = render::<f64>(&frame, None, None);
         scaled.pixels.iter_mut().flatten().for_each(|x| *x *= f64::from(c));
         frame.textures[0] = Texture { width: 1, height: 1, texels: vec![[c; 4]] };
-        let sampled = Sampled { texture: 0, filter: Filter::Nearest, wrap: Wrap::Clamp };
+        let sampled = Sampled { texture: 0, filter: TextureFilter::Nearest, wrap: Wrap::Clamp };
         frame.draws.iter_mut().for_each(|draw| draw.lightmap = Some(sampled));
         let image = render::<f64>(&frame, None, None);
         prop_assert_eq!(difference(&image, &scaled), None);

@@ -9,7 +9,7 @@ mod split;
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::device::Picture;
 use lightmeter::image::drawn::{drawn, intermediate};
-use lightmeter::image::{Expected, expect};
+use lightmeter::image::{LegalPixel, expect};
 use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_reference::render::{Image, render};
 use lightmeter_scene::effects::{effects, named};
@@ -71,7 +71,7 @@ fn departures(
 fn illegal(
     frame: &Frame,
     stage: Option<Intermediate>,
-    expected: &[Expected],
+    expected: &[LegalPixel],
     image: &Image,
 ) -> impl Iterator<Item = String> {
     let pairs = image.pixels.iter().zip(expected).enumerate();
@@ -83,7 +83,7 @@ fn illegal(
     )
 }
 
-fn contains(frame: &Frame, stage: Option<Intermediate>, expected: &Expected, pixel: [f64; 4]) -> bool {
+fn contains(frame: &Frame, stage: Option<Intermediate>, expected: &LegalPixel, pixel: [f64; 4]) -> bool {
     let units = if stage.is_none() && frame.target.format.is_unorm() { 255.0 } else { 1.0 };
     (0..4).all(|k| {
         let value = pixel[k] * units;

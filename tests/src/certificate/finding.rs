@@ -29,7 +29,7 @@ impl Worst {
 
 /// What was found of a formula, or of a group of them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Finding {
+pub struct FormulaFinding {
     /// The formula's id, or the group's.
     pub id: String,
     /// Formulas.
@@ -70,7 +70,7 @@ pub struct Finding {
     pub broken: Vec<String>,
 }
 
-impl Finding {
+impl FormulaFinding {
     /// Adds what was found of another.
     pub fn merge(&mut self, other: &Self) {
         self.formulas += other.formulas;
@@ -158,7 +158,7 @@ const DIGITS: u32 = 50;
 
 /// Everything that does not hold of so many formulas.
 #[must_use]
-pub fn problems(findings: &[Finding]) -> Vec<String> {
+pub fn problems(findings: &[FormulaFinding]) -> Vec<String> {
     let mut problems: Vec<String> = findings.iter().flat_map(|finding| finding.broken.clone()).collect();
     for finding in findings {
         if finding.digits.is_some_and(|digits| digits < DIGITS) {

@@ -13,11 +13,11 @@ mod finding;
 mod page;
 mod rows;
 
-pub use finding::{EXCEPTIONS, Exception, Finding, Worst, problems};
+pub use finding::{EXCEPTIONS, Exception, FormulaFinding, Worst, problems};
 pub use page::{groups, page};
 
 use crate::exact::{self, Exact};
-use crate::running::{self, Choice, Running};
+use crate::running::{self, Running, TakenChoice};
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::arithmetic::{Accept, Dual, F16, F32, Format, Hardware};
 use lightmeter::cases::blend::Samples;
@@ -47,7 +47,7 @@ struct Evaluation {
     exact: Vec<Exact>,
     course: exact::Course,
     running: Vec<Running>,
-    choices: Vec<Choice>,
+    choices: Vec<TakenChoice>,
     /// Σ|xᵢ·∂y/∂xᵢ| of each output.
     moved: Vec<f64>,
     /// Of a blend state, what is legal on a target of binary32; else nothing.
@@ -96,7 +96,7 @@ fn evaluate<F: Formula, R: Real>(formula: &F, inputs: impl Iterator<Item = R>, o
 /// # Panics
 /// Where the catalogue and the formulas that a visitor is shown are not the same.
 #[must_use]
-pub fn certify(cases: u64) -> Vec<Finding> {
+pub fn certify(cases: u64) -> Vec<FormulaFinding> {
     struct Collect(Vec<Box<dyn Certify>>);
     impl Visitor for Collect {
         fn formula<F: Formula>(&mut self, formula: F) {
@@ -112,15 +112,15 @@ pub fn certify(cases: u64) -> Vec<Finding> {
 
 /// Certifies one formula, of the catalogue or not.
 #[must_use]
-pub fn certify_one<F: Formula + Copy>(formula: F, cases: u64) -> Finding {
+pub fn certify_one<F: Formula + Copy>(formula: F, cases: u64) -> FormulaFinding {
     let member = Member { spec: Formula::spec(&formula), formula: Box::new(formula) };
     of(&formula, &member, cases)
 }
 
-fn of(formula: &dyn Certify, member: &Member, cases: u64) -> Finding {
+fn of(formula: &dyn Certify, member: &Member, cases: u64) -> FormulaFinding {
     let spec = &member.spec;
     assert_eq!(formula.id(), spec.id, "a visitor is shown the catalogue in its order");
-    let mut finding = Finding { id: spec.id.clone(), formulas: 1, ..Finding::default() };
+    let mut finding = FormulaFinding { id: spec.id.clone(), formulas: 1, ..FormulaFinding::default() };
     for row in rows(member, cases) {
         finding.case(member, &row, &formula.row(spec, &row.inputs));
     }
@@ -145,7 +145,7 @@ fn choices(evaluation: &Evaluation) -> Choices {
     }
 }
 
-impl Finding {
+impl FormulaFinding {
     fn case(&mut self, member: &Member, row: &rows::Row, evaluation: &Evaluation) {
         let spec = &member.spec;
         let outputs = spec.output_len();

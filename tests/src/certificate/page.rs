@@ -1,6 +1,6 @@
 //! The certificate as a page.
 
-use super::{CASES, EXCEPTIONS, Finding, PER_CONDITION, WELL, WELL_CONDITIONED, Worst};
+use super::{CASES, EXCEPTIONS, FormulaFinding, PER_CONDITION, WELL, WELL_CONDITIONED, Worst};
 use std::fmt::Write as _;
 
 /// The command that makes it.
@@ -8,14 +8,14 @@ const COMMAND: &str = "./x certificate > docs/certificate.md";
 
 /// Findings by the first two segments of the id, so that blend states come by their equation.
 #[must_use]
-pub fn groups(findings: &[Finding]) -> Vec<Finding> {
-    let mut groups: Vec<Finding> = vec![];
+pub fn groups(findings: &[FormulaFinding]) -> Vec<FormulaFinding> {
+    let mut groups: Vec<FormulaFinding> = vec![];
     for finding in findings {
         let end = finding.id.match_indices('/').nth(1).map_or(finding.id.len(), |(at, _)| at);
         let id = &finding.id[..end];
         match groups.iter_mut().find(|group| group.id == id) {
             Some(group) => group.merge(finding),
-            None => groups.push(Finding { id: id.into(), ..finding.clone() }),
+            None => groups.push(FormulaFinding { id: id.into(), ..finding.clone() }),
         }
     }
     groups
@@ -23,10 +23,10 @@ pub fn groups(findings: &[Finding]) -> Vec<Finding> {
 
 /// The page of a certificate of [`CASES`] random cases a formula.
 #[must_use]
-pub fn page(findings: &[Finding]) -> String {
-    let mut all = Finding::default();
+pub fn page(findings: &[FormulaFinding]) -> String {
+    let mut all = FormulaFinding::default();
     findings.iter().for_each(|finding| all.merge(finding));
-    let mut held = Finding::default();
+    let mut held = FormulaFinding::default();
     findings.iter().filter(|finding| finding.by_steps == 0).for_each(|finding| held.merge(finding));
     let mut page = head(&all, &held);
     page.push_str(&table(&groups(findings)));
@@ -36,7 +36,7 @@ pub fn page(findings: &[Finding]) -> String {
 }
 
 /// `held` is what was found of the formulas without an exception.
-fn head(all: &Finding, held: &Finding) -> String {
+fn head(all: &FormulaFinding, held: &FormulaFinding) -> String {
     let mut page = String::from("# The certificate of the reference\n\n");
     let _ = write!(
         page,
@@ -85,7 +85,7 @@ fn head(all: &Finding, held: &Finding) -> String {
     page
 }
 
-fn table(groups: &[Finding]) -> String {
+fn table(groups: &[FormulaFinding]) -> String {
     let mut page = String::from(
         "## By formula\n\n\
          *Error*: the largest relative one where the condition is at most 100. *Of condition*: the largest over condition × \
@@ -113,7 +113,7 @@ fn table(groups: &[Finding]) -> String {
     page
 }
 
-fn exceptions(findings: &[Finding]) -> String {
+fn exceptions(findings: &[FormulaFinding]) -> String {
     let mut page = String::from(
         "\n## Exceptions\n\n\
          Where a formula as it is published loses more than its condition says. Each is granted by name and asserted to be \
@@ -121,8 +121,8 @@ fn exceptions(findings: &[Finding]) -> String {
          | formulas | values | largest relative error | its case | why |\n|---|--:|--:|---|---|\n",
     );
     for exception in &EXCEPTIONS {
-        let covered = |finding: &&Finding| finding.by_steps > 0 && (exception.covers)(&finding.id);
-        let mut all = Finding::default();
+        let covered = |finding: &&FormulaFinding| finding.by_steps > 0 && (exception.covers)(&finding.id);
+        let mut all = FormulaFinding::default();
         findings.iter().filter(covered).for_each(|finding| all.merge(finding));
         let mut names: Vec<String> = groups(&findings.iter().filter(covered).cloned().collect::<Vec<_>>())
             .into_iter()
@@ -142,7 +142,7 @@ fn exceptions(findings: &[Finding]) -> String {
     page
 }
 
-fn choices(all: &Finding) -> String {
+fn choices(all: &FormulaFinding) -> String {
     let list = |cases: &[String]| cases.iter().fold(String::new(), |list, case| list + "* " + case + "\n");
     format!(
         "\n## Choices\n\nCases in which the reference chose otherwise than is right, within the roundings of what it compared: \

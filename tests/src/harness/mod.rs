@@ -17,7 +17,7 @@ use lightmeter::document::run::{Report, Totals};
 use lightmeter::document::thousands;
 use lightmeter::options::{DEFAULT_CASES, Options};
 use lightmeter::report::text;
-use lightmeter::selection::{Part, Selection};
+use lightmeter::selection::{Selection, SelectionPart};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -70,7 +70,7 @@ fn with_images(settings: Settings, images: Option<PathBuf>) -> Settings {
 /// The trials, and what they have come to.
 pub struct Suite {
     settings: Result<Settings, String>,
-    parts: Vec<Arc<Part>>,
+    parts: Vec<Arc<SelectionPart>>,
     totals: Arc<Mutex<Totals>>,
     started: Instant,
 }
@@ -96,7 +96,7 @@ impl Suite {
         let settings = match &self.settings {
             Ok(settings) => settings,
             Err(message) => {
-                let failing = |part: &Arc<Part>| {
+                let failing = |part: &Arc<SelectionPart>| {
                     let message = message.clone();
                     Trial::test(name(part), move || Err(Failed::from(message)))
                 };
@@ -108,7 +108,7 @@ impl Suite {
             names => names.iter().cloned().map(Some).collect(),
         };
         let devices: Vec<Arc<Device>> = adapters.into_iter().map(|name| Arc::new(Device::new(name))).collect();
-        let trial = |part: &Arc<Part>, device: &Arc<Device>| {
+        let trial = |part: &Arc<SelectionPart>, device: &Arc<Device>| {
             let suffix =
                 device.adapter.as_ref().filter(|_| settings.adapter_in_names).map(|adapter| format!("::{adapter}"));
             let name = name(part) + &suffix.unwrap_or_default();
@@ -157,12 +157,12 @@ impl Suite {
 }
 
 /// The trial's name, but for an adapter.
-fn name(part: &Part) -> String {
+fn name(part: &SelectionPart) -> String {
     format!("{ROOT}::{}", part.path.replace('/', "::"))
 }
 
 /// A trial fails where a run of its part would. It is ignored where there was nothing to judge.
-fn verdict(part: &Part, report: &Report, options: &Options) -> Result<Completion, Failed> {
+fn verdict(part: &SelectionPart, report: &Report, options: &Options) -> Result<Completion, Failed> {
     if !report.is_success() {
         return Err(Failed::from(message(part, report, options)));
     }
@@ -181,7 +181,7 @@ fn verdict(part: &Part, report: &Report, options: &Options) -> Result<Completion
 }
 
 /// What `run` prints of the part: counts, the simplest failing case, and the commands that run the case and the part alone.
-fn message(part: &Part, report: &Report, options: &Options) -> String {
+fn message(part: &SelectionPart, report: &Report, options: &Options) -> String {
     let mut text = String::new();
     // Writing to a string does not fail.
     let _ = text::failures(report, &mut text);
@@ -205,7 +205,7 @@ mod tests {
     use lightmeter::document::run::DeviationUse;
     use lightmeter::subject::Subject;
 
-    fn part(path: &str) -> (Part, Options) {
+    fn part(path: &str) -> (SelectionPart, Options) {
         let options = Options::new(Code::default());
         let parts = Selection::of(&options).parts();
         (parts.into_iter().find(|part| part.path == path).expect("there is such a part"), options)

@@ -11,9 +11,9 @@ use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, Gpu, GpuError, Shaders};
 use lightmeter_judge::blend_unit::pixel::linear;
 use lightmeter_judge::devices::Deviation;
-use lightmeter_judge::image::file::Stored;
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_judge::image::judge::judge;
-use lightmeter_judge::image::{Expected, expect};
+use lightmeter_judge::image::{LegalPixel, expect};
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::effects;
 use lightmeter_scene::frame::Frame;
@@ -28,8 +28,8 @@ pub(super) struct Standard {
     /// In linear values, before any store.
     pub(super) exact: Vec<[f64; 4]>,
     /// The same in the target's units, not rounded.
-    pub(super) reference: Stored,
-    pub(super) expected: Vec<Expected>,
+    pub(super) reference: StoredImage,
+    pub(super) expected: Vec<LegalPixel>,
 }
 
 impl Standard {
@@ -41,12 +41,12 @@ impl Standard {
     /// Of a frame that is only timed.
     fn unjudged(frame: Frame) -> Self {
         let image = render::<f64>(&frame, None, None);
-        let reference = Stored::unrounded(&image, frame.target.format);
+        let reference = StoredImage::unrounded(&image, frame.target.format);
         Self { exact: image.pixels, reference, expected: vec![], frame }
     }
 
     /// An image of the legal values that are farthest from the reference.
-    pub(super) fn farthest(&self) -> Stored {
+    pub(super) fn farthest(&self) -> StoredImage {
         let mut image = self.reference.clone();
         for (pixel, legal) in image.pixels.iter_mut().zip(&self.expected) {
             *pixel = std::array::from_fn(|k| {
@@ -138,7 +138,7 @@ impl<'a> Drawer<'a> {
         };
         let bytes = SceneRenderer::pixels(self.gpu, renderer.submit(self.gpu))?;
         let compile_ms = Some(1e3 * start.elapsed().as_secs_f64());
-        let image = Stored::read(plan.frame.target.width as usize, plan.frame.target.format, &bytes);
+        let image = StoredImage::read(plan.frame.target.width as usize, plan.frame.target.format, &bytes);
         let settled: Vec<&Standard> = std::iter::once(ideal).chain(plan.own).collect();
         if !self.judges {
             return Ok(DrawnScene { row: BenchRow { compile_ms, ..row }, timed: Some(self.larger(plan, renderer)?) });
@@ -206,7 +206,7 @@ impl<'a> Drawer<'a> {
     }
 
     /// What of an image is outside of what is legal, named deviations apart; `None` where nothing is.
-    pub(super) fn outside(&self, image: &Stored, own: &Standard) -> Option<String> {
+    pub(super) fn outside(&self, image: &StoredImage, own: &Standard) -> Option<String> {
         let all: Vec<usize> = (0..image.pixels.len()).collect();
         let mut judged = judge(image, &own.reference, &own.expected, &all);
         for deviation in self.deviations {
@@ -243,7 +243,7 @@ fn is_open(pixel: usize, all: &[&Standard]) -> bool {
 }
 
 /// The errors of an image where all have settled coverage and winners.
-pub(super) fn errors(image: &Stored, ideal: &Standard, all: &[&Standard]) -> Option<Errors> {
+pub(super) fn errors(image: &StoredImage, ideal: &Standard, all: &[&Standard]) -> Option<Errors> {
     let mut gathered = Gathered::default();
     for (pixel, (units, exact)) in image.pixels.iter().zip(&ideal.exact).enumerate() {
         for k in 0..4 {
@@ -279,7 +279,7 @@ pub(super) mod tests {
     use lightmeter_catalogue::scene::library::SCENES;
     use lightmeter_catalogue::scene::select::builtin;
     use lightmeter_gpu::adapters;
-    use lightmeter_gpu::compose::Shader;
+    use lightmeter_gpu::compose::ShaderForm;
 
     /// Checks on the first adapter.
     pub(in super::super) fn on_a_device(check: impl Fn(&Drawer<'_>)) {
@@ -312,7 +312,7 @@ pub(super) mod tests {
             name: "f32".into(),
             what: String::new(),
             frame,
-            recipe: Recipe::of(Shader::Composed),
+            recipe: Recipe::of(ShaderForm::Composed),
             claims_exact: true,
             own: Some(own),
             unavailable: unavailable.map(str::to_owned),

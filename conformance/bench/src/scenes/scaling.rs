@@ -7,7 +7,7 @@ use crate::turns;
 use crate::turns::{Effort, Entry, Laps};
 use lightmeter_document::bench::{Scaling, ScalingPoint};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_gpu::compose::{Recipe, Shader};
+use lightmeter_gpu::compose::{Recipe, ShaderForm};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, GpuError};
 use lightmeter_scene::frame::{Frame, MOST_LIGHTS};
@@ -110,7 +110,7 @@ impl Kind<'_> {
                 unavailable.push((work, reason.to_owned()));
                 continue;
             }
-            let renderer = drawer.renderer(&frame, Recipe::of(Shader::Composed))?;
+            let renderer = drawer.renderer(&frame, Recipe::of(ShaderForm::Composed))?;
             // The first one compiles.
             renderer.time(drawer.gpu, &Clock::wall(None), 1)?;
             let start = Instant::now();

@@ -4,7 +4,7 @@ use super::drawing::{Drawer, Plan, Standard, side, sized};
 use super::{On, Setting, frames};
 use lightmeter_document::bench::{BenchGroup, GroupKind};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_gpu::compose::{Recipe, Shader, Technique};
+use lightmeter_gpu::compose::{Recipe, ShaderForm, Technique};
 use lightmeter_gpu::{GpuError, Rung};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
@@ -68,7 +68,7 @@ struct Way {
 impl Way {
     /// As the frame has it, which the reference draws the same way.
     fn plain(name: &str, what: impl Into<String>, frame: Frame) -> Self {
-        let recipe = Recipe::of(Shader::Composed);
+        let recipe = Recipe::of(ShaderForm::Composed);
         Self { name: name.into(), what: what.into(), frame, recipe, claims_exact: false, has_reference: true }
     }
 
@@ -219,7 +219,7 @@ fn vectors() -> Comparison {
 fn switches() -> Comparison {
     let mut frame = frames::builtin("phong");
     frame.target.format = TargetFormat::Rgba32Float;
-    let full = Recipe::of(Shader::Full);
+    let full = Recipe::of(ShaderForm::Full);
     let composed = "the effects that each object calls for, and no others";
     Comparison {
         id: "technique/switches",

@@ -2,11 +2,11 @@
 
 use super::Visitor;
 use super::formula::formula;
-use super::spec::{Domain, Hard, Input, Output, Shape};
+use super::spec::{Domain, Hard, Input, Output, ValueShape};
 use lightmeter_reference::attenuation;
 
-const ATTEN: Output = Output::new("atten", Shape::Scalar, "1");
-const SPOT: Output = Output::new("spot", Shape::Scalar, "1");
+const ATTEN: Output = Output::new("atten", ValueShape::Scalar, "1");
+const SPOT: Output = Output::new("spot", ValueShape::Scalar, "1");
 pub(super) const KC: Input = Input::scalar("kc", "1", Domain::Uniform(0.1, 2.0));
 pub(super) const KL: Input = Input::scalar("kl", "1/unit", Domain::Uniform(0.0, 1.0));
 pub(super) const KQ: Input = Input::scalar("kq", "1/unit²", Domain::Uniform(0.0, 0.5));

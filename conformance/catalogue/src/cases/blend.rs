@@ -10,7 +10,7 @@ pub use separate::{Samples, covering_array, separate_of};
 use super::Visitor;
 use super::formula::{AnyFormula, Formula, bind, formula};
 use super::rows::{Reader, Writer, slot};
-use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
+use super::spec::{Domain, Hard, Input, Kind, Output, Spec, ValueShape};
 use lightmeter_reference::blend::{
     Mode, Operands, Saturate, alpha_clamped, blend, blend_separate, layers, masked, opacity_of_layers,
     opacity_of_layers_expm1, over, over_incremental, subtract, subtract_compensated, unpremultiply,
@@ -22,7 +22,7 @@ use special::SPECIAL;
 use std::collections::BTreeSet;
 
 const INPUTS: &[Input] = &[Input::rgba("src"), Input::rgba("dst"), Input::rgba("constant")];
-const COLOR: &[Output] = &[Output::new("color", Shape::Vec4, "color")];
+const COLOR: &[Output] = &[Output::new("color", ValueShape::Vec4, "color")];
 
 /// What a blend state takes.
 fn operands<R: Real>(x: &Reader<'_, R>) -> Operands<R> {
@@ -198,7 +198,7 @@ struct AlphaReadsAsOne(State);
 
 impl Formula for AlphaReadsAsOne {
     fn spec(&self) -> Spec {
-        const OUTPUTS: &[Output] = &[Output::new("color", Shape::Vec3, "color")];
+        const OUTPUTS: &[Output] = &[Output::new("color", ValueShape::Vec3, "color")];
         Spec {
             id: format!("blend/without-alpha/{}", self.0.segment()),
             text: "color = src·S + dst·D, where Ad reads as 1",
@@ -286,8 +286,8 @@ formula!(
     /// SRC_ALPHA_SATURATE as document 000 writes it.
     SaturateSourceOnly: "blend/saturate-source-only" by "blend_saturate_source_only",
     "color = src·(min(As, 1 − As), 1) + dst", "000 §6.6, a dialect of ruling 1",
-    [Input::rgba("src"), Input::new("dst", Shape::Vec4, "color", Domain::Unit)] ->
-    [Output::new("color", Shape::Vec4, "color")],
+    [Input::rgba("src"), Input::new("dst", ValueShape::Vec4, "color", Domain::Unit)] ->
+    [Output::new("color", ValueShape::Vec4, "color")],
     |src, dst; out| {
         let operands = Operands { src, dst, constant: Vector::splat(R::literal(0.0)) };
         let state = State { equation: Equation::Add, src: Factor::SrcAlphaSaturate, dst: Factor::One };
@@ -300,7 +300,7 @@ macro_rules! mode {
         formula!(
             /// A named mode on a back buffer without alpha.
             $name: $id by $function, $text, "002",
-            [Input::rgba("src"), Input::rgb("dst")] -> [Output::new("color", Shape::Vec3, "color")],
+            [Input::rgba("src"), Input::rgb("dst")] -> [Output::new("color", ValueShape::Vec3, "color")],
             kind Kind::Blend(Program::WithoutAlpha($mode.state())),
             |src, dst; out| { out.vector(without_alpha($mode, src, dst)); }
             $(, hard [$($hard),*])?
@@ -322,9 +322,9 @@ formula!(
     AlphaClamped: "blend/alpha-clamped" by "blend_alpha_clamped",
     "color = clamp(clamp(src)·As + clamp(dst)·(1 − As)), as on a target of [0, 1]", "000 §6.6",
     [
-        Input::new("src", Shape::Vec4, "color", Domain::Uniform(-0.5, 1.5)),
-        Input::new("dst", Shape::Vec4, "color", Domain::Uniform(-0.5, 1.5)),
-    ] -> [Output::new("color", Shape::Vec4, "color")],
+        Input::new("src", ValueShape::Vec4, "color", Domain::Uniform(-0.5, 1.5)),
+        Input::new("dst", ValueShape::Vec4, "color", Domain::Uniform(-0.5, 1.5)),
+    ] -> [Output::new("color", ValueShape::Vec4, "color")],
     |src, dst; out| { out.vector(alpha_clamped(src, dst)); },
     hard [
         Hard::new("alpha-above-one", "1 − As would be negative: clamped before, not after", &[("src", &[0.5, 0.5, 0.5, 1.5]), ("dst", &[1.0, 1.0, 1.0, 1.0])]),
@@ -339,8 +339,8 @@ pub fn aliases() -> impl Iterator<Item = (String, String)> {
 }
 
 const BRIGHT: Input = Input::rgb("dst");
-const RGB: Output = Output::new("color", Shape::Vec3, "color");
-const SHOWN: Output = Output::new("opacity", Shape::Scalar, "1");
+const RGB: Output = Output::new("color", ValueShape::Vec3, "color");
+const SHOWN: Output = Output::new("opacity", ValueShape::Scalar, "1");
 const LAYER_ALPHA: Input = Input::scalar("alpha", "color", Domain::Uniform(0.01, 0.9));
 const LAYER_COUNT: Input = Input::scalar("layers", "1", Domain::Whole(1, 16));
 
@@ -415,14 +415,14 @@ formula!(
     /// The subtraction of two products.
     SubtractProducts: "blend/subtract-products" by "blend_subtract",
     "src·S − dst·D", "000 §6.6, FUNC_SUBTRACT",
-    [Input::scalar("src", "color", Domain::Unit), Input::scalar("s", "1", Domain::Unit), Input::scalar("dst", "color", Domain::Unit), Input::scalar("d", "1", Domain::Unit)] -> [Output::new("color", Shape::Scalar, "color")],
+    [Input::scalar("src", "color", Domain::Unit), Input::scalar("s", "1", Domain::Unit), Input::scalar("dst", "color", Domain::Unit), Input::scalar("d", "1", Domain::Unit)] -> [Output::new("color", ValueShape::Scalar, "color")],
     |src, s, dst, d; out| { out.scalar(subtract(src, s, dst, d)); },
 );
 formula!(
     /// The subtraction of two products that nearly cancel.
     SubtractCompensated: "blend/subtract-compensated" by "blend_subtract_compensated",
     "src·S − dst·D, a difference of products with their errors", "Cornea, Harrison & Tang 2002",
-    [Input::scalar("src", "color", Domain::Unit), Input::scalar("s", "1", Domain::Unit), Input::scalar("dst", "color", Domain::Unit), Input::scalar("d", "1", Domain::Unit)] -> [Output::new("color", Shape::Scalar, "color")],
+    [Input::scalar("src", "color", Domain::Unit), Input::scalar("s", "1", Domain::Unit), Input::scalar("dst", "color", Domain::Unit), Input::scalar("d", "1", Domain::Unit)] -> [Output::new("color", ValueShape::Scalar, "color")],
     stable 2.0 Own "2 roundings (Cornea, Harrison & Tang)",
     |src, s, dst, d; out| { out.scalar(subtract_compensated(src, s, dst, d)); },
     hard [

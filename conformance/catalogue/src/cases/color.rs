@@ -2,17 +2,17 @@
 
 use super::Visitor;
 use super::formula::formula;
-use super::spec::{Domain, Hard, Input, Output, Shape};
+use super::spec::{Domain, Hard, Input, Output, ValueShape};
 use lightmeter_reference::color;
 
 const BEYOND: Domain = Domain::Uniform(-0.25, 1.25);
-const COLOR: Output = Output::new("color", Shape::Vec4, "color");
+const COLOR: Output = Output::new("color", ValueShape::Vec4, "color");
 
 formula!(
     /// Conversion to 8 bits.
     ToUnorm8: "color/to-unorm8" by "color_to_unorm8",
     "byte = round(255·clamp(c, 0, 1))", "000 §6.2",
-    [Input::scalar("c", "color", BEYOND)] -> [Output::new("byte", Shape::Scalar, "1/255")],
+    [Input::scalar("c", "color", BEYOND)] -> [Output::new("byte", ValueShape::Scalar, "1/255")],
     |c; out| { out.scalar(color::to_unorm8(c)); },
     hard [
         Hard::new("half-a-step", "a tie: both neighbours are legal", &[("c", &[0.5 / 255.0])]),
@@ -26,7 +26,7 @@ formula!(
     /// Conversion from 8 bits.
     FromUnorm8: "color/from-unorm8" by "color_from_unorm8",
     "c = byte / 255", "000 §6.2",
-    [Input::scalar("byte", "1/255", Domain::Whole(0, 255))] -> [Output::new("c", Shape::Scalar, "color")],
+    [Input::scalar("byte", "1/255", Domain::Whole(0, 255))] -> [Output::new("c", ValueShape::Scalar, "color")],
     |byte; out| { out.scalar(color::from_unorm8(byte)); },
 );
 formula!(
@@ -68,7 +68,7 @@ formula!(
     /// Sums on the colour cube.
     Sum: "color/sum" by "color_sum",
     "color = clamp(a + b, 0, 1)", "004",
-    [Input::rgb("a"), Input::rgb("b")] -> [Output::new("color", Shape::Vec3, "color")],
+    [Input::rgb("a"), Input::rgb("b")] -> [Output::new("color", ValueShape::Vec3, "color")],
     |a, b; out| { out.vector(color::sum(a, b)); },
     hard [
         Hard::new("red-and-green", "yellow", &[("a", &[1.0, 0.0, 0.0]), ("b", &[0.0, 1.0, 0.0])]),
@@ -90,7 +90,7 @@ formula!(
     PerVertex: "color/per-vertex" by "color_per_vertex",
     "(Σ weightᵢ·colorᵢ, 1)", "000 §6.2",
     [
-        Input::new("weights", Shape::Vec3, "1", Domain::Weights),
+        Input::new("weights", ValueShape::Vec3, "1", Domain::Weights),
         Input::rgb("a"), Input::rgb("b"), Input::rgb("c"),
     ] -> [COLOR],
     |weights, a, b, c; out| { out.vector(color::per_vertex(weights, [a, b, c])); },
@@ -99,7 +99,7 @@ formula!(
     ],
 );
 
-const ENCODED: Output = Output::new("e", Shape::Scalar, "color");
+const ENCODED: Output = Output::new("e", ValueShape::Scalar, "color");
 const COMPONENT: Input = Input::scalar("c", "color", Domain::Uniform(0.01, 1.0));
 
 formula!(

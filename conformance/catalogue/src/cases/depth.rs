@@ -4,7 +4,7 @@ use super::Visitor;
 use super::formula::{Formula, bind, formula};
 use super::interpolation::raster;
 use super::rows::{Reader, Writer};
-use super::spec::{Domain, Hard, Input, Kind, Output, Shape, Spec};
+use super::spec::{Domain, Hard, Input, Kind, Output, Spec, ValueShape};
 use lightmeter_reference::Real;
 use lightmeter_reference::depth::{passes, recovered, recovered_reversed, test};
 use lightmeter_scene::depth::{Compare, DepthTest};
@@ -19,7 +19,8 @@ struct OverAnother(DepthTest);
 
 impl Formula for OverAnother {
     fn spec(&self) -> Spec {
-        const OUTPUTS: &[Output] = &[Output::new("seen", Shape::Scalar, "1"), Output::new("depth", Shape::Scalar, "1")];
+        const OUTPUTS: &[Output] =
+            &[Output::new("seen", ValueShape::Scalar, "1"), Output::new("depth", ValueShape::Scalar, "1")];
         let DepthTest { compare, write } = self.0;
         Spec {
             id: format!("depth/test/{}", self.0),
@@ -116,7 +117,7 @@ struct OverItself(Compare);
 
 impl Formula for OverItself {
     fn spec(&self) -> Spec {
-        const OUTPUTS: &[Output] = &[Output::new("seen", Shape::Scalar, "1")];
+        const OUTPUTS: &[Output] = &[Output::new("seen", ValueShape::Scalar, "1")];
         Spec {
             id: format!("depth/same-geometry-{}", self.0.name()),
             text: "seen = 2 if a triangle that is drawn again passes against itself, else 1",
@@ -142,7 +143,7 @@ impl Formula for OverItself {
 const NEAR: Input = Input::scalar("near", "unit", Domain::LogUniform(0.5, 1.0));
 const FAR: Input = Input::scalar("far", "unit", Domain::LogUniform(50.0, 100.0));
 const EYE_DISTANCE: Input = Input::scalar("z", "unit", Domain::LogUniform(1.0, 50.0));
-const READ_BACK: Output = Output::new("z", Shape::Scalar, "unit");
+const READ_BACK: Output = Output::new("z", ValueShape::Scalar, "unit");
 
 formula!(
     /// A distance read back from depth.

@@ -2,7 +2,7 @@
 //! so that shards, baselines and a case shown by itself agree.
 
 use super::program::Program;
-use super::spec::{Domain, Hard, Input, Kind, Shape, Spec};
+use super::spec::{Domain, Hard, Input, Kind, Spec, ValueShape};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State};
 
 /// Raised whenever the same seed would give other inputs.
@@ -53,7 +53,7 @@ impl Input {
                 return;
             }
             Domain::Transform(..) => {
-                let side = if self.shape == Shape::Mat4 { 4 } else { 3 };
+                let side = if self.shape == ValueShape::Mat4 { 4 } else { 3 };
                 row.extend((0..side * side).map(|k| if k % (side + 1) == 0 { 1.0 } else { 0.0 }));
                 return;
             }
@@ -251,7 +251,7 @@ impl Numbers {
         row.push(narrow((1.0 - rest).max(0.0)));
     }
 
-    fn transform(&mut self, shape: Shape, (low, high): (f32, f32), row: &mut Vec<f32>) {
+    fn transform(&mut self, shape: ValueShape, (low, high): (f32, f32), row: &mut Vec<f32>) {
         // A random unit quaternion (Shoemake), then a scale of each axis.
         let (u, a, b) = (self.fraction(), self.fraction(), self.fraction());
         let (a, b) = (a * std::f64::consts::TAU, b * std::f64::consts::TAU);
@@ -273,11 +273,11 @@ impl Numbers {
         let third = plus(plus(scaled[2], scaled[0], shears[1]), scaled[1], shears[2]);
         for column in [scaled[0], second, third] {
             row.extend(column.map(narrow));
-            if shape == Shape::Mat4 {
+            if shape == ValueShape::Mat4 {
                 row.push(self.uniform(-0.01, 0.01));
             }
         }
-        if shape == Shape::Mat4 {
+        if shape == ValueShape::Mat4 {
             let w = self.log_uniform(0.5, 2.0);
             row.extend([self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), w]);
         }

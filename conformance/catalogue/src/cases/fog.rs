@@ -3,19 +3,19 @@
 use super::Visitor;
 use super::formula::formula;
 use super::rows::Writer;
-use super::spec::{Domain, Hard, Input, Output, Shape};
+use super::spec::{Domain, Hard, Input, Output, ValueShape};
 use lightmeter_reference::fog::{self, Distance};
 use lightmeter_reference::{Real, Vec3};
 
-const P: Input = Input::new("p", Shape::Vec3, "unit", Domain::Uniform(-100.0, 100.0));
+const P: Input = Input::new("p", ValueShape::Vec3, "unit", Domain::Uniform(-100.0, 100.0));
 const DMIN: Input = Input::scalar("dmin", "unit", Domain::Uniform(0.0, 50.0));
 const DMAX: Input = Input::scalar("dmax", "unit", Domain::Uniform(1.0, 150.0));
 const DENSITY: Input = Input::scalar("density", "1/unit", Domain::LogUniform(1e-4, 1.0));
 const DENSITY_SQUARED: Input = Input::scalar("density", "1/unit²", Domain::LogUniform(1e-6, 0.1));
 const FOG: Input = Input::rgb("fog");
 const SHADED: Input = Input::rgb("shaded");
-const F: Output = Output::new("f", Shape::Scalar, "1");
-const COLOR: Output = Output::new("color", Shape::Vec3, "color");
+const F: Output = Output::new("f", ValueShape::Scalar, "1");
+const COLOR: Output = Output::new("color", ValueShape::Vec3, "color");
 
 /// The factor, and the mix by it.
 fn fogged<R: Real>(out: &mut Writer<'_, R>, f: R, fog: Vec3<R>, shaded: Vec3<R>) {
@@ -209,7 +209,7 @@ formula!(
 );
 
 const THICKNESS: Input = Input::scalar("distance", "unit", Domain::LogUniform(0.1, 100.0));
-const OPACITY: Output = Output::new("opacity", Shape::Scalar, "1");
+const OPACITY: Output = Output::new("opacity", ValueShape::Scalar, "1");
 
 formula!(
     /// How much of the fog is seen.

@@ -3,7 +3,7 @@
 
 use super::Visitor;
 use super::formula::formula;
-use super::spec::{Domain, Hard, Input, Output, Shape};
+use super::spec::{Domain, Hard, Input, Output, ValueShape};
 use lightmeter_reference::Vector;
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_scene::raster::Provoking;
@@ -11,26 +11,26 @@ use lightmeter_scene::raster::Provoking;
 pub(super) mod raster;
 
 pub(super) const ATTRIBUTE: Domain = Domain::Uniform(-2.0, 2.0);
-pub(super) const ATTR: Output = Output::new("attr", Shape::Scalar, "1");
-const WEIGHTS: Input = Input::new("weights", Shape::Vec3, "1", Domain::Weights);
+pub(super) const ATTR: Output = Output::new("attr", ValueShape::Scalar, "1");
+const WEIGHTS: Input = Input::new("weights", ValueShape::Vec3, "1", Domain::Weights);
 
 pub(super) const fn attr(name: &'static str) -> Input {
     Input::scalar(name, "1", ATTRIBUTE)
 }
 
 pub(super) const fn window(name: &'static str) -> Input {
-    Input::new(name, Shape::Vec2, "pixel", Domain::Uniform(0.0, 256.0))
+    Input::new(name, ValueShape::Vec2, "pixel", Domain::Uniform(0.0, 256.0))
 }
 
 pub(super) const fn half_pixels(name: &'static str) -> Input {
-    Input::new(name, Shape::Vec2, "pixel", Domain::Halves(0.0, 64.0))
+    Input::new(name, ValueShape::Vec2, "pixel", Domain::Halves(0.0, 64.0))
 }
 
 formula!(
     /// Along a line.
     Line: "interpolation/line" by "interpolation_line",
     "attr = α·a + β·b", "000 §6.1",
-    [Input::new("weights", Shape::Vec2, "1", Domain::Weights), attr("a"), attr("b")] -> [ATTR],
+    [Input::new("weights", ValueShape::Vec2, "1", Domain::Weights), attr("a"), attr("b")] -> [ATTR],
     |weights, a, b; out| { out.scalar(interpolation::line(weights, [a, b])); },
 );
 formula!(
@@ -47,7 +47,7 @@ formula!(
     /// The weights of a point.
     Weights: "interpolation/weights" by "interpolation_weights",
     "λ = area opposite each vertex over the whole", "000 §6.1",
-    [window("a"), window("b"), window("c"), window("p")] -> [Output::new("lambda", Shape::Vec3, "1")],
+    [window("a"), window("b"), window("c"), window("p")] -> [Output::new("lambda", ValueShape::Vec3, "1")],
     |a, b, c, p; out| { out.vector(Vector(interpolation::weights([a, b, c], p))); },
     hard [
         Hard::new("far-from-the-origin", "a unit triangle at 1e4: subtract a vertex first", &[("a", &[1e4, 1e4]), ("b", &[10001.0, 1e4]), ("c", &[1e4, 10001.0]), ("p", &[10000.25, 10000.25])]),
@@ -59,7 +59,7 @@ formula!(
     Scanline: "interpolation/scanline" by "interpolation_scanline",
     "Ip = (Ia(xb − xp) + Ib(xp − xa))/(xb − xa), Ia and Ib along the edges", "004",
     [
-        window("v1"), window("v2"), window("v3"), Input::new("i", Shape::Vec3, "1", Domain::Unit), window("p"),
+        window("v1"), window("v2"), window("v3"), Input::new("i", ValueShape::Vec3, "1", Domain::Unit), window("p"),
     ] -> [ATTR],
     fit within_the_scanlines,
     |v1, v2, v3, i, p; out| { out.scalar(interpolation::scanline([v1, v2, v3], i, p)); },
@@ -76,9 +76,9 @@ formula!(
     Perspective: "interpolation/perspective" by "interpolation_perspective",
     "attr = Σ λᵢ·aᵢ/wᵢ / Σ λᵢ/wᵢ", "000 §6.1",
     [
-        Input::new("lambda", Shape::Vec3, "1", Domain::Weights),
-        Input::new("w", Shape::Vec3, "1", Domain::LogUniform(0.1, 100.0)),
-        Input::new("attr", Shape::Vec3, "1", ATTRIBUTE),
+        Input::new("lambda", ValueShape::Vec3, "1", Domain::Weights),
+        Input::new("w", ValueShape::Vec3, "1", Domain::LogUniform(0.1, 100.0)),
+        Input::new("attr", ValueShape::Vec3, "1", ATTRIBUTE),
     ] -> [ATTR],
     |lambda, w, attr; out| { out.scalar(interpolation::perspective(lambda, w, attr)); },
     hard [
@@ -92,8 +92,8 @@ formula!(
     "attr = ((1 − t)a/wa + t·b/wb)/((1 − t)/wa + t/wb)", "000 §6.1",
     [
         Input::scalar("t", "1", Domain::Unit),
-        Input::new("w", Shape::Vec2, "1", Domain::LogUniform(0.1, 100.0)),
-        Input::new("attr", Shape::Vec2, "1", ATTRIBUTE),
+        Input::new("w", ValueShape::Vec2, "1", Domain::LogUniform(0.1, 100.0)),
+        Input::new("attr", ValueShape::Vec2, "1", ATTRIBUTE),
     ] -> [ATTR],
     |t, w, attr; out| { out.scalar(interpolation::perspective_line(t, w, attr)); },
 );
@@ -101,21 +101,21 @@ formula!(
     /// The first vertex's attribute.
     FlatFirst: "interpolation/flat-first" by "interpolation_flat_first",
     "attr = the first vertex's", "000 §6.1; ruling 7",
-    [Input::new("attr", Shape::Vec3, "1", ATTRIBUTE)] -> [ATTR],
+    [Input::new("attr", ValueShape::Vec3, "1", ATTRIBUTE)] -> [ATTR],
     |attr; out| { out.scalar(interpolation::flat::<R, 3>(attr, Provoking::First)); },
 );
 formula!(
     /// The last vertex's attribute.
     FlatLast: "interpolation/flat-last" by "interpolation_flat_last",
     "attr = the last vertex's", "000 §6.1; ruling 7",
-    [Input::new("attr", Shape::Vec3, "1", ATTRIBUTE)] -> [ATTR],
+    [Input::new("attr", ValueShape::Vec3, "1", ATTRIBUTE)] -> [ATTR],
     |attr; out| { out.scalar(interpolation::flat::<R, 3>(attr, Provoking::Last)); },
 );
 formula!(
     /// Coverage by the top-left rule.
     Coverage: "interpolation/coverage" by "interpolation_coverage",
     "1 where p lies inside, or on a top or left edge", "000 §6.1",
-    [half_pixels("a"), half_pixels("b"), half_pixels("c"), half_pixels("p")] -> [Output::new("covered", Shape::Scalar, "1")],
+    [half_pixels("a"), half_pixels("b"), half_pixels("c"), half_pixels("p")] -> [Output::new("covered", ValueShape::Scalar, "1")],
     fit near_the_triangle,
     |a, b, c, p; out| { out.scalar(interpolation::coverage([a, b, c], p)); },
     hard [
@@ -127,7 +127,7 @@ formula!(
     ],
 );
 
-const CLIP: Input = Input::new("clip", Shape::Vec4, "1", Domain::Uniform(0.5, 2.0));
+const CLIP: Input = Input::new("clip", ValueShape::Vec4, "1", Domain::Uniform(0.5, 2.0));
 
 macro_rules! viewport {
     ($name:ident, $id:literal, $function:literal, $formula:path, $text:literal) => {
@@ -136,10 +136,10 @@ macro_rules! viewport {
             $name: $id by $function, $text, "000 §6.1",
             [
                 CLIP,
-                Input::new("origin", Shape::Vec2, "pixel", Domain::Uniform(0.0, 100.0)),
-                Input::new("size", Shape::Vec2, "pixel", Domain::Uniform(1.0, 4096.0)),
-                Input::new("depth", Shape::Vec2, "1", Domain::Unit),
-            ] -> [Output::new("window", Shape::Vec3, "pixel")],
+                Input::new("origin", ValueShape::Vec2, "pixel", Domain::Uniform(0.0, 100.0)),
+                Input::new("size", ValueShape::Vec2, "pixel", Domain::Uniform(1.0, 4096.0)),
+                Input::new("depth", ValueShape::Vec2, "1", Domain::Unit),
+            ] -> [Output::new("window", ValueShape::Vec3, "pixel")],
             |clip, origin, size, depth; out| {
                 out.vector($formula(clip, &Viewport { origin, size, depth }));
             },
@@ -167,7 +167,7 @@ macro_rules! clip_volume {
         formula!(
             /// The clip volume.
             $name: $id by $function, $text, "000 §6.1",
-            [Input::new("clip", Shape::Vec4, "1", Domain::Uniform(-2.0, 4.0))] -> [Output::new("inside", Shape::Scalar, "1")],
+            [Input::new("clip", ValueShape::Vec4, "1", Domain::Uniform(-2.0, 4.0))] -> [Output::new("inside", ValueShape::Scalar, "1")],
             |clip; out| { out.scalar($formula(clip)); },
             hard [
                 Hard::new("on-a-plane", "the planes belong to the volume", &[("clip", &[2.0, -2.0, 2.0, 2.0])]),
@@ -197,7 +197,7 @@ formula!(
     /// Front facing.
     FrontFacing: "interpolation/front-facing" by "interpolation_front_facing",
     "1 where the triangle is counter-clockwise as seen", "000 §6.1",
-    [window("a"), window("b"), window("c")] -> [Output::new("front", Shape::Scalar, "1")],
+    [window("a"), window("b"), window("c")] -> [Output::new("front", ValueShape::Scalar, "1")],
     |a, b, c; out| { out.scalar(interpolation::front_facing([a, b, c])); },
     hard [Hard::new("no-area", "not front", &[("a", &[0.0, 0.0]), ("b", &[1.0, 1.0]), ("c", &[2.0, 2.0])])],
 );
@@ -205,7 +205,7 @@ formula!(
     /// A fragment's own depth.
     FragDepth: "interpolation/frag-depth" by "interpolation_frag_depth",
     "clamp(depth, 0, 1)", "000 §6.1",
-    [Input::scalar("depth", "1", Domain::Uniform(-0.5, 1.5))] -> [Output::new("depth", Shape::Scalar, "1")],
+    [Input::scalar("depth", "1", Domain::Uniform(-0.5, 1.5))] -> [Output::new("depth", ValueShape::Scalar, "1")],
     |depth; out| { out.scalar(interpolation::frag_depth(depth)); },
 );
 
@@ -230,8 +230,8 @@ fn near_the_triangle(row: &mut [f32]) {
     }
 }
 
-const TWICE_AREA: Output = Output::new("edge", Shape::Scalar, "pixel²");
-const LAST_WEIGHT: Output = Output::new("gamma", Shape::Scalar, "1");
+const TWICE_AREA: Output = Output::new("edge", ValueShape::Scalar, "pixel²");
+const LAST_WEIGHT: Output = Output::new("gamma", ValueShape::Scalar, "1");
 
 formula!(
     /// The edge function.
@@ -323,9 +323,9 @@ formula!(
     PerspectiveScaled: "interpolation/perspective-scaled" by "interpolation_perspective_scaled",
     "attr = Σ qᵢ·aᵢ / Σ qᵢ, qᵢ = λᵢ·(w_min/wᵢ)", "000 §6.1, with weights that are at most λ",
     [
-        Input::new("lambda", Shape::Vec3, "1", Domain::Weights),
-        Input::new("w", Shape::Vec3, "1", Domain::LogUniform(0.1, 100.0)),
-        Input::new("attr", Shape::Vec3, "1", ATTRIBUTE),
+        Input::new("lambda", ValueShape::Vec3, "1", Domain::Weights),
+        Input::new("w", ValueShape::Vec3, "1", Domain::LogUniform(0.1, 100.0)),
+        Input::new("attr", ValueShape::Vec3, "1", ATTRIBUTE),
     ] -> [ATTR],
     stable 24.0 Own "two divisions of at most 2½ ULP, for attributes of one sign",
     |lambda, w, attr; out| { out.scalar(interpolation::perspective_scaled(lambda, w, attr)); },

@@ -3,7 +3,7 @@
 use super::Visitor;
 use super::attenuation::{CUTOFF, EXPONENT, KC, KL, KQ};
 use super::formula::formula;
-use super::spec::{Domain, Hard, Input, Output, Shape};
+use super::spec::{Domain, Hard, Input, Output, ValueShape};
 use lightmeter_reference::Vec3;
 use lightmeter_reference::lighting::{self, Falloff, Light, Material, Specular, SpecularGate, Vertex};
 
@@ -18,9 +18,9 @@ const P: Input = Input::position("p");
 const NORMAL: Input = Input::vector("normal");
 const DIRECTION: Input = Input::vector("direction");
 const LIGHT_POSITION: Input = Input::position("position");
-const RGB: Output = Output::new("color", Shape::Vec3, "color");
-const RGBA: Output = Output::new("color", Shape::Vec4, "color");
-const INTENSITY: Output = Output::new("intensity", Shape::Scalar, "color");
+const RGB: Output = Output::new("color", ValueShape::Vec3, "color");
+const RGBA: Output = Output::new("color", ValueShape::Vec4, "color");
+const INTENSITY: Output = Output::new("intensity", ValueShape::Scalar, "color");
 
 fn light<R>([ambient, diffuse, specular]: [Vec3<R>; 3]) -> Light<R> {
     Light { ambient, diffuse, specular }
@@ -382,7 +382,7 @@ formula!(
     ],
 );
 
-const POWER: Output = Output::new("fs", Shape::Scalar, "1");
+const POWER: Output = Output::new("fs", ValueShape::Scalar, "1");
 const MIRROR: &[f32] = &[0.6, 0.0, 0.8];
 
 formula!(

@@ -21,7 +21,7 @@ mod spec;
 pub use draw::{GENERATOR_VERSION, inputs, mix, move_by_ulps};
 pub use formula::{AnyFormula, Formula, Visitor};
 pub use rows::{FromNumbers, Reader, Slot, Wanted, Writer, slot};
-pub use spec::{Domain, Hard, Input, Kind, Naive, Output, Shape, Size, Spec, Stable, Stage, Values};
+pub use spec::{Domain, Hard, Input, Kind, Naive, Output, Size, Spec, Stable, Stage, ValueShape, Values};
 
 /// The families, in the order of reports.
 pub const FAMILIES: [&str; 8] =

@@ -48,7 +48,7 @@ pub enum Kind {
 /// The components of an input or output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Shape {
+pub enum ValueShape {
     /// One number.
     Scalar,
     /// Two.
@@ -63,7 +63,7 @@ pub enum Shape {
     Mat4,
 }
 
-impl Shape {
+impl ValueShape {
     /// How many numbers it has.
     #[must_use]
     pub const fn components(self) -> usize {
@@ -113,7 +113,7 @@ pub struct Input {
     /// Its name, the same in Rust, WGSL, JSON and reports.
     pub name: &'static str,
     /// Its components.
-    pub shape: Shape,
+    pub shape: ValueShape,
     /// Its unit.
     pub unit: &'static str,
     /// What random cases draw it from.
@@ -126,7 +126,7 @@ pub struct Output {
     /// Its name.
     pub name: &'static str,
     /// Its components.
-    pub shape: Shape,
+    pub shape: ValueShape,
     /// Its unit.
     pub unit: &'static str,
 }
@@ -134,51 +134,51 @@ pub struct Output {
 impl Input {
     /// An input.
     #[must_use]
-    pub const fn new(name: &'static str, shape: Shape, unit: &'static str, domain: Domain) -> Self {
+    pub const fn new(name: &'static str, shape: ValueShape, unit: &'static str, domain: Domain) -> Self {
         Self { name, shape, unit, domain }
     }
 
     /// A number.
     #[must_use]
     pub const fn scalar(name: &'static str, unit: &'static str, domain: Domain) -> Self {
-        Self::new(name, Shape::Scalar, unit, domain)
+        Self::new(name, ValueShape::Scalar, unit, domain)
     }
 
     /// A colour without alpha.
     #[must_use]
     pub const fn rgb(name: &'static str) -> Self {
-        Self::new(name, Shape::Vec3, "color", Domain::Unit)
+        Self::new(name, ValueShape::Vec3, "color", Domain::Unit)
     }
 
     /// A colour with alpha.
     #[must_use]
     pub const fn rgba(name: &'static str) -> Self {
-        Self::new(name, Shape::Vec4, "color", Domain::Unit)
+        Self::new(name, ValueShape::Vec4, "color", Domain::Unit)
     }
 
     /// A unit vector.
     #[must_use]
     pub const fn direction(name: &'static str) -> Self {
-        Self::new(name, Shape::Vec3, "1", Domain::Direction)
+        Self::new(name, ValueShape::Vec3, "1", Domain::Direction)
     }
 
     /// A vector of any length from 1/4 to 4.
     #[must_use]
     pub const fn vector(name: &'static str) -> Self {
-        Self::new(name, Shape::Vec3, "1", Domain::Vector(0.25, 4.0))
+        Self::new(name, ValueShape::Vec3, "1", Domain::Vector(0.25, 4.0))
     }
 
     /// A position in eye space.
     #[must_use]
     pub const fn position(name: &'static str) -> Self {
-        Self::new(name, Shape::Vec3, "unit", Domain::Uniform(-10.0, 10.0))
+        Self::new(name, ValueShape::Vec3, "unit", Domain::Uniform(-10.0, 10.0))
     }
 }
 
 impl Output {
     /// An output.
     #[must_use]
-    pub const fn new(name: &'static str, shape: Shape, unit: &'static str) -> Self {
+    pub const fn new(name: &'static str, shape: ValueShape, unit: &'static str) -> Self {
         Self { name, shape, unit }
     }
 }
@@ -350,13 +350,13 @@ impl Spec {
 }
 
 /// The name of one number among values of so many components each; empty where there are fewer.
-fn number_name(values: impl Iterator<Item = (&'static str, Shape, &'static str)>, mut number: usize) -> String {
+fn number_name(values: impl Iterator<Item = (&'static str, ValueShape, &'static str)>, mut number: usize) -> String {
     for (name, shape, unit) in values {
         if number < shape.components() {
             let component = match (shape, unit) {
-                (Shape::Scalar, _) => return name.into(),
+                (ValueShape::Scalar, _) => return name.into(),
                 (_, "color") => ["r", "g", "b", "a"][number].into(),
-                (Shape::Vec2 | Shape::Vec3 | Shape::Vec4, _) => ["x", "y", "z", "w"][number].into(),
+                (ValueShape::Vec2 | ValueShape::Vec3 | ValueShape::Vec4, _) => ["x", "y", "z", "w"][number].into(),
                 _ => number.to_string(),
             };
             return format!("{name}.{component}");

@@ -2,18 +2,18 @@
 
 use super::Visitor;
 use super::formula::formula;
-use super::spec::{Domain, Hard, Input, Output, Shape};
+use super::spec::{Domain, Hard, Input, Output, ValueShape};
 use lightmeter_reference::vector;
 
 const fn vec3(name: &'static str) -> Output {
-    Output::new(name, Shape::Vec3, "1")
+    Output::new(name, ValueShape::Vec3, "1")
 }
 
-const fn transform(name: &'static str, shape: Shape) -> Input {
+const fn transform(name: &'static str, shape: ValueShape) -> Input {
     Input::new(name, shape, "1", Domain::Transform(0.5, 2.0))
 }
 
-const EYE: Output = Output::new("p", Shape::Vec3, "unit");
+const EYE: Output = Output::new("p", ValueShape::Vec3, "unit");
 
 formula!(
     /// reflect, of the direction of travel.
@@ -60,7 +60,7 @@ formula!(
     /// normalize.
     Normalize: "vector/normalize" by "vector_normalize",
     "⟨v⟩ = v/|v|, 0 for the zero vector", "000 §6.3", normalised true,
-    [Input::new("v", Shape::Vec3, "1", Domain::Vector(1e-6, 1e6))] -> [vec3("v")],
+    [Input::new("v", ValueShape::Vec3, "1", Domain::Vector(1e-6, 1e6))] -> [vec3("v")],
     |v; out| { out.vector(vector::normalize(v)); },
     hard [
         Hard::new("zero", "0, not NaN", &[("v", &[0.0, 0.0, 0.0])]),
@@ -74,14 +74,14 @@ formula!(
     /// Normals by the modelview.
     NormalModelview: "vector/normal-modelview" by "vector_normal_modelview",
     "n′ = modelview·(n, 0)", "000 §6.3, 003; a dialect",
-    [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
+    [transform("modelview", ValueShape::Mat3), Input::direction("n")] -> [vec3("n")],
     |modelview, n; out| { out.vector(vector::normal_modelview(&modelview, n)); },
 );
 formula!(
     /// Normals by the inverse transpose.
     NormalInverseTranspose: "vector/normal-inverse-transpose" by "vector_normal_inverse_transpose",
     "n′ = modelview⁻ᵀ·n", "004; ruling 6",
-    [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
+    [transform("modelview", ValueShape::Mat3), Input::direction("n")] -> [vec3("n")],
     |modelview, n; out| { out.vector(vector::normal_inverse_transpose(&modelview, n)); },
     hard [
         Hard::new("reflection", "a negative determinant", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]), ("n", &[0.6, 0.0, 0.8])]),
@@ -92,7 +92,7 @@ formula!(
     /// A light's direction in eye space.
     LightDirection: "vector/light-direction" by "vector_light_direction",
     "view·(direction, 0)", "000 §6.3",
-    [transform("view", Shape::Mat4), Input::direction("direction")] -> [vec3("direction")],
+    [transform("view", ValueShape::Mat4), Input::direction("direction")] -> [vec3("direction")],
     |view, direction; out| { out.vector(vector::light_direction(&view, direction)); },
 );
 formula!(
@@ -100,8 +100,8 @@ formula!(
     LightPosition: "vector/light-position" by "vector_light_position",
     "xyz/w of modelview·position; xyz where w = 0", "004",
     [
-        transform("modelview", Shape::Mat4),
-        Input::new("position", Shape::Vec4, "unit", Domain::Uniform(0.5, 10.0)),
+        transform("modelview", ValueShape::Mat4),
+        Input::new("position", ValueShape::Vec4, "unit", Domain::Uniform(0.5, 10.0)),
     ] -> [EYE],
     |modelview, position; out| { out.vector(vector::light_position(&modelview, position)); },
     hard [
@@ -113,7 +113,7 @@ formula!(
     /// A light that moves with a model.
     LightWithModel: "vector/light-with-model" by "vector_light_with_model",
     "view·(model·(position, 1))", "004",
-    [transform("view", Shape::Mat4), transform("model", Shape::Mat4), Input::position("position")] -> [EYE],
+    [transform("view", ValueShape::Mat4), transform("model", ValueShape::Mat4), Input::position("position")] -> [EYE],
     |view, model, position; out| { out.vector(vector::light_with_model(&view, &model, position)); },
 );
 formula!(
@@ -144,8 +144,8 @@ formula!(
     ],
 );
 
-const V: Input = Input::new("v", Shape::Vec3, "1", Domain::Vector(1e-6, 1e6));
-const LENGTH: Output = Output::new("length", Shape::Scalar, "1");
+const V: Input = Input::new("v", ValueShape::Vec3, "1", Domain::Vector(1e-6, 1e6));
+const LENGTH: Output = Output::new("length", ValueShape::Scalar, "1");
 
 formula!(
     /// normalize without its guard.
@@ -236,14 +236,14 @@ formula!(
     /// Normals by the inverse transpose, normalised.
     NormalByDeterminant: "vector/normal-by-determinant" by "vector_normal_by_determinant",
     "n′ = ⟨cofactors·n/determinant⟩", "004; ruling 6", normalised true,
-    [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
+    [transform("modelview", ValueShape::Mat3), Input::direction("n")] -> [vec3("n")],
     |modelview, n; out| { out.vector(vector::normal_by_determinant(&modelview, n)); },
 );
 formula!(
     /// Normals by the cofactors alone.
     NormalByCofactors: "vector/normal-by-cofactors" by "vector_normal_by_cofactors",
     "n′ = ±⟨Σ nᵢ·sᵢ·cofactorᵢ⟩ of columns scaled by powers of two sᵢ, by the determinant's sign", "Lengyel; ruling 6", normalised true,
-    [transform("modelview", Shape::Mat3), Input::direction("n")] -> [vec3("n")],
+    [transform("modelview", ValueShape::Mat3), Input::direction("n")] -> [vec3("n")],
     stable 64.0 Own "nine cofactors and a product that do not cancel, then a normalisation of 16",
     |modelview, n; out| { out.vector(vector::normal_by_cofactors(&modelview, n)); },
     hard [

@@ -1,8 +1,8 @@
 //! Materials: 003's scalars and their highlights turned into colours.
 
 use super::field::{At, SceneError};
-use lightmeter_scene::frame::{self, Filter, Sampled, Textured, Wrap};
-use lightmeter_scene::model::{Highlight, Image, Material, Named, Reading, TextureMode};
+use lightmeter_scene::frame::{self, Sampled, TextureFilter, Textured, Wrap};
+use lightmeter_scene::model::{Highlight, Material, Named, Reading, TextureImage, TextureMode};
 
 /// A material with the images that it reads.
 #[derive(Clone, Copy, Debug)]
@@ -31,11 +31,11 @@ impl Surface {
 
 /// How an image that a file names is read.
 pub(super) const fn of_file(texture: usize) -> Textured {
-    Textured { sampled: Sampled { texture, filter: Filter::Bilinear, wrap: Wrap::Repeat }, replaces: false }
+    Textured { sampled: Sampled { texture, filter: TextureFilter::Bilinear, wrap: Wrap::Repeat }, replaces: false }
 }
 
 /// What the material is, with its images by their places among the textures.
-pub(super) fn surface(at: &At<'_>, material: &Material, textures: &Named<Image>) -> Result<Surface, SceneError> {
+pub(super) fn surface(at: &At<'_>, material: &Material, textures: &Named<TextureImage>) -> Result<Surface, SceneError> {
     at.field("color").numbers(material.color)?;
     let scaled = |name: &str, k: Option<f64>| -> Result<[f64; 3], SceneError> {
         let k = k.unwrap_or(1.0);
@@ -88,7 +88,7 @@ pub(super) fn surface(at: &At<'_>, material: &Material, textures: &Named<Image>)
     })
 }
 
-fn sampled(at: &At<'_>, reading: &Reading, textures: &Named<Image>) -> Result<Sampled, SceneError> {
+fn sampled(at: &At<'_>, reading: &Reading, textures: &Named<TextureImage>) -> Result<Sampled, SceneError> {
     let found = textures.find(&reading.image).map(|(place, _)| place);
     let texture = at.field("image").named(found, &reading.image, &textures.names())?;
     Ok(Sampled { texture, filter: reading.filter.into(), wrap: reading.wrap.into() })

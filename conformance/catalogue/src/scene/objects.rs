@@ -8,7 +8,7 @@ use super::material::Surface;
 use glam::{DMat3, DMat4, DVec3};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::frame::{Draw, Mesh, Shading};
-use lightmeter_scene::model::{Alpha, Depth, Frequency, Named, Object, Order, Scene, Step};
+use lightmeter_scene::model::{Alpha, Depth, Frequency, Named, Object, Order, Scene, TransformStep};
 
 /// Draws of a scene, at most.
 const MOST_DRAWS: usize = 4096;
@@ -172,16 +172,16 @@ fn depth(scene: &Scene, object: &Object) -> Option<DepthTest> {
 }
 
 /// Object → world.
-pub(super) fn transform(at: &At<'_>, steps: &[Step]) -> Result<DMat4, SceneError> {
+pub(super) fn transform(at: &At<'_>, steps: &[TransformStep]) -> Result<DMat4, SceneError> {
     let mut matrix = DMat4::IDENTITY;
     for (place, step) in steps.iter().enumerate() {
         let at = at.item(place);
         let next = match *step {
-            Step::Translate(by) => {
+            TransformStep::Translate(by) => {
                 at.field("translate").numbers(by)?;
                 DMat4::from_translation(by.into())
             }
-            Step::Rotate { deg, axis } => {
+            TransformStep::Rotate { deg, axis } => {
                 let at = at.field("rotate");
                 at.field("deg").number(deg)?;
                 at.field("axis").direction(axis)?;
@@ -190,11 +190,11 @@ pub(super) fn transform(at: &At<'_>, steps: &[Step]) -> Result<DMat4, SceneError
                 };
                 DMat4::from_axis_angle(axis, deg.to_radians())
             }
-            Step::Scale(by) => {
+            TransformStep::Scale(by) => {
                 at.field("scale").numbers(by)?;
                 DMat4::from_scale(by.into())
             }
-            Step::Matrix(columns) => {
+            TransformStep::Matrix(columns) => {
                 let at = at.field("matrix");
                 for (place, column) in columns.iter().enumerate() {
                     at.item(place).numbers(*column)?;

@@ -4,7 +4,7 @@ use super::field::{At, SceneError};
 use super::files::Files;
 use image::{ImageFormat, ImageReader, Limits};
 use lightmeter_scene::frame::Texture;
-use lightmeter_scene::model::Image;
+use lightmeter_scene::model::TextureImage;
 use std::io::Cursor;
 
 /// Texels along each side, at most.
@@ -12,17 +12,17 @@ const MOST_TEXELS: u32 = 2048;
 const SIZES: &str = "1 to 2048 texels";
 
 /// The texels of an image.
-pub(super) fn texture(at: &At<'_>, image: &Image, files: &Files<'_>) -> Result<Texture, SceneError> {
+pub(super) fn texture(at: &At<'_>, image: &TextureImage, files: &Files<'_>) -> Result<Texture, SceneError> {
     match image {
-        Image::File(path) => from_file(&at.field("file"), path, files),
-        Image::Texels(rows) => written(&at.field("texels"), rows),
-        Image::Checker { size, colors } => {
+        TextureImage::File(path) => from_file(&at.field("file"), path, files),
+        TextureImage::Texels(rows) => written(&at.field("texels"), rows),
+        TextureImage::Checker { size, colors } => {
             let at = at.field("checker");
             let colors =
                 [at.field("colors").item(0).numbers(colors[0])?, at.field("colors").item(1).numbers(colors[1])?];
             generated(&at, *size, |x, y| colors[usize::from((x + y) % 2 == 1)].map(f64::from))
         }
-        Image::Gradient { size, corners } => {
+        TextureImage::Gradient { size, corners } => {
             let at = at.field("gradient");
             for (place, corner) in corners.iter().enumerate() {
                 at.field("corners").item(place).numbers(*corner)?;
@@ -33,7 +33,7 @@ pub(super) fn texture(at: &At<'_>, image: &Image, files: &Files<'_>) -> Result<T
                 mix(mix(corners[0], corners[1], s), mix(corners[2], corners[3], s), t)
             })
         }
-        Image::Radial { size, inner, outer } => {
+        TextureImage::Radial { size, inner, outer } => {
             let at = at.field("radial");
             at.field("inner").numbers(*inner)?;
             at.field("outer").numbers(*outer)?;

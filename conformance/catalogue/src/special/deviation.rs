@@ -4,7 +4,7 @@ use super::probe::Probe;
 
 /// A promise that is known to be broken.
 #[derive(Clone, Copy, Debug)]
-pub struct Deviation {
+pub struct SpecialDeviation {
     /// Its name in reports.
     pub name: &'static str,
     /// Of which interface.
@@ -16,14 +16,14 @@ pub struct Deviation {
 }
 
 /// Every promise that is known to be broken. Where a record binds, it also says by which value.
-pub const DEVIATIONS: &[Deviation] = &[Deviation {
+pub const DEVIATIONS: &[SpecialDeviation] = &[SpecialDeviation {
     name: "gl-unclamped-conversions",
     backend: "gl",
     probes: &["negative-to-u32", "too-large-to-u32", "too-large-to-i32", "too-small-to-i32"],
     reason: "naga 30 clamps a float before it becomes an integer in SPIR-V, not in GLSL, where a value out of range is undefined",
 }];
 
-impl Deviation {
+impl SpecialDeviation {
     /// What is known of a probe on an interface.
     #[must_use]
     pub fn of(probe: &Probe, backend: &str) -> Option<&'static Self> {
@@ -40,7 +40,10 @@ mod tests {
         for name in DEVIATIONS.iter().flat_map(|deviation| deviation.probes) {
             let probe = Probe::by_name(name).unwrap_or_else(|| panic!("no probe {name}"));
             assert!(probe.promise.is_definite(), "{name}");
-            assert!(Deviation::of(probe, "gl").is_some() && Deviation::of(probe, "vulkan").is_none(), "{name}");
+            assert!(
+                SpecialDeviation::of(probe, "gl").is_some() && SpecialDeviation::of(probe, "vulkan").is_none(),
+                "{name}"
+            );
         }
     }
 }

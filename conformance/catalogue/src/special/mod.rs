@@ -12,7 +12,7 @@ mod promise;
 mod source;
 mod table;
 
-pub use deviation::{DEVIATIONS, Deviation};
+pub use deviation::{DEVIATIONS, SpecialDeviation};
 pub use gives::Gives;
 pub use probe::{Class, FAMILY, Probe, Way};
 pub use promise::Promise;

@@ -9,7 +9,7 @@ pub const BASELINE: &str = "f32";
 
 /// A rung over many groups.
 #[derive(Clone, Debug)]
-pub struct Rung {
+pub struct RungSummary {
     /// Its name.
     pub name: String,
     /// Groups that it was measured in and is right in value.
@@ -34,7 +34,10 @@ pub struct Rung {
 
 /// The rungs over groups, in the order in which they first appear. `error` takes the largest error in the unit wanted.
 #[must_use]
-pub fn rungs<'a>(groups: impl Iterator<Item = &'a BenchGroup> + Clone, error: impl Fn(&Errors) -> f64) -> Vec<Rung> {
+pub fn rungs<'a>(
+    groups: impl Iterator<Item = &'a BenchGroup> + Clone,
+    error: impl Fn(&Errors) -> f64,
+) -> Vec<RungSummary> {
     let mut names: Vec<&str> = vec![];
     for row in groups.clone().flat_map(|group| &group.rows) {
         if !names.contains(&row.name.as_str()) {
@@ -52,7 +55,7 @@ fn rung<'a>(
     name: &str,
     rows: impl Iterator<Item = (&'a BenchGroup, &'a BenchRow)>,
     error: &impl Fn(&Errors) -> f64,
-) -> Rung {
+) -> RungSummary {
     let (mut disqualified, mut unavailable, mut as_f32) = (0, 0, 0);
     let (mut points, mut figures) = (vec![], vec![]);
     for (group, row) in rows {
@@ -77,7 +80,7 @@ fn rung<'a>(
         }
     }
     let end = |k: usize| geometric_mean(figures.iter().map(|figure| figure.1[k]));
-    Rung {
+    RungSummary {
         name: name.to_owned(),
         groups: points.len(),
         as_f32,
@@ -93,7 +96,7 @@ fn rung<'a>(
 
 /// The rungs than which none is both as fast and closer: see [`pareto::front`].
 #[must_use]
-pub fn front(rungs: &[Rung]) -> Vec<String> {
+pub fn front(rungs: &[RungSummary]) -> Vec<String> {
     let taken = rungs.iter().filter(|rung| rung.groups > 0 && !is_processor(&rung.name));
     let points = taken.map(|rung| Point {
         name: rung.name.clone(),
@@ -108,7 +111,7 @@ pub fn front(rungs: &[Rung]) -> Vec<String> {
 /// A family of formulas as the document has it.
 #[must_use]
 pub fn family<'a>(id: &str, groups: impl Iterator<Item = &'a BenchGroup> + Clone) -> Family {
-    let of = |rung: Rung| FamilyRung {
+    let of = |rung: RungSummary| FamilyRung {
         name: rung.name,
         formulas: rung.groups,
         as_f32: rung.as_f32,
@@ -125,7 +128,7 @@ pub fn family<'a>(id: &str, groups: impl Iterator<Item = &'a BenchGroup> + Clone
     Family { id: id.to_owned(), rungs: rungs.into_iter().map(of).collect(), front }
 }
 
-impl From<&FamilyRung> for Rung {
+impl From<&FamilyRung> for RungSummary {
     fn from(rung: &FamilyRung) -> Self {
         Self {
             name: rung.name.clone(),

@@ -4,7 +4,7 @@ mod histogram;
 mod statistics;
 
 pub use histogram::Histogram;
-pub use statistics::{Exact, Place, Seen, Statistics, StoreCounts, Stored};
+pub use statistics::{ExactFloat, Statistics, StoreCounts, StoreStatistics, SweepInput, SweepVerdict};
 
 use crate::Word;
 use crate::run::Identity;
@@ -56,12 +56,12 @@ pub struct Description {
     pub over: String,
     /// The least float.
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub from: Option<Exact>,
+    pub from: Option<ExactFloat>,
     /// The greatest.
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub to: Option<Exact>,
+    pub to: Option<ExactFloat>,
     /// The other inputs by name.
-    pub fixed: Vec<(String, Exact)>,
+    pub fixed: Vec<(String, ExactFloat)>,
     /// The output.
     pub output: String,
     /// What errors are counted in: `ULP` or `step`.

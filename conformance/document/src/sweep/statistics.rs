@@ -14,9 +14,9 @@ const KEPT: usize = 5;
 
 /// An f32 as it is read by people and as its bits, which are what counts.
 #[derive(Clone, Copy, Debug, JsonSchema)]
-pub struct Exact(#[schemars(with = "ExactParts")] pub f32);
+pub struct ExactFloat(#[schemars(with = "ExactParts")] pub f32);
 
-impl PartialEq for Exact {
+impl PartialEq for ExactFloat {
     fn eq(&self, other: &Self) -> bool {
         self.0.to_bits() == other.0.to_bits()
     }
@@ -30,14 +30,14 @@ struct ExactParts {
     bits: String,
 }
 
-impl Serialize for Exact {
+impl Serialize for ExactFloat {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let value = serde_json::to_value(Number(self.0.into())).unwrap_or_default();
         ExactParts { value, bits: format!("0x{:08x}", self.0.to_bits()) }.serialize(serializer)
     }
 }
 
-impl<'de> Deserialize<'de> for Exact {
+impl<'de> Deserialize<'de> for ExactFloat {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let parts = ExactParts::deserialize(deserializer)?;
         let bits = parts.bits.strip_prefix("0x").and_then(|hex| u32::from_str_radix(hex, 16).ok());
@@ -53,9 +53,9 @@ impl<'de> Deserialize<'de> for Exact {
 /// One input of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Place {
+pub enum SweepInput {
     /// A float.
-    Float(Exact),
+    Float(ExactFloat),
     /// Of a blend state: a component of the source and of the destination, and the source's alpha, in 255ths.
     Bytes {
         /// The source's.
@@ -67,12 +67,12 @@ pub enum Place {
     },
 }
 
-impl Place {
+impl SweepInput {
     /// How it stands to another in the order of inputs: that of floats, −0 before 0; of bytes by alpha, source and destination.
     #[must_use]
     pub fn order(self, other: Self) -> Ordering {
         match (self, other) {
-            (Self::Float(Exact(a)), Self::Float(Exact(b))) => a.total_cmp(&b),
+            (Self::Float(ExactFloat(a)), Self::Float(ExactFloat(b))) => a.total_cmp(&b),
             (a, b) => a.bytes().cmp(&b.bytes()),
         }
     }
@@ -89,11 +89,11 @@ impl Place {
 /// A verdict with all that it rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Seen {
+pub struct SweepVerdict {
     /// The input.
-    pub input: Place,
+    pub input: SweepInput,
     /// What came out.
-    pub value: Exact,
+    pub value: ExactFloat,
     /// What the formula gives.
     pub reference: Number,
     /// The least legal value.
@@ -132,7 +132,7 @@ impl StoreCounts {
 /// What the stores of a blend unit came to.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Stored {
+pub struct StoreStatistics {
     /// By how near values come.
     pub tiers: Tiers,
     /// What the values say of how they are stored, red, green and blue together.
@@ -162,14 +162,14 @@ pub struct Statistics {
     /// The errors.
     pub histogram: Histogram,
     /// The greatest error.
-    pub worst: Option<Seen>,
+    pub worst: Option<SweepVerdict>,
     /// The greatest margin of the values that are not next to the reference, where either float is legal: its margin is at most 1.
-    pub nearest_to_limit: Option<Seen>,
+    pub nearest_to_limit: Option<SweepVerdict>,
     /// The first results that are not legal.
-    pub failures: Vec<Seen>,
+    pub failures: Vec<SweepVerdict>,
     /// Of a blend unit.
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub stored: Option<Stored>,
+    pub stored: Option<StoreStatistics>,
 }
 
 impl Statistics {
@@ -203,21 +203,21 @@ impl Statistics {
     }
 
     /// Keeps it where its error is the greatest.
-    pub fn see_error(&mut self, seen: Seen) {
+    pub fn see_error(&mut self, seen: SweepVerdict) {
         if is_beyond(&seen, self.worst.as_ref(), |seen| seen.error.0) {
             self.worst = Some(seen);
         }
     }
 
     /// Keeps it where its margin is the greatest.
-    pub fn see_margin(&mut self, seen: Seen) {
+    pub fn see_margin(&mut self, seen: SweepVerdict) {
         if is_beyond(&seen, self.nearest_to_limit.as_ref(), |seen| seen.margin.0) {
             self.nearest_to_limit = Some(seen);
         }
     }
 
     /// Keeps it where few have failed before; inputs come in order.
-    pub fn see_failure(&mut self, seen: Seen) {
+    pub fn see_failure(&mut self, seen: SweepVerdict) {
         if self.failures.len() < KEPT {
             self.failures.push(seen);
         }
@@ -246,7 +246,7 @@ impl Statistics {
 }
 
 /// Whether it is greater, or as great at an earlier input.
-fn is_beyond(seen: &Seen, most: Option<&Seen>, of: impl Fn(&Seen) -> f64) -> bool {
+fn is_beyond(seen: &SweepVerdict, most: Option<&SweepVerdict>, of: impl Fn(&SweepVerdict) -> f64) -> bool {
     most.is_none_or(|most| match of(seen).total_cmp(&of(most)) {
         Ordering::Equal => seen.input.order(most.input).is_lt(),
         order => order.is_gt(),
@@ -257,10 +257,10 @@ fn is_beyond(seen: &Seen, most: Option<&Seen>, of: impl Fn(&Seen) -> f64) -> boo
 mod tests {
     use super::*;
 
-    fn seen(x: f32, error: f64) -> Seen {
-        Seen {
-            input: Place::Float(Exact(x)),
-            value: Exact(1.0),
+    fn seen(x: f32, error: f64) -> SweepVerdict {
+        SweepVerdict {
+            input: SweepInput::Float(ExactFloat(x)),
+            value: ExactFloat(1.0),
             reference: Number(1.0),
             low: Number(0.5),
             high: Number(2.0),
@@ -290,7 +290,11 @@ mod tests {
         let mut backwards = Statistics::default();
         parts.iter().rev().for_each(|part| backwards.add(part.clone()));
         assert_eq!(forwards, backwards);
-        assert_eq!(forwards.worst.map(|seen| seen.input), Some(Place::Float(Exact(2.0))), "the first of equals");
+        assert_eq!(
+            forwards.worst.map(|seen| seen.input),
+            Some(SweepInput::Float(ExactFloat(2.0))),
+            "the first of equals"
+        );
         assert_eq!(forwards.failures.len(), KEPT);
         assert_eq!(forwards.problem(), None);
     }

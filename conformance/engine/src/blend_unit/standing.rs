@@ -11,7 +11,7 @@ use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
 use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Tiers, Totals};
 use lightmeter_judge::blend_unit::expect::expect;
-use lightmeter_judge::blend_unit::model::Model;
+use lightmeter_judge::blend_unit::model::BlendUnitModel;
 use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_judge::blend_unit::policy;
 use lightmeter_judge::blend_unit::rules::Rules;
@@ -53,7 +53,7 @@ pub(super) struct UnitStanding {
 }
 
 /// The model that a subject is known to follow bit for bit on a target.
-fn declared_model(subject: &Subject, target: TargetFormat) -> Option<Model> {
+fn declared_model(subject: &Subject, target: TargetFormat) -> Option<BlendUnitModel> {
     subject.known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8)
 }
 

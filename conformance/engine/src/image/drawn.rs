@@ -2,7 +2,7 @@
 
 use crate::device::{Code, DeviceError, Picture};
 use crate::subject::Subject;
-use lightmeter_judge::image::file::Stored;
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
@@ -20,20 +20,24 @@ pub fn drawn(
     frame: &Frame,
     sets: &[Called],
     picture: Picture,
-) -> Result<Result<Stored, &'static str>, DeviceError> {
+) -> Result<Result<StoredImage, &'static str>, DeviceError> {
     let (stage, format) = match picture {
         Picture::Composed | Picture::Full => (None, frame.target.format),
         Picture::Intermediate(stage) => (Some(stage), TargetFormat::Rgba32Float),
     };
     let Some(device) = subject.device() else {
         let image = render::<f32>(frame, None, stage);
-        return Ok(Ok(if stage.is_some() { Stored::unrounded(&image, format) } else { Stored::of(&image, format) }));
+        return Ok(Ok(if stage.is_some() {
+            StoredImage::unrounded(&image, format)
+        } else {
+            StoredImage::of(&image, format)
+        }));
     };
     if let Some(reason) = device.lacks_frame(frame) {
         return Ok(Err(reason));
     }
     let bytes = device.pixels(device.draw(code, frame, sets, picture)?)?;
-    Ok(Ok(Stored::read(frame.target.width as usize, format, &bytes)))
+    Ok(Ok(StoredImage::read(frame.target.width as usize, format, &bytes)))
 }
 
 /// An intermediate result as a subject draws it, or why it cannot.
@@ -46,6 +50,6 @@ pub fn intermediate(
     frame: &Frame,
     sets: &[Called],
     stage: Intermediate,
-) -> Result<Result<Stored, &'static str>, DeviceError> {
+) -> Result<Result<StoredImage, &'static str>, DeviceError> {
     drawn(subject, code, frame, sets, Picture::Intermediate(stage))
 }

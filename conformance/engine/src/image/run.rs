@@ -10,7 +10,7 @@ use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::Report;
-use lightmeter_judge::image::file::Stored;
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{Called, effects, named};
 use lightmeter_scene::frame::Frame;
@@ -60,7 +60,7 @@ pub(crate) fn run_scene(
         scene.expect(&subject.known.profile(options.profile));
     }
     report.timing.reference += clock.elapsed().as_secs_f64();
-    let mut composed: Vec<Option<Stored>> = vec![None; subjects.len()];
+    let mut composed: Vec<Option<StoredImage>> = vec![None; subjects.len()];
     for started in all_started {
         let place = started.subject;
         asked.finish(started, &scene, &subjects[place], &mut composed[place], options, report)?;
@@ -109,7 +109,7 @@ impl Asked<'_> {
         started: Started,
         scene: &JudgedScene<'_>,
         subject: &Subject,
-        composed: &mut Option<Stored>,
+        composed: &mut Option<StoredImage>,
         options: &Options,
         report: &mut Report,
     ) -> Result<(), DeviceError> {
@@ -123,7 +123,7 @@ impl Asked<'_> {
             Drawing::Embedded => embedded(self.frame, picture),
             Drawing::Pending(pending) => {
                 let bytes = subject.device().expect("only a device has pending work").pixels(pending)?;
-                Some(Stored::read(self.frame.target.width as usize, self.frame.target.format, &bytes))
+                Some(StoredImage::read(self.frame.target.width as usize, self.frame.target.format, &bytes))
             }
         };
         let Some(image) = image else { return Ok(()) };
@@ -159,11 +159,11 @@ impl Asked<'_> {
 }
 
 /// Pixels that two images do not have in common, bit for bit.
-fn differing(a: &Stored, b: &Stored) -> u64 {
+fn differing(a: &StoredImage, b: &StoredImage) -> u64 {
     a.pixels.iter().zip(&b.pixels).filter(|(a, b)| a.map(f64::to_bits) != b.map(f64::to_bits)).count() as u64
 }
 
 /// The formulas in f32, which have no shader with switches.
-fn embedded(frame: &Frame, picture: Picture) -> Option<Stored> {
-    (picture == Picture::Composed).then(|| Stored::of(&render::<f32>(frame, None, None), frame.target.format))
+fn embedded(frame: &Frame, picture: Picture) -> Option<StoredImage> {
+    (picture == Picture::Composed).then(|| StoredImage::of(&render::<f32>(frame, None, None), frame.target.format))
 }

@@ -10,9 +10,9 @@ use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
 use lightmeter_document::Number;
 use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
 use lightmeter_judge::devices::Deviation;
-use lightmeter_judge::image::Expected;
+use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::expect::{Expectation, expect};
-use lightmeter_judge::image::file::{ImageFileError, Stored};
+use lightmeter_judge::image::file::{ImageFileError, StoredImage};
 use lightmeter_judge::image::judge::{Judged, Miss, error, error_map, judge};
 use lightmeter_judge::is_worse;
 use lightmeter_judge::tally::KEPT_FAILURES;
@@ -22,7 +22,13 @@ use lightmeter_scene::frame::Frame;
 use serde_json::json;
 
 /// Takes the misses out that a named deviation makes legal; how many there are.
-pub fn excuse(judged: &mut Judged, image: &Stored, frame: &Frame, deviation: &Deviation, profile: &Profile) -> u64 {
+pub fn excuse(
+    judged: &mut Judged,
+    image: &StoredImage,
+    frame: &Frame,
+    deviation: &Deviation,
+    profile: &Profile,
+) -> u64 {
     let granted = deviation.grant(*profile);
     let expectation = Expectation::new(frame, None, None, &granted);
     judged.excuse(deviation.name, |miss| {
@@ -38,14 +44,14 @@ pub(super) struct JudgedScene<'a> {
     id: String,
     frame: &'a Frame,
     pixels: Vec<usize>,
-    reference: Stored,
+    reference: StoredImage,
     /// The legal values by subpixel bits.
-    expected: Vec<(u32, Vec<Expected>)>,
+    expected: Vec<(u32, Vec<LegalPixel>)>,
 }
 
 /// An image of a scene, who drew it, and by what it is judged.
 pub(super) struct Drawn<'a> {
-    pub(super) image: &'a Stored,
+    pub(super) image: &'a StoredImage,
     pub(super) subject: &'a Subject,
     pub(super) picture: Picture,
     pub(super) options: &'a Options,
@@ -56,7 +62,7 @@ pub(super) struct Drawn<'a> {
 impl<'a> JudgedScene<'a> {
     pub(super) fn new(loaded: &'a Loaded, chosen: &Chosen) -> Self {
         let frame = &loaded.frame;
-        let reference = Stored::unrounded(&render::<f64>(frame, None, None), frame.target.format);
+        let reference = StoredImage::unrounded(&render::<f64>(frame, None, None), frame.target.format);
         let pixels = chosen.pixels.clone().unwrap_or_else(|| (0..reference.pixels.len()).collect());
         Self { id: scene_id(chosen.place), frame, pixels, reference, expected: vec![] }
     }
@@ -74,7 +80,7 @@ impl<'a> JudgedScene<'a> {
         }
     }
 
-    fn expected(&self, profile: &Profile) -> &[Expected] {
+    fn expected(&self, profile: &Profile) -> &[LegalPixel] {
         let found = self.expected.iter().find(|(bits, _)| *bits == profile.subpixel_bits);
         &found.expect("what is legal was worked out for every subject").1
     }
@@ -132,7 +138,7 @@ impl<'a> JudgedScene<'a> {
     }
 
     /// What a report says of an image by itself; what is wrong with it comes later.
-    fn image_use(&self, image: &Stored, expected: &[Expected]) -> ImageUse {
+    fn image_use(&self, image: &StoredImage, expected: &[LegalPixel]) -> ImageUse {
         ImageUse {
             width: image.width,
             height: image.pixels.len() / image.width,
@@ -174,7 +180,7 @@ impl<'a> JudgedScene<'a> {
     /// Reference, result and error map; nothing where files are not asked for or cannot be written.
     fn write(&self, drawn: &Drawn<'_>) -> Vec<String> {
         let Some(folder) = &drawn.options.images else { return vec![] };
-        let rounded = Stored::of(&render::<f64>(self.frame, None, None), self.frame.target.format);
+        let rounded = StoredImage::of(&render::<f64>(self.frame, None, None), self.frame.target.format);
         let map = error_map(drawn.image, &self.reference, self.expected(&drawn.profile));
         let name = self.id.replace('/', "-");
         let place = format!("{name}-{}-{}", drawn.subject.identity.name, stage(drawn.picture));

@@ -2,7 +2,7 @@
 
 use crate::device::{Code, DeviceError, Probed};
 use crate::subject::Subject;
-use lightmeter_catalogue::special::{Deviation, PROBES, Probe, Promise};
+use lightmeter_catalogue::special::{PROBES, Probe, Promise, SpecialDeviation};
 use lightmeter_document::Word;
 use lightmeter_document::run::Identity;
 use lightmeter_document::special::{self, ProbeResult, ProbeRow, ProbeVerdict, RecordUse, Skipped, SpecialReport};
@@ -112,7 +112,7 @@ impl Sink<'_> {
     fn put(&mut self, probe: &'static Probe, stage: &'static str, bits: u32) {
         let recorded = self.on_record.and_then(|of| of.record().get(probe, stage));
         let binding = recorded.filter(|_| self.on_record.is_some_and(|of| of.binds));
-        let deviation = Deviation::of(probe, &self.adapter.backend);
+        let deviation = SpecialDeviation::of(probe, &self.adapter.backend);
         self.results.outcomes.push(ProbeResult {
             probe: probe.name.into(),
             adapter: self.adapter.name.clone(),

@@ -6,7 +6,7 @@ use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
-use lightmeter_catalogue::special::{Class, Deviation, FAMILY, Gives, PROBES, Probe, Way};
+use lightmeter_catalogue::special::{Class, FAMILY, Gives, PROBES, Probe, SpecialDeviation, Way};
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::{DeviationUse, Failure, Group, Report, Totals};
 use lightmeter_document::special::{ProbeResult, ProbeVerdict, Skipped};
@@ -118,7 +118,7 @@ impl Table {
                     ProbeVerdict::Deviates => {
                         totals.expected_failures += 1;
                         let probe = Probe::by_name(&outcome.probe);
-                        let deviation = probe.and_then(|probe| Deviation::of(probe, &subject.identity.backend));
+                        let deviation = probe.and_then(|probe| SpecialDeviation::of(probe, &subject.identity.backend));
                         if let Some(deviation) = deviation {
                             granted(deviation, &subject.identity.name, report);
                         }
@@ -138,7 +138,7 @@ impl Table {
 }
 
 /// Counts a verdict that a deviation excused. Where no witness is asked, the verdict alone says that the deviation is needed.
-fn granted(deviation: &Deviation, adapter: &str, report: &mut Report) {
+fn granted(deviation: &SpecialDeviation, adapter: &str, report: &mut Report) {
     if !report.deviations.iter().any(|known| known.name == deviation.name && known.adapter == adapter) {
         report.deviations.push(DeviationUse {
             name: deviation.name.into(),

@@ -13,7 +13,7 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_document::Number;
-use lightmeter_document::sweep::{Exact, Place, Seen, Statistics, Stored};
+use lightmeter_document::sweep::{ExactFloat, Statistics, StoreStatistics, SweepInput, SweepVerdict};
 use lightmeter_judge::Outcome;
 use lightmeter_judge::blend_unit::expect::expect;
 use lightmeter_judge::blend_unit::pixel::{self, Units};
@@ -70,7 +70,7 @@ impl<'a> BytesWork<'a> {
 
     fn judge(&self, piece: &Piece, pixels: &[Units], from: u64, to: u64) -> Statistics {
         let mut sum = Statistics::default();
-        let mut stored = Stored::default();
+        let mut stored = StoreStatistics::default();
         let mut counts = StoreCounts::default();
         let (_, mask) = self.program.layer(0);
         for (place, (first, pixel)) in (from..to).step_by(COMPONENTS).zip(pixels).enumerate() {
@@ -84,9 +84,9 @@ impl<'a> BytesWork<'a> {
                 let verdict = expected.judge(TARGET, component, value);
                 let [alpha, source, destination] = bytes(number);
                 #[expect(clippy::cast_possible_truncation, reason = "a whole step")]
-                let seen = Seen {
-                    input: Place::Bytes { source, destination, alpha },
-                    value: Exact(value as f32),
+                let seen = SweepVerdict {
+                    input: SweepInput::Bytes { source, destination, alpha },
+                    value: ExactFloat(value as f32),
                     reference: Number(expected.reference[component]),
                     low: Number(expected.low[component]),
                     high: Number(expected.high[component]),

@@ -5,7 +5,7 @@ use super::span::Span;
 use crate::device::Code;
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
-use lightmeter_document::sweep::{Description, Exact, hash};
+use lightmeter_document::sweep::{Description, ExactFloat, hash};
 
 /// The shader that hands source colours to the blend unit.
 const BLEND_FILE: &str = "blend_unit.wgsl";
@@ -15,7 +15,7 @@ const BLEND_FILE: &str = "blend_unit.wgsl";
 pub fn describe(plan: &SweepPlan<'_>, subject: &Subject, profile: &Profile, code: &Code) -> Description {
     let (from, to, unit, file) = match plan.over {
         Over::Number { from, to, .. } => {
-            (Some(Exact(from)), Some(Exact(to)), "ULP", format!("{}.wgsl", plan.member.spec.family()))
+            (Some(ExactFloat(from)), Some(ExactFloat(to)), "ULP", format!("{}.wgsl", plan.member.spec.family()))
         }
         Over::Bytes => (None, None, "step", BLEND_FILE.into()),
     };
@@ -42,7 +42,7 @@ pub fn describe(plan: &SweepPlan<'_>, subject: &Subject, profile: &Profile, code
 /// Whether a sweep is over the inputs of a plan, to the last bit.
 #[must_use]
 pub fn is_over_inputs_of(sweep: &Description, plan: &SweepPlan<'_>) -> bool {
-    let bits = |x: Option<Exact>| x.map(|Exact(x)| x.to_bits());
+    let bits = |x: Option<ExactFloat>| x.map(|ExactFloat(x)| x.to_bits());
     let ends = match plan.over {
         Over::Number { from, to, .. } => [Some(from), Some(to)].map(|x| x.map(f32::to_bits)),
         Over::Bytes => [None, None],
@@ -84,7 +84,7 @@ pub(super) fn differences(sweep: &Description, other: &Description, [mine, other
 
 /// A description's values by name.
 fn leaves(description: &Description) -> Vec<(String, String)> {
-    let exact = |Exact(x): Exact| format!("{x} (0x{:08x})", x.to_bits());
+    let exact = |ExactFloat(x): ExactFloat| format!("{x} (0x{:08x})", x.to_bits());
     let Description { formula, over, from, to, fixed, output, unit, stage, adapter, profile, shader, inputs, block } =
         description.clone();
     let mut leaves: Vec<(String, String)> = [("formula", formula), ("over", over)].map(|(k, v)| (k.into(), v)).into();

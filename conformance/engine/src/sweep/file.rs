@@ -224,12 +224,12 @@ mod tests {
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::catalogue;
     use lightmeter_document::Number;
-    use lightmeter_document::sweep::{Exact, Place, Seen};
+    use lightmeter_document::sweep::{ExactFloat, SweepInput, SweepVerdict};
 
-    fn seen(x: f32, error: f64) -> Seen {
-        Seen {
-            input: Place::Float(Exact(x)),
-            value: Exact(1.0),
+    fn seen(x: f32, error: f64) -> SweepVerdict {
+        SweepVerdict {
+            input: SweepInput::Float(ExactFloat(x)),
+            value: ExactFloat(1.0),
             reference: Number(1.0),
             low: Number(0.5),
             high: Number(2.0),

@@ -14,7 +14,7 @@ use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::AnyFormula;
 use lightmeter_document::Number;
-use lightmeter_document::sweep::{Exact, Place, Seen, Statistics};
+use lightmeter_document::sweep::{ExactFloat, Statistics, SweepInput, SweepVerdict};
 use lightmeter_judge::devices::Deviation;
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_scene::along::{Along, float_of};
@@ -166,12 +166,12 @@ fn small(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-fn seen(input: f32, bits: u32, reference: f64, interval: &Accept) -> Seen {
+fn seen(input: f32, bits: u32, reference: f64, interval: &Accept) -> SweepVerdict {
     let verdict = judge(bits, reference, interval);
     let value = f32::from_bits(bits);
-    Seen {
-        input: Place::Float(Exact(input)),
-        value: Exact(value),
+    SweepVerdict {
+        input: SweepInput::Float(ExactFloat(input)),
+        value: ExactFloat(value),
         reference: Number(reference),
         low: Number(interval.low()),
         high: Number(interval.high()),
@@ -319,7 +319,7 @@ mod tests {
                 let id = &member.spec.id;
                 assert_eq!(counts(&block), counts(&hand), "{id}");
                 assert_eq!(block.histogram, hand.histogram, "{id}");
-                let place = |seen: Option<Seen>| seen.map(|seen| seen.input);
+                let place = |seen: Option<SweepVerdict>| seen.map(|seen| seen.input);
                 assert_eq!(place(block.worst), place(hand.worst), "{id}");
                 assert_eq!(block.problem(), None, "{id}");
                 indeterminate += block.indeterminate;

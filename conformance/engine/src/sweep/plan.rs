@@ -4,7 +4,7 @@ use super::preset::{Free, PRESETS, Preset};
 use super::span::Span;
 use lightmeter_catalogue::cases::{Domain, Kind, Spec, Stage};
 use lightmeter_catalogue::select::Member;
-use lightmeter_document::sweep::Exact;
+use lightmeter_document::sweep::ExactFloat;
 use lightmeter_scene::along::{float_of, key_of};
 
 /// What was asked for; what is missing is the preset's, or follows from the formula.
@@ -144,10 +144,10 @@ impl<'a> SweepPlan<'a> {
 
     /// The numbers that are fixed, by name.
     #[must_use]
-    pub fn fixed(&self) -> Vec<(String, Exact)> {
+    pub fn fixed(&self) -> Vec<(String, ExactFloat)> {
         let Over::Number { free, row, .. } = &self.over else { return vec![] };
         let fixed = row.iter().enumerate().filter(|(k, _)| k != free);
-        fixed.map(|(k, &x)| (self.member.spec.input_name(k), Exact(x))).collect()
+        fixed.map(|(k, &x)| (self.member.spec.input_name(k), ExactFloat(x))).collect()
     }
 
     /// The name of the output.

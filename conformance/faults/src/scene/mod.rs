@@ -6,8 +6,8 @@ mod table;
 
 use lightmeter_arithmetic::Profile;
 use lightmeter_judge::blend_unit::pixel;
-use lightmeter_judge::image::Expected;
-use lightmeter_judge::image::file::Stored;
+use lightmeter_judge::image::LegalPixel;
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_judge::image::{expect, judge};
 use lightmeter_reference::Real;
 use lightmeter_reference::render::render;
@@ -85,17 +85,17 @@ fn with(frame: &Frame, faults: &[&'static SceneFault]) -> Frame {
 
 /// What a renderer with these mistakes draws in an arithmetic, in the target's units, rounded to it.
 #[must_use]
-pub fn draw<R: Real + Into<f64> + Send + Sync>(frame: &Frame, faults: &[&'static SceneFault]) -> Stored {
+pub fn draw<R: Real + Into<f64> + Send + Sync>(frame: &Frame, faults: &[&'static SceneFault]) -> StoredImage {
     let format = frame.target.format;
     let mut image = render::<R>(&with(frame, faults), None, None);
     faults.iter().for_each(|fault| fault.image(&mut image.pixels, image.width));
-    Stored::of(&image, format)
+    StoredImage::of(&image, format)
 }
 
 /// An image and all that is known of it.
 pub struct Trial<'a> {
     frame: &'a Frame,
-    image: &'a Stored,
+    image: &'a StoredImage,
     profile: &'a Profile,
     /// The numbers of components that fail, and of some that do not.
     failing: Vec<usize>,
@@ -107,7 +107,7 @@ pub struct Trial<'a> {
 impl<'a> Trial<'a> {
     /// An image with what is legal of it.
     #[must_use]
-    pub fn new(frame: &'a Frame, image: &'a Stored, expected: &[Expected], profile: &'a Profile) -> Self {
+    pub fn new(frame: &'a Frame, image: &'a StoredImage, expected: &[LegalPixel], profile: &'a Profile) -> Self {
         let (mut failing, mut passing, mut room) = (vec![], vec![], vec![]);
         for (pixel, (value, legal)) in image.pixels.iter().zip(expected).enumerate() {
             for (k, value) in value.iter().enumerate() {
@@ -196,8 +196,8 @@ impl<'a> Trial<'a> {
         let frame = with(self.frame, &faults);
         let legal = expect(&frame, None, None, self.profile);
         let format = self.image.format;
-        let ends = |end: fn(&Expected) -> [f64; 4]| -> Vec<[f64; 4]> {
-            let linear = |legal: &Expected| -> [f64; 4] {
+        let ends = |end: fn(&LegalPixel) -> [f64; 4]| -> Vec<[f64; 4]> {
+            let linear = |legal: &LegalPixel| -> [f64; 4] {
                 let units = end(legal);
                 std::array::from_fn(|k| pixel::linear(format, k, units[k]))
             };
@@ -259,7 +259,7 @@ fn slack(format: TargetFormat, value: f64) -> f64 {
 
 /// The failing components and the passing ones of an image, by a judgement that is at hand.
 #[must_use]
-pub fn fails(image: &Stored, reference: &Stored, expected: &[Expected]) -> bool {
+pub fn fails(image: &StoredImage, reference: &StoredImage, expected: &[LegalPixel]) -> bool {
     let all: Vec<usize> = (0..image.pixels.len()).collect();
     !judge::judge(image, reference, expected, &all).misses.is_empty()
 }

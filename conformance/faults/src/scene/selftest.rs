@@ -6,7 +6,7 @@ use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
 use lightmeter_document::selftest::{SceneRecord, SceneRow};
 use lightmeter_judge::image::expect;
-use lightmeter_judge::image::file::Stored;
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_reference::render::render;
 use rayon::prelude::*;
 use std::fmt::{Result, Write};
@@ -55,7 +55,7 @@ pub fn selftest(
         progress(&id);
         let frame = builtin(place, Some(size))?.frame;
         let expected = expect(&frame, None, None, profile);
-        let reference = Stored::unrounded(&render::<f64>(&frame, None, None), frame.target.format);
+        let reference = StoredImage::unrounded(&render::<f64>(&frame, None, None), frame.target.format);
         if fails(&draw::<f32>(&frame, &[]), &reference, &expected) {
             alarms.push(id.clone());
         }

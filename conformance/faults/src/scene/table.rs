@@ -2,7 +2,7 @@
 
 use lightmeter_reference::color;
 use lightmeter_scene::blend::{Factor, State};
-use lightmeter_scene::frame::{Cull, Filter, Fog, FogForm, Frame, Light, Material, Place, Shading, Wrap};
+use lightmeter_scene::frame::{Cull, Fog, FogForm, Frame, Light, Material, Place, Shading, TextureFilter, Wrap};
 use lightmeter_scene::raster::Provoking;
 use lightmeter_scene::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 
@@ -171,8 +171,8 @@ faults! {
     Frame "texture-replaces" "a texture takes the colour's place, or multiplies it, wrongly" |frame| each_draw(frame, |draw| if let Some(texture) = &mut draw.texture { texture.replaces = !texture.replaces });
     Frame "texture-filter" "textures are read by the other filter" |frame| each_draw(frame, |draw| if let Some(texture) = &mut draw.texture {
         texture.sampled.filter = match texture.sampled.filter {
-            Filter::Nearest => Filter::Bilinear,
-            Filter::Bilinear => Filter::Nearest,
+            TextureFilter::Nearest => TextureFilter::Bilinear,
+            TextureFilter::Bilinear => TextureFilter::Nearest,
         };
     });
     Frame "texture-wrap" "textures go on in the other way beyond their edges" |frame| each_draw(frame, |draw| if let Some(texture) = &mut draw.texture {

@@ -8,7 +8,7 @@ mod running;
 
 use super::answer::{self, Hello, Line, PROTOCOL, Unread, clipped};
 use super::error::ProcessError;
-use super::known::State;
+use super::known::CaseState;
 use super::ledger::Ledger;
 use super::pack;
 use super::plan::{CasePlace, GatePlan};
@@ -432,7 +432,7 @@ impl Session<'_> {
         } else {
             self.outcome.incidents.push(told);
         }
-        ledger.fail(culprit, State::Broken, message);
+        ledger.fail(culprit, CaseState::Broken, message);
     }
 
     fn end(&mut self, message: &str) -> String {

@@ -7,13 +7,13 @@ use lightmeter_scene::blend::{Equation, Factor, State};
 
 /// A model of a blend unit on targets of 8 linear bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Model {
+pub enum BlendUnitModel {
     /// Mesa's llvmpipe: operands `q(x) = rint(255·clamp(x))`, products `m(a, b) = (ab + (ab >> 8) + 128) >> 8`, result
     /// `sat(m(S, F) ± m(D, G))`.
     Llvmpipe,
 }
 
-impl Model {
+impl BlendUnitModel {
     /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -9,7 +9,7 @@ use lightmeter_scene::target::TargetFormat;
 
 /// What an interface promises.
 #[derive(Clone, Copy, Debug)]
-pub struct Promise {
+pub struct InterfacePromise {
     /// Which.
     pub interface: &'static str,
     /// What it says.
@@ -19,18 +19,18 @@ pub struct Promise {
 }
 
 /// What the interfaces promise of NaN and infinity in blending.
-pub const PROMISES: &[Promise] = &[
-    Promise {
+pub const PROMISES: &[InterfacePromise] = &[
+    InterfacePromise {
         interface: "WGSL",
         says: "an implementation may assume that there is neither NaN nor infinity in a shader",
         promises_a_value: false,
     },
-    Promise {
+    InterfacePromise {
         interface: "Vulkan",
         says: "blending has at least the precision and the range of the target's components; of NaN it says nothing",
         promises_a_value: false,
     },
-    Promise {
+    InterfacePromise {
         interface: "WebGPU and OpenGL",
         says: "blending is as the formulas say; of NaN they say nothing",
         promises_a_value: false,
@@ -39,7 +39,7 @@ pub const PROMISES: &[Promise] = &[
 
 /// What a driver was seen to leave of a colour.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct ObservedColor {
     /// The named case.
     pub case: &'static str,
     /// The driver.
@@ -73,7 +73,7 @@ pub fn recorded(driver: &str, case: &str, target: TargetFormat) -> Option<&'stat
 }
 
 /// Mesa 22.3.6's llvmpipe, under Vulkan and OpenGL alike, and the SwiftShader of Chromium.
-pub const SEEN: &[Seen] = &[
+pub const SEEN: &[ObservedColor] = &[
     seen("nan-source-times-zero", "llvmpipe", "0.25", "0.25"),
     seen("nan-source-times-zero", "SwiftShader", "0.25", "0.25"),
     seen("infinite-source-times-zero", "llvmpipe", "0.25", "0.25"),
@@ -112,6 +112,6 @@ pub const SEEN: &[Seen] = &[
     seen("max-of-infinity", "SwiftShader", "Inf", "NaN"),
 ];
 
-const fn seen(case: &'static str, driver: &'static str, float32: &'static str, float16: &'static str) -> Seen {
-    Seen { case, driver, float32, float16 }
+const fn seen(case: &'static str, driver: &'static str, float32: &'static str, float16: &'static str) -> ObservedColor {
+    ObservedColor { case, driver, float32, float16 }
 }

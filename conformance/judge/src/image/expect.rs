@@ -1,6 +1,6 @@
 //! The legal values of every pixel of a frame.
 
-use super::pixel::{Candidate, Expected, Painter};
+use super::pixel::{Candidate, LegalPixel, Painter};
 use super::prepared::Prepared;
 use lightmeter_arithmetic::Profile;
 use lightmeter_scene::effects::Called;
@@ -54,11 +54,11 @@ impl<'a> Expectation<'a> {
 
     /// Every pixel, row after row.
     #[must_use]
-    pub fn pixels(&self) -> Vec<Expected> {
+    pub fn pixels(&self) -> Vec<LegalPixel> {
         let (width, height) = (self.frame.target.width as usize, self.frame.target.height as usize);
-        let tiles: Vec<Vec<Expected>> =
+        let tiles: Vec<Vec<LegalPixel>> =
             (0..self.bins.len()).into_par_iter().map(|tile| self.profile.scope(|| self.tile(tile))).collect();
-        let blank = Expected { low: [0.0; 4], high: [0.0; 4], is_marked: false };
+        let blank = LegalPixel { low: [0.0; 4], high: [0.0; 4], is_marked: false };
         let mut pixels = vec![blank; width * height];
         for (number, tile) in tiles.iter().enumerate() {
             let [left, top] = self.origin(number);
@@ -73,7 +73,7 @@ impl<'a> Expectation<'a> {
 
     /// One pixel.
     #[must_use]
-    pub fn pixel(&self, x: usize, y: usize) -> Expected {
+    pub fn pixel(&self, x: usize, y: usize) -> LegalPixel {
         self.profile.scope(|| {
             let bin = &self.bins[y / TILE * self.columns + x / TILE];
             let mut candidates = vec![];
@@ -88,7 +88,7 @@ impl<'a> Expectation<'a> {
         [tile % self.columns * TILE, tile / self.columns * TILE]
     }
 
-    fn tile(&self, number: usize) -> Vec<Expected> {
+    fn tile(&self, number: usize) -> Vec<LegalPixel> {
         let [left, top] = self.origin(number);
         let right = (left + TILE).min(self.frame.target.width as usize);
         let bottom = (top + TILE).min(self.frame.target.height as usize);
@@ -129,7 +129,12 @@ impl<'a> Expectation<'a> {
 
 /// The legal values of every pixel of a frame, by a profile.
 #[must_use]
-pub fn expect(frame: &Frame, only: Option<&[Called]>, stage: Option<Intermediate>, profile: &Profile) -> Vec<Expected> {
+pub fn expect(
+    frame: &Frame,
+    only: Option<&[Called]>,
+    stage: Option<Intermediate>,
+    profile: &Profile,
+) -> Vec<LegalPixel> {
     Expectation::new(frame, only, stage, profile).pixels()
 }
 

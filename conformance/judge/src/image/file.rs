@@ -33,7 +33,7 @@ pub enum ImageFileError {
 
 /// An image in the units of a target.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stored {
+pub struct StoredImage {
     /// Pixels.
     pub width: usize,
     /// What the units are of.
@@ -42,7 +42,7 @@ pub struct Stored {
     pub pixels: Vec<Units>,
 }
 
-impl Stored {
+impl StoredImage {
     /// The reference's image, each component in its target's units, rounded to it.
     #[must_use]
     pub fn of(image: &Image, format: TargetFormat) -> Self {

@@ -1,7 +1,7 @@
 //! An image against what its pixels may hold.
 
-use super::file::Stored;
-use super::pixel::Expected;
+use super::file::StoredImage;
+use super::pixel::LegalPixel;
 use crate::tally::Tally;
 use crate::{Outcome, margin, worse};
 use lightmeter_arithmetic::format::error_ulp;
@@ -63,7 +63,7 @@ impl Judged {
 ///
 /// The margin is the distance from the reference, not rounded to the target, over the distance to the interval's end.
 #[must_use]
-pub fn judge(image: &Stored, reference: &Stored, expected: &[Expected], pixels: &[usize]) -> Judged {
+pub fn judge(image: &StoredImage, reference: &StoredImage, expected: &[LegalPixel], pixels: &[usize]) -> Judged {
     let chunks = pixels.par_chunks(4096).map(|pixels| {
         let mut judged = Judged::default();
         let mut indeterminate = 0;
@@ -90,9 +90,9 @@ pub fn judge(image: &Stored, reference: &Stored, expected: &[Expected], pixels: 
 
 /// The outcome of a component; what else it says is noted.
 fn one(
-    image: &Stored,
-    reference: &Stored,
-    expected: &[Expected],
+    image: &StoredImage,
+    reference: &StoredImage,
+    expected: &[LegalPixel],
     (pixel, component): (usize, usize),
     judged: &mut Judged,
 ) -> Outcome {
@@ -137,7 +137,7 @@ pub fn error(format: TargetFormat, value: f64, exact: f64) -> f64 {
 /// An image of each pixel's distance from the reference in units of its tolerance: black for none, blue to the tolerance's
 /// end, yellow at the double of it and red at eight times; marked pixels are grey where they are legal.
 #[must_use]
-pub fn error_map(image: &Stored, reference: &Stored, expected: &[Expected]) -> Stored {
+pub fn error_map(image: &StoredImage, reference: &StoredImage, expected: &[LegalPixel]) -> StoredImage {
     let pixels = (0..image.pixels.len()).map(|pixel| {
         let of = |k: usize| {
             let (value, exact) = (image.pixels[pixel][k], reference.pixels[pixel][k]);
@@ -155,7 +155,7 @@ pub fn error_map(image: &Stored, reference: &Stored, expected: &[Expected]) -> S
         };
         [color[0], color[1], color[2], 255.0]
     });
-    Stored { width: image.width, format: TargetFormat::Rgba8Unorm, pixels: pixels.collect() }
+    StoredImage { width: image.width, format: TargetFormat::Rgba8Unorm, pixels: pixels.collect() }
 }
 
 #[cfg(test)]
@@ -166,9 +166,9 @@ mod tests {
     const PIXELS: usize = 10_000;
 
     /// An image that is right, and what is legal of it.
-    fn image(format: TargetFormat) -> (Stored, Vec<Expected>) {
-        let expected = Expected { low: [0.25; 4], high: [0.75; 4], is_marked: false };
-        (Stored { width: 100, format, pixels: vec![[0.5; 4]; PIXELS] }, vec![expected; PIXELS])
+    fn image(format: TargetFormat) -> (StoredImage, Vec<LegalPixel>) {
+        let expected = LegalPixel { low: [0.25; 4], high: [0.75; 4], is_marked: false };
+        (StoredImage { width: 100, format, pixels: vec![[0.5; 4]; PIXELS] }, vec![expected; PIXELS])
     }
 
     fn nans() -> [f64; 4] {

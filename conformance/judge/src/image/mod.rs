@@ -11,4 +11,4 @@ mod pixel;
 mod prepared;
 
 pub use expect::expect;
-pub use pixel::Expected;
+pub use pixel::LegalPixel;

@@ -20,7 +20,7 @@ const MOST: usize = 64;
 
 /// What a pixel may hold, in the units of its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expected {
+pub struct LegalPixel {
     /// The least legal value of each component.
     pub low: Units,
     /// The greatest.
@@ -95,7 +95,7 @@ impl<'a> Painter<'a> {
     }
 
     /// The legal values of a pixel, from all that may cover it, in the order of drawing.
-    pub(super) fn pixel(&mut self, candidates: &[Candidate]) -> Expected {
+    pub(super) fn pixel(&mut self, candidates: &[Candidate]) -> LegalPixel {
         self.outcomes.clear();
         self.outcomes.resize(candidates.len(), None);
         let Some(presences) = self.presences(candidates) else { return ANYTHING };
@@ -111,22 +111,22 @@ impl<'a> Painter<'a> {
                 return ANYTHING;
             }
         }
-        let mut all: Option<Expected> = None;
+        let mut all: Option<LegalPixel> = None;
         let mut widest = [0.0_f64; 4];
         for (low, high) in seen.iter().flat_map(|layers| self.colors(candidates, layers)).collect::<Vec<_>>() {
             for k in 0..4 {
                 widest[k] = widest[k].max(high[k] - low[k]);
             }
             all = Some(match all {
-                None => Expected { low, high, is_marked: false },
-                Some(so_far) => Expected {
+                None => LegalPixel { low, high, is_marked: false },
+                Some(so_far) => LegalPixel {
                     low: std::array::from_fn(|k| so_far.low[k].min(low[k])),
                     high: std::array::from_fn(|k| so_far.high[k].max(high[k])),
                     is_marked: false,
                 },
             });
         }
-        let mut all = all.unwrap_or(Expected { low: self.background.0, high: self.background.1, is_marked: false });
+        let mut all = all.unwrap_or(LegalPixel { low: self.background.0, high: self.background.1, is_marked: false });
         // Where anything is legal, other outcomes are too.
         all.is_marked = (0..4).any(|k| all.high[k] - all.low[k] > 2.0 * widest[k] || widest[k] == f64::INFINITY);
         all
@@ -318,7 +318,7 @@ impl<'a> Painter<'a> {
     }
 }
 
-const ANYTHING: Expected = Expected { low: [f64::NEG_INFINITY; 4], high: [f64::INFINITY; 4], is_marked: true };
+const ANYTHING: LegalPixel = LegalPixel { low: [f64::NEG_INFINITY; 4], high: [f64::INFINITY; 4], is_marked: true };
 
 fn hull(a: (Units, Units), b: (Units, Units)) -> (Units, Units) {
     (std::array::from_fn(|k| a.0[k].min(b.0[k])), std::array::from_fn(|k| a.1[k].max(b.1[k])))

@@ -122,7 +122,7 @@ impl OnRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter_catalogue::special::{Deviation, PROBES, Way};
+    use lightmeter_catalogue::special::{PROBES, SpecialDeviation, Way};
 
     fn identity(device: &str, driver: &str) -> Identity {
         Identity { name: "lavapipe".into(), device: device.into(), backend: "vulkan".into(), driver: driver.into() }
@@ -179,7 +179,7 @@ mod tests {
                     let Some(bits) = record.get(probe, stage) else {
                         panic!("{} has no {}, {stage}", record.name, probe.name)
                     };
-                    let is_known = Deviation::of(probe, &record.backend).is_some();
+                    let is_known = SpecialDeviation::of(probe, &record.backend).is_some();
                     assert!(
                         is_known || probe.promise.allows(bits),
                         "{} on {}, {stage}: 0x{bits:08x}",

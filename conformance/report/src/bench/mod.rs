@@ -11,7 +11,7 @@ pub mod text;
 #[cfg(test)]
 mod tests {
     use super::synthetic::{document, errors, group, row};
-    use lightmeter_document::bench::ladder::{self, Rung, front};
+    use lightmeter_document::bench::ladder::{self, RungSummary, front};
     use lightmeter_document::bench::pareto::{front_of, is_processor, refusal};
     use lightmeter_document::bench::{BenchGroup, BenchRow};
 
@@ -44,7 +44,7 @@ mod tests {
         let cheap = &own.rungs[1];
         assert_eq!((cheap.formulas, cheap.as_f32, cheap.unavailable, cheap.points.len()), (1, 3, 0, 1));
         assert!((cheap.ratio - 0.5_f64.powf(0.25)).abs() < 1e-12 && cheap.error_max == absolute(4.0), "{cheap:?}");
-        let again: Vec<Rung> = family.rungs.iter().map(Rung::from).collect();
+        let again: Vec<RungSummary> = family.rungs.iter().map(RungSummary::from).collect();
         assert_eq!(front(&again), family.front);
     }
 

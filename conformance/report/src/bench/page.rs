@@ -1,9 +1,9 @@
 //! The page on what accuracy costs, and the README's part of it, in Markdown.
 
 use super::figures::{compilation, count, digits, error, holding, spread, standing, time};
-use super::plot::Picture;
+use super::plot::Plot;
 use super::text::{is_stable_form, law, steps};
-use lightmeter_document::bench::ladder::{Rung, rungs};
+use lightmeter_document::bench::ladder::{RungSummary, rungs};
 use lightmeter_document::bench::pareto::is_processor;
 use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Claim, Family, GroupKind, Measured};
 use lightmeter_document::thousands;
@@ -13,14 +13,14 @@ use std::fmt::{Result, Write};
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(document: &BenchDocument, pictures: &[Picture], folder: &str, out: &mut impl Write) -> Result {
+pub fn markdown(document: &BenchDocument, pictures: &[Plot], folder: &str, out: &mut impl Write) -> Result {
     writeln!(out, "# What accuracy costs: techniques and the ladder of precision\n")?;
     made(document, out)?;
     reading(out)?;
     claims(document, out)?;
     for measured in &document.adapters {
         let picture = |subject: &str, out: &mut _| {
-            let of = |one: &&Picture| one.adapter == measured.adapter && one.subject == subject;
+            let of = |one: &&Plot| one.adapter == measured.adapter && one.subject == subject;
             pictures.iter().filter(of).try_for_each(|one| embed(one, folder, out))
         };
         writeln!(out, "\n## {}", measured.adapter)?;
@@ -39,7 +39,7 @@ pub fn markdown(document: &BenchDocument, pictures: &[Picture], folder: &str, ou
     Ok(())
 }
 
-fn embed(picture: &Picture, folder: &str, out: &mut impl Write) -> Result {
+fn embed(picture: &Plot, folder: &str, out: &mut impl Write) -> Result {
     writeln!(out, "\n![{}]({folder}{}.svg)", picture.title, picture.stem())
 }
 
@@ -278,7 +278,7 @@ fn scenes(measured: &Measured, out: &mut impl Write) -> Result {
     writeln!(out, "\n### Scenes\n")?;
     writeln!(out, "Time over that of the baseline, then the largest error of a pixel in 1/255.\n")?;
     head("scene | frame of the baseline", &names, out)?;
-    let all = |rung: &Rung| (rung.groups > 0).then(|| format!("{} · {}", digits(rung.ratio), error(rung.error)));
+    let all = |rung: &RungSummary| (rung.groups > 0).then(|| format!("{} · {}", digits(rung.ratio), error(rung.error)));
     write!(out, "| *mean, median* | |")?;
     rungs.iter().try_for_each(|rung| write!(out, " {} |", marked(all(rung), false)))?;
     writeln!(out)?;
@@ -412,7 +412,8 @@ pub fn readme(document: &BenchDocument, out: &mut impl Write) -> Result {
         let front = lightmeter_document::bench::ladder::front(&all);
         for name in names(measured) {
             let Some(rung) = all.iter().find(|rung| rung.name == name) else { continue };
-            let figures = |figure: fn(&Rung) -> String| if rung.groups > 0 { figure(rung) } else { "—".into() };
+            let figures =
+                |figure: fn(&RungSummary) -> String| if rung.groups > 0 { figure(rung) } else { "—".into() };
             let name = marked(Some(rung.name.clone()), front.contains(&rung.name));
             let [ratio, ns] = [figures(|rung| digits(rung.ratio)), figures(|rung| digits(rung.ns))];
             write!(out, "| {name} | {ratio} | {ns} | {} |", figures(|rung| error(rung.error)))?;

@@ -1,7 +1,7 @@
 //! A bench for people to read on a terminal, 120 columns wide.
 
 use super::figures::{compilation, count, digits, error, spread, standing, time};
-use lightmeter_document::bench::ladder::{Rung, rungs};
+use lightmeter_document::bench::ladder::{RungSummary, rungs};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Family, GroupKind, Measured, Scaling};
 use lightmeter_document::thousands;
 use std::fmt::{Result, Write};
@@ -94,7 +94,7 @@ fn families(measured: &Measured, out: &mut impl Write) -> Result {
     if measured.families.is_empty() {
         return Ok(());
     }
-    let rungs_of = |family: &Family| family.rungs.iter().map(Rung::from).collect::<Vec<_>>();
+    let rungs_of = |family: &Family| family.rungs.iter().map(RungSummary::from).collect::<Vec<_>>();
     let rows: Vec<_> = measured.families.iter().map(|family| (&family.id, rungs_of(family), &family.front)).collect();
     let mut names: Vec<&str> = measured.rungs.iter().map(|rung| rung.name.as_str()).collect();
     for rung in measured.families.iter().flat_map(|family| &family.rungs) {
@@ -107,7 +107,7 @@ fn families(measured: &Measured, out: &mut impl Write) -> Result {
         "families: error, the median of the formulas' largest on random inputs, absolute",
     ];
     for (place, title) in titles.into_iter().enumerate() {
-        let figure = |rung: &Rung| if place == 0 { digits(rung.ratio) } else { error(rung.error) };
+        let figure = |rung: &RungSummary| if place == 0 { digits(rung.ratio) } else { error(rung.error) };
         for names in in_width(&names) {
             writeln!(out, "\n{title}")?;
             write!(out, "{:<14}", "")?;
@@ -135,7 +135,7 @@ fn families(measured: &Measured, out: &mut impl Write) -> Result {
 }
 
 /// How many formulas of a family lack the rung, or are wrong at it.
-fn shortfall(rung: &Rung) -> Option<String> {
+fn shortfall(rung: &RungSummary) -> Option<String> {
     let counts = [(rung.disqualified, "disqualified at"), (rung.unavailable, "unavailable at")];
     let counts: Vec<String> =
         counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{what} {}", count(*n, "formula"))).collect();
@@ -309,7 +309,7 @@ fn scenes(measured: &Measured, out: &mut impl Write) -> Result {
     Ok(())
 }
 
-fn shortfall_of_scenes(rung: &Rung) -> String {
+fn shortfall_of_scenes(rung: &RungSummary) -> String {
     format!("unavailable in {}, disqualified in {}", count(rung.unavailable, "scene"), rung.disqualified)
 }
 

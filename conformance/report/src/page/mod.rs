@@ -20,9 +20,9 @@ use std::ops::Deref;
 
 /// A run that blend states were drawn in.
 #[derive(Clone, Debug)]
-pub struct Run(Report);
+pub struct BlendRun(Report);
 
-impl Deref for Run {
+impl Deref for BlendRun {
     type Target = Report;
 
     fn deref(&self) -> &Report {
@@ -41,7 +41,7 @@ pub enum PageError {
     Empty,
 }
 
-impl Run {
+impl BlendRun {
     /// Reads a run's JSON.
     ///
     /// # Errors
@@ -95,7 +95,7 @@ const READING: [Equation; 3] = [Equation::Add, Equation::Subtract, Equation::Rev
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(run: &Run, picture: Option<&str>, out: &mut impl Write) -> Result {
+pub fn markdown(run: &BlendRun, picture: Option<&str>, out: &mut impl Write) -> Result {
     writeln!(out, "# Blending: states against routes and drivers\n")?;
     writeln!(out, "Made from a run's JSON; the seed was {}:\n", run.seed)?;
     writeln!(out, "```\n./x run blend --adapter all --target all --format json --out blend.json")?;
@@ -110,7 +110,7 @@ pub fn markdown(run: &Run, picture: Option<&str>, out: &mut impl Write) -> Resul
     special(run, out)
 }
 
-fn drivers(run: &Run, out: &mut impl Write) -> Result {
+fn drivers(run: &BlendRun, out: &mut impl Write) -> Result {
     writeln!(out, "\n## Drivers and targets\n")?;
     writeln!(
         out,
@@ -144,7 +144,7 @@ fn drivers(run: &Run, out: &mut impl Write) -> Result {
 }
 
 /// A driver on a target, on a row.
-fn driver(run: &Run, adapter: &Identity, target: &str, out: &mut impl Write) -> Result {
+fn driver(run: &BlendRun, adapter: &Identity, target: &str, out: &mut impl Write) -> Result {
     let groups = || {
         let of = |group: &&Group| group.adapter == adapter.name && group.target.as_deref() == Some(target);
         run.groups.iter().filter(of)
@@ -186,7 +186,7 @@ fn shares(drawn: &[&BlendState]) -> [String; 5] {
 }
 
 /// Drawings of states that were skipped one by one, by adapter, route and reason.
-fn skipped(run: &Run, out: &mut impl Write) -> Result {
+fn skipped(run: &BlendRun, out: &mut impl Write) -> Result {
     let mut skipped = BTreeMap::<_, usize>::new();
     let fully = |row: &BlendState| {
         let of = |group: &Group| group.adapter == row.adapter && group.target.as_deref() == Some(&row.target);
@@ -236,7 +236,7 @@ fn route_letters(state: State) -> &'static str {
     }
 }
 
-fn matrices(run: &Run, picture: Option<&str>, out: &mut impl Write) -> Result {
+fn matrices(run: &BlendRun, picture: Option<&str>, out: &mut impl Write) -> Result {
     let target = run.pictured();
     let names: Vec<&str> = run.adapters.iter().map(|adapter| adapter.name.as_str()).collect();
     writeln!(out, "\n## Each state on {target}\n")?;
@@ -282,12 +282,12 @@ fn matrices(run: &Run, picture: Option<&str>, out: &mut impl Write) -> Result {
     Ok(())
 }
 
-fn letters(run: &Run, target: &str, state: State) -> String {
+fn letters(run: &BlendRun, target: &str, state: State) -> String {
     let letter = |adapter| run.row(adapter, target, state).map_or("–", letter);
     run.adapters.iter().map(letter).collect()
 }
 
-fn failures(run: &Run, out: &mut impl Write) -> Result {
+fn failures(run: &BlendRun, out: &mut impl Write) -> Result {
     writeln!(out, "## What fails\n")?;
     let mut failed = run.blend_states.iter().filter(|row| row.failed > 0).peekable();
     if failed.peek().is_none() {
@@ -308,7 +308,7 @@ fn failures(run: &Run, out: &mut impl Write) -> Result {
     Ok(())
 }
 
-fn special(run: &Run, out: &mut impl Write) -> Result {
+fn special(run: &BlendRun, out: &mut impl Write) -> Result {
     if run.special.is_empty() {
         return Ok(());
     }

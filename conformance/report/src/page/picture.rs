@@ -1,6 +1,6 @@
 //! The picture of the page: the largest error of each state, a panel for each equation and driver.
 
-use super::{READING, Run};
+use super::{BlendRun, READING};
 use lightmeter_document::run::BlendState;
 use lightmeter_scene::blend::{Factor, State};
 use std::fmt::{Result, Write};
@@ -19,7 +19,7 @@ const SHADES: [(f64, &str); 5] =
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn svg(run: &Run, out: &mut impl Write) -> Result {
+pub fn svg(run: &BlendRun, out: &mut impl Write) -> Result {
     let target = run.pictured();
     let panel = CELL * Factor::ALL.len();
     let (columns, rows) = (run.adapters.len(), READING.len());

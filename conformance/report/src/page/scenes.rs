@@ -7,7 +7,7 @@ use lightmeter_catalogue::scene::load::Loaded;
 use lightmeter_document::Document as _;
 use lightmeter_document::run::{EffectsCost, Group, Report};
 use lightmeter_judge::blend_unit::pixel::Units;
-use lightmeter_judge::image::file::Stored;
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::effects;
 use lightmeter_scene::target::TargetFormat;
@@ -23,9 +23,9 @@ const GAP: usize = 4;
 
 /// A run that scenes were judged in.
 #[derive(Clone, Debug)]
-pub struct Run(Report);
+pub struct SceneRun(Report);
 
-impl Deref for Run {
+impl Deref for SceneRun {
     type Target = Report;
 
     fn deref(&self) -> &Report {
@@ -33,7 +33,7 @@ impl Deref for Run {
     }
 }
 
-impl Run {
+impl SceneRun {
     /// Reads a run's JSON.
     ///
     /// # Errors
@@ -62,13 +62,16 @@ pub fn scenes() -> std::result::Result<Vec<Loaded>, SceneError> {
 
 /// Every scene by the reference, side by side and row after row, each shrunk by averaging.
 #[must_use]
-pub fn contact_sheet(scenes: &[Loaded]) -> Stored {
+pub fn contact_sheet(scenes: &[Loaded]) -> StoredImage {
     let rows = scenes.len().div_ceil(COLUMNS);
     let [width, height] = [COLUMNS, rows].map(|count| count * (SIDE + GAP) + GAP);
-    let mut sheet =
-        Stored { width, format: TargetFormat::Rgba8Unorm, pixels: vec![[24.0, 24.0, 26.0, 255.0]; width * height] };
+    let mut sheet = StoredImage {
+        width,
+        format: TargetFormat::Rgba8Unorm,
+        pixels: vec![[24.0, 24.0, 26.0, 255.0]; width * height],
+    };
     for (number, loaded) in scenes.iter().enumerate() {
-        let image = Stored::of(&render::<f64>(&loaded.frame, None, None), loaded.frame.target.format);
+        let image = StoredImage::of(&render::<f64>(&loaded.frame, None, None), loaded.frame.target.format);
         let [left, top] = [number % COLUMNS, number / COLUMNS].map(|place| place * (SIDE + GAP) + GAP);
         for y in 0..SIDE {
             for x in 0..SIDE {
@@ -80,7 +83,7 @@ pub fn contact_sheet(scenes: &[Loaded]) -> Stored {
 }
 
 /// The mean of the pixels that a pixel of the sheet stands for, in steps from 0 to 255.
-fn average(image: &Stored, at: [usize; 2]) -> Units {
+fn average(image: &StoredImage, at: [usize; 2]) -> Units {
     let size = [image.width, image.pixels.len() / image.width];
     let span = |axis: usize| {
         at[axis] * size[axis] / SIDE..((at[axis] + 1) * size[axis] / SIDE).max(at[axis] * size[axis] / SIDE + 1)
@@ -102,7 +105,7 @@ fn average(image: &Stored, at: [usize; 2]) -> Units {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(run: &Run, scenes: &[Loaded], picture: Option<&str>, out: &mut impl Write) -> Result {
+pub fn markdown(run: &SceneRun, scenes: &[Loaded], picture: Option<&str>, out: &mut impl Write) -> Result {
     writeln!(out, "# Scenes\n")?;
     writeln!(out, "Made by `./x run 'scene/*' --adapter all --timing --format json --out RUN.json` and")?;
     writeln!(
@@ -127,7 +130,7 @@ pub fn markdown(run: &Run, scenes: &[Loaded], picture: Option<&str>, out: &mut i
     costs(run, scenes, out)
 }
 
-fn judged(run: &Run, scenes: &[Loaded], out: &mut impl Write) -> Result {
+fn judged(run: &SceneRun, scenes: &[Loaded], out: &mut impl Write) -> Result {
     writeln!(out, "\n## What a run found\n")?;
     writeln!(
         out,
@@ -148,7 +151,7 @@ fn judged(run: &Run, scenes: &[Loaded], out: &mut impl Write) -> Result {
 
 /// A row for each scene, a column for each adapter; `lacking` where there is nothing to say.
 fn table(
-    run: &Run,
+    run: &SceneRun,
     scenes: &[Loaded],
     stage: &str,
     lacking: &str,
@@ -171,7 +174,7 @@ fn table(
     Ok(())
 }
 
-fn costs(run: &Run, scenes: &[Loaded], out: &mut impl Write) -> Result {
+fn costs(run: &SceneRun, scenes: &[Loaded], out: &mut impl Write) -> Result {
     let costs = || run.groups.iter().filter_map(|group| group.image.as_ref()?.cost);
     if costs().next().is_none() {
         return Ok(());

@@ -12,7 +12,7 @@ use std::fmt::{Result as Written, Write};
 
 /// What the page is of.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct SelftestRun {
     record: Record,
     mistakes: Vec<Mistake>,
     named_from: Option<NamedFrom>,
@@ -21,7 +21,7 @@ pub struct Run {
     scenes: Option<SceneRecord>,
 }
 
-impl Run {
+impl SelftestRun {
     /// Reads the JSON.
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl Run {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(run: &Run, out: &mut impl Write) -> Written {
+pub fn markdown(run: &SelftestRun, out: &mut impl Write) -> Written {
     writeln!(out, "# What the suite catches\n")?;
     writeln!(
         out,
@@ -90,7 +90,7 @@ fn totals(record: &Record, out: &mut impl Write) -> Written {
     )
 }
 
-fn matrix(Run { record, mistakes, .. }: &Run, out: &mut impl Write) -> Written {
+fn matrix(SelftestRun { record, mistakes, .. }: &SelftestRun, out: &mut impl Write) -> Written {
     writeln!(out, "## The mistakes\n")?;
     writeln!(
         out,
@@ -225,7 +225,7 @@ fn unit(rows: &[UnitRow], out: &mut impl Write) -> Written {
     writeln!(out)
 }
 
-fn resolution(Run { calibration, named_from, .. }: &Run, out: &mut impl Write) -> Written {
+fn resolution(SelftestRun { calibration, named_from, .. }: &SelftestRun, out: &mut impl Write) -> Written {
     let Some(NamedFrom { cases, least_z, least_share }) = named_from.filter(|_| !calibration.is_empty()) else {
         return Ok(());
     };
@@ -279,7 +279,7 @@ mod tests {
             (r#"{"schema":"lightmeter.run/1"}"#, "expected lightmeter.selftest/1"),
             (r#"{"schema":"lightmeter.selftest/1","rows":[]}"#, "of the blend unit alone"),
         ] {
-            let error = Run::read(json).expect_err("it is no page's");
+            let error = SelftestRun::read(json).expect_err("it is no page's");
             assert!(error.contains(message), "{error}");
         }
     }
@@ -292,7 +292,7 @@ mod tests {
         let json =
             format!(r#"{{"schema":"lightmeter.selftest/1","kills":[{kill}],"clean":[],"mistakes":[{mistake}]}}"#);
         let mut page = String::new();
-        markdown(&Run::read(&json).expect("a run"), &mut page).expect("a string takes it");
+        markdown(&SelftestRun::read(&json).expect("a run"), &mut page).expect("a string takes it");
         assert!(page.contains("fog-radial in fog/exp: **survived**: nothing fails"), "{page}");
         assert!(page.contains("| fog-radial | fog uses radial distance | **0 of 1** |"), "{page}");
     }

@@ -9,9 +9,9 @@ use std::ops::Deref;
 
 /// What was probed.
 #[derive(Clone, Debug)]
-pub struct Run(SpecialReport);
+pub struct SpecialRun(SpecialReport);
 
-impl Deref for Run {
+impl Deref for SpecialRun {
     type Target = SpecialReport;
 
     fn deref(&self) -> &SpecialReport {
@@ -19,7 +19,7 @@ impl Deref for Run {
     }
 }
 
-impl Run {
+impl SpecialRun {
     /// Reads the JSON.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ impl Run {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(run: &Run, out: &mut impl Write) -> Written {
+pub fn markdown(run: &SpecialRun, out: &mut impl Write) -> Written {
     writeln!(out, "# NaN, infinity, subnormals and signed zero\n")?;
     writeln!(out, "What the shading language promises of them, and what each driver does. Made from a run's JSON:\n")?;
     writeln!(out, "```\n./x special --adapter all --format json --out special.json")?;
@@ -96,7 +96,7 @@ fn policy(out: &mut impl Write) -> Written {
     Ok(())
 }
 
-fn drivers(run: &Run, out: &mut impl Write) -> Written {
+fn drivers(run: &SpecialRun, out: &mut impl Write) -> Written {
     writeln!(out, "## Drivers\n")?;
     writeln!(
         out,
@@ -128,7 +128,7 @@ fn drivers(run: &Run, out: &mut impl Write) -> Written {
     )
 }
 
-fn table(run: &Run, class: Class, out: &mut impl Write) -> Written {
+fn table(run: &SpecialRun, class: Class, out: &mut impl Write) -> Written {
     writeln!(out, "\n## {}\n", class.title())?;
     write!(out, "| probe | computed | promised |")?;
     for adapter in &run.adapters {
@@ -146,7 +146,7 @@ fn table(run: &Run, class: Class, out: &mut impl Write) -> Written {
     Ok(())
 }
 
-fn cell(run: &Run, probe: &Probe, adapter: &Identity) -> String {
+fn cell(run: &SpecialRun, probe: &Probe, adapter: &Identity) -> String {
     let marked = |outcome: &ProbeResult| {
         let mark = match outcome.verdict.name() {
             "broken" => "✗ ",
@@ -172,7 +172,7 @@ mod tests {
             (r#"{"schema":"lightmeter.run/1"}"#, "expected lightmeter.special/1"),
             (r#"{"schema":"lightmeter.special/1","adapters":[],"outcomes":[]}"#, "nothing was probed"),
         ] {
-            let error = Run::read(json).expect_err("it is no page's");
+            let error = SpecialRun::read(json).expect_err("it is no page's");
             assert!(error.contains(message), "{error}");
         }
     }

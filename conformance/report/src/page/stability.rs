@@ -11,9 +11,9 @@ use std::ops::Deref;
 
 /// A run that hard cases were examined in.
 #[derive(Clone, Debug)]
-pub struct Run(Report);
+pub struct StabilityRun(Report);
 
-impl Deref for Run {
+impl Deref for StabilityRun {
     type Target = Report;
 
     fn deref(&self) -> &Report {
@@ -50,7 +50,7 @@ impl Case<'_> {
     }
 }
 
-impl Run {
+impl StabilityRun {
     /// Reads the JSON.
     ///
     /// # Errors
@@ -86,7 +86,7 @@ impl Run {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(run: &Run, picture: Option<&str>, out: &mut impl Write) -> Written {
+pub fn markdown(run: &StabilityRun, picture: Option<&str>, out: &mut impl Write) -> Written {
     let cases = run.cases();
     let catalogue = catalogue();
     writeln!(out, "# Hard cases: where the naive form fails, and the form that does not\n")?;
@@ -130,7 +130,7 @@ pub fn markdown(run: &Run, picture: Option<&str>, out: &mut impl Write) -> Writt
     claims(run, &cases, &catalogue, out)
 }
 
-fn table(run: &Run, cases: &[Case<'_>], out: &mut impl Write) -> Written {
+fn table(run: &StabilityRun, cases: &[Case<'_>], out: &mut impl Write) -> Written {
     let mut group = "";
     for case in cases {
         let (formula, name) = case.row.id.split_once("/hard/").unwrap_or((&case.row.id, ""));
@@ -158,7 +158,7 @@ fn table(run: &Run, cases: &[Case<'_>], out: &mut impl Write) -> Written {
     writeln!(out)
 }
 
-fn claims(run: &Run, cases: &[Case<'_>], catalogue: &[Member], out: &mut impl Write) -> Written {
+fn claims(run: &StabilityRun, cases: &[Case<'_>], catalogue: &[Member], out: &mut impl Write) -> Written {
     writeln!(out, "## What stable forms claim, and what they cost\n")?;
     writeln!(
         out,
@@ -232,7 +232,7 @@ fn share(x: f64, (from, to): (i32, i32)) -> f64 {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn svg(run: &Run, out: &mut impl Write) -> Written {
+pub fn svg(run: &StabilityRun, out: &mut impl Write) -> Written {
     let (width, height) = (LEFT + WIDTH + 24.0, TOP + HEIGHT + 92.0);
     writeln!(
         out,

@@ -1,7 +1,7 @@
 //! The page on sweeps, made from their results.
 
 use crate::sweep::{bars, error, likeliest, margin, rate};
-use lightmeter_document::sweep::{Description, Exact, Place, Seen, SweepDocument};
+use lightmeter_document::sweep::{Description, ExactFloat, SweepDocument, SweepInput, SweepVerdict};
 use lightmeter_document::{Number, thousands};
 use std::fmt::{Result, Write};
 use std::ops::Deref;
@@ -84,8 +84,8 @@ fn command(result: &Swept) -> String {
 
 /// A sweep's inputs as options of the command line.
 fn options(sweep: &Description) -> String {
-    let (Some(Exact(from)), Some(Exact(to))) = (sweep.from, sweep.to) else { return String::new() };
-    let fixed: String = sweep.fixed.iter().map(|(name, Exact(x))| format!(" --set {name}={x}")).collect();
+    let (Some(ExactFloat(from)), Some(ExactFloat(to))) = (sweep.from, sweep.to) else { return String::new() };
+    let fixed: String = sweep.fixed.iter().map(|(name, ExactFloat(x))| format!(" --set {name}={x}")).collect();
     format!(" --over {} --from {from} --to {to}{fixed} --output {}", sweep.over, sweep.output)
 }
 
@@ -132,17 +132,17 @@ fn range(result: &Swept) -> String {
     let sweep = &result.sweep;
     let part = if result.shard == "1/1" { String::new() } else { format!(", shard {}", result.shard) };
     match (sweep.from, sweep.to) {
-        (Some(Exact(from)), Some(Exact(to))) => {
+        (Some(ExactFloat(from)), Some(ExactFloat(to))) => {
             format!("{} from {} to {}{part}", sweep.over, Number(from.into()), Number(to.into()))
         }
         _ => format!("{}{part}", sweep.over),
     }
 }
 
-fn place(seen: &Seen) -> String {
+fn place(seen: &SweepVerdict) -> String {
     match seen.input {
-        Place::Float(Exact(x)) => format!("{} `0x{:08x}`", Number(x.into()), x.to_bits()),
-        Place::Bytes { source, destination, alpha } => format!("{source}, {destination}, {alpha}"),
+        SweepInput::Float(ExactFloat(x)) => format!("{} `0x{:08x}`", Number(x.into()), x.to_bits()),
+        SweepInput::Bytes { source, destination, alpha } => format!("{source}, {destination}, {alpha}"),
     }
 }
 
@@ -150,13 +150,13 @@ fn section(result: &Swept, out: &mut impl Write) -> Result {
     let (sweep, found) = (&result.sweep, &result.statistics);
     writeln!(out, "\n## {} on {}, {}\n", sweep.formula, sweep.adapter.name, sweep.stage)?;
     let fixed: Vec<String> =
-        sweep.fixed.iter().map(|(name, Exact(x))| format!("{name} {}", Number((*x).into()))).collect();
+        sweep.fixed.iter().map(|(name, ExactFloat(x))| format!("{name} {}", Number((*x).into()))).collect();
     let fixed = if fixed.is_empty() { String::new() } else { format!("; {}", fixed.join(", ")) };
     let what = result.what.map_or(String::new(), |what| format!("{what}: "));
     writeln!(out, "{what}{}, output {}{fixed}.\n", range(result), sweep.output)?;
     for (name, seen) in [("Worst", found.worst), ("Nearest to its limit", found.nearest_to_limit)] {
         if let Some(seen) = seen {
-            let (Exact(value), at) = (seen.value, place(&seen));
+            let (ExactFloat(value), at) = (seen.value, place(&seen));
             writeln!(
                 out,
                 "{name}: at {at} the value is {}, the reference {}, legal {} to {}: {} {}, margin {}.",

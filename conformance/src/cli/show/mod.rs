@@ -52,7 +52,7 @@ struct Answer {
 struct Known {
     inputs: Vec<f32>,
     outputs: Vec<Trace>,
-    steps: Vec<trace::Step>,
+    steps: Vec<trace::TraceStep>,
     condition: Vec<f64>,
     conditioning: Conditioning,
 }
@@ -291,7 +291,7 @@ fn forms_text(forms: &[Examined]) -> anyhow::Result<String> {
 }
 
 /// The steps' names; what is named several times in a row, as a vector's components are, is numbered.
-fn step_names(steps: &[trace::Step]) -> Vec<String> {
+fn step_names(steps: &[trace::TraceStep]) -> Vec<String> {
     let mut names = vec![];
     for run in steps.chunk_by(|a, b| a.name == b.name) {
         match run {

@@ -6,8 +6,8 @@ use lightmeter::blend_unit::pixel::Units;
 use lightmeter::device::{Code, Picture};
 use lightmeter::document::Number;
 use lightmeter::image::expect::Expectation;
-use lightmeter::image::file::Stored;
-use lightmeter::image::{self, Expected};
+use lightmeter::image::file::StoredImage;
+use lightmeter::image::{self, LegalPixel};
 use lightmeter::scene::Loaded;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::select::{builtin, pixel_of, scene_id};
@@ -25,7 +25,7 @@ struct Row {
     what: &'static str,
     reference: Units,
     /// By adapter, or by the profile's promise where there is none: what is legal, and what came out.
-    seen: Vec<(String, Expected, Option<Units>)>,
+    seen: Vec<(String, LegalPixel, Option<Units>)>,
 }
 
 /// The scene and the pixel of an id such as `scene/teapot/12-340`.
@@ -55,7 +55,7 @@ fn rows(frame: &Frame, pixel: usize, profile: &Profile, subjects: &[Subject], co
     stages
         .map(|stage| {
             let format = stage.map_or(frame.target.format, |_| TargetFormat::Rgba32Float);
-            let reference = Stored::unrounded(&render::<f64>(frame, None, stage), format).pixels[pixel];
+            let reference = StoredImage::unrounded(&render::<f64>(frame, None, stage), format).pixels[pixel];
             let legal = |profile: &Profile| {
                 let expectation = Expectation::new(frame, None, stage, profile);
                 expectation.pixel(pixel % width, pixel / width)
@@ -74,7 +74,12 @@ fn rows(frame: &Frame, pixel: usize, profile: &Profile, subjects: &[Subject], co
         .collect()
 }
 
-fn drawn(subject: &Subject, code: &Code, frame: &Frame, stage: Option<Intermediate>) -> anyhow::Result<Option<Stored>> {
+fn drawn(
+    subject: &Subject,
+    code: &Code,
+    frame: &Frame,
+    stage: Option<Intermediate>,
+) -> anyhow::Result<Option<StoredImage>> {
     let (sets, picture) = match stage {
         Some(stage) => (named(frame), Picture::Intermediate(stage)),
         None => (effects(frame), Picture::Composed),

@@ -1,7 +1,7 @@
 //! What one draw calls for, and why.
 
-use super::{Called, Effect, Reason, Subject};
-use crate::frame::{Draw, Filter, FogForm, Frame, Light, Place, Sampled, Shading};
+use super::{Called, Effect, Reason, ReasonSubject};
+use crate::frame::{Draw, FogForm, Frame, Light, Place, Sampled, Shading, TextureFilter};
 use crate::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 use std::fmt;
 
@@ -33,7 +33,7 @@ impl Analysis<'_> {
         if chosen {
             self.called.effects = self.called.effects.with(effect);
         }
-        self.called.reasons.push(Reason { subject: Subject::Effect(effect), called: chosen, why: why.into() });
+        self.called.reasons.push(Reason { subject: ReasonSubject::Effect(effect), called: chosen, why: why.into() });
     }
 
     /// Whether nothing of the colour is left, so that what it is made from changes nothing.
@@ -63,7 +63,7 @@ impl Analysis<'_> {
     /// The lighting of a draw whose colour a texture replaces: none of it is called for.
     fn replaced_lighting(&mut self, frequency: Frequency) {
         let why = "a texture stands in its place";
-        let light = |place| Reason { subject: Subject::Light(place), called: false, why: why.into() };
+        let light = |place| Reason { subject: ReasonSubject::Light(place), called: false, why: why.into() };
         self.called.reasons.extend((0..self.frame.lights.len()).map(light));
         let effect = match frequency {
             Frequency::Flat => Effect::Flat,
@@ -139,7 +139,7 @@ impl Analysis<'_> {
                 (true, Some(why)) => (true, format!("{why}, but its ambient term is not bound to the cone")),
                 (true, None) => (true, of.to_string()),
             };
-            self.called.reasons.push(Reason { subject: Subject::Light(place), called: shines, why });
+            self.called.reasons.push(Reason { subject: ReasonSubject::Light(place), called: shines, why });
             if shines {
                 self.called.lights.push(place);
                 terms = terms.or(&of);
@@ -189,8 +189,8 @@ impl Analysis<'_> {
         if let Some(textured) = draw.texture {
             let changes = textured.replaces || !is_white(frame, textured.sampled);
             let effect = match textured.sampled.filter {
-                Filter::Nearest => Effect::TextureNearest,
-                Filter::Bilinear => Effect::TextureBilinear,
+                TextureFilter::Nearest => Effect::TextureNearest,
+                TextureFilter::Bilinear => Effect::TextureBilinear,
             };
             self.worth(effect, changes, if changes { "its texels" } else { "every texel is 1" });
             let why = if textured.replaces { "it stands in the colour's place" } else { "it multiplies the colour" };
@@ -199,8 +199,8 @@ impl Analysis<'_> {
         if let Some(sampled) = draw.lightmap {
             let changes = !is_white(frame, sampled);
             let effect = match sampled.filter {
-                Filter::Nearest => Effect::LightmapNearest,
-                Filter::Bilinear => Effect::LightmapBilinear,
+                TextureFilter::Nearest => Effect::LightmapNearest,
+                TextureFilter::Bilinear => Effect::LightmapBilinear,
             };
             self.worth(effect, changes, if changes { "its texels" } else { "every texel is 1" });
         }
@@ -300,7 +300,8 @@ const fn falloff(place: &Place) -> Option<[f32; 3]> {
 
 /// Whether a texture multiplies by 1 exactly. A mix of ones is rounded.
 fn is_white(frame: &Frame, sampled: Sampled) -> bool {
-    sampled.filter == Filter::Nearest && frame.textures[sampled.texture].texels.iter().all(|texel| *texel == [1.0; 4])
+    sampled.filter == TextureFilter::Nearest
+        && frame.textures[sampled.texture].texels.iter().all(|texel| *texel == [1.0; 4])
 }
 
 /// Why a spotlight's cone misses the mesh; `None` where it may not.

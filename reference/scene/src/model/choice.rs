@@ -190,7 +190,7 @@ choice! {
 
 choice! {
     /// What is read between the middles of texels.
-    ReadFilter default Bilinear is (frame::Filter)
+    ReadFilter default Bilinear is (frame::TextureFilter)
     /// The texel that the coordinates lie in.
     Nearest "nearest"
     /// The four around, mixed.

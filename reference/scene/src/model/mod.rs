@@ -19,9 +19,9 @@ pub use choice::{
 };
 pub use light::{AmbientLight, Fog, FogFactor, Light};
 pub use named::Named;
-pub use object::{Blend, Depth, DepthTest, Object, Shading, Step};
+pub use object::{Blend, Depth, DepthTest, Object, Shading, TransformStep};
 pub use shape::{Mesh, Shape};
-pub use surface::{Image, Material, Reading};
+pub use surface::{Material, Reading, TextureImage};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -56,7 +56,7 @@ pub struct Scene {
     pub fog: Option<Fog>,
     /// Images that materials read, by name.
     #[serde(default)]
-    pub textures: Named<Image>,
+    pub textures: Named<TextureImage>,
     /// What surfaces do with light, by name.
     #[serde(default)]
     pub materials: Named<Material>,

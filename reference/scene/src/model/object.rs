@@ -18,10 +18,10 @@ pub struct Object {
     pub material: Option<String>,
     /// Object → world: steps that are applied one after the other, the first first.
     #[serde(default)]
-    pub transform: Vec<Step>,
+    pub transform: Vec<TransformStep>,
     /// Draws the object once for each, which is applied after `transform`.
     #[serde(default)]
-    pub instances: Option<Vec<Vec<Step>>>,
+    pub instances: Option<Vec<Vec<TransformStep>>>,
     /// How it is shaded; what is left out is the scene's.
     #[serde(default)]
     pub shading: Shading,
@@ -46,7 +46,7 @@ pub struct Object {
 /// A step of a transform.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Step {
+pub enum TransformStep {
     /// By this much.
     Translate([f64; 3]),
     /// Counter-clockwise about an axis through the origin that points at whoever looks.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// An image of up to 2048 × 2048 texels. Texture coordinates run right and down from its upper left corner.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Image {
+pub enum TextureImage {
     /// A PNG, its path relative to the scene. A byte b stands for b/255, whatever the file says of colour spaces.
     File(String),
     /// Texels, row after row from the top: red, green, blue, alpha.

@@ -9,9 +9,9 @@ use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::device::{Code, Picture};
 use lightmeter::image::diagnose::{Departure, departure};
 use lightmeter::image::drawn::drawn;
-use lightmeter::image::file::Stored;
+use lightmeter::image::file::StoredImage;
 use lightmeter::image::judge::{Judged, judge};
-use lightmeter::image::{Expected, expect};
+use lightmeter::image::{LegalPixel, expect};
 use lightmeter::scene::load;
 use lightmeter::subject::Subject;
 use lightmeter::subject_gpu::{code_of, open_device};
@@ -27,15 +27,15 @@ use table::{MISTAKES, Mistake, RIGHT, UNSEEN};
 struct Prepared {
     frame: Frame,
     sets: Vec<Called>,
-    reference: Stored,
-    expected: Vec<Expected>,
+    reference: StoredImage,
+    expected: Vec<LegalPixel>,
 }
 
 impl Prepared {
     fn new(scene: &str, profile: &Profile) -> Self {
         let mut frame = load::builtin(scene).expect("a built-in scene").frame;
         (frame.target.width, frame.target.height) = (128, 128);
-        let reference = Stored::unrounded(&render::<f64>(&frame, None, None), frame.target.format);
+        let reference = StoredImage::unrounded(&render::<f64>(&frame, None, None), frame.target.format);
         let expected = expect(&frame, None, None, profile);
         Self { sets: effects(&frame), frame, reference, expected }
     }

@@ -5,13 +5,13 @@ use super::label::{Area, Room};
 use super::mark::{mark, style};
 use super::svg::{Named, SIZE, WIDTH, across, errors, frame, markers, open, shortened, text, upward};
 use crate::bench::figures::count;
-use lightmeter_document::bench::ladder::Rung;
+use lightmeter_document::bench::ladder::RungSummary;
 use std::fmt::{Error, Result as Written, Write};
 
 /// What is drawn.
 pub(super) struct Cloud<'a> {
     pub(super) title: String,
-    pub(super) rungs: &'a [Rung],
+    pub(super) rungs: &'a [RungSummary],
     pub(super) front: &'a [String],
     /// What a small point is: `formula`, `scene`.
     pub(super) of: &'a str,
@@ -48,7 +48,7 @@ impl Cloud<'_> {
         let measured = || self.rungs.iter().filter(|rung| rung.groups > 0);
         let ratios = points().map(|point| point.1).chain(measured().map(|rung| rung.ratio));
         // How far legal values reach is shown as far as the others' errors go.
-        let is_bounded = |rung: &&Rung| rung.name != "cpu-accept";
+        let is_bounded = |rung: &&RungSummary| rung.name != "cpu-accept";
         let shown = || measured().filter(is_bounded);
         let of_points = shown().flat_map(|rung| &rung.points).map(|point| point.2);
         let largest = of_points.chain(shown().map(|rung| rung.error));

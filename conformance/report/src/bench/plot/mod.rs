@@ -12,12 +12,12 @@ mod panels;
 mod svg;
 
 use super::text::is_stable_form;
-use lightmeter_document::bench::ladder::{Rung, rungs};
+use lightmeter_document::bench::ladder::{RungSummary, rungs};
 use lightmeter_document::bench::{BenchDocument, GroupKind, Measured};
 
 /// A picture.
 #[derive(Clone, Debug)]
-pub struct Picture {
+pub struct Plot {
     /// The adapter.
     pub adapter: String,
     /// What it shows: a family's id, `techniques`, `scenes` or `growth`.
@@ -28,7 +28,7 @@ pub struct Picture {
     pub svg: String,
 }
 
-impl Picture {
+impl Plot {
     /// The name of its file, without the extension: `lavapipe-fog`.
     #[must_use]
     pub fn stem(&self) -> String {
@@ -41,12 +41,12 @@ impl Picture {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn pictures(document: &BenchDocument) -> Result<Vec<Picture>, std::fmt::Error> {
+pub fn pictures(document: &BenchDocument) -> Result<Vec<Plot>, std::fmt::Error> {
     let mut pictures = vec![];
     for measured in &document.adapters {
         // Scenes have a picture of their own.
         for family in measured.families.iter().filter(|family| family.id != "scene") {
-            let rungs: Vec<Rung> = family.rungs.iter().map(Rung::from).collect();
+            let rungs: Vec<RungSummary> = family.rungs.iter().map(RungSummary::from).collect();
             let cloud = cloud::Cloud {
                 title: format!("{} on {}: error against time", family.id, measured.adapter),
                 rungs: &rungs,
@@ -74,10 +74,10 @@ pub fn pictures(document: &BenchDocument) -> Result<Vec<Picture>, std::fmt::Erro
 }
 
 /// Keeps a picture, where there is one.
-fn push(measured: &Measured, subject: &str, title: &str, svg: Option<String>, pictures: &mut Vec<Picture>) {
+fn push(measured: &Measured, subject: &str, title: &str, svg: Option<String>, pictures: &mut Vec<Plot>) {
     if let Some(svg) = svg {
         let (adapter, subject, title) = (measured.adapter.clone(), subject.to_owned(), title.to_owned());
-        pictures.push(Picture { adapter, subject, title, svg });
+        pictures.push(Plot { adapter, subject, title, svg });
     }
 }
 

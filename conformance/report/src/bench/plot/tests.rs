@@ -5,7 +5,7 @@ use crate::bench::synthetic::document;
 fn every_adapter_has_a_picture_of_everything() {
     let document = document();
     let pictures = pictures(&document).expect("a string takes all");
-    let stems: Vec<String> = pictures.iter().map(Picture::stem).collect();
+    let stems: Vec<String> = pictures.iter().map(Plot::stem).collect();
     assert_eq!(stems.len(), 22, "{stems:?}");
     for measured in &document.adapters {
         for subject in
@@ -14,7 +14,7 @@ fn every_adapter_has_a_picture_of_everything() {
             assert!(stems.contains(&format!("{}-{subject}", measured.adapter)), "{subject}");
         }
     }
-    for Picture { title, svg, adapter, .. } in &pictures {
+    for Plot { title, svg, adapter, .. } in &pictures {
         assert!(title.contains(adapter.as_str()) && svg.contains(title.as_str()), "{title}");
         assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{title}");
         // Between quotes are the places and paths.

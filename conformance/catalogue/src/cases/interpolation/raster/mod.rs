@@ -8,7 +8,7 @@ use crate::cases::Visitor;
 use crate::cases::formula::{Formula, bind, formula};
 use crate::cases::rasteriser::target;
 use crate::cases::rows::{Reader, Writer};
-use crate::cases::spec::{Domain, Input, Kind, Output, Shape, Spec};
+use crate::cases::spec::{Domain, Input, Kind, Output, Spec, ValueShape};
 pub(in crate::cases) use layout::triangle_around_the_pixel;
 use layout::{line_through_the_pixel, quad_around_the_pixel, quad_on_the_grid, triangle_across_the_volume};
 use lightmeter_reference::interpolation;
@@ -21,16 +21,17 @@ fn center<R: Real>(pixel: Vec2<R>) -> Vec2<R> {
 }
 
 const fn around(name: &'static str) -> Input {
-    Input::new(name, Shape::Vec4, "clip", Domain::Around)
+    Input::new(name, ValueShape::Vec4, "clip", Domain::Around)
 }
 
-const PIXEL: Input = Input::new("pixel", Shape::Vec2, "pixel", Domain::Pixel);
-const COVERED: Output = Output::new("covered", Shape::Scalar, "1");
-const BOTH: [Output; 2] = [Output::new("perspective", Shape::Scalar, "1"), Output::new("linear", Shape::Scalar, "1")];
+const PIXEL: Input = Input::new("pixel", ValueShape::Vec2, "pixel", Domain::Pixel);
+const COVERED: Output = Output::new("covered", ValueShape::Scalar, "1");
+const BOTH: [Output; 2] =
+    [Output::new("perspective", ValueShape::Scalar, "1"), Output::new("linear", ValueShape::Scalar, "1")];
 
 /// A triangle around a pixel, with an attribute at each vertex.
 pub(in crate::cases) const TRIANGLE: &[Input] =
-    &[around("a"), around("b"), around("c"), Input::new("attr", Shape::Vec3, "1", ATTRIBUTE), PIXEL];
+    &[around("a"), around("b"), around("c"), Input::new("attr", ValueShape::Vec3, "1", ATTRIBUTE), PIXEL];
 
 macro_rules! raster_triangle {
     ($name:ident, $id:literal, $kind:expr, $fit:expr, $text:literal, [$($output:expr),*], |$($input:ident),*; $out:ident| $body:block) => {
@@ -38,7 +39,7 @@ macro_rules! raster_triangle {
             /// A triangle by the rasteriser.
             $name: $id by "", $text, "000 §6.1",
             [
-                around("a"), around("b"), around("c"), Input::new("attr", Shape::Vec3, "1", ATTRIBUTE), PIXEL,
+                around("a"), around("b"), around("c"), Input::new("attr", ValueShape::Vec3, "1", ATTRIBUTE), PIXEL,
             ] -> [$($output),*],
             fit $fit,
             kind Kind::Raster($kind),
@@ -66,7 +67,7 @@ raster_triangle!(
     Raster::TrianglePosition,
     triangle_around_the_pixel,
     "gl_FragCoord of a drawn triangle: the pixel's centre from the upper left, window z, 1/w",
-    [Output::new("position", Shape::Vec4, "pixel")],
+    [Output::new("position", ValueShape::Vec4, "pixel")],
     |a, b, c, attr, pixel; out| {
         let p = center(pixel);
         let fragment = interpolation::fragment([a, b, c], attr, &target(), p);
@@ -79,7 +80,7 @@ raster_triangle!(
     Raster::Facing,
     triangle_around_the_pixel,
     "gl_FrontFacing of a drawn triangle: 1 where it is counter-clockwise as seen",
-    [Output::new("front", Shape::Scalar, "1")],
+    [Output::new("front", ValueShape::Scalar, "1")],
     |a, b, c; out| {
         out.scalar(facing([a, b, c]));
     }
@@ -164,7 +165,7 @@ formula!(
         out.scalar(linear);
     },
 );
-const COUNT: Output = Output::new("count", Shape::Scalar, "1");
+const COUNT: Output = Output::new("count", ValueShape::Scalar, "1");
 
 macro_rules! raster_quad {
     ($name:ident, $id:literal, $fit:expr, $text:literal, [$($input:expr),*]) => {
@@ -200,7 +201,7 @@ formula!(
     /// A fragment's own depth, stored.
     RasterDepth: "interpolation/raster-frag-depth" by "",
     "the depth that a fragment wrote, read back from the depth buffer: clamp(depth, 0, 1)", "000 §6.1",
-    [Input::scalar("depth", "1", Domain::Uniform(-0.5, 1.5)), PIXEL] -> [Output::new("depth", Shape::Scalar, "1")],
+    [Input::scalar("depth", "1", Domain::Uniform(-0.5, 1.5)), PIXEL] -> [Output::new("depth", ValueShape::Scalar, "1")],
     kind Kind::Raster(Raster::OwnDepth),
     |depth; out| { out.scalar(interpolation::frag_depth(depth)); },
 );
