@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use syn::visit::{self, Visit};
 use syn::{Attribute, Item, ItemMod, ItemUse, Macro, UseTree, Visibility};
 
-/// The names that a file takes from another, by both files.
-pub(crate) type Imports = BTreeMap<(PathBuf, PathBuf), BTreeSet<String>>;
+/// The names that a file takes from another, by the module paths of both files: `crate::outer::inner`, and `crate` for the root.
+pub(crate) type Imports = BTreeMap<(String, String), BTreeSet<String>>;
 
 /// Names that `::` joins.
 type Names = Vec<String>;
@@ -33,16 +33,15 @@ struct Modules {
     here: Names,
 }
 
-/// The imports between the files of the crate with this root file. Those between a module and its descendants do not count.
+/// The imports between the files of the crate with this root file.
 pub(crate) fn imports(root: &Path) -> Imports {
     let mut modules = Modules::default();
     modules.read(root.to_owned());
     let mut imports = Imports::new();
     for (here, module) in &modules.all {
         for (there, name) in module.paths.iter().filter_map(|path| modules.definition(here, path)) {
-            let files = (module.file.clone(), modules.all[&there].file.clone());
-            if files.0 != files.1 && !here.starts_with(&there) && !there.starts_with(here) {
-                imports.entry(files).or_default().insert(name);
+            if module.file != modules.all[&there].file {
+                imports.entry((modules.file_path(here), modules.file_path(&there))).or_default().insert(name);
             }
         }
     }
@@ -59,6 +58,14 @@ pub(crate) fn public_types(root: &Path) -> Vec<(String, PathBuf)> {
 }
 
 impl Modules {
+    /// The module path of the file that a module is written in: its own path, or that of a module around it.
+    fn file_path(&self, module: &[String]) -> String {
+        let file = &self.all[module].file;
+        let around = (0..=module.len()).map(|length| &module[..length]);
+        let outermost = around.into_iter().find(|outer| self.all[*outer].file == *file).unwrap_or(module);
+        std::iter::once("crate").chain(outermost.iter().map(String::as_str)).collect::<Vec<_>>().join("::")
+    }
+
     /// The module that defines what a path names, by way of re-exports, and its name there; `None` for a module. What belongs to
     /// another crate counts as defined where it is named.
     fn definition(&self, here: &[String], path: &[String]) -> Option<(Names, String)> {
@@ -225,18 +232,14 @@ fn names_are_followed_to_the_files_that_define_them() {
         std::fs::write(folder.join(name), text).expect("a file can be written");
     }
     let imports = imports(&folder.join("lib.rs"));
-    let found: Vec<String> = imports
-        .iter()
-        .map(|((from, to), names)| {
-            let [from, to] = [from, to].map(|file| file.strip_prefix(&folder).expect("a file of the folder").display());
-            format!("{from} -> {to}: {names:?}")
-        })
-        .collect();
+    let found: Vec<String> = imports.iter().map(|((from, to), names)| format!("{from} -> {to}: {names:?}")).collect();
     let expected = [
-        "a.rs -> b.rs: {\"g\"}",
-        "a.rs -> outer/inner.rs: {\"Inner\"}",
-        "b.rs -> a.rs: {\"F\", \"f\"}",
-        "outer/inner.rs -> a.rs: {\"F\"}",
+        "crate::a -> crate::b: {\"g\"}",
+        "crate::a -> crate::outer::inner: {\"Inner\"}",
+        "crate::b -> crate::a: {\"F\", \"f\"}",
+        "crate::outer -> crate::outer::inner: {\"Inner\", \"child\"}",
+        "crate::outer::inner -> crate::a: {\"F\"}",
+        "crate::outer::inner -> crate::outer: {\"parent\"}",
     ];
     assert_eq!(found, expected);
 }
