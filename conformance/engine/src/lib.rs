@@ -16,4 +16,5 @@ pub mod special;
 pub mod stability;
 pub mod subject;
 pub mod sweep;
+mod under_way;
 pub mod witness;

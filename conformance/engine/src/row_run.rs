@@ -13,8 +13,11 @@ use lightmeter_judge::chunk::{self, Chunk};
 use lightmeter_judge::diagnose::{Row, Told};
 use lightmeter_judge::formula::{RowPlace, RowStanding};
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::time::Instant;
+
+/// The stages of every subject that are compiled already, by group.
+pub(crate) type CompiledGroups = HashMap<String, Vec<Compiled>>;
 
 /// A group of formulas in the stages that take rows.
 pub(crate) struct RowRun<'a> {
@@ -23,8 +26,26 @@ pub(crate) struct RowRun<'a> {
     compiled: Vec<Compiled>,
     /// What each of them has come to, and in how many seconds.
     standings: Vec<Vec<(RowStanding, f64)>>,
-    /// Stages that are asked, from the first.
-    stages: usize,
+    /// Which stages are asked.
+    asked: Asked,
+}
+
+/// Which stages of a subject are asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Asked {
+    /// All that there are.
+    All,
+    /// All but the fragment stage where the same function is asked for in the compute stage.
+    OneOfShaders,
+}
+
+impl Asked {
+    /// The stages that are asked.
+    fn of<T>(self, stages: &[(Stage, T)]) -> impl Iterator<Item = &(Stage, T)> {
+        let has_compute = stages.iter().any(|(stage, _)| *stage == Stage::Compute);
+        let skipped = (self == Self::OneOfShaders && has_compute).then_some(Stage::Fragment);
+        stages.iter().filter(move |(stage, _)| Some(*stage) != skipped)
+    }
 }
 
 /// A job of a stage, and how long it took to hand it over; `None` where the stage is skipped.
@@ -51,14 +72,12 @@ impl<'a> RowRun<'a> {
         self.members[0].spec.group()
     }
 
-    /// Of a group, whose stages are compiled; so many of them are asked.
-    pub(crate) fn new(members: &'a [&'a Member], compiled: Vec<Compiled>, stages: usize) -> Self {
+    /// Of a group, whose stages are compiled.
+    pub(crate) fn new(members: &'a [&'a Member], compiled: Vec<Compiled>, asked: Asked) -> Self {
         let outputs = members[0].spec.output_len();
-        let blank = |compiled: &Compiled| {
-            let asked = compiled.stages.len().min(stages);
-            (0..asked).map(|_| (RowStanding::new(outputs), 0.0)).collect()
-        };
-        Self { members, standings: compiled.iter().map(blank).collect(), compiled, stages }
+        let blank =
+            |compiled: &Compiled| asked.of(&compiled.stages).map(|_| (RowStanding::new(outputs), 0.0)).collect();
+        Self { members, standings: compiled.iter().map(blank).collect(), compiled, asked }
     }
 
     /// Draws cases, each with its formula's place among the group's, and hands them to every stage of every subject.
@@ -96,7 +115,7 @@ impl<'a> RowRun<'a> {
     fn submit(&self, subjects: &mut [Subject], chunk: &Chunk<'_>) -> Result<Vec<Submitted>, DeviceError> {
         let mut jobs = vec![];
         for (subject, compiled) in subjects.iter_mut().zip(&self.compiled) {
-            for (_, work) in compiled.stages.iter().take(self.stages) {
+            for (_, work) in self.asked.of(&compiled.stages) {
                 let clock = Instant::now();
                 let job = work.as_ref().ok().map(|work| subject.submit(work, &rows(chunk))).transpose()?;
                 jobs.push((job, clock.elapsed().as_secs_f64()));
@@ -116,7 +135,7 @@ impl<'a> RowRun<'a> {
     ) -> Result<(), DeviceError> {
         let (mut jobs, cases) = (jobs.into_iter(), chunk.cases.len() as u64);
         for ((subject, compiled), standings) in subjects.iter().zip(&self.compiled).zip(&mut self.standings) {
-            for ((stage, work), (standing, seconds)) in compiled.stages.iter().zip(standings) {
+            for ((stage, work), (standing, seconds)) in self.asked.of(&compiled.stages).zip(standings) {
                 let (Some((Some(job), submitting)), Ok(work)) = (jobs.next(), work) else {
                     standing.tally.totals.cases += cases;
                     standing.tally.totals.skipped += cases;
@@ -138,7 +157,7 @@ impl<'a> RowRun<'a> {
     /// Adds a group for each stage of each subject to the report, and hands back what was compiled.
     pub(crate) fn finish(self, subjects: &[Subject], options: &Options, report: &mut Report) -> Vec<Compiled> {
         for ((subject, compiled), standings) in subjects.iter().zip(&self.compiled).zip(self.standings) {
-            for ((stage, work), (standing, seconds)) in compiled.stages.iter().zip(standings) {
+            for ((stage, work), (standing, seconds)) in self.asked.of(&compiled.stages).zip(standings) {
                 for (name, excused) in &standing.tally.excused {
                     report.excuse(name, &subject.identity.name, *excused);
                 }
@@ -179,13 +198,10 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
         failing.iter().max_by_key(|(member, count)| (**count, Reverse(**member))).map_or(0, |(member, _)| *member);
     let member = members[most];
     let profile = subject.known.profile(options.profile);
-    let mut told = Told::of(
-        diagnose,
-        member,
-        [&of_member(member, most, wrong, options.seed), &of_member(member, most, right, options.seed)],
-        standing.wrong.seen,
-        &profile,
-    );
+    let is_all = wrong.len() as u64 == standing.wrong.seen;
+    let rows = [wrong, right].map(|rows| of_member(member, most, rows, options.seed));
+    let failing = if is_all { rows[0].len() as u64 } else { standing.wrong.seen };
+    let mut told = Told::of(diagnose, member, [&rows[0], &rows[1]], failing, &profile);
     if members.len() > 1 {
         told.explanation = told.explanation.map(|says| format!("{}: {says}", member.spec.id));
     }

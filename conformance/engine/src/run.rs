@@ -7,11 +7,12 @@ use crate::blend_unit;
 use crate::device::DeviceError;
 use crate::image;
 use crate::options::Options;
-use crate::row_run::RowRun;
+use crate::row_run::{Asked, CompiledGroups, RowRun};
 use crate::scout;
 use crate::selection::Selection;
 use crate::special::verdict::Table;
 use crate::subject::{Compiled, Subject};
+use crate::under_way::{is_over, tell};
 use crate::witness;
 use crate::{special, stability};
 use lightmeter_catalogue::cases::Kind;
@@ -20,18 +21,14 @@ use lightmeter_catalogue::scene;
 use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{BlendPromise, Failure, Group, Interrupted, Report};
+use lightmeter_document::run::{BlendPromise, Failure, Group, Report};
 use lightmeter_judge::blend_unit::policy::{InterfacePromise, PROMISES};
 use lightmeter_judge::stability::UNSTABLE;
 use lightmeter_scene::blend::Equation;
-use std::collections::HashMap;
 use std::time::Instant;
 
 /// Cases of a chunk.
 const CHUNK: usize = 1 << 16;
-
-/// The stages of every subject that are compiled already, by group.
-pub(crate) type CompiledGroups = HashMap<String, Vec<Compiled>>;
 
 /// Runs what the options select on every subject. Where a device fails, what was judged until then is the report, which says
 /// what was under way.
@@ -160,41 +157,6 @@ fn judge_in_turn(
     Ok(())
 }
 
-/// Tells each group with its failures.
-pub(crate) fn tell(groups: &[Group], failures: &[Failure], is_scouted: bool, observer: &mut dyn Observer) {
-    for group in groups {
-        let is_of_group = |failure: &&Failure| {
-            let place = (&failure.adapter, &failure.stage) == (&group.adapter, &group.stage);
-            place && failure.target == group.target && failure.id.starts_with(&group.id)
-        };
-        let failures = failures.iter().filter(is_of_group).collect();
-        observer.see(&Event::Judged { group, failures, is_scouted });
-    }
-}
-
-/// Whether nothing more is to be judged: a device failed, or somebody stopped the run. The report says what was under way.
-pub(crate) fn is_over(
-    judged: Result<(), DeviceError>,
-    under_way: &str,
-    options: &Options,
-    report: &mut Report,
-) -> Result<bool, DeviceError> {
-    let under_way = under_way.to_owned();
-    match (judged, options.stop.signal()) {
-        (Err(error), _) if error.is_of_device() => {
-            report.interrupted.get_or_insert(Interrupted { under_way, message: error.to_string(), signal: None });
-            Ok(true)
-        }
-        (Err(error), _) => Err(error),
-        (Ok(()), None) => Ok(false),
-        (Ok(()), Some(signal)) => {
-            let message = "a signal ended the run".into();
-            report.interrupted.get_or_insert(Interrupted { under_way, message, signal: Some(signal) });
-            Ok(true)
-        }
-    }
-}
-
 /// Cases that are to be judged, for the progress: those of a formula once for its stages that take rows, and once for each
 /// target of each blend unit; results of tables and pixels of scenes on each subject.
 fn work(selection: &Selection, subjects: &[Subject], options: &Options) -> u64 {
@@ -269,7 +231,7 @@ fn run_rows(
     let group: Vec<Selected> = group.iter().zip(members).map(|(chosen, member)| chosen.rows(member)).collect();
     let clock = Instant::now();
     let compiled = compiled.map_or_else(|| RowRun::compile(members[0], subjects, options), Ok)?;
-    let mut run = RowRun::new(members, compiled, usize::MAX);
+    let mut run = RowRun::new(members, compiled, Asked::All);
     report.timing.compile += clock.elapsed().as_secs_f64();
 
     let mut all = group.iter().enumerate().flat_map(|(of, chosen)| chosen.cases().map(move |case| (of, case)));

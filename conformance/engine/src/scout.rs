@@ -1,12 +1,12 @@
-//! The scouts of a run: a few cases of everything, so that what is broken is known within seconds. What they judge is told and not
+//! The scouts of a run: a few cases of each formula, so that what is broken is known within seconds. What they judge is told and not
 //! counted: the run judges these cases again with all others, by the shaders that were compiled here.
 
 use crate::device::DeviceError;
 use crate::options::Options;
-use crate::row_run::{Begun, RowRun};
-use crate::run::{CompiledGroups, is_over, tell};
+use crate::row_run::{Asked, Begun, CompiledGroups, RowRun};
 use crate::selection::Selection;
 use crate::subject::Subject;
+use crate::under_way::{is_over, tell};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::{Event, Observer};
@@ -25,7 +25,7 @@ struct UnderWay<'a> {
     begun: Begun<'a>,
 }
 
-/// Judges a few cases of each group in the first of its stages that take rows. Gives the stages of every group, compiled; `None` where
+/// Judges a few cases of each group, of shaders in the compute stage alone. Gives the stages of every group, compiled; `None` where
 /// a device failed or the run was stopped.
 pub(crate) fn scout(
     selection: &Selection,
@@ -87,7 +87,7 @@ impl Scouts<'_> {
         let clock = std::time::Instant::now();
         let compiled = RowRun::compile(members[0], subjects, self.options)?;
         self.report.timing.compile += clock.elapsed().as_secs_f64();
-        let run = RowRun::new(members, compiled, 1);
+        let run = RowRun::new(members, compiled, Asked::OneOfShaders);
         let begun = run.begin(&cases(members, group), subjects, self.options, &mut self.report)?;
         Ok(UnderWay { run, begun })
     }

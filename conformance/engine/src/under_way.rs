@@ -1,0 +1,41 @@
+//! What is told while a run goes on, and when it is over before its time.
+
+use crate::device::DeviceError;
+use crate::options::Options;
+use lightmeter_document::event::{Event, Observer};
+use lightmeter_document::run::{Failure, Group, Interrupted, Report};
+
+/// Tells each group with its failures.
+pub(crate) fn tell(groups: &[Group], failures: &[Failure], is_scouted: bool, observer: &mut dyn Observer) {
+    for group in groups {
+        let is_of_group = |failure: &&Failure| {
+            let place = (&failure.adapter, &failure.stage) == (&group.adapter, &group.stage);
+            place && failure.target == group.target && failure.id.starts_with(&group.id)
+        };
+        let failures = failures.iter().filter(is_of_group).collect();
+        observer.see(&Event::Judged { group, failures, is_scouted });
+    }
+}
+
+/// Whether nothing more is to be judged: a device failed, or somebody stopped the run. The report says what was under way.
+pub(crate) fn is_over(
+    judged: Result<(), DeviceError>,
+    under_way: &str,
+    options: &Options,
+    report: &mut Report,
+) -> Result<bool, DeviceError> {
+    let under_way = under_way.to_owned();
+    match (judged, options.stop.signal()) {
+        (Err(error), _) if error.is_of_device() => {
+            report.interrupted.get_or_insert(Interrupted { under_way, message: error.to_string(), signal: None });
+            Ok(true)
+        }
+        (Err(error), _) => Err(error),
+        (Ok(()), None) => Ok(false),
+        (Ok(()), Some(signal)) => {
+            let message = "a signal ended the run".into();
+            report.interrupted.get_or_insert(Interrupted { under_way, message, signal: Some(signal) });
+            Ok(true)
+        }
+    }
+}
