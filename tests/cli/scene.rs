@@ -297,4 +297,6 @@ fn a_scene_that_is_refused_ends_with_2() {
         assert_eq!((code(&output), stdout(&output).as_str()), (2, ""), "{scene}");
         assert!(stderr(&output).contains(says), "{scene}: {}", stderr(&output));
     }
+    let output = lightmeter(&["effects", "/nowhere/scene.json"]);
+    assert_eq!(stderr(&output).matches("No such file").count(), 1, "{}", stderr(&output));
 }

@@ -6,12 +6,12 @@ use std::fmt;
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// A file that cannot be read.
-    #[error("cannot read {file}: {source}")]
+    #[error("cannot read {file}: {error}")]
     File {
         /// Its path.
         file: String,
-        /// Why not.
-        source: std::io::Error,
+        /// Why not. It is not the error's source: the message has it.
+        error: std::io::Error,
     },
     /// No scene of that name is built in.
     #[error("no file and no built-in scene `{name}`; built in are {known}")]

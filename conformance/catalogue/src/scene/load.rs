@@ -50,7 +50,7 @@ pub fn scene(path_or_name: &str) -> Result<Loaded, SceneError> {
 ///
 /// Where the file cannot be read, or the scene is refused.
 pub fn file(path: &Path) -> Result<Loaded, SceneError> {
-    let unreadable = |source| SceneError::File { file: path.display().to_string(), source };
+    let unreadable = |error| SceneError::File { file: path.display().to_string(), error };
     let json = read(path).map_err(unreadable)?;
     let json = String::from_utf8(json).map_err(|error| unreadable(io::Error::other(error)))?;
     let folder = path.parent().unwrap_or(Path::new(""));
