@@ -2,13 +2,18 @@
 //!
 //! Nothing here judges or draws.
 
+pub mod adapters;
 pub mod bench;
+pub mod effects;
+pub mod eval;
 pub mod event;
 pub mod gate;
+pub mod list;
 mod number;
 pub mod pack;
 pub mod run;
 pub mod selftest;
+pub mod show;
 pub mod special;
 pub mod sweep;
 
@@ -83,9 +88,9 @@ fn read<T: Document + DeserializeOwned>(json: &str) -> Result<T, ReadError> {
 }
 
 macro_rules! documents {
-    ($($room:ident::$document:ident, $what:literal;)+) => {
-        $(impl Document for $room::$document {
-            const SCHEMA: &'static str = $room::SCHEMA;
+    ($($document:ty: $schema:expr, $what:literal;)+) => {
+        $(impl Document for $document {
+            const SCHEMA: &'static str = $schema;
             const WHAT: &'static str = $what;
 
             fn to_json(&self) -> serde_json::Result<String> {
@@ -104,12 +109,20 @@ macro_rules! documents {
 }
 
 documents! {
-    bench::BenchDocument, "the JSON of `lightmeter bench --format json`";
-    gate::GateReport, "the JSON of `lightmeter gate --format json`";
-    pack::Manifest, "the manifest of `lightmeter pack`";
-    run::Report, "the JSON of `lightmeter run --format json`";
-    selftest::SelftestDocument, "the JSON of `lightmeter selftest --format json`";
-    special::SpecialReport, "the JSON of `lightmeter special --format json`";
+    adapters::AdaptersDocument: adapters::SCHEMA, "the JSON of `lightmeter adapters --format json`";
+    bench::BenchDocument: bench::SCHEMA, "the JSON of `lightmeter bench --format json`";
+    bench::recommendation::Recommendation: bench::recommendation::SCHEMA, "the JSON of `lightmeter bench --recommend`";
+    effects::EffectsDocument: effects::SCHEMA, "the JSON of `lightmeter effects --format json`";
+    gate::GateReport: gate::SCHEMA, "the JSON of `lightmeter gate --format json`";
+    list::CasesDocument: list::CASES, "the JSON of `lightmeter list --format json`";
+    list::FormulasDocument: list::FORMULAS, "the JSON of `lightmeter list --formulas --format json`";
+    pack::Manifest: pack::SCHEMA, "the manifest of `lightmeter pack`";
+    run::Report: run::SCHEMA, "the JSON of `lightmeter run --format json`";
+    selftest::SelftestDocument: selftest::SCHEMA, "the JSON of `lightmeter selftest --format json`";
+    show::ShowDocument: show::SCHEMA, "the JSON of `lightmeter show --format json`";
+    special::SpecialReport: special::SCHEMA, "the JSON of `lightmeter special --format json`";
+    special::record::SpecialRecord: special::record::SCHEMA, "a record of `lightmeter special --record`";
+    sweep::presets::PresetsDocument: sweep::presets::SCHEMA, "the list of ready-made sweeps";
 }
 
 /// A sweep takes hours, so that it is signed by a checksum over all else.

@@ -5,6 +5,7 @@
 
 pub mod ladder;
 pub mod pareto;
+pub mod recommendation;
 
 use crate::Number;
 use schemars::JsonSchema;

@@ -1,6 +1,7 @@
 //! What a sweep is of and what was found: `lightmeter.sweep/1`.
 
 mod histogram;
+pub mod presets;
 mod statistics;
 
 pub use histogram::Histogram;

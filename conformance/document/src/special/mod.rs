@@ -1,5 +1,7 @@
 //! The JSON of `special`.
 
+pub mod record;
+
 use crate::Word;
 use crate::run::Identity;
 use schemars::JsonSchema;
