@@ -3,11 +3,9 @@
 use super::program::Program;
 use lightmeter_scene::depth::DepthTest;
 use lightmeter_scene::raster::Raster;
-use serde::Serialize;
 
 /// Where a formula is evaluated on a renderer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// Arithmetic in a compute shader.
     Compute,
@@ -46,8 +44,7 @@ pub enum Kind {
 }
 
 /// The components of an input or output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueShape {
     /// One number.
     Scalar,
@@ -64,6 +61,19 @@ pub enum ValueShape {
 }
 
 impl ValueShape {
+    /// The name in JSON and reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scalar => "scalar",
+            Self::Vec2 => "vec2",
+            Self::Vec3 => "vec3",
+            Self::Vec4 => "vec4",
+            Self::Mat3 => "mat3",
+            Self::Mat4 => "mat4",
+        }
+    }
+
     /// How many numbers it has.
     #[must_use]
     pub const fn components(self) -> usize {
@@ -79,8 +89,7 @@ impl ValueShape {
 }
 
 /// What random cases draw an input from.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {
     /// Evenly from low to high, each component.
     Uniform(f32, f32),
@@ -108,7 +117,7 @@ pub enum Domain {
 }
 
 /// One input.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Input {
     /// Its name, the same in Rust, WGSL, JSON and reports.
     pub name: &'static str,
@@ -121,7 +130,7 @@ pub struct Input {
 }
 
 /// One output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
     /// Its name.
     pub name: &'static str,
@@ -226,8 +235,7 @@ impl Hard {
 }
 
 /// What a result's error is held against.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
     /// Its own length: a direction, a distance, a factor that may be small.
     Own,
@@ -235,11 +243,22 @@ pub enum Size {
     Unit,
 }
 
+impl Size {
+    /// The name in JSON.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::Unit => "unit",
+        }
+    }
+}
+
 /// The claim of a formula in a stable form: at its hard cases and near them it errs by no more than this.
 ///
 /// Errors are counted in *roundings*: |value − exact| over 2⁻²⁴ of the result's size, all outputs taken together as one
 /// vector. A single operation that rounds to nearest errs by at most one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stable {
     /// Roundings.
     pub bound: f64,

@@ -8,8 +8,7 @@ use super::source::Source;
 pub const FAMILY: &str = "special";
 
 /// What a probe is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// NaN given, or what has no value.
     Nan,
