@@ -1,5 +1,6 @@
 //! `lightmeter show`.
 
+mod document;
 mod pixel;
 mod special;
 mod unit;
@@ -11,20 +12,19 @@ use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::{Samples, separate_of};
-use lightmeter::document::Number;
 use lightmeter::document::run::Examined;
+use lightmeter::document::{Document as _, Number};
 use lightmeter::evaluate::Evaluator;
 use lightmeter::filter::Filter;
-use lightmeter::formula::{by_name, intervals};
+use lightmeter::formula::intervals;
 use lightmeter::judge::judge;
 use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
 use lightmeter::stability;
 use lightmeter::stability::{Conditioning, FormStanding};
 use lightmeter::subject::Subject;
-use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use unit::{UnitAnswer, drawn, unit_json, unit_text};
+use unit::{UnitAnswer, drawn, unit_text};
 
 /// Show one case: formula, inputs, each step, the interval, and what the adapter gives.
 #[derive(Debug, Args)]
@@ -91,7 +91,7 @@ impl Show {
         let (answers, unit) = self.answers(member, &known.inputs)?;
         let forms = self.forms(member, case)?;
         let text = if as_json {
-            serde_json::to_string_pretty(&json_of(member, case, &known, &answers, &unit, &forms))? + "\n"
+            document::case(member, case, &known, &answers, &unit, forms).to_json()?
         } else {
             as_text(member, case, &known, &answers)? + &unit_text(&unit)? + &forms_text(&forms)?
         };
@@ -308,58 +308,4 @@ fn range(interval: &Accept) -> String {
     } else {
         format!("{} to {}", Number(interval.low()), Number(interval.high()))
     }
-}
-
-fn json_of(
-    member: &Member,
-    case: CaseRef,
-    known: &Known,
-    answers: &[Answer],
-    unit: &[UnitAnswer],
-    forms: &[Examined],
-) -> Value {
-    let bounds = |interval: &Accept| json!([Number(interval.low()), Number(interval.high())]);
-    let steps: Vec<Value> = known
-        .steps
-        .iter()
-        .map(|s| json!({ "name": s.name, "value": Number(s.result.value), "interval": bounds(&s.result.interval) }))
-        .collect();
-    let outputs: Vec<Value> = (0..known.outputs.len())
-        .map(|k| {
-            let output = &known.outputs[k];
-            json!({
-                "name": member.spec.output_name(k), "reference": Number(output.value),
-                "interval": bounds(&output.interval), "condition": Number(known.condition[k]),
-            })
-        })
-        .collect();
-    let answers: Vec<Value> = answers
-        .iter()
-        .map(|answer| match &answer.values {
-            Err(reason) => json!({ "adapter": answer.adapter, "stage": answer.stage, "skipped": reason }),
-            Ok(values) => {
-                let values: Vec<Value> = values
-                    .iter()
-                    .enumerate()
-                    .map(|(k, (bits, legal))| {
-                        let (outcome, error) = outcome(*bits, known.outputs[k].value, legal);
-                        json!({
-                            "output": member.spec.output_name(k), "value": Number(f32::from_bits(*bits).into()),
-                            "hex": format!("0x{bits:08x}"), "interval": bounds(legal), "outcome": outcome,
-                            "error_ulp": Number(error),
-                        })
-                    })
-                    .collect();
-                json!({ "adapter": answer.adapter, "stage": answer.stage, "values": values })
-            }
-        })
-        .chain(unit.iter().map(unit_json))
-        .collect();
-    json!({
-        "schema": "lightmeter.show/1", "id": member.case_id(case), "formula": member.spec.text,
-        "source": member.spec.source,
-        "inputs": by_name(member, &known.inputs, |x| json!(Number(x.into()))),
-        "inputs_hex": by_name(member, &known.inputs, |x| json!(format!("0x{:08x}", x.to_bits()))),
-        "steps": steps, "outputs": outputs, "conditioning": known.conditioning, "answers": answers, "forms": forms,
-    })
 }

@@ -4,7 +4,8 @@ use super::super::options::Choice;
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::pixel::Units;
 use lightmeter::device::{Code, Picture};
-use lightmeter::document::Number;
+use lightmeter::document::show::{PixelPlace, SCHEMA, SeenIntermediate, ShowDocument, ShownIntermediate, ShownPixel};
+use lightmeter::document::{Document as _, Number};
 use lightmeter::image::expect::Expectation;
 use lightmeter::image::file::StoredImage;
 use lightmeter::image::{self, LegalPixel};
@@ -17,7 +18,6 @@ use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
-use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// One row: an intermediate result, or the colour.
@@ -99,12 +99,15 @@ pub(super) fn show(
     let rows = rows(frame, *pixel, choice.profile, subjects, &choice.code()?)?;
     let width = frame.target.width as usize;
     if as_json {
-        let stages: Vec<Value> = rows.iter().map(row_json).collect();
-        let place = json!({ "x": pixel % width, "y": pixel / width });
-        let shown = json!({
-            "id": id, "title": loaded.title, "target": frame.target.format.name(), "pixel": place, "stages": stages,
-        });
-        return Ok(serde_json::to_string_pretty(&shown)? + "\n");
+        let shown = ShownPixel {
+            schema: SCHEMA.into(),
+            id: id.to_owned(),
+            title: loaded.title.clone(),
+            target: frame.target.format.name().into(),
+            pixel: PixelPlace { x: pixel % width, y: pixel / width },
+            stages: rows.iter().map(intermediate).collect(),
+        };
+        return Ok(ShowDocument::Pixel(shown).to_json()?);
     }
     let mut text = format!("{id}\n  {}\n  {}\n", loaded.title, loaded.shows);
     let units = if frame.target.format.is_unorm() { "steps from 0 to 255" } else { "values" };
@@ -124,19 +127,16 @@ pub(super) fn show(
     Ok(text)
 }
 
-fn row_json(row: &Row) -> Value {
+fn intermediate(row: &Row) -> ShownIntermediate {
     let numbers = |units: Units| units.map(Number);
-    let seen: Vec<Value> = row
-        .seen
-        .iter()
-        .map(|(name, legal, value)| {
-            json!({
-                "adapter": name, "low": numbers(legal.low), "high": numbers(legal.high), "marked": legal.is_marked,
-                "value": value.map(numbers),
-            })
-        })
-        .collect();
-    json!({ "stage": row.what, "reference": numbers(row.reference), "seen": seen })
+    let seen = row.seen.iter().map(|(name, legal, value)| SeenIntermediate {
+        adapter: name.clone(),
+        low: numbers(legal.low),
+        high: numbers(legal.high),
+        marked: legal.is_marked,
+        value: value.map(numbers),
+    });
+    ShownIntermediate { stage: row.what.into(), reference: numbers(row.reference), seen: seen.collect() }
 }
 
 fn four(units: Units) -> String {

@@ -1,12 +1,12 @@
 //! A probe of a special value: what is promised of it, and what adapters give.
 
 use super::super::options::Choice;
-use lightmeter::document::Number;
+use lightmeter::document::show::{SCHEMA, ShowDocument, ShownProbe};
 use lightmeter::document::special::ProbeResult;
+use lightmeter::document::{Document as _, Number};
 use lightmeter::special::run::{Results, evaluate, skipped_embedded};
 use lightmeter::special::{FAMILY, Gives, Probe};
 use lightmeter::subject::Subject;
-use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// The probe of an id such as `special/nan/nan-plus-one`.
@@ -38,7 +38,7 @@ pub(super) fn show(
         results.push((subject, found));
     }
     if as_json {
-        return Ok(serde_json::to_string_pretty(&json(probe, &results))? + "\n");
+        return Ok(document(probe, results).to_json()?);
     }
     let mut text = String::new();
     writeln!(text, "{}\n  {}", probe.id(), probe.what)?;
@@ -65,14 +65,21 @@ fn operand(bits: u32) -> String {
     format!("{} (0x{bits:08x})", Gives::Float.word(bits))
 }
 
-fn json(probe: &Probe, results: &[(&Subject, Results)]) -> Value {
-    let inputs: Vec<Value> = probe.inputs.iter().map(|&bits| json!(Number(f32::from_bits(bits).into()))).collect();
-    let hex: Vec<String> = probe.inputs.iter().map(|bits| format!("0x{bits:08x}")).collect();
-    let answers: Vec<Value> = results.iter().flat_map(|(_, found)| &found.outcomes).map(|one| json!(one)).collect();
-    let skipped: Vec<Value> = results.iter().flat_map(|(_, found)| &found.skipped).map(|one| json!(one)).collect();
-    json!({
-        "schema": "lightmeter.show/1", "id": probe.id(), "formula": probe.what, "source": probe.source.section(),
-        "inputs": inputs, "inputs_hex": hex, "promise": probe.promise.words(probe.gives), "answers": answers,
-        "skipped": skipped,
+fn document(probe: &Probe, results: Vec<(&Subject, Results)>) -> ShowDocument {
+    let (mut answers, mut skipped) = (vec![], vec![]);
+    for (_, found) in results {
+        answers.extend(found.outcomes);
+        skipped.extend(found.skipped);
+    }
+    ShowDocument::Probe(ShownProbe {
+        schema: SCHEMA.into(),
+        id: probe.id(),
+        formula: probe.what.into(),
+        source: probe.source.section().into(),
+        inputs: probe.inputs.iter().map(|&bits| Number(f32::from_bits(bits).into())).collect(),
+        inputs_hex: probe.inputs.iter().map(|bits| format!("0x{bits:08x}")).collect(),
+        promise: probe.promise.words(probe.gives),
+        answers,
+        skipped,
     })
 }

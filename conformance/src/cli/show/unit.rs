@@ -10,13 +10,13 @@ use lightmeter::cases::Stage;
 use lightmeter::cases::blend::Program;
 use lightmeter::device::Code;
 use lightmeter::document::Number;
+use lightmeter::document::show::{ShownAnswer, ShownValue};
 use lightmeter::judge::Outcome;
 use lightmeter::piece::Piece;
 use lightmeter::select::Member;
 use lightmeter::subject::Subject;
 use lightmeter_scene::blend::{Route, routes};
 use lightmeter_scene::target::TargetFormat;
-use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// A blend unit's answer, in the target's units.
@@ -54,6 +54,8 @@ pub(super) fn drawn(
     }
     Ok(answers)
 }
+
+/// The answers as text.
 pub(super) fn unit_text(answers: &[UnitAnswer]) -> anyhow::Result<String> {
     let mut text = String::new();
     for UnitAnswer { adapter, target, route, pixel } in answers {
@@ -83,28 +85,32 @@ pub(super) fn unit_text(answers: &[UnitAnswer]) -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// The same as JSON.
-pub(super) fn unit_json(answer: &UnitAnswer) -> Value {
+/// An answer as a part of the document.
+pub(super) fn unit_answer(answer: &UnitAnswer) -> ShownAnswer {
     let UnitAnswer { adapter, target, route, pixel } = answer;
-    let mut json = json!({
-        "adapter": adapter, "stage": Stage::FixedFunction.name(), "target": target.name(), "route": route.name(),
+    let values = pixel.as_ref().map(|(pixel, expected)| {
+        let value = |k: usize| {
+            let verdict = expected.judge(*target, k, pixel[k]);
+            ShownValue {
+                output: format!("color.{}", COMPONENTS[k]),
+                value: Number(pixel[k]),
+                hex: None,
+                reference: Some(Number(expected.reference[k])),
+                interval: [Number(expected.low[k]), Number(expected.high[k])],
+                outcome: verdict.outcome.name().into(),
+                error_ulp: Number(verdict.error),
+            }
+        };
+        (0..4).map(value).collect()
     });
-    match pixel {
-        Err(reason) => json["skipped"] = (*reason).into(),
-        Ok((pixel, expected)) => {
-            let value = |k: usize| {
-                let verdict = expected.judge(*target, k, pixel[k]);
-                json!({
-                    "output": format!("color.{}", COMPONENTS[k]), "value": Number(pixel[k]),
-                    "reference": Number(expected.reference[k]),
-                    "interval": [Number(expected.low[k]), Number(expected.high[k])],
-                    "outcome": verdict.outcome.name(), "error_ulp": Number(verdict.error),
-                })
-            };
-            json["values"] = (0..4).map(value).collect();
-        }
+    ShownAnswer {
+        adapter: adapter.clone(),
+        stage: Stage::FixedFunction.name().into(),
+        target: Some(target.name().into()),
+        route: Some(route.name().into()),
+        skipped: values.as_ref().err().map(|&&reason| reason.into()),
+        values: values.ok(),
     }
-    json
 }
 
 const COMPONENTS: [&str; 4] = ["r", "g", "b", "a"];

@@ -1,0 +1,87 @@
+//! A case of a formula as the document of `show`.
+
+use super::unit::{UnitAnswer, unit_answer};
+use super::{Answer, Known, outcome};
+use lightmeter::arithmetic::{Accept, trace};
+use lightmeter::document::Number;
+use lightmeter::document::run::Examined;
+use lightmeter::document::show::{
+    SCHEMA, ShowDocument, ShownAnswer, ShownCase, ShownConditioning, ShownOutput, ShownStanding, ShownStep, ShownValue,
+};
+use lightmeter::formula::by_name;
+use lightmeter::select::{CaseRef, Member};
+use lightmeter::stability::{Conditioning, FormStanding};
+
+pub(super) fn case(
+    member: &Member,
+    case: CaseRef,
+    known: &Known,
+    answers: &[Answer],
+    unit: &[UnitAnswer],
+    forms: Vec<Examined>,
+) -> ShowDocument {
+    let output = |k: usize| ShownOutput {
+        name: member.spec.output_name(k),
+        reference: Number(known.outputs[k].value),
+        interval: bounds(&known.outputs[k].interval),
+        condition: Number(known.condition[k]),
+    };
+    let rows = answers.iter().map(|one| answer(member, known, one));
+    ShowDocument::Case(ShownCase {
+        schema: SCHEMA.into(),
+        id: member.case_id(case),
+        formula: member.spec.text.into(),
+        source: member.spec.source.into(),
+        inputs: by_name(member, &known.inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
+        inputs_hex: by_name(member, &known.inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
+        steps: known.steps.iter().map(step).collect(),
+        outputs: (0..known.outputs.len()).map(output).collect(),
+        conditioning: conditioning(&known.conditioning),
+        answers: rows.chain(unit.iter().map(unit_answer)).collect(),
+        forms,
+    })
+}
+
+fn bounds(interval: &Accept) -> [Number; 2] {
+    [Number(interval.low()), Number(interval.high())]
+}
+
+fn step(step: &trace::Step) -> ShownStep {
+    let value = Number(step.result.value);
+    ShownStep { name: step.name.into(), value, interval: bounds(&step.result.interval) }
+}
+
+fn conditioning(conditioning: &Conditioning) -> ShownConditioning {
+    let standing = match conditioning.standing {
+        FormStanding::Stable => ShownStanding::Stable,
+        FormStanding::IllConditioned => ShownStanding::IllConditioned,
+        FormStanding::Unstable => ShownStanding::Unstable,
+        FormStanding::NothingPromised => ShownStanding::NothingPromised,
+        FormStanding::Singular => ShownStanding::Singular,
+    };
+    ShownConditioning { condition: conditioning.condition, reach: conditioning.reach, standing }
+}
+
+fn answer(member: &Member, known: &Known, answer: &Answer) -> ShownAnswer {
+    let value = |(k, &(bits, legal)): (usize, &(u32, Accept))| {
+        let (outcome, error) = outcome(bits, known.outputs[k].value, &legal);
+        ShownValue {
+            output: member.spec.output_name(k),
+            value: Number(f32::from_bits(bits).into()),
+            hex: Some(format!("0x{bits:08x}")),
+            reference: None,
+            interval: bounds(&legal),
+            outcome: outcome.into(),
+            error_ulp: Number(error),
+        }
+    };
+    let values = answer.values.as_ref().map(|values| values.iter().enumerate().map(value).collect());
+    ShownAnswer {
+        adapter: answer.adapter.clone(),
+        stage: answer.stage.into(),
+        target: None,
+        route: None,
+        skipped: values.as_ref().err().map(|&&reason| reason.into()),
+        values: values.ok(),
+    }
+}
