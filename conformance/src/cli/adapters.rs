@@ -4,8 +4,12 @@ use super::options::Format;
 use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
-use lightmeter::blend_unit::model::BlendUnitModel;
-use lightmeter::devices::known;
+use lightmeter::devices::{BlendDeviation, Builtin, Deviation, known};
+use lightmeter::document::Document as _;
+use lightmeter::document::adapters::{
+    AccuracyDeviation, AdaptersDocument, BlendUnitDeviation, BuiltinFunction, ListedAdapter, SCHEMA,
+};
+use lightmeter_gpu::Adapter;
 use std::fmt::Write as _;
 
 /// List what can be run on.
@@ -22,21 +26,8 @@ impl Adapters {
         let text = match self.format {
             Format::Junit => bail!("a list of adapters is written as text or json"),
             Format::Json => {
-                let adapters: Vec<serde_json::Value> = found
-                    .iter()
-                    .map(|a| {
-                        let known = known(&a.device, &a.driver);
-                        serde_json::json!({
-                            "name": a.name, "device": a.device, "backend": a.backend, "driver": a.driver,
-                            "is_cpu": a.is_cpu, "subpixel_bits": known.subpixel_bits, "deviations": known.deviations,
-                            "blend_model": known.blend_model.map(BlendUnitModel::name),
-                            "blend_deviations": known.blend_deviations,
-                        })
-                    })
-                    .collect();
-                serde_json::to_string_pretty(&serde_json::json!({
-                    "schema": "lightmeter.adapters/1", "adapters": adapters,
-                }))? + "\n"
+                let adapters = found.iter().map(listed).collect();
+                AdaptersDocument { schema: SCHEMA.into(), adapters }.to_json()?
             }
             Format::Text => {
                 let mut text = String::new();
@@ -58,5 +49,48 @@ impl Adapters {
         };
         emit(&text, None)?;
         Ok(Status::Success)
+    }
+}
+
+fn listed(adapter: &Adapter) -> ListedAdapter {
+    let known = known(&adapter.device, &adapter.driver);
+    ListedAdapter {
+        name: adapter.name.clone(),
+        device: adapter.device.clone(),
+        backend: adapter.backend.into(),
+        driver: adapter.driver.clone(),
+        is_cpu: adapter.is_cpu,
+        subpixel_bits: known.subpixel_bits,
+        deviations: known.deviations.iter().map(|&one| accuracy(one)).collect(),
+        blend_model: known.blend_model.map(|model| model.name().into()),
+        blend_deviations: known.blend_deviations.iter().map(|&one| blending(one)).collect(),
+    }
+}
+
+fn accuracy(deviation: &Deviation) -> AccuracyDeviation {
+    AccuracyDeviation {
+        name: deviation.name.into(),
+        driver: deviation.driver.into(),
+        from: deviation.from,
+        until: deviation.until,
+        reason: deviation.reason.into(),
+        builtin: match deviation.builtin {
+            Builtin::Exp => BuiltinFunction::Exp,
+            Builtin::Exp2 => BuiltinFunction::Exp2,
+        },
+        low: deviation.low,
+        high: deviation.high,
+        factor: deviation.factor,
+        witness: deviation.witness.into(),
+    }
+}
+
+fn blending(deviation: &BlendDeviation) -> BlendUnitDeviation {
+    BlendUnitDeviation {
+        name: deviation.name.into(),
+        driver: deviation.driver.into(),
+        reason: deviation.reason.into(),
+        from: deviation.from,
+        becomes_nan: deviation.becomes_nan,
     }
 }

@@ -4,10 +4,11 @@ use super::options::Format;
 use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
+use lightmeter::document::Document as _;
+use lightmeter::document::effects::{DrawEffects, EffectReason, EffectsDocument, SCHEMA};
 use lightmeter::scene::{Loaded, load};
 use lightmeter_scene::effects::{Called, Reason, ReasonSubject, effects};
 use lightmeter_scene::frame::Frame;
-use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -30,7 +31,7 @@ impl Effects {
         let called = effects(&loaded.frame);
         let text = match self.format {
             Format::Text => in_words(&loaded, &called)?,
-            Format::Json => serde_json::to_string_pretty(&in_json(&loaded, &called))? + "\n",
+            Format::Json => document(&loaded, &called).to_json()?,
             Format::Junit => bail!("effects are written as text or json"),
         };
         emit(&text, self.out.as_deref())?;
@@ -55,30 +56,28 @@ fn in_words(loaded: &Loaded, called: &[Called]) -> anyhow::Result<String> {
     Ok(text)
 }
 
-fn in_json(loaded: &Loaded, called: &[Called]) -> Value {
+fn document(loaded: &Loaded, called: &[Called]) -> EffectsDocument {
     let frame = &loaded.frame;
-    let draws = frame.draws.iter().zip(called).map(|(draw, called)| {
-        let reasons = called.reasons.iter().map(|reason| {
-            let key = if matches!(reason.subject, ReasonSubject::Light(_)) { "light" } else { "effect" };
-            let name = match reason.subject {
-                ReasonSubject::Effect(effect) => effect.name(),
-                ReasonSubject::Light(place) => &frame.lights[place].name,
-            };
-            json!({ key: name, "called": reason.called, "why": reason.why })
-        });
-        json!({
-            "draw": draw.name,
-            "effects": called.effects.iter().map(|effect| effect.name()).collect::<Vec<_>>(),
-            "lights": called.lights.iter().map(|&light| frame.lights[light].name.as_str()).collect::<Vec<_>>(),
-            "reasons": reasons.collect::<Vec<_>>(),
-        })
+    let light = |place: usize| frame.lights[place].name.clone();
+    let reason = |reason: &Reason| {
+        let (effect, light) = match reason.subject {
+            ReasonSubject::Effect(effect) => (Some(effect.name().into()), None),
+            ReasonSubject::Light(place) => (None, Some(light(place))),
+        };
+        EffectReason { effect, light, called: reason.called, why: reason.why.clone() }
+    };
+    let draws = frame.draws.iter().zip(called).map(|(draw, called)| DrawEffects {
+        draw: draw.name.clone(),
+        effects: called.effects.iter().map(|effect| effect.name().into()).collect(),
+        lights: called.lights.iter().map(|&place| light(place)).collect(),
+        reasons: called.reasons.iter().map(reason).collect(),
     });
-    json!({
-        "schema": "lightmeter.effects/1",
-        "scene": loaded.name,
-        "title": loaded.title,
-        "draws": draws.collect::<Vec<_>>(),
-    })
+    EffectsDocument {
+        schema: SCHEMA.into(),
+        scene: loaded.name.clone(),
+        title: loaded.title.clone(),
+        draws: draws.collect(),
+    }
 }
 
 fn subject(frame: &Frame, subject: ReasonSubject) -> String {

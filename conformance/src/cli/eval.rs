@@ -8,8 +8,9 @@ use lightmeter::arithmetic::{Accept, Profile};
 use lightmeter::cases::Input;
 use lightmeter::cases::blend::{aliases, separate_of};
 use lightmeter::document::Number;
+use lightmeter::document::eval::{EvalAnswer, EvalRequest};
 use lightmeter::select::{Member, catalogue, separate_member};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::io::{BufRead as _, Write as _};
 
@@ -39,7 +40,7 @@ impl Eval {
                 continue;
             }
             match self.answer(&line, &by_id) {
-                Ok(answer) => writeln!(out, "{answer}")?,
+                Ok(answer) => writeln!(out, "{}", serde_json::to_string(&answer)?)?,
                 Err(error) => {
                     out.flush()?;
                     bail!("line {number}: {error:#}");
@@ -50,27 +51,14 @@ impl Eval {
         Ok(Status::Success)
     }
 
-    fn answer(&self, line: &str, by_id: &HashMap<String, &Member>) -> anyhow::Result<Value> {
-        let request: Value = serde_json::from_str(line).context("not JSON")?;
-        let Value::Object(request) = request else {
-            bail!("expected an object such as {{\"id\": 1, \"formula\": \"fog/linear\", \"inputs\": {{…}}}}");
-        };
-        for name in request.keys() {
-            if !["id", "formula", "inputs"].contains(&name.as_str()) {
-                bail!("field `{name}` is not known; expected `id`, `formula` and `inputs`");
-            }
-        }
-        let id = request.get("id").context("field `id` is missing; expected a string or a number")?;
-        let formula = request.get("formula").and_then(Value::as_str);
-        let formula =
-            formula.context("field `formula` is missing or not a string; expected one such as \"fog/linear\"")?;
+    fn answer(&self, line: &str, by_id: &HashMap<String, &Member>) -> anyhow::Result<EvalAnswer> {
+        let EvalRequest { id, formula, inputs } = EvalRequest::read(line)?;
         // Of the states separate for alpha the catalogue has some; any can be named.
-        let separate = separate_formula(formula);
-        let member = by_id.get(formula).copied().or(separate.as_ref());
+        let separate = separate_formula(&formula);
+        let member = by_id.get(&formula).copied().or(separate.as_ref());
         let member =
             member.with_context(|| format!("field `formula`: no formula `{formula}`; see `lightmeter list`"))?;
-        let inputs = request.get("inputs").and_then(Value::as_object);
-        let inputs = row(member, inputs.context("field `inputs` is missing or not an object of numbers by name")?)?;
+        let inputs = row(member, &inputs)?;
 
         let outputs = member.spec.output_len();
         let (mut value, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
@@ -83,13 +71,13 @@ impl Eval {
             .into_iter()
             .fold(0.0, |most: f64, c| if c.is_nan() || most.is_nan() { f64::NAN } else { most.max(c) });
         let numbers = |f: &dyn Fn(usize) -> f64| (0..outputs).map(|k| Number(f(k))).collect::<Vec<_>>();
-        Ok(json!({
-            "id": id,
-            "value": numbers(&|k| value[k]),
-            "low": numbers(&|k| legal[k].low()),
-            "high": numbers(&|k| legal[k].high()),
-            "condition": Number(condition),
-        }))
+        Ok(EvalAnswer {
+            id,
+            value: numbers(&|k| value[k]),
+            low: numbers(&|k| legal[k].low()),
+            high: numbers(&|k| legal[k].high()),
+            condition: Number(condition),
+        })
     }
 }
 

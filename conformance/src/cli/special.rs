@@ -7,8 +7,9 @@ use clap::Args;
 use lightmeter::adapters;
 use lightmeter::document::Document as _;
 use lightmeter::document::special::SpecialReport;
+use lightmeter::document::special::record::SpecialRecord;
 use lightmeter::report::special;
-use lightmeter::special::run::{record, run};
+use lightmeter::special::run::run;
 use lightmeter::subject_gpu::code_of;
 use std::path::{Path, PathBuf};
 
@@ -63,8 +64,7 @@ impl Special {
 fn write_records(report: &SpecialReport, dir: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
     for adapter in &report.adapters {
-        let text = serde_json::to_string_pretty(&record(report, adapter))? + "\n";
-        emit(&text, Some(&dir.join(format!("{}.json", adapter.name))))?;
+        emit(&SpecialRecord::of(report, adapter).to_json()?, Some(&dir.join(format!("{}.json", adapter.name))))?;
     }
     Ok(())
 }

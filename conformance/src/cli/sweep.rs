@@ -8,12 +8,13 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use lightmeter::arithmetic::Profile;
 use lightmeter::cases::Stage;
 use lightmeter::document::Document as _;
+use lightmeter::document::sweep::presets::{ListedPreset, PresetsDocument, SCHEMA};
 use lightmeter::document::sweep::{Description, SweepDocument};
 use lightmeter::document::thousands;
 use lightmeter::report::sweep as text;
 use lightmeter::select::{Shard, catalogue};
 use lightmeter::sweep::file::{self, DocumentError, name_of};
-use lightmeter::sweep::{Asked, Free, Over, PRESETS, SweepError, SweepPlan, describe, span, sweep};
+use lightmeter::sweep::{Asked, Free, Over, PRESETS, Preset, SweepError, SweepPlan, describe, span, sweep};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -266,14 +267,13 @@ fn presets(format: Format) -> anyhow::Result<String> {
     match format {
         Format::Junit => bail!("the list is written as text or json"),
         Format::Json => {
-            let rows: Vec<_> = PRESETS
-                .iter()
-                .map(|preset| {
-                    serde_json::json!({ "formula": preset.formula, "over": range(preset.free), "what": preset.what })
-                })
-                .collect();
-            Ok(serde_json::to_string_pretty(&serde_json::json!({ "schema": "lightmeter.presets/1", "presets": rows }))?
-                + "\n")
+            let listed = |preset: &Preset| ListedPreset {
+                formula: preset.formula.into(),
+                over: range(preset.free),
+                what: preset.what.into(),
+            };
+            let presets = PRESETS.iter().map(listed).collect();
+            Ok(PresetsDocument { schema: SCHEMA.into(), presets }.to_json()?)
         }
         Format::Text => {
             let mut out = String::new();
