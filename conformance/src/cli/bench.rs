@@ -9,8 +9,10 @@ use lightmeter::arithmetic::Profile;
 use lightmeter::bench::{BenchOptions, bench};
 use lightmeter::document::Document as _;
 use lightmeter::document::bench::BenchDocument;
+use lightmeter::document::bench::recommendation::Inputs;
 use lightmeter::filter::Filter;
-use lightmeter::report::bench::recommend::{self, Inputs, Limit, recommend};
+use lightmeter::options::Progress;
+use lightmeter::report::bench::recommend::{self, Limit, recommend};
 use lightmeter::report::bench::{page, text};
 use lightmeter::scene::load;
 use lightmeter::select::catalogue;
@@ -142,7 +144,7 @@ impl Bench {
             (Some(limit), format) => {
                 let recommendation = recommend(document, limit, self.inputs);
                 match format {
-                    Format::Json => out = serde_json::to_string_pretty(&recommendation)? + "\n",
+                    Format::Json => out = recommendation.to_json()?,
                     Format::Text => recommend::write(&recommendation, &mut out)?,
                     Format::Markdown => unreachable!("it was refused"),
                 }

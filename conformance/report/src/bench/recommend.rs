@@ -1,16 +1,13 @@
-//! The cheapest row of each group whose largest error is at most so much: `lightmeter.recommendation/1`.
+//! The cheapest row of each group whose largest error is at most a limit: how it is chosen, and how it is written for people.
 
 use super::figures::{digits, error, time};
 use super::text::wrapped;
 use lightmeter_document::Number;
 use lightmeter_document::bench::pareto::refusal;
+use lightmeter_document::bench::recommendation::{Advice, Candidate, Inputs, Recommendation, SCHEMA};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Errors};
-use serde::Serialize;
 use std::fmt::{Display, Formatter, Result as Written, Write};
 use std::str::FromStr;
-
-/// The schema's name.
-pub const SCHEMA: &str = "lightmeter.recommendation/1";
 
 /// How large an error may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,88 +86,6 @@ impl Limit {
     }
 }
 
-/// The inputs that a limit must hold on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Inputs {
-    /// Random ones.
-    Random,
-    /// Hard cases and those near them.
-    Hard,
-    /// Both; where a group has no hard cases, random ones alone.
-    #[default]
-    All,
-}
-
-/// Inputs of a name that is none.
-#[derive(Debug, PartialEq, Eq, thiserror::Error)]
-#[error("inputs `{0}` are none; expected random, hard or all")]
-pub struct InputsError(String);
-
-impl FromStr for Inputs {
-    type Err = InputsError;
-
-    fn from_str(text: &str) -> Result<Self, InputsError> {
-        match text {
-            "random" => Ok(Self::Random),
-            "hard" => Ok(Self::Hard),
-            "all" => Ok(Self::All),
-            _ => Err(InputsError(text.to_owned())),
-        }
-    }
-}
-
-/// What is recommended.
-#[derive(Clone, Debug, Serialize)]
-pub struct Recommendation {
-    /// [`SCHEMA`].
-    pub schema: &'static str,
-    /// The limit, as it would be asked for.
-    pub limit: String,
-    /// The inputs that it must hold on.
-    pub inputs: Inputs,
-    /// BenchGroup by group.
-    pub groups: Vec<Advice>,
-    #[serde(skip)]
-    unit: &'static str,
-}
-
-/// What is recommended of a group.
-#[derive(Clone, Debug, Serialize)]
-pub struct Advice {
-    /// The adapter.
-    pub adapter: String,
-    /// The group.
-    pub group: String,
-    /// What is compared.
-    pub title: String,
-    /// What a time is of.
-    pub unit: String,
-    /// The cheapest row within the limit.
-    pub chosen: Option<Candidate>,
-    /// Where none is, the row that misses the limit by the least.
-    pub closest: Option<Candidate>,
-    /// Where none is chosen, why.
-    pub reason: Option<String>,
-}
-
-/// A row that could be taken.
-#[derive(Clone, Debug, Serialize)]
-pub struct Candidate {
-    /// Its name.
-    pub row: String,
-    /// What it is.
-    pub what: String,
-    /// Nanoseconds.
-    pub ns: f64,
-    /// Over the baseline.
-    pub ratio: f64,
-    /// From where to where that goes.
-    pub spread: [f64; 2],
-    /// The largest error on those inputs, in the limit's unit.
-    pub error: Number,
-}
-
 /// The cheapest row of each group on each adapter whose largest error on `inputs` is at most `limit`.
 #[must_use]
 pub fn recommend(document: &BenchDocument, limit: Limit, inputs: Inputs) -> Recommendation {
@@ -179,7 +94,7 @@ pub fn recommend(document: &BenchDocument, limit: Limit, inputs: Inputs) -> Reco
         .iter()
         .flat_map(|measured| measured.groups.iter().map(|group| advice(&measured.adapter, group, limit, inputs)));
     let groups = groups.collect();
-    Recommendation { schema: SCHEMA, limit: limit.to_string(), inputs, groups, unit: limit.unit() }
+    Recommendation { schema: SCHEMA.into(), limit: limit.to_string(), inputs, groups }
 }
 
 fn advice(adapter: &str, group: &BenchGroup, limit: Limit, inputs: Inputs) -> Advice {
@@ -232,6 +147,7 @@ pub fn write(recommendation: &Recommendation, out: &mut impl Write) -> Written {
         Inputs::Hard => "hard cases",
         Inputs::All => "random inputs and hard cases",
     };
+    let unit = recommendation.limit.parse().map_or("", Limit::unit);
     writeln!(out, "the cheapest whose largest error on {inputs} is at most {}", recommendation.limit)?;
     let width = recommendation.groups.iter().map(|one| one.group.chars().count()).max().unwrap_or(0).min(44);
     let mut adapter = "";
@@ -245,7 +161,7 @@ pub fn write(recommendation: &Recommendation, out: &mut impl Write) -> Written {
             (Some(chosen), _) => {
                 let (took, ratio) = (time(chosen.ns), digits(chosen.ratio));
                 write!(head, "{:<22} {took:>9} {ratio:>7} × baseline   ", chosen.row)?;
-                format!("errs by {}{}", error(chosen.error.0), recommendation.unit)
+                format!("errs by {}{unit}", error(chosen.error.0))
             }
             (None, reason) => format!("none: {}", reason.as_deref().unwrap_or_default()),
         };
@@ -258,6 +174,7 @@ pub fn write(recommendation: &Recommendation, out: &mut impl Write) -> Written {
 mod tests {
     use super::super::synthetic::{document, errors, group, row};
     use super::*;
+    use lightmeter_document::Document as _;
 
     #[test]
     fn limits_are_read_with_their_units() {
@@ -369,9 +286,8 @@ mod tests {
             assert!(named.is_none_or(|row| line.contains(&row.row)), "{line}");
         }
         assert!(text.lines().all(|line| line.chars().count() <= 120));
-        let json = serde_json::to_value(&found).expect("it can be written");
-        assert_eq!(json["schema"], SCHEMA);
-        assert_eq!((json["limit"].as_str(), json["inputs"].as_str()), (Some("4ulp"), Some("all")));
-        assert_eq!(json["groups"].as_array().map(Vec::len), Some(found.groups.len()));
+        let json = found.to_json().expect("it can be written");
+        assert_eq!(Recommendation::read(&json).expect("it is read again"), found);
+        assert_eq!((found.limit.as_str(), found.inputs), ("4ulp", Inputs::All));
     }
 }
