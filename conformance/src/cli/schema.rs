@@ -2,14 +2,21 @@
 
 use super::{Status, emit};
 use clap::{Args, ValueEnum};
-use lightmeter::document::Document as _;
+use lightmeter::document::adapters::AdaptersDocument;
 use lightmeter::document::bench::BenchDocument;
+use lightmeter::document::bench::recommendation::Recommendation;
+use lightmeter::document::effects::EffectsDocument;
 use lightmeter::document::gate::GateReport;
+use lightmeter::document::list::{CasesDocument, FormulasDocument};
 use lightmeter::document::pack::Manifest;
 use lightmeter::document::run::Report;
 use lightmeter::document::selftest::SelftestDocument;
+use lightmeter::document::show::ShowDocument;
 use lightmeter::document::special::SpecialReport;
+use lightmeter::document::special::record::SpecialRecord;
 use lightmeter::document::sweep::SweepDocument;
+use lightmeter::document::sweep::presets::PresetsDocument;
+use lightmeter::document::{Document as _, eval};
 use lightmeter_scene::model::Scene;
 use std::path::PathBuf;
 
@@ -41,6 +48,24 @@ enum Of {
     Bench,
     /// The JSON of `selftest`
     Selftest,
+    /// The JSON of `list`
+    Cases,
+    /// The JSON of `list --formulas`
+    Formulas,
+    /// The JSON of `show`
+    Show,
+    /// The JSON of `adapters`
+    Adapters,
+    /// The JSON of `effects`
+    Effects,
+    /// A line that `eval` reads or writes
+    Eval,
+    /// The JSON of `sweep` without a formula, the list of ready-made sweeps
+    Presets,
+    /// The JSON of `bench --recommend`
+    Recommendation,
+    /// A record that `special --record` writes
+    SpecialRecord,
 }
 
 impl Schema {
@@ -54,6 +79,15 @@ impl Schema {
             Of::Sweep => SweepDocument::schema(),
             Of::Bench => BenchDocument::schema(),
             Of::Selftest => SelftestDocument::schema(),
+            Of::Cases => CasesDocument::schema(),
+            Of::Formulas => FormulasDocument::schema(),
+            Of::Show => ShowDocument::schema(),
+            Of::Adapters => AdaptersDocument::schema(),
+            Of::Effects => EffectsDocument::schema(),
+            Of::Eval => eval::schema(),
+            Of::Presets => PresetsDocument::schema(),
+            Of::Recommendation => Recommendation::schema(),
+            Of::SpecialRecord => SpecialRecord::schema(),
         };
         emit(&(serde_json::to_string_pretty(&schema)? + "\n"), self.out.as_deref())?;
         Ok(Status::Success)
