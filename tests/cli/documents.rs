@@ -1,32 +1,64 @@
 //! What goes out as JSON is as its schema says, is read again by the types that wrote it, and written once more it is the same.
 
 use super::{code, command, lightmeter, stderr};
+use lightmeter::document::Document;
+use lightmeter::document::adapters::AdaptersDocument;
 use lightmeter::document::bench::BenchDocument;
+use lightmeter::document::bench::recommendation::Recommendation;
+use lightmeter::document::effects::EffectsDocument;
+use lightmeter::document::eval::{EvalAnswer, EvalRequest};
 use lightmeter::document::gate::GateReport;
+use lightmeter::document::list::{CasesDocument, Domain, FormulasDocument, ListedCases};
 use lightmeter::document::pack::Manifest;
 use lightmeter::document::run::Report;
 use lightmeter::document::selftest::SelftestDocument;
+use lightmeter::document::show::{ShowDocument, ShownAnswer};
 use lightmeter::document::special::SpecialReport;
+use lightmeter::document::special::record::SpecialRecord;
 use lightmeter::document::sweep::SweepDocument;
+use lightmeter::document::sweep::presets::PresetsDocument;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+/// What `lightmeter schema` prints and `docs/schemas/` has, but for the scene.
+const NAMES: [&str; 16] = [
+    "run",
+    "special",
+    "gate",
+    "pack",
+    "sweep",
+    "bench",
+    "selftest",
+    "cases",
+    "formulas",
+    "show",
+    "adapters",
+    "effects",
+    "eval",
+    "presets",
+    "recommendation",
+    "special-record",
+];
+
 /// Runs a command, reads its JSON by a type and writes it again.
-fn read_and_written<T: Serialize + DeserializeOwned>(args: &[&str]) -> (T, Value) {
+fn read_and_written<T: Document>(args: &[&str]) -> (T, Value) {
     let output = lightmeter(&[args, &["--format", "json"]].concat());
     assert!(code(&output) <= 1, "{args:?}: {}", stderr(&output));
     again(&output.stdout)
 }
 
-/// Holds a document to its schema, reads it by a type and writes it again.
-fn again<T: Serialize + DeserializeOwned>(text: &[u8]) -> (T, Value) {
-    let written: Value = serde_json::from_slice(text).expect("it is JSON");
-    let schema = schema(written["schema"].as_str().expect("a document names its schema"));
+/// Compares a document with its schema, reads it by a type and writes it again.
+fn again<T: Document>(text: &[u8]) -> (T, Value) {
+    let text = std::str::from_utf8(text).expect("it is UTF-8");
+    let written: Value = serde_json::from_str(text).expect("it is JSON");
+    assert_eq!(written["schema"], T::SCHEMA, "{}", T::WHAT);
+    let schema = schema(T::SCHEMA);
     assert_eq!(departure(&schema, &schema, &written, ""), None);
-    let read: T = serde_json::from_slice(text).unwrap_or_else(|error| panic!("{}: {error}", written["schema"]));
-    assert_eq!(serde_json::to_value(&read).expect("it is written"), written);
+    let read = T::read(text).unwrap_or_else(|error| panic!("{}: {error}", T::SCHEMA));
+    assert_eq!(read.to_json().expect("it is written"), text);
     (read, written)
 }
 
@@ -178,6 +210,113 @@ fn a_self_test_is_read_again() {
 }
 
 #[test]
+fn cases_and_formulas_are_read_again() {
+    let filters =
+        ["fog", "blend/special", "vector/reflect/random/000003", "special/nan", "scene/flat/0-0", "deviation"];
+    let (document, _) = read_and_written::<CasesDocument>(&[&["list"], &filters[..]].concat());
+    let (mut kinds, mut formulas) = ([0; 4], vec![]);
+    for cases in document.cases {
+        let kind = match cases {
+            ListedCases::Formula(formula) => {
+                formulas.push(formula);
+                0
+            }
+            ListedCases::Table(_) => 1,
+            ListedCases::Scene(_) => 2,
+            ListedCases::Deviation(_) => 3,
+        };
+        kinds[kind] += 1;
+    }
+    assert!(kinds.iter().all(|&count| count > 0), "{kinds:?}");
+    assert!(formulas.iter().any(|one| one.first.is_some()) && formulas.iter().any(|one| one.ids.is_some()));
+    let hard = || formulas.iter().flat_map(|one| &one.hard);
+    assert!(hard().any(|one| one.naive.is_some()) && hard().any(|one| one.condition.is_none()));
+
+    let (document, _) = read_and_written::<FormulasDocument>(&["list", "--formulas"]);
+    assert!(document.formulas.iter().any(|one| one.stable.is_some()));
+    assert!(document.formulas.iter().any(|one| !one.aliases.is_empty()));
+    let mut domains = document.formulas.iter().flat_map(|one| &one.inputs).map(|input| input.domain);
+    assert!(domains.any(|domain| matches!(domain, Domain::Transform(..))), "all formulas are listed");
+}
+
+#[test]
+fn what_is_shown_is_read_again() {
+    let show = |id: &str, more: &[&str]| read_and_written::<ShowDocument>(&[&["show", id], more].concat()).0;
+    let case = |id: &str, more: &[&str]| match show(id, more) {
+        ShowDocument::Case(case) => case,
+        other => panic!("{id} is {other:?}"),
+    };
+    let hard = case("fog/opacity-expm1/hard/one-in-1e7", &["--adapter", "lavapipe"]);
+    assert!(!hard.answers.is_empty() && !hard.forms.is_empty() && !hard.outputs.is_empty());
+    assert!(!case("fog/linear/hard/at-dmax", &["--adapter", "cpu"]).steps.is_empty());
+    let targets = ["--target", "rgba8unorm", "--adapter"];
+    let unit = |answer: &ShownAnswer| answer.target.is_some();
+    let blended = |adapter: &str| case("blend/min/src-alpha/one/0007", &[&targets[..], &[adapter]].concat()).answers;
+    assert!(blended("lavapipe").iter().any(|answer| unit(answer) && answer.values.is_some()));
+    assert!(blended("cpu").iter().any(|answer| !unit(answer) && answer.values.is_some()));
+    assert!(matches!(show("special/nan/keep-nan", &[]), ShowDocument::Probe(probe) if !probe.answers.is_empty()));
+    let skipped = show("special/nan/keep-nan", &["--adapter", "cpu"]);
+    assert!(matches!(skipped, ShowDocument::Probe(probe) if !probe.skipped.is_empty()));
+    for adapter in [&["--adapter", "lavapipe"][..], &[]] {
+        let pixel = show("scene/teapot/24-30", &[&["--size", "64"], adapter].concat());
+        assert!(matches!(pixel, ShowDocument::Pixel(pixel) if pixel.stages.len() > 2));
+    }
+}
+
+#[test]
+fn what_can_be_asked_for_is_read_again() {
+    let (adapters, _) = read_and_written::<AdaptersDocument>(&["adapters"]);
+    assert!(!adapters.adapters.is_empty());
+    let (effects, _) = read_and_written::<EffectsDocument>(&["effects", "scene/teapot"]);
+    let mut reasons = effects.draws.iter().flat_map(|draw| &draw.reasons);
+    assert!(reasons.all(|reason| reason.effect.is_some() != reason.light.is_some()));
+    let (presets, _) = read_and_written::<PresetsDocument>(&["sweep"]);
+    assert!(!presets.presets.is_empty());
+}
+
+/// Reads a line by a type, compares it with the schema of `eval`, and writes it again.
+fn line_again<T: Serialize + DeserializeOwned>(line: &str) -> T {
+    let schema = schema("lightmeter.eval/1");
+    let value: Value = serde_json::from_str(line).expect("it is JSON");
+    assert_eq!(departure(&schema, &schema, &value, ""), None);
+    let read: T = serde_json::from_str(line).unwrap_or_else(|error| panic!("{line}: {error}"));
+    assert_eq!(serde_json::to_string(&read).expect("it is written"), line);
+    read
+}
+
+#[test]
+fn lines_of_eval_are_read_again() {
+    for line in [super::LINE, &super::LINE.replace("\"a\"", "7").replace("[0,0,-5]", "[0,0,\"NaN\"]")] {
+        let request: EvalRequest = line_again(line);
+        assert_eq!(EvalRequest::read(line).expect("it is a request"), request);
+        let answer: EvalAnswer = line_again(super::stdout(&super::eval(line)).trim_end());
+        assert_eq!(answer.id, request.id);
+    }
+}
+
+#[test]
+fn a_recommendation_is_read_again() {
+    let args = ["bench", "technique/power", "--quick", "--inputs", "random", "--adapter", "lavapipe", "--recommend"];
+    let found = |limit: &str| read_and_written::<Recommendation>(&[&args[..], &[limit]].concat()).0;
+    assert!(found("1e-2").groups.iter().all(|group| group.chosen.is_some()));
+    assert!(found("0").groups.iter().all(|group| group.reason.is_some()));
+}
+
+#[test]
+fn a_record_of_special_values_is_read_again() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents/records");
+    let output = lightmeter(&["special", "--adapter", "lavapipe", "--record", folder.to_str().expect("UTF-8")]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let written = std::fs::read(folder.join("lavapipe.json")).expect("there is a record");
+    let (record, _) = again::<SpecialRecord>(&written);
+    assert!(record.results.len() > 100);
+    let published = Path::new(env!("CARGO_MANIFEST_DIR")).join("../conformance/judge/records/special");
+    for entry in published.read_dir().expect("there are records") {
+        again::<SpecialRecord>(&std::fs::read(entry.expect("an entry").path()).expect("it can be read"));
+    }
+}
+
+#[test]
 fn a_document_that_departs_from_its_schema_is_told() {
     type Change = (&'static str, fn(&mut Value));
     let (_, written) = read_and_written::<SweepDocument>(&["sweep", "fog/exp", "--adapter", "cpu", "--to", "1e-40"]);
@@ -200,7 +339,10 @@ fn a_document_that_departs_from_its_schema_is_told() {
 #[test]
 fn the_published_schemas_are_current() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace's root");
-    for name in ["run", "special", "gate", "pack", "sweep", "bench", "selftest"] {
+    let schemas = std::fs::read_dir(root.join("docs/schemas")).expect("the schemas are published");
+    let published = schemas.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned());
+    assert_eq!(published.collect::<BTreeSet<_>>(), NAMES.iter().map(|name| format!("{name}.json")).collect());
+    for name in NAMES {
         let path = format!("docs/schemas/{name}.json");
         let published = std::fs::read_to_string(root.join(&path)).expect("the schema is published");
         let current = super::stdout(&lightmeter(&["schema", name]));
