@@ -85,6 +85,9 @@ pub struct GateTotals {
     pub passed: u64,
     /// Failed.
     pub failed: u64,
+    /// Of them, those at which the renderer ended or hung.
+    #[serde(default)]
+    pub broken: u64,
     /// Failed as is expected.
     pub expected_failures: u64,
     /// Expectations none of whose cases failed, though one was to.
@@ -112,6 +115,9 @@ pub struct GateGroup {
     pub asked: u64,
     /// Failed.
     pub failed: u64,
+    /// Of them, those at which the renderer ended or hung.
+    #[serde(default)]
+    pub broken: u64,
     /// Of them, those that are expected to.
     pub expected_failures: u64,
     /// Skipped.
@@ -200,6 +206,15 @@ pub struct GateFailure {
     pub id: String,
     /// Its inputs, row by row of the formula's description.
     pub inputs: Vec<Number>,
+    /// The same by their names.
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
+    pub named: serde_json::Map<String, serde_json::Value>,
+    /// The units of those that have one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub units: BTreeMap<String, Word>,
+    /// The names of the outputs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outputs: Vec<String>,
     /// What the reference has.
     pub reference: Vec<Number>,
     /// From where to where values are legal.

@@ -3,6 +3,7 @@
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The schema of [`Report`].
 pub const SCHEMA: &str = "lightmeter.run/1";
@@ -316,6 +317,9 @@ pub struct Failure {
     pub output: String,
     /// The inputs by name.
     pub inputs: serde_json::Map<String, serde_json::Value>,
+    /// The units of those that have one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub units: BTreeMap<String, Word>,
     /// Their bits.
     pub inputs_hex: serde_json::Map<String, serde_json::Value>,
     /// The f64 reference.

@@ -5,6 +5,8 @@ use super::error::ProcessError;
 use super::ledger::Ledger;
 use super::pack;
 use super::problems::note;
+use super::process::Ending;
+use lightmeter_document::event::Stop;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -74,7 +76,12 @@ impl Answers {
     ///
     /// # Errors
     /// Where the file cannot be read.
-    fn judge(mut self, ledger: &mut Ledger<'_>, progress: &mut impl FnMut(u64)) -> Result<(), pack::PackError> {
+    fn judge(
+        mut self,
+        ledger: &mut Ledger<'_>,
+        stop: &Stop,
+        progress: &mut impl FnMut(u64),
+    ) -> Result<(), pack::PackError> {
         let mut lines = std::mem::take(&mut self.first);
         loop {
             let next = self.next()?;
@@ -92,7 +99,7 @@ impl Answers {
                 progress(lines.len() as u64);
                 lines.clear();
             }
-            if is_end {
+            if is_end || stop.is_set() {
                 return Ok(());
             }
         }
@@ -106,8 +113,9 @@ impl Answers {
 pub fn judge(
     ledger: &mut Ledger<'_>,
     all: Vec<Answers>,
+    stop: &Stop,
     progress: &mut impl FnMut(u64),
-) -> Result<Hello, ProcessError> {
+) -> Result<Ending, ProcessError> {
     let mut who: Option<Hello> = None;
     let is_one = all.len() == 1;
     for mut answers in all {
@@ -117,7 +125,7 @@ pub fn judge(
             let first = hello.unwrap_or_else(Hello::everything);
             ledger.begin(&first)?;
             who = Some(first);
-            answers.judge(ledger, progress)?;
+            answers.judge(ledger, stop, progress)?;
             continue;
         };
         if hello.is_some_and(|hello| hello != *first) {
@@ -125,8 +133,10 @@ pub fn judge(
             note(&mut ledger.problems, "malformed", || what);
         }
         ledger.begin_again();
-        answers.judge(ledger, progress)?;
-        ledger.end_again();
+        answers.judge(ledger, stop, progress)?;
+        if !stop.is_set() {
+            ledger.end_again();
+        }
     }
-    Ok(who.unwrap_or_default())
+    Ok(Ending { hello: who.unwrap_or_default(), signal: stop.signal(), ..Ending::default() })
 }

@@ -12,6 +12,7 @@ use super::verdict::{self, Verdicts};
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::Number;
 use lightmeter_document::gate::{GateFailure, Problems};
+use lightmeter_document::run::Totals;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::Path;
@@ -271,13 +272,14 @@ impl<'a> Ledger<'a> {
                 }
                 let is_expected = self.expect(place, has_failed);
                 let (plan, profile) = (self.plan, self.profile);
+                let is_random = plan.formulas[formula].is_random(case);
                 let tally = self.tally(place);
                 tally.values(*verdicts);
                 tally.expected += u64::from(is_expected);
                 if has_failed {
                     tally.verdicts.fail_in_turn(place, || verdict::failure(plan, formula, case, &values, &profile));
                 }
-                tally.keep(case, &values, &inputs, has_failed);
+                tally.keep(case, &values, &inputs, [is_random, has_failed]);
             }
             Judged::Image(scene, file) => self.image(scene, &file, folder),
         }
@@ -330,6 +332,7 @@ impl<'a> Ledger<'a> {
         let tally = self.tally(place);
         tally.failed += 1;
         tally.unjudged += 1;
+        tally.broken += u64::from(state == CaseState::Broken);
         tally.expected += u64::from(is_expected);
         tally.verdicts.fail_in_turn(place, || verdict::unjudged(id, clipped(message)));
     }
@@ -363,17 +366,15 @@ impl<'a> Ledger<'a> {
         if found.totals.failed == 0 {
             return;
         }
+        let Totals { failed, verdicts, .. } = found.totals;
+        let problem = format!("{failed} of {verdicts} components of pixels are outside of what is legal");
         tally.verdicts.fail_in_turn(place, || GateFailure {
-            id: format!("{id}/{}", found.worst),
-            inputs: vec![],
             reference: found.reference.map(Number).to_vec(),
             interval: found.interval.map(|ends| ends.map(Number)).to_vec(),
             value: found.value.map(Number).to_vec(),
+            outputs: ["r", "g", "b", "a"].map(String::from).to_vec(),
             error_ulp: Number(found.error_max),
-            problem: Some(format!(
-                "{} of {} components of pixels are outside of what is legal",
-                found.totals.failed, found.totals.verdicts
-            )),
+            ..verdict::unjudged(format!("{id}/{}", found.worst), problem)
         });
     }
 }

@@ -59,7 +59,7 @@ fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {
     let spec = &plan.member(formula).spec;
     let value = |name: &'static str, shape: ValueShape, unit: &'static str| PackedValue {
         name: name.into(),
-        shape: format!("{shape:?}").to_lowercase().into(),
+        shape: shape.name().into(),
         unit: unit.into(),
     };
     PackedFormula {

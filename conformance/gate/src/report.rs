@@ -33,6 +33,7 @@ pub fn report(ledger: &mut Ledger<'_>, outcome: Ending, command: String, seconds
     for (k, (tally, (group, smallest))) in ledger.tallies.iter().zip(told).enumerate() {
         totals.asked += tally.asked;
         totals.failed += tally.failed;
+        totals.broken += tally.broken;
         totals.expected_failures += tally.expected;
         totals.skipped += tally.skipped;
         totals.missing += tally.missing;
@@ -142,6 +143,7 @@ fn group(ledger: &Ledger<'_>, k: usize, tally: &AnswerTally) -> (GateGroup, Opti
         id,
         asked: tally.asked,
         failed: tally.failed,
+        broken: tally.broken,
         expected_failures: tally.expected,
         skipped: tally.skipped,
         missing: tally.missing,

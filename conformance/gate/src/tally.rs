@@ -8,7 +8,7 @@ use lightmeter_document::run::Totals;
 use lightmeter_judge::formula::{KEPT_FAILING, KEPT_PASSING};
 use lightmeter_judge::sample::Sample;
 use lightmeter_judge::tally::Tally;
-use lightmeter_judge::{simplicity, worse};
+use lightmeter_judge::{telling, worse};
 
 /// Reasons of skips that are kept.
 const KEPT_REASONS: usize = 16;
@@ -39,6 +39,8 @@ pub struct AnswerTally {
     pub missing: u64,
     /// Failed cases whose answer could not be judged.
     pub unjudged: u64,
+    /// Cases at which the renderer ended or hung.
+    pub broken: u64,
     /// Failed cases that are expected to.
     pub expected: u64,
     /// What explains the failures of a scene.
@@ -65,6 +67,7 @@ impl AnswerTally {
             smallest: None,
             missing: 0,
             unjudged: 0,
+            broken: 0,
             expected: 0,
             diagnosis: None,
             undeclared: None,
@@ -115,9 +118,9 @@ impl AnswerTally {
     }
 
     /// Keeps a row for the diagnosis.
-    pub(super) fn keep(&mut self, case: usize, values: &[f32], inputs: &[f32], has_failed: bool) {
+    pub(super) fn keep(&mut self, case: usize, values: &[f32], inputs: &[f32], [is_random, has_failed]: [bool; 2]) {
         if has_failed {
-            let simple = simplicity(inputs);
+            let simple = telling(inputs, is_random);
             if self.smallest.as_ref().is_none_or(|(least, row)| (simple, case) < (*least, row.case)) {
                 self.smallest = Some((simple, AnswerRow { case, values: values.to_vec() }));
             }

@@ -4,8 +4,10 @@ use super::plan::{CasePlace, GatePlan};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_document::Number;
 use lightmeter_document::gate::GateFailure;
+use lightmeter_judge::formula::{by_name, units};
 use lightmeter_judge::tally::Tally;
 use lightmeter_judge::{Outcome, Verdict, judge};
+use std::collections::BTreeMap;
 
 /// The verdicts of a case together.
 #[derive(Clone, Debug, Default)]
@@ -64,12 +66,15 @@ pub fn values(plan: &GatePlan, formula: usize, case: usize, values: &[f32], prof
 #[must_use]
 pub fn failure(plan: &GatePlan, formula: usize, case: usize, values: &[f32], profile: &Profile) -> GateFailure {
     let expected = ExpectedCase::new(plan, formula, case, profile);
-    let place = CasePlace::Case { formula, case };
+    let (place, member) = (CasePlace::Case { formula, case }, plan.member(formula));
     let error = expected.judge(values, place, false).tally.error_max;
     let narrow = |numbers: &[f32]| numbers.iter().map(|&x| Number(x.into())).collect();
     GateFailure {
         id: plan.id(place),
         inputs: narrow(&expected.inputs),
+        named: by_name(member, &expected.inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
+        units: units(member),
+        outputs: (0..values.len()).map(|k| member.spec.output_name(k)).collect(),
         reference: expected.reference.into_iter().map(Number).collect(),
         interval: expected.legal.iter().map(|legal| [Number(legal.low()), Number(legal.high())]).collect(),
         value: narrow(values),
@@ -80,10 +85,13 @@ pub fn failure(plan: &GatePlan, formula: usize, case: usize, values: &[f32], pro
 
 /// A case whose answer cannot be judged.
 #[must_use]
-pub const fn unjudged(id: String, problem: String) -> GateFailure {
+pub fn unjudged(id: String, problem: String) -> GateFailure {
     GateFailure {
         id,
         inputs: vec![],
+        named: serde_json::Map::new(),
+        units: BTreeMap::new(),
+        outputs: vec![],
         reference: vec![],
         interval: vec![],
         value: vec![],

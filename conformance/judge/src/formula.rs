@@ -4,13 +4,14 @@ use crate::chunk::{Chunk, TASK};
 use crate::devices::Known;
 use crate::sample::Sample;
 use crate::tally::Tally;
-use crate::{Outcome, judge, simplicity};
+use crate::{Outcome, judge, telling};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member};
-use lightmeter_document::Number;
 use lightmeter_document::run::Failure;
+use lightmeter_document::{Number, Word};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Whose answers are judged, and by what.
 #[derive(Clone, Copy)]
@@ -139,7 +140,7 @@ fn judge_case(
         let place = RowPlace { member: chunk.of[case], case: chunk.cases[case], output };
         if verdict.outcome == Outcome::Fail && excused.is_none() {
             let inputs = chunk.inputs_of(case);
-            tally.fail(place, simplicity(inputs), || {
+            tally.fail(place, telling(inputs, is_random), || {
                 let seen = Seen { bits, reference, interval: legal[output], error_ulp: verdict.error };
                 failure(member, member.case_id(chunk.cases[case]), inputs, output, stage, by, &seen)
             });
@@ -199,6 +200,7 @@ fn failure(
         route: None,
         output: member.spec.output_name(output),
         inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
+        units: units(member),
         inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
         reference: Number(seen.reference),
         interval: [Number(seen.interval.low()), Number(seen.interval.high())],
@@ -208,6 +210,13 @@ fn failure(
         unwritten: seen.bits == lightmeter_scene::target::SENTINEL,
         error_ulp: Number(seen.error_ulp),
     }
+}
+
+/// The unit of each input that has one.
+#[must_use]
+pub fn units(member: &Member) -> BTreeMap<String, Word> {
+    let with_unit = member.spec.inputs.iter().filter(|input| !matches!(input.unit, "" | "1"));
+    with_unit.map(|input| (input.name.to_owned(), input.unit.into())).collect()
 }
 
 /// A row of inputs as an object: a number for a scalar, an array for the rest.
@@ -234,6 +243,7 @@ pub fn by_name(
 mod tests {
     use super::*;
     use crate::chunk::{draw, refer};
+    use crate::simplicity;
     use crate::tally::{KEPT, KEPT_FAILURES};
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::catalogue;

@@ -104,6 +104,12 @@ pub fn simplicity(inputs: &[f32]) -> u32 {
     inputs.iter().map(|&x| digits(x)).sum()
 }
 
+/// In which order failing cases explain most, the least first: ordinary inputs before hard ones, and then the simplest.
+#[must_use]
+pub fn telling(inputs: &[f32], is_random: bool) -> u32 {
+    simplicity(inputs) | u32::from(!is_random) << 31
+}
+
 /// Whether a margin or an error is worse than another: a NaN is worse than every number, so that no maximum loses one.
 pub fn is_worse(a: f64, than: f64) -> bool {
     !than.is_nan() && (a.is_nan() || a > than)

@@ -1,5 +1,6 @@
 //! A gate's result for people, for CI servers and for GitHub.
 
+use crate::text::plain;
 use lightmeter_document::Number;
 use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, cases};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
@@ -51,6 +52,7 @@ pub fn text(report: &GateReport, out: &mut impl Write) -> Result {
     let totals = &report.totals;
     write!(out, "\n{} of {} pass, {} fail", totals.passed, cases(totals.asked), totals.failed)?;
     for (count, what) in [
+        (totals.broken, "of them by ending or hanging"),
         (totals.expected_failures, "of them as expected"),
         (totals.unexpected_passes, "expected failures pass"),
         (totals.unstable, "are unstable"),
@@ -112,6 +114,9 @@ fn told(group: &GateGroup, report: &GateReport, out: &mut impl Write) -> Result 
         let was = if group.missing == 1 { "was" } else { "were" };
         writeln!(out, "  {} {was} never answered: {}", cases(group.missing), missing(group))?;
     }
+    if group.broken > 0 {
+        writeln!(out, "  at {} of them it ended or hung", group.broken)?;
+    }
     for what in group.diagnosis.iter().chain(&group.problem) {
         writeln!(out, "  {what}")?;
     }
@@ -137,24 +142,27 @@ fn missing(group: &GateGroup) -> String {
     if all.len() > MOST_NAMED { named + ", …" } else { named }
 }
 
-/// A failure.
+/// A failure: its inputs by name, and a row for each output, marked where its value is not legal.
 fn failure(failure: &GateFailure, out: &mut impl Write) -> Result {
-    let list = |numbers: &[Number]| numbers.iter().map(Number::to_string).collect::<Vec<_>>().join(", ");
     writeln!(out, "  {}", failure.id)?;
     if let Some(problem) = &failure.problem {
         writeln!(out, "    {problem}")?;
     }
-    if !failure.inputs.is_empty() {
-        writeln!(out, "    inputs    {}", list(&failure.inputs))?;
+    for (name, value) in &failure.named {
+        let unit = failure.units.get(name).map(|unit| format!("  {unit}")).unwrap_or_default();
+        writeln!(out, "    {name:<14} {}{unit}", plain(value))?;
     }
-    if !failure.value.is_empty() {
-        writeln!(out, "    value     {}", list(&failure.value))?;
-        writeln!(out, "    reference {}", list(&failure.reference))?;
-        let ends: Vec<String> = failure.interval.iter().map(|[low, high]| format!("[{low}, {high}]")).collect();
-        writeln!(out, "    legal     {}", ends.join(", "))?;
-        writeln!(out, "    lightmeter show {}", failure.id)?;
+    if failure.value.is_empty() {
+        return Ok(());
     }
-    Ok(())
+    for (k, [low, high]) in failure.interval.iter().enumerate() {
+        let (Some(value), Some(reference)) = (failure.value.get(k), failure.reference.get(k)) else { break };
+        let name = failure.outputs.get(k).map_or("value", String::as_str);
+        let is_legal = low.0 <= value.0 && value.0 <= high.0;
+        let mark = if is_legal { ' ' } else { '✗' };
+        writeln!(out, "  {mark} {name:<14} {value}, legal from {low} to {high}, reference {reference}")?;
+    }
+    writeln!(out, "    lightmeter show {}", failure.id)
 }
 
 fn listed(what: &str, all: &[String], out: &mut impl Write) -> Result {
@@ -168,6 +176,9 @@ fn listed(what: &str, all: &[String], out: &mut impl Write) -> Result {
 /// What is wrong with a group, on one line.
 fn sentence(group: &GateGroup) -> String {
     let mut said = format!("{} of {} fail", group.failed, cases(group.asked));
+    if group.broken > 0 {
+        said += &format!(", at {} of them it ended or hung", group.broken);
+    }
     if group.missing > 0 {
         said += &format!(", {} never answered: {}", group.missing, missing(group));
     }
@@ -183,8 +194,9 @@ fn smallest(group: &GateGroup, report: &GateReport) -> Option<String> {
     let failure = report.failures.iter().find(|failure| failure.id == *id)?;
     let list = |numbers: &[Number]| numbers.iter().map(Number::to_string).collect::<Vec<_>>().join(", ");
     let legal: Vec<String> = failure.interval.iter().map(|[low, high]| format!("[{low}, {high}]")).collect();
-    let inputs = if failure.inputs.is_empty() { String::new() } else { format!(" of {}", list(&failure.inputs)) };
-    Some(format!("{id}: {}{inputs}; legal: {}", list(&failure.value), legal.join(", ")))
+    let inputs: Vec<String> = failure.named.iter().map(|(name, value)| format!("{name} = {}", plain(value))).collect();
+    let of = if inputs.is_empty() { String::new() } else { format!(" of {}", inputs.join(", ")) };
+    Some(format!("{id}: {}{of}; legal: {}", list(&failure.value), legal.join(", ")))
 }
 
 /// What is wrong with all of it, each on a line with its title.

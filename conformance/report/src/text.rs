@@ -416,7 +416,8 @@ pub fn failure(failure: &Failure, out: &mut impl Write) -> Result {
     let target = failure.target.as_ref().map(|target| format!(" on {target}")).unwrap_or_default();
     writeln!(out, "FAIL {id} on {adapter}, {stage}{target}: {output}")?;
     for ((name, value), bits) in failure.inputs.iter().zip(failure.inputs_hex.values()) {
-        writeln!(out, "  {name:<14} {}  {}", plain(value), plain(bits))?;
+        let unit = failure.units.get(name).map(|unit| format!("  {unit}")).unwrap_or_default();
+        writeln!(out, "  {name:<14} {}  {}{unit}", plain(value), plain(bits))?;
     }
     match &failure.promise {
         Some(promise) => writeln!(out, "  {:<14} {promise}", "legal")?,
@@ -437,7 +438,7 @@ pub fn failure(failure: &Failure, out: &mut impl Write) -> Result {
 }
 
 /// JSON without quotes and commas: `[0.5 1]`.
-fn plain(value: &serde_json::Value) -> String {
+pub(crate) fn plain(value: &serde_json::Value) -> String {
     match value {
         serde_json::Value::Array(values) => format!("[{}]", values.iter().map(plain).collect::<Vec<_>>().join(" ")),
         serde_json::Value::String(text) => text.clone(),

@@ -11,7 +11,6 @@ use lightmeter::document::Document as _;
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::document::bench::recommendation::Inputs;
 use lightmeter::filter::Filter;
-use lightmeter::options::Progress;
 use lightmeter::report::bench::recommend::{self, Limit, recommend};
 use lightmeter::report::bench::{page, text};
 use lightmeter::scene::load;

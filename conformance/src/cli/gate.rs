@@ -10,6 +10,7 @@ use indicatif::ProgressBar;
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::document::Document as _;
+use lightmeter::document::event::Stop;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::pack::Choice;
 use lightmeter::filter::Filter;
@@ -114,12 +115,12 @@ impl Gate {
         let mut ledger = Ledger::new(&plan, self.profile.unwrap_or(&WGSL));
         ledger.is_held_to = self.profile.is_some();
         let bar = Bar::new(Some(plan.cases() + plan.scenes.len() as u64), "cases").bar;
+        let stop = stopped_by_signals()?;
         let outcome = match &self.exec {
-            Some(command) => self.process(&mut ledger, &plan, command, expectations, &bar),
+            Some(command) => self.process(&mut ledger, command, expectations, (&stop, &bar)),
             None => {
                 ledger.expected = expectations;
-                let hello = answers::judge(&mut ledger, answers, &mut |count| bar.inc(count));
-                hello.map(|hello| Ending { hello, ..Ending::default() }).map_err(Into::into)
+                answers::judge(&mut ledger, answers, &stop, &mut |count| bar.inc(count)).map_err(Into::into)
             }
         };
         bar.finish_and_clear();
@@ -159,10 +160,9 @@ impl Gate {
     fn process(
         &self,
         ledger: &mut Ledger<'_>,
-        plan: &GatePlan,
         command: &str,
         expectations: Expectations,
-        bar: &ProgressBar,
+        (stop, bar): (&Stop, &ProgressBar),
     ) -> anyhow::Result<Ending> {
         let own = std::env::temp_dir().join(format!("lightmeter-gate-{}", std::process::id()));
         let folder = self.images.clone().unwrap_or_else(|| own.clone());
@@ -176,8 +176,8 @@ impl Gate {
             ..Limits::default()
         };
         ledger.expected = expectations;
-        let stop = stopped_by_signals()?;
-        let asking = Asking { command, folder: &folder, limits, runs: self.runs, stop: &stop };
+        let plan = ledger.plan();
+        let asking = Asking { command, folder: &folder, limits, runs: self.runs, stop };
         let outcome = process::ask(ledger, plan, asking, &mut |count| bar.inc(count));
         if self.images.is_none() {
             let _ = std::fs::remove_dir_all(own);

@@ -1,6 +1,7 @@
 //! `lightmeter sweep`.
 
 use super::options::{Choice, Format, ShardArgument};
+use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit};
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -16,6 +17,7 @@ use lightmeter::select::{Shard, catalogue};
 use lightmeter::sweep::file::{self, DocumentError, name_of};
 use lightmeter::sweep::{Asked, Free, Over, PRESETS, Preset, SweepError, SweepPlan, describe, span, sweep};
 use std::fmt::Write as _;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -93,6 +95,7 @@ impl Sweep {
         };
         let mut document = self.start(describe(&plan, subject, self.profile, &code))?;
 
+        let stop = stopped_by_signals()?;
         let bar = bar(&document, shard);
         let mut saved = Instant::now();
         let mut tell = |document: &SweepDocument| {
@@ -101,13 +104,16 @@ impl Sweep {
                 self.save(document)?;
                 saved = Instant::now();
             }
-            Ok(())
+            Ok(if stop.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         };
         let swept = sweep(&plan, subject, &code, self.profile, &mut document, self.blocks, &mut tell);
         bar.finish_and_clear();
         self.save(&document)?;
         match swept {
-            Ok(()) => self.finish(&document, &plan),
+            Ok(()) => {
+                let status = self.finish(&document, &plan)?;
+                Ok(stop.signal().filter(|_| !document.is_finished()).map_or(status, Status::of_signal))
+            }
             Err(SweepError::Device(error)) => {
                 if let Some(path) = self.checkpoint.as_ref().filter(|_| error.is_of_device()) {
                     let (done, blocks) = (document.done, document.blocks);

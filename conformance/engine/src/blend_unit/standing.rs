@@ -17,7 +17,7 @@ use lightmeter_judge::blend_unit::policy;
 use lightmeter_judge::blend_unit::rules::Rules;
 use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts, Stores as _};
 use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, explain};
-use lightmeter_judge::formula::by_name;
+use lightmeter_judge::formula::{by_name, units};
 use lightmeter_judge::tally::Tally;
 use lightmeter_judge::{Outcome, worse};
 use lightmeter_scene::target::{Encoding, TargetFormat};
@@ -334,6 +334,7 @@ fn failure(
         route: Some(piece.route.name().into()),
         output: format!("color.{}", ["r", "g", "b", "a"][k]),
         inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
+        units: units(member),
         inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
         reference: Number(expected.reference[k]),
         interval: [Number(expected.low[k]), Number(expected.high[k])],

@@ -20,6 +20,7 @@ use lightmeter_reference::render::render;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
 use serde_json::json;
+use std::collections::BTreeMap;
 
 /// Takes the misses out that a named deviation makes legal; how many there are.
 pub fn excuse(
@@ -221,6 +222,7 @@ impl<'a> JudgedScene<'a> {
             route: None,
             output: ["r", "g", "b", "a"][k].into(),
             inputs,
+            units: BTreeMap::new(),
             inputs_hex: serde_json::Map::new(),
             reference: Number(exact),
             interval: [Number(expected.low[k]), Number(expected.high[k])],

@@ -14,6 +14,7 @@ use lightmeter_document::{Number, Word};
 use lightmeter_judge::simplicity;
 use lightmeter_judge::tally::KEPT_FAILURES;
 use lightmeter_scene::target::SENTINEL;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// The operands' names, as the functions of `special.wgsl` have them.
@@ -175,6 +176,7 @@ fn failure(outcome: &ProbeResult, results: &Results, subject: &Subject, options:
         route: None,
         output: probe.what.into(),
         inputs: named(&|bits| serde_json::to_value(Number(Gives::Float.number(bits))).unwrap_or_default()),
+        units: BTreeMap::new(),
         inputs_hex: named(&|bits| format!("0x{bits:08x}").into()),
         reference: Number(reference),
         interval: interval.map(Number),

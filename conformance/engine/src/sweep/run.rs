@@ -13,6 +13,7 @@ use lightmeter_document::sweep::{Statistics, SweepDocument};
 use lightmeter_scene::along::{Along, key_of};
 use rayon::prelude::*;
 use std::collections::VecDeque;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Inputs that a task of the pool takes at once, of the embedded implementation.
@@ -37,7 +38,8 @@ pub enum SweepError {
     },
 }
 
-/// Sweeps on from where the document stands, at most so many blocks of its shard, and hands the document on after each.
+/// Sweeps on from where the document stands, at most so many blocks of its shard, and hands the document on after each, to who may
+/// break off.
 ///
 /// # Errors
 /// Where the shader is invalid, the device refuses it or fails, or the document's receiver fails. What is done stands in the
@@ -49,7 +51,7 @@ pub fn sweep(
     profile: &'static Profile,
     document: &mut SweepDocument,
     part: Option<u64>,
-    tell: &mut dyn FnMut(&SweepDocument) -> Result<(), DocumentError>,
+    tell: &mut dyn FnMut(&SweepDocument) -> Result<ControlFlow<()>, DocumentError>,
 ) -> Result<(), SweepError> {
     let last = document.blocks.min(document.done.saturating_add(part.unwrap_or(u64::MAX)));
     if document.done == last {
@@ -83,7 +85,7 @@ fn drive<W: Work>(
     work: &mut W,
     document: &mut SweepDocument,
     last: u64,
-    tell: &mut dyn FnMut(&SweepDocument) -> Result<(), DocumentError>,
+    tell: &mut dyn FnMut(&SweepDocument) -> Result<ControlFlow<()>, DocumentError>,
 ) -> Result<(), SweepError> {
     let (before, clock) = (document.seconds, Instant::now());
     let (span, shard) = (span(&document.sweep), file::shard(document));
@@ -99,7 +101,9 @@ fn drive<W: Work>(
         document.statistics.add(work.finish(job)?);
         document.done += 1;
         document.seconds = before + clock.elapsed().as_secs_f64();
-        tell(document)?;
+        if tell(document)?.is_break() {
+            break;
+        }
     }
     Ok(())
 }
@@ -201,7 +205,7 @@ mod tests {
         let mut told = 0;
         let lost = drive(&mut Lost(0), &mut document, last, &mut |_| {
             told += 1;
-            Ok(())
+            Ok(ControlFlow::Continue(()))
         });
         assert!(matches!(lost, Err(SweepError::Device(DeviceError::Failed(_)))), "{lost:?}");
         assert_eq!((document.done, told), (3, 3));

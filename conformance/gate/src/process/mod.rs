@@ -35,6 +35,8 @@ const MOMENT: Duration = Duration::from_millis(100);
 const MOST_STARTS: usize = 3;
 /// Crashes and hangs after which nothing more is asked.
 const MOST_CRASHES: u64 = 100;
+/// Cases of a formula that it may end or hang at before no more of that formula is asked.
+const MOST_OF_FORMULA: usize = 3;
 
 /// How long things may take.
 #[derive(Clone, Copy, Debug)]
@@ -141,6 +143,7 @@ pub fn ask(
         size: BATCH[0],
         answered: 0,
         culprits: 0,
+        culprits_of: HashMap::new(),
     };
     session.start()?;
     let hello = session.outcome.hello.clone();
@@ -180,6 +183,8 @@ struct Session<'a> {
     answered: usize,
     /// Cases that it failed at.
     culprits: u64,
+    /// How many of each formula, but for those that are expected.
+    culprits_of: HashMap<usize, usize>,
 }
 
 /// What is still to be asked of a process.
@@ -398,6 +403,7 @@ impl Session<'_> {
         self.failed_at(ledger, culprit, &format!("{message}: {how}"), std::mem::take(&mut queue.untold));
         self.culprits += 1;
         progress(1);
+        progress(self.gives_up(ledger, queue, culprit));
         if self.culprits < MOST_CRASHES {
             return true;
         }
@@ -405,6 +411,28 @@ impl Session<'_> {
         let what = format!("{MOST_CRASHES} crashes and hangs: nothing more is asked, {left} cases are left");
         self.outcome.incidents.push(what);
         false
+    }
+
+    /// After a few cases of a formula that it ended or hung at, asks no more of that formula; how many cases that leaves out.
+    fn gives_up(&mut self, ledger: &Ledger<'_>, queue: &mut Queue, culprit: CasePlace) -> u64 {
+        let CasePlace::Case { formula, .. } = culprit else { return 0 };
+        if ledger.expects_crash(culprit) {
+            return 0;
+        }
+        let culprits = self.culprits_of.entry(formula).or_default();
+        *culprits += 1;
+        if *culprits < MOST_OF_FORMULA {
+            return 0;
+        }
+        let is_of = |place: &CasePlace| matches!(place, CasePlace::Case { formula: of, .. } if *of == formula);
+        let before = queue.open.len();
+        queue.alone -= queue.open.iter().take(queue.alone).filter(|place| is_of(place)).count();
+        queue.open.retain(|place| !is_of(place));
+        let left = (before - queue.open.len()) as u64;
+        let id = &self.plan.member(formula).spec.id;
+        let what = format!("{id}: no more of it is asked after {MOST_OF_FORMULA} such cases; {left} are left");
+        self.outcome.incidents.push(what);
+        left
     }
 
     /// Starts the process once more, or tells that it will not.
@@ -421,17 +449,17 @@ impl Session<'_> {
         false
     }
 
-    /// Notes the case that the process failed at, and what was told of its batch before, by places among the incidents.
+    /// Notes the case that the process failed at. What was told of its batch before, by places among the incidents, is of the same
+    /// failure, and is not told besides.
     fn failed_at(&mut self, ledger: &mut Ledger<'_>, culprit: CasePlace, message: &str, before: Vec<usize>) {
+        before.into_iter().rev().for_each(|place| drop(self.outcome.incidents.remove(place)));
         let told = format!("{}: {message}", self.plan.id(culprit));
-        if ledger.expects_crash(culprit) {
-            let mut before: Vec<String> =
-                before.into_iter().rev().map(|place| self.outcome.incidents.remove(place)).collect();
-            before.reverse();
-            self.outcome.expected_incidents.extend(before.into_iter().chain([told]));
+        let incidents = if ledger.expects_crash(culprit) {
+            &mut self.outcome.expected_incidents
         } else {
-            self.outcome.incidents.push(told);
-        }
+            &mut self.outcome.incidents
+        };
+        incidents.push(told);
         ledger.fail(culprit, CaseState::Broken, message);
     }
 

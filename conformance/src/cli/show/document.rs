@@ -46,7 +46,7 @@ fn bounds(interval: &Accept) -> [Number; 2] {
     [Number(interval.low()), Number(interval.high())]
 }
 
-fn step(step: &trace::Step) -> ShownStep {
+fn step(step: &trace::TraceStep) -> ShownStep {
     let value = Number(step.result.value);
     ShownStep { name: step.name.into(), value, interval: bounds(&step.result.interval) }
 }
