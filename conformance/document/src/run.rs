@@ -369,6 +369,9 @@ pub struct Timing {
     pub devices: f64,
     /// Verdicts.
     pub judge: f64,
+    /// What explains wrong values, and what is wrong with all values of a formula together.
+    #[serde(default)]
+    pub diagnose: f64,
 }
 
 impl Timing {
@@ -379,6 +382,7 @@ impl Timing {
         self.reference += other.reference;
         self.devices += other.devices;
         self.judge += other.judge;
+        self.diagnose += other.diagnose;
     }
 }
 

@@ -11,7 +11,7 @@ use lightmeter_document::Number;
 use lightmeter_document::run::{Group, Report, Totals};
 use lightmeter_judge::chunk::{self, Chunk};
 use lightmeter_judge::diagnose::{Row, Told};
-use lightmeter_judge::formula::{RowPlace, RowStanding};
+use lightmeter_judge::formula::{RowPlace, RowSample, RowStanding};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 use std::time::Instant;
@@ -157,12 +157,24 @@ impl<'a> RowRun<'a> {
     /// Adds a group for each stage of each subject to the report, and hands back what was compiled.
     pub(crate) fn finish(self, subjects: &[Subject], options: &Options, report: &mut Report) -> Vec<Compiled> {
         for ((subject, compiled), standings) in subjects.iter().zip(&self.compiled).zip(self.standings) {
+            let mut before: Option<(RowSample, RowSample, Told)> = None;
             for ((stage, work), (standing, seconds)) in self.asked.of(&compiled.stages).zip(standings) {
                 for (name, excused) in &standing.tally.excused {
                     report.excuse(name, &subject.identity.name, *excused);
                 }
-                let told = told(self.members, &standing, *stage, subject, options);
-                let tally = standing.tally;
+                let clock = Instant::now();
+                // Where a device evaluates a shader alike in both stages, what is told of the one holds of the other.
+                let told = match before.take() {
+                    Some((wrong, right, told))
+                        if is_shader(*stage) && wrong == standing.wrong && right == standing.right =>
+                    {
+                        told
+                    }
+                    _ => told(self.members, &standing, *stage, subject, options),
+                };
+                report.timing.diagnose += clock.elapsed().as_secs_f64();
+                let RowStanding { tally, wrong, right } = standing;
+                before = is_shader(*stage).then(|| (wrong, right, told.clone()));
                 let problem = tally.problem().or(told.systematic);
                 let name_of = |place: RowPlace| self.members[place.member].case_id(place.case);
                 report.groups.push(Group {
@@ -189,7 +201,7 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
     let (wrong, right) = (standing.wrong.rows(), standing.right.rows());
     let Some(diagnose) = options.diagnose else { return Told::default() };
     // What a rasteriser or a depth test does is no arithmetic with a parameter that may be off.
-    if wrong.is_empty() && (members.len() > 1 || !matches!(stage, Stage::Compute | Stage::Fragment)) {
+    if wrong.is_empty() && (members.len() > 1 || !is_shader(stage)) {
         return Told::default();
     }
     let mut failing: BTreeMap<usize, usize> = BTreeMap::new();
@@ -206,6 +218,10 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
         told.explanation = told.explanation.map(|says| format!("{}: {says}", member.spec.id));
     }
     told
+}
+
+const fn is_shader(stage: Stage) -> bool {
+    matches!(stage, Stage::Compute | Stage::Fragment)
 }
 
 /// The rows of one formula, by its place among the group's, with their inputs.

@@ -7,6 +7,7 @@ use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::selftest::{OffBy, Systematic};
 use lightmeter_judge::diagnose::Answered;
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// A number of a formula's that may be off: an input as a whole, one number of an input, or an output.
@@ -45,6 +46,8 @@ pub const LEAST_Z: f64 = 8.0;
 pub const LEAST_SHARE: f64 = 0.125;
 /// Residuals beyond so many tolerances count as so many: one case far off does not decide.
 const FARTHEST: f64 = 4.0;
+/// Cases that a task of the pool takes at once.
+const TASK: usize = 256;
 /// How often what is left of the residuals is regressed again.
 const ROUNDS: usize = 4;
 
@@ -90,8 +93,23 @@ pub(super) struct Design {
 }
 
 impl Design {
-    /// Works out what does not depend on the answers.
+    /// Works out what does not depend on the answers, on all cores.
     pub(super) fn new<'a>(member: &Member, rows: impl Iterator<Item = &'a [f32]>, profile: &Profile) -> Self {
+        let rows: Vec<&[f32]> = rows.collect();
+        let parts: Vec<Self> = rows.par_chunks(TASK).map(|rows| Self::part(member, rows, profile)).collect();
+        let mut design = Self::part(member, &[], profile);
+        for part in parts {
+            design.reference.extend(part.reference);
+            design.weight.extend(part.weight);
+            for (derivatives, of_part) in design.derivatives.iter_mut().zip(part.derivatives) {
+                derivatives.extend(of_part);
+            }
+        }
+        design
+    }
+
+    /// The same of some rows.
+    fn part(member: &Member, rows: &[&[f32]], profile: &Profile) -> Self {
         let spec = &member.spec;
         let outputs = spec.output_len();
         let parameters = parameters(spec);
@@ -160,7 +178,7 @@ impl Design {
     pub(super) fn verdict(&self, values: &[f32]) -> Option<Systematic> {
         let residuals = self.residuals(values)?;
         let regressed: Vec<Regressed> =
-            self.derivatives.iter().map(|derivatives| Regressed::new(&residuals, derivatives)).collect();
+            self.derivatives.par_iter().map(|derivatives| Regressed::new(&residuals, derivatives)).collect();
         let strongest = regressed.iter().filter(|r| r.is_named()).map(|r| r.z.abs()).fold(0.0, f64::max);
         // Of those that show alike a number that is asked for by itself is the likeliest, then a vector as a whole.
         let best = (0..regressed.len())

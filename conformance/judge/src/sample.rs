@@ -103,6 +103,17 @@ impl<P: RowNumber> Sample<P> {
     }
 }
 
+/// The same rows with the same values, to the bit.
+impl<P: RowNumber> PartialEq for Sample<P> {
+    fn eq(&self, other: &Self) -> bool {
+        let (own, others) = (self.rows(), other.rows());
+        let is_same = |a: &[f32], b: &[f32]| a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()));
+        self.seen == other.seen
+            && own.len() == others.len()
+            && own.iter().zip(&others).all(|(a, b)| a.0 == b.0 && is_same(a.1, b.1))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -54,8 +54,8 @@ pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
         writeln!(
             out,
             "time: devices {:.2} s (their compilers included), pipelines {:.2} s, reference {:.2} s, inputs {:.2} s, \
-             judging {:.2} s",
-            t.devices, t.compile, t.reference, t.generate, t.judge
+             judging {:.2} s, diagnosis {:.2} s",
+            t.devices, t.compile, t.reference, t.generate, t.judge, t.diagnose
         )?;
     }
     if let Some(interrupted) = &report.interrupted {
