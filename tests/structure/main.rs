@@ -159,7 +159,8 @@ fn circles(imports: &Imports) -> Vec<String> {
 #[test]
 fn circles_that_leave_a_family_of_modules_are_found() {
     // What the row pins, the imports, and the number of them that make a circle.
-    let rows: [(&str, &[(&str, &str)], usize); 9] = [
+    type Edges<'a> = &'a [(&'a str, &'a str)];
+    let rows: [(&str, Edges<'_>, usize); 9] = [
         ("imports one way", &[("crate::a", "crate::b"), ("crate::b", "crate::c"), ("crate::a", "crate::c")], 0),
         ("two files", &[("crate::a", "crate::b"), ("crate::b", "crate::a"), ("crate::b", "crate::c")], 2),
         ("a module and its child", &[("crate::a", "crate::a::b"), ("crate::a::b", "crate::a")], 0),
