@@ -28,7 +28,8 @@ impl Faults {
     }
 
     fn has(&self, fault: &str, id: &str) -> bool {
-        self.0.get(fault).is_some_and(|at| at == id || at == "all")
+        let is_of = |at: &str| id.strip_prefix(at).is_some_and(|rest| rest.starts_with('/'));
+        self.0.get(fault).is_some_and(|at| at == id || at == "all" || is_of(at))
     }
 }
 

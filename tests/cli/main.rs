@@ -8,6 +8,7 @@ mod documents;
 mod gate;
 mod hard;
 mod images;
+mod live;
 mod mistakes;
 mod scene;
 mod selftest;

@@ -98,9 +98,14 @@ impl Turn<'_> {
         }
     }
 
-    /// Blend states, whose pipelines take a driver's compiler longest, come last.
-    fn is_slow(self, catalogue: &[Member]) -> bool {
-        matches!(self, Self::Formulas(group) if matches!(catalogue[group[0].member].spec.kind, Kind::Blend(_)))
+    /// When it is judged. Scenes, which have no scouts, come soon; blend states, whose pipelines take a driver's compiler longest, last.
+    fn rank(self, catalogue: &[Member]) -> usize {
+        match self {
+            Self::Table(_) => 0,
+            Self::Scene(_) => 1,
+            Self::Formulas(group) if matches!(catalogue[group[0].member].spec.kind, Kind::Blend(_)) => 3,
+            Self::Formulas(_) => 2,
+        }
     }
 }
 
@@ -124,7 +129,7 @@ fn judge_in_turn(
 ) -> Result<(), DeviceError> {
     let catalogue = &selection.catalogue;
     let mut turns: Vec<(usize, Turn<'_>)> = turns(selection).into_iter().enumerate().collect();
-    turns.sort_by_key(|(_, turn)| turn.is_slow(catalogue));
+    turns.sort_by_key(|(_, turn)| turn.rank(catalogue));
     let mut judged: Vec<(usize, Vec<Group>, Vec<Failure>)> = vec![];
     for (place, turn) in turns {
         let id = turn.id(catalogue);

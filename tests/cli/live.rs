@@ -1,0 +1,88 @@
+//! What a run tells while it goes on, and what is left of one that is told to stop.
+
+use crate::{code, command, edited, json, lightmeter, stderr, stdout};
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+use std::process::{Output, Stdio};
+use std::time::Duration;
+
+#[test]
+fn what_fails_is_told_first_with_its_cause_and_counted_once() {
+    let dir = edited("told-first", "fog.wgsl", |text| text.replace("(dmax - dmin)", "dmax"));
+    let dir = dir.to_str().expect("UTF-8");
+    // Enough groups for scouts; the mistake is in the last of the two families.
+    let args = ["run", "color", "fog", "--cases", "512", "--shaders", dir];
+    let output = lightmeter(&args);
+    let text = stdout(&output);
+    assert_eq!(code(&output), 1, "{text}{}", stderr(&output));
+    let first = text.lines().next().unwrap_or_default();
+    assert!(first.starts_with("✗ fog/linear on ") && first.contains(" of the first "), "{text}");
+    assert!(first.contains("linear fog begins at the eye"), "{text}");
+    assert_eq!(text.matches("FAIL fog/linear/").count(), 1, "one failing case of a formula is told: {text}");
+    let fails = text.find("FAIL fog/linear/random/").expect("an ordinary case");
+    assert!(fails < text.find("nearest to its limit").expect("the table comes at the end"), "{text}");
+    // For programs the result is alone on standard output, and what fails is told beside it.
+    let output = lightmeter(&[&args[..], &["--format", "json"]].concat());
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
+    assert!(stderr(&output).contains("✗ fog/linear on "), "{}", stderr(&output));
+    let group = |report: &Value| {
+        let groups = report["groups"].as_array().expect("an array").clone();
+        groups
+            .into_iter()
+            .find(|group| group["id"] == "fog/linear" && group["stage"] == "compute")
+            .expect("it is there")
+    };
+    let explanation = group(&report)["explanation"].to_string();
+    assert!(explanation.contains("linear fog begins at the eye"), "{explanation}");
+    let alone = json(&["run", "fog/linear", "--cases", "512", "--shaders", dir, "--format", "json"]);
+    for count in ["cases", "verdicts", "failed", "passed", "indeterminate"] {
+        assert_eq!(group(&report)[count], group(&alone)[count], "{count}: what the scouts judged is not counted");
+    }
+}
+
+#[test]
+fn values_that_are_legal_one_by_one_and_wrong_together_fail() {
+    let dir = edited("a-little-off", "vector.wgsl", |text| {
+        text.replace("pow(cosine, exponent)", "pow(cosine, 1.0000003 * exponent)")
+    });
+    let report =
+        json(&["run", "lighting/specular-blinn", "--shaders", dir.to_str().expect("UTF-8"), "--format", "json"]);
+    for group in report["groups"].as_array().expect("an array") {
+        assert_eq!(group["failed"], 0, "{group}");
+        assert!(group["problem"].to_string().contains("as if shininess were"), "{group}");
+    }
+    assert_eq!(report["totals"]["failed_groups"], 2, "{}", report["totals"]);
+}
+
+/// What a command leaves that is told to stop after a while.
+fn stopped(args: &[&str], signal: Signal) -> Output {
+    let started = command(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the binary starts");
+    std::thread::sleep(Duration::from_secs(5));
+    let pid = i32::try_from(started.id()).ok().and_then(Pid::from_raw).expect("a number");
+    kill_process(pid, signal).expect("it runs");
+    started.wait_with_output().expect("it ends")
+}
+
+#[test]
+fn a_run_that_is_told_to_stop_reports_what_was_judged() {
+    let args = ["run", "fog/exp", "--adapter", "cpu", "--cases", "1000000000", "--format", "json"];
+    for (signal, status) in [(Signal::INT, 130), (Signal::TERM, 143)] {
+        let output = stopped(&args, signal);
+        assert_eq!(code(&output), status, "{}", stderr(&output));
+        let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!(report["interrupted"]["signal"], status - 128, "{report}");
+        assert_eq!(report["interrupted"]["under_way"], "fog/exp", "{report}");
+        let count = |name: &str| report["totals"][name].as_u64().unwrap_or_default();
+        assert!(count("verdicts") > 0 && count("failed") == 0, "{report}");
+    }
+}
+
+#[test]
+fn a_sweep_that_is_told_to_stop_reports_what_was_judged() {
+    let args = ["sweep", "fog/exp", "--over", "density", "--adapter", "cpu", "--format", "json"];
+    let output = stopped(&args, Signal::INT);
+    assert_eq!(code(&output), 130, "{}", stderr(&output));
+    let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let count = |name: &str| document[name].as_u64().unwrap_or_default();
+    assert!(count("done") > 0 && count("done") < count("blocks"), "{document}");
+}
