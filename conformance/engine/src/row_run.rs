@@ -226,12 +226,13 @@ const fn is_shader(stage: Stage) -> bool {
 
 /// The rows of one formula, by its place among the group's, with their inputs.
 fn of_member<'a>(member: &Member, place: usize, rows: Vec<((usize, CaseRef), &'a [f32])>, seed: u64) -> Vec<Row<'a>> {
-    let row = |((of, case), values)| {
+    let row = |((_, case), values)| {
         let mut inputs = Vec::with_capacity(member.spec.input_len());
         member.inputs(case, seed, &mut inputs);
-        (of == place).then_some((inputs, values, matches!(case, CaseRef::Random(_))))
+        (inputs, values, matches!(case, CaseRef::Random(_)))
     };
-    rows.into_iter().filter_map(row).collect()
+    // A hard case is one of its own formula alone.
+    rows.into_iter().filter(|((of, _), _)| *of == place).map(row).collect()
 }
 
 /// The rows of a chunk, as a stage takes them.

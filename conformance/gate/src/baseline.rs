@@ -2,6 +2,7 @@
 
 use super::known::expanded;
 use lightmeter_catalogue::cases::GENERATOR_VERSION;
+use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::Document as _;
 use lightmeter_document::gate::{GateGroup, GateReport, cases};
 use lightmeter_document::pack::Choice;
@@ -69,27 +70,40 @@ impl Baseline {
         Ok(Self(baseline))
     }
 
-    /// What is worse in the report, beyond `factor` where it is an error.
+    /// What is worse in the report, beyond `factor` where it is an error. A part of the cases is compared with the same part.
     ///
     /// # Errors
     /// Where the cases are others.
     pub fn compare(&self, report: &GateReport, factor: f64, path: &Path) -> Result<Vec<String>, BaselineError> {
-        self.is_of(&report.choice, Some(&report.profile), path)?;
+        let ids = report.groups.iter().map(|group| group.id.as_str());
+        self.is_of(&report.choice, ids, Some(&report.profile), path)?;
+        let is_part = self.0.choice.filter != report.choice.filter;
+        let globs = report.expectations.iter().map(|one| one.id.as_str());
+        // They were read when the expectations were.
+        let expected: Vec<Filter> = globs.filter_map(|glob| Filter::new(&[glob]).ok()).collect();
+        let comparison = Comparison { factor, is_part, expected };
         let mut worse = vec![];
         for before in &self.0.groups {
             match report.groups.iter().find(|group| group.id == before.id) {
+                None if is_part => {}
                 None => worse.push(format!("{}: it is not among the cases any more", before.id)),
-                Some(now) => worse.extend(compare(before, now, factor)),
+                Some(now) => worse.extend(comparison.of(before, now)),
             }
         }
         Ok(worse)
     }
 
-    /// Whether it is of the cases that are chosen, and of the accuracy rules where those are known.
+    /// Whether it has the cases that are chosen, of the groups with these ids, and is of the accuracy rules where those are known.
     ///
     /// # Errors
     /// What differs.
-    pub fn is_of(&self, now: &Choice, profile: Option<&String>, path: &Path) -> Result<(), BaselineError> {
+    pub fn is_of<'a>(
+        &self,
+        now: &Choice,
+        ids: impl Iterator<Item = &'a str>,
+        profile: Option<&String>,
+        path: &Path,
+    ) -> Result<(), BaselineError> {
         let mut differences = vec![];
         let mut differs = |what: &str, before: String, now: String| {
             if before != now {
@@ -97,7 +111,6 @@ impl Baseline {
             }
         };
         let before = &self.0.choice;
-        differs("filter", format!("{:?}", before.filter), format!("{:?}", now.filter));
         differs("cases", before.cases.to_string(), now.cases.to_string());
         differs("seed", before.seed.to_string(), now.seed.to_string());
         differs("size", format!("{:?}", before.size), format!("{:?}", now.size));
@@ -105,44 +118,80 @@ impl Baseline {
         if let Some(profile) = profile {
             differs("profile", self.0.profile.clone(), profile.clone());
         }
+        if before.filter != now.filter {
+            let known: HashSet<&str> = self.0.groups.iter().map(|group| group.id.as_str()).collect();
+            let mut missing = ids.filter(|id| !known.contains(id));
+            if let Some(first) = missing.next() {
+                let more = missing.count();
+                let and = if more > 0 { format!(" and {more} more") } else { String::new() };
+                differences.push(format!("filter {:?} there, and {first}{and} here", before.filter));
+            }
+        }
         if differences.is_empty() { Ok(()) } else { Err(BaselineError::Others { path: path.into(), differences }) }
     }
 }
 
-fn compare(before: &GateGroup, now: &GateGroup, factor: f64) -> Vec<String> {
-    let id = &now.id;
-    let mut worse = vec![];
-    if now.asked < before.asked {
-        worse.push(format!("{id}: {} cases are asked, {} were: the renderer declares less", now.asked, before.asked));
+/// How groups are compared.
+struct Comparison {
+    /// By how much an error may grow.
+    factor: f64,
+    /// Whether the cases may be a part of those of the baseline.
+    is_part: bool,
+    /// Failures that are expected.
+    expected: Vec<Filter>,
+}
+
+impl Comparison {
+    /// What is worse in a group. Only like is compared with like: the greatest error of all cases, and the errors of those that pass where
+    /// no other cases pass than did, since a case that passes now may err by more than all that passed before.
+    fn of(&self, before: &GateGroup, now: &GateGroup) -> Vec<String> {
+        let id = &now.id;
+        let mut worse = vec![];
+        if now.asked < before.asked && !self.is_part {
+            let (asked, were) = (now.asked, before.asked);
+            worse.push(format!("{id}: {asked} cases are asked, {were} were: the renderer declares less"));
+        }
+        for what in ["failed", "skipped", "missing"] {
+            worse.extend(self.new_cases(before, now, what));
+        }
+        if now.indeterminate > before.indeterminate {
+            worse.push(format!("{id}: {} verdicts permit anything, {} did", now.indeterminate, before.indeterminate));
+        }
+        let others_pass = {
+            let passes_not: HashSet<String> =
+                now.not_passed.values().flatten().flat_map(|text| expanded(text)).collect();
+            before.not_passed.values().flatten().flat_map(|text| expanded(text)).any(|case| !passes_not.contains(&case))
+        };
+        let is_same = now.asked == before.asked && !others_pass;
+        let all_expected = now.expected_failures > before.expected_failures;
+        for (is_alike, what, before, now, floor) in [
+            (!all_expected, "errs by", before.error_max, now.error_max, FLOOR),
+            (!others_pass, "errs where it passes by", before.error_passing, now.error_passing, FLOOR),
+            (is_same, "errs where it passes, in the mean, by", before.error_mean, now.error_mean, MEAN_FLOOR),
+        ] {
+            // A NaN is worse than any number.
+            if is_alike && lightmeter_judge::is_worse(now.0, self.factor * before.0.max(floor)) {
+                worse.push(format!("{id}: {what} {now}, by {before} before: more than {} times that", self.factor));
+            }
+        }
+        worse
     }
-    // A case that passed and does not; one that was answered or skipped and is missing.
-    for (what, spared) in [("failed", &["failed"][..]), ("skipped", &["skipped", "failed"]), ("missing", &["missing"])]
-    {
+
+    /// The cases that passed and do not, and are not expected to fail; that were answered or skipped and are missing.
+    fn new_cases(&self, before: &GateGroup, now: &GateGroup, what: &str) -> Option<String> {
+        let spared = if what == "skipped" { &["skipped", "failed"][..] } else { &[what][..] };
         let known: HashSet<String> = (spared.iter().filter_map(|state| before.not_passed.get(*state)).flatten())
             .flat_map(|text| expanded(text))
             .collect();
         let cases = now.not_passed.get(what).into_iter().flatten().flat_map(|text| expanded(text));
-        let new: Vec<String> = cases.filter(|case| !known.contains(case)).collect();
-        if !new.is_empty() {
-            let named = new.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
-            let more = if new.len() > MOST_NAMED { ", …" } else { "" };
-            worse.push(format!("{id}: {} {what} and did not before: {named}{more}", cases_of(new.len())));
-        }
+        let is_expected = |case: &str| self.expected.iter().any(|filter| filter.selects(&format!("{}/{case}", now.id)));
+        let new: Vec<String> =
+            cases.filter(|case| !known.contains(case)).filter(|case| what != "failed" || !is_expected(case)).collect();
+        let named = new.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
+        let more = if new.len() > MOST_NAMED { ", …" } else { "" };
+        (!new.is_empty())
+            .then(|| format!("{}: {} {what} and did not before: {named}{more}", now.id, cases_of(new.len())))
     }
-    if now.indeterminate > before.indeterminate {
-        worse.push(format!("{id}: {} verdicts permit anything, {} did", now.indeterminate, before.indeterminate));
-    }
-    for (what, before, now, floor) in [
-        ("errs by", before.error_max, now.error_max, FLOOR),
-        ("errs where it passes by", before.error_passing, now.error_passing, FLOOR),
-        ("errs where it passes, in the mean, by", before.error_mean, now.error_mean, MEAN_FLOOR),
-    ] {
-        // A NaN is worse than any number.
-        if lightmeter_judge::is_worse(now.0, factor * before.0.max(floor)) {
-            worse.push(format!("{id}: {what} {now}, by {before} before: more than {factor} times that"));
-        }
-    }
-    worse
 }
 
 fn cases_of(count: usize) -> String {

@@ -87,6 +87,13 @@ impl GatePlan {
         Ok(plan)
     }
 
+    /// The ids of its formulas and scenes.
+    #[must_use]
+    pub fn ids(&self) -> Vec<String> {
+        let formulas = (0..self.formulas.len()).map(|formula| self.member(formula).spec.id.clone());
+        formulas.chain((0..self.scenes.len()).map(|scene| self.id(CasePlace::Scene(scene)))).collect()
+    }
+
     /// How many cases of formulas there are.
     #[must_use]
     pub fn cases(&self) -> u64 {

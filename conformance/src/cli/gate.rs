@@ -109,7 +109,8 @@ impl Gate {
         let start = Instant::now();
         let (plan, answers) = self.asked()?;
         if let Some((path, known)) = &known {
-            known.is_of(&plan.choice, None, path)?;
+            let ids = plan.ids();
+            known.is_of(&plan.choice, ids.iter().map(String::as_str), None, path)?;
         }
         writable(self.out.as_deref())?;
         let mut ledger = Ledger::new(&plan, self.profile.unwrap_or(&WGSL));

@@ -335,9 +335,37 @@ fn nothing_gets_worse_than_the_baseline() {
     assert!(status == 1 && count(&report, "failed") == 0 && regressions.contains("errs by"), "{report}");
     let (status, _) = judged(&pack, &worse, &["--baseline", text(&file), "--growth", "100"]);
     assert_eq!(status, 0);
-    let (others, more) = answered("other-baseline", &["fog/exp"]);
-    let output = lightmeter(&["gate", text(&others), text(&more), "--baseline", text(&file)]);
-    assert!(code(&output) == 2 && stderr(&output).contains("is of other cases: filter"), "{}", stderr(&output));
+    // A part of its cases is compared with that part; more than it has cannot be.
+    let (part, of_part) = answered("part-of-baseline", &["fog/exp"]);
+    let (status, report) = judged(&part, &of_part, &["--baseline", text(&file)]);
+    assert_eq!((status, report["regressions"].as_array().map(Vec::len)), (0, Some(0)), "{report}");
+    let (more, of_more) = answered("more-than-baseline", &["fog/exp", "vector/reflect"]);
+    let output = lightmeter(&["gate", text(&more), text(&of_more), "--baseline", text(&file)]);
+    assert!(code(&output) == 2 && stderr(&output).contains("and vector/reflect here"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_fix_is_no_regression_and_an_expected_failure_is_none() {
+    let (pack, answers) = answered("fixed", &["fog/exp"]);
+    let file = pack.with_file_name("baseline.json");
+    // Every case but one was wrong; those that are mended err by more than that one did.
+    let wrong = |line: &str| line.replacen("\"value\":[", "\"value\":[9", 1) + "\n";
+    let broken = edit(&answers, |k, line| if k > 1 { wrong(line) } else { line.to_owned() + "\n" });
+    let (status, _) = judged(&pack, &broken, &["--baseline", text(&file), "--update-baseline"]);
+    assert_eq!(status, 1);
+    let (status, report) = judged(&pack, &answers, &["--baseline", text(&file), "--growth", "1"]);
+    assert_eq!((status, report["regressions"].as_array().map(Vec::len)), (0, Some(0)), "a fix: {report}");
+    // The other way round: right before, wrong now, in one case that is expected to fail.
+    let (status, _) = judged(&pack, &answers, &["--baseline", text(&file), "--update-baseline"]);
+    assert_eq!(status, 0);
+    let one = edit(&answers, |k, line| if k == 5 { wrong(line) } else { line.to_owned() + "\n" });
+    let (status, report) = judged(&pack, &one, &["--baseline", text(&file)]);
+    assert!(status == 1 && report["regressions"].to_string().contains("did not before"), "{report}");
+    let id = report["failures"][0]["id"].as_str().expect("an id").to_owned();
+    let expected = pack.with_file_name("expected.toml");
+    std::fs::write(&expected, format!("[[expected]]\nid = \"{id}\"\nreason = \"known\"\n")).expect("written");
+    let (status, report) = judged(&pack, &one, &["--baseline", text(&file), "--expect", text(&expected)]);
+    assert_eq!((status, report["regressions"].as_array().map(Vec::len)), (0, Some(0)), "expected: {report}");
 }
 
 #[test]
