@@ -86,3 +86,12 @@ fn a_sweep_that_is_told_to_stop_reports_what_was_judged() {
     let count = |name: &str| document[name].as_u64().unwrap_or_default();
     assert!(count("done") > 0 && count("done") < count("blocks"), "{document}");
 }
+
+#[test]
+fn a_closed_output_changes_no_verdict() {
+    let dir = edited("closed-output", "fog.wgsl", |text| text.replace("(dmax - dmin)", "dmax"));
+    let args = ["run", "fog/linear", "--cases", "64", "--shaders", dir.to_str().expect("UTF-8"), "--format", "json"];
+    let mut started = command(&args).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("the binary starts");
+    drop(started.stdout.take());
+    assert_eq!(started.wait().expect("it ends").code(), Some(1));
+}

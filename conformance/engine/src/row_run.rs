@@ -13,7 +13,7 @@ use lightmeter_judge::chunk::{self, Chunk};
 use lightmeter_judge::diagnose::{Row, Told};
 use lightmeter_judge::formula::{RowPlace, RowSample, RowStanding};
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::time::Instant;
 
 /// The stages of every subject that are compiled already, by group.
@@ -41,8 +41,8 @@ pub(crate) enum Asked {
 
 impl Asked {
     /// The stages that are asked.
-    fn of<T>(self, stages: &[(Stage, T)]) -> impl Iterator<Item = &(Stage, T)> {
-        let has_compute = stages.iter().any(|(stage, _)| *stage == Stage::Compute);
+    fn of<T, E>(self, stages: &[(Stage, Result<T, E>)]) -> impl Iterator<Item = &(Stage, Result<T, E>)> {
+        let has_compute = stages.iter().any(|(stage, work)| *stage == Stage::Compute && work.is_ok());
         let skipped = (self == Self::OneOfShaders && has_compute).then_some(Stage::Fragment);
         stages.iter().filter(move |(stage, _)| Some(*stage) != skipped)
     }
@@ -65,11 +65,6 @@ impl<'a> RowRun<'a> {
         options: &Options,
     ) -> Result<Vec<Compiled>, DeviceError> {
         subjects.iter_mut().map(|subject| subject.compile(&options.code, member)).collect()
-    }
-
-    /// The group's id.
-    pub(crate) fn id(&self) -> &str {
-        self.members[0].spec.group()
     }
 
     /// Of a group, whose stages are compiled.
@@ -173,7 +168,7 @@ impl<'a> RowRun<'a> {
                     _ => told(self.members, &standing, *stage, subject, options),
                 };
                 report.timing.diagnose += clock.elapsed().as_secs_f64();
-                let RowStanding { tally, wrong, right } = standing;
+                let RowStanding { tally, wrong, right, .. } = standing;
                 before = is_shader(*stage).then(|| (wrong, right, told.clone()));
                 let problem = tally.problem().or(told.systematic);
                 let name_of = |place: RowPlace| self.members[place.member].case_id(place.case);
@@ -204,15 +199,11 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
     if wrong.is_empty() && (members.len() > 1 || !is_shader(stage)) {
         return Told::default();
     }
-    let mut failing: BTreeMap<usize, usize> = BTreeMap::new();
-    wrong.iter().for_each(|((member, _), _)| *failing.entry(*member).or_default() += 1);
-    let most =
-        failing.iter().max_by_key(|(member, count)| (**count, Reverse(**member))).map_or(0, |(member, _)| *member);
+    let most = standing.failing.iter().max_by_key(|(member, count)| (**count, Reverse(**member)));
+    let (most, failing) = most.map_or((0, 0), |(member, count)| (*member, *count));
     let member = members[most];
     let profile = subject.known.profile(options.profile);
-    let is_all = wrong.len() as u64 == standing.wrong.seen;
     let rows = [wrong, right].map(|rows| of_member(member, most, rows, options.seed));
-    let failing = if is_all { rows[0].len() as u64 } else { standing.wrong.seen };
     let mut told = Told::of(diagnose, member, [&rows[0], &rows[1]], failing, &profile);
     if members.len() > 1 {
         told.explanation = told.explanation.map(|says| format!("{}: {says}", member.spec.id));

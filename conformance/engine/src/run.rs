@@ -247,8 +247,12 @@ fn run_rows(
         if next.is_empty() {
             break;
         }
-        let begun = run.begin(&next, subjects, options, report)?;
-        run.end(begun, subjects, options, report)?;
+        let begun = run.begin(&next, subjects, options, report);
+        if let Err(error) = begun.and_then(|begun| run.end(begun, subjects, options, report)) {
+            // What was judged until then stays.
+            run.finish(subjects, options, report);
+            return Err(error);
+        }
         observer.see(&Event::Advanced(next.len() as u64));
     }
     run.finish(subjects, options, report);

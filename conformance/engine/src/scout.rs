@@ -1,5 +1,6 @@
 //! The scouts of a run: a few cases of each formula, so that what is broken is known within seconds. What they judge is told and not
-//! counted: the run judges these cases again with all others, by the shaders that were compiled here.
+//! counted: the run judges these cases again with all others, by the shaders that were compiled here. Where a run ends among its scouts, there
+//! is nothing else, and what they judged is its report.
 
 use crate::device::DeviceError;
 use crate::options::Options;
@@ -11,6 +12,7 @@ use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::Report;
+use std::collections::VecDeque;
 
 /// Random cases of a group that are scouted, besides its hard cases; of a group of many formulas, one of each at least.
 const SCOUTED: usize = 32;
@@ -21,6 +23,7 @@ const LEAST_GROUPS: usize = 8;
 
 /// A group whose cases subjects are at work on.
 struct UnderWay<'a> {
+    members: &'a [&'a Member],
     run: RowRun<'a>,
     begun: Begun<'a>,
 }
@@ -47,22 +50,23 @@ pub(crate) fn scout(
     let members: Vec<Vec<&Member>> =
         groups.iter().map(|group| group.iter().map(|chosen| &catalogue[chosen.member]).collect()).collect();
     let mut scouts = Scouts { options, compiled: CompiledGroups::new(), report: options.report(subjects) };
-    let mut under_way = std::collections::VecDeque::new();
-    for (group, members) in groups.iter().zip(&members) {
-        let id = members[0].spec.group();
-        let begun = scouts.begin(members, group, subjects);
-        let judged = begun.and_then(|begun| {
-            under_way.push_back(begun);
-            if under_way.len() < AT_ONCE { Ok(()) } else { scouts.end(under_way.pop_front(), subjects, observer) }
-        });
+    let mut under_way: VecDeque<UnderWay<'_>> = VecDeque::new();
+    let mut begun = groups.iter().zip(&members);
+    loop {
+        let next = if under_way.len() < AT_ONCE { begun.next() } else { None };
+        let (id, judged) = match (next, under_way.pop_front()) {
+            (Some((group, members)), waiting) => {
+                under_way.extend(waiting);
+                let begun = scouts.begin(members, group, subjects);
+                (members[0].spec.group(), begun.map(|begun| under_way.push_back(begun)))
+            }
+            (None, Some(first)) => (first.members[0].spec.group(), scouts.end(first, subjects, observer)),
+            (None, None) => break,
+        };
         if is_over(judged, id, options, report)? {
-            return Ok(None);
-        }
-    }
-    while let Some(begun) = under_way.pop_front() {
-        let id = begun.run.id().to_owned();
-        let judged = scouts.end(Some(begun), subjects, observer);
-        if is_over(judged, &id, options, report)? {
+            // There is nothing else, so these are counted once.
+            report.groups = scouts.report.groups;
+            report.failures = scouts.report.failures;
             return Ok(None);
         }
     }
@@ -89,26 +93,28 @@ impl Scouts<'_> {
         self.report.timing.compile += clock.elapsed().as_secs_f64();
         let run = RowRun::new(members, compiled, Asked::OneOfShaders);
         let begun = run.begin(&cases(members, group), subjects, self.options, &mut self.report)?;
-        Ok(UnderWay { run, begun })
+        Ok(UnderWay { members, run, begun })
     }
 
     /// Judges what the subjects gave, and tells of what fails.
     fn end(
         &mut self,
-        under_way: Option<UnderWay<'_>>,
+        under_way: UnderWay<'_>,
         subjects: &[Subject],
         observer: &mut dyn Observer,
     ) -> Result<(), DeviceError> {
-        let Some(UnderWay { mut run, begun }) = under_way else { return Ok(()) };
-        observer.see(&Event::Group(run.id()));
+        let UnderWay { members, mut run, begun } = under_way;
+        let id = members[0].spec.group();
+        observer.see(&Event::Group(id));
         run.end(begun, subjects, self.options, &mut self.report)?;
-        let id = run.id().to_owned();
-        self.compiled.insert(id, run.finish(subjects, self.options, &mut self.report));
-        // Of so few cases nothing but a single wrong value tells anything.
-        self.report.groups.retain(|group| group.totals.failed > 0);
-        tell(&self.report.groups, &self.report.failures, true, observer);
-        self.report.groups.clear();
-        self.report.failures.clear();
+        let (groups, failures) = (self.report.groups.len(), self.report.failures.len());
+        self.compiled.insert(id.to_owned(), run.finish(subjects, self.options, &mut self.report));
+        for group in &mut self.report.groups[groups..] {
+            // Of so few cases nothing but a single wrong value tells anything.
+            group.problem = None;
+            group.totals.failed_groups = 0;
+        }
+        tell(&self.report.groups[groups..], &self.report.failures[failures..], true, observer);
         Ok(())
     }
 }

@@ -94,12 +94,13 @@ impl Answers {
                 }
                 None => {}
             }
-            if lines.len() == LINES || is_end {
+            let is_over = is_end || stop.is_set();
+            if lines.len() == LINES || is_over {
                 ledger.lines(&lines, &self.folder);
                 progress(lines.len() as u64);
                 lines.clear();
             }
-            if is_end || stop.is_set() {
+            if is_over {
                 return Ok(());
             }
         }
@@ -135,7 +136,7 @@ pub fn judge(
         ledger.begin_again();
         answers.judge(ledger, stop, progress)?;
         if !stop.is_set() {
-            ledger.end_again();
+            ledger.end_again(|_| false);
         }
     }
     Ok(Ending { hello: who.unwrap_or_default(), signal: stop.signal(), ..Ending::default() })

@@ -170,9 +170,10 @@ impl<'a> Ledger<'a> {
         (0..self.tallies.len()).flat_map(of).collect()
     }
 
-    /// What an earlier run answered and this one did not has changed.
-    pub fn end_again(&mut self) {
-        let left: Vec<CasePlace> = self.known.unanswered_again().collect();
+    /// What an earlier run answered and this one did not has changed, but for formulas that were given up.
+    pub fn end_again(&mut self, is_given_up: impl Fn(usize) -> bool) {
+        let was_asked = |place: &CasePlace| !matches!(place, CasePlace::Case { formula, .. } if is_given_up(*formula));
+        let left: Vec<CasePlace> = self.known.unanswered_again().filter(was_asked).collect();
         left.into_iter().for_each(|place| self.changed(place));
     }
 

@@ -87,11 +87,12 @@ impl GatePlan {
         Ok(plan)
     }
 
-    /// The ids of its formulas and scenes.
+    /// Its formulas and scenes by their ids, and how many cases each has.
     #[must_use]
-    pub fn ids(&self) -> Vec<String> {
-        let formulas = (0..self.formulas.len()).map(|formula| self.member(formula).spec.id.clone());
-        formulas.chain((0..self.scenes.len()).map(|scene| self.id(CasePlace::Scene(scene)))).collect()
+    pub fn counts(&self) -> Vec<(String, u64)> {
+        let count = |formula: usize| self.formulas[formula].count() as u64;
+        let formulas = (0..self.formulas.len()).map(|formula| (self.member(formula).spec.id.clone(), count(formula)));
+        formulas.chain((0..self.scenes.len()).map(|scene| (self.id(CasePlace::Scene(scene)), 1))).collect()
     }
 
     /// How many cases of formulas there are.

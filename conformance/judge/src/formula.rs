@@ -52,7 +52,9 @@ pub const KEPT_PASSING: usize = 8192;
 pub struct RowStanding {
     /// The verdicts.
     pub tally: RowTally,
-    /// Some of the rows that fail.
+    /// How many rows of each formula fail.
+    pub failing: BTreeMap<usize, u64>,
+    /// Some of them.
     pub wrong: RowSample,
     /// Some of the others. A row that a named deviation excuses is in neither.
     pub right: RowSample,
@@ -65,13 +67,15 @@ impl RowStanding {
         let outputs = outputs.max(1);
         Self {
             tally: RowTally::default(),
+            failing: BTreeMap::new(),
             wrong: Sample::new(outputs, KEPT_FAILING),
             right: Sample::new(outputs, KEPT_PASSING / outputs),
         }
     }
 
     fn part(&self) -> Self {
-        Self { tally: RowTally::default(), wrong: self.wrong.part(), right: self.right.part() }
+        let tally = RowTally::default();
+        Self { tally, failing: BTreeMap::new(), wrong: self.wrong.part(), right: self.right.part() }
     }
 
     /// Judges the words that a stage gave for a chunk, on all cores, and adds the verdicts.
@@ -88,6 +92,9 @@ impl RowStanding {
             .collect();
         for part in parts {
             self.tally.add(part.tally);
+            for (member, count) in part.failing {
+                *self.failing.entry(member).or_default() += count;
+            }
             self.wrong.add(&part.wrong);
             self.right.add(&part.right);
         }
@@ -150,6 +157,7 @@ fn judge_case(
     }
     let values = words[range].iter().map(|&bits| f32::from_bits(bits));
     if standing.tally.totals.failed > failed {
+        *standing.failing.entry(chunk.of[case]).or_default() += 1;
         standing.wrong.push((chunk.of[case], chunk.cases[case]), values);
     } else if standing.tally.totals.expected_failures == pardoned {
         standing.right.push((chunk.of[case], chunk.cases[case]), values);

@@ -49,6 +49,9 @@ pub fn text(report: &GateReport, out: &mut impl Write) -> Result {
         writeln!(out, "\nlines that are no answers: {}", counts.join(", "))?;
         report.problems.first.iter().take(20).try_for_each(|what| writeln!(out, "  {what}"))?;
     }
+    if let Some(signal) = report.signal {
+        writeln!(out, "\n{}", interrupted(signal))?;
+    }
     let totals = &report.totals;
     write!(out, "\n{} of {} pass, {} fail", totals.passed, cases(totals.asked), totals.failed)?;
     for (count, what) in [
@@ -199,9 +202,15 @@ fn smallest(group: &GateGroup, report: &GateReport) -> Option<String> {
     Some(format!("{id}: {}{of}; legal: {}", list(&failure.value), legal.join(", ")))
 }
 
+/// That a signal ended the gate.
+fn interrupted(signal: i32) -> String {
+    format!("signal {signal} ended the gate before its time: what was not answered until then counts as missing")
+}
+
 /// What is wrong with all of it, each on a line with its title.
 fn whole(report: &GateReport) -> Vec<(String, String)> {
     let mut said = vec![];
+    said.extend(report.signal.map(|signal| ("interrupted".to_owned(), interrupted(signal))));
     said.extend(report.incidents.iter().map(|what| ("process".to_owned(), what.clone())));
     said.extend(report.problems.first.iter().map(|what| ("answers".to_owned(), what.clone())));
     let changed = |id: &String| (id.clone(), "its answer changed when it was asked once more".to_owned());

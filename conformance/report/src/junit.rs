@@ -28,6 +28,13 @@ pub fn to_string(report: &Report) -> Result<String, SerializeError> {
         }
         document.add_test_suite(suite);
     }
+    if let Some(interrupted) = &report.interrupted {
+        let mut suite = TestSuite::new("interrupted");
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+        status.set_message(format!("{} was under way: {}", interrupted.under_way, interrupted.message));
+        suite.add_test_case(TestCase::new("interrupted", status));
+        document.add_test_suite(suite);
+    }
     document.to_string()
 }
 

@@ -28,16 +28,18 @@ impl Live {
 
     fn group(&mut self, group: &Group, failures: &[&Failure], is_scouted: bool, out: &mut String) -> Result {
         let key = (group.id.clone(), group.adapter.clone(), group.place());
-        if !self.groups.insert(key) {
-            return Ok(());
+        let is_new = self.groups.insert(key);
+        if is_new {
+            failing_group(group, if is_scouted { " of the first" } else { " of" }, out)?;
         }
-        failing_group(group, if is_scouted { " of the first" } else { " of" }, out)?;
+        let mut told = is_new;
         for one in failures {
             if self.formulas.insert((formula_of(one).to_owned(), one.adapter.clone())) {
                 failure(one, out)?;
+                told = true;
             }
         }
-        writeln!(out)
+        if told { writeln!(out) } else { Ok(()) }
     }
 }
 

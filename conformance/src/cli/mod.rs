@@ -172,13 +172,17 @@ pub(crate) fn writable(file: Option<&Path>) -> anyhow::Result<()> {
     opened.map(drop).map_err(|error| anyhow::anyhow!("cannot write {}: {error}", path.display()))
 }
 
-/// Writes to the file, or to standard output.
+/// Writes to the file, or to standard output. Whoever does not read that any more has read enough: how the command ends still tells what it
+/// found.
 pub(crate) fn emit(text: &str, file: Option<&Path>) -> anyhow::Result<()> {
     match file {
         Some(path) => {
             std::fs::write(path, text).map_err(|error| anyhow::anyhow!("cannot write {}: {error}", path.display()))
         }
-        None => Ok(std::io::stdout().lock().write_all(text.as_bytes())?),
+        None => match std::io::stdout().lock().write_all(text.as_bytes()) {
+            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+            written => Ok(written?),
+        },
     }
 }
 

@@ -369,6 +369,35 @@ fn a_fix_is_no_regression_and_an_expected_failure_is_none() {
 }
 
 #[test]
+fn declaring_less_is_a_regression_and_declaring_more_is_none() {
+    let (pack, answers) = answered("declared", &["fog/exp", "vector/reflect"]);
+    let file = pack.with_file_name("baseline.json");
+    let declares = |formulas: &str| {
+        let hello = format!("{{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"r\",\"formulas\":[{formulas}]}}\n");
+        let text_of = std::fs::read_to_string(&answers).expect("there are answers");
+        let of = |line: &&str| formulas.split(',').any(|id| line.contains(&id.trim_matches('"').to_owned()));
+        let lines: String = text_of.lines().filter(of).map(|line| line.to_owned() + "\n").collect();
+        let path = answers.with_extension(format!("{}.jsonl", formulas.len()));
+        std::fs::write(&path, hello + &lines).expect("answers can be written");
+        path
+    };
+    let (both, one) = (declares("\"fog/exp\",\"vector/reflect\""), declares("\"vector/reflect\""));
+    let (status, _) = judged(&pack, &one, &["--baseline", text(&file), "--update-baseline"]);
+    assert_eq!(status, 0);
+    let (status, report) = judged(&pack, &both, &["--baseline", text(&file), "--growth", "1"]);
+    assert_eq!((status, report["regressions"].as_array().map(Vec::len)), (0, Some(0)), "{report}");
+    let (status, _) = judged(&pack, &both, &["--baseline", text(&file), "--update-baseline"]);
+    assert_eq!(status, 0);
+    // The same cases by globs in another order, and by fewer globs.
+    for filter in [&["vector/reflect", "fog/exp"][..], &["{fog/exp,vector/reflect}"]] {
+        let name = format!("declared-{}", filter.len());
+        let (other, _) = answered(&name, filter);
+        let (status, report) = judged(&other, &one, &["--baseline", text(&file)]);
+        assert!(status == 1 && report["regressions"].to_string().contains("declares less"), "{filter:?}: {report}");
+    }
+}
+
+#[test]
 fn known_failures_are_expected_and_told_when_they_pass() {
     let (pack, answers) = answered("expected", &["fog/exp"]);
     let wrong = edit(

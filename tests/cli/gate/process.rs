@@ -92,6 +92,23 @@ fn a_formula_that_a_renderer_keeps_ending_at_is_given_up() {
 }
 
 #[test]
+fn a_crash_in_every_run_is_no_changed_answer() {
+    let (status, found) = report(&process(&["fog/exp"], "crash-at=fog/exp/random/000017", &["--runs", "3"]));
+    assert_eq!((status, count(&found, "unstable"), count(&found, "broken")), (4, 0, 1), "{found}");
+    let (status, found) = report(&process(&["fog/exp", "fog/linear"], "crash-at=fog/exp", &["--runs", "2"]));
+    assert_eq!((status, count(&found, "unstable"), count(&found, "broken")), (4, 0, 3), "{found}");
+}
+
+#[test]
+fn a_gate_that_is_told_to_stop_before_the_hello_ends_by_the_signal() {
+    let gate = command(&["gate", "fog/exp", "--exec", "sleep 600"]).stderr(Stdio::piped()).spawn().expect("it starts");
+    std::thread::sleep(Duration::from_secs(3));
+    let pid = i32::try_from(gate.id()).ok().and_then(Pid::from_raw).expect("a number");
+    kill_process(pid, Signal::INT).expect("it runs");
+    assert_eq!(code(&gate.wait_with_output().expect("it ends")), 130);
+}
+
+#[test]
 fn a_failure_names_inputs_outputs_and_units() {
     let output = process(&["fog/linear"], "nan-at=fog/linear/random/000017", &[]);
     let (_, found) = report(&output);

@@ -153,15 +153,17 @@ pub fn ask(
         if is_whole {
             // What a process remembers must not matter.
             session.finish();
+            session.culprits_of.clear();
             ledger.begin_again();
             is_whole = session.all(ledger, asked.clone(), progress)?;
             if is_whole {
-                ledger.end_again();
+                ledger.end_again(|formula| session.has_given_up(formula));
             }
         }
     }
     if is_whole && asking.runs == 1 {
         let again = ledger.failing();
+        session.culprits_of.clear();
         ledger.begin_again();
         session.all(ledger, again, progress)?;
     }
@@ -433,6 +435,11 @@ impl Session<'_> {
         let what = format!("{id}: no more of it is asked after {MOST_OF_FORMULA} such cases; {left} are left");
         self.outcome.incidents.push(what);
         left
+    }
+
+    /// Whether no more of a formula is asked in this run.
+    fn has_given_up(&self, formula: usize) -> bool {
+        self.culprits_of.get(&formula).is_some_and(|culprits| *culprits >= MOST_OF_FORMULA)
     }
 
     /// Starts the process once more, or tells that it will not.
