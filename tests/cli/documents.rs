@@ -8,7 +8,7 @@ use lightmeter::document::bench::recommendation::Recommendation;
 use lightmeter::document::effects::EffectsDocument;
 use lightmeter::document::eval::{EvalAnswer, EvalRequest};
 use lightmeter::document::gate::GateReport;
-use lightmeter::document::list::{CasesDocument, Domain, FormulasDocument, ListedCases};
+use lightmeter::document::list::{CasesDocument, FormulasDocument, ListedCases, ListedDomain};
 use lightmeter::document::pack::Manifest;
 use lightmeter::document::run::Report;
 use lightmeter::document::selftest::SelftestDocument;
@@ -236,7 +236,7 @@ fn cases_and_formulas_are_read_again() {
     assert!(document.formulas.iter().any(|one| one.stable.is_some()));
     assert!(document.formulas.iter().any(|one| !one.aliases.is_empty()));
     let mut domains = document.formulas.iter().flat_map(|one| &one.inputs).map(|input| input.domain);
-    assert!(domains.any(|domain| matches!(domain, Domain::Transform(..))), "all formulas are listed");
+    assert!(domains.any(|domain| matches!(domain, ListedDomain::Transform(..))), "all formulas are listed");
 }
 
 #[test]

@@ -179,7 +179,7 @@ pub struct ListedInput {
     /// The unit.
     pub unit: Word,
     /// What random cases draw the input from.
-    pub domain: Domain,
+    pub domain: ListedDomain,
 }
 
 /// An output of a formula.
@@ -196,7 +196,8 @@ pub struct ListedOutput {
 /// What random cases draw an input from. Bounds are those of f32, widened exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Domain {
+#[schemars(rename = "Domain")]
+pub enum ListedDomain {
     /// Evenly from low to high, each component.
     Uniform(f64, f64),
     /// Evenly in the logarithm, each component.

@@ -4,7 +4,7 @@ use super::{condition, pixels};
 use lightmeter::cases::blend::aliases;
 use lightmeter::cases::{self, Naive};
 use lightmeter::document::list::{
-    CASES, CasesDocument, DeviationCase, Domain, FORMULAS, FormulaCases, FormulasDocument, HardCase, ListedCases,
+    CASES, CasesDocument, DeviationCase, FORMULAS, FormulaCases, FormulasDocument, HardCase, ListedCases, ListedDomain,
     ListedFormula, ListedInput, ListedOutput, ListedProbe, NaiveForm, SceneCases, StableClaim, TableCases,
 };
 use lightmeter::document::{Number, Word};
@@ -91,19 +91,19 @@ fn formula(member: &Member, aliases: &Aliases) -> ListedFormula {
     }
 }
 
-fn domain(domain: cases::Domain) -> Domain {
+fn domain(domain: cases::Domain) -> ListedDomain {
     match domain {
-        cases::Domain::Uniform(low, high) => Domain::Uniform(low.into(), high.into()),
-        cases::Domain::LogUniform(low, high) => Domain::LogUniform(low.into(), high.into()),
-        cases::Domain::Unit => Domain::Unit,
-        cases::Domain::Direction => Domain::Direction,
-        cases::Domain::Vector(low, high) => Domain::Vector(low.into(), high.into()),
-        cases::Domain::Weights => Domain::Weights,
-        cases::Domain::Whole(low, high) => Domain::Whole(low, high),
-        cases::Domain::Halves(low, high) => Domain::Halves(low.into(), high.into()),
-        cases::Domain::Transform(low, high) => Domain::Transform(low.into(), high.into()),
-        cases::Domain::Around => Domain::Around,
-        cases::Domain::Pixel => Domain::Pixel,
+        cases::Domain::Uniform(low, high) => ListedDomain::Uniform(low.into(), high.into()),
+        cases::Domain::LogUniform(low, high) => ListedDomain::LogUniform(low.into(), high.into()),
+        cases::Domain::Unit => ListedDomain::Unit,
+        cases::Domain::Direction => ListedDomain::Direction,
+        cases::Domain::Vector(low, high) => ListedDomain::Vector(low.into(), high.into()),
+        cases::Domain::Weights => ListedDomain::Weights,
+        cases::Domain::Whole(low, high) => ListedDomain::Whole(low, high),
+        cases::Domain::Halves(low, high) => ListedDomain::Halves(low.into(), high.into()),
+        cases::Domain::Transform(low, high) => ListedDomain::Transform(low.into(), high.into()),
+        cases::Domain::Around => ListedDomain::Around,
+        cases::Domain::Pixel => ListedDomain::Pixel,
     }
 }
 
