@@ -158,7 +158,7 @@ impl<'a> RowRun<'a> {
                     report.excuse(name, &subject.identity.name, *excused);
                 }
                 let clock = Instant::now();
-                // Where a device evaluates a shader alike in both stages, what is told of the one holds of the other.
+                // Where the fragment stage gave the same bits as the compute stage, the diagnosis is the same: it is not made twice.
                 let told = match before.take() {
                     Some((wrong, right, told))
                         if is_shader(*stage) && wrong == standing.wrong && right == standing.right =>

@@ -99,7 +99,8 @@ impl Baseline {
         before == now
     }
 
-    /// Whether it has the cases that are chosen, so many of each group by its id, and is of the accuracy rules where those are known.
+    /// Checks that the baseline has the chosen cases: `asked` gives the id of each group and its number of cases. The profile is compared
+    /// where it is known already.
     ///
     /// # Errors
     /// What differs.

@@ -32,7 +32,7 @@ pub trait Diagnose: Sync {
 /// A row that was answered: its inputs, the values, and whether it is a random case.
 pub type Row<'a> = (Vec<f32>, &'a [f32], bool);
 
-/// What is told of all answers to a formula.
+/// What the diagnosis of all answers to a formula says.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Told {
     /// What explains those that are wrong.

@@ -61,7 +61,7 @@ pub struct RowStanding {
 }
 
 impl RowStanding {
-    /// Of formulas with so many outputs, before anything is judged.
+    /// The standing before anything is judged, of formulas with this number of outputs.
     #[must_use]
     pub fn new(outputs: usize) -> Self {
         let outputs = outputs.max(1);

@@ -1,4 +1,5 @@
-//! A sample of rows: so many at most, each as likely as any other, and the same ones in whatever order they come.
+//! A random sample of rows, with an upper limit. Each row is as likely to be kept as any other, and the same rows are kept in whatever
+//! order they come.
 
 use lightmeter_catalogue::cases::mix;
 use lightmeter_catalogue::select::CaseRef;
@@ -45,7 +46,7 @@ pub struct Sample<P> {
 }
 
 impl<P: RowNumber> Sample<P> {
-    /// No row yet; of so many values each, and so many rows at most.
+    /// An empty sample of rows with `outputs` values each, which keeps at most `most` of them.
     #[must_use]
     pub const fn new(outputs: usize, most: usize) -> Self {
         Self { rows: vec![], values: vec![], outputs, most, seen: 0, bound: u64::MAX }

@@ -21,7 +21,7 @@ pub enum Inputs {
     All,
 }
 
-/// Inputs of a name that is none.
+/// The error for an unknown name of inputs.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 #[error("inputs `{0}` are none; expected random, hard or all")]
 pub struct InputsError(String);

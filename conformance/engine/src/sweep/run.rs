@@ -38,8 +38,8 @@ pub enum SweepError {
     },
 }
 
-/// Sweeps on from where the document stands, at most so many blocks of its shard, and hands the document on after each, to who may
-/// break off.
+/// Continues a sweep from where the document stands, by at most `part` blocks of its shard. After each block `tell` is handed the
+/// document, and may end the sweep.
 ///
 /// # Errors
 /// Where the shader is invalid, the device refuses it or fails, or the document's receiver fails. What is done stands in the
