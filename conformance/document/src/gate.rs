@@ -1,13 +1,17 @@
 //! What became of a gate: `lightmeter.gate/1`.
 
+use crate::by_case::CaseCounts;
 use crate::pack::Choice;
+use crate::run::{Failure, Group, Report};
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// The schema's name.
 pub const SCHEMA: &str = "lightmeter.gate/1";
+/// Failures with their numbers in a report, besides the smallest of each group.
+const MOST_FAILURES: usize = 1000;
 
 /// A gate's result. What a baseline is compared by is required of a file; the rest may be missing.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -159,7 +163,101 @@ impl GateGroup {
     }
 }
 
+impl GateGroup {
+    /// A group of a run, with the counts of its cases.
+    #[must_use]
+    pub fn of(group: &Group, counts: &CaseCounts) -> Self {
+        Self {
+            id: group.id.clone(),
+            asked: counts.asked,
+            failed: counts.failed,
+            broken: counts.broken,
+            expected_failures: counts.expected_failures,
+            skipped: counts.skipped,
+            missing: counts.missing,
+            verdicts: group.totals.verdicts,
+            indeterminate: group.totals.indeterminate,
+            error_max: group.error_ulp_max,
+            error_passing: counts.error_passing,
+            error_mean: counts.error_mean,
+            margin_max: group.margin_max,
+            worst: group.worst.clone(),
+            not_passed: counts.not_passed.clone(),
+            reason: counts.reason.clone(),
+            problem: group.problem.clone(),
+            diagnosis: group.explanation.clone(),
+            smallest: counts.smallest.clone(),
+        }
+    }
+}
+
+impl GateFailure {
+    /// A failure of a run; `None` where it is not one of a whole answer.
+    #[must_use]
+    pub fn of(failure: &Failure) -> Option<Self> {
+        let answer = failure.answer.as_ref()?;
+        Some(Self {
+            id: failure.id.clone(),
+            inputs: answer.inputs.clone(),
+            named: failure.inputs.clone(),
+            units: failure.units.clone(),
+            outputs: answer.outputs.clone(),
+            reference: answer.reference.clone(),
+            interval: answer.interval.clone(),
+            value: answer.value.clone(),
+            error_ulp: failure.error_ulp,
+            problem: answer.problem.clone(),
+        })
+    }
+}
+
 impl GateReport {
+    /// What a run of a renderer came to, counted by its cases.
+    #[must_use]
+    pub fn of(report: &Report, command: String) -> Self {
+        let mut totals = GateTotals { unstable: report.unstable, ..GateTotals::default() };
+        let mut groups = vec![];
+        for group in &report.groups {
+            let Some(counts) = &group.by_case else { continue };
+            totals.asked += counts.asked;
+            totals.passed += counts.passed;
+            totals.failed += counts.failed;
+            totals.broken += counts.broken;
+            totals.expected_failures += counts.expected_failures;
+            totals.skipped += counts.skipped;
+            totals.missing += counts.missing;
+            totals.not_asked += counts.not_asked;
+            totals.verdicts += group.totals.verdicts;
+            totals.indeterminate += group.totals.indeterminate;
+            groups.push(GateGroup::of(group, counts));
+        }
+        totals.unexpected_passes =
+            report.expectations.iter().filter(|expected| expected.passes_unexpectedly()).count() as u64;
+        let renderer = report.renderer.clone().unwrap_or_default();
+        let compared_by = report.compared_by.clone().unwrap_or_default();
+        Self {
+            schema: SCHEMA.into(),
+            command,
+            version: env!("CARGO_PKG_VERSION").into(),
+            choice: compared_by.choice,
+            generator: compared_by.generator,
+            profile: report.profile.to_string(),
+            renderer: renderer.identity,
+            seconds: report.seconds,
+            totals,
+            problems: renderer.problems,
+            incidents: renderer.incidents,
+            expected_incidents: renderer.expected_incidents,
+            starts: renderer.starts,
+            signal: report.interrupted.as_ref().and_then(|interrupted| interrupted.signal),
+            groups,
+            failures: failures(report),
+            unstable: report.unstable_cases.clone(),
+            expectations: report.expectations.clone(),
+            regressions: report.regressions.clone(),
+        }
+    }
+
     /// Whether the renderer broke off, or wrote what is no answer.
     #[must_use]
     pub fn is_broken(&self) -> bool {
@@ -180,6 +278,20 @@ impl GateReport {
     pub const fn has_judged(&self) -> bool {
         self.totals.verdicts > self.totals.indeterminate
     }
+}
+
+/// The failures with their numbers: the smallest of each group, and of the rest as many as there is room for.
+fn failures(report: &Report) -> Vec<GateFailure> {
+    let counts = report.groups.iter().filter_map(|group| group.by_case.as_ref());
+    let smallest: HashSet<&str> = counts.filter_map(|counts| counts.smallest.as_deref()).collect();
+    let mut room = MOST_FAILURES;
+    let has_room = |failure: &&Failure| {
+        let is_smallest = smallest.contains(failure.id.as_str());
+        let has_room = is_smallest || room > 0;
+        room = if is_smallest { room } else { room.saturating_sub(1) };
+        has_room
+    };
+    report.failures.iter().filter(has_room).filter_map(GateFailure::of).collect()
 }
 
 /// Answers that cannot be read, or that nobody asked for.

@@ -4,6 +4,7 @@
 
 pub mod adapters;
 pub mod bench;
+pub mod by_case;
 pub mod effects;
 pub mod eval;
 pub mod event;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub const SCHEMA: &str = "lightmeter.pack/1";
 
 /// What chooses the cases. Two gates with equal choices judge the same cases.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Choice {
     /// Globs that match an id or an ancestor of it; all where there are none.
     pub filter: Vec<String>,

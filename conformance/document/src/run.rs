@@ -1,5 +1,7 @@
 //! The JSON of `run`.
 
+use crate::by_case::{CaseCounts, ComparedBy, FailedAnswer, RendererUse};
+use crate::gate::KnownFailure;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -229,6 +231,9 @@ pub struct Group {
     /// Of a scene's image.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image: Option<ImageUse>,
+    /// The same counted by cases, where that was asked for: of renderers always.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_case: Option<CaseCounts>,
 }
 
 /// An image of a scene.
@@ -275,6 +280,7 @@ impl Group {
             explanation: None,
             problem: None,
             image: None,
+            by_case: None,
         }
     }
 
@@ -339,6 +345,9 @@ pub struct Failure {
     pub error_ulp: Number,
     /// The command that runs the case alone.
     pub rerun: String,
+    /// All that was answered to the case, where it was answered as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub answer: Option<FailedAnswer>,
 }
 
 /// A named deviation that was granted or asked for.
@@ -450,6 +459,29 @@ pub struct Report {
     pub interrupted: Option<Interrupted>,
     /// Failures, the first of each group.
     pub failures: Vec<Failure>,
+    /// Who answered, where that is another renderer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub renderer: Option<RendererUse>,
+    /// Cases whose answer changed when they were asked once more: how many there are.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub unstable: u64,
+    /// The first 1,000 of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unstable_cases: Vec<String>,
+    /// Known failures, and what became of their cases.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub expectations: Vec<KnownFailure>,
+    /// What is worse than in the baseline.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regressions: Vec<String>,
+    /// What chose the cases, and the version of what draws them, where a later run may be compared with this one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compared_by: Option<ComparedBy>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+const fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 impl Report {
@@ -477,6 +509,12 @@ impl Report {
             stable_costs: vec![],
             interrupted: None,
             failures: vec![],
+            renderer: None,
+            unstable: 0,
+            unstable_cases: vec![],
+            expectations: vec![],
+            regressions: vec![],
+            compared_by: None,
         }
     }
 
@@ -491,10 +529,15 @@ impl Report {
     /// Whether all went as expected.
     #[must_use]
     pub fn is_success(&self) -> bool {
+        let is_failed = |group: &Group| group.by_case.as_ref().is_some_and(CaseCounts::is_failed);
         self.interrupted.is_none()
             && self.totals.failed == 0
             && self.totals.unexpected_passes == 0
             && self.totals.failed_groups == 0
+            && self.unstable == 0
+            && self.regressions.is_empty()
+            && !self.expectations.iter().any(KnownFailure::passes_unexpectedly)
+            && !self.groups.iter().any(is_failed)
     }
 }
 

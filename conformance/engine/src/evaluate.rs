@@ -36,12 +36,12 @@ impl<'a> Evaluator<'a> {
             selected.extend_from_slice(row);
         }
         let outputs = self.members[0].spec.output_len();
-        let rows = Rows { members: self.members, of, inputs, selected: &selected, outputs };
+        let rows = Rows { members: self.members, of, cases: &[], inputs, selected: &selected, outputs };
         let stages = self.compiled.stages.iter().map(|(stage, work)| match work {
             Err(reason) => Ok((*stage, Err(*reason))),
             Ok(work) => {
                 let job = subject.submit(work, &rows)?;
-                Ok((*stage, Ok(subject.finish(work, job, &rows)?)))
+                Ok((*stage, Ok(subject.finish(work, job, &rows, &mut |_| {})?.words)))
             }
         });
         stages.collect()

@@ -1,12 +1,15 @@
 //! The engine: a selection of cases, handed to subjects, whose answers are judged. It knows no GPU: what stands behind a subject is a
 //! [`device::Device`].
 
+mod again;
+mod ask_again;
 pub mod blend_unit;
 pub mod device;
 pub mod evaluate;
 pub mod image;
 pub mod options;
 pub mod piece;
+pub mod renderer;
 mod row_run;
 pub mod rows;
 pub mod run;

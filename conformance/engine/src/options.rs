@@ -9,6 +9,7 @@ use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
 use lightmeter_document::event::Stop;
 use lightmeter_document::run::Report;
+use lightmeter_judge::cases::ExpectedFailure;
 use lightmeter_judge::diagnose::Diagnose;
 use lightmeter_judge::formula::Judging;
 use lightmeter_scene::target::TargetFormat;
@@ -53,6 +54,12 @@ pub struct Options {
     pub diagnose: Option<&'static dyn Diagnose>,
     /// Whether to stop.
     pub stop: Stop,
+    /// Failures that are expected.
+    pub expected: Vec<ExpectedFailure>,
+    /// Whether the report says what became of each case, so that another run can be compared with it. Of renderers it always does.
+    pub counts_cases: bool,
+    /// How often all is asked. An answer that changes is unstable.
+    pub runs: u64,
 }
 
 impl Options {
@@ -61,13 +68,24 @@ impl Options {
     pub fn report(&self, subjects: &[Subject]) -> Report {
         let filter = self.filter.globs().map(str::to_owned).collect();
         let adapters = subjects.iter().map(|subject| subject.identity.clone()).collect();
-        Report::empty(self.seed, self.profile.name.into(), filter, adapters)
+        Report {
+            expectations: self.expected.iter().map(|expected| expected.known.clone()).collect(),
+            ..Report::empty(self.seed, self.profile.name.into(), filter, adapters)
+        }
     }
 
     /// Whose answers are judged, and by what.
     #[must_use]
     pub fn judging<'a>(&'a self, subject: &'a Subject) -> Judging<'a> {
-        Judging { adapter: &subject.identity.name, known: &subject.known, profile: self.profile, rerun: &self.rerun }
+        Judging {
+            adapter: &subject.identity.name,
+            known: &subject.known,
+            profile: self.profile,
+            rerun: &self.rerun,
+            seed: self.seed,
+            expected: &self.expected,
+            counts_cases: self.counts_cases || subject.asked().is_some(),
+        }
     }
 
     /// A run of everything as it is without any option.
@@ -88,6 +106,9 @@ impl Options {
             rerun: String::new(),
             diagnose: None,
             stop: Stop::default(),
+            expected: vec![],
+            counts_cases: false,
+            runs: 1,
         }
     }
 

@@ -1,17 +1,22 @@
 //! A group of formulas in the stages that take rows: chunk after chunk, each handed to every stage of every subject before the
 //! reference is computed on all cores.
 
+use crate::again::{Digests, UNASKED, digest, number};
 use crate::device::DeviceError;
 use crate::options::Options;
 use crate::rows::Rows;
 use crate::subject::{Compiled, Job, Subject};
-use lightmeter_catalogue::cases::Stage;
+use lightmeter_catalogue::cases::{Spec, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
+use lightmeter_document::event::{Event, Observer};
+use lightmeter_document::gate::cases;
 use lightmeter_document::run::{Group, Report, Totals};
+use lightmeter_judge::cases::Unanswered;
 use lightmeter_judge::chunk::{self, Chunk};
 use lightmeter_judge::diagnose::{Row, Told};
-use lightmeter_judge::formula::{RowPlace, RowSample, RowStanding};
+use lightmeter_judge::formula::{Judging, RowPlace, RowSample, RowStanding};
+use lightmeter_judge::tally::KEPT_FAILURES;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::time::Instant;
@@ -28,6 +33,8 @@ pub(crate) struct RowRun<'a> {
     standings: Vec<Vec<(RowStanding, f64)>>,
     /// Which stages are asked.
     asked: Asked,
+    /// What each stage of each subject answered to each case in turn, where that is wanted.
+    digests: Option<Vec<Vec<Digests>>>,
 }
 
 /// Which stages of a subject are asked.
@@ -72,7 +79,18 @@ impl<'a> RowRun<'a> {
         let outputs = members[0].spec.output_len();
         let blank =
             |compiled: &Compiled| asked.of(&compiled.stages).map(|_| (RowStanding::new(outputs), 0.0)).collect();
-        Self { members, standings: compiled.iter().map(blank).collect(), compiled, asked }
+        Self { members, standings: compiled.iter().map(blank).collect(), compiled, asked, digests: None }
+    }
+
+    /// The same, which notes what is answered to each case.
+    pub(crate) fn noting(self) -> Self {
+        let blank = |compiled: &Compiled| self.asked.of(&compiled.stages).map(|_| Digests::default()).collect();
+        Self { digests: Some(self.compiled.iter().map(blank).collect()), ..self }
+    }
+
+    /// What was answered to each case by each stage of each subject, where it was noted.
+    pub(crate) fn noted(&mut self) -> Option<Vec<Vec<Digests>>> {
+        self.digests.take()
     }
 
     /// Draws cases, each with its formula's place among the group's, and hands them to every stage of every subject.
@@ -96,14 +114,67 @@ impl<'a> RowRun<'a> {
     pub(crate) fn end(
         &mut self,
         mut begun: Begun<'a>,
-        subjects: &[Subject],
+        subjects: &mut [Subject],
         options: &Options,
         report: &mut Report,
+        observer: &mut dyn Observer,
     ) -> Result<(), DeviceError> {
         let clock = Instant::now();
         chunk::refer(&mut begun.chunk, options.profile);
         report.timing.reference += clock.elapsed().as_secs_f64();
-        self.judge(subjects, &begun.chunk, begun.jobs, options, report)
+        self.judge(subjects, &begun.chunk, begun.jobs, options, report, observer)
+    }
+
+    /// What the subjects answer to cases that were judged before.
+    pub(crate) fn answers(
+        &self,
+        begun: Begun<'a>,
+        subjects: &mut [Subject],
+        observer: &mut dyn Observer,
+    ) -> Result<Vec<Vec<Digests>>, DeviceError> {
+        let mut jobs = begun.jobs.into_iter();
+        let mut all = vec![];
+        for (subject, compiled) in subjects.iter_mut().zip(&self.compiled) {
+            let mut stages = vec![];
+            for (_, work) in self.asked.of(&compiled.stages) {
+                let mut digests = Digests::default();
+                if let (Some((Some(job), _)), Ok(work)) = (jobs.next(), work) {
+                    let mut advanced = |count| observer.see(&Event::Advanced(count));
+                    let answers = subject.finish(work, job, &rows(&begun.chunk), &mut advanced)?;
+                    digests.note(&answers, self.members[0].spec.output_len(), begun.chunk.cases.len());
+                }
+                stages.push(digests);
+            }
+            all.push(stages);
+        }
+        Ok(all)
+    }
+
+    /// Cases that failed, with what was answered: a sample of at most so many of each stage of each subject.
+    pub(crate) fn failing(&self, most: usize) -> Vec<Vec<Vec<(CaseRef, u32)>>> {
+        let of_stage = |(standing, _): &(RowStanding, f64)| {
+            let values = |values: &[f32]| digest(values.iter().map(|value| u64::from(value.to_bits())));
+            let rows = standing.wrong.rows().into_iter().map(|((_, case), row)| (case, values(row)));
+            let refused = standing.cases.refused.iter().filter(|(_, why)| matches!(why, Unanswered::Unjudged(_)));
+            let mut all: Vec<(CaseRef, u32)> =
+                rows.chain(refused.map(|(&(_, case), why)| (case, number(why)))).collect();
+            all.sort_unstable();
+            let stride = all.len().div_ceil(most).max(1);
+            all.into_iter().step_by(stride).collect()
+        };
+        self.standings.iter().map(|stages| stages.iter().map(of_stage).collect()).collect()
+    }
+
+    /// Counts cases that were not asked, since nobody answers any more.
+    pub(crate) fn leave_out(&mut self, cases: &[(usize, CaseRef)]) {
+        for (standing, _) in self.standings.iter_mut().flatten() {
+            for &case in cases {
+                standing.tally.totals.cases += 1;
+                standing.cases.unanswered(case, &Unanswered::Unasked);
+            }
+        }
+        let digests = self.digests.iter_mut().flatten().flatten();
+        digests.for_each(|digests| digests.0.extend(cases.iter().map(|_| UNASKED)));
     }
 
     /// Hands a chunk to every stage of every subject, in the order in which the jobs are finished.
@@ -122,26 +193,33 @@ impl<'a> RowRun<'a> {
     /// Waits for every stage of every subject, and judges what it gave.
     fn judge(
         &mut self,
-        subjects: &[Subject],
+        subjects: &mut [Subject],
         chunk: &Chunk<'_>,
         jobs: Vec<Submitted>,
         options: &Options,
         report: &mut Report,
+        observer: &mut dyn Observer,
     ) -> Result<(), DeviceError> {
         let (mut jobs, cases) = (jobs.into_iter(), chunk.cases.len() as u64);
-        for ((subject, compiled), standings) in subjects.iter().zip(&self.compiled).zip(&mut self.standings) {
-            for ((stage, work), (standing, seconds)) in self.asked.of(&compiled.stages).zip(standings) {
+        let outputs = self.members[0].spec.output_len();
+        for (place, (subject, compiled)) in subjects.iter_mut().zip(&self.compiled).enumerate() {
+            let stages = self.asked.of(&compiled.stages).zip(&mut self.standings[place]).enumerate();
+            for (number, ((stage, work), (standing, seconds))) in stages {
                 let (Some((Some(job), submitting)), Ok(work)) = (jobs.next(), work) else {
                     standing.tally.totals.cases += cases;
                     standing.tally.totals.skipped += cases;
                     continue;
                 };
                 let clock = Instant::now();
-                let words = subject.finish(work, job, &rows(chunk))?;
+                let answers =
+                    subject.finish(work, job, &rows(chunk), &mut |count| observer.see(&Event::Advanced(count)))?;
                 let waiting = clock.elapsed().as_secs_f64();
                 report.timing.devices += waiting;
                 let clock = Instant::now();
-                standing.judge(chunk, &words, *stage, &options.judging(subject));
+                standing.judge(chunk, &answers, *stage, &options.judging(subject));
+                if let Some(digests) = &mut self.digests {
+                    digests[place][number].note(&answers, outputs, chunk.cases.len());
+                }
                 report.timing.judge += clock.elapsed().as_secs_f64();
                 *seconds += submitting + waiting + clock.elapsed().as_secs_f64();
             }
@@ -150,8 +228,9 @@ impl<'a> RowRun<'a> {
     }
 
     /// Adds a group for each stage of each subject to the report, and hands back what was compiled.
-    pub(crate) fn finish(self, subjects: &[Subject], options: &Options, report: &mut Report) -> Vec<Compiled> {
-        for ((subject, compiled), standings) in subjects.iter().zip(&self.compiled).zip(self.standings) {
+    pub(crate) fn finish(mut self, subjects: &[Subject], options: &Options, report: &mut Report) -> Vec<Compiled> {
+        let standings = std::mem::take(&mut self.standings);
+        for ((subject, compiled), standings) in subjects.iter().zip(&self.compiled).zip(standings) {
             let mut before: Option<(RowSample, RowSample, Told)> = None;
             for ((stage, work), (standing, seconds)) in self.asked.of(&compiled.stages).zip(standings) {
                 for (name, excused) in &standing.tally.excused {
@@ -168,26 +247,50 @@ impl<'a> RowRun<'a> {
                     _ => told(self.members, &standing, *stage, subject, options),
                 };
                 report.timing.diagnose += clock.elapsed().as_secs_f64();
-                let RowStanding { tally, wrong, right, .. } = standing;
-                before = is_shader(*stage).then(|| (wrong, right, told.clone()));
-                let problem = tally.problem().or(told.systematic);
-                let name_of = |place: RowPlace| self.members[place.member].case_id(place.case);
-                report.groups.push(Group {
-                    totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
-                    error_ulp_max: Number(tally.error_max),
-                    margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
-                    seconds,
-                    worst: tally.worst.map(|(_, place)| name_of(place)),
-                    skip_reason: work.as_ref().err().map(|reason| (*reason).into()),
-                    explanation: told.explanation,
-                    problem,
-                    ..Group::new(self.members[0].spec.group().into(), subject.identity.name.clone(), stage.name())
-                });
-                report.failures.extend(tally.reported());
+                let by = options.judging(subject);
+                let mut group = self.group(&standing, *stage, told.clone(), &by);
+                group.seconds = seconds;
+                group.skip_reason = work.as_ref().err().map(|reason| (*reason).into());
+                report.groups.push(group);
+                let kept = if *stage == Stage::Answer { usize::MAX } else { KEPT_FAILURES };
+                report.failures.extend(standing.failures(self.members, *stage, &by).into_iter().take(kept));
+                for (known, [failed, passed]) in report.expectations.iter_mut().zip(&standing.cases.expected) {
+                    known.failed += failed;
+                    known.passed += passed;
+                }
+                let RowStanding { wrong, right, .. } = standing;
+                before = is_shader(*stage).then_some((wrong, right, told));
             }
         }
         self.compiled
     }
+
+    /// The group of a stage's verdicts.
+    fn group(&self, standing: &RowStanding, stage: Stage, told: Told, by: &Judging<'_>) -> Group {
+        let tally = &standing.tally;
+        let problem = tally.problem().or(told.systematic);
+        let name_of = |place: &RowPlace| self.members[place.member].case_id(place.case);
+        let id = group_id(&self.members[0].spec, stage);
+        let counts = by.counts_cases.then(|| standing.cases.told(self.members, id));
+        let unjudged = counts.as_ref().map_or(0, |counts| counts.unjudged);
+        let besides = |says: String| format!("{says}; besides, {} were not answered by values", cases(unjudged));
+        let explanation = if unjudged > 0 { told.explanation.map(besides) } else { told.explanation };
+        Group {
+            totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
+            error_ulp_max: Number(tally.error_max),
+            margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
+            worst: tally.worst.as_ref().map(|(_, place)| name_of(place)),
+            explanation,
+            problem,
+            by_case: counts,
+            ..Group::new(id.into(), by.adapter.to_owned(), stage.name())
+        }
+    }
+}
+
+/// The id of the group that a formula is judged in: of a renderer, each formula is a group.
+pub(crate) fn group_id(spec: &Spec, stage: Stage) -> &str {
+    if stage == Stage::Answer { &spec.id } else { spec.group() }
 }
 
 /// What explains the rows of a stage that fail; where none does, what is wrong with all of them together. Of several formulas it is
@@ -212,7 +315,7 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
 }
 
 const fn is_shader(stage: Stage) -> bool {
-    matches!(stage, Stage::Compute | Stage::Fragment)
+    matches!(stage, Stage::Compute | Stage::Fragment | Stage::Answer)
 }
 
 /// The rows of one formula, by its place among the group's, with their inputs.
@@ -231,6 +334,7 @@ fn rows<'a>(chunk: &'a Chunk<'_>) -> Rows<'a> {
     Rows {
         members: chunk.members,
         of: &chunk.of,
+        cases: &chunk.cases,
         inputs: &chunk.inputs,
         selected: &chunk.selected,
         outputs: chunk.members[0].spec.output_len(),

@@ -1,7 +1,7 @@
 //! Rows of inputs, as a stage takes them.
 
 use lightmeter_catalogue::cases::Kind;
-use lightmeter_catalogue::select::Member;
+use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_scene::depth::DepthTest;
 
 /// Rows of inputs of one group, and whose they are.
@@ -10,6 +10,8 @@ pub struct Rows<'a> {
     pub members: &'a [&'a Member],
     /// For each case, its formula's place among the members.
     pub of: &'a [usize],
+    /// The cases themselves, where they are of the catalogue.
+    pub cases: &'a [CaseRef],
     /// The inputs, row after row.
     pub inputs: &'a [f32],
     /// The same with selectors before each row, for the shaders.

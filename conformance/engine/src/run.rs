@@ -3,10 +3,12 @@
 //! Work goes group by group and chunk by chunk, so that memory stays flat however many cases there are. A chunk's inputs
 //! are handed to every stage of every subject before the reference is computed on all cores; then the results are read.
 
+use crate::ask_again::{Noted, ask_again};
 use crate::blend_unit;
 use crate::device::DeviceError;
 use crate::image;
 use crate::options::Options;
+use crate::renderer::AskedRenderer;
 use crate::row_run::{Asked, CompiledGroups, RowRun};
 use crate::scout;
 use crate::selection::Selection;
@@ -15,28 +17,34 @@ use crate::subject::{Compiled, Subject};
 use crate::under_way::{is_over, tell};
 use crate::witness;
 use crate::{special, stability};
-use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend;
+use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::scene;
+use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
+use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{BlendPromise, Failure, Group, Report};
+use lightmeter_document::run::{BlendPromise, Failure, Group, Report, Totals};
 use lightmeter_judge::blend_unit::policy::{InterfacePromise, PROMISES};
 use lightmeter_judge::stability::UNSTABLE;
 use lightmeter_scene::blend::Equation;
 use std::time::Instant;
 
 /// Cases of a chunk.
-const CHUNK: usize = 1 << 16;
+pub(crate) const CHUNK: usize = 1 << 16;
+/// Failing cases of each formula that are asked once more.
+const MOST_AGAIN: usize = 1024;
 
 /// Runs what the options select on every subject. Where a device fails, what was judged until then is the report, which says
-/// what was under way.
+/// what was under way. Renderers that are asked case by case are asked all there is for them, and are judged by themselves.
 ///
 /// # Errors
 /// Where a shader is invalid, or a device fails before anything ran.
 pub fn run(subjects: &mut [Subject], options: &Options, observer: &mut dyn Observer) -> Result<Report, DeviceError> {
-    run_selection(&Selection::of(options), subjects, options, observer)
+    let is_asked = subjects.iter().all(|subject| subject.asked().is_some());
+    let selection = if is_asked { Selection::of_renderer(options) } else { Selection::of(options) };
+    run_selection(&selection, subjects, options, observer)
 }
 
 /// Runs a selection, or a part of one, on every subject. Where a device fails, what was judged until then is the report, which
@@ -75,6 +83,7 @@ pub fn run_selection(
         };
         report.blend_promises = PROMISES.iter().map(told).collect();
     }
+    report.renderer = subjects.iter_mut().find_map(|subject| subject.asked_mut()).map(|renderer| renderer.used());
     report.unstable_beyond = (!report.stability.is_empty()).then_some(UNSTABLE);
     report.seconds = started.elapsed().as_secs_f64();
     Ok(report)
@@ -82,7 +91,7 @@ pub fn run_selection(
 
 /// What is judged in one go.
 #[derive(Clone, Copy)]
-enum Turn<'a> {
+pub(crate) enum Turn<'a> {
     Table(&'a Table),
     /// The formulas of a group.
     Formulas(&'a [Selected]),
@@ -90,9 +99,11 @@ enum Turn<'a> {
 }
 
 impl Turn<'_> {
-    fn id(self, catalogue: &[Member]) -> String {
+    pub(crate) fn id(self, selection: &Selection) -> String {
+        let (catalogue, is_by_formula) = (&selection.catalogue, selection.is_by_formula);
         match self {
             Self::Table(table) => table.id(),
+            Self::Formulas(group) if is_by_formula => catalogue[group[0].member].spec.id.clone(),
             Self::Formulas(group) => catalogue[group[0].member].spec.group().to_owned(),
             Self::Scene(chosen) => scene::select::scene_id(chosen.place),
         }
@@ -110,11 +121,10 @@ impl Turn<'_> {
 }
 
 /// All that a selection judges, in the order of reports.
-fn turns(selection: &Selection) -> Vec<Turn<'_>> {
-    let group = |chosen: &Selected| selection.catalogue[chosen.member].spec.group();
+pub(crate) fn turns(selection: &Selection) -> Vec<Turn<'_>> {
     // First: Mesa 22.3's lavapipe no longer flushes subnormals in fragments once it has drawn certain scenes.
     let tables = selection.tables.iter().map(Turn::Table);
-    let formulas = selection.formulas.chunk_by(|a, b| group(a) == group(b)).map(Turn::Formulas);
+    let formulas = selection.groups().map(Turn::Formulas);
     tables.chain(formulas).chain(selection.scenes.iter().map(Turn::Scene)).collect()
 }
 
@@ -129,30 +139,40 @@ fn judge_in_turn(
 ) -> Result<(), DeviceError> {
     let catalogue = &selection.catalogue;
     let mut turns: Vec<(usize, Turn<'_>)> = turns(selection).into_iter().enumerate().collect();
-    turns.sort_by_key(|(_, turn)| turn.rank(catalogue));
+    let is_asked = subjects.iter().any(|subject| subject.asked().is_some());
+    if !is_asked {
+        turns.sort_by_key(|(_, turn)| turn.rank(catalogue));
+    }
     let mut judged: Vec<(usize, Vec<Group>, Vec<Failure>)> = vec![];
+    let mut noted: Vec<(Turn<'_>, Noted)> = vec![];
     for (place, turn) in turns {
-        let id = turn.id(catalogue);
+        let id = turn.id(selection);
         observer.see(&Event::Group(&id));
         let result = match turn {
-            Turn::Table(table) => special::verdict::run_table(table, subjects, options, report, observer),
+            Turn::Table(table) => {
+                special::verdict::run_table(table, subjects, options, report, observer).map(|()| Noted::Nothing)
+            }
             Turn::Formulas(group) => {
                 let compiled = compiled.remove(&id);
                 judge_group(catalogue, group, subjects, (options, compiled), report, observer)
             }
             Turn::Scene(chosen) => {
-                let size = scene::select::size(&options.filter, options.size);
-                let loaded =
-                    scene::select::builtin(chosen.place, size).expect("a test loads every scene that is built in");
-                image::run::run_scene(&loaded, chosen, subjects, options, report, observer)
+                let loaded = scene_of(chosen, selection);
+                image::run::run_scene(&loaded, chosen, subjects, options, report, observer).map(Noted::Images)
             }
         };
+        let result = result.map(|of_turn| noted.push((turn, of_turn)));
         let (groups, failures) = (std::mem::take(&mut report.groups), std::mem::take(&mut report.failures));
         tell(&groups, &failures, false, observer);
         judged.push((place, groups, failures));
-        if is_over(result, &id, options, report)? {
+        // Of a renderer everything is reported: what it was not asked is missing.
+        if is_over(result, &id, options, report)? && !is_asked {
             break;
         }
+    }
+    if report.interrupted.is_none() {
+        let result = ask_again(selection, &noted, subjects, options, report, observer);
+        is_over(result, "what is asked again", options, report)?;
     }
     judged.sort_by_key(|(place, ..)| *place);
     for (_, groups, failures) in judged {
@@ -162,9 +182,18 @@ fn judge_in_turn(
     Ok(())
 }
 
+/// A chosen scene, in the size that the selection draws it in.
+pub(crate) fn scene_of(chosen: &Chosen, selection: &Selection) -> Loaded {
+    scene::select::builtin(chosen.place, selection.size).expect("a test loads every scene that is built in")
+}
+
 /// Cases that are to be judged, for the progress: those of a formula once for its stages that take rows, and once for each
 /// target of each blend unit; results of tables and pixels of scenes on each subject.
 fn work(selection: &Selection, subjects: &[Subject], options: &Options) -> u64 {
+    if subjects.iter().any(|subject| subject.asked().is_some()) {
+        let formulas: u64 = selection.formulas.iter().map(Selected::count).sum();
+        return options.runs * (formulas + selection.scenes.len() as u64);
+    }
     let of_formula = |chosen: &Selected| {
         let member = &selection.catalogue[chosen.member];
         let unit = match member.spec.kind {
@@ -187,16 +216,32 @@ fn judge_group(
     (options, compiled): (&Options, Option<Vec<Compiled>>),
     report: &mut Report,
     observer: &mut dyn Observer,
-) -> Result<(), DeviceError> {
+) -> Result<Noted, DeviceError> {
     let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
+    if let [subject] = subjects
+        && let Some(renderer) = subject.asked()
+    {
+        if let Some(reason) = renderer.lacks(&members[0].spec.id) {
+            report.groups.push(not_asked(
+                members[0].spec.id.clone(),
+                Stage::Answer.name(),
+                group[0].count(),
+                reason,
+                subject,
+            ));
+            return Ok(Noted::Nothing);
+        }
+        return run_rows(&members, group, subjects, (options, compiled), report, observer);
+    }
     if matches!(members[0].spec.kind, Kind::Blend(_)) {
         blend_unit::run::run_group(&members, group, subjects, options, report, observer)?;
     }
     if members[0].spec.row_stages().is_empty() || options.stop.is_set() {
-        return Ok(());
+        return Ok(Noted::Nothing);
     }
     let first = report.groups.len();
-    run_rows(&members, group, subjects, (options, compiled), report, observer)?;
+    let rows: Vec<Selected> = group.iter().zip(&members).map(|(chosen, member)| chosen.rows(member)).collect();
+    let noted = run_rows(&members, &rows, subjects, (options, compiled), report, observer)?;
     for (member, chosen) in members.iter().zip(group) {
         stability::examine(member, &chosen.hard, subjects, options, report)?;
     }
@@ -207,7 +252,17 @@ fn judge_group(
             group.totals.failed_groups = 1;
         }
     }
-    Ok(())
+    Ok(noted)
+}
+
+/// The group of what a renderer does not declare.
+pub(crate) fn not_asked(id: String, stage: &'static str, cases: u64, reason: String, subject: &Subject) -> Group {
+    Group {
+        totals: Totals { cases, skipped: cases, ..Totals::default() },
+        skip_reason: Some(reason.clone().into()),
+        by_case: Some(CaseCounts { not_asked: cases, reason: Some(reason), ..CaseCounts::default() }),
+        ..Group::new(id, subject.identity.name.clone(), stage)
+    }
 }
 
 /// How the distinct states of the 15 × 15 × 5 reached a blend unit: states by route, on any adapter and target.
@@ -232,29 +287,47 @@ fn run_rows(
     (options, compiled): (&Options, Option<Vec<Compiled>>),
     report: &mut Report,
     observer: &mut dyn Observer,
-) -> Result<(), DeviceError> {
-    let group: Vec<Selected> = group.iter().zip(members).map(|(chosen, member)| chosen.rows(member)).collect();
+) -> Result<Noted, DeviceError> {
     let clock = Instant::now();
     let compiled = compiled.map_or_else(|| RowRun::compile(members[0], subjects, options), Ok)?;
     let mut run = RowRun::new(members, compiled, Asked::All);
+    if options.runs > 1 {
+        run = run.noting();
+    }
     report.timing.compile += clock.elapsed().as_secs_f64();
-
-    let mut all = group.iter().enumerate().flat_map(|(of, chosen)| chosen.cases().map(move |case| (of, case)));
+    let is_asked = subjects.iter().any(|subject| subject.asked().is_some());
+    let mut all = cases_of(group);
     let mut next: Vec<(usize, CaseRef)> = vec![];
-    while !options.stop.is_set() {
+    while is_asked || !options.stop.is_set() {
         next.clear();
         next.extend(all.by_ref().take(CHUNK));
         if next.is_empty() {
             break;
         }
+        if is_asked && subjects.iter().all(|subject| subject.asked().is_some_and(AskedRenderer::is_over)) {
+            run.leave_out(&next);
+            continue;
+        }
         let begun = run.begin(&next, subjects, options, report);
-        if let Err(error) = begun.and_then(|begun| run.end(begun, subjects, options, report)) {
+        if let Err(error) = begun.and_then(|begun| run.end(begun, subjects, options, report, observer)) {
             // What was judged until then stays.
             run.finish(subjects, options, report);
             return Err(error);
         }
-        observer.see(&Event::Advanced(next.len() as u64));
+        if !is_asked {
+            observer.see(&Event::Advanced(next.len() as u64));
+        }
     }
+    let noted = match run.noted() {
+        Some(digests) => Noted::Rows(digests),
+        None if is_asked => Noted::Failing(run.failing(MOST_AGAIN)),
+        None => Noted::Nothing,
+    };
     run.finish(subjects, options, report);
-    Ok(())
+    Ok(noted)
+}
+
+/// The cases of a group, each with its formula's place in it.
+pub(crate) fn cases_of(group: &[Selected]) -> impl Iterator<Item = (usize, CaseRef)> + '_ {
+    group.iter().enumerate().flat_map(|(of, chosen)| chosen.cases().map(move |case| (of, case)))
 }

@@ -10,7 +10,7 @@ use crate::subject::Subject;
 use crate::under_way::{is_over, tell};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
-use lightmeter_document::event::{Event, Observer};
+use lightmeter_document::event::{Event, Observer, Silent};
 use lightmeter_document::run::Report;
 use std::collections::VecDeque;
 
@@ -38,11 +38,10 @@ pub(crate) fn scout(
     observer: &mut dyn Observer,
 ) -> Result<Option<CompiledGroups>, DeviceError> {
     let catalogue = &selection.catalogue;
-    let group_of = |chosen: &Selected| catalogue[chosen.member].spec.group();
     let has_rows = |group: &&[Selected]| !catalogue[group[0].member].spec.row_stages().is_empty();
-    let mut groups: Vec<&[Selected]> =
-        selection.formulas.chunk_by(|a, b| group_of(a) == group_of(b)).filter(has_rows).collect();
-    if groups.len() < LEAST_GROUPS {
+    let mut groups: Vec<&[Selected]> = selection.groups().filter(has_rows).collect();
+    // A renderer is asked each case once.
+    if groups.len() < LEAST_GROUPS || subjects.iter().any(|subject| subject.asked().is_some()) {
         return Ok(Some(CompiledGroups::new()));
     }
     // Few formulas, and so simple shaders, first.
@@ -100,13 +99,13 @@ impl Scouts<'_> {
     fn end(
         &mut self,
         under_way: UnderWay<'_>,
-        subjects: &[Subject],
+        subjects: &mut [Subject],
         observer: &mut dyn Observer,
     ) -> Result<(), DeviceError> {
         let UnderWay { members, mut run, begun } = under_way;
         let id = members[0].spec.group();
         observer.see(&Event::Group(id));
-        run.end(begun, subjects, self.options, &mut self.report)?;
+        run.end(begun, subjects, self.options, &mut self.report, &mut Silent)?;
         let (groups, failures) = (self.report.groups.len(), self.report.failures.len());
         self.compiled.insert(id.to_owned(), run.finish(subjects, self.options, &mut self.report));
         for group in &mut self.report.groups[groups..] {

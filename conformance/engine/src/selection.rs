@@ -27,6 +27,10 @@ pub struct Selection {
     pub scenes: Vec<Chosen>,
     /// Deviations whose witnesses are asked.
     pub deviations: Vec<NamedDeviation>,
+    /// Pixels of the longer side of every scene; `None` for the scenes' own.
+    pub size: Option<u32>,
+    /// Whether each formula is a group by itself, as it is for renderers that are asked case by case.
+    pub is_by_formula: bool,
 }
 
 /// A part of a selection.
@@ -73,7 +77,36 @@ impl Selection {
         let scenes = lightmeter_catalogue::scene::select::select(&options.filter, options.shard, size);
         let has_cases = !(formulas.is_empty() && tables.is_empty() && scenes.is_empty());
         let deviations = if has_cases { NamedDeviation::all() } else { NamedDeviation::named(&options.filter) };
-        Self { catalogue, formulas, tables, scenes, deviations }
+        Self { catalogue, formulas, tables, scenes, deviations, size, is_by_formula: false }
+    }
+
+    /// What the options select for renderers that are asked case by case: formulas and scenes. Nothing is promised of NaN and infinity
+    /// in blending, of which drivers are asked what they do; renderers are not.
+    #[must_use]
+    pub fn of_renderer(options: &Options) -> Self {
+        let catalogue: Arc<[Member]> = lightmeter_catalogue::select::catalogue().into();
+        let is_promised = |chosen: &Selected| !matches!(catalogue[chosen.member].spec.kind, Kind::Blend(program) if program.is_special());
+        let mut formulas = select(&catalogue, &options.filter, options.cases, options.shard);
+        formulas.retain(is_promised);
+        let scenes = lightmeter_catalogue::scene::select::select(&options.filter, options.shard, options.size);
+        Self {
+            catalogue,
+            formulas,
+            tables: vec![],
+            scenes,
+            deviations: vec![],
+            size: options.size,
+            is_by_formula: true,
+        }
+    }
+
+    /// The formulas, by groups that are judged together.
+    pub fn groups(&self) -> impl Iterator<Item = &[Selected]> {
+        let id = |chosen: &Selected| {
+            let spec = &self.catalogue[chosen.member].spec;
+            if self.is_by_formula { spec.id.as_str() } else { spec.group() }
+        };
+        self.formulas.chunk_by(move |a, b| id(a) == id(b))
     }
 
     /// Whether there is no case.

@@ -1,10 +1,13 @@
-//! What is judged: an adapter, or the embedded implementation, and how each of its stages evaluates a group of formulas.
+//! What is judged: an adapter, the embedded implementation or another renderer, and how each of its stages evaluates a group of formulas.
 
 use crate::device::{Code, Device, DeviceError, Own, Stages};
+use crate::renderer::AskedRenderer;
 use crate::rows::Rows;
+use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::run::Identity;
 use lightmeter_judge::blend_unit::rules::Rules;
+use lightmeter_judge::cases::Answers;
 use lightmeter_judge::devices::Known;
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
@@ -15,9 +18,15 @@ pub struct Subject {
     pub identity: Identity,
     /// What is known of it.
     pub known: Known,
-    device: Option<Box<dyn Device>>,
-    /// What the embedded blend unit follows.
-    rules: Rules,
+    answers: Answering,
+}
+
+/// Who answers.
+enum Answering {
+    /// The formulas in f32, and a blend unit that follows these rules.
+    Embedded(Rules),
+    Device(Box<dyn Device>),
+    Renderer(Box<dyn AskedRenderer>),
 }
 
 /// The stages of a subject, compiled for one group of formulas.
@@ -32,6 +41,8 @@ pub enum Work {
     OnDevice(Own),
     /// The formulas in f32, on this processor.
     Embedded,
+    /// A renderer, asked case by case.
+    Asked,
 }
 
 /// Work that a device may still be doing.
@@ -40,13 +51,21 @@ pub enum Job {
     Pending(Own),
     /// Done.
     Done(Vec<u32>),
+    /// To be asked once it is waited for.
+    Asked,
 }
 
 impl Subject {
     /// A device, as it is named, and what is known of it.
     #[must_use]
     pub fn on_device(identity: Identity, known: Known, device: Box<dyn Device>) -> Self {
-        Self { identity, known, device: Some(device), rules: Rules::RIGHT }
+        Self { identity, known, answers: Answering::Device(device) }
+    }
+
+    /// Another renderer. Nothing is known of it.
+    #[must_use]
+    pub fn renderer(identity: Identity, renderer: Box<dyn AskedRenderer>) -> Self {
+        Self { identity, known: Known::default(), answers: Answering::Renderer(renderer) }
     }
 
     /// The formulas themselves in f32, which need no driver. They prove nothing about the reference, which they share.
@@ -58,30 +77,41 @@ impl Subject {
             backend: "embedded".into(),
             driver: concat!("lightmeter ", env!("CARGO_PKG_VERSION")).into(),
         };
-        Self { identity, known: Known::default(), device: None, rules: Rules::RIGHT }
+        Self { identity, known: Known::default(), answers: Answering::Embedded(Rules::RIGHT) }
     }
 
     /// The embedded implementation with a blend unit that follows other rules than the right ones.
     #[must_use]
     pub fn faulty(rules: Rules) -> Self {
-        Self { rules, ..Self::embedded() }
+        Self { answers: Answering::Embedded(rules), ..Self::embedded() }
     }
 
-    /// The device; `None` of the embedded implementation.
+    /// The device; `None` of any other subject.
     #[must_use]
     pub fn device(&self) -> Option<&dyn Device> {
-        self.device.as_deref()
+        if let Answering::Device(device) = &self.answers { Some(&**device) } else { None }
     }
 
-    /// The device, to draw with; `None` of the embedded implementation.
+    /// The device, to draw with; `None` of any other subject.
     pub fn device_mut(&mut self) -> Option<&mut (dyn Device + 'static)> {
-        self.device.as_deref_mut()
+        if let Answering::Device(device) = &mut self.answers { Some(&mut **device) } else { None }
+    }
+
+    /// The renderer that is asked case by case; `None` of any other subject.
+    #[must_use]
+    pub fn asked(&self) -> Option<&dyn AskedRenderer> {
+        if let Answering::Renderer(renderer) = &self.answers { Some(&**renderer) } else { None }
+    }
+
+    /// The renderer, to be asked; `None` of any other subject.
+    pub fn asked_mut(&mut self) -> Option<&mut (dyn AskedRenderer + 'static)> {
+        if let Answering::Renderer(renderer) = &mut self.answers { Some(&mut **renderer) } else { None }
     }
 
     /// What the embedded blend unit follows.
     #[must_use]
     pub const fn rules(&self) -> &Rules {
-        &self.rules
+        if let Answering::Embedded(rules) = &self.answers { rules } else { &Rules::RIGHT }
     }
 
     /// Why a target cannot be blended on; `None` where it can.
@@ -107,11 +137,15 @@ impl Subject {
     /// # Errors
     /// Where a shader is invalid or the device refuses it.
     pub fn compile(&mut self, code: &Code, member: &Member) -> Result<Compiled, DeviceError> {
-        let Some(device) = self.device_mut() else {
-            return Ok(Compiled { stages: vec![(member.spec.row_stages()[0], Ok(Work::Embedded))] });
+        let stages = match &mut self.answers {
+            Answering::Embedded(_) => vec![(member.spec.row_stages()[0], Ok(Work::Embedded))],
+            Answering::Renderer(_) => vec![(Stage::Answer, Ok(Work::Asked))],
+            Answering::Device(device) => {
+                let stages = device.compile(code, member)?.into_iter();
+                stages.map(|(stage, work)| (stage, work.map(Work::OnDevice))).collect()
+            }
         };
-        let stages = device.compile(code, member)?;
-        Ok(Compiled { stages: stages.into_iter().map(|(stage, work)| (stage, work.map(Work::OnDevice))).collect() })
+        Ok(Compiled { stages })
     }
 
     /// Starts the evaluation of rows by a stage.
@@ -124,6 +158,7 @@ impl Subject {
     pub fn submit(&mut self, work: &Work, rows: &Rows<'_>) -> Result<Job, DeviceError> {
         match work {
             Work::Embedded => Ok(Job::Done(embedded(rows))),
+            Work::Asked => Ok(Job::Asked),
             Work::OnDevice(work) => {
                 let device = self.device_mut().expect("only a device compiles work for a device");
                 device.submit(work, rows).map(Job::Pending)
@@ -131,20 +166,27 @@ impl Subject {
         }
     }
 
-    /// The outputs of rows, bit for bit, once they are there.
+    /// What there is to rows once it is there. `advanced` hears how many cases of a renderer are done.
     ///
     /// # Errors
     /// Where the device failed or was lost.
     ///
     /// # Panics
     /// Where the job is not of this work.
-    pub fn finish(&self, work: &Work, job: Job, rows: &Rows<'_>) -> Result<Vec<u32>, DeviceError> {
-        match (work, job) {
-            (_, Job::Done(words)) => Ok(words),
-            (Work::OnDevice(work), Job::Pending(job)) => {
-                self.device().expect("only a device has pending work").finish(work, job, rows)
+    pub fn finish(
+        &mut self,
+        work: &Work,
+        job: Job,
+        rows: &Rows<'_>,
+        advanced: &mut dyn FnMut(u64),
+    ) -> Result<Answers, DeviceError> {
+        match (&mut self.answers, work, job) {
+            (_, _, Job::Done(words)) => Ok(words.into()),
+            (Answering::Device(device), Work::OnDevice(work), Job::Pending(job)) => {
+                device.finish(work, job, rows).map(Answers::from)
             }
-            (Work::Embedded, Job::Pending(_)) => unreachable!("a job is finished by the work that submitted it"),
+            (Answering::Renderer(renderer), Work::Asked, Job::Asked) => renderer.values(rows, advanced),
+            _ => unreachable!("a job is finished by the subject and the work that submitted it"),
         }
     }
 }

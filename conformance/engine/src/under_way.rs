@@ -10,7 +10,9 @@ pub(crate) fn tell(groups: &[Group], failures: &[Failure], is_scouted: bool, obs
     for group in groups {
         let is_of_group = |failure: &&Failure| {
             let place = (&failure.adapter, &failure.stage) == (&group.adapter, &group.stage);
-            place && failure.target == group.target && failure.id.starts_with(&group.id)
+            let smallest = group.by_case.as_ref().and_then(|counts| counts.smallest.as_ref());
+            let is_of_group = failure.id.starts_with(&group.id) || smallest == Some(&failure.id);
+            place && failure.target == group.target && is_of_group
         };
         let failures = failures.iter().filter(is_of_group).collect();
         observer.see(&Event::Judged { group, failures, is_scouted });

@@ -1,6 +1,9 @@
 //! A line that a renderer writes.
 
+use super::error::ProcessError;
 use super::frame;
+use lightmeter_arithmetic::Profile;
+use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_scene::frame::Frame;
 use serde::de::{Deserializer, Visitor};
@@ -41,6 +44,18 @@ impl Hello {
         Self { renderer: "unnamed".into(), formulas: vec!["**".into()], scenes: vec!["**".into()], ..Self::default() }
     }
 
+    /// The accuracy rules that it is judged by: those that it is held to, or those that it asks for.
+    ///
+    /// # Errors
+    /// Where it asks for rules that nobody knows.
+    pub fn profile(&self, held_to: Option<&'static Profile>) -> Result<&'static Profile, ProcessError> {
+        match (held_to, &self.profile) {
+            (Some(profile), _) => Ok(profile),
+            (None, Some(name)) => Profile::by_name(name).ok_or_else(|| ProcessError::Profile(name.clone())),
+            (None, None) => Ok(PROFILES[0]),
+        }
+    }
+
     /// What it says of itself, read as filters.
     ///
     /// # Errors
@@ -78,6 +93,17 @@ pub enum Line<'a> {
     Skip(Cow<'a, str>, Cow<'a, str>),
     /// The renderer could not do this, and why.
     Error(Cow<'a, str>, Cow<'a, str>),
+}
+
+impl Line<'_> {
+    /// The id of the case that it answers; `None` of a hello.
+    #[must_use]
+    pub fn id(&self) -> Option<&str> {
+        match self {
+            Self::Hello(_) => None,
+            Self::Value(id, _) | Self::Image(id, _) | Self::Skip(id, _) | Self::Error(id, _) => Some(id),
+        }
+    }
 }
 
 /// What else a line has is the renderer's own.

@@ -1,23 +1,35 @@
-//! Answers as files.
+//! Answers as files: the first of each case, and that further files answer the same.
 
-use super::answer::{self, Hello, Unread};
-use super::error::ProcessError;
-use super::ledger::Ledger;
-use super::pack;
+use super::answer::{self, Hello, Line, Unread, clipped};
+use super::given::{Declared, Given, given};
+use super::pack::PackError;
+use super::picture;
+use super::plan::{CasePlace, GatePlan};
 use super::problems::note;
-use super::process::Ending;
+use lightmeter_catalogue::filter::FilterError;
+use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::event::Stop;
+use lightmeter_document::gate::Problems;
+use lightmeter_document::run::Identity;
+use lightmeter_engine::device::DeviceError;
+use lightmeter_engine::renderer::{AskedRenderer, AskedScene};
+use lightmeter_engine::rows::Rows;
+use lightmeter_judge::cases::{Answers, Unanswered};
+use lightmeter_judge::image::file::StoredImage;
+use lightmeter_scene::frame::Frame;
+use rayon::prelude::*;
+use std::collections::{HashMap, VecDeque};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// The name of a folder's answers.
 pub const ANSWERS: &str = "answers.jsonl";
-/// Lines that are judged at once.
-pub const LINES: usize = 1 << 14;
+/// Lines that are read at once.
+const LINES: usize = 1 << 14;
 
 /// A file of answers, or that of a folder.
-pub struct Answers {
+pub struct AnswerFile {
     /// The file.
     pub path: PathBuf,
     stream: BufReader<File>,
@@ -31,23 +43,23 @@ pub struct Answers {
     pub hello: Option<Hello>,
 }
 
-impl Answers {
+impl AnswerFile {
     /// Opens it and reads who answers.
     ///
     /// # Errors
     /// Where it cannot be read.
-    pub fn open(answers: &Path) -> Result<Self, pack::PackError> {
+    pub fn open(answers: &Path) -> Result<Self, PackError> {
         let path = if answers.is_dir() { answers.join(ANSWERS) } else { answers.to_owned() };
         let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
-        let file = File::open(&path)
-            .map_err(|error| pack::PackError::Read { path: path.clone(), message: error.to_string() })?;
+        let file =
+            File::open(&path).map_err(|error| PackError::Read { path: path.clone(), message: error.to_string() })?;
         let stream = BufReader::with_capacity(1 << 20, file);
         let mut opened = Self { path, stream, folder, number: 0, first: vec![], hello: None };
         if let Some(Ok(line)) = opened.next()? {
             match answer::read(&line) {
-                Ok(answer::Line::Hello(hello)) => opened.hello = Some(*hello),
+                Ok(Line::Hello(hello)) => opened.hello = Some(*hello),
                 Err(message) if answer::is_hello(&line) => {
-                    return Err(pack::PackError::Manifest { path: opened.path, message: format!("line 1: {message}") });
+                    return Err(PackError::Manifest { path: opened.path, message: format!("line 1: {message}") });
                 }
                 _ => opened.first.push((opened.number, line)),
             }
@@ -56,7 +68,7 @@ impl Answers {
     }
 
     /// The next line that is not blank, or that it is too long.
-    fn next(&mut self) -> Result<Option<Result<Vec<u8>, Unread>>, pack::PackError> {
+    fn next(&mut self) -> Result<Option<Result<Vec<u8>, Unread>>, PackError> {
         let mut line = vec![];
         loop {
             self.number += 1;
@@ -65,39 +77,100 @@ impl Answers {
                 Ok(true) if line.iter().all(u8::is_ascii_whitespace) => continue,
                 Ok(true) => Ok(Some(Ok(line))),
                 Err(error @ Unread::TooLong) => Ok(Some(Err(error))),
-                Err(Unread::Io(error)) => {
-                    Err(pack::PackError::Read { path: self.path.clone(), message: error.to_string() })
-                }
+                Err(Unread::Io(error)) => Err(PackError::Read { path: self.path.clone(), message: error.to_string() }),
             };
         }
     }
+}
 
-    /// Judges all of it.
+/// What a file answers to the cases of a formula.
+struct Column {
+    words: Vec<u32>,
+    is_answered: Vec<bool>,
+    /// Cases without a value.
+    others: HashMap<usize, Unanswered>,
+}
+
+/// What a file answers.
+#[derive(Default)]
+struct Contents {
+    /// By the formula's place in the plan, once one of its cases is answered.
+    formulas: HashMap<usize, Column>,
+    scenes: HashMap<usize, Given>,
+    /// Where images lie.
+    folder: PathBuf,
+}
+
+/// A renderer whose answers lie in files. The answers of one file are in memory at a time: some 4 bytes for each output of a case.
+pub struct FileRenderer {
+    plan: GatePlan,
+    declared: Declared,
+    files: VecDeque<AnswerFile>,
+    /// Whether there is more than one, so that lines are told with their file.
+    are_many: bool,
+    contents: Contents,
+    problems: Problems,
+    stop: Stop,
+}
+
+impl FileRenderer {
+    /// Reads the first file of answers to a plan. Who answers is what it says.
     ///
     /// # Errors
     /// Where the file cannot be read.
-    fn judge(
-        mut self,
-        ledger: &mut Ledger<'_>,
-        stop: &Stop,
-        progress: &mut impl FnMut(u64),
-    ) -> Result<(), pack::PackError> {
-        let mut lines = std::mem::take(&mut self.first);
+    ///
+    /// # Panics
+    /// Where there is no file.
+    pub fn read(plan: GatePlan, files: Vec<AnswerFile>, stop: Stop) -> Result<Self, FilesError> {
+        let hello = files[0].hello.clone().unwrap_or_else(Hello::everything);
+        let are_many = files.len() > 1;
+        let mut renderer = Self {
+            plan,
+            declared: Declared::new(hello)?,
+            files: files.into(),
+            are_many,
+            contents: Contents::default(),
+            problems: Problems::default(),
+            stop,
+        };
+        renderer.read_next()?;
+        Ok(renderer)
+    }
+
+    /// What the first file says of who answers.
+    #[must_use]
+    pub const fn hello(&self) -> &Hello {
+        &self.declared.hello
+    }
+
+    /// How the renderer is named in reports.
+    #[must_use]
+    pub fn identity(&self) -> Identity {
+        self.declared.identity()
+    }
+
+    /// Reads the next file.
+    fn read_next(&mut self) -> Result<(), PackError> {
+        let Some(mut file) = self.files.pop_front() else { return Ok(()) };
+        self.contents = Contents { folder: file.folder.clone(), ..Contents::default() };
+        let source = self.are_many.then(|| file.path.display().to_string());
+        let told =
+            |number: u64| source.as_ref().map_or_else(|| format!("line {number}"), |of| format!("{of}, line {number}"));
+        if file.hello.as_ref().is_some_and(|hello| *hello != self.declared.hello) {
+            let what = format!("{}: another hello than that of the first file", told(1));
+            note(&mut self.problems, "malformed", || what);
+        }
+        let mut lines = std::mem::take(&mut file.first);
         loop {
-            let next = self.next()?;
-            let is_end = next.is_none();
+            let next = file.next()?;
+            let is_over = next.is_none() || self.stop.is_set();
             match next {
-                Some(Ok(line)) => lines.push((self.number, line)),
-                Some(Err(error)) => {
-                    let line = ledger.line(self.number);
-                    note(&mut ledger.problems, "oversized", || format!("{line}: {error}"));
-                }
+                Some(Ok(line)) => lines.push((file.number, line)),
+                Some(Err(error)) => note(&mut self.problems, "oversized", || format!("{}: {error}", told(file.number))),
                 None => {}
             }
-            let is_over = is_end || stop.is_set();
             if lines.len() == LINES || is_over {
-                ledger.lines(&lines, &self.folder);
-                progress(lines.len() as u64);
+                self.take(&lines, source.as_deref(), &told);
                 lines.clear();
             }
             if is_over {
@@ -105,39 +178,157 @@ impl Answers {
             }
         }
     }
-}
 
-/// Judges files of answers: the first of each case, and that further files answer the same. Who answers is what the first says.
-///
-/// # Errors
-/// Where a file cannot be read, or what it declares.
-pub fn judge(
-    ledger: &mut Ledger<'_>,
-    all: Vec<Answers>,
-    stop: &Stop,
-    progress: &mut impl FnMut(u64),
-) -> Result<Ending, ProcessError> {
-    let mut who: Option<Hello> = None;
-    let is_one = all.len() == 1;
-    for mut answers in all {
-        let hello = answers.hello.take();
-        ledger.source = (!is_one).then(|| answers.path.display().to_string());
-        let Some(first) = &who else {
-            let first = hello.unwrap_or_else(Hello::everything);
-            ledger.begin(&first)?;
-            who = Some(first);
-            answers.judge(ledger, stop, progress)?;
-            continue;
-        };
-        if hello.is_some_and(|hello| hello != *first) {
-            let what = format!("{}: another hello than that of the first file", ledger.line(1));
-            note(&mut ledger.problems, "malformed", || what);
-        }
-        ledger.begin_again();
-        answers.judge(ledger, stop, progress)?;
-        if !stop.is_set() {
-            ledger.end_again(|_| false);
+    /// Takes lines for answers to cases of the plan. What answers none of them is a problem.
+    fn take(&mut self, lines: &[(u64, Vec<u8>)], source: Option<&str>, told: &dyn Fn(u64) -> String) {
+        let (plan, declared) = (&self.plan, &self.declared);
+        let read: Vec<(u64, Read)> =
+            lines.par_iter().map(|(number, line)| (*number, Read::of(line, plan, declared))).collect();
+        for (number, read) in read {
+            let (place, given) = match read {
+                Read::Problem(kind, what) => {
+                    note(&mut self.problems, kind, || format!("{}: {what}", told(number)));
+                    continue;
+                }
+                Read::Answer(place, given) => (place, given),
+            };
+            if !self.contents.put(&self.plan, place, given) {
+                let source = source.map_or_else(String::new, |source| format!("{source}: "));
+                let id = self.plan.id(place);
+                note(&mut self.problems, "duplicate", || format!("{source}{id} is answered more than once"));
+            }
         }
     }
-    Ok(Ending { hello: who.unwrap_or_default(), signal: stop.signal(), ..Ending::default() })
+}
+
+/// What a line comes to.
+enum Read {
+    Answer(CasePlace, Given),
+    Problem(&'static str, String),
+}
+
+/// Why files of answers cannot be judged.
+#[derive(Debug, thiserror::Error)]
+pub enum FilesError {
+    /// A file cannot be read.
+    #[error("{0}")]
+    File(#[from] PackError),
+    /// A glob of the first line cannot be read.
+    #[error("the hello of the answers: {0}")]
+    Hello(#[from] FilterError),
+}
+
+impl Read {
+    fn of(line: &[u8], plan: &GatePlan, declared: &Declared) -> Self {
+        let line = match answer::read(line) {
+            Ok(line) => line,
+            Err(message) => return Self::Problem("malformed", message),
+        };
+        let Some(id) = line.id() else {
+            return Self::Problem("malformed", "a hello, which is said once and first".into());
+        };
+        let Some(place) = plan.find(id) else {
+            return Self::Problem("unknown", format!("no case `{}` was asked for", clipped(id)));
+        };
+        let (spec, group) = match place {
+            CasePlace::Case { formula, .. } => (Some(&plan.member(formula).spec), plan.member(formula).spec.id.clone()),
+            CasePlace::Scene(_) => (None, plan.id(place)),
+        };
+        if declared.lacks(&group).is_some() {
+            return Self::Problem("unknown", format!("`{id}` is not among what the renderer declares"));
+        }
+        Self::Answer(place, given(line, spec))
+    }
+}
+
+impl Contents {
+    /// Takes an answer; whether it is the first to its case.
+    fn put(&mut self, plan: &GatePlan, place: CasePlace, given: Given) -> bool {
+        let (formula, case) = match place {
+            CasePlace::Case { formula, case } => (formula, case),
+            CasePlace::Scene(scene) => {
+                let is_first = !self.scenes.contains_key(&scene);
+                self.scenes.entry(scene).or_insert(given);
+                return is_first;
+            }
+        };
+        let outputs = plan.member(formula).spec.output_len();
+        let count = plan.formulas[formula].count();
+        let column = self.formulas.entry(formula).or_insert_with(|| Column {
+            words: vec![0; count * outputs],
+            is_answered: vec![false; count],
+            others: HashMap::new(),
+        });
+        if std::mem::replace(&mut column.is_answered[case], true) {
+            return false;
+        }
+        match given {
+            Given::Values(values) => {
+                let row = &mut column.words[case * outputs..(case + 1) * outputs];
+                row.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits());
+            }
+            Given::Nothing(why) => drop(column.others.insert(case, why)),
+            Given::Image(_) => unreachable!("only a scene is answered by an image"),
+        }
+        true
+    }
+}
+
+impl AskedRenderer for FileRenderer {
+    fn lacks(&self, id: &str) -> Option<String> {
+        self.declared.lacks(id)
+    }
+
+    fn lacks_frame(&self, frame: &Frame) -> Option<String> {
+        self.declared.lacks_frame(frame)
+    }
+
+    fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
+        let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
+        let formula = self.plan.formula(&rows.members[0].spec.id);
+        let column = formula.and_then(|formula| Some((formula, self.contents.formulas.get(&formula)?)));
+        for (place, (&case, words)) in rows.cases.iter().zip(answers.words.chunks_exact_mut(rows.outputs)).enumerate() {
+            let found = column.and_then(|(formula, column)| Some((column, self.plan.formulas[formula].place(case)?)));
+            match found.filter(|(column, case)| column.is_answered[*case]) {
+                None => drop(answers.unanswered.insert(place, Unanswered::Missing)),
+                Some((column, case)) => match column.others.get(&case) {
+                    Some(why) => drop(answers.unanswered.insert(place, why.clone())),
+                    None => words.copy_from_slice(&column.words[case * rows.outputs..(case + 1) * rows.outputs]),
+                },
+            }
+        }
+        advanced(rows.of.len() as u64);
+        Ok(answers)
+    }
+
+    fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError> {
+        let place = match self.plan.find(scene.id) {
+            Some(CasePlace::Scene(place)) => self.contents.scenes.get(&place),
+            _ => None,
+        };
+        Ok(match place {
+            Some(Given::Image(file)) => {
+                picture::read(&self.contents.folder, file, scene.frame, None).map_err(Unanswered::Unjudged)
+            }
+            Some(Given::Nothing(why)) => Err(why.clone()),
+            Some(Given::Values(_)) => unreachable!("a scene is answered by an image, or by nothing"),
+            None => Err(Unanswered::Missing),
+        })
+    }
+
+    fn begin_again(&mut self) -> Result<(), DeviceError> {
+        self.read_next().map_err(|error| DeviceError::Refused(Box::new(error)))
+    }
+
+    fn asks_failing_again(&self) -> bool {
+        false
+    }
+
+    fn is_over(&self) -> bool {
+        self.stop.is_set()
+    }
+
+    fn used(&mut self) -> RendererUse {
+        RendererUse { problems: std::mem::take(&mut self.problems), ..self.declared.used() }
+    }
 }

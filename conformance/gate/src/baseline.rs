@@ -1,11 +1,11 @@
 //! An earlier result, than which nothing may be worse.
 
-use super::known::expanded;
 use lightmeter_catalogue::cases::GENERATOR_VERSION;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::Document as _;
 use lightmeter_document::gate::{GateGroup, GateReport, cases};
 use lightmeter_document::pack::Choice;
+use lightmeter_judge::cases::expanded;
 use lightmeter_judge::image::file::whole;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};

@@ -2,6 +2,7 @@
 
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::gate::KnownFailure;
+use lightmeter_judge::cases::ExpectedFailure;
 use semver::{Version, VersionReq};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -31,22 +32,6 @@ struct Written {
 struct File {
     #[serde(default)]
     expected: Vec<Written>,
-}
-
-/// A known failure of a renderer, and the filter of its glob.
-#[derive(Clone, Debug)]
-pub struct ExpectedFailure {
-    /// What became of its cases.
-    pub known: KnownFailure,
-    filter: Filter,
-}
-
-impl ExpectedFailure {
-    /// Whether it has a case.
-    #[must_use]
-    pub fn has(&self, id: &str) -> bool {
-        self.filter.selects(id)
-    }
 }
 
 /// Why a file of expectations is refused.

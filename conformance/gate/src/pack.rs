@@ -2,8 +2,8 @@
 
 use super::frame;
 use super::picture::within;
-use super::plan::GatePlan;
-use lightmeter_catalogue::cases::{GENERATOR_VERSION, ValueShape};
+use super::plan::{CasePlace, GatePlan};
+use lightmeter_catalogue::cases::{GENERATOR_VERSION, Spec, ValueShape};
 use lightmeter_document::Document as _;
 use lightmeter_document::Number;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
@@ -71,13 +71,11 @@ fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {
     }
 }
 
-/// A case as a renderer is asked it.
+/// A case of a formula as a renderer is asked it.
 #[must_use]
-pub fn case(plan: &GatePlan, formula: usize, case: usize) -> Value {
-    let spec = &plan.member(formula).spec;
-    let row = plan.inputs(formula, case);
+pub fn case(spec: &Spec, id: &str, row: &[f32]) -> Value {
     let mut inputs = Map::new();
-    let mut rest = row.as_slice();
+    let mut rest = row;
     for input in spec.inputs {
         let (own, after) = rest.split_at(input.shape.components());
         rest = after;
@@ -85,7 +83,7 @@ pub fn case(plan: &GatePlan, formula: usize, case: usize) -> Value {
         let value = if let [one] = numbers.as_slice() { one.clone() } else { numbers.into() };
         inputs.insert(input.name.to_owned(), value);
     }
-    json!({ "id": plan.id(super::plan::CasePlace::Case { formula, case }), "formula": spec.id, "inputs": inputs })
+    json!({ "id": id, "formula": spec.id, "inputs": inputs })
 }
 
 /// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go.
@@ -109,7 +107,9 @@ pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
         Summed { out: BufWriter::new(File::create(&path).map_err(failed(&path))?), sum: Default::default(), bytes: 0 };
     for formula in 0..plan.formulas.len() {
         for place in 0..plan.formulas[formula].count() {
-            writeln!(out, "{}", case(plan, formula, place)).map_err(failed(&path))?;
+            let id = plan.id(CasePlace::Case { formula, case: place });
+            let asked = case(&plan.member(formula).spec, &id, &plan.inputs(formula, place));
+            writeln!(out, "{asked}").map_err(failed(&path))?;
         }
     }
     out.flush().map_err(failed(&path))?;
@@ -178,7 +178,7 @@ struct PackedDraw {
 impl PackedDraw {
     fn new(plan: &GatePlan, scene: usize) -> Result<Self, PackError> {
         let (title, frame) = plan.frame(scene).map_err(|error| PackError::Plan(error.to_string()))?;
-        Ok(Self { id: plan.id(super::plan::CasePlace::Scene(scene)), title, frame })
+        Ok(Self { id: plan.id(CasePlace::Scene(scene)), title, frame })
     }
 
     fn folder(&self) -> String {

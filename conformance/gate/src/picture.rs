@@ -1,15 +1,8 @@
 //! Images that renderers write: PNG of 8 or 16 bits, EXR, NPY.
 
-use super::known::digest;
 use image::{DynamicImage, ImageReader};
-use lightmeter_arithmetic::Profile;
-use lightmeter_document::run::Totals;
-use lightmeter_faults::scene::Trial;
 use lightmeter_judge::blend_unit::pixel;
-use lightmeter_judge::image::expect;
 use lightmeter_judge::image::file::StoredImage;
-use lightmeter_judge::image::judge;
-use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;
 use std::io::Cursor;
 use std::path::{Component, Path, PathBuf};
@@ -20,26 +13,6 @@ const MOST_BYTES: u64 = (1 << 30) + (1 << 20);
 
 /// How far from a step of 8 bits a linear value of binary32 may be that is one.
 const WHOLE: f64 = 1e-3;
-
-/// How an image compares.
-pub struct Found {
-    /// Verdicts on components.
-    pub totals: Totals,
-    /// The largest error: ULP on float targets, steps on those of 8 bits.
-    pub error_max: f64,
-    /// The largest margin.
-    pub margin_max: f64,
-    /// The pixel that it is of, as `12-340`.
-    pub worst: String,
-    /// There: what the reference has, in the target's units.
-    pub reference: [f64; 4],
-    /// There: from where to where values are legal.
-    pub interval: [[f64; 2]; 4],
-    /// There: the image.
-    pub value: [f64; 4],
-    /// What explains the pixels that fail.
-    pub diagnosis: Option<String>,
-}
 
 /// A path within a folder, whatever the renderer wrote.
 ///
@@ -59,11 +32,11 @@ pub fn within(folder: &Path, file: &str) -> Result<PathBuf, String> {
     if real(&path)?.starts_with(real(folder)?) { Ok(path) } else { Err(leaves()) }
 }
 
-/// Reads an image of a frame's size, in the units of its target, with a hash of its pixels. It is no older than `asked`.
+/// Reads an image of a frame's size, in the units of its target. It is no older than `asked`.
 ///
 /// # Errors
 /// Where it lies elsewhere, is no image, is of another size, or was there before.
-pub fn read(folder: &Path, file: &str, frame: &Frame, asked: Option<SystemTime>) -> Result<(StoredImage, u32), String> {
+pub fn read(folder: &Path, file: &str, frame: &Frame, asked: Option<SystemTime>) -> Result<StoredImage, String> {
     let path = within(folder, file)?;
     let unread = |error: &dyn std::fmt::Display| format!("cannot read `{file}`: {error}");
     let metadata = path.metadata().map_err(|error| unread(&error))?;
@@ -86,9 +59,7 @@ pub fn read(folder: &Path, file: &str, frame: &Frame, asked: Option<SystemTime>)
         if fits { Ok(()) } else { Err(format!("`{file}` is {w} × {h}; the scene is {width} × {height}")) }
     };
     let values = if is_npy { npy(&bytes, file, &fits)? } else { decoded(&bytes, file, &fits)? };
-    let image = StoredImage { width: width as usize, format: frame.target.format, pixels: values.units(frame) };
-    let digest = digest(image.pixels.iter().flatten().map(|c| c.to_bits()));
-    Ok((image, digest))
+    Ok(StoredImage { width: width as usize, format: frame.target.format, pixels: values.units(frame) })
 }
 
 /// Whether an image has the scene's size.
@@ -186,28 +157,6 @@ fn npy(bytes: &[u8], name: &str, fits: Fits<'_>) -> Result<Values, String> {
     Ok(values)
 }
 
-/// Judges every pixel by the full reference.
-#[must_use]
-pub fn judge(image: &StoredImage, frame: &Frame, profile: &Profile) -> Found {
-    let reference = StoredImage::unrounded(&render::<f64>(frame, None, None), frame.target.format);
-    let expected = expect(frame, None, None, profile);
-    let all: Vec<usize> = (0..image.pixels.len()).collect();
-    let judged = judge::judge(image, &reference, &expected, &all);
-    let worst = judged.misses.iter().max_by(|a, b| a.margin.total_cmp(&b.margin)).copied().or(judged.worst());
-    let pixel = worst.map_or(0, |worst| worst.pixel);
-    Found {
-        totals: judged.verdicts.totals,
-        error_max: judged.verdicts.error_max,
-        margin_max: worst.map_or(0.0, |worst| worst.margin),
-        worst: format!("{}-{}", pixel % image.width, pixel / image.width),
-        reference: reference.pixels[pixel],
-        interval: std::array::from_fn(|k| [expected[pixel].low[k], expected[pixel].high[k]]),
-        value: image.pixels[pixel],
-        diagnosis: (!judged.misses.is_empty())
-            .then(|| Trial::new(frame, image, &expected, profile).diagnose().sentence),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -280,8 +229,8 @@ mod tests {
         let files = [("a.png", png(4, 3, CompressionType::Fast)), ("b.png", png(4, 3, CompressionType::Best))];
         assert_ne!(files[0].1, files[1].1);
         let (folder, frame) = given("digest", &files);
-        let digest = |name: &str| read(&folder, name, &frame, None).expect("it can be read").1;
-        assert_eq!(digest("a.png"), digest("b.png"));
+        let pixels = |name: &str| read(&folder, name, &frame, None).expect("it can be read").pixels;
+        assert_eq!(pixels("a.png"), pixels("b.png"));
         let later = SystemTime::now() + std::time::Duration::from_secs(1);
         let error = read(&folder, "a.png", &frame, Some(later)).expect_err("it is older");
         assert!(error.contains("was there before"), "{error}");

@@ -24,6 +24,8 @@ pub struct GatePlan {
     random: HashMap<String, usize>,
     /// The formula and the case of an id with a name.
     named: HashMap<String, (usize, CaseRef)>,
+    /// The formula of an id.
+    places: HashMap<String, usize>,
 }
 
 /// A formula with the cases that are chosen of it.
@@ -63,6 +65,7 @@ impl GatePlan {
             formulas: vec![],
             random: HashMap::new(),
             named: HashMap::new(),
+            places: HashMap::new(),
             catalogue,
             choice,
         };
@@ -72,6 +75,7 @@ impl GatePlan {
                 continue;
             }
             let formula = plan.formulas.len();
+            plan.places.insert(member.spec.id.clone(), formula);
             if selected.random_count() > 0 {
                 let first = member.case_id(CaseRef::Random(0));
                 let path = first.rsplit_once('/').map_or("", |(path, _)| path);
@@ -105,6 +109,12 @@ impl GatePlan {
     #[must_use]
     pub fn member(&self, formula: usize) -> &Member {
         &self.catalogue[self.formulas[formula].selected.member]
+    }
+
+    /// The place of a formula; `None` where the plan has none of its cases.
+    #[must_use]
+    pub fn formula(&self, id: &str) -> Option<usize> {
+        self.places.get(id).copied()
     }
 
     /// The place of an id; `None` where the plan has no such case.
@@ -177,10 +187,13 @@ impl PlannedFormula {
         })
     }
 
-    /// Whether the case at a place is a random one.
+    /// The place of a case.
     #[must_use]
-    pub const fn is_random(&self, place: usize) -> bool {
-        place >= self.named
+    pub fn place(&self, case: CaseRef) -> Option<usize> {
+        match case {
+            CaseRef::Random(number) => self.random(number),
+            named => self.places.get(&named).copied(),
+        }
     }
 
     /// The place of a random case.

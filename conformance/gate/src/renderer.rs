@@ -1,12 +1,20 @@
 //! A renderer in this process.
 
-use super::answer::{Hello, Line};
-use super::ledger::Ledger;
-use super::plan::{CasePlace, GatePlan};
+use super::answer::{Hello, Line, clipped};
+use super::given::{Declared, Given, given};
+use super::picture;
 use lightmeter_catalogue::cases::Spec;
+use lightmeter_catalogue::filter::FilterError;
+use lightmeter_document::by_case::RendererUse;
+use lightmeter_engine::device::DeviceError;
+use lightmeter_engine::renderer::{AskedRenderer, AskedScene};
+use lightmeter_engine::rows::Rows;
+use lightmeter_judge::cases::{Answers, Unanswered};
+use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
 use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 /// A renderer in Rust. What it does not do it skips, by name, with a reason.
 pub trait Renderer {
@@ -29,55 +37,98 @@ pub trait Renderer {
     }
 }
 
-/// Asks a renderer every case of the ledger's plan that it declares. Images go to the folder.
-///
-/// # Errors
-/// Where a glob of what it declares cannot be read, or a scene is refused.
-pub fn ask(
-    ledger: &mut Ledger<'_>,
-    plan: &GatePlan,
-    renderer: &mut impl Renderer,
-    folder: &Path,
-) -> Result<(), super::error::ProcessError> {
-    let hello = renderer.hello();
-    for batch in ledger.begin(&hello)?.chunks(super::answers::LINES) {
-        let mut lines = vec![];
-        for (number, &place) in (1..).zip(batch) {
-            let id = plan.id(place);
-            let line = match place {
-                CasePlace::Case { formula, case } => {
-                    let spec = &plan.member(formula).spec;
-                    match renderer.evaluate(spec, &plan.inputs(formula, case)) {
-                        Ok(values) => Line::Value(Cow::Owned(id), values),
-                        Err(reason) => Line::Skip(Cow::Owned(id), Cow::Owned(reason)),
-                    }
-                }
-                CasePlace::Scene(scene) => {
-                    let (_, frame) = plan.frame(scene)?;
-                    match renderer.draw(&id, &frame, folder) {
-                        Ok(file) => Line::Image(Cow::Owned(id), Cow::Owned(file)),
-                        Err(reason) => Line::Skip(Cow::Owned(id), Cow::Owned(reason)),
-                    }
-                }
-            };
-            lines.push((number, line));
-        }
-        ledger.read(lines, folder);
+/// A renderer in this process, as a subject of the engine. Images go to a folder.
+pub struct InProcess<R> {
+    renderer: Mutex<R>,
+    declared: Declared,
+    folder: PathBuf,
+}
+
+impl<R: Renderer + Send> InProcess<R> {
+    /// Hears what it declares.
+    ///
+    /// # Errors
+    /// Where a glob of that cannot be read.
+    pub fn new(renderer: R, folder: PathBuf) -> Result<Self, FilterError> {
+        let declared = Declared::new(renderer.hello())?;
+        Ok(Self { renderer: Mutex::new(renderer), declared, folder })
     }
-    Ok(())
+
+    fn renderer(&mut self) -> &mut R {
+        self.renderer.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+}
+
+impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
+    fn lacks(&self, id: &str) -> Option<String> {
+        self.declared.lacks(id)
+    }
+
+    fn lacks_frame(&self, frame: &Frame) -> Option<String> {
+        self.declared.lacks_frame(frame)
+    }
+
+    fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
+        let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
+        let each = rows
+            .of
+            .iter()
+            .zip(rows.inputs.chunks_exact(rows.stride()))
+            .zip(answers.words.chunks_exact_mut(rows.outputs));
+        for (place, ((&of, inputs), words)) in each.enumerate() {
+            let spec = &rows.members[of].spec;
+            let line = match self.renderer().evaluate(spec, inputs) {
+                Ok(values) => Line::Value(Cow::Borrowed(""), values),
+                Err(reason) => Line::Skip(Cow::Borrowed(""), Cow::Owned(reason)),
+            };
+            match given(line, Some(spec)) {
+                Given::Values(values) => words.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits()),
+                Given::Nothing(why) => drop(answers.unanswered.insert(place, why)),
+                Given::Image(_) => unreachable!("only a scene is answered by an image"),
+            }
+        }
+        advanced(rows.of.len() as u64);
+        Ok(answers)
+    }
+
+    fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError> {
+        let folder = self.folder.clone();
+        Ok(match self.renderer().draw(scene.id, scene.frame, &folder) {
+            Ok(file) => picture::read(&folder, &file, scene.frame, None).map_err(Unanswered::Unjudged),
+            Err(reason) => Err(Unanswered::Skipped(clipped(&reason))),
+        })
+    }
+
+    fn begin_again(&mut self) -> Result<(), DeviceError> {
+        Ok(())
+    }
+
+    fn asks_failing_again(&self) -> bool {
+        false
+    }
+
+    fn is_over(&self) -> bool {
+        false
+    }
+
+    fn used(&mut self) -> RendererUse {
+        self.declared.used()
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::process::Ending;
-    use super::super::report::report;
     use super::*;
-    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::filter::Filter;
     use lightmeter_catalogue::select::{Member, catalogue};
+    use lightmeter_document::event::Silent;
     use lightmeter_document::gate::GateReport;
-    use lightmeter_document::pack::Choice;
+    use lightmeter_engine::device::Code;
+    use lightmeter_engine::options::Options;
+    use lightmeter_engine::run::run;
+    use lightmeter_engine::subject::Subject;
     use lightmeter_faults::scene::{SCENE_FAULTS, draw};
-    use lightmeter_faults::{Variation, concerning};
+    use lightmeter_faults::{Mistakes, Variation, concerning};
 
     /// The formulas in f32, one of them with a mistake; scenes with another.
     struct Wrong {
@@ -124,13 +175,19 @@ mod tests {
         let name = filter.join("+").replace('/', "-");
         let folder = std::env::temp_dir().join(format!("lightmeter-renderer-{}-{name}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder can be made");
-        let filter = filter.iter().map(|&glob| glob.to_owned()).collect();
-        let plan = GatePlan::new(Choice { filter, cases: 64, seed: 1, size: Some(48) }).expect("the globs are valid");
-        let mut ledger = Ledger::new(&plan, &WGSL);
-        let mut renderer = Wrong { catalogue: catalogue(), fault, scene_fault };
-        ask(&mut ledger, &plan, &mut renderer, &folder).unwrap_or_else(|error| panic!("{error}"));
+        let renderer = Wrong { catalogue: catalogue(), fault, scene_fault };
+        let renderer = InProcess::new(renderer, folder.clone()).expect("what it declares can be read");
+        let options = Options {
+            filter: Filter::new(filter).expect("the globs are valid"),
+            cases: 64,
+            size: Some(48),
+            diagnose: Some(&Mistakes),
+            ..Options::new(Code::default())
+        };
+        let mut subject = Subject::renderer(renderer.declared.identity(), Box::new(renderer));
+        let report = run(std::slice::from_mut(&mut subject), &options, &mut Silent);
         let _ = std::fs::remove_dir_all(&folder);
-        report(&mut ledger, Ending::default(), String::new(), 0.0)
+        GateReport::of(&report.expect("nothing fails but the renderer"), String::new())
     }
 
     #[test]

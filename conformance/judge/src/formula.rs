@@ -1,13 +1,15 @@
 //! Verdicts on the rows of a formula: on a chunk of a group's cases, in a stage of a subject.
 
+use crate::cases::{Answers, CaseTally, ExpectedFailure, Unanswered};
 use crate::chunk::{Chunk, TASK};
 use crate::devices::Known;
 use crate::sample::Sample;
-use crate::tally::Tally;
-use crate::{Outcome, judge, telling};
+use crate::tally::{KEPT, Tally};
+use crate::{Outcome, judge, telling, worse};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member};
+use lightmeter_document::by_case::FailedAnswer;
 use lightmeter_document::run::Failure;
 use lightmeter_document::{Number, Word};
 use rayon::prelude::*;
@@ -24,6 +26,12 @@ pub struct Judging<'a> {
     pub profile: &'static Profile,
     /// What to add to a command that runs one case again.
     pub rerun: &'a str,
+    /// What random cases are drawn from.
+    pub seed: u64,
+    /// Failures that are expected.
+    pub expected: &'a [ExpectedFailure],
+    /// Whether all is counted by cases too.
+    pub counts_cases: bool,
 }
 
 /// An output of a case of a group.
@@ -37,8 +45,8 @@ pub struct RowPlace {
     pub output: usize,
 }
 
-/// Verdicts on a group's rows in a stage of a subject.
-pub type RowTally = Tally<RowPlace, Failure>;
+/// Verdicts on a group's rows in a stage of a subject. Of a row that fails its words are kept.
+pub type RowTally = Tally<RowPlace, Vec<u32>>;
 /// Rows of a group, by the formula's place among the group's and the case.
 pub type RowSample = Sample<(usize, CaseRef)>;
 
@@ -58,6 +66,8 @@ pub struct RowStanding {
     pub wrong: RowSample,
     /// Some of the others. A row that a named deviation excuses is in neither.
     pub right: RowSample,
+    /// The rows counted as cases, where that is asked for, and those without a value.
+    pub cases: CaseTally,
 }
 
 impl RowStanding {
@@ -70,22 +80,28 @@ impl RowStanding {
             failing: BTreeMap::new(),
             wrong: Sample::new(outputs, KEPT_FAILING),
             right: Sample::new(outputs, KEPT_PASSING / outputs),
+            cases: CaseTally::default(),
         }
     }
 
     fn part(&self) -> Self {
-        let tally = RowTally::default();
-        Self { tally, failing: BTreeMap::new(), wrong: self.wrong.part(), right: self.right.part() }
+        Self {
+            tally: RowTally::default(),
+            failing: BTreeMap::new(),
+            wrong: self.wrong.part(),
+            right: self.right.part(),
+            cases: CaseTally::default(),
+        }
     }
 
-    /// Judges the words that a stage gave for a chunk, on all cores, and adds the verdicts.
-    pub fn judge(&mut self, chunk: &Chunk<'_>, words: &[u32], stage: Stage, by: &Judging<'_>) {
+    /// Judges what a stage gave for a chunk, on all cores, and adds the verdicts.
+    pub fn judge(&mut self, chunk: &Chunk<'_>, answers: &Answers, stage: Stage, by: &Judging<'_>) {
         let parts: Vec<Self> = (0..chunk.cases.len().div_ceil(TASK))
             .into_par_iter()
             .map(|task| {
                 let mut part = self.part();
                 for case in task * TASK..chunk.cases.len().min((task + 1) * TASK) {
-                    judge_case(chunk, words, case, stage, by, &mut part);
+                    part.judge_case(chunk, answers, case, stage, by);
                 }
                 part
             })
@@ -97,33 +113,80 @@ impl RowStanding {
             }
             self.wrong.add(&part.wrong);
             self.right.add(&part.right);
+            self.cases.add(part.cases);
         }
+    }
+
+    /// Judges a case of a chunk, or counts it as one without a value.
+    fn judge_case(&mut self, chunk: &Chunk<'_>, answers: &Answers, case: usize, stage: Stage, by: &Judging<'_>) {
+        let place = (chunk.of[case], chunk.cases[case]);
+        let id = || chunk.members[place.0].case_id(place.1);
+        if let Some(why) = answers.unanswered.get(&case) {
+            self.tally.totals.cases += 1;
+            let totals = &mut self.tally.totals;
+            totals.skipped += u64::from(matches!(why, Unanswered::Skipped(_)));
+            if self.cases.unanswered(place, why) && !by.expected.is_empty() {
+                self.cases.expect(by.expected, &id(), true);
+            }
+            return;
+        }
+        let failed = self.tally.totals.failed;
+        let (error, errors) = judge_values(chunk, &answers.words, case, stage, by, self);
+        let failed = self.tally.totals.failed - failed;
+        if by.counts_cases {
+            self.cases.judged(place, chunk.inputs_of(case), failed > 0, error, errors);
+        }
+        if !by.expected.is_empty() && self.cases.expect(by.expected, &id(), failed > 0) {
+            self.tally.totals.failed -= failed;
+            self.tally.totals.expected_failures += failed;
+        }
+    }
+
+    /// The failures that are reported, one of each case: the case of the simplest inputs first.
+    #[must_use]
+    pub fn failures(&self, members: &[&Member], stage: Stage, by: &Judging<'_>) -> Vec<Failure> {
+        let told = |place: &RowPlace, words: &Vec<u32>| failure(members[place.member], *place, words, stage, by);
+        let simplest = self.tally.simplest.as_ref().map(|(_, place, words)| (place, words));
+        let others = self.tally.failures.iter().filter(|(place, _)| simplest.is_none_or(|(one, _)| one != *place));
+        let refused = self.cases.refused.iter().map(|(&(member, case), why)| {
+            let id = members[member].case_id(case);
+            (RowPlace { member, case, output: 0 }, unjudged(id, why.message(), stage.name(), by.adapter))
+        });
+        let mut rest: Vec<(RowPlace, Failure)> =
+            others.map(|(place, words)| (*place, told(place, words))).chain(refused).collect();
+        rest.sort_by_key(|(place, _)| *place);
+        rest.truncate(KEPT);
+        simplest
+            .map(|(place, words)| told(place, words))
+            .into_iter()
+            .chain(rest.into_iter().map(|(_, one)| one))
+            .collect()
     }
 }
 
 /// The intervals of one case as a profile makes them for a stage of a subject.
 pub fn intervals(member: &Member, inputs: &[f32], stage: Stage, known: &Known, profile: &Profile, out: &mut [Accept]) {
     match member.spec.kind {
-        Kind::Raster(kind) if stage == Stage::Raster => {
+        Kind::Raster(kind) if !is_arithmetic(member, stage) => {
             member.formula.raster_interval(kind, inputs, &known.profile(profile), out);
         }
         _ => member.formula.interval(inputs, profile, out),
     }
 }
 
-fn judge_case(
+/// Judges the outputs of a case: the greatest error, and the sum and the number of the finite ones.
+fn judge_values(
     chunk: &Chunk<'_>,
     words: &[u32],
     case: usize,
     stage: Stage,
     by: &Judging<'_>,
     standing: &mut RowStanding,
-) {
+) -> (f64, (f64, u64)) {
     let (member, outputs) = (chunk.members[chunk.of[case]], chunk.members[0].spec.output_len());
     let range = case * outputs..(case + 1) * outputs;
     let mut own = [Accept::ANY; 16];
-    let shared = matches!(stage, Stage::Compute | Stage::Fragment);
-    let legal = if shared {
+    let legal = if is_arithmetic(member, stage) {
         &chunk.intervals[range.clone()]
     } else {
         intervals(member, chunk.inputs_of(case), stage, by.known, by.profile, &mut own[..outputs]);
@@ -132,6 +195,7 @@ fn judge_case(
     let is_random = matches!(chunk.cases[case], CaseRef::Random(_));
     let tally = &mut standing.tally;
     let (failed, pardoned) = (tally.totals.failed, tally.totals.expected_failures);
+    let (mut greatest, mut errors) = (0.0, (0.0, 0));
     tally.totals.cases += 1;
     for (output, at) in range.clone().enumerate() {
         let (bits, reference) = (words[at], chunk.references[at]);
@@ -140,20 +204,21 @@ fn judge_case(
             Outcome::Fail => excuse(chunk, case, output, bits, stage, by),
             _ => None,
         };
+        let is_first = tally.totals.failed == failed;
         tally.count(verdict.outcome, excused, is_random);
         if verdict.outcome == Outcome::Indeterminate {
             continue;
         }
         let place = RowPlace { member: chunk.of[case], case: chunk.cases[case], output };
-        if verdict.outcome == Outcome::Fail && excused.is_none() {
-            let inputs = chunk.inputs_of(case);
-            tally.fail(place, telling(inputs, is_random), || {
-                let seen = Seen { bits, reference, interval: legal[output], error_ulp: verdict.error };
-                failure(member, member.case_id(chunk.cases[case]), inputs, output, stage, by, &seen)
-            });
+        if verdict.outcome == Outcome::Fail && excused.is_none() && is_first {
+            tally.fail(place, telling(chunk.inputs_of(case), is_random), || words[range.clone()].to_vec());
         }
         tally.see_error(verdict.error);
         tally.see_margin(verdict.margin, place);
+        greatest = worse(greatest, verdict.error);
+        if verdict.error.is_finite() {
+            errors = (errors.0 + verdict.error, errors.1 + 1);
+        }
     }
     let values = words[range].iter().map(|&bits| f32::from_bits(bits));
     if standing.tally.totals.failed > failed {
@@ -161,6 +226,16 @@ fn judge_case(
         standing.wrong.push((chunk.of[case], chunk.cases[case]), values);
     } else if standing.tally.totals.expected_failures == pardoned {
         standing.right.push((chunk.of[case], chunk.cases[case]), values);
+    }
+    (greatest, errors)
+}
+
+/// Whether a stage computes a formula by the shading language's arithmetic alone.
+const fn is_arithmetic(member: &Member, stage: Stage) -> bool {
+    match stage {
+        Stage::Compute | Stage::Fragment => true,
+        Stage::Answer => !matches!(member.spec.kind, Kind::Raster(_)),
+        Stage::FixedFunction | Stage::Raster => false,
     }
 }
 
@@ -183,22 +258,20 @@ fn excuse(
     })
 }
 
-struct Seen {
-    bits: u32,
-    reference: f64,
-    interval: Accept,
-    error_ulp: f64,
-}
-
-fn failure(
-    member: &Member,
-    id: String,
-    inputs: &[f32],
-    output: usize,
-    stage: Stage,
-    by: &Judging<'_>,
-    seen: &Seen,
-) -> Failure {
+/// A row that fails at an output. Of a renderer that answers by cases all outputs are told.
+fn failure(member: &Member, place: RowPlace, words: &[u32], stage: Stage, by: &Judging<'_>) -> Failure {
+    let mut inputs = Vec::with_capacity(member.spec.input_len());
+    member.inputs(place.case, by.seed, &mut inputs);
+    let mut reference = vec![0.0; words.len()];
+    let mut legal = vec![Accept::ANY; words.len()];
+    member.formula.reference(&inputs, &mut reference);
+    intervals(member, &inputs, stage, by.known, by.profile, &mut legal);
+    let (k, values) = (place.output, words.iter().map(|&bits| f32::from_bits(bits)));
+    let error = |k: usize| judge(words[k], reference[k], &legal[k]).error;
+    let interval = |legal: &Accept| [Number(legal.low()), Number(legal.high())];
+    let narrow = |x: f32| Number(x.into());
+    let by_cases = stage == Stage::Answer;
+    let id = member.case_id(place.case);
     Failure {
         rerun: format!("lightmeter run '{id}' --adapter {}{}", by.adapter, by.rerun),
         id,
@@ -206,17 +279,51 @@ fn failure(
         stage: stage.name().into(),
         target: None,
         route: None,
-        output: member.spec.output_name(output),
-        inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
+        output: member.spec.output_name(k),
+        inputs: by_name(member, &inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         units: units(member),
-        inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
-        reference: Number(seen.reference),
-        interval: [Number(seen.interval.low()), Number(seen.interval.high())],
+        inputs_hex: by_name(member, &inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
+        reference: Number(reference[k]),
+        interval: interval(&legal[k]),
         promise: None,
-        value: Number(f32::from_bits(seen.bits).into()),
-        value_hex: format!("0x{:08x}", seen.bits),
-        unwritten: seen.bits == lightmeter_scene::target::SENTINEL,
-        error_ulp: Number(seen.error_ulp),
+        value: narrow(f32::from_bits(words[k])),
+        value_hex: format!("0x{:08x}", words[k]),
+        unwritten: words[k] == lightmeter_scene::target::SENTINEL,
+        error_ulp: Number(if by_cases { (0..words.len()).map(error).fold(0.0, worse) } else { error(k) }),
+        answer: by_cases.then(|| FailedAnswer {
+            inputs: inputs.iter().map(|&x| narrow(x)).collect(),
+            outputs: (0..words.len()).map(|k| member.spec.output_name(k)).collect(),
+            reference: reference.iter().map(|&x| Number(x)).collect(),
+            interval: legal.iter().map(interval).collect(),
+            value: values.map(narrow).collect(),
+            problem: None,
+        }),
+    }
+}
+
+/// A case whose answer cannot be judged: there is no number to show.
+#[must_use]
+pub fn unjudged(id: String, message: &str, stage: &'static str, adapter: &str) -> Failure {
+    let none = Number(f64::NAN);
+    Failure {
+        rerun: String::new(),
+        id,
+        adapter: adapter.to_owned(),
+        stage: stage.into(),
+        target: None,
+        route: None,
+        output: String::new(),
+        inputs: serde_json::Map::new(),
+        units: BTreeMap::new(),
+        inputs_hex: serde_json::Map::new(),
+        reference: none,
+        interval: [none; 2],
+        promise: None,
+        value: none,
+        value_hex: String::new(),
+        unwritten: false,
+        error_ulp: Number(f64::INFINITY),
+        answer: Some(FailedAnswer { problem: Some(message.to_owned()), ..FailedAnswer::default() }),
     }
 }
 
@@ -252,7 +359,6 @@ mod tests {
     use super::*;
     use crate::chunk::{draw, refer};
     use crate::simplicity;
-    use crate::tally::{KEPT, KEPT_FAILURES};
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::catalogue;
 
@@ -280,10 +386,20 @@ mod tests {
 
     fn standing(chunk: &Chunk<'_>, words: &[u32]) -> RowStanding {
         let known = Known::default();
-        let by = Judging { adapter: "cpu", known: &known, profile: &WGSL, rerun: "" };
+        let by = judging(&known);
         let mut standing = RowStanding::new(chunk.members[0].spec.output_len());
-        standing.judge(chunk, words, Stage::Compute, &by);
+        standing.judge(chunk, &words.to_vec().into(), Stage::Compute, &by);
         standing
+    }
+
+    fn judging(known: &Known) -> Judging<'_> {
+        let by =
+            Judging { adapter: "cpu", known, profile: &WGSL, rerun: "", seed: 1, expected: &[], counts_cases: true };
+        by
+    }
+
+    fn reported(chunk: &Chunk<'_>, words: &[u32]) -> Vec<Failure> {
+        standing(chunk, words).failures(chunk.members, Stage::Compute, &judging(&Known::default()))
     }
 
     /// The first, a middle and the last of so many.
@@ -309,7 +425,7 @@ mod tests {
                     let worst = chunk.members[worst.member].case_id(worst.case);
                     assert!(margin == f64::INFINITY && worst == name, "{what}: {margin} in {worst}");
                     assert!(tally.error_max == f64::INFINITY, "{what}");
-                    let (_, failure) = tally.failures.first_key_value().expect("it is kept");
+                    let failure = &reported(chunk, &words)[0];
                     assert!(failure.id == name && failure.value.0.is_nan(), "{what}: {failure:?}");
                     assert_eq!(failure.value_hex, format!("0x{nan:08x}"), "{what}");
                     assert_eq!(failure.output, chunk.members[0].spec.output_name(output), "{what}");
@@ -344,10 +460,10 @@ mod tests {
             let from = (0..CASES).find(lies_beyond).expect("a simplest case beyond those that are kept");
             let mut words = right.to_vec();
             words[from * outputs..].fill(NANS[0]);
-            let reported: Vec<Failure> = judged(chunk, &words).reported().collect();
+            let reported = reported(chunk, &words);
             let id = |case: usize| format!("vector/reflect/random/{case:06}");
             assert_eq!(Some(reported[0].id.clone()), simplest(from).map(id));
-            assert_eq!((reported.len(), reported[1].id.clone()), (KEPT_FAILURES, id(from)));
+            assert_eq!((reported.len(), reported[1].id.clone()), (KEPT + 1, id(from)));
         });
     }
 

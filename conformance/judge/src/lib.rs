@@ -1,8 +1,9 @@
 //! What is legal, and what an answer is worth. Here a single verdict: a value against the reference and the interval of legal values.
-//! `formula` has the verdicts on the cases of formulas, `blend_unit` and `image` those on pixels, `tally` what they come to, `sample` which
+//! `formula` has the verdicts on the cases of formulas, `blend_unit` and `image` those on pixels, `tally` and `cases` what they come to, `sample` which
 //! rows are kept for a diagnosis, which is asked through `diagnose`, `devices` what is known of drivers.
 
 pub mod blend_unit;
+pub mod cases;
 pub mod chunk;
 pub mod devices;
 pub mod diagnose;

@@ -9,19 +9,19 @@ use std::fmt::{Result, Write};
 /// Missing cases, or rows of them, that are named.
 const MOST_NAMED: usize = 8;
 /// Groups that fail, of which all is told.
-const MOST_TOLD: usize = 24;
+pub const MOST_TOLD: usize = 24;
 
-/// Writes it for people.
+/// Writes it for people. Where the groups that fail were told as they were judged, they are not told again.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn text(report: &GateReport, out: &mut impl Write) -> Result {
+pub fn text(report: &GateReport, is_told: bool, out: &mut impl Write) -> Result {
     let renderer = &report.renderer;
     writeln!(out, "{} {} · profile {} · {:.1} s", renderer.name, renderer.version, report.profile, report.seconds)?;
     families(report, out)?;
     let failed: Vec<&GateGroup> = report.groups.iter().filter(|group| group.is_failed()).collect();
-    for group in failed.iter().take(MOST_TOLD) {
-        told(group, report, out)?;
+    for group in failed.iter().take(MOST_TOLD).filter(|_| !is_told) {
+        told(group, &report.failures, out)?;
     }
     if failed.len() > MOST_TOLD {
         let more: Vec<&str> = failed[MOST_TOLD..].iter().map(|group| group.id.as_str()).take(200).collect();
@@ -111,7 +111,10 @@ fn short(x: f64) -> String {
 }
 
 /// What fails in a group, what explains it, and the first failure.
-fn told(group: &GateGroup, report: &GateReport, out: &mut impl Write) -> Result {
+///
+/// # Errors
+/// Where the writer fails.
+pub fn told(group: &GateGroup, failures: &[GateFailure], out: &mut impl Write) -> Result {
     writeln!(out, "\n✗ {}: {} of {} fail", group.id, group.failed, cases(group.asked))?;
     if group.missing > 0 {
         let was = if group.missing == 1 { "was" } else { "were" };
@@ -127,7 +130,7 @@ fn told(group: &GateGroup, report: &GateReport, out: &mut impl Write) -> Result 
     let is_of = |failure: &&GateFailure| {
         failure.id == group.id || failure.id.starts_with(&below) || group.smallest.as_ref() == Some(&failure.id)
     };
-    let of: Vec<&GateFailure> = report.failures.iter().filter(is_of).collect();
+    let of: Vec<&GateFailure> = failures.iter().filter(is_of).collect();
     let smallest = of.iter().find(|failure| group.smallest.as_ref() == Some(&failure.id));
     if let Some(smallest) = smallest {
         writeln!(out, "  the smallest failing case:")?;
@@ -235,7 +238,7 @@ pub fn junit(report: &GateReport) -> std::result::Result<String, SerializeError>
             status.set_message(sentence(group));
             let mut description = String::new();
             // Writing to a string does not fail.
-            let _ = told(group, report, &mut description);
+            let _ = told(group, &report.failures, &mut description);
             status.set_description(description);
         } else if group.asked == group.skipped {
             status = TestCaseStatus::skipped();

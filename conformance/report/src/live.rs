@@ -1,7 +1,9 @@
 //! What fails, as text, as soon as it is judged.
 
+use crate::gate::{MOST_TOLD, told};
 use crate::text::{failing_group, failure, formula_of};
 use lightmeter_document::event::Event;
+use lightmeter_document::gate::{GateFailure, GateGroup};
 use lightmeter_document::run::{Failure, Group};
 use std::collections::BTreeSet;
 use std::fmt::{Result, Write};
@@ -11,6 +13,8 @@ use std::fmt::{Result, Write};
 pub struct Live {
     groups: BTreeSet<(String, String, String)>,
     formulas: BTreeSet<(String, String)>,
+    /// Groups of a renderer that were told.
+    asked: usize,
 }
 
 impl Live {
@@ -18,6 +22,18 @@ impl Live {
     #[must_use]
     pub fn text(&mut self, event: &Event<'_>) -> String {
         let mut out = String::new();
+        if let Event::Judged { group, failures, .. } = event
+            && let Some(counts) = &group.by_case
+            && group.stage == "answer"
+        {
+            let group = GateGroup::of(group, counts);
+            if group.is_failed() && self.asked < MOST_TOLD {
+                self.asked += 1;
+                let failures: Vec<GateFailure> = failures.iter().filter_map(|one| GateFailure::of(one)).collect();
+                let Ok(()) = told(&group, &failures, &mut out) else { unreachable!("a string takes all") };
+            }
+            return out;
+        }
         if let Event::Judged { group, failures, is_scouted } = event
             && (group.totals.failed > 0 || group.problem.is_some())
         {

@@ -1,28 +1,32 @@
 //! `lightmeter gate`.
 
 use super::pack::Cases;
-use super::progress::Bar;
+use super::progress::{Bar, Stream};
 use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit, writable};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use indicatif::ProgressBar;
 use lightmeter::arithmetic::Profile;
-use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::cases::GENERATOR_VERSION;
+use lightmeter::device::Code;
 use lightmeter::document::Document as _;
+use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::event::Stop;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::pack::Choice;
+use lightmeter::document::run::Report;
+use lightmeter::faults::Mistakes;
 use lightmeter::filter::Filter;
-use lightmeter::gate::answers::{self, Answers};
+use lightmeter::gate::answers::{AnswerFile, FileRenderer};
 use lightmeter::gate::baseline::{self, Baseline};
 use lightmeter::gate::expectations::Expectations;
-use lightmeter::gate::ledger::Ledger;
 use lightmeter::gate::pack;
 use lightmeter::gate::plan::{CasePlace, GatePlan};
-use lightmeter::gate::process::{self, Asking, Ending, Limits};
-use lightmeter::gate::report;
+use lightmeter::gate::process::{Asking, Limits, ProcessRenderer};
+use lightmeter::options::Options;
 use lightmeter::report::gate as outputs;
+use lightmeter::run::run;
+use lightmeter::subject::Subject;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -113,26 +117,17 @@ impl Gate {
             known.is_of(&plan.choice, counts.iter().map(|(id, count)| (id.as_str(), *count)), None, path)?;
         }
         writable(self.out.as_deref())?;
-        let mut ledger = Ledger::new(&plan, self.profile.unwrap_or(&WGSL));
-        ledger.is_held_to = self.profile.is_some();
-        let bar = Bar::new(Some(plan.cases() + plan.scenes.len() as u64), "cases").bar;
         let stop = stopped_by_signals()?;
-        let outcome = match &self.exec {
-            Some(command) => self.process(&mut ledger, command, expectations, (&stop, &bar)),
-            None => {
-                ledger.expected = expectations;
-                answers::judge(&mut ledger, answers, &stop, &mut |count| bar.inc(count)).map_err(Into::into)
-            }
-        };
-        bar.finish_and_clear();
-        let outcome = match (outcome, stop.signal()) {
+        let images = Images::new(self.images.clone())?;
+        let report = self.judge(plan, answers, &expectations, &images, &stop);
+        let mut report = match (report, stop.signal()) {
             (Err(error), Some(signal)) => {
                 eprintln!("error: {error:#}");
                 return Ok(Status::of_signal(signal));
             }
-            (outcome, _) => outcome?,
+            (report, _) => report?,
         };
-        let mut report = report::report(&mut ledger, outcome, command(), start.elapsed().as_secs_f64());
+        report.seconds = start.elapsed().as_secs_f64();
         // What was asked is told, even where the baseline turns out to be of other accuracy rules.
         // What was not asked for want of time is no regression.
         let whole = known.as_ref().filter(|_| report.signal.is_none());
@@ -152,7 +147,7 @@ impl Gate {
     }
 
     /// The cases, and the files of answers.
-    fn asked(&self) -> anyhow::Result<(GatePlan, Vec<Answers>)> {
+    fn asked(&self) -> anyhow::Result<(GatePlan, Vec<AnswerFile>)> {
         if self.exec.is_some() {
             return Ok((self.cases.plan(&self.given)?, vec![]));
         }
@@ -163,21 +158,54 @@ impl Gate {
             bail!("expected PACK ANSWERS: a file of JSON lines, or a folder with answers.jsonl");
         }
         let plan = pack::read(Path::new(folder))?;
-        let opened = answers.iter().map(|path| Answers::open(Path::new(path)));
+        let opened = answers.iter().map(|path| AnswerFile::open(Path::new(path)));
         Ok((plan, opened.collect::<Result<_, _>>()?))
     }
 
-    fn process(
+    /// Has the engine judge what the renderer answers.
+    fn judge(
         &self,
-        ledger: &mut Ledger<'_>,
-        command: &str,
-        expectations: Expectations,
-        (stop, bar): (&Stop, &ProgressBar),
-    ) -> anyhow::Result<Ending> {
-        let own = std::env::temp_dir().join(format!("lightmeter-gate-{}", std::process::id()));
-        let folder = self.images.clone().unwrap_or_else(|| own.clone());
-        std::fs::create_dir_all(&folder).with_context(|| format!("cannot write {}", folder.display()))?;
-        let folder = folder.canonicalize()?;
+        plan: GatePlan,
+        answers: Vec<AnswerFile>,
+        expectations: &Expectations,
+        images: &Images,
+        stop: &Stop,
+    ) -> anyhow::Result<GateReport> {
+        let choice = plan.choice.clone();
+        let runs = if self.exec.is_some() { self.runs } else { answers.len() as u64 };
+        let (hello, subject) = match &self.exec {
+            Some(command) => {
+                let mut process = ProcessRenderer::start(self.asking(command, images, stop))?;
+                let hello = process.hello().clone();
+                process.expect(expectations.of(&hello.renderer, &hello.version));
+                (hello, Subject::renderer(process.identity(), Box::new(process)))
+            }
+            None => {
+                let files = FileRenderer::read(plan, answers, stop.clone())?;
+                (files.hello().clone(), Subject::renderer(files.identity(), Box::new(files)))
+            }
+        };
+        let options = Options {
+            filter: Filter::new(&choice.filter)?,
+            cases: choice.cases,
+            size: choice.size,
+            diagnose: Some(&Mistakes),
+            stop: stop.clone(),
+            expected: expectations.of(&hello.renderer, &hello.version),
+            runs,
+            ..Options::by(Code::default(), None, choice.seed, hello.profile(self.profile)?)
+        };
+        let mut bar = Bar::new(None, "cases");
+        if self.is_read_by_people() {
+            bar = bar.live(Stream::Output);
+        }
+        let report = run(&mut [subject], &options, &mut bar);
+        bar.bar.finish_and_clear();
+        let compared_by = ComparedBy { choice, generator: GENERATOR_VERSION };
+        Ok(GateReport::of(&Report { compared_by: Some(compared_by), ..report? }, command()))
+    }
+
+    fn asking(&self, command: &str, images: &Images, stop: &Stop) -> Asking {
         let duration = Duration::from_secs_f64;
         let limits = Limits {
             case: duration(self.case_timeout),
@@ -185,14 +213,13 @@ impl Gate {
             total: self.timeout.map(duration),
             ..Limits::default()
         };
-        ledger.expected = expectations;
-        let plan = ledger.plan();
-        let asking = Asking { command, folder: &folder, limits, runs: self.runs, stop };
-        let outcome = process::ask(ledger, plan, asking, &mut |count| bar.inc(count));
-        if self.images.is_none() {
-            let _ = std::fs::remove_dir_all(own);
-        }
-        Ok(outcome?)
+        let folder = images.folder.clone();
+        Asking { command: command.to_owned(), folder, limits, runs: self.runs, stop: stop.clone() }
+    }
+
+    /// Whether the result is text on standard output.
+    fn is_read_by_people(&self) -> bool {
+        self.format == Format::Text && self.out.is_none()
     }
 
     fn write(&self, report: &GateReport) -> anyhow::Result<String> {
@@ -202,10 +229,34 @@ impl Gate {
             Format::Github => outputs::github(report),
             Format::Text => {
                 let mut out = String::new();
-                outputs::text(report, &mut out)?;
+                outputs::text(report, self.is_read_by_people(), &mut out)?;
                 out
             }
         })
+    }
+}
+
+/// Where a process writes its images: a folder that was asked for, or one that goes when the gate ends.
+struct Images {
+    folder: PathBuf,
+    is_kept: bool,
+}
+
+impl Images {
+    fn new(kept: Option<PathBuf>) -> anyhow::Result<Self> {
+        let is_kept = kept.is_some();
+        let own = || std::env::temp_dir().join(format!("lightmeter-gate-{}", std::process::id()));
+        let folder = kept.unwrap_or_else(own);
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot write {}", folder.display()))?;
+        Ok(Self { folder: folder.canonicalize()?, is_kept })
+    }
+}
+
+impl Drop for Images {
+    fn drop(&mut self) {
+        if !self.is_kept {
+            let _ = std::fs::remove_dir_all(&self.folder);
+        }
     }
 }
 

@@ -156,6 +156,7 @@ impl GpuDevice {
                 }
                 return Ok(Ok(Work::Depth));
             }
+            Stage::Answer => return Ok(Err("an adapter has stages, and is not asked case by case")),
             Stage::Raster => {
                 let Kind::Raster(raster) = kind else { return Ok(Err("not a formula of the rasteriser")) };
                 return Ok(RasterPipeline::new(&self.gpu, shaders, raster)?.map(Work::Raster));

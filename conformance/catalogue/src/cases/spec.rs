@@ -15,6 +15,8 @@ pub enum Stage {
     FixedFunction,
     /// The rasteriser.
     Raster,
+    /// A renderer that is asked case by case, in whatever way it computes.
+    Answer,
 }
 
 impl Stage {
@@ -26,6 +28,7 @@ impl Stage {
             Self::Fragment => "fragment",
             Self::FixedFunction => "fixed-function",
             Self::Raster => "raster",
+            Self::Answer => "answer",
         }
     }
 }

@@ -343,5 +343,6 @@ fn failure(
         value_hex: format!("pixel bytes {hex}"),
         unwritten: false,
         error_ulp: Number(verdict(k).error),
+        answer: None,
     }
 }

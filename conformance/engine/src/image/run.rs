@@ -2,6 +2,7 @@
 //! with all effects behind switches; every pixel of both must be legal by the full reference. A run of everything, which is
 //! to end within a minute, draws them smaller and by the composed shaders alone.
 
+use super::asked;
 use super::verdict::{Drawn, JudgedScene};
 use crate::device::{DeviceError, Own, Picture};
 use crate::options::Options;
@@ -39,7 +40,7 @@ enum Drawing {
     Pending(Own),
 }
 
-/// Judges a scene on every subject.
+/// Judges a scene on every subject; of each renderer that is asked case by case, what stands for its image, and whether that failed.
 ///
 /// # Errors
 /// Where a shader is invalid or a device fails.
@@ -50,7 +51,12 @@ pub(crate) fn run_scene(
     options: &Options,
     report: &mut Report,
     observer: &mut dyn Observer,
-) -> Result<(), DeviceError> {
+) -> Result<Vec<(u32, bool)>, DeviceError> {
+    if let [subject] = subjects
+        && subject.asked().is_some()
+    {
+        return asked::run_scene(loaded, chosen, subject, options, report, observer).map(|image| vec![image]);
+    }
     let frame = &loaded.frame;
     let asked = Asked { frame, called: effects(frame), named: named(frame) };
     let all_started = asked.start_all(subjects, options, report)?;
@@ -66,7 +72,7 @@ pub(crate) fn run_scene(
         asked.finish(started, &scene, &subjects[place], &mut composed[place], options, report)?;
     }
     observer.see(&Event::Advanced((scene.pixels() * subjects.len()) as u64));
-    Ok(())
+    Ok(vec![])
 }
 
 impl Asked<'_> {

@@ -21,6 +21,7 @@ use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
 use serde_json::json;
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// Takes the misses out that a named deviation makes legal; how many there are.
 pub fn excuse(
@@ -81,7 +82,8 @@ impl<'a> JudgedScene<'a> {
         }
     }
 
-    fn expected(&self, profile: &Profile) -> &[LegalPixel] {
+    /// What a profile makes legal, which was worked out.
+    pub(super) fn expected(&self, profile: &Profile) -> &[LegalPixel] {
         let found = self.expected.iter().find(|(bits, _)| *bits == profile.subpixel_bits);
         &found.expect("what is legal was worked out for every subject").1
     }
@@ -103,11 +105,21 @@ impl<'a> JudgedScene<'a> {
         }
     }
 
+    /// The verdicts on an image by what a profile makes legal.
+    pub(super) fn judged(&self, image: &StoredImage, profile: &Profile) -> Judged {
+        judge(image, &self.reference, self.expected(profile), &self.pixels)
+    }
+
+    /// What the reference has at a pixel.
+    pub(super) fn reference(&self, pixel: usize) -> [f64; 4] {
+        self.reference.pixels[pixel]
+    }
+
     /// The group of an image. Where that is wrong, its failures go to the report, and its intermediate results, which everything
     /// that the frame names takes part in, are drawn.
     pub(super) fn judge(&self, drawn: &Drawn<'_>, named: &[Called], report: &mut Report) -> Result<Group, DeviceError> {
         let expected = self.expected(&drawn.profile);
-        let mut judged = judge(drawn.image, &self.reference, expected, &self.pixels);
+        let mut judged = self.judged(drawn.image, &drawn.profile);
         self.excuse(&mut judged, drawn, report);
         let problem = judged.verdicts.problem();
         let totals = Totals { failed_groups: u64::from(problem.is_some()), ..judged.verdicts.totals };
@@ -169,7 +181,13 @@ impl<'a> JudgedScene<'a> {
         }
         let pixels = judged.pixels().len();
         let command = self.rerun("show", drawn, worst.pixel);
-        Ok(format!("{pixels} pixels; {departure}; the worst: {command}{}", files_told(&used.files)))
+        let clock = Instant::now();
+        let expected = self.expected(&drawn.profile);
+        let mistake = drawn.options.diagnose.map_or_else(String::new, |diagnose| {
+            format!("; {}", diagnose.image(self.frame, drawn.image, expected, &drawn.profile))
+        });
+        report.timing.diagnose += clock.elapsed().as_secs_f64();
+        Ok(format!("{pixels} pixels; {departure}{mistake}; the worst: {command}{}", files_told(&used.files)))
     }
 
     fn departure(&self, drawn: &Drawn<'_>, named: &[Called], judged: &Judged) -> Result<Departure, DeviceError> {
@@ -231,6 +249,7 @@ impl<'a> JudgedScene<'a> {
             value_hex: format!("0x{bits:08x}"),
             unwritten: false,
             error_ulp: Number(error(image.format, value, exact)),
+            answer: None,
         }
     }
 }
@@ -244,7 +263,8 @@ const fn stage(picture: Picture) -> &'static str {
     }
 }
 
-fn worst(judged: &Judged) -> Option<Miss> {
+/// The miss of the greatest margin.
+pub(super) fn worst(judged: &Judged) -> Option<Miss> {
     judged.misses.iter().copied().reduce(|a, b| if is_worse(b.margin, a.margin) { b } else { a })
 }
 

@@ -185,6 +185,7 @@ fn failure(outcome: &ProbeResult, results: &Results, subject: &Subject, options:
         value_hex: format!("0x{:08x}", outcome.bits),
         unwritten: outcome.bits == SENTINEL,
         error_ulp: Number(f64::INFINITY),
+        answer: None,
     };
     Some((simplicity(&operands), told))
 }

@@ -1,0 +1,104 @@
+//! What a report says by cases, beside the counts of verdicts: of subjects that are asked case by case, and wherever a run is compared
+//! with another one.
+
+use crate::Number;
+use crate::gate::{Problems, RendererIdentity};
+use crate::pack::Choice;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What became of a group's cases, each of which has a verdict for each scalar output.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+pub struct CaseCounts {
+    /// Cases that were asked.
+    pub asked: u64,
+    /// Cases that the renderer does not declare, and that were not asked.
+    pub not_asked: u64,
+    /// Every verdict passed, or permits anything.
+    pub passed: u64,
+    /// Failed.
+    pub failed: u64,
+    /// Of them, those whose answer could not be judged.
+    pub unjudged: u64,
+    /// Of them, those at which the renderer ended or hung.
+    pub broken: u64,
+    /// Failed as is expected.
+    pub expected_failures: u64,
+    /// Skipped.
+    pub skipped: u64,
+    /// Never answered.
+    pub missing: u64,
+    /// The largest error of a case that passes.
+    pub error_passing: Number,
+    /// The mean error of the cases that pass.
+    pub error_mean: Number,
+    /// The cases that were asked and did not pass, by `failed`, `skipped` and `missing`: each by the end of its id, cases in a row
+    /// as `random/000003..000017`.
+    pub not_passed: BTreeMap<String, Vec<String>>,
+    /// Why it was not asked, or why its cases were skipped.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The failing case with the simplest inputs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smallest: Option<String>,
+}
+
+impl CaseCounts {
+    /// Whether something fails that is not expected to, or was not answered.
+    #[must_use]
+    pub const fn is_failed(&self) -> bool {
+        self.failed > self.expected_failures || self.missing > 0
+    }
+}
+
+/// An answer to a case that is wrong, with all of its outputs.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+pub struct FailedAnswer {
+    /// The inputs, one after the other.
+    pub inputs: Vec<Number>,
+    /// The outputs' names.
+    pub outputs: Vec<String>,
+    /// What the reference has.
+    pub reference: Vec<Number>,
+    /// From where to where values are legal.
+    pub interval: Vec<[Number; 2]>,
+    /// What was answered.
+    pub value: Vec<Number>,
+    /// What is wrong, where it is not a value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+}
+
+/// What must be the same for two runs to be compared.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+pub struct ComparedBy {
+    /// What chose the cases.
+    pub choice: Choice,
+    /// The version of what draws them.
+    pub generator: u64,
+}
+
+/// A renderer that was asked, and what went wrong with it apart from its answers.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+pub struct RendererUse {
+    /// Its name and version.
+    #[serde(flatten)]
+    pub identity: RendererIdentity,
+    /// How often it was started.
+    pub starts: u64,
+    /// Lines that cannot be read as answers, or answer what nobody asked.
+    pub problems: Problems,
+    /// What went wrong with the process.
+    pub incidents: Vec<String>,
+    /// Crashes and hangs that are expected.
+    pub expected_incidents: Vec<String>,
+}
+
+impl RendererUse {
+    /// Whether the renderer broke off, or wrote what is no answer.
+    #[must_use]
+    pub fn is_broken(&self) -> bool {
+        !self.incidents.is_empty() || !self.problems.is_empty()
+    }
+}

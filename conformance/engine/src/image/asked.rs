@@ -1,0 +1,217 @@
+//! Scenes that a renderer is asked to draw: one image of each, with nothing of how it came about.
+
+use super::verdict::{JudgedScene, worst};
+use crate::again::digest_of;
+use crate::device::DeviceError;
+use crate::options::Options;
+use crate::renderer::{AskedRenderer, AskedScene};
+use crate::run::not_asked;
+use crate::subject::Subject;
+use lightmeter_catalogue::scene::Loaded;
+use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id};
+use lightmeter_document::Number;
+use lightmeter_document::by_case::{CaseCounts, FailedAnswer};
+use lightmeter_document::event::{Event, Observer};
+use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
+use lightmeter_judge::cases::{Unanswered, ending};
+use lightmeter_judge::formula::unjudged;
+use lightmeter_judge::image::file::StoredImage;
+use lightmeter_judge::image::judge::Judged;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// The stage of such images in reports.
+const STAGE: &str = "answer";
+
+/// Has a renderer draw a scene.
+pub(crate) fn ask(
+    renderer: &mut dyn AskedRenderer,
+    id: &str,
+    loaded: &Loaded,
+) -> Result<Result<StoredImage, Unanswered>, DeviceError> {
+    renderer.image(AskedScene { id, title: &loaded.title, frame: &loaded.frame })
+}
+
+/// Judges the image that a renderer draws of a scene; what stands for it, and whether it failed.
+pub(super) fn run_scene(
+    loaded: &Loaded,
+    chosen: &Chosen,
+    subject: &mut Subject,
+    options: &Options,
+    report: &mut Report,
+    observer: &mut dyn Observer,
+) -> Result<(u32, bool), DeviceError> {
+    let (id, frame) = (scene_id(chosen.place), &loaded.frame);
+    let Some(renderer) = subject.asked_mut() else { unreachable!("only such a renderer draws here") };
+    if let Some(reason) = renderer.lacks(&id).or_else(|| renderer.lacks_frame(frame)) {
+        report.groups.push(not_asked(id, STAGE, 1, reason, subject));
+        return Ok((0, false));
+    }
+    let clock = Instant::now();
+    let image = ask(renderer, &id, loaded)?;
+    report.timing.devices += clock.elapsed().as_secs_f64();
+    let digest = digest_of(&image);
+    let clock = Instant::now();
+    let mut scene = Scene { id, loaded, chosen, subject, options, report };
+    let has_failed = match image {
+        Ok(image) => scene.judge(&image),
+        Err(why) => scene.refuse(&why),
+    };
+    if let Some(group) = report.groups.last_mut() {
+        group.seconds = clock.elapsed().as_secs_f64();
+    }
+    observer.see(&Event::Advanced(1));
+    Ok((digest, has_failed))
+}
+
+struct Scene<'a> {
+    id: String,
+    loaded: &'a Loaded,
+    chosen: &'a Chosen,
+    subject: &'a Subject,
+    options: &'a Options,
+    report: &'a mut Report,
+}
+
+impl Scene<'_> {
+    fn group(&self) -> Group {
+        Group {
+            target: Some(self.loaded.frame.target.format.name().into()),
+            ..Group::new(self.id.clone(), self.subject.identity.name.clone(), STAGE)
+        }
+    }
+
+    /// Notes at the expectations that have the scene whether its image failed; 1 where that was expected.
+    fn expected(&mut self, has_failed: bool) -> u64 {
+        let mut is_expected = false;
+        for (known, expected) in self.report.expectations.iter_mut().zip(&self.options.expected) {
+            if expected.has(&self.id) {
+                is_expected = true;
+                let count = if has_failed { &mut known.failed } else { &mut known.passed };
+                *count += 1;
+            }
+        }
+        u64::from(is_expected && has_failed)
+    }
+
+    /// The state of the scene's one case, where it did not pass.
+    fn not_passed(&self, state: &str) -> BTreeMap<String, Vec<String>> {
+        BTreeMap::from([(state.to_owned(), vec![ending("scene", &self.id)])])
+    }
+
+    /// Adds a scene without an image to the report; whether it counts as a failure.
+    fn refuse(&mut self, why: &Unanswered) -> bool {
+        let mut counts = CaseCounts { asked: 1, ..CaseCounts::default() };
+        let mut totals = Totals { cases: 1, ..Totals::default() };
+        let has_failed = matches!(why, Unanswered::Unjudged(_) | Unanswered::Broken(_));
+        match why {
+            Unanswered::Skipped(reason) => {
+                (counts.skipped, totals.skipped) = (1, 1);
+                counts.reason = Some(reason.clone());
+                counts.not_passed = self.not_passed("skipped");
+            }
+            Unanswered::Missing | Unanswered::Unasked => {
+                counts.missing = 1;
+                counts.not_passed = self.not_passed("missing");
+            }
+            Unanswered::Unjudged(message) | Unanswered::Broken(message) => {
+                (counts.failed, counts.unjudged) = (1, 1);
+                counts.broken = u64::from(matches!(why, Unanswered::Broken(_)));
+                counts.expected_failures = self.expected(true);
+                counts.not_passed = self.not_passed("failed");
+                counts.smallest = Some(self.id.clone());
+                self.report.failures.push(unjudged(self.id.clone(), message, STAGE, &self.subject.identity.name));
+            }
+        }
+        self.report.groups.push(Group { totals, by_case: Some(counts), ..self.group() });
+        has_failed
+    }
+
+    /// Adds the verdicts on an image to the report; whether it failed.
+    fn judge(&mut self, image: &StoredImage) -> bool {
+        let profile = self.subject.known.profile(self.options.profile);
+        let mut scene = JudgedScene::new(self.loaded, self.chosen);
+        scene.expect(&profile);
+        let judged = scene.judged(image, &profile);
+        let verdicts = &judged.verdicts;
+        let (has_failed, problem) = (verdicts.totals.failed > 0, verdicts.problem());
+        let of_case = u64::from(has_failed);
+        let mut counts = CaseCounts { asked: 1, failed: of_case, passed: 1 - of_case, ..CaseCounts::default() };
+        counts.expected_failures = self.expected(has_failed);
+        if has_failed {
+            counts.not_passed = self.not_passed("failed");
+        } else {
+            counts.error_passing = Number(verdicts.error_max);
+        }
+        let explanation = self
+            .options
+            .diagnose
+            .filter(|_| has_failed)
+            .map(|diagnose| diagnose.image(&self.loaded.frame, image, scene.expected(&profile), &profile));
+        if has_failed {
+            let failure = self.failure(&scene, image, &judged, &profile);
+            counts.smallest = Some(failure.id.clone());
+            self.report.failures.push(failure);
+        }
+        let mut totals = Totals { cases: 1, failed_groups: u64::from(problem.is_some()), ..verdicts.totals };
+        if counts.expected_failures > 0 {
+            totals.expected_failures += std::mem::take(&mut totals.failed);
+        }
+        let margin = worst(&judged).or(judged.worst()).map_or(0.0, |worst| worst.margin);
+        self.report.groups.push(Group {
+            totals,
+            error_ulp_max: Number(verdicts.error_max),
+            margin_max: Number(margin),
+            worst: Some(self.id.clone()),
+            explanation,
+            problem,
+            image: Some(ImageUse {
+                width: image.width,
+                height: image.pixels.len() / image.width,
+                marked: scene.expected(&profile).iter().filter(|pixel| pixel.is_marked).count() as u64,
+                differs_from_composed: None,
+                cost: None,
+                departs_in: None,
+                files: vec![],
+            }),
+            by_case: Some(counts),
+            ..self.group()
+        });
+        has_failed
+    }
+
+    /// The worst pixel of a wrong image, with all of its components.
+    fn failure(
+        &self,
+        scene: &JudgedScene<'_>,
+        image: &StoredImage,
+        judged: &Judged,
+        profile: &lightmeter_arithmetic::Profile,
+    ) -> Failure {
+        let pixel = worst(judged).map_or(0, |worst| worst.pixel);
+        let legal = &scene.expected(profile)[pixel];
+        let Totals { failed, verdicts, .. } = judged.verdicts.totals;
+        let (reference, value) = (scene.reference(pixel), image.pixels[pixel]);
+        let problem = format!("{failed} of {verdicts} components of pixels are outside of what is legal");
+        let id = pixel_id(&self.id, image.width, pixel);
+        let blank = unjudged(id, &problem, STAGE, &self.subject.identity.name);
+        let k = worst(judged).map_or(0, |worst| worst.component);
+        Failure {
+            target: Some(self.loaded.frame.target.format.name().into()),
+            output: ["r", "g", "b", "a"][k].into(),
+            reference: Number(reference[k]),
+            interval: [Number(legal.low[k]), Number(legal.high[k])],
+            value: Number(value[k]),
+            error_ulp: Number(judged.verdicts.error_max),
+            answer: Some(FailedAnswer {
+                inputs: vec![],
+                outputs: ["r", "g", "b", "a"].map(String::from).to_vec(),
+                reference: reference.map(Number).to_vec(),
+                interval: (0..4).map(|k| [Number(legal.low[k]), Number(legal.high[k])]).collect(),
+                value: value.map(Number).to_vec(),
+                problem: Some(problem),
+            }),
+            ..blank
+        }
+    }
+}

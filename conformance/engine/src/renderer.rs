@@ -1,0 +1,52 @@
+//! A renderer that is asked case by case: a process, files of answers, code in this process. It need not have stages, shaders or
+//! devices, may skip what it does not do, and may end at any case.
+
+use crate::device::DeviceError;
+use crate::rows::Rows;
+use lightmeter_document::by_case::RendererUse;
+use lightmeter_judge::cases::{Answers, Unanswered};
+use lightmeter_judge::image::file::StoredImage;
+use lightmeter_scene::frame::Frame;
+
+/// A scene that a renderer is asked to draw.
+#[derive(Clone, Copy)]
+pub struct AskedScene<'a> {
+    /// Its id.
+    pub id: &'a str,
+    /// What it shows, in words.
+    pub title: &'a str,
+    /// All of it.
+    pub frame: &'a Frame,
+}
+
+/// A renderer under test.
+///
+/// # Errors
+/// Each function fails only where the suite itself cannot ask, as where a file cannot be written. What the renderer does wrong is part of
+/// its answers and of [`AskedRenderer::used`].
+#[expect(clippy::missing_errors_doc, reason = "said once for all of them")]
+pub trait AskedRenderer: Send + Sync {
+    /// Why it is not asked the formula or the scene of this id; `None` where it is.
+    fn lacks(&self, id: &str) -> Option<String>;
+
+    /// Why it cannot draw a frame; `None` where it can.
+    fn lacks_frame(&self, frame: &Frame) -> Option<String>;
+
+    /// What it gives to cases of formulas. `advanced` hears of each number of cases that are done.
+    fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError>;
+
+    /// The image that it draws of a scene.
+    fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError>;
+
+    /// All of it is asked once more. What the renderer remembers of the first time must not matter.
+    fn begin_again(&mut self) -> Result<(), DeviceError>;
+
+    /// Whether what fails is asked once more at the end.
+    fn asks_failing_again(&self) -> bool;
+
+    /// Whether no more answers come.
+    fn is_over(&self) -> bool;
+
+    /// Ends it, and tells who it was and what went wrong apart from its answers.
+    fn used(&mut self) -> RendererUse;
+}

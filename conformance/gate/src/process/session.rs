@@ -1,0 +1,408 @@
+//! A conversation with a process: its start, batches of questions, its answers as they come, its end.
+
+use super::super::answer::{self, Hello, Line, PROTOCOL, Unread, clipped};
+use super::super::error::ProcessError;
+use super::super::given::{Given, given};
+use super::super::problems::note;
+use super::Asking;
+use super::running::{Event, Running};
+use lightmeter_catalogue::cases::Spec;
+use lightmeter_document::by_case::RendererUse;
+use lightmeter_document::gate::RendererIdentity;
+use lightmeter_judge::cases::ExpectedFailure;
+use rayon::prelude::*;
+use serde_json::json;
+use std::collections::{HashMap, HashSet};
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::process::ChildStdin;
+use std::sync::mpsc::RecvTimeoutError;
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// Cases that are asked at once, at first and at most: twice as many where they were answered in an eighth of what a case may take.
+pub(super) const BATCH: [usize; 2] = [16, 1024];
+/// Lines that wait to be read as answers, and their bytes, at most.
+const WAITING: (usize, usize) = (4096, 8 << 20);
+/// Lines beyond one a case, in a batch, that end a process.
+const SURPLUS: usize = 10_000;
+/// How long a wait lasts before it is asked whether to stop.
+const MOMENT: Duration = Duration::from_millis(100);
+
+/// What became of a process while it was asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// All is answered.
+    Answered,
+    /// It ended, or its output did.
+    Crashed,
+    /// It took too long.
+    Hung,
+    /// It wrote what was not asked for, without end.
+    Flooded,
+    /// It answered, and did not read what it was asked.
+    Deaf,
+    /// Time for all is over.
+    OutOfTime,
+    /// The gate was told to stop.
+    Stopped,
+}
+
+impl Ended {
+    /// It in words.
+    pub(super) const fn message(self) -> &'static str {
+        match self {
+            Self::Answered => "it answered",
+            Self::Crashed => "it ended",
+            Self::Hung => "it took longer than a case may",
+            Self::Flooded => "it wrote many lines that answer nothing",
+            Self::Deaf => "it answered, and did not read what it was asked",
+            Self::OutOfTime => "time for all is over",
+            Self::Stopped => "it was stopped",
+        }
+    }
+}
+
+/// A question: a case of a formula, or a scene, which has no description here.
+pub(super) struct Question<'a> {
+    pub(super) id: String,
+    /// The line that asks it.
+    pub(super) request: String,
+    pub(super) spec: Option<&'a Spec>,
+}
+
+/// Questions, and what was given to them so far.
+pub(super) struct Questions<'a> {
+    pub(super) all: &'a [Question<'a>],
+    /// The place of each by its id.
+    places: HashMap<&'a str, usize>,
+    pub(super) given: Vec<Option<Given>>,
+}
+
+impl<'a> Questions<'a> {
+    pub(super) fn new(all: &'a [Question<'a>]) -> Self {
+        let places = all.iter().enumerate().map(|(place, question)| (question.id.as_str(), place)).collect();
+        Self { all, places, given: vec![None; all.len()] }
+    }
+}
+
+/// A batch that is asked.
+struct Waiting {
+    /// What is not answered, by its id.
+    open: HashMap<String, usize>,
+    /// How long an answer may take.
+    limit: Duration,
+    /// Until when the next must come: answers must come all the time, and nothing else counts.
+    until: Instant,
+    /// Lines that wait to be read as answers, each with its number, and their bytes.
+    lines: Vec<(u64, Vec<u8>)>,
+    bytes: usize,
+    /// Lines that answer nothing.
+    surplus: usize,
+}
+
+impl Waiting {
+    /// Takes a line, and counts it where it is not blank.
+    fn hear(&mut self, line: Vec<u8>, count: &mut u64) {
+        if line.iter().all(u8::is_ascii_whitespace) {
+            self.surplus += 1;
+            return;
+        }
+        if answer::id(&line).is_some_and(|id| self.open.remove(id.as_ref()).is_some()) {
+            self.until = Instant::now() + self.limit;
+        } else {
+            self.surplus += 1;
+        }
+        self.bytes += line.len();
+        *count += 1;
+        self.lines.push((*count, line));
+    }
+}
+
+/// The state of a conversation, over all starts of the process.
+pub(super) struct Session {
+    pub(super) asking: Asking,
+    pub(super) expected: Vec<ExpectedFailure>,
+    deadline: Option<Instant>,
+    pub(super) running: Option<Running>,
+    /// What it said first.
+    hello: Hello,
+    pub(super) used: RendererUse,
+    /// Lines that it wrote after its hello.
+    lines: u64,
+    /// The number of the last batch.
+    number: u64,
+    /// Cases that are asked at once.
+    pub(super) size: usize,
+    /// Cases that the process has answered since it was started.
+    pub(super) answered: usize,
+    /// Cases that it failed at.
+    pub(super) culprits: u64,
+    /// How many of each formula, but for those that are expected.
+    pub(super) culprits_of: HashMap<String, usize>,
+    /// The ids that were asked, hashed.
+    asked: HashSet<u64>,
+    /// Whether nothing more is asked.
+    pub(super) has_broken_off: bool,
+}
+
+impl Session {
+    pub(super) fn new(asking: Asking) -> Self {
+        Self {
+            deadline: asking.limits.total.map(|total| Instant::now() + total),
+            asking,
+            expected: vec![],
+            running: None,
+            hello: Hello::default(),
+            used: RendererUse::default(),
+            lines: 0,
+            number: 0,
+            size: BATCH[0],
+            answered: 0,
+            culprits: 0,
+            culprits_of: HashMap::new(),
+            asked: HashSet::new(),
+            has_broken_off: false,
+        }
+    }
+
+    /// What it said of itself.
+    pub(super) const fn hello(&self) -> &Hello {
+        &self.hello
+    }
+
+    pub(super) fn is_stopped(&self) -> bool {
+        self.asking.stop.is_set()
+    }
+
+    /// Whether nothing more is asked.
+    pub(super) fn is_over(&self) -> bool {
+        self.has_broken_off || self.is_stopped()
+    }
+
+    /// Ends the process once it has nothing more to do; where it ends otherwise than well, that is told.
+    fn finish(&mut self) {
+        if let Some(running) = self.running.take() {
+            let stop = &self.asking.stop;
+            let wrong = running.finish(self.asking.limits.case, || stop.is_set());
+            self.used.incidents.extend(wrong);
+        }
+    }
+
+    /// All of it is asked once more, of a process that is started anew: what it remembers must not matter.
+    pub(super) fn begin_again(&mut self) {
+        self.finish();
+        self.culprits_of.clear();
+        self.asked.clear();
+    }
+
+    /// Ends it, and tells who it was and what went wrong.
+    pub(super) fn end_well(&mut self) -> RendererUse {
+        self.finish();
+        let identity = RendererIdentity { name: clipped(&self.hello.renderer), version: clipped(&self.hello.version) };
+        RendererUse { identity, ..self.used.clone() }
+    }
+
+    /// Ends it at once; what it ended by, and what it complained of.
+    pub(super) fn kill(&mut self, ended: Ended) -> String {
+        let Some(mut running) = self.running.take() else { return ended.message().to_owned() };
+        if ended == Ended::Crashed {
+            running.has_ended();
+        }
+        running.kill()
+    }
+
+    /// Starts the process and hears its hello.
+    pub(super) fn start(&mut self) -> Result<(), ProcessError> {
+        let failed = |message: String| ProcessError::Start { command: self.asking.command.clone(), message };
+        let mut running = Running::start(&self.asking.command).map_err(&failed)?;
+        self.used.starts += 1;
+        let greeting = json!({ "hello": PROTOCOL, "version": env!("CARGO_PKG_VERSION"), "folder": self.asking.folder });
+        let written = running.send(format!("{greeting}\n"));
+        let begun = Instant::now();
+        let until = begun + self.asking.limits.start;
+        let until = self.deadline.map_or(until, |deadline| until.min(deadline));
+        loop {
+            let left = until.saturating_duration_since(Instant::now());
+            let event = running.events.recv_timeout(left.min(MOMENT));
+            if matches!(event, Err(RecvTimeoutError::Timeout)) && left > MOMENT && !self.is_stopped() {
+                continue;
+            }
+            let message = match event {
+                Ok(Event::Line(line)) if line.iter().all(u8::is_ascii_whitespace) => continue,
+                Ok(Event::Line(line)) => match answer::read(&line) {
+                    Ok(Line::Hello(hello)) if self.used.starts > 1 && *hello != self.hello => {
+                        "says another hello than when it was started first".into()
+                    }
+                    Ok(Line::Hello(hello)) => {
+                        self.answered = 0;
+                        self.hello = *hello;
+                        running.input = written.and_then(|thread| thread.join().ok().flatten());
+                        self.running = Some(running);
+                        return Ok(());
+                    }
+                    Err(message) if answer::is_hello(&line) => message,
+                    _ => {
+                        let line = clipped(&String::from_utf8_lossy(&line));
+                        format!(
+                            "said `{line}` first; expected a hello such as {{\"hello\": \"{PROTOCOL}\", \"renderer\": …}}"
+                        )
+                    }
+                },
+                Ok(Event::TooLong) => "said a line without end first; expected its hello".into(),
+                Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => {
+                    running.has_ended();
+                    let how = running.kill();
+                    return Err(failed(format!("ended before its hello: {how}")));
+                }
+                Err(RecvTimeoutError::Timeout) if self.is_stopped() => "was stopped before its hello".into(),
+                Err(RecvTimeoutError::Timeout) => {
+                    format!("said nothing for {:.1} s", until.saturating_duration_since(begun).as_secs_f64())
+                }
+            };
+            let how = running.kill();
+            return Err(failed(format!("{message} (killed: {how})")));
+        }
+    }
+
+    /// Asks questions at once, by their places; how that ended, and which are left unanswered.
+    pub(super) fn batch(&mut self, questions: &mut Questions<'_>, batch: &[usize]) -> (Ended, Vec<usize>) {
+        let text = self.requests(questions, batch);
+        let Some(mut running) = self.running.take() else { return (Ended::Crashed, batch.to_vec()) };
+        let writing = running.send(text);
+        let limits = self.asking.limits;
+        let limit = if questions.all[batch[0]].spec.is_none() { limits.scene } else { limits.case };
+        let start = Instant::now();
+        let mut waiting = Waiting {
+            open: batch.iter().map(|&place| (questions.all[place].id.clone(), place)).collect(),
+            limit,
+            until: start + limit,
+            lines: vec![],
+            bytes: 0,
+            surplus: 0,
+        };
+        let mut ended = self.listen(questions, &running, &mut waiting);
+        self.read(questions, &waiting.lines);
+        if ended == Ended::Answered {
+            if !self.has_read(&mut running, writing, waiting.until) {
+                ended = Ended::Deaf;
+            }
+            if start.elapsed() * 8 < limit {
+                self.size = (2 * self.size).min(BATCH[1]);
+            }
+        }
+        self.running = Some(running);
+        let is_open = |place: &usize| waiting.open.values().any(|open| open == place);
+        (ended, batch.iter().copied().filter(is_open).collect())
+    }
+
+    /// What a batch is asked by, a line each, with its number behind them.
+    fn requests(&mut self, questions: &Questions<'_>, batch: &[usize]) -> String {
+        let mut text = String::new();
+        for &place in batch {
+            let Question { id, request, .. } = &questions.all[place];
+            self.asked.insert(hash(id));
+            text += request;
+            text.push('\n');
+        }
+        self.number += 1;
+        text + &format!("{{\"batch\": {}}}\n", self.number)
+    }
+
+    /// Takes lines for answers to questions. What answers none of them is a problem.
+    fn read(&mut self, questions: &mut Questions<'_>, lines: &[(u64, Vec<u8>)]) {
+        let read: Vec<(u64, Result<Line<'_>, String>)> =
+            lines.par_iter().map(|(number, line)| (*number, answer::read(line))).collect();
+        for (number, line) in read {
+            let line = match line {
+                Ok(line) => line,
+                Err(message) => {
+                    note(&mut self.used.problems, "malformed", || format!("line {number}: {message}"));
+                    continue;
+                }
+            };
+            let Some(id) = line.id() else {
+                note(&mut self.used.problems, "malformed", || {
+                    format!("line {number}: a hello, which is said once and first")
+                });
+                continue;
+            };
+            match questions.places.get(id) {
+                Some(&place) if questions.given[place].is_none() => {
+                    questions.given[place] = Some(given(line, questions.all[place].spec));
+                }
+                None if !self.asked.contains(&hash(id)) => note(&mut self.used.problems, "unknown", || {
+                    format!("line {number}: no case `{}` was asked for", clipped(id))
+                }),
+                _ => note(&mut self.used.problems, "duplicate", || format!("{id} is answered more than once")),
+            }
+        }
+    }
+
+    /// Takes answers until all that is open is answered, or the process fails.
+    fn listen(&mut self, questions: &mut Questions<'_>, running: &Running, waiting: &mut Waiting) -> Ended {
+        loop {
+            if waiting.open.is_empty() {
+                return Ended::Answered;
+            }
+            if waiting.surplus > SURPLUS {
+                return Ended::Flooded;
+            }
+            if waiting.lines.len() >= WAITING.0 || waiting.bytes >= WAITING.1 {
+                self.read(questions, &waiting.lines);
+                waiting.lines.clear();
+                waiting.bytes = 0;
+            }
+            if self.is_stopped() {
+                return Ended::Stopped;
+            }
+            let wait = self.over(waiting.until).saturating_duration_since(Instant::now());
+            if wait.is_zero() {
+                let is_over = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
+                return if is_over { Ended::OutOfTime } else { Ended::Hung };
+            }
+            match running.events.recv_timeout(wait.min(MOMENT)) {
+                Ok(Event::Line(line)) => waiting.hear(line, &mut self.lines),
+                Ok(Event::TooLong) => {
+                    waiting.surplus += 1;
+                    self.lines += 1;
+                    let number = self.lines;
+                    note(&mut self.used.problems, "oversized", || format!("line {number}: {}", Unread::TooLong));
+                }
+                Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Ended::Crashed,
+                // The next turn tells which time is over.
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    /// A moment, or that at which time for all is over.
+    fn over(&self, until: Instant) -> Instant {
+        self.deadline.map_or(until, |deadline| until.min(deadline))
+    }
+
+    /// Whether the process reads all that it was asked, as one that answers does.
+    fn has_read(
+        &self,
+        running: &mut Running,
+        mut writing: Option<JoinHandle<Option<ChildStdin>>>,
+        until: Instant,
+    ) -> bool {
+        let is_written =
+            |thread: &Option<JoinHandle<Option<ChildStdin>>>| thread.as_ref().is_none_or(JoinHandle::is_finished);
+        let over = self.over(until);
+        while !is_written(&writing) && Instant::now() < over && !self.is_stopped() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let has_read = is_written(&writing);
+        if has_read {
+            running.input = writing.take().and_then(|thread| thread.join().ok().flatten());
+        }
+        has_read
+    }
+}
+
+fn hash(id: &str) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    id.hash(&mut hasher);
+    hasher.finish()
+}
