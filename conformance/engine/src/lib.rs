@@ -6,6 +6,7 @@ mod ask_again;
 pub mod blend_unit;
 pub mod device;
 pub mod evaluate;
+mod expected;
 pub mod image;
 pub mod options;
 pub mod piece;

@@ -254,10 +254,7 @@ impl<'a> RowRun<'a> {
                 report.groups.push(group);
                 let kept = if *stage == Stage::Answer { usize::MAX } else { KEPT_FAILURES };
                 report.failures.extend(standing.failures(self.members, *stage, &by).into_iter().take(kept));
-                for (known, [failed, passed]) in report.expectations.iter_mut().zip(&standing.cases.expected) {
-                    known.failed += failed;
-                    known.passed += passed;
-                }
+                standing.cases.note(&mut report.expectations);
                 let RowStanding { wrong, right, .. } = standing;
                 before = is_shader(*stage).then_some((wrong, right, told));
             }

@@ -72,6 +72,8 @@ pub fn run_selection(
     }
     report.totals.unexpected_passes +=
         report.deviations.iter().filter(|deviation| !deviation.still_needed).count() as u64;
+    report.totals.unexpected_passes +=
+        report.expectations.iter().filter(|expected| expected.passes_unexpectedly()).count() as u64;
     report.aliases = blend::aliases()
         .filter(|(alias, canonical)| options.filter.selects(alias) || options.filter.selects(canonical))
         .count() as u64;

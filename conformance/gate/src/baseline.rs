@@ -2,9 +2,11 @@
 
 use lightmeter_catalogue::cases::GENERATOR_VERSION;
 use lightmeter_catalogue::filter::Filter;
-use lightmeter_document::Document as _;
+use lightmeter_document::Document;
+use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::gate::{GateGroup, GateReport, cases};
 use lightmeter_document::pack::Choice;
+use lightmeter_document::run::{Group, Report};
 use lightmeter_judge::cases::expanded;
 use lightmeter_judge::image::file::whole;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -17,9 +19,91 @@ const MEAN_FLOOR: f64 = 0.05;
 /// Cases that are named, of each formula.
 const MOST_NAMED: usize = 8;
 
+/// A result, as far as it is compared: of a run or of a gate.
+#[derive(Debug)]
+pub struct Standard {
+    choice: Choice,
+    generator: u64,
+    profile: String,
+    groups: Vec<ComparedGroup>,
+    /// Failures that are expected, by their globs.
+    expected: Vec<String>,
+    /// Why it is no standard to hold others to.
+    unfit: Option<&'static str>,
+}
+
+/// A group that is compared with the one of the same name.
+#[derive(Debug)]
+struct ComparedGroup {
+    /// Its id, and of a run the adapter and the stage.
+    name: String,
+    /// Counts of cases, or of verdicts.
+    counts: GateGroup,
+    /// Whether they are of cases.
+    is_by_case: bool,
+}
+
+impl From<&GateReport> for Standard {
+    fn from(report: &GateReport) -> Self {
+        let group = |group: &GateGroup| ComparedGroup {
+            name: group.id.clone(),
+            counts: group.clone(),
+            is_by_case: true,
+        };
+        let why = [
+            (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
+            (report.signal.is_some(), "a signal ended the gate"),
+            (report.totals.unstable > 0, "answers changed when they were asked once more"),
+            (!report.has_judged(), "nothing was judged"),
+        ];
+        Self {
+            choice: report.choice.clone(),
+            generator: report.generator,
+            profile: report.profile.clone(),
+            groups: report.groups.iter().map(group).collect(),
+            expected: report.expectations.iter().map(|one| one.id.clone()).collect(),
+            unfit: why.into_iter().find(|(is_so, _)| *is_so).map(|(_, why)| why),
+        }
+    }
+}
+
+impl From<&Report> for Standard {
+    fn from(report: &Report) -> Self {
+        let group = |group: &Group| {
+            let totals = &group.totals;
+            let of_verdicts = CaseCounts {
+                asked: totals.cases - totals.skipped,
+                passed: totals.passed,
+                failed: totals.failed,
+                skipped: totals.skipped,
+                ..CaseCounts::default()
+            };
+            ComparedGroup {
+                name: format!("{} on {}, {}", group.id, group.adapter, group.place()),
+                counts: GateGroup::of(group, group.by_case.as_ref().unwrap_or(&of_verdicts)),
+                is_by_case: group.by_case.is_some(),
+            }
+        };
+        let why = [
+            (report.interrupted.is_some(), "the run was interrupted"),
+            (report.unstable > 0, "answers changed when they were asked once more"),
+            (report.totals.verdicts == report.totals.indeterminate, "nothing was judged"),
+        ];
+        let compared_by = report.compared_by.clone().unwrap_or_default();
+        Self {
+            choice: compared_by.choice,
+            generator: compared_by.generator,
+            profile: report.profile.to_string(),
+            groups: report.groups.iter().map(group).collect(),
+            expected: report.expectations.iter().map(|one| one.id.clone()).collect(),
+            unfit: why.into_iter().find(|(is_so, _)| *is_so).map(|(_, why)| why),
+        }
+    }
+}
+
 /// An earlier result.
 #[derive(Debug)]
-pub struct Baseline(GateReport);
+pub struct Baseline(Standard);
 
 /// Why a baseline cannot be compared with, or written.
 #[derive(Debug, thiserror::Error)]
@@ -59,34 +143,43 @@ pub enum BaselineError {
 }
 
 impl Baseline {
-    /// Reads a gate's JSON.
+    /// Reads the JSON of a gate.
     ///
     /// # Errors
     /// Where it is none.
-    pub fn read(path: &Path) -> Result<Self, BaselineError> {
-        let failed = |message: String| BaselineError::Read { path: path.into(), message };
-        let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
-        let baseline = GateReport::read(&text).map_err(|error| failed(error.to_string()))?;
-        Ok(Self(baseline))
+    pub fn of_gate(path: &Path) -> Result<Self, BaselineError> {
+        read(path).map(|report: GateReport| Self(Standard::from(&report)))
     }
 
-    /// What is worse in the report, beyond `factor` where it is an error. A part of the cases is compared with the same part.
+    /// Reads the JSON of a run.
+    ///
+    /// # Errors
+    /// Where it is none, or an older one, which does not say what chose its cases.
+    pub fn of_run(path: &Path) -> Result<Self, BaselineError> {
+        let report: Report = read(path)?;
+        if report.compared_by.is_none() {
+            let message = "it does not say what chose its cases; expected the JSON of a later version's run".into();
+            return Err(BaselineError::Read { path: path.into(), message });
+        }
+        Ok(Self(Standard::from(&report)))
+    }
+
+    /// What is worse in a result, beyond `factor` where it is an error. A part of the cases, as a shard, is compared with the same part.
     ///
     /// # Errors
     /// Where the cases are others.
-    pub fn compare(&self, report: &GateReport, factor: f64, path: &Path) -> Result<Vec<String>, BaselineError> {
-        let asked = report.groups.iter().map(|group| (group.id.as_str(), group.asked));
-        self.is_of(&report.choice, asked, Some(&report.profile), path)?;
-        let is_part = !self.has_filter_of(&report.choice);
-        let globs = report.expectations.iter().map(|one| one.id.as_str());
+    pub fn compare(&self, now: &Standard, factor: f64, is_shard: bool, path: &Path) -> Result<Vec<String>, BaselineError> {
+        let asked = now.groups.iter().map(|group| (group.name.as_str(), group.counts.asked));
+        self.is_of(&now.choice, asked, Some(&now.profile), path)?;
+        let is_part = is_shard || !self.has_filter_of(&now.choice);
         // They were read when the expectations were.
-        let expected: Vec<Filter> = globs.filter_map(|glob| Filter::new(&[glob]).ok()).collect();
+        let expected: Vec<Filter> = now.expected.iter().filter_map(|glob| Filter::new(&[glob]).ok()).collect();
         let comparison = Comparison { factor, is_part, expected };
         let mut worse = vec![];
         for before in &self.0.groups {
-            match report.groups.iter().find(|group| group.id == before.id) {
+            match now.groups.iter().find(|group| group.name == before.name) {
                 None if is_part => {}
-                None => worse.push(format!("{}: it is not among the cases any more", before.id)),
+                None => worse.push(format!("{}: it is not among the cases any more", before.name)),
                 Some(now) => worse.extend(comparison.of(before, now)),
             }
         }
@@ -128,7 +221,7 @@ impl Baseline {
         if !self.has_filter_of(now) {
             // What the renderer did not declare then has no cases there, and may have some now.
             let known: HashMap<&str, u64> =
-                self.0.groups.iter().map(|group| (group.id.as_str(), group.asked)).collect();
+                self.0.groups.iter().map(|group| (group.name.as_str(), group.counts.asked)).collect();
             let lacks = |(id, asked): &(&str, u64)| known.get(id).is_none_or(|before| (1..*asked).contains(before));
             let mut missing = asked.filter(lacks).map(|(id, _)| id);
             if let Some(first) = missing.next() {
@@ -154,8 +247,9 @@ struct Comparison {
 impl Comparison {
     /// What is worse in a group. Only like is compared with like: the greatest error of all cases, and the errors of those that pass where
     /// no other cases pass than did, since a case that passes now may err by more than all that passed before.
-    fn of(&self, before: &GateGroup, now: &GateGroup) -> Vec<String> {
-        let id = &now.id;
+    fn of(&self, before: &ComparedGroup, now: &ComparedGroup) -> Vec<String> {
+        let (id, is_by_case) = (&now.name, before.is_by_case && now.is_by_case);
+        let (before, now) = (&before.counts, &now.counts);
         let mut worse = vec![];
         if before.asked == 0 {
             return worse;
@@ -165,7 +259,10 @@ impl Comparison {
             worse.push(format!("{id}: {asked} cases are asked, {were} were: the renderer declares less"));
         }
         for what in ["failed", "skipped", "missing"] {
-            worse.extend(self.new_cases(before, now, what));
+            worse.extend(self.new_cases(id, [before, now], what));
+        }
+        if !is_by_case && now.failed > before.failed {
+            worse.push(format!("{id}: {} verdicts fail, {} did", now.failed, before.failed));
         }
         let others_pass = {
             let of = |group: &GateGroup| -> HashSet<String> {
@@ -192,7 +289,7 @@ impl Comparison {
     }
 
     /// The cases that passed and do not, and are not expected to fail; that were answered or skipped and are missing.
-    fn new_cases(&self, before: &GateGroup, now: &GateGroup, what: &str) -> Option<String> {
+    fn new_cases(&self, name: &str, [before, now]: [&GateGroup; 2], what: &str) -> Option<String> {
         let spared = if what == "skipped" { &["skipped", "failed"][..] } else { &[what][..] };
         let known: HashSet<String> = (spared.iter().filter_map(|state| before.not_passed.get(*state)).flatten())
             .flat_map(|text| expanded(text))
@@ -207,7 +304,7 @@ impl Comparison {
         let named = new.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
         let more = if new.len() > MOST_NAMED { ", …" } else { "" };
         (!new.is_empty())
-            .then(|| format!("{}: {} {what} and did not before: {named}{more}", now.id, cases_of(new.len())))
+            .then(|| format!("{name}: {} {what} and did not before: {named}{more}", cases_of(new.len())))
     }
 }
 
@@ -215,18 +312,21 @@ fn cases_of(count: usize) -> String {
     cases(count as u64)
 }
 
-/// Writes a report as a baseline, whole or not at all.
+fn read<T: Document>(path: &Path) -> Result<T, BaselineError> {
+    let failed = |message: String| BaselineError::Read { path: path.into(), message };
+    let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
+    T::read(&text).map_err(|error| failed(error.to_string()))
+}
+
+/// Writes a result as a baseline, whole or not at all.
 ///
 /// # Errors
 /// Where it cannot be written, or the run was broken off, unstable or judged nothing.
-pub fn update(report: &GateReport, path: &Path) -> Result<(), BaselineError> {
-    let why = [
-        (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
-        (report.signal.is_some(), "a signal ended the gate"),
-        (report.totals.unstable > 0, "answers changed when they were asked once more"),
-        (!report.has_judged(), "nothing was judged"),
-    ];
-    if let Some((_, why)) = why.into_iter().find(|(is_so, _)| *is_so) {
+pub fn update<T: Document>(report: &T, path: &Path) -> Result<(), BaselineError>
+where
+    Standard: for<'a> From<&'a T>,
+{
+    if let Some(why) = Standard::from(report).unfit {
         return Err(BaselineError::Unfit { path: path.into(), why });
     }
     let failed = |message: String| BaselineError::Write { path: path.into(), message };

@@ -115,7 +115,7 @@ pub struct CaseTally {
     smallest: Option<(u32, (usize, CaseRef))>,
     not_passed: Vec<CaseRange>,
     /// Cases of each expectation that failed, and that passed.
-    pub expected: Vec<[u64; 2]>,
+    expected: Vec<[u64; 2]>,
 }
 
 impl CaseTally {
@@ -183,6 +183,14 @@ impl CaseTally {
         }
         self.counts.expected_failures += u64::from(is_expected && has_failed);
         is_expected && has_failed
+    }
+
+    /// Adds to the expectations how many of their cases failed and passed.
+    pub fn note(&self, expectations: &mut [KnownFailure]) {
+        for (known, [failed, passed]) in expectations.iter_mut().zip(&self.expected) {
+            known.failed += failed;
+            known.passed += passed;
+        }
     }
 
     fn push(&mut self, (member, case): (usize, CaseRef), state: NotPassed) {

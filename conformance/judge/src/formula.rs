@@ -393,9 +393,7 @@ mod tests {
     }
 
     fn judging(known: &Known) -> Judging<'_> {
-        let by =
-            Judging { adapter: "cpu", known, profile: &WGSL, rerun: "", seed: 1, expected: &[], counts_cases: true };
-        by
+        Judging { adapter: "cpu", known, profile: &WGSL, rerun: "", seed: 1, expected: &[], counts_cases: true }
     }
 
     fn reported(chunk: &Chunk<'_>, words: &[u32]) -> Vec<Failure> {

@@ -1,5 +1,6 @@
 //! A gate's result for people, for CI servers and for GitHub.
 
+use crate::against::{self, Against, listed};
 use crate::text::plain;
 use lightmeter_document::Number;
 use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, cases};
@@ -27,20 +28,7 @@ pub fn text(report: &GateReport, is_told: bool, out: &mut impl Write) -> Result 
         let more: Vec<&str> = failed[MOST_TOLD..].iter().map(|group| group.id.as_str()).take(200).collect();
         writeln!(out, "\n{} more fail: {}", failed.len() - MOST_TOLD, more.join(", "))?;
     }
-    listed("changed when they were asked once more", &report.unstable, out)?;
-    listed("are worse than in the baseline", &report.regressions, out)?;
-    for one in report.expectations.iter().filter(|one| one.failed + one.passed > 0) {
-        let said = match (one.failed, one.passes_unexpectedly()) {
-            (0, true) => "PASSES: take it out",
-            (0, false) => "passes, as it may",
-            _ => "fails as expected",
-        };
-        writeln!(
-            out,
-            "\nexpected failure `{}` {said} ({} failed, {} passed): {}",
-            one.id, one.failed, one.passed, one.reason
-        )?;
-    }
+    against::text(Against::of_gate(report), out)?;
     listed("crashes and hangs are expected", &report.expected_incidents, out)?;
     listed("went wrong with the process", &report.incidents, out)?;
     if !report.problems.is_empty() {
@@ -171,16 +159,8 @@ fn failure(failure: &GateFailure, out: &mut impl Write) -> Result {
     writeln!(out, "    lightmeter show {}", failure.id)
 }
 
-fn listed(what: &str, all: &[String], out: &mut impl Write) -> Result {
-    if !all.is_empty() {
-        writeln!(out, "\n{} {what}:", all.len())?;
-        all.iter().take(20).try_for_each(|one| writeln!(out, "  {one}"))?;
-    }
-    Ok(())
-}
-
 /// What is wrong with a group, on one line.
-fn sentence(group: &GateGroup) -> String {
+pub(crate) fn sentence(group: &GateGroup) -> String {
     let mut said = format!("{} of {} fail", group.failed, cases(group.asked));
     if group.broken > 0 {
         said += &format!(", at {} of them it ended or hung", group.broken);
@@ -195,7 +175,7 @@ fn sentence(group: &GateGroup) -> String {
 }
 
 /// The smallest failing case of a group, on one line.
-fn smallest(group: &GateGroup, report: &GateReport) -> Option<String> {
+pub(crate) fn smallest(group: &GateGroup, report: &GateReport) -> Option<String> {
     let id = group.smallest.as_ref()?;
     let failure = report.failures.iter().find(|failure| failure.id == *id)?;
     let list = |numbers: &[Number]| numbers.iter().map(Number::to_string).collect::<Vec<_>>().join(", ");
@@ -211,16 +191,12 @@ fn interrupted(signal: i32) -> String {
 }
 
 /// What is wrong with all of it, each on a line with its title.
-fn whole(report: &GateReport) -> Vec<(String, String)> {
+pub(crate) fn whole(report: &GateReport) -> Vec<(String, String)> {
     let mut said = vec![];
     said.extend(report.signal.map(|signal| ("interrupted".to_owned(), interrupted(signal))));
     said.extend(report.incidents.iter().map(|what| ("process".to_owned(), what.clone())));
     said.extend(report.problems.first.iter().map(|what| ("answers".to_owned(), what.clone())));
-    let changed = |id: &String| (id.clone(), "its answer changed when it was asked once more".to_owned());
-    said.extend(report.unstable.iter().take(MOST_TOLD).map(changed));
-    said.extend(report.regressions.iter().map(|what| ("baseline".to_owned(), what.clone())));
-    let passes = report.expectations.iter().filter(|one| one.passes_unexpectedly());
-    said.extend(passes.map(|one| (one.id.clone(), format!("passes, and is expected to fail: {}", one.reason))));
+    said.extend(Against::of_gate(report).lines());
     said
 }
 
@@ -255,31 +231,4 @@ pub fn junit(report: &GateReport) -> std::result::Result<String, SerializeError>
     }
     document.add_test_suite(suite);
     document.to_string()
-}
-
-/// Lines that GitHub Actions shows as annotations.
-#[must_use]
-pub fn github(report: &GateReport) -> String {
-    let data = |text: &str| text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
-    let property = |text: &str| data(text).replace(':', "%3A").replace(',', "%2C");
-    let mut out = String::new();
-    for group in report.groups.iter().filter(|group| group.is_failed()) {
-        let case = smallest(group, report).map_or_else(String::new, |case| format!("\nsmallest failing case {case}"));
-        out += &format!("::error title={}::{}\n", property(&group.id), data(&(sentence(group) + &case)));
-    }
-    for (title, what) in whole(report) {
-        out += &format!("::error title={}::{}\n", property(&title), data(&what));
-    }
-    let totals = &report.totals;
-    out += &format!(
-        "::notice title=lightmeter::{}\n",
-        data(&format!(
-            "{}: {} of {} pass, {} fail",
-            report.renderer.name,
-            totals.passed,
-            cases(totals.asked),
-            totals.failed
-        ))
-    );
-    out
 }

@@ -1,5 +1,6 @@
 //! A run's result as JUnit XML: a suite for each adapter, a test for each group and stage.
 
+use super::against::Against;
 use super::text;
 use lightmeter_document::run::{Group, Report};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
@@ -25,6 +26,16 @@ pub fn to_string(report: &Report) -> Result<String, SerializeError> {
                 status.set_message("unexpected pass: the deviation is no longer needed");
             }
             suite.add_test_case(TestCase::new(format!("deviation/{}", deviation.name), status));
+        }
+        document.add_test_suite(suite);
+    }
+    let against = Against::of_run(report).lines();
+    if !against.is_empty() {
+        let mut suite = TestSuite::new("compared");
+        for (title, what) in against {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+            status.set_message(what);
+            suite.add_test_case(TestCase::new(title, status));
         }
         document.add_test_suite(suite);
     }

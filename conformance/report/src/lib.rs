@@ -1,7 +1,9 @@
 //! Reports for people and for servers, pages and pictures: from the JSON of runs.
 
 pub mod bench;
+mod against;
 pub mod gate;
+pub mod github;
 pub mod junit;
 pub mod live;
 pub mod page;

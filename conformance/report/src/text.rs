@@ -1,5 +1,6 @@
 //! A run's result for people to read.
 
+use crate::against::{self, Against};
 use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, ImageUse, Report, Tiers, Totals};
 use lightmeter_document::{Number, Word, thousands};
 use lightmeter_judge::{is_worse, worse};
@@ -48,6 +49,7 @@ pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
     }
     writeln!(out)?;
     notes(report, out)?;
+    against::text(Against::of_run(report), out)?;
     if style.timing {
         let t = report.timing;
         blend_timing(report, out)?;
@@ -72,7 +74,14 @@ pub fn failures(report: &Report, out: &mut impl Write) -> Result {
     failing_groups(report, out)?;
     // One failure a formula and adapter explains more than many; the JSON has the first of every stage.
     let mut told: Vec<(&str, &str)> = vec![];
-    for failure in &report.failures {
+    let fails = |failure: &&Failure| {
+        let mut groups = report.groups.iter();
+        groups.any(|group| {
+            let is_of = failure.adapter == group.adapter && failure.stage == group.stage && failure.target == group.target;
+            is_of && group.totals.failed > 0 && failure.id.starts_with(&group.id)
+        })
+    };
+    for failure in report.failures.iter().filter(fails) {
         let formula = formula_of(failure);
         if !told.contains(&(formula, &failure.adapter)) {
             told.push((formula, &failure.adapter));

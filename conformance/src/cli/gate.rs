@@ -1,11 +1,13 @@
 //! `lightmeter gate`.
 
+use super::comparison::{Comparison, Earlier, matches_something};
+use super::options::{ReportFormat, ShardArgument};
 use super::pack::Cases;
 use super::progress::{Bar, Stream};
 use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit, writable};
 use anyhow::{Context as _, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use lightmeter::arithmetic::Profile;
 use lightmeter::cases::GENERATOR_VERSION;
 use lightmeter::device::Code;
@@ -13,18 +15,17 @@ use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::event::Stop;
 use lightmeter::document::gate::GateReport;
-use lightmeter::document::pack::Choice;
 use lightmeter::document::run::Report;
 use lightmeter::faults::Mistakes;
 use lightmeter::filter::Filter;
 use lightmeter::gate::answers::{AnswerFile, FileRenderer};
-use lightmeter::gate::baseline::{self, Baseline};
+use lightmeter::gate::baseline::{Baseline, Standard};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::pack;
-use lightmeter::gate::plan::{CasePlace, GatePlan};
+use lightmeter::gate::plan::GatePlan;
 use lightmeter::gate::process::{Asking, Limits, ProcessRenderer};
 use lightmeter::options::Options;
-use lightmeter::report::gate as outputs;
+use lightmeter::report::{gate as outputs, github};
 use lightmeter::run::run;
 use lightmeter::subject::Subject;
 use std::path::{Path, PathBuf};
@@ -44,6 +45,9 @@ pub(crate) struct Gate {
     exec: Option<String>,
     #[command(flatten)]
     cases: Cases,
+    /// Only a part of the cases: the I-th of N
+    #[arg(long, value_name = "I/N", default_value = "1/1")]
+    shard: ShardArgument,
     /// Accuracy rules: wgsl, vulkan or opengl; without it: what the renderer asks for, or wgsl
     #[arg(long, value_name = "NAME", value_parser = super::options::Choice::profile)]
     profile: Option<&'static Profile>,
@@ -62,34 +66,14 @@ pub(crate) struct Gate {
     /// Keep the images of a process in this folder
     #[arg(long, value_name = "DIR", requires = "exec")]
     images: Option<PathBuf>,
-    /// Known failures with their reasons, a TOML file
-    #[arg(long, value_name = "FILE")]
-    expect: Option<PathBuf>,
-    /// An earlier result, than which nothing may be worse
-    #[arg(long, value_name = "FILE")]
-    baseline: Option<PathBuf>,
-    /// By how much an error may grow against the baseline
-    #[arg(long, value_name = "FACTOR", default_value_t = 2.0, requires = "baseline", value_parser = factor)]
-    growth: f64,
-    /// Write the result to the baseline's file instead of comparing with it
-    #[arg(long, requires = "baseline")]
-    update_baseline: bool,
+    #[command(flatten)]
+    comparison: Comparison,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: ReportFormat,
     /// Write the result to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-}
-
-/// How output is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
-    Text,
-    Json,
-    Junit,
-    /// Lines that GitHub Actions shows as annotations
-    Github,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -97,24 +81,16 @@ fn seconds(text: &str) -> Result<f64, String> {
     if seconds > 0.0 && seconds <= 1e9 { Ok(seconds) } else { Err("expected seconds above 0".into()) }
 }
 
-fn factor(text: &str) -> Result<f64, String> {
-    let factor: f64 = text.parse().map_err(|_| "expected a factor, such as 1.5".to_owned())?;
-    if factor >= 1.0 && factor.is_finite() { Ok(factor) } else { Err("expected a factor of 1 or more".into()) }
-}
-
 impl Gate {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let expectations = self.expect.as_deref().map(Expectations::read).transpose()?.unwrap_or_default();
-        let known = match &self.baseline {
-            Some(path) if !self.update_baseline => Some((path, Baseline::read(path)?)),
-            _ => None,
-        };
+        let expectations = self.comparison.expectations()?;
+        let earlier = self.comparison.earlier(Baseline::of_gate)?;
         matches_something(&expectations)?;
         let start = Instant::now();
         let (plan, answers) = self.asked()?;
-        if let Some((path, known)) = &known {
+        if let Some(Earlier { baseline, path, .. }) = &earlier {
             let counts = plan.counts();
-            known.is_of(&plan.choice, counts.iter().map(|(id, count)| (id.as_str(), *count)), None, path)?;
+            baseline.is_of(&plan.choice, counts.iter().map(|(id, count)| (id.as_str(), *count)), None, path)?;
         }
         writable(self.out.as_deref())?;
         let stop = stopped_by_signals()?;
@@ -130,19 +106,12 @@ impl Gate {
         report.seconds = start.elapsed().as_secs_f64();
         // What was asked is told, even where the baseline turns out to be of other accuracy rules.
         // What was not asked for want of time is no regression.
-        let whole = known.as_ref().filter(|_| report.signal.is_none());
-        let regressions = whole.map(|(path, known)| known.compare(&report, self.growth, path)).transpose();
+        let whole = earlier.as_ref().filter(|_| report.signal.is_none());
+        let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), self.is_shard())).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
         emit(&self.write(&report)?, self.out.as_deref())?;
         regressions?;
-        if let Some(path) = self.baseline.as_ref().filter(|_| self.update_baseline) {
-            match baseline::update(&report, path) {
-                Ok(()) => eprintln!("the baseline {} is this result now", path.display()),
-                // The result itself says how the gate ends.
-                Err(error @ baseline::BaselineError::Unfit { .. }) => eprintln!("{error}"),
-                Err(error) => return Err(error.into()),
-            }
-        }
+        self.comparison.update(&report)?;
         Ok(status(&report))
     }
 
@@ -189,6 +158,7 @@ impl Gate {
             filter: Filter::new(&choice.filter)?,
             cases: choice.cases,
             size: choice.size,
+            shard: self.shard.0,
             diagnose: Some(&Mistakes),
             stop: stop.clone(),
             expected: expectations.of(&hello.renderer, &hello.version),
@@ -217,17 +187,21 @@ impl Gate {
         Asking { command: command.to_owned(), folder, limits, runs: self.runs, stop: stop.clone() }
     }
 
+    const fn is_shard(&self) -> bool {
+        self.shard.0.count.get() > 1
+    }
+
     /// Whether the result is text on standard output.
     fn is_read_by_people(&self) -> bool {
-        self.format == Format::Text && self.out.is_none()
+        self.format == ReportFormat::Text && self.out.is_none()
     }
 
     fn write(&self, report: &GateReport) -> anyhow::Result<String> {
         Ok(match self.format {
-            Format::Json => report.to_json()?,
-            Format::Junit => outputs::junit(report)?,
-            Format::Github => outputs::github(report),
-            Format::Text => {
+            ReportFormat::Json => report.to_json()?,
+            ReportFormat::Junit => outputs::junit(report)?,
+            ReportFormat::Github => github::of_gate(report),
+            ReportFormat::Text => {
                 let mut out = String::new();
                 outputs::text(report, self.is_read_by_people(), &mut out)?;
                 out
@@ -258,31 +232,6 @@ impl Drop for Images {
             let _ = std::fs::remove_dir_all(&self.folder);
         }
     }
-}
-
-/// An expectation of what no renderer is ever asked is a mistake in its file.
-fn matches_something(expectations: &Expectations) -> anyhow::Result<()> {
-    let all = GatePlan::new(Choice { filter: vec![], cases: 1, seed: 1, size: None })?;
-    for id in expectations.ids() {
-        let filter = Filter::new(&[id])?;
-        // Any number of a random case may be meant.
-        let path = id.rsplit_once('/').filter(|(_, number)| number.bytes().all(|byte| byte.is_ascii_digit()));
-        let is_random =
-            |member: &str| path.is_some_and(|(path, _)| path.strip_suffix("/random").unwrap_or(path) == member);
-        let has_formula = (0..all.formulas.len()).any(|formula| {
-            let member = &all.member(formula).spec.id;
-            filter.selects(member) || filter.reaches_below(member) || is_random(member) || {
-                let cases = 0..all.formulas[formula].count();
-                let is_below = id.starts_with(member.as_str()) || id.starts_with(all.member(formula).spec.group());
-                is_below && cases.into_iter().any(|case| filter.selects(&all.id(CasePlace::Case { formula, case })))
-            }
-        });
-        let has_scene = || (0..all.scenes.len()).any(|scene| filter.selects(&all.id(CasePlace::Scene(scene))));
-        if !has_formula && !has_scene() {
-            bail!("the expectation `{id}` matches no case of any formula and no scene: see `lightmeter list`");
-        }
-    }
-    Ok(())
 }
 
 /// The command, but for where its result goes.

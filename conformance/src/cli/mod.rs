@@ -2,6 +2,7 @@
 
 mod adapters;
 mod bench;
+mod comparison;
 mod effects;
 mod eval;
 mod gate;

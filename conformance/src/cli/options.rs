@@ -35,6 +35,16 @@ pub(crate) enum Format {
     Junit,
 }
 
+/// How the result of a run or a gate is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum ReportFormat {
+    Text,
+    Json,
+    Junit,
+    /// Lines that GitHub Actions shows as annotations
+    Github,
+}
+
 /// Which cases, on what, by which rules.
 #[derive(Debug, Args)]
 pub(crate) struct Choice {

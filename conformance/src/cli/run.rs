@@ -1,18 +1,26 @@
 //! `lightmeter run`.
 
-use super::options::{Amount, Choice, Format};
+use super::comparison::{Comparison, Earlier, matches_something};
+use super::options::{Amount, Choice, ReportFormat};
 use super::progress::{Bar, Stream};
 use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit, writable};
 use clap::Args;
+use lightmeter::cases::GENERATOR_VERSION;
 use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::document::Document as _;
-use lightmeter::document::run::{Interrupted, Report};
+use lightmeter::document::by_case::ComparedBy;
+use lightmeter::document::pack::Choice as CaseChoice;
+use lightmeter::document::run::{Identity, Interrupted, Report};
 use lightmeter::faults::Mistakes;
 use lightmeter::filter::Filter;
-use lightmeter::report::{junit, text};
+use lightmeter::gate::baseline::{Baseline, Standard};
+use lightmeter::gate::expectations::Expectations;
+use lightmeter::judge::cases::ExpectedFailure;
+use lightmeter::report::{github, junit, text};
 use lightmeter::run::run;
 use lightmeter::select::{catalogue_of, select};
+use lightmeter::subject::Subject;
 use lightmeter::witness::NamedDeviation;
 use std::path::PathBuf;
 
@@ -37,9 +45,14 @@ pub(crate) struct Run {
     /// Where reference, result and error map of a scene that fails are written
     #[arg(long, value_name = "DIR", default_value = "lightmeter-failures")]
     images: PathBuf,
+    /// Ask all of it so often; a result that changes is unstable
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    runs: u64,
+    #[command(flatten)]
+    comparison: Comparison,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: ReportFormat,
     /// Write the result to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -47,6 +60,9 @@ pub(crate) struct Run {
 
 impl Run {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let expectations = self.comparison.expectations()?;
+        let earlier = self.comparison.earlier(Baseline::of_run)?;
+        matches_something(&expectations)?;
         let shard = self.amount.shard.0;
         let named = self.filter.iter().filter_map(|glob| separate_of(glob)).collect();
         let samples = Samples { seed: self.choice.seed, count: self.separate, named };
@@ -57,8 +73,15 @@ impl Run {
         options.samples = samples;
         options.diagnose = Some(&Mistakes);
         options.stop = stopped_by_signals()?;
+        options.runs = self.runs;
+        options.counts_cases = true;
         writable(self.out.as_deref())?;
+        let compared_by = ComparedBy { choice: self.chosen(), generator: GENERATOR_VERSION };
+        if let Some(Earlier { baseline, path, .. }) = &earlier {
+            baseline.is_of(&compared_by.choice, std::iter::empty(), Some(&options.profile.name.into()), path)?;
+        }
         let mut subjects = self.choice.subjects()?;
+        options.expected = known_failures(&expectations, &subjects);
         let mut bar =
             Bar::new(None, "cases").live(if self.is_read_by_people() { Stream::Output } else { Stream::Error });
         let report = run(&mut subjects, &options, &mut bar);
@@ -71,23 +94,38 @@ impl Run {
             }
             report => report?,
         };
+        let mut report = Report { compared_by: Some(compared_by), ..report };
+        // What was not judged for want of time is no regression.
+        let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
+        let is_shard = shard.count.get() > 1;
+        let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), is_shard)).transpose();
+        report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
         emit(&self.write(&report)?, self.out.as_deref())?;
         if report.interrupted.is_some() {
             std::mem::forget(subjects);
         }
+        regressions?;
+        self.comparison.update(&report)?;
         Ok(status(&report))
+    }
+
+    /// What chooses the cases.
+    fn chosen(&self) -> CaseChoice {
+        let Choice { seed, size, .. } = self.choice;
+        CaseChoice { filter: self.filter.clone(), cases: self.amount.cases, seed, size }
     }
 
     /// Whether the result is text on standard output.
     fn is_read_by_people(&self) -> bool {
-        self.format == Format::Text && self.out.is_none()
+        self.format == ReportFormat::Text && self.out.is_none()
     }
 
     fn write(&self, report: &Report) -> anyhow::Result<String> {
         Ok(match self.format {
-            Format::Json => report.to_json()?,
-            Format::Junit => junit::to_string(report)?,
-            Format::Text => {
+            ReportFormat::Json => report.to_json()?,
+            ReportFormat::Junit => junit::to_string(report)?,
+            ReportFormat::Github => github::of_run(report),
+            ReportFormat::Text => {
                 let detail = if self.groups { text::Detail::Groups } else { text::Detail::Families };
                 let mut out = String::new();
                 let style = text::Style { detail, timing: self.timing, is_told: self.is_read_by_people() };
@@ -96,6 +134,19 @@ impl Run {
             }
         })
     }
+}
+
+/// The known failures of the adapters, each by its name and the version of its driver.
+fn known_failures(expectations: &Expectations, subjects: &[Subject]) -> Vec<ExpectedFailure> {
+    let mut known: Vec<ExpectedFailure> = vec![];
+    for Identity { name, driver, .. } in subjects.iter().map(|subject| &subject.identity) {
+        for one in expectations.of(name, driver) {
+            if !known.iter().any(|other| other.known.id == one.known.id && other.known.reason == one.known.reason) {
+                known.push(one);
+            }
+        }
+    }
+    known
 }
 
 /// Nothing ran where every case was skipped, or every verdict permits anything.

@@ -37,7 +37,7 @@ pub(crate) fn run_group(
         report.timing.generate += clock.elapsed().as_secs_f64();
         for (subject, standings) in subjects.iter_mut().zip(&mut standings) {
             for standing in standings {
-                if let Err(error) = standing.judge(subject, &chunk, options, report) {
+                if let Err(error) = standing.judge(subject, &chunk, options, members, report) {
                     report.interrupted = Some(Interrupted {
                         under_way: under_way(&chunk, subject, standing.target, &options.code, &error),
                         message: error.to_string(),
@@ -57,7 +57,7 @@ pub(crate) fn run_group(
             device.forget_pipelines();
         }
         for standing in standings {
-            standing.finish(members[0], subject, report);
+            standing.finish(members, subject, options, report);
         }
     }
     result

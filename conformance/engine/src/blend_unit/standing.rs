@@ -17,6 +17,7 @@ use lightmeter_judge::blend_unit::policy;
 use lightmeter_judge::blend_unit::rules::Rules;
 use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts, Stores as _};
 use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, explain};
+use lightmeter_judge::cases::CaseTally;
 use lightmeter_judge::formula::{by_name, units};
 use lightmeter_judge::tally::Tally;
 use lightmeter_judge::{Outcome, worse};
@@ -47,6 +48,10 @@ pub(super) struct UnitStanding {
     /// For each row, what its values say of how they are stored.
     row_stores: Vec<[StoreCounts; 4]>,
     special: Vec<SpecialUse>,
+    /// The same counted by cases, where that is asked for.
+    cases: CaseTally,
+    /// Components that fail as is expected.
+    expected: u64,
     skipped: u64,
     seconds: f64,
     seconds_warm: Option<f64>,
@@ -72,6 +77,8 @@ impl UnitStanding {
             rows: vec![],
             row_stores: vec![],
             special: vec![],
+            cases: CaseTally::default(),
+            expected: 0,
             skipped: 0,
             seconds: 0.0,
             seconds_warm: None,
@@ -83,6 +90,7 @@ impl UnitStanding {
         subject: &mut Subject,
         chunk: &UnitChunk<'_>,
         options: &Options,
+        members: &[&Member],
         report: &mut Report,
     ) -> Result<(), DeviceError> {
         let reasons: Vec<Option<&'static str>> = chunk
@@ -130,6 +138,7 @@ impl UnitStanding {
                 row.tiers.get_or_insert_default().add(&tally.tiers);
             }
             self.add(subject, chunk, k, tally, pixels, options);
+            self.count_cases(chunk, k, members, tally, options);
         }
         report.timing.judge += clock.elapsed().as_secs_f64();
         Ok(())
@@ -156,6 +165,31 @@ impl UnitStanding {
         });
         self.row_stores.push(<[StoreCounts; 4]>::default());
         self.rows.len() - 1
+    }
+
+    /// Counts the pixels of a piece as cases, and those that are expected to fail.
+    fn count_cases(
+        &mut self,
+        chunk: &UnitChunk<'_>,
+        k: usize,
+        members: &[&Member],
+        tally: &UnitTally,
+        options: &Options,
+    ) {
+        if !options.counts_cases && options.expected.is_empty() {
+            return;
+        }
+        let (member, piece) = (chunk.members[k], &chunk.pieces[k]);
+        let of = members.iter().position(|one| one.spec.id == member.spec.id).unwrap_or_default();
+        let mut failing = tally.failing.iter().peekable();
+        for (place, &case) in chunk.cases[k].iter().enumerate() {
+            let failed = failing.next_if(|(failing, _)| *failing == place).map_or(0, |(_, components)| *components);
+            let inputs = &piece.inputs[place * piece.stride..(place + 1) * piece.stride];
+            self.cases.judged((of, case), inputs, failed > 0, 0.0, (0.0, 0));
+            if !options.expected.is_empty() && self.cases.expect(&options.expected, &member.case_id(case), failed > 0) {
+                self.expected += failed;
+            }
+        }
     }
 
     fn add(
@@ -205,11 +239,15 @@ impl UnitStanding {
         self.verdicts.add(verdicts);
     }
 
-    pub(super) fn finish(self, member: &Member, subject: &Subject, report: &mut Report) {
+    pub(super) fn finish(self, members: &[&Member], subject: &Subject, options: &Options, report: &mut Report) {
         if self.rows.is_empty() {
             return;
         }
-        let totals = self.verdicts.totals;
+        let group = members[0].spec.group();
+        let mut totals = self.verdicts.totals;
+        totals.failed -= self.expected;
+        totals.expected_failures += self.expected;
+        self.cases.note(&mut report.expectations);
         let explanation = explain(&self.samples)
             .map(|(says, count, of)| format!("{count} of {of} failing pixels are as if {says}"))
             .or_else(|| (!self.samples.is_empty()).then(|| "no mistake in the catalogue explains what failed".into()));
@@ -237,7 +275,8 @@ impl UnitStanding {
             skip_reason: self.lacks.map(Into::into),
             explanation,
             problem,
-            ..Group::new(member.spec.group().into(), subject.identity.name.clone(), stage)
+            by_case: options.counts_cases.then(|| self.cases.told(members, group)),
+            ..Group::new(group.into(), subject.identity.name.clone(), stage)
         });
         report.special.extend(self.special);
         report.failures.extend(self.verdicts.reported());

@@ -3,6 +3,7 @@
 use super::verdict::{JudgedScene, worst};
 use crate::again::digest_of;
 use crate::device::DeviceError;
+use crate::expected::expect;
 use crate::options::Options;
 use crate::renderer::{AskedRenderer, AskedScene};
 use crate::run::not_asked;
@@ -81,17 +82,9 @@ impl Scene<'_> {
         }
     }
 
-    /// Notes at the expectations that have the scene whether its image failed; 1 where that was expected.
+    /// Notes at the expectations whether the scene failed; 1 where that was expected.
     fn expected(&mut self, has_failed: bool) -> u64 {
-        let mut is_expected = false;
-        for (known, expected) in self.report.expectations.iter_mut().zip(&self.options.expected) {
-            if expected.has(&self.id) {
-                is_expected = true;
-                let count = if has_failed { &mut known.failed } else { &mut known.passed };
-                *count += 1;
-            }
-        }
-        u64::from(is_expected && has_failed)
+        u64::from(expect(self.report, self.options, &self.id, has_failed))
     }
 
     /// The state of the scene's one case, where it did not pass.
@@ -135,12 +128,9 @@ impl Scene<'_> {
         let judged = scene.judged(image, &profile);
         let verdicts = &judged.verdicts;
         let (has_failed, problem) = (verdicts.totals.failed > 0, verdicts.problem());
-        let of_case = u64::from(has_failed);
-        let mut counts = CaseCounts { asked: 1, failed: of_case, passed: 1 - of_case, ..CaseCounts::default() };
-        counts.expected_failures = self.expected(has_failed);
-        if has_failed {
-            counts.not_passed = self.not_passed("failed");
-        } else {
+        let is_expected = self.expected(has_failed) > 0;
+        let mut counts = scene.counts(has_failed, is_expected);
+        if !has_failed {
             counts.error_passing = Number(verdicts.error_max);
         }
         let explanation = self

@@ -8,7 +8,9 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
 use lightmeter_document::Number;
+use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
+use lightmeter_judge::cases::ending;
 use lightmeter_judge::devices::Deviation;
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::expect::{Expectation, expect};
@@ -122,7 +124,12 @@ impl<'a> JudgedScene<'a> {
         let mut judged = self.judged(drawn.image, &drawn.profile);
         self.excuse(&mut judged, drawn, report);
         let problem = judged.verdicts.problem();
-        let totals = Totals { failed_groups: u64::from(problem.is_some()), ..judged.verdicts.totals };
+        let mut totals = Totals { failed_groups: u64::from(problem.is_some()), ..judged.verdicts.totals };
+        let has_failed = totals.failed > 0;
+        if crate::expected::expect(report, drawn.options, &self.id, has_failed) {
+            totals.expected_failures += std::mem::take(&mut totals.failed);
+        }
+        let by_case = drawn.options.counts_cases.then(|| self.counts(has_failed, totals.failed == 0));
         let mut used = self.image_use(drawn.image, expected);
         let explanation = match worst(&judged) {
             Some(worst) => Some(self.explain(drawn, named, (&judged, worst), &mut used, report)?),
@@ -135,8 +142,23 @@ impl<'a> JudgedScene<'a> {
             explanation,
             problem,
             image: Some(used),
+            by_case,
             ..self.group(drawn.subject, drawn.picture, totals)
         })
+    }
+
+    /// The image as the one case that it is.
+    pub(super) fn counts(&self, has_failed: bool, is_expected: bool) -> CaseCounts {
+        let failed = u64::from(has_failed);
+        let not_passed = BTreeMap::from([("failed".to_owned(), vec![ending("scene", &self.id)])]);
+        CaseCounts {
+            asked: 1,
+            passed: 1 - failed,
+            failed,
+            expected_failures: u64::from(has_failed && is_expected),
+            not_passed: if has_failed { not_passed } else { BTreeMap::new() },
+            ..CaseCounts::default()
+        }
     }
 
     /// Takes the misses out that a named deviation of the subject makes legal.

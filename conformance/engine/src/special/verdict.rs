@@ -2,6 +2,7 @@
 
 use super::run::{EMBEDDED, Results, evaluate};
 use crate::device::DeviceError;
+use crate::expected::expect;
 use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::filter::Filter;
@@ -112,8 +113,11 @@ impl Table {
             let mut totals =
                 Totals { cases: of_stage.len() as u64, verdicts: of_stage.len() as u64, ..Totals::default() };
             for outcome in &of_stage {
+                let id = Probe::by_name(&outcome.probe).map(Probe::id).unwrap_or_default();
+                let is_expected = expect(report, options, &id, outcome.verdict.is_failure());
                 match outcome.verdict {
                     ProbeVerdict::Kept => totals.passed += 1,
+                    ProbeVerdict::Broken | ProbeVerdict::Changed if is_expected => totals.expected_failures += 1,
                     ProbeVerdict::Broken | ProbeVerdict::Changed => totals.failed += 1,
                     ProbeVerdict::Indeterminate => totals.indeterminate += 1,
                     ProbeVerdict::Deviates => {

@@ -73,6 +73,8 @@ pub struct UnitTally {
     pub model: (u64, u64),
     /// The first pixel that departs from the model.
     pub departure: Option<usize>,
+    /// Pixels that fail, and how many of their components do.
+    pub failing: Vec<(usize, u64)>,
 }
 
 /// Whether a constant leaves the errors of a state's values to chance: a unit that holds its constant in 8 bits errs by it in
@@ -104,7 +106,7 @@ impl UnitTally {
         self.verdicts.totals.cases += 1;
         let (state, mask) = program.layer(0);
         let tells = tells_stores(state, case);
-        let mut fails = false;
+        let before = self.verdicts.totals.failed;
         for (k, value) in pixel.into_iter().enumerate() {
             let verdict = expected.judge(target, k, value);
             let excused = match verdict.outcome {
@@ -118,7 +120,6 @@ impl UnitTally {
             if verdict.outcome == Outcome::Indeterminate || excused.is_some() {
                 continue;
             }
-            fails |= verdict.outcome == Outcome::Fail;
             self.verdicts.see_error(verdict.error);
             self.verdicts.see_margin(verdict.margin, place);
             if target.is_unorm() {
@@ -128,7 +129,9 @@ impl UnitTally {
                 }
             }
         }
-        if fails {
+        let failed = self.verdicts.totals.failed - before;
+        if failed > 0 {
+            self.failing.push((place, failed));
             let simple =
                 case.sources[..case.layers].iter().chain([&case.dst, &case.constant]).map(|x| simplicity(x)).sum();
             self.verdicts.fail(place, simple, || ());

@@ -1,0 +1,74 @@
+//! What a result was held against: known failures, an earlier result, the same cases asked once more.
+
+use lightmeter_document::gate::{GateReport, KnownFailure};
+use lightmeter_document::run::Report;
+use std::fmt::{Result, Write};
+
+/// Cases that are named.
+const MOST_NAMED: usize = 24;
+
+/// What a result was held against, and what came of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Against<'a> {
+    expectations: &'a [KnownFailure],
+    unstable: &'a [String],
+    regressions: &'a [String],
+}
+
+impl<'a> Against<'a> {
+    /// Of a gate.
+    pub(crate) fn of_gate(report: &'a GateReport) -> Self {
+        let GateReport { expectations, unstable, regressions, .. } = report;
+        Self { expectations, unstable, regressions }
+    }
+
+    /// Of a run.
+    pub(crate) fn of_run(report: &'a Report) -> Self {
+        let Report { expectations, unstable_cases: unstable, regressions, .. } = report;
+        Self { expectations, unstable, regressions }
+    }
+
+    /// What is wrong, each on a line with its title.
+    pub(crate) fn lines(self) -> Vec<(String, String)> {
+        let changed = |id: &String| (id.clone(), "its answer changed when it was asked once more".to_owned());
+        let mut said: Vec<(String, String)> = self.unstable.iter().take(MOST_NAMED).map(changed).collect();
+        said.extend(self.regressions.iter().map(|what| ("baseline".to_owned(), what.clone())));
+        let passes = self.expectations.iter().filter(|one| one.passes_unexpectedly());
+        said.extend(passes.map(|one| (one.id.clone(), format!("passes, and is expected to fail: {}", one.reason))));
+        said
+    }
+}
+
+/// Writes it for people.
+///
+/// # Errors
+/// Where the writer fails.
+pub(crate) fn text(against: Against<'_>, out: &mut impl Write) -> Result {
+    listed("changed when they were asked once more", against.unstable, out)?;
+    listed("are worse than in the baseline", against.regressions, out)?;
+    for one in against.expectations.iter().filter(|one| one.failed + one.passed > 0) {
+        let said = match (one.failed, one.passes_unexpectedly()) {
+            (0, true) => "PASSES: take it out",
+            (0, false) => "passes, as it may",
+            _ => "fails as expected",
+        };
+        writeln!(
+            out,
+            "\nexpected failure `{}` {said} ({} failed, {} passed): {}",
+            one.id, one.failed, one.passed, one.reason
+        )?;
+    }
+    Ok(())
+}
+
+/// Writes a list with its number, the first of it.
+///
+/// # Errors
+/// Where the writer fails.
+pub(crate) fn listed(what: &str, all: &[String], out: &mut impl Write) -> Result {
+    if !all.is_empty() {
+        writeln!(out, "\n{} {what}:", all.len())?;
+        all.iter().take(20).try_for_each(|one| writeln!(out, "  {one}"))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,103 @@
+//! What a result is held against: known failures, and an earlier result. The same for `run` and `gate`.
+
+use clap::Args;
+use lightmeter::document::Document;
+use lightmeter::document::pack::Choice;
+use lightmeter::filter::Filter;
+use lightmeter::gate::baseline::{self, Baseline, BaselineError, Standard};
+use lightmeter::gate::expectations::Expectations;
+use lightmeter::gate::plan::{CasePlace, GatePlan};
+use std::path::{Path, PathBuf};
+
+/// What a result is held against.
+#[derive(Debug, Args)]
+pub(crate) struct Comparison {
+    /// Known failures with their reasons, a TOML file
+    #[arg(long, value_name = "FILE")]
+    expect: Option<PathBuf>,
+    /// An earlier result, than which nothing may be worse
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// By how much an error may grow against the baseline
+    #[arg(long, value_name = "FACTOR", default_value_t = 2.0, requires = "baseline", value_parser = factor)]
+    growth: f64,
+    /// Write the result to the baseline's file instead of comparing with it
+    #[arg(long, requires = "baseline")]
+    update_baseline: bool,
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    let factor: f64 = text.parse().map_err(|_| "expected a factor, such as 1.5".to_owned())?;
+    if factor >= 1.0 && factor.is_finite() { Ok(factor) } else { Err("expected a factor of 1 or more".into()) }
+}
+
+/// An earlier result, and where it lies.
+pub(crate) struct Earlier {
+    pub(crate) path: PathBuf,
+    pub(crate) baseline: Baseline,
+    growth: f64,
+}
+
+impl Earlier {
+    /// What is worse now.
+    pub(crate) fn compare(&self, now: &Standard, is_shard: bool) -> Result<Vec<String>, BaselineError> {
+        self.baseline.compare(now, self.growth, is_shard, &self.path)
+    }
+}
+
+impl Comparison {
+    /// The known failures.
+    pub(crate) fn expectations(&self) -> anyhow::Result<Expectations> {
+        Ok(self.expect.as_deref().map(Expectations::read).transpose()?.unwrap_or_default())
+    }
+
+    /// The earlier result, read by `read`; `None` where there is none to compare with.
+    pub(crate) fn earlier(
+        &self,
+        read: impl Fn(&Path) -> Result<Baseline, BaselineError>,
+    ) -> Result<Option<Earlier>, BaselineError> {
+        let path = self.baseline.as_ref().filter(|_| !self.update_baseline);
+        let earlier = |path: &PathBuf| Ok(Earlier { path: path.clone(), baseline: read(path)?, growth: self.growth });
+        path.map(earlier).transpose()
+    }
+
+    /// Writes the result as the baseline, where that is asked for.
+    pub(crate) fn update<T: Document>(&self, report: &T) -> Result<(), BaselineError>
+    where
+        Standard: for<'a> From<&'a T>,
+    {
+        let Some(path) = self.baseline.as_ref().filter(|_| self.update_baseline) else { return Ok(()) };
+        match baseline::update(report, path) {
+            Ok(()) => eprintln!("the baseline {} is this result now", path.display()),
+            // The result itself says how the command ends.
+            Err(error @ BaselineError::Unfit { .. }) => eprintln!("{error}"),
+            Err(error) => return Err(error),
+        }
+        Ok(())
+    }
+}
+
+/// An expectation of what no renderer is ever asked is a mistake in its file.
+pub(crate) fn matches_something(expectations: &Expectations) -> anyhow::Result<()> {
+    let all = GatePlan::new(Choice { filter: vec![], cases: 1, seed: 1, size: None })?;
+    for id in expectations.ids() {
+        let filter = Filter::new(&[id])?;
+        // Any number of a random case may be meant.
+        let path = id.rsplit_once('/').filter(|(_, number)| number.bytes().all(|byte| byte.is_ascii_digit()));
+        let is_random =
+            |member: &str| path.is_some_and(|(path, _)| path.strip_suffix("/random").unwrap_or(path) == member);
+        let has_formula = (0..all.formulas.len()).any(|formula| {
+            let member = &all.member(formula).spec.id;
+            filter.selects(member) || filter.reaches_below(member) || is_random(member) || {
+                let cases = 0..all.formulas[formula].count();
+                let is_below = id.starts_with(member.as_str()) || id.starts_with(all.member(formula).spec.group());
+                is_below && cases.into_iter().any(|case| filter.selects(&all.id(CasePlace::Case { formula, case })))
+            }
+        });
+        let has_scene = || (0..all.scenes.len()).any(|scene| filter.selects(&all.id(CasePlace::Scene(scene))));
+        if !has_formula && !has_scene() {
+            anyhow::bail!("the expectation `{id}` matches no case of any formula and no scene: see `lightmeter list`");
+        }
+    }
+    Ok(())
+}
