@@ -5,13 +5,19 @@
 //! ```text
 //! lightmeter gate fog --exec 'target/debug/examples/renderer'
 //! lightmeter gate fog --exec 'target/debug/examples/renderer crash-at=fog/exp/random/000017'
+//! lightmeter gate blend --exec 'target/debug/examples/renderer targets=all blends-by=truncate'
 //! ```
 
+use lightmeter::blend_unit::embedded;
+use lightmeter::blend_unit::rules::{FAULTS, Rules};
+use lightmeter::cases::Kind;
+use lightmeter::cases::blend::Program;
 use lightmeter::document::Number;
 use lightmeter::image::file::StoredImage;
 use lightmeter::scene::load;
-use lightmeter::select::{Member, catalogue};
+use lightmeter::select::{Member, alias_members, catalogue};
 use lightmeter_reference::render::render;
+use lightmeter_scene::target::TargetFormat;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io::{BufRead as _, Write};
@@ -35,7 +41,7 @@ impl Faults {
 
 fn main() -> anyhow::Result<()> {
     let faults = Faults::read();
-    let catalogue = catalogue();
+    let catalogue: Vec<Member> = catalogue().into_iter().chain(alias_members()).collect();
     let by_id = catalogue.iter().map(|member| (member.spec.id.as_str(), member)).collect();
     let mut renderer = Renderer { faults, by_id, folder: PathBuf::new(), answered: 0 };
     let mut out = std::io::BufWriter::with_capacity(1 << 20, std::io::stdout().lock());
@@ -81,6 +87,7 @@ impl Renderer<'_> {
             "version": "1.0",
             "formulas": ["**"],
             "scenes": ["**"],
+            "targets": if self.faults.0.contains_key("targets") { TargetFormat::ALL.map(TargetFormat::name).to_vec() } else { vec![] },
         })
     }
 
@@ -171,8 +178,12 @@ fn evaluate(request: &Value, by_id: &HashMap<&str, &Member>, faults: &Faults) ->
         #[expect(clippy::cast_possible_truncation, reason = "inputs are f32")]
         row.extend(numbers.iter().map(|number| number.as_f64().unwrap_or(f64::NAN) as f32));
     }
+    let target = request["target"].as_str().and_then(TargetFormat::by_name);
     let mut values = vec![0.0; member.spec.output_len()];
-    member.formula.embedded(&row, &mut values);
+    match (target, member.spec.kind) {
+        (Some(target), Kind::Blend(program)) => values = blended(program, target, &row, faults),
+        _ => member.formula.embedded(&row, &mut values),
+    }
     let name = id.as_str().unwrap_or_default();
     if faults.has("nan-at", name) {
         values[0] = f32::NAN;
@@ -184,6 +195,15 @@ fn evaluate(request: &Value, by_id: &HashMap<&str, &Member>, faults: &Faults) ->
         values.clear();
     }
     json!({ "id": id, "value": values.into_iter().map(|x| Number(x.into())).collect::<Vec<_>>() })
+}
+
+/// What a blend state leaves on a target.
+fn blended(program: Program, target: TargetFormat, row: &[f32], faults: &Faults) -> Vec<f32> {
+    let fault = faults.0.get("blends-by").and_then(|name| FAULTS.iter().find(|fault| fault.name == name));
+    let rules = fault.map_or(Rules::RIGHT, |fault| fault.rules);
+    #[expect(clippy::cast_possible_truncation, reason = "a pixel's numbers are steps, or those of a float format")]
+    let narrow = |x: f64| x as f32;
+    embedded::blend(program, target, &program.case(row), &rules).map(narrow).to_vec()
 }
 
 /// A scene's image. A renderer in another language would read the scene's file; this one knows it.

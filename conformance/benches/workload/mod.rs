@@ -235,7 +235,8 @@ fn blend_unit(member: &Member, target: TargetFormat, cases: &Rc<[UnitCase]>) -> 
     let (blended, judged) = (Rc::clone(cases), Rc::clone(cases));
     let verdict = move || {
         let mut tally = UnitTally::default();
-        let pixels = judged.iter().zip(&pixels).map(|(case, pixel)| (black_box(case), *pixel));
+        let pixels = judged.iter().zip(&pixels).enumerate();
+        let pixels = pixels.map(|(place, (case, pixel))| (place, black_box(case), *pixel));
         tally.pixels(drawn, &Known::default(), pixels);
         black_box(tally);
     };

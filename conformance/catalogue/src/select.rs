@@ -218,6 +218,12 @@ pub fn catalogue_of(samples: &Samples) -> Vec<Member> {
     cases::all(samples).into_iter().map(|formula| Member { spec: formula.spec(), formula }).collect()
 }
 
+/// The blend states that are judged under another's name, under their own.
+#[must_use]
+pub fn alias_members() -> Vec<Member> {
+    cases::blend::alias_formulas().into_iter().map(|formula| Member { spec: formula.spec(), formula }).collect()
+}
+
 /// A state with another one for alpha, whether the catalogue has it or not.
 #[must_use]
 pub fn separate_member(state: Separate) -> Member {

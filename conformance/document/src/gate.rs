@@ -115,6 +115,9 @@ pub struct GateTotals {
 pub struct GateGroup {
     /// Its id.
     pub id: String,
+    /// The format that was blended on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<Word>,
     /// Cases that were asked.
     pub asked: u64,
     /// Failed.
@@ -156,6 +159,12 @@ pub struct GateGroup {
 }
 
 impl GateGroup {
+    /// Its id, and the target that was blended on.
+    #[must_use]
+    pub fn name(&self) -> String {
+        self.target.as_ref().map_or_else(|| self.id.clone(), |target| format!("{} on {target}", self.id))
+    }
+
     /// Whether something fails that is not expected to.
     #[must_use]
     pub const fn is_failed(&self) -> bool {
@@ -169,6 +178,7 @@ impl GateGroup {
     pub fn of(group: &Group, counts: &CaseCounts) -> Self {
         Self {
             id: group.id.clone(),
+            target: group.target.clone().filter(|_| group.image.is_none()),
             asked: counts.asked,
             failed: counts.failed,
             broken: counts.broken,
@@ -198,6 +208,7 @@ impl GateFailure {
         let answer = failure.answer.as_ref()?;
         Some(Self {
             id: failure.id.clone(),
+            target: failure.target.clone().filter(|_| !failure.id.starts_with("scene/")),
             inputs: answer.inputs.clone(),
             named: failure.inputs.clone(),
             units: failure.units.clone(),
@@ -316,6 +327,9 @@ impl Problems {
 pub struct GateFailure {
     /// The case.
     pub id: String,
+    /// The format that was blended on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<Word>,
     /// Its inputs, row by row of the formula's description.
     pub inputs: Vec<Number>,
     /// The same by their names.

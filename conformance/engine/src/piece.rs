@@ -2,7 +2,9 @@
 
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_judge::blend_unit::pixel::Units;
+use lightmeter_judge::cases::Unanswered;
 use lightmeter_scene::blend::Route;
+use std::collections::BTreeMap;
 
 /// A state by one route, with rows of inputs.
 #[derive(Clone, Debug)]
@@ -32,9 +34,12 @@ impl Piece {
 }
 
 /// The pixels of each piece, and how long they took: at first, and again with every pipeline compiled.
+#[derive(Default)]
 pub struct Pixels {
     /// Pixels by piece and case.
     pub pieces: Vec<Vec<Units>>,
+    /// Cases without a pixel, by piece and case.
+    pub unanswered: BTreeMap<(usize, usize), Unanswered>,
     /// Seconds of the first drawing.
     pub seconds: f64,
     /// Seconds of a second one, where it was asked for.

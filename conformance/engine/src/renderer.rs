@@ -3,10 +3,14 @@
 
 use crate::device::DeviceError;
 use crate::rows::Rows;
+use lightmeter_catalogue::cases::blend::Program;
+use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::by_case::RendererUse;
+use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
+use lightmeter_scene::target::TargetFormat;
 
 /// A scene that a renderer is asked to draw.
 #[derive(Clone, Copy)]
@@ -17,6 +21,34 @@ pub struct AskedScene<'a> {
     pub title: &'a str,
     /// All of it.
     pub frame: &'a Frame,
+}
+
+/// Cases of a blend state on a target, of which a renderer is asked what is left there.
+#[derive(Clone, Copy)]
+pub struct AskedPixels<'a> {
+    /// The state.
+    pub member: &'a Member,
+    /// How it is drawn.
+    pub program: Program,
+    /// On what.
+    pub target: TargetFormat,
+    /// The cases.
+    pub cases: &'a [CaseRef],
+    /// Their inputs, row after row.
+    pub inputs: &'a [f32],
+}
+
+impl AskedPixels<'_> {
+    /// The id of a case, which no other target's case has.
+    #[must_use]
+    pub fn id(&self, case: CaseRef) -> String {
+        format!("{}@{}", self.member.case_id(case), self.target.name())
+    }
+
+    /// Each case with its inputs.
+    pub fn rows(&self) -> impl Iterator<Item = (CaseRef, &[f32])> {
+        self.cases.iter().copied().zip(self.inputs.chunks_exact(self.member.spec.input_len()))
+    }
 }
 
 /// A renderer under test.
@@ -34,6 +66,12 @@ pub trait AskedRenderer: Send + Sync {
 
     /// What it gives to cases of formulas. `advanced` hears of each number of cases that are done.
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError>;
+
+    /// The formats of targets that it blends on as drivers do; none where it is asked for blending as arithmetic alone.
+    fn targets(&self) -> Vec<TargetFormat>;
+
+    /// The pixels that it leaves on a target: in steps of 8 bits as they are stored, in numbers of float formats.
+    fn pixels(&mut self, asked: &AskedPixels<'_>) -> Result<Vec<Result<Units, Unanswered>>, DeviceError>;
 
     /// The image that it draws of a scene.
     fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError>;

@@ -97,6 +97,8 @@ pub(crate) enum Turn<'a> {
     Table(&'a Table),
     /// The formulas of a group.
     Formulas(&'a [Selected]),
+    /// Blend states of a group, of which a renderer is asked on targets.
+    Blended(&'a [Selected]),
     Scene(&'a Chosen),
 }
 
@@ -106,7 +108,7 @@ impl Turn<'_> {
         match self {
             Self::Table(table) => table.id(),
             Self::Formulas(group) if is_by_formula => catalogue[group[0].member].spec.id.clone(),
-            Self::Formulas(group) => catalogue[group[0].member].spec.group().to_owned(),
+            Self::Formulas(group) | Self::Blended(group) => catalogue[group[0].member].spec.group().to_owned(),
             Self::Scene(chosen) => scene::select::scene_id(chosen.place),
         }
     }
@@ -117,7 +119,7 @@ impl Turn<'_> {
             Self::Table(_) => 0,
             Self::Scene(_) => 1,
             Self::Formulas(group) if matches!(catalogue[group[0].member].spec.kind, Kind::Blend(_)) => 3,
-            Self::Formulas(_) => 2,
+            Self::Formulas(_) | Self::Blended(_) => 2,
         }
     }
 }
@@ -127,7 +129,8 @@ pub(crate) fn turns(selection: &Selection) -> Vec<Turn<'_>> {
     // First: Mesa 22.3's lavapipe no longer flushes subnormals in fragments once it has drawn certain scenes.
     let tables = selection.tables.iter().map(Turn::Table);
     let formulas = selection.groups().map(Turn::Formulas);
-    tables.chain(formulas).chain(selection.scenes.iter().map(Turn::Scene)).collect()
+    let blended = selection.blended_groups().map(Turn::Blended);
+    tables.chain(formulas).chain(blended).chain(selection.scenes.iter().map(Turn::Scene)).collect()
 }
 
 /// Judges one after the other, until a device fails or the run is stopped. In the report all stands in the order of reports.
@@ -157,6 +160,11 @@ fn judge_in_turn(
             Turn::Formulas(group) => {
                 let compiled = compiled.remove(&id);
                 judge_group(catalogue, group, subjects, (options, compiled), report, observer)
+            }
+            Turn::Blended(group) => {
+                let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
+                blend_unit::run::run_group(&members, group, subjects, options, report, observer)
+                    .map(|()| Noted::Nothing)
             }
             Turn::Scene(chosen) => {
                 let loaded = scene_of(chosen, selection);
@@ -192,9 +200,11 @@ pub(crate) fn scene_of(chosen: &Chosen, selection: &Selection) -> Loaded {
 /// Cases that are to be judged, for the progress: those of a formula once for its stages that take rows, and once for each
 /// target of each blend unit; results of tables and pixels of scenes on each subject.
 fn work(selection: &Selection, subjects: &[Subject], options: &Options) -> u64 {
-    if subjects.iter().any(|subject| subject.asked().is_some()) {
-        let formulas: u64 = selection.formulas.iter().map(Selected::count).sum();
-        return options.runs * (formulas + selection.scenes.len() as u64);
+    if let Some(renderer) = subjects.iter().find_map(Subject::asked) {
+        let count = |all: &[Selected]| all.iter().map(Selected::count).sum::<u64>();
+        let targets = options.targets.iter().filter(|target| renderer.targets().contains(target)).count() as u64;
+        let pixels = targets * count(&selection.blended);
+        return options.runs * (count(&selection.formulas) + selection.scenes.len() as u64) + pixels;
     }
     let of_formula = |chosen: &Selected| {
         let member = &selection.catalogue[chosen.member];

@@ -7,7 +7,7 @@ use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::scene::select::{Chosen, SIZE_AMONG_ALL};
-use lightmeter_catalogue::select::{CaseRef, Member, Selected, catalogue_of, select};
+use lightmeter_catalogue::select::{CaseRef, Member, Selected, alias_members, catalogue_of, select};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -31,6 +31,8 @@ pub struct Selection {
     pub size: Option<u32>,
     /// Whether each formula is a group by itself, as it is for renderers that are asked case by case.
     pub is_by_formula: bool,
+    /// Blend states that a renderer is asked for on targets, each under all of its names.
+    pub blended: Vec<Selected>,
 }
 
 /// A part of a selection.
@@ -77,17 +79,31 @@ impl Selection {
         let scenes = lightmeter_catalogue::scene::select::select(&options.filter, options.shard, size);
         let has_cases = !(formulas.is_empty() && tables.is_empty() && scenes.is_empty());
         let deviations = if has_cases { NamedDeviation::all() } else { NamedDeviation::named(&options.filter) };
-        Self { catalogue, formulas, tables, scenes, deviations, size, is_by_formula: false }
+        Self { catalogue, formulas, tables, scenes, deviations, size, is_by_formula: false, blended: vec![] }
     }
 
     /// What the options select for renderers that are asked case by case: formulas and scenes. Nothing is promised of NaN and infinity
     /// in blending, of which drivers are asked what they do; renderers are not.
     #[must_use]
     pub fn of_renderer(options: &Options) -> Self {
-        let catalogue: Arc<[Member]> = lightmeter_catalogue::select::catalogue().into();
+        let mut catalogue = lightmeter_catalogue::select::catalogue();
+        let canonical = catalogue.len();
+        catalogue.extend(alias_members());
+        let catalogue: Arc<[Member]> = catalogue.into();
         let is_promised = |chosen: &Selected| !matches!(catalogue[chosen.member].spec.kind, Kind::Blend(program) if program.is_special());
-        let mut formulas = select(&catalogue, &options.filter, options.cases, options.shard);
+        let mut formulas = select(&catalogue[..canonical], &options.filter, options.cases, options.shard);
         formulas.retain(is_promised);
+        let mut blended = select(&catalogue, &options.filter, options.cases, options.shard);
+        let is_blended = |chosen: &Selected| matches!(catalogue[chosen.member].spec.kind, Kind::Blend(_));
+        blended.retain(|chosen| is_blended(chosen) && is_promised(chosen));
+        // An alias belongs to the group of its equation.
+        let group = |chosen: &Selected| catalogue[chosen.member].spec.group();
+        let mut order: HashMap<&str, usize> = HashMap::new();
+        for chosen in &blended {
+            let next = order.len();
+            order.entry(group(chosen)).or_insert(next);
+        }
+        blended.sort_by_key(|chosen| order[group(chosen)]);
         let scenes = lightmeter_catalogue::scene::select::select(&options.filter, options.shard, options.size);
         Self {
             catalogue,
@@ -97,7 +113,14 @@ impl Selection {
             deviations: vec![],
             size: options.size,
             is_by_formula: true,
+            blended,
         }
+    }
+
+    /// The blend states that a renderer is asked for on targets, by groups.
+    pub fn blended_groups(&self) -> impl Iterator<Item = &[Selected]> {
+        let id = |chosen: &Selected| self.catalogue[chosen.member].spec.group();
+        self.blended.chunk_by(move |a, b| id(a) == id(b))
     }
 
     /// The formulas, by groups that are judged together.
@@ -119,7 +142,9 @@ impl Selection {
     /// deviation. Together they judge what the whole does, each case once.
     #[must_use]
     pub fn parts(&self) -> Vec<SelectionPart> {
-        let nothing = Self { formulas: vec![], tables: vec![], scenes: vec![], deviations: vec![], ..self.clone() };
+        let mut nothing = self.clone();
+        (nothing.formulas, nothing.tables, nothing.scenes) = (vec![], vec![], vec![]);
+        (nothing.deviations, nothing.blended) = (vec![], vec![]);
         let mut parts = Parts { nothing, parts: vec![], places: HashMap::new() };
         for deviation in &self.deviations {
             parts.of(deviation.id(), vec![deviation.id()]).deviations.push(*deviation);

@@ -35,6 +35,8 @@ pub struct Hello {
     pub effects: Option<Vec<String>>,
     /// The accuracy rules that it is held to.
     pub profile: Option<String>,
+    /// Formats of targets that it blends on, step for step; none where it is asked for blending as arithmetic alone.
+    pub targets: Vec<String>,
 }
 
 impl Hello {
@@ -275,7 +277,7 @@ fn hello(text: &str) -> Result<Line<'_>, String> {
         return Err(format!("its hello is of `{}`; expected `{PROTOCOL}`", clipped(&protocol)));
     }
     for (name, value) in &rest {
-        let is_list = matches!(name.as_str(), "formulas" | "scenes" | "formats" | "effects");
+        let is_list = matches!(name.as_str(), "formulas" | "scenes" | "formats" | "effects" | "targets");
         if is_list && !value.is_array() && !value.is_null() {
             return Err(format!("its hello: `{name}` is no list; expected such as [\"fog/*\", \"lighting/blinn\"]"));
         }

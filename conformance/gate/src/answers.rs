@@ -1,22 +1,24 @@
 //! Answers as files: the first of each case, and that further files answer the same.
 
 use super::answer::{self, Hello, Line, Unread, clipped};
-use super::given::{Declared, Given, given};
+use super::error::ProcessError;
+use super::given::{Asks, Declared, Given, given};
 use super::pack::PackError;
 use super::picture;
 use super::plan::{CasePlace, GatePlan};
 use super::problems::note;
-use lightmeter_catalogue::filter::FilterError;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::event::Stop;
 use lightmeter_document::gate::Problems;
 use lightmeter_document::run::Identity;
 use lightmeter_engine::device::DeviceError;
-use lightmeter_engine::renderer::{AskedRenderer, AskedScene};
+use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
 use lightmeter_engine::rows::Rows;
+use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
+use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
 use std::collections::{HashMap, VecDeque};
 use std::fs::File;
@@ -213,9 +215,9 @@ pub enum FilesError {
     /// A file cannot be read.
     #[error("{0}")]
     File(#[from] PackError),
-    /// A glob of the first line cannot be read.
-    #[error("the hello of the answers: {0}")]
-    Hello(#[from] FilterError),
+    /// What the first line declares cannot be read.
+    #[error("{0}")]
+    Hello(#[from] ProcessError),
 }
 
 impl Read {
@@ -230,14 +232,16 @@ impl Read {
         let Some(place) = plan.find(id) else {
             return Self::Problem("unknown", format!("no case `{}` was asked for", clipped(id)));
         };
-        let (spec, group) = match place {
-            CasePlace::Case { formula, .. } => (Some(&plan.member(formula).spec), plan.member(formula).spec.id.clone()),
-            CasePlace::Scene(_) => (None, plan.id(place)),
+        let (asks, group) = match place {
+            CasePlace::Case { formula, .. } => {
+                (Asks::Outputs(&plan.member(formula).spec), plan.member(formula).spec.id.clone())
+            }
+            CasePlace::Scene(_) => (Asks::Image, plan.id(place)),
         };
         if declared.lacks(&group).is_some() {
             return Self::Problem("unknown", format!("`{id}` is not among what the renderer declares"));
         }
-        Self::Answer(place, given(line, spec))
+        Self::Answer(place, given(line, asks))
     }
 }
 
@@ -299,6 +303,15 @@ impl AskedRenderer for FileRenderer {
         }
         advanced(rows.of.len() as u64);
         Ok(answers)
+    }
+
+    fn targets(&self) -> Vec<TargetFormat> {
+        // A pack has no cases on targets.
+        vec![]
+    }
+
+    fn pixels(&mut self, asked: &AskedPixels<'_>) -> Result<Vec<Result<Units, Unanswered>>, DeviceError> {
+        Ok(vec![Err(Unanswered::Missing); asked.cases.len()])
     }
 
     fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError> {

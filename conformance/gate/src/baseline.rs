@@ -45,11 +45,7 @@ struct ComparedGroup {
 
 impl From<&GateReport> for Standard {
     fn from(report: &GateReport) -> Self {
-        let group = |group: &GateGroup| ComparedGroup {
-            name: group.id.clone(),
-            counts: group.clone(),
-            is_by_case: true,
-        };
+        let group = |group: &GateGroup| ComparedGroup { name: group.name(), counts: group.clone(), is_by_case: true };
         let why = [
             (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
             (report.signal.is_some(), "a signal ended the gate"),
@@ -168,7 +164,13 @@ impl Baseline {
     ///
     /// # Errors
     /// Where the cases are others.
-    pub fn compare(&self, now: &Standard, factor: f64, is_shard: bool, path: &Path) -> Result<Vec<String>, BaselineError> {
+    pub fn compare(
+        &self,
+        now: &Standard,
+        factor: f64,
+        is_shard: bool,
+        path: &Path,
+    ) -> Result<Vec<String>, BaselineError> {
         let asked = now.groups.iter().map(|group| (group.name.as_str(), group.counts.asked));
         self.is_of(&now.choice, asked, Some(&now.profile), path)?;
         let is_part = is_shard || !self.has_filter_of(&now.choice);
@@ -303,8 +305,7 @@ impl Comparison {
             cases.filter(|case| !known.contains(case)).filter(|case| what != "failed" || !is_expected(case)).collect();
         let named = new.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
         let more = if new.len() > MOST_NAMED { ", …" } else { "" };
-        (!new.is_empty())
-            .then(|| format!("{name}: {} {what} and did not before: {named}{more}", cases_of(new.len())))
+        (!new.is_empty()).then(|| format!("{name}: {} {what} and did not before: {named}{more}", cases_of(new.len())))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Why a renderer could not be asked.
 
 use super::pack;
+use lightmeter_scene::target::TargetFormat;
 use std::path::PathBuf;
 
 /// Why a renderer could not be asked at all.
@@ -20,6 +21,9 @@ pub enum ProcessError {
     /// It asks for accuracy rules that are unknown.
     #[error("the renderer's hello: no profile `{0}`; expected {profiles}", profiles = lightmeter_arithmetic::profile::PROFILES.map(|profile| profile.name).join(", "))]
     Profile(String),
+    /// It declares a target that is unknown.
+    #[error("the renderer's hello: no target `{0}`; expected {formats}", formats = TargetFormat::ALL.map(TargetFormat::name).join(", "))]
+    Target(String),
     /// A scene is refused, which a test rules out.
     #[error("{0}")]
     Scene(#[from] lightmeter_catalogue::scene::SceneError),

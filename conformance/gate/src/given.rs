@@ -1,13 +1,16 @@
 //! What a renderer gave to a question, read from a line.
 
 use super::answer::{Hello, Line, clipped};
+use super::error::ProcessError;
 use lightmeter_catalogue::cases::Spec;
-use lightmeter_catalogue::filter::{Filter, FilterError};
+use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::gate::RendererIdentity;
 use lightmeter_document::run::Identity;
+use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::Unanswered;
 use lightmeter_scene::frame::Frame;
+use lightmeter_scene::target::TargetFormat;
 
 /// What was given to a question.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,21 +23,55 @@ pub(super) enum Given {
     Nothing(Unanswered),
 }
 
-/// What a line gives to a case of a formula, or to a scene, which has no description here.
-pub(super) fn given(line: Line<'_>, spec: Option<&Spec>) -> Given {
+/// What a question asks for.
+#[derive(Clone, Copy)]
+pub(super) enum Asks<'a> {
+    /// The outputs of a formula.
+    Outputs(&'a Spec),
+    /// What a blend state leaves on a target: red, green, blue and alpha.
+    Pixel(&'a Spec),
+    /// The image of a scene.
+    Image,
+}
+
+impl<'a> Asks<'a> {
+    /// The formula; `None` of a scene.
+    pub(super) const fn spec(self) -> Option<&'a Spec> {
+        match self {
+            Self::Outputs(spec) | Self::Pixel(spec) => Some(spec),
+            Self::Image => None,
+        }
+    }
+}
+
+/// What a line gives to a question.
+pub(super) fn given(line: Line<'_>, asks: Asks<'_>) -> Given {
     let unjudged = |message: String| Given::Nothing(Unanswered::Unjudged(message));
-    match (line, spec) {
+    let (outputs, names) = match asks {
+        Asks::Outputs(spec) => (spec.output_len(), spec.outputs.iter().map(|output| output.name).collect::<Vec<_>>()),
+        Asks::Pixel(_) => (4, vec!["red", "green", "blue", "alpha"]),
+        Asks::Image => (0, vec![]),
+    };
+    match (line, asks) {
         (Line::Skip(_, reason), _) => Given::Nothing(Unanswered::Skipped(clipped(&reason))),
         (Line::Error(_, reason), _) => unjudged(clipped(&reason)),
-        (Line::Image(_, file), None) => Given::Image(file.into_owned()),
-        (Line::Value(_, values), Some(spec)) if values.len() == spec.output_len() => Given::Values(values),
-        (Line::Value(_, values), Some(spec)) => {
-            let names = spec.outputs.iter().map(|output| output.name).collect::<Vec<_>>().join(", ");
-            unjudged(format!("{} numbers; expected {}: {names}", values.len(), spec.output_len()))
+        (Line::Image(_, file), Asks::Image) => Given::Image(file.into_owned()),
+        (Line::Value(..), Asks::Image) => unjudged("a scene is answered by `image`".into()),
+        (Line::Value(_, values), _) if values.len() == outputs => Given::Values(values),
+        (Line::Value(_, values), _) => {
+            unjudged(format!("{} numbers; expected {outputs}: {}", values.len(), names.join(", ")))
         }
-        (Line::Value(..), None) => unjudged("a scene is answered by `image`".into()),
-        (_, Some(_)) => unjudged("a formula is answered by `value`".into()),
-        (Line::Hello(_), None) => unjudged("a hello is no answer".into()),
+        (Line::Image(..), _) => unjudged("a formula is answered by `value`".into()),
+        (Line::Hello(_), _) => unjudged("a hello is no answer".into()),
+    }
+}
+
+/// The pixel that was given, in the target's units.
+pub(super) fn pixel(given: Given) -> Result<Units, Unanswered> {
+    match given {
+        Given::Values(values) => Ok(std::array::from_fn(|k| values.get(k).copied().map_or(f64::NAN, f64::from))),
+        Given::Nothing(why) => Err(why),
+        Given::Image(_) => unreachable!("only a scene is answered by an image"),
     }
 }
 
@@ -43,13 +80,16 @@ pub(super) struct Declared {
     pub(super) hello: Hello,
     formulas: Option<Filter>,
     scenes: Option<Filter>,
+    pub(super) targets: Vec<TargetFormat>,
 }
 
 impl Declared {
     /// Reads what a hello declares.
-    pub(super) fn new(hello: Hello) -> Result<Self, FilterError> {
+    pub(super) fn new(hello: Hello) -> Result<Self, ProcessError> {
         let [formulas, scenes] = hello.filters()?;
-        Ok(Self { hello, formulas, scenes })
+        let format = |name: &String| TargetFormat::by_name(name).ok_or_else(|| ProcessError::Target(name.clone()));
+        let targets = hello.targets.iter().map(format).collect::<Result<_, _>>()?;
+        Ok(Self { hello, formulas, scenes, targets })
     }
 
     /// Why a formula or a scene is not asked; `None` where it is.

@@ -3,11 +3,13 @@
 use super::frame;
 use super::picture::within;
 use super::plan::{CasePlace, GatePlan};
+use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{GENERATOR_VERSION, Spec, ValueShape};
 use lightmeter_document::Document as _;
 use lightmeter_document::Number;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
 use lightmeter_judge::image::file::{StoredImage, whole};
+use lightmeter_scene::blend::{Separate, State};
 use lightmeter_scene::frame::{Frame, Mesh, Texture};
 use lightmeter_scene::target::TargetFormat;
 use serde_json::{Map, Value, json};
@@ -84,6 +86,26 @@ pub fn case(spec: &Spec, id: &str, row: &[f32]) -> Value {
         inputs.insert(input.name.to_owned(), value);
     }
     json!({ "id": id, "formula": spec.id, "inputs": inputs })
+}
+
+/// A case of a blend state as a renderer is asked it on a target: with the states that it draws by, one for each of its layers in turn.
+#[must_use]
+pub fn on_target(spec: &Spec, id: &str, row: &[f32], target: TargetFormat, program: Program) -> Value {
+    let layers = if let Program::Layers(modes) = program { modes.len() } else { 1 };
+    let state = |state: State| {
+        let State { equation, src, dst } = state;
+        json!({ "equation": equation.name(), "src": src.name(), "dst": dst.name() })
+    };
+    let layer = |number: usize| {
+        let (Separate { color, alpha }, mask) = program.layer(number);
+        let written: Vec<&str> =
+            ["r", "g", "b", "a"].into_iter().zip(mask.0).filter(|(_, is)| *is).map(|(k, _)| k).collect();
+        json!({ "color": state(color), "alpha": state(alpha), "mask": written.concat() })
+    };
+    let mut asked = case(spec, id, row);
+    asked["target"] = json!(target.name());
+    asked["blend"] = (0..layers).map(layer).collect();
+    asked
 }
 
 /// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go.

@@ -1,17 +1,21 @@
 //! A renderer in this process.
 
 use super::answer::{Hello, Line, clipped};
-use super::given::{Declared, Given, given};
+use super::error::ProcessError;
+use super::given::{Asks, Declared, Given, given};
 use super::picture;
 use lightmeter_catalogue::cases::Spec;
-use lightmeter_catalogue::filter::FilterError;
+use lightmeter_catalogue::cases::blend::{Program, UnitCase};
+use lightmeter_catalogue::select::CaseRef;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_engine::device::DeviceError;
-use lightmeter_engine::renderer::{AskedRenderer, AskedScene};
+use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
 use lightmeter_engine::rows::Rows;
+use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
+use lightmeter_scene::target::TargetFormat;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -26,6 +30,16 @@ pub trait Renderer {
     /// # Errors
     /// Why it does not evaluate this.
     fn evaluate(&mut self, spec: &Spec, inputs: &[f32]) -> Result<Vec<f32>, String>;
+
+    /// What a blend state leaves on a target that its hello declares: red, green, blue and alpha, in steps of 8 bits as they are stored or
+    /// in numbers of a float format.
+    ///
+    /// # Errors
+    /// Why it does not blend so.
+    fn blend(&mut self, program: Program, target: TargetFormat, case: &UnitCase) -> Result<[f32; 4], String> {
+        let _ = (program, case);
+        Err(format!("no blending on {}", target.name()))
+    }
 
     /// Draws a frame to a file in the folder: its name, which ends in .png, .exr or .npy.
     ///
@@ -49,7 +63,7 @@ impl<R: Renderer + Send> InProcess<R> {
     ///
     /// # Errors
     /// Where a glob of that cannot be read.
-    pub fn new(renderer: R, folder: PathBuf) -> Result<Self, FilterError> {
+    pub fn new(renderer: R, folder: PathBuf) -> Result<Self, ProcessError> {
         let declared = Declared::new(renderer.hello())?;
         Ok(Self { renderer: Mutex::new(renderer), declared, folder })
     }
@@ -81,7 +95,7 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
                 Ok(values) => Line::Value(Cow::Borrowed(""), values),
                 Err(reason) => Line::Skip(Cow::Borrowed(""), Cow::Owned(reason)),
             };
-            match given(line, Some(spec)) {
+            match given(line, Asks::Outputs(spec)) {
                 Given::Values(values) => words.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits()),
                 Given::Nothing(why) => drop(answers.unanswered.insert(place, why)),
                 Given::Image(_) => unreachable!("only a scene is answered by an image"),
@@ -89,6 +103,18 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
         }
         advanced(rows.of.len() as u64);
         Ok(answers)
+    }
+
+    fn targets(&self) -> Vec<TargetFormat> {
+        self.declared.targets.clone()
+    }
+
+    fn pixels(&mut self, asked: &AskedPixels<'_>) -> Result<Vec<Result<Units, Unanswered>>, DeviceError> {
+        let blended = |(_, inputs): (CaseRef, &[f32])| {
+            let pixel = self.renderer().blend(asked.program, asked.target, &asked.program.case(inputs));
+            pixel.map(|pixel| pixel.map(f64::from)).map_err(|reason| Unanswered::Skipped(clipped(&reason)))
+        };
+        Ok(asked.rows().map(blended).collect())
     }
 
     fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError> {

@@ -103,7 +103,7 @@ fn short(x: f64) -> String {
 /// # Errors
 /// Where the writer fails.
 pub fn told(group: &GateGroup, failures: &[GateFailure], out: &mut impl Write) -> Result {
-    writeln!(out, "\n✗ {}: {} of {} fail", group.id, group.failed, cases(group.asked))?;
+    writeln!(out, "\n✗ {}: {} of {} fail", group.name(), group.failed, cases(group.asked))?;
     if group.missing > 0 {
         let was = if group.missing == 1 { "was" } else { "were" };
         writeln!(out, "  {} {was} never answered: {}", cases(group.missing), missing(group))?;
@@ -116,6 +116,9 @@ pub fn told(group: &GateGroup, failures: &[GateFailure], out: &mut impl Write) -
     }
     let below = format!("{}/", group.id);
     let is_of = |failure: &&GateFailure| {
+        if failure.target != group.target {
+            return false;
+        }
         failure.id == group.id || failure.id.starts_with(&below) || group.smallest.as_ref() == Some(&failure.id)
     };
     let of: Vec<&GateFailure> = failures.iter().filter(is_of).collect();
@@ -156,7 +159,8 @@ fn failure(failure: &GateFailure, out: &mut impl Write) -> Result {
         let mark = if is_legal { ' ' } else { '✗' };
         writeln!(out, "  {mark} {name:<14} {value}, legal from {low} to {high}, reference {reference}")?;
     }
-    writeln!(out, "    lightmeter show {}", failure.id)
+    let target = failure.target.as_ref().map(|target| format!(" --target {target}")).unwrap_or_default();
+    writeln!(out, "    lightmeter show {}{target}", failure.id)
 }
 
 /// What is wrong with a group, on one line.
@@ -177,7 +181,8 @@ pub(crate) fn sentence(group: &GateGroup) -> String {
 /// The smallest failing case of a group, on one line.
 pub(crate) fn smallest(group: &GateGroup, report: &GateReport) -> Option<String> {
     let id = group.smallest.as_ref()?;
-    let failure = report.failures.iter().find(|failure| failure.id == *id)?;
+    let is_it = |failure: &&GateFailure| failure.id == *id && failure.target == group.target;
+    let failure = report.failures.iter().find(is_it)?;
     let list = |numbers: &[Number]| numbers.iter().map(Number::to_string).collect::<Vec<_>>().join(", ");
     let legal: Vec<String> = failure.interval.iter().map(|[low, high]| format!("[{low}, {high}]")).collect();
     let inputs: Vec<String> = failure.named.iter().map(|(name, value)| format!("{name} = {}", plain(value))).collect();
@@ -220,7 +225,7 @@ pub fn junit(report: &GateReport) -> std::result::Result<String, SerializeError>
             status = TestCaseStatus::skipped();
             status.set_message(group.reason.clone().unwrap_or_default());
         }
-        let mut case = TestCase::new(group.id.as_str(), status);
+        let mut case = TestCase::new(group.name(), status);
         case.set_classname(group.id.split('/').next().unwrap_or_default());
         suite.add_test_case(case);
     }

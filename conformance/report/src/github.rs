@@ -24,7 +24,7 @@ pub fn of_gate(report: &GateReport) -> String {
     let mut out = String::new();
     for group in report.groups.iter().filter(|group| group.is_failed()) {
         let case = smallest(group, report).map_or_else(String::new, |case| format!("\nsmallest failing case {case}"));
-        out += &annotation("error", &group.id, &(sentence(group) + &case));
+        out += &annotation("error", &group.name(), &(sentence(group) + &case));
     }
     for (title, what) in whole(report) {
         out += &annotation("error", &title, &what);

@@ -1,7 +1,7 @@
 //! Reports for people and for servers, pages and pictures: from the JSON of runs.
 
-pub mod bench;
 mod against;
+pub mod bench;
 pub mod gate;
 pub mod github;
 pub mod junit;

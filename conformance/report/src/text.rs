@@ -77,7 +77,8 @@ pub fn failures(report: &Report, out: &mut impl Write) -> Result {
     let fails = |failure: &&Failure| {
         let mut groups = report.groups.iter();
         groups.any(|group| {
-            let is_of = failure.adapter == group.adapter && failure.stage == group.stage && failure.target == group.target;
+            let is_of =
+                failure.adapter == group.adapter && failure.stage == group.stage && failure.target == group.target;
             is_of && group.totals.failed > 0 && failure.id.starts_with(&group.id)
         })
     };

@@ -1,7 +1,7 @@
 //! `lightmeter gate`.
 
 use super::comparison::{Comparison, Earlier, matches_something};
-use super::options::{ReportFormat, ShardArgument};
+use super::options::{ReportFormat, ShardArgument, Targets};
 use super::pack::Cases;
 use super::progress::{Bar, Stream};
 use super::signals::stopped_by_signals;
@@ -28,6 +28,7 @@ use lightmeter::options::Options;
 use lightmeter::report::{gate as outputs, github};
 use lightmeter::run::run;
 use lightmeter::subject::Subject;
+use lightmeter_scene::target::TargetFormat;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -45,6 +46,10 @@ pub(crate) struct Gate {
     exec: Option<String>,
     #[command(flatten)]
     cases: Cases,
+    /// Format to blend on, among those that the renderer declares: rgba32float, rgba16float, rgba8unorm, rgba8unorm-srgb or bgra8unorm;
+    /// again for several; `all`. Without it: all
+    #[arg(long, value_name = "NAME", value_parser = super::options::Choice::target)]
+    target: Vec<Targets>,
     /// Only a part of the cases: the I-th of N
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: ShardArgument,
@@ -158,6 +163,8 @@ impl Gate {
             filter: Filter::new(&choice.filter)?,
             cases: choice.cases,
             size: choice.size,
+            targets: Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec()),
+            counts_cases: true,
             shard: self.shard.0,
             diagnose: Some(&Mistakes),
             stop: stop.clone(),

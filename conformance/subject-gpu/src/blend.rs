@@ -39,7 +39,7 @@ pub(super) fn blend(
             .collect();
         pixels
     });
-    Ok(Pixels { pieces: pieces.collect(), seconds, seconds_warm })
+    Ok(Pixels { pieces: pieces.collect(), seconds, seconds_warm, ..Pixels::default() })
 }
 
 fn through(unit: &mut BlendUnit, target: TargetFormat, batches: &[Batch]) -> Result<Vec<Vec<u8>>, GpuError> {

@@ -473,6 +473,13 @@ pub fn every_state() -> Vec<Box<dyn AnyFormula>> {
     State::all().map(|state| Box::new(BlendState(state)) as Box<dyn AnyFormula>).collect()
 }
 
+/// The states that are the same as another, as formulas under their own names: for subjects whose interface can tell the names apart.
+#[must_use]
+pub fn alias_formulas() -> Vec<Box<dyn AnyFormula>> {
+    let aliases = State::all().filter(|state| *state != state.canonical());
+    aliases.map(|state| Box::new(BlendState(state)) as Box<dyn AnyFormula>).collect()
+}
+
 /// A state with another one for alpha as a formula.
 #[must_use]
 pub fn separate_formula(state: Separate) -> Box<dyn AnyFormula> {

@@ -21,17 +21,21 @@ pub(super) struct UnitChunk<'a> {
 /// A state by a route with some of its cases.
 pub(super) type Part<'a> = (&'a Member, Route, Vec<CaseRef>);
 
-/// A group's states by each of their routes, cut into blocks of cases.
-pub(super) fn parts<'a>(members: &'a [&'a Member], group: &'a [Selected]) -> impl Iterator<Item = Part<'a>> {
-    members.iter().zip(group).flat_map(|(member, chosen)| {
+/// A group's states by each of their routes, cut into blocks of cases. A renderer that is asked case by case has its own ways.
+pub(super) fn parts<'a>(
+    members: &'a [&'a Member],
+    group: &'a [Selected],
+    is_asked: bool,
+) -> impl Iterator<Item = Part<'a>> {
+    members.iter().zip(group).flat_map(move |(member, chosen)| {
         let Kind::Blend(program) = member.spec.kind else { unreachable!("only blend states are drawn by the unit") };
         let mut cases = chosen.cases();
         let blocks = std::iter::from_fn(move || {
             let block: Vec<CaseRef> = cases.by_ref().take(BLOCK).collect();
             (!block.is_empty()).then_some(block)
         });
-        blocks
-            .flat_map(move |block| routes(program.layer(0).0).iter().map(move |route| (*member, *route, block.clone())))
+        let routes = if is_asked { &[Route::Native] } else { routes(program.layer(0).0) };
+        blocks.flat_map(move |block| routes.iter().map(move |route| (*member, *route, block.clone())))
     })
 }
 

@@ -28,5 +28,5 @@ pub fn draw(
         (0..piece.count()).map(|k| embedded::blend(piece.program, target, &piece.case(k), &rules)).collect()
     };
     let pieces = pieces.par_iter().map(blend).collect();
-    Ok(Pixels { pieces, seconds: clock.elapsed().as_secs_f64(), seconds_warm: None })
+    Ok(Pixels { pieces, seconds: clock.elapsed().as_secs_f64(), ..Pixels::default() })
 }

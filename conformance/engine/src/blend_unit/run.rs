@@ -22,7 +22,13 @@ pub(crate) fn run_group(
     report: &mut Report,
     observer: &mut dyn Observer,
 ) -> Result<(), DeviceError> {
-    let targets = targets_of(members[0], &options.targets);
+    let mut targets = targets_of(members[0], &options.targets);
+    let renderer = subjects.iter().find_map(Subject::asked);
+    targets.retain(|target| renderer.is_none_or(|renderer| renderer.targets().contains(target)));
+    let is_asked = renderer.is_some();
+    if targets.is_empty() {
+        return Ok(());
+    }
     let mut standings: Vec<Vec<UnitStanding>> = subjects
         .iter()
         .map(|subject| {
@@ -30,8 +36,8 @@ pub(crate) fn run_group(
         })
         .collect();
     let mut result = Ok(());
-    let mut parts = chunk::parts(members, group).peekable();
-    'chunks: while parts.peek().is_some() && !options.stop.is_set() {
+    let mut parts = chunk::parts(members, group, is_asked).peekable();
+    'chunks: while parts.peek().is_some() && (is_asked || !options.stop.is_set()) {
         let clock = Instant::now();
         let chunk = UnitChunk::next(&mut parts, options.seed);
         report.timing.generate += clock.elapsed().as_secs_f64();

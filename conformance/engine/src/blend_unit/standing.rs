@@ -5,10 +5,12 @@ use super::draw::draw;
 use crate::device::DeviceError;
 use crate::options::Options;
 use crate::piece::{Piece, Pixels};
+use crate::renderer::{AskedPixels, AskedRenderer};
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
+use lightmeter_document::by_case::FailedAnswer;
 use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Tiers, Totals};
 use lightmeter_judge::blend_unit::expect::expect;
 use lightmeter_judge::blend_unit::model::BlendUnitModel;
@@ -17,13 +19,38 @@ use lightmeter_judge::blend_unit::policy;
 use lightmeter_judge::blend_unit::rules::Rules;
 use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts, Stores as _};
 use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, explain};
-use lightmeter_judge::cases::CaseTally;
-use lightmeter_judge::formula::{by_name, units};
+use lightmeter_judge::cases::{CaseTally, Unanswered};
+use lightmeter_judge::formula::{by_name, units, unjudged};
 use lightmeter_judge::tally::Tally;
 use lightmeter_judge::{Outcome, worse};
 use lightmeter_scene::target::{Encoding, TargetFormat};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::time::Instant;
+
+/// How reports call where a subject blends.
+fn stage(subject: &Subject) -> &'static str {
+    if subject.asked().is_some() { Stage::Answer.name() } else { Stage::FixedFunction.name() }
+}
+
+/// The pixels that a renderer leaves of all pieces of a chunk.
+fn asked(renderer: &mut dyn AskedRenderer, target: TargetFormat, chunk: &UnitChunk<'_>) -> Result<Pixels, DeviceError> {
+    let clock = Instant::now();
+    let mut drawn = Pixels::default();
+    for (number, ((&member, piece), cases)) in chunk.members.iter().zip(&chunk.pieces).zip(&chunk.cases).enumerate() {
+        let asked = AskedPixels { member, program: piece.program, target, cases, inputs: &piece.inputs };
+        let mut pixels = vec![[0.0; 4]; cases.len()];
+        for (place, answer) in renderer.pixels(&asked)?.into_iter().enumerate() {
+            match answer {
+                Ok(pixel) => pixels[place] = pixel,
+                Err(why) => drop(drawn.unanswered.insert((number, place), why)),
+            }
+        }
+        drawn.pieces.push(pixels);
+    }
+    drawn.seconds = clock.elapsed().as_secs_f64();
+    Ok(drawn)
+}
 
 /// Failing pixels of a group that faults are tried on.
 const SAMPLES: usize = 1024;
@@ -101,7 +128,9 @@ impl UnitStanding {
         let live: Vec<usize> = (0..chunk.pieces.len()).filter(|&k| reasons[k].is_none()).collect();
         let pieces: Vec<&Piece> = live.iter().map(|&k| &chunk.pieces[k]).collect();
         let drawn = if pieces.is_empty() {
-            Pixels { pieces: vec![], seconds: 0.0, seconds_warm: None }
+            Pixels::default()
+        } else if let Some(renderer) = subject.asked_mut() {
+            asked(renderer, self.target, chunk)?
         } else {
             draw(subject, &options.code, self.target, &pieces, options.again)?
         };
@@ -115,18 +144,21 @@ impl UnitStanding {
         let tallies: Vec<UnitTally> = pieces
             .par_iter()
             .zip(&drawn.pieces)
-            .map(|(piece, pixels)| {
-                let drawn = DrawnState { program: piece.program, route: piece.route, target, profile: options.profile };
+            .enumerate()
+            .map(|(number, (piece, pixels))| {
+                let state = DrawnState { program: piece.program, route: piece.route, target, profile: options.profile };
+                let is_there = |place: &usize| !drawn.unanswered.contains_key(&(number, *place));
+                let pixel = |place: usize| (place, piece.case(place), pixels[place]);
                 let mut tally = UnitTally::default();
-                tally.pixels(drawn, known, pixels.iter().enumerate().map(|(place, pixel)| (piece.case(place), *pixel)));
+                tally.pixels(state, known, (0..pixels.len()).filter(is_there).map(pixel));
                 tally
             })
             .collect();
-        let mut judged = live.iter().zip(tallies.iter().zip(&drawn.pieces)).peekable();
+        let mut judged = live.iter().zip(tallies.iter().zip(&drawn.pieces)).enumerate().peekable();
         for (k, reason) in reasons.iter().enumerate() {
             let place = self.row(subject, chunk, k, *reason);
             let row = &mut self.rows[place];
-            let Some((_, (tally, pixels))) = judged.next_if(|(live, _)| **live == k) else {
+            let Some((number, (_, (tally, pixels)))) = judged.next_if(|(_, (live, _))| **live == k) else {
                 self.skipped += chunk.cases[k].len() as u64;
                 continue;
             };
@@ -138,7 +170,9 @@ impl UnitStanding {
                 row.tiers.get_or_insert_default().add(&tally.tiers);
             }
             self.add(subject, chunk, k, tally, pixels, options);
-            self.count_cases(chunk, k, members, tally, options);
+            let unanswered = drawn.unanswered.range((number, 0)..(number + 1, 0));
+            let unanswered = unanswered.map(|((_, place), why)| (*place, why)).collect();
+            self.count_cases((chunk, k), members, tally, &unanswered, options);
         }
         report.timing.judge += clock.elapsed().as_secs_f64();
         Ok(())
@@ -170,10 +204,10 @@ impl UnitStanding {
     /// Counts the pixels of a piece as cases, and those that are expected to fail.
     fn count_cases(
         &mut self,
-        chunk: &UnitChunk<'_>,
-        k: usize,
+        (chunk, k): (&UnitChunk<'_>, usize),
         members: &[&Member],
         tally: &UnitTally,
+        unanswered: &BTreeMap<usize, &Unanswered>,
         options: &Options,
     ) {
         if !options.counts_cases && options.expected.is_empty() {
@@ -183,6 +217,12 @@ impl UnitStanding {
         let of = members.iter().position(|one| one.spec.id == member.spec.id).unwrap_or_default();
         let mut failing = tally.failing.iter().peekable();
         for (place, &case) in chunk.cases[k].iter().enumerate() {
+            if let Some(why) = unanswered.get(&place) {
+                if self.cases.unanswered((of, case), why) {
+                    self.cases.expect(&options.expected, &member.case_id(case), true);
+                }
+                continue;
+            }
             let failed = failing.next_if(|(failing, _)| *failing == place).map_or(0, |(_, components)| *components);
             let inputs = &piece.inputs[place * piece.stride..(place + 1) * piece.stride];
             self.cases.judged((of, case), inputs, failed > 0, 0.0, (0.0, 0));
@@ -235,7 +275,7 @@ impl UnitStanding {
         let mut verdicts = tally.verdicts.within(|&place| (number, place, id(place)), |&place| told(place));
         let hard = cases.iter().filter(|case| matches!(case, CaseRef::Hard(_))).count() as u64;
         let totals = verdicts.totals;
-        verdicts.random = (totals.verdicts - 4 * hard, totals.indeterminate.saturating_sub(4 * hard));
+        verdicts.random = (totals.verdicts.saturating_sub(4 * hard), totals.indeterminate.saturating_sub(4 * hard));
         self.verdicts.add(verdicts);
     }
 
@@ -248,6 +288,11 @@ impl UnitStanding {
         totals.failed -= self.expected;
         totals.expected_failures += self.expected;
         self.cases.note(&mut report.expectations);
+        for (&(of, case), why) in &self.cases.refused {
+            let id = members[of].case_id(case);
+            let refused = unjudged(id, why.message(), stage(subject), &subject.identity.name);
+            report.failures.push(Failure { target: Some(self.target.name().into()), ..refused });
+        }
         let explanation = explain(&self.samples)
             .map(|(says, count, of)| format!("{count} of {of} failing pixels are as if {says}"))
             .or_else(|| (!self.samples.is_empty()).then(|| "no mistake in the catalogue explains what failed".into()));
@@ -256,7 +301,7 @@ impl UnitStanding {
         }
         let problem = self.problem(subject).or_else(|| self.verdicts.problem());
         let is_unorm = self.target.is_unorm() && totals.cases > 0;
-        let stage = Stage::FixedFunction.name();
+        let stage = stage(subject);
         report.groups.push(Group {
             target: Some(self.target.name().into()),
             tiers: is_unorm.then_some(self.tiers),
@@ -368,7 +413,7 @@ fn failure(
         ),
         id: id.into(),
         adapter: subject.identity.name.clone(),
-        stage: Stage::FixedFunction.name().into(),
+        stage: stage(subject).into(),
         target: Some(target.name().into()),
         route: Some(piece.route.name().into()),
         output: format!("color.{}", ["r", "g", "b", "a"][k]),
@@ -382,6 +427,13 @@ fn failure(
         value_hex: format!("pixel bytes {hex}"),
         unwritten: false,
         error_ulp: Number(verdict(k).error),
-        answer: None,
+        answer: subject.asked().is_some().then(|| FailedAnswer {
+            inputs: inputs.iter().map(|&x| Number(x.into())).collect(),
+            outputs: ["r", "g", "b", "a"].map(|k| format!("color.{k}")).to_vec(),
+            reference: expected.reference.map(Number).to_vec(),
+            interval: (0..4).map(|k| [Number(expected.low[k]), Number(expected.high[k])]).collect(),
+            value: pixel.map(Number).to_vec(),
+            problem: None,
+        }),
     }
 }

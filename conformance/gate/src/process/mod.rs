@@ -10,17 +10,19 @@ mod session;
 
 use super::answer::Hello;
 use super::error::ProcessError;
-use super::given::{Declared, Given};
+use super::given::{Asks, Declared, Given, pixel};
 use super::{frame, pack, picture};
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::event::Stop;
 use lightmeter_document::run::Identity;
 use lightmeter_engine::device::DeviceError;
-use lightmeter_engine::renderer::{AskedRenderer, AskedScene};
+use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
 use lightmeter_engine::rows::Rows;
+use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, ExpectedFailure, Unanswered};
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
+use lightmeter_scene::target::TargetFormat;
 use serde_json::json;
 use session::{Question, Session};
 use std::path::{Path, PathBuf};
@@ -137,7 +139,7 @@ impl AskedRenderer for ProcessRenderer {
             |((&of, &case), inputs)| {
                 let spec = &rows.members[of].spec;
                 let id = rows.members[of].case_id(case);
-                Question { request: pack::case(spec, &id, inputs).to_string(), id, spec: Some(spec) }
+                Question { request: pack::case(spec, &id, inputs).to_string(), id, asks: Asks::Outputs(spec) }
             },
         );
         let given = self.session().all(&questions.collect::<Vec<_>>(), advanced);
@@ -154,6 +156,21 @@ impl AskedRenderer for ProcessRenderer {
         Ok(answers)
     }
 
+    fn targets(&self) -> Vec<TargetFormat> {
+        self.declared.targets.clone()
+    }
+
+    fn pixels(&mut self, asked: &AskedPixels<'_>) -> Result<Vec<Result<Units, Unanswered>>, DeviceError> {
+        let spec = &asked.member.spec;
+        let questions = asked.rows().map(|(case, inputs)| {
+            let id = asked.id(case);
+            let request = pack::on_target(spec, &id, inputs, asked.target, asked.program).to_string();
+            Question { id, request, asks: Asks::Pixel(spec) }
+        });
+        let given = self.session().all(&questions.collect::<Vec<_>>(), &mut |_| {});
+        Ok(given.into_iter().map(pixel).collect())
+    }
+
     fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError> {
         let (path, asked) = write_scene(&self.folder, scene).map_err(refused)?;
         let AskedScene { id, frame, .. } = scene;
@@ -161,7 +178,7 @@ impl AskedRenderer for ProcessRenderer {
         let format = frame.target.format.name();
         let request =
             json!({ "id": id, "scene": path, "width": width, "height": height, "format": format }).to_string();
-        let question = Question { id: id.to_owned(), request, spec: None };
+        let question = Question { id: id.to_owned(), request, asks: Asks::Image };
         let given = self.session().all(&[question], &mut |_| {});
         Ok(match given.into_iter().next() {
             Some(Given::Image(file)) => {

@@ -129,7 +129,7 @@ impl Session {
 
     /// After a few cases of a formula that it ended or hung at, asks no more of that formula.
     fn gives_up(&mut self, queue: &Queue<'_>, culprit: usize) {
-        let Some(spec) = queue.questions.all[culprit].spec else { return };
+        let Some(spec) = queue.questions.all[culprit].asks.spec() else { return };
         let culprits = self.culprits_of.entry(spec.id.clone()).or_default();
         *culprits += 1;
         if *culprits == MOST_OF_FORMULA {
@@ -142,7 +142,7 @@ impl Session {
 
     /// Whether no more of the questions' formula is asked.
     fn has_given_up(&self, queue: &Queue<'_>) -> bool {
-        let spec = queue.questions.all.first().and_then(|question| question.spec);
+        let spec = queue.questions.all.first().and_then(|question| question.asks.spec());
         spec.and_then(|spec| self.culprits_of.get(&spec.id)).is_some_and(|culprits| *culprits >= MOST_OF_FORMULA)
     }
 

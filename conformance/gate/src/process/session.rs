@@ -2,11 +2,10 @@
 
 use super::super::answer::{self, Hello, Line, PROTOCOL, Unread, clipped};
 use super::super::error::ProcessError;
-use super::super::given::{Given, given};
+use super::super::given::{Asks, Given, given};
 use super::super::problems::note;
 use super::Asking;
 use super::running::{Event, Running};
-use lightmeter_catalogue::cases::Spec;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::gate::RendererIdentity;
 use lightmeter_judge::cases::ExpectedFailure;
@@ -62,12 +61,12 @@ impl Ended {
     }
 }
 
-/// A question: a case of a formula, or a scene, which has no description here.
+/// A question.
 pub(super) struct Question<'a> {
     pub(super) id: String,
     /// The line that asks it.
     pub(super) request: String,
-    pub(super) spec: Option<&'a Spec>,
+    pub(super) asks: Asks<'a>,
 }
 
 /// Questions, and what was given to them so far.
@@ -270,7 +269,7 @@ impl Session {
         let Some(mut running) = self.running.take() else { return (Ended::Crashed, batch.to_vec()) };
         let writing = running.send(text);
         let limits = self.asking.limits;
-        let limit = if questions.all[batch[0]].spec.is_none() { limits.scene } else { limits.case };
+        let limit = if questions.all[batch[0]].asks.spec().is_none() { limits.scene } else { limits.case };
         let start = Instant::now();
         let mut waiting = Waiting {
             open: batch.iter().map(|&place| (questions.all[place].id.clone(), place)).collect(),
@@ -328,7 +327,7 @@ impl Session {
             };
             match questions.places.get(id) {
                 Some(&place) if questions.given[place].is_none() => {
-                    questions.given[place] = Some(given(line, questions.all[place].spec));
+                    questions.given[place] = Some(given(line, questions.all[place].asks));
                 }
                 None if !self.asked.contains(&hash(id)) => note(&mut self.used.problems, "unknown", || {
                     format!("line {number}: no case `{}` was asked for", clipped(id))

@@ -84,16 +84,16 @@ fn tells_stores(state: Separate, case: &UnitCase) -> bool {
 }
 
 impl UnitTally {
-    /// Judges pixels, each with its case, in their order.
+    /// Judges pixels, each with its place and its case.
     pub fn pixels<C: Borrow<UnitCase>>(
         &mut self,
         drawn: DrawnState,
         known: &Known,
-        pixels: impl IntoIterator<Item = (C, Units)>,
+        pixels: impl IntoIterator<Item = (usize, C, Units)>,
     ) {
         // What is legal of each is computed inside of this scope, so that none has to enter one of its own.
         drawn.profile.scope(|| {
-            for (place, (case, pixel)) in pixels.into_iter().enumerate() {
+            for (place, case, pixel) in pixels {
                 self.pixel(drawn, known, place, case.borrow(), pixel);
             }
         });
