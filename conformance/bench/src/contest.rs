@@ -2,6 +2,7 @@
 //! they take, in turns.
 
 use super::Bench;
+use super::ended::{BenchError, unless_stopped};
 use super::errors::Gathered;
 use super::turns::{self, Entry, Laps};
 use lightmeter_arithmetic::{Accept, Profile};
@@ -183,12 +184,13 @@ pub(super) fn contest(
     sample: &Sample<'_>,
     contenders: &[Contender<'_>],
     baseline: &str,
-) -> Result<(Vec<BenchRow>, String), GpuError> {
+) -> Result<(Vec<BenchRow>, String), BenchError> {
     let exact = sample.references(None);
     let mut rows: Vec<BenchRow> = contenders.iter().map(blank).collect();
     let (mut compiled, mut idle) = (vec![], None);
     let selected = sample.selected();
     for (contender, row) in contenders.iter().zip(&mut rows) {
+        unless_stopped(bench.stop)?;
         let ready = match (contender.on, &row.unavailable, bench.gpu) {
             (On::Device(rung), None, Some(gpu)) => {
                 let member = contender.formula.unwrap_or(sample.of[0]);
@@ -384,7 +386,7 @@ fn time_rows(
     idle: Option<&RepeatPipeline>,
     baseline: &str,
     rows: &mut [BenchRow],
-) -> Result<Option<(f64, bool)>, GpuError> {
+) -> Result<Option<(f64, bool)>, BenchError> {
     let clock = &bench.clock;
     let (mut entries, mut places) = (vec![], vec![]);
     if let (Some(gpu), Some(idle)) = (bench.gpu, idle) {
@@ -401,7 +403,7 @@ fn time_rows(
         }
         places.push(Some(k));
     }
-    let mut laps = turns::measure(&mut entries, bench.setting.effort)?;
+    let mut laps = turns::measure(&mut entries, bench.setting.effort, bench.stop)?;
     let clocks: Vec<&'static str> = entries.iter().map(Entry::clock).collect();
     drop(entries);
     let mut idle_is = None;

@@ -2,11 +2,12 @@
 
 use super::Bench;
 use super::contest::{Arithmetic, Contender, On, Sample, contest};
+use super::ended::BenchError;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::bench::{BenchGroup, GroupKind, RungUse};
-use lightmeter_gpu::{GpuError, Rung};
+use lightmeter_gpu::Rung;
 
 /// What a rung is, in a line.
 pub(super) const fn what(rung: Rung) -> &'static str {
@@ -74,7 +75,7 @@ pub(super) fn groups(catalogue: &[Member]) -> Vec<(String, Vec<&Member>)> {
 }
 
 /// A formula at every rung.
-pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Result<BenchGroup, GpuError> {
+pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Result<BenchGroup, BenchError> {
     let sample = Sample::new(members, bench.setting.cases, bench.setting.seed);
     let mut contenders = on_device(bench.ladder, None, |rung| rung.name().into());
     contenders.extend(Arithmetic::ALL.into_iter().map(|arithmetic| Contender {

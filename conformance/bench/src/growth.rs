@@ -1,11 +1,12 @@
 //! How time grows with the number of cases.
 
 use super::contest::timed;
+use super::ended::BenchError;
 use super::turns::{self, Effort, Entry};
 use super::{Bench, fit};
 use lightmeter_catalogue::select::catalogue;
 use lightmeter_document::bench::{Scaling, ScalingPoint};
-use lightmeter_gpu::{GpuError, RepeatPipeline};
+use lightmeter_gpu::RepeatPipeline;
 
 /// The formula that is evaluated.
 const FORMULA: &str = "lighting/blinn";
@@ -13,7 +14,7 @@ const FORMULA: &str = "lighting/blinn";
 const MOST: u32 = 1 << 13;
 
 /// Time against the number of evaluations in one submission.
-pub(super) fn cases(bench: &Bench<'_>) -> Result<Vec<Scaling>, GpuError> {
+pub(super) fn cases(bench: &Bench<'_>) -> Result<Vec<Scaling>, BenchError> {
     let Some(gpu) = bench.gpu else { return Ok(vec![]) };
     let catalogue = catalogue();
     let Some(member) = catalogue.iter().find(|member| member.spec.id == FORMULA) else { return Ok(vec![]) };
@@ -25,7 +26,7 @@ pub(super) fn cases(bench: &Bench<'_>) -> Result<Vec<Scaling>, GpuError> {
         .iter()
         .map(|&groups| Entry::new(clock.kind().name(), 1.0, 1, move |_| pipeline.time(gpu, clock, groups)))
         .collect();
-    let laps = turns::measure(&mut entries, Effort { seconds: 0.0, ..bench.setting.effort })?;
+    let laps = turns::measure(&mut entries, Effort { seconds: 0.0, ..bench.setting.effort }, bench.stop)?;
     drop(entries);
     let points: Vec<ScalingPoint> = steps
         .iter()

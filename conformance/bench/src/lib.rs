@@ -3,6 +3,7 @@
 
 mod claims;
 mod contest;
+pub mod ended;
 pub mod errors;
 pub mod fit;
 mod formulas;
@@ -12,13 +13,14 @@ mod sittings;
 mod techniques;
 pub mod turns;
 
+use ended::BenchError;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::select::{Member, catalogue};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, ClockUse, Family, GroupKind, Measured, SCHEMA, Scaling};
 use lightmeter_document::bench::{ladder, pareto};
-use lightmeter_document::event::{Event, Observer};
+use lightmeter_document::event::{Event, Observer, Stop};
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Clock, ClockKind, Gpu, GpuError, Rung, Shaders};
 use std::time::Instant;
@@ -42,6 +44,8 @@ pub struct BenchOptions {
     pub shaders: Shaders,
     /// The command that asks for it.
     pub command: String,
+    /// Ends it before its time.
+    pub stop: Stop,
 }
 
 /// How much is measured.
@@ -85,6 +89,22 @@ struct Bench<'a> {
     /// The rules that values are held to, the driver's known deviations granted.
     profile: Profile,
     setting: Setting,
+    stop: &'a Stop,
+}
+
+/// Notes what is under way, for a bench that is stopped.
+struct Noted<'a> {
+    observer: &'a mut dyn Observer,
+    under_way: String,
+}
+
+impl Observer for Noted<'_> {
+    fn see(&mut self, event: &Event<'_>) {
+        if let Event::Group(id) = event {
+            (*id).clone_into(&mut self.under_way);
+        }
+        self.observer.see(event);
+    }
 }
 
 /// What a quick bench measures of the formulas: one or two of each family.
@@ -103,7 +123,7 @@ const QUICK: [&str; 12] = [
     "blend/state",
 ];
 
-/// Measures everything that is asked for.
+/// Measures everything that is asked for, until somebody stops it. A group that is under way then is left out.
 ///
 /// # Errors
 /// Where a shader is invalid or a device fails.
@@ -114,10 +134,11 @@ pub fn bench(
 ) -> Result<BenchDocument, GpuError> {
     let start = Instant::now();
     let setting = Setting::new(options.quick, options.seed);
-    let adapters = subjects
-        .iter()
-        .map(|subject| measured(subject, options, setting, observer))
-        .collect::<Result<_, GpuError>>()?;
+    let mut observer = Noted { observer, under_way: "the first group".into() };
+    let mut adapters = vec![];
+    for subject in subjects.iter().take_while(|_| !options.stop.is_set()) {
+        adapters.extend(measured(subject, options, setting, &mut observer)?);
+    }
     Ok(BenchDocument {
         schema: SCHEMA.into(),
         command: options.command.clone(),
@@ -127,21 +148,23 @@ pub fn bench(
         seconds: start.elapsed().as_secs_f64(),
         cores: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
         adapters,
+        interrupted: options.stop.interrupted("the bench", &observer.under_way),
     })
 }
 
+/// What was measured on an adapter; `None` where it was stopped before anything was.
 fn measured(
     subject: &Subject,
     options: &BenchOptions,
     setting: Setting,
     observer: &mut dyn Observer,
-) -> Result<Measured, GpuError> {
+) -> Result<Option<Measured>, GpuError> {
     let catalogue = catalogue();
     let asked = Asked::new(options, &catalogue, ladder_of(subject)?);
     observer.see(&Event::Begun(setting.sittings as u64 * asked.count(subject)));
     let mut all = vec![];
     let mut use_wall = false;
-    while all.len() < setting.sittings {
+    while all.len() < setting.sittings && !options.stop.is_set() {
         let setting = Setting { judges: all.is_empty(), ..setting };
         let sitting = sitting(subject, options, setting, &asked, use_wall, observer)?;
         if all.is_empty() && !use_wall && options.clock.is_none() && sitting.clock.tells_nothing() {
@@ -150,7 +173,13 @@ fn measured(
             all.push(sitting);
         }
     }
+    if all.is_empty() {
+        return Ok(None);
+    }
     let Sitting { mut groups, scalings, clock } = sittings::together(all);
+    if options.stop.is_set() && groups.is_empty() && scalings.is_empty() {
+        return Ok(None);
+    }
     for group in &mut groups {
         for row in &mut group.rows {
             row.as_f32 = row.unavailable.as_deref().is_some_and(Rung::is_as_f32);
@@ -158,7 +187,7 @@ fn measured(
         group.front = pareto::front_of(group);
     }
     let identity = subject.identity.clone();
-    Ok(Measured {
+    Ok(Some(Measured {
         adapter: identity.name,
         device: identity.device,
         backend: identity.backend.into(),
@@ -170,7 +199,7 @@ fn measured(
         claims: claims::claims(&groups),
         groups,
         scalings,
-    })
+    }))
 }
 
 /// What is to be measured.
@@ -229,7 +258,7 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// What is measured at one time, on devices of its own.
+/// What is measured at one time, on devices of its own; one that was stopped lacks the groups at the end.
 struct Sitting {
     groups: Vec<BenchGroup>,
     scalings: Vec<Scaling>,
@@ -256,6 +285,7 @@ fn sitting(
         ladder: &asked.ladder,
         profile,
         setting,
+        stop: &options.stop,
     };
     let drawing = clock(draws.as_ref(), options.clock, use_wall)?;
     let on = scenes::On {
@@ -265,17 +295,12 @@ fn sitting(
         clock: &drawing,
         profile: options.profile,
         setting,
+        stop: &options.stop,
     };
-    let mut groups = vec![];
-    for (id, members) in &asked.formulas {
-        observer.see(&Event::Group(id));
-        groups.push(formulas::formula(&bench, id, members)?);
-        observer.see(&Event::Advanced(1));
-    }
-    let mut scalings = vec![];
-    if bench.gpu.is_some() {
-        groups.extend(on_device(&bench, &on, asked, observer)?);
-        scalings.extend(growths(&bench, &on, asked, observer)?);
+    let (mut groups, mut scalings) = (vec![], vec![]);
+    match gather(&bench, &on, asked, &mut groups, &mut scalings, observer) {
+        Ok(()) | Err(BenchError::Stopped) => {}
+        Err(BenchError::Gpu(error)) => return Err(error),
     }
     let (readings, rejected) = bench.clock.readings();
     let of_drawing = drawing.readings();
@@ -288,33 +313,54 @@ fn sitting(
     Ok(Sitting { groups, scalings, clock })
 }
 
+/// Everything that is asked for, group by group: those that are there when it is stopped stay.
+fn gather(
+    bench: &Bench<'_>,
+    on: &scenes::On<'_>,
+    asked: &Asked<'_>,
+    groups: &mut Vec<BenchGroup>,
+    scalings: &mut Vec<Scaling>,
+    observer: &mut dyn Observer,
+) -> Result<(), BenchError> {
+    for (id, members) in &asked.formulas {
+        observer.see(&Event::Group(id));
+        groups.push(formulas::formula(bench, id, members)?);
+        observer.see(&Event::Advanced(1));
+    }
+    if bench.gpu.is_some() {
+        on_device(bench, on, asked, groups, observer)?;
+        growths(bench, on, asked, scalings, observer)?;
+    }
+    Ok(())
+}
+
 /// What needs a device: techniques, stable forms and scenes.
 fn on_device(
     bench: &Bench<'_>,
     on: &scenes::On<'_>,
     asked: &Asked<'_>,
+    groups: &mut Vec<BenchGroup>,
     observer: &mut dyn Observer,
-) -> Result<Vec<BenchGroup>, GpuError> {
-    let mut groups = vec![];
+) -> Result<(), BenchError> {
     for group in &asked.techniques {
         observer.see(&Event::Group(group.id));
         groups.push(techniques::techniques(bench, group)?);
         observer.see(&Event::Advanced(1));
     }
-    groups.extend(scenes::techniques(on, &asked.ladder, &asked.drawn, observer)?);
+    scenes::techniques(on, &asked.ladder, &asked.drawn, groups, observer)?;
     for member in &asked.stable {
         observer.see(&Event::Group(&member.spec.id));
         groups.extend(techniques::stable(bench, member)?);
         observer.see(&Event::Advanced(1));
     }
-    groups.extend(scenes::scenes(on, &asked.ladder, &asked.scenes, observer)?);
+    scenes::scenes(on, &asked.ladder, &asked.scenes, groups, observer)?;
     for (name, loaded) in asked.files {
         observer.see(&Event::Group(name));
         let (title, frame) = (loaded.title.clone(), loaded.frame.clone());
         groups.extend(scenes::scene(on, &asked.ladder, format!("scene/{name}"), title, frame)?);
         observer.see(&Event::Advanced(1));
     }
-    Ok(groups)
+    Ok(())
 }
 
 /// How time grows with work on a device.
@@ -322,15 +368,16 @@ fn growths(
     bench: &Bench<'_>,
     on: &scenes::On<'_>,
     asked: &Asked<'_>,
+    scalings: &mut Vec<Scaling>,
     observer: &mut dyn Observer,
-) -> Result<Vec<Scaling>, GpuError> {
-    let mut scalings = scenes::scalings(on, &asked.scalings, observer)?;
+) -> Result<(), BenchError> {
+    scenes::scalings(on, &asked.scalings, scalings, observer)?;
     if asked.by_cases {
         observer.see(&Event::Group("scaling/cases"));
         scalings.extend(growth::cases(bench)?);
         observer.see(&Event::Advanced(1));
     }
-    Ok(scalings)
+    Ok(())
 }
 
 /// Of the stable forms, those of a quick bench.
@@ -366,4 +413,68 @@ fn families(groups: &[BenchGroup]) -> Vec<Family> {
         }
     }
     families
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_arithmetic::profile::WGSL;
+    use std::sync::atomic::Ordering;
+
+    /// Stops a bench once so many groups are done.
+    struct StopsAfter {
+        stop: Stop,
+        groups: usize,
+    }
+
+    impl Observer for StopsAfter {
+        fn see(&mut self, event: &Event<'_>) {
+            if let Event::Advanced(_) = event {
+                self.groups -= 1;
+                if self.groups == 0 {
+                    self.stop.flag().store(2, Ordering::Relaxed);
+                }
+            }
+        }
+    }
+
+    /// The groups of a quick bench of three formulas in two sittings, and what was under way when it was stopped.
+    fn stopped_after(groups: usize) -> (Vec<(String, usize)>, Option<String>) {
+        let globs = ["fog/exp", "fog/exp2-opengl", "fog/linear"].map(String::from);
+        let options = BenchOptions {
+            filter: Filter::new(&globs).expect("they are globs"),
+            scenes: vec![],
+            quick: true,
+            seed: 1,
+            clock: None,
+            profile: &WGSL,
+            shaders: Shaders::built_in().unwrap_or_else(|error| panic!("{error}")),
+            command: String::new(),
+            stop: Stop::default(),
+        };
+        let mut observer = StopsAfter { stop: options.stop.clone(), groups };
+        let subjects = [Subject::embedded(), Subject::embedded()];
+        let document = bench(&subjects, &options, &mut observer).unwrap_or_else(|error| panic!("{error}"));
+        let turns = |group: &BenchGroup| {
+            let row = group.rows.iter().find(|row| row.name == "cpu-f32").expect("it is everywhere");
+            row.time.as_ref().map_or(0, |time| time.turns)
+        };
+        let groups = document.adapters.iter().flat_map(|measured| &measured.groups);
+        let groups = groups.map(|group| (group.id.clone(), turns(group))).collect();
+        (groups, document.interrupted.map(|interrupted| interrupted.under_way))
+    }
+
+    #[test]
+    fn what_was_measured_before_a_bench_was_stopped_is_left() {
+        let group = |id: &str, turns| (id.to_owned(), turns);
+        let (all, under_way) = stopped_after(100);
+        let ids: Vec<&str> = all.iter().map(|(id, _)| id.as_str()).collect();
+        assert!(ids.len() == 6 && ids[..3] == ids[3..] && under_way.is_none(), "{all:?}");
+        // In the first sitting, in the second, and on the second adapter: 2 turns a sitting.
+        assert_eq!(stopped_after(2).0, [group(ids[0], 2), group(ids[1], 2)]);
+        let (second, under_way) = stopped_after(4);
+        assert_eq!(second, [group(ids[0], 4), group(ids[1], 2), group(ids[2], 2)]);
+        assert_eq!(under_way.as_deref(), Some(ids[1]));
+        assert_eq!(stopped_after(7).0.len(), 4);
+    }
 }

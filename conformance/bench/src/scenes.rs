@@ -13,6 +13,7 @@ pub use scaling::{SCALINGS, scalings};
 pub use techniques::{technique_ids, techniques};
 
 use super::Setting;
+use super::ended::{BenchError, unless_stopped};
 use super::errors::Gathered;
 use super::turns::{self, Effort, Entry};
 use drawing::{Drawer, Plan, Standard};
@@ -20,11 +21,11 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
 use lightmeter_document::bench::{BenchGroup, BenchRow, GroupKind};
-use lightmeter_document::event::{Event, Observer};
+use lightmeter_document::event::{Event, Observer, Stop};
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::compose::{Recipe, ShaderForm};
 use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Clock, ClockReading, Gpu, GpuError, Rung, Shaders};
+use lightmeter_gpu::{Clock, ClockReading, Gpu, Rung, Shaders};
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_reference::render::render;
 use lightmeter_scene::frame::Frame;
@@ -64,12 +65,15 @@ pub struct On<'a> {
     pub profile: &'a Profile,
     /// How much.
     pub setting: Setting,
+    /// Ends it before its time.
+    pub stop: &'a Stop,
 }
 
-/// Scenes by their names, each drawn at the rungs of the ladder; the reason beside a rung says why the device has it not.
+/// Scenes by their names, each drawn at the rungs of the ladder, put behind the groups that are there; the reason beside a rung says
+/// why the device has it not.
 ///
 /// # Errors
-/// Where a shader is invalid or the device fails.
+/// Where a shader is invalid, the device fails or somebody stops it.
 ///
 /// # Panics
 /// Where a name is of no built-in scene.
@@ -77,10 +81,10 @@ pub fn scenes(
     on: &On<'_>,
     ladder: &[(Rung, Option<String>)],
     names: &[&str],
+    groups: &mut Vec<BenchGroup>,
     observer: &mut dyn Observer,
-) -> Result<Vec<BenchGroup>, GpuError> {
+) -> Result<(), BenchError> {
     let size = if on.setting.quick { SIZE_QUICK } else { SIZE };
-    let mut groups = vec![];
     for name in names {
         let place = SCENES.iter().position(|(own, _)| own == name).expect("the scene is built in");
         observer.see(&Event::Group(&scene_id(place)));
@@ -88,7 +92,7 @@ pub fn scenes(
         groups.extend(scene(on, ladder, scene_id(place), loaded.title, loaded.frame)?);
         observer.see(&Event::Advanced(1));
     }
-    Ok(groups)
+    Ok(())
 }
 
 /// The frame in binary32, where the device draws, and blends if that is asked for, on such a target; else as it is.
@@ -103,15 +107,16 @@ fn widened(gpu: &Gpu, mut frame: Frame) -> Frame {
 /// A frame from anywhere, in its own size, at the rungs of the ladder.
 ///
 /// # Errors
-/// Where a shader is invalid or the device fails.
+/// Where a shader is invalid, the device fails or somebody stops it.
 pub fn scene(
     on: &On<'_>,
     ladder: &[(Rung, Option<String>)],
     id: String,
     title: String,
     frame: Frame,
-) -> Result<Option<BenchGroup>, GpuError> {
+) -> Result<Option<BenchGroup>, BenchError> {
     let Some(drawer) = Drawer::new(on) else { return Ok(None) };
+    unless_stopped(on.stop)?;
     let frame = widened(drawer.gpu, frame);
     let standard = drawer.standard(frame);
     let mut plans = vec![];
@@ -182,7 +187,7 @@ fn kinds(profile: Profile) -> [(&'static str, &'static str, Draw); 3] {
 }
 
 /// The reference renderer on one core, in turns of its own.
-fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result<Vec<BenchRow>, GpuError> {
+fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result<Vec<BenchRow>, BenchError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let frame = &standard.frame;
     let kinds = kinds(drawer.profile);
@@ -199,7 +204,7 @@ fn processor(drawer: &Drawer<'_>, standard: &Standard, effort: Effort) -> Result
             }))
         }));
     }
-    let laps = turns::measure(&mut entries, Effort { turns: effort.turns.min(TURNS), ..effort })?;
+    let laps = turns::measure(&mut entries, Effort { turns: effort.turns.min(TURNS), ..effort }, drawer.stop)?;
     let rows = kinds.iter().enumerate().map(|(k, (name, what, _))| {
         let image = match *name {
             _ if !drawer.judges => None,
@@ -243,7 +248,7 @@ mod tests {
         let subject = lightmeter_subject_gpu::open_device(&adapter).unwrap_or_else(|error| panic!("{error}"));
         let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
         let clock = Clock::wall(None);
-        let setting = Setting::new(true, 1);
+        let (setting, stop) = (Setting::new(true, 1), Stop::default());
         let on = On {
             subject: &subject,
             gpu: lightmeter_subject_gpu::gpu(&subject),
@@ -251,9 +256,11 @@ mod tests {
             clock: &clock,
             profile: &WGSL,
             setting,
+            stop: &stop,
         };
         let ladder = [(Rung::F32, None), (Rung::F64, Some("a reason".to_owned()))];
-        let made = scenes(&on, &ladder, &["gouraud"], &mut Silent).unwrap_or_else(|error| panic!("{error}"));
+        let mut made = vec![];
+        scenes(&on, &ladder, &["gouraud"], &mut made, &mut Silent).unwrap_or_else(|error| panic!("{error}"));
         let [group] = made.as_slice() else { panic!("{} groups", made.len()) };
         assert_eq!((group.id.as_str(), group.baseline.as_str()), ("scene/gouraud", "f32"));
         let names: Vec<&str> = group.rows.iter().map(|row| row.name.as_str()).collect();

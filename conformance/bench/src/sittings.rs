@@ -6,7 +6,8 @@ use super::fit::fit;
 use super::turns::{median, standing};
 use lightmeter_document::bench::{Rank, ScalingPoint, Time};
 
-/// The first sitting, which has the errors, with the times of all.
+/// The first sitting, which has the errors, with the times of all. One that was stopped lacks the groups at the end, whose times are
+/// those of the others.
 ///
 /// # Panics
 /// Where there is none.
@@ -15,8 +16,9 @@ pub(super) fn together(mut all: Vec<Sitting>) -> Sitting {
     let mut first = all.pop().expect("there is a sitting");
     for (place, group) in first.groups.iter_mut().enumerate() {
         for (k, row) in group.rows.iter_mut().enumerate() {
-            let of = |sitting: &Sitting| sitting.groups[place].rows[k].time.clone();
-            let times: Option<Vec<Time>> = std::iter::once(row.time.take()).chain(later.iter().map(of)).collect();
+            let of = |sitting: &Sitting| Some(sitting.groups.get(place)?.rows[k].time.clone());
+            let times: Option<Vec<Time>> =
+                std::iter::once(row.time.take()).chain(later.iter().filter_map(of)).collect();
             match times {
                 Some(times) => row.time = Some(time(&times)),
                 None if row.unavailable.is_none() => {
@@ -29,7 +31,7 @@ pub(super) fn together(mut all: Vec<Sitting>) -> Sitting {
     for (place, scaling) in first.scalings.iter_mut().enumerate() {
         for point in &mut scaling.points {
             let of = |sitting: &Sitting| {
-                let points = &sitting.scalings[place].points;
+                let points = &sitting.scalings.get(place)?.points;
                 points.iter().find(|other| other.work == point.work).cloned()
             };
             let all: Vec<ScalingPoint> = std::iter::once(point.clone()).chain(later.iter().filter_map(of)).collect();
@@ -143,6 +145,15 @@ mod tests {
         assert_eq!((time.verdict, time.turns), (Rank::Tie, 45));
         assert!(row.random.is_some(), "errors are those of the first");
         assert_eq!((all.clock.readings, all.clock.rejected), (30, 3));
+    }
+
+    #[test]
+    fn a_group_that_a_stopped_sitting_lacks_has_the_times_of_the_others() {
+        let mut second = sitting(3.0, 1.4);
+        second.groups.clear();
+        let all = together(vec![sitting(2.0, 1.2), sitting(3.0, 1.0), second]);
+        let time = all.groups[0].rows[1].time.as_ref().expect("two sittings have timed it");
+        assert!((time.ratio - 1.1).abs() < 1e-12 && time.turns == 30, "{time:?}");
     }
 
     #[test]

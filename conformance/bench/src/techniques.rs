@@ -3,12 +3,13 @@
 
 use super::Bench;
 use super::contest::{Arithmetic, Contender, On, Sample, contest};
+use super::ended::BenchError;
 use super::formulas::on_device;
 use lightmeter_catalogue::cases::formula::formula;
 use lightmeter_catalogue::cases::{Domain, Formula, Hard, Input, Output, ValueShape};
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::bench::{BenchGroup, GroupKind};
-use lightmeter_gpu::{GpuError, Rung};
+use lightmeter_gpu::Rung;
 use lightmeter_reference::lighting::{self, Specular, highlight, incidence};
 use lightmeter_reference::{Real, Vec3, Vector, fog, interpolation, vector};
 use lightmeter_scene::shading::Distance;
@@ -338,7 +339,7 @@ const DIRECT: &str = "a·(1 − t) + b·t at each pixel";
 const DIFFERENCES: &str = "the step added once a pixel";
 
 /// The techniques of a group, each at the ladder's rungs.
-pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<BenchGroup, GpuError> {
+pub(super) fn techniques(bench: &Bench<'_>, group: &Techniques) -> Result<BenchGroup, BenchError> {
     let ideal = &group.techniques[0].member;
     let sample = Sample::new(&[ideal], bench.setting.cases, bench.setting.seed);
     let mut contenders = vec![];
@@ -389,7 +390,7 @@ fn at_every_rung<'a>(
 }
 
 /// The published and the stable form of a formula that has both, at its hard cases.
-pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<BenchGroup>, GpuError> {
+pub(super) fn stable(bench: &Bench<'_>, member: &Member) -> Result<Option<BenchGroup>, BenchError> {
     let mut naive: Vec<&Member> = vec![];
     for hard in member.spec.hard.iter().filter_map(|hard| hard.naive) {
         let rival = bench.catalogue.iter().find(|rival| rival.spec.id == hard.formula);

@@ -1,7 +1,9 @@
 //! Times in turns: everything that is compared is measured in each turn, so that what else the machine does falls upon all
 //! alike, and a ratio is of two times of the same turn. What is measured in a turn is the least of a few readings.
 
+use super::ended::{BenchError, unless_stopped};
 use lightmeter_document::bench::{Rank, Time};
+use lightmeter_document::event::Stop;
 use lightmeter_gpu::{ClockReading, GpuError};
 
 /// Something that is timed, and how much of it at once.
@@ -85,9 +87,10 @@ impl<'a> Entry<'a> {
 /// Measures all in turns, forwards and backwards by turns: the laps of each.
 ///
 /// # Errors
-/// Where a device fails.
-pub fn measure(entries: &mut [Entry<'_>], effort: Effort) -> Result<Vec<Laps>, GpuError> {
+/// Where a device fails, or somebody stops it: laps of a part of the turns are none.
+pub fn measure(entries: &mut [Entry<'_>], effort: Effort, stop: &Stop) -> Result<Vec<Laps>, BenchError> {
     for entry in entries.iter_mut() {
+        unless_stopped(stop)?;
         entry.calibrate(effort.seconds)?;
     }
     let mut laps: Vec<Laps> = vec![vec![]; entries.len()];
@@ -97,6 +100,7 @@ pub fn measure(entries: &mut [Entry<'_>], effort: Effort) -> Result<Vec<Laps>, G
             order.reverse();
         }
         for k in order {
+            unless_stopped(stop)?;
             laps[k].push(entries[k].lap(effort.readings)?);
         }
     }
@@ -247,7 +251,8 @@ mod tests {
             most_at_once = most_at_once.max(amount);
             Ok(ClockReading::Seconds(f64::from(amount) * 1e-6))
         })];
-        let laps = measure(&mut entries, Effort { turns: 3, readings: 1, seconds: 1e-3 }).expect("nothing fails");
+        let effort = Effort { turns: 3, readings: 1, seconds: 1e-3 };
+        let laps = measure(&mut entries, effort, &Stop::default()).expect("nothing fails");
         assert!(laps[0].iter().all(|lap| (lap.expect("it is read") - 1e-6).abs() < 1e-12));
         drop(entries);
         assert!((1_000..=32_000).contains(&most_at_once), "{most_at_once}");

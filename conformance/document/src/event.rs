@@ -1,7 +1,7 @@
 //! What a run tells while it goes on, for whoever listens: it need not end before something is known of it. And how it is told to
 //! end before its time.
 
-use crate::run::{Failure, Group};
+use crate::run::{Failure, Group, Interrupted};
 use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -61,5 +61,13 @@ impl Stop {
     #[must_use]
     pub fn is_set(&self) -> bool {
         self.signal().is_some()
+    }
+
+    /// What a report says of `work` that a signal ended, such as `the bench`; `None` where no signal did.
+    #[must_use]
+    pub fn interrupted(&self, work: &str, under_way: &str) -> Option<Interrupted> {
+        let signal = self.signal()?;
+        let message = format!("a signal ended {work}");
+        Some(Interrupted { under_way: under_way.into(), message, signal: Some(signal) })
     }
 }

@@ -6,6 +6,7 @@ use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
 
 /// The schema of [`Report`].
 pub const SCHEMA: &str = "lightmeter.run/1";
@@ -395,8 +396,8 @@ impl Timing {
     }
 }
 
-/// A run that ended before its time.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+/// A run, a bench, a self-test or probes that ended before their time.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Interrupted {
     /// What was under way.
     pub under_way: String,
@@ -405,6 +406,12 @@ pub struct Interrupted {
     /// The number of the signal that stopped it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub signal: Option<i32>,
+}
+
+impl Display for Interrupted {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{} was under way: {}", self.under_way, self.message)
+    }
 }
 
 /// The JSON of `run`.

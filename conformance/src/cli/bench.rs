@@ -2,6 +2,7 @@
 
 use super::options::Choice;
 use super::progress::Bar;
+use super::signals::{status_of, stopped_by_signals};
 use super::{NothingToRun, Status, emit, writable};
 use clap::{Args, ValueEnum};
 use lightmeter::adapters;
@@ -103,6 +104,7 @@ impl Bench {
             profile: self.profile,
             shaders: self.shaders.as_deref().map_or_else(Shaders::built_in, Shaders::from_dir)?,
             command: self.command(),
+            stop: stopped_by_signals()?,
         };
         let mut names: Vec<&str> = options.scenes.iter().map(|(name, _)| name.as_str()).collect();
         names.sort_unstable();
@@ -125,13 +127,15 @@ impl Bench {
         let document = bench(&subjects, &options, &mut bar);
         bar.bar.finish_and_clear();
         let document = document.map_err(device_error)?;
-        if document.adapters.iter().all(|adapter| adapter.groups.is_empty() && adapter.scalings.is_empty()) {
+        let is_whole = document.interrupted.is_none();
+        if is_whole && document.adapters.iter().all(|adapter| adapter.groups.is_empty() && adapter.scalings.is_empty())
+        {
             let message =
                 "no group matches; there are the formulas, as fog/exp, technique/*, stable/**, scene/* and scaling/*";
             return Err(NothingToRun(message.into()).into());
         }
         emit(&self.write(&document)?, self.out.as_deref())?;
-        Ok(Status::Success)
+        Ok(document.interrupted.as_ref().map_or(Status::Success, status_of))
     }
 
     fn write(&self, document: &BenchDocument) -> anyhow::Result<String> {

@@ -92,6 +92,9 @@ impl Page {
 
     fn bench(&self, json: &str) -> anyhow::Result<String> {
         let document = BenchDocument::read(json)?;
+        if let Some(interrupted) = &document.interrupted {
+            bail!("it was interrupted: {interrupted}; expected one that is complete");
+        }
         let mut pictures = vec![];
         let mut folder = String::new();
         if let Some(out) = &self.out {

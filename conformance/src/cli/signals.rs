@@ -1,6 +1,8 @@
 //! What ends a command before its work is done.
 
+use super::Status;
 use lightmeter::document::event::Stop;
+use lightmeter::document::run::Interrupted;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -15,4 +17,10 @@ pub(crate) fn stopped_by_signals() -> anyhow::Result<Stop> {
         signal_hook::flag::register_usize(signal, stop.flag(), number)?;
     }
     Ok(stop)
+}
+
+/// Says that a signal ended a command, and how the command ends.
+pub(crate) fn status_of(Interrupted { under_way, message, signal }: &Interrupted) -> Status {
+    eprintln!("error: {message}\n  {under_way} was under way; what was done before stands in the result");
+    signal.map_or(Status::Device, Status::of_signal)
 }

@@ -1,10 +1,12 @@
 //! Rows that are drawn: compiled, drawn once, held against the reference, and timed in turns.
 
 use super::{BenchRow, Gathered, On, Setting, TIMED};
+use crate::ended::{BenchError, unless_stopped};
 use crate::turns;
 use crate::turns::{Effort, Entry};
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::bench::Errors;
+use lightmeter_document::event::Stop;
 use lightmeter_engine::image::verdict::excuse;
 use lightmeter_gpu::compose::Recipe;
 use lightmeter_gpu::scene::SceneRenderer;
@@ -87,6 +89,7 @@ pub(super) struct Drawer<'a> {
     deviations: &'a [&'static Deviation],
     /// Whether what is drawn is held against the reference, and not only timed.
     pub(super) judges: bool,
+    pub(super) stop: &'a Stop,
 }
 
 impl<'a> Drawer<'a> {
@@ -99,6 +102,7 @@ impl<'a> Drawer<'a> {
             profile: on.subject.known.profile(on.profile),
             deviations: &on.subject.known.deviations,
             judges: on.setting.judges,
+            stop: on.stop,
         })
     }
 
@@ -107,8 +111,12 @@ impl<'a> Drawer<'a> {
     }
 
     /// Draws each plan once: its errors against the ideal, what is wrong with it, and how long it took to compile.
-    pub(super) fn draw(&self, plans: &[Plan<'_>], ideal: &Standard) -> Result<Vec<DrawnScene>, GpuError> {
-        plans.iter().map(|plan| self.one(plan, ideal)).collect()
+    pub(super) fn draw(&self, plans: &[Plan<'_>], ideal: &Standard) -> Result<Vec<DrawnScene>, BenchError> {
+        let one = |plan: &Plan<'_>| {
+            unless_stopped(self.stop)?;
+            Ok(self.one(plan, ideal)?)
+        };
+        plans.iter().map(one).collect()
     }
 
     fn one(&self, plan: &Plan<'_>, ideal: &Standard) -> Result<DrawnScene, GpuError> {
@@ -187,11 +195,11 @@ impl<'a> Drawer<'a> {
         drawn: &[DrawnScene],
         baseline: Option<usize>,
         effort: Effort,
-    ) -> Result<Vec<BenchRow>, GpuError> {
+    ) -> Result<Vec<BenchRow>, BenchError> {
         let places: Vec<usize> = (0..drawn.len()).filter(|&place| drawn[place].timed.is_some()).collect();
         let mut entries: Vec<Entry<'_>> =
             drawn.iter().filter_map(|drawn| drawn.timed.as_ref()).map(|renderer| self.entry(renderer)).collect();
-        let laps = turns::measure(&mut entries, effort)?;
+        let laps = turns::measure(&mut entries, effort, self.stop)?;
         let of = |place: usize| places.iter().position(|&own| own == place).map(|k| &laps[k]);
         let base = baseline.and_then(of);
         let rows = drawn.iter().enumerate().map(|(place, drawn)| {
@@ -288,7 +296,7 @@ pub(super) mod tests {
         let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
         let gpu = lightmeter_subject_gpu::gpu(&subject).expect("an adapter has a device");
         let clock = Clock::new(gpu).unwrap_or_else(|error| panic!("{error}"));
-        let setting = Setting::new(true, 1);
+        let (setting, stop) = (Setting::new(true, 1), Stop::default());
         let on = On {
             subject: &subject,
             gpu: lightmeter_subject_gpu::gpu(&subject),
@@ -296,6 +304,7 @@ pub(super) mod tests {
             clock: &clock,
             profile: &WGSL,
             setting,
+            stop: &stop,
         };
         check(&Drawer::new(&on).expect("it has a device"));
     }

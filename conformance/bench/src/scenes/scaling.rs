@@ -2,14 +2,15 @@
 
 use super::drawing::{Drawer, sized};
 use super::{On, Setting, frames};
+use crate::ended::{BenchError, unless_stopped};
 use crate::fit::fit;
 use crate::turns;
 use crate::turns::{Effort, Entry, Laps};
 use lightmeter_document::bench::{Scaling, ScalingPoint};
 use lightmeter_document::event::{Event, Observer};
+use lightmeter_gpu::Clock;
 use lightmeter_gpu::compose::{Recipe, ShaderForm};
 use lightmeter_gpu::scene::SceneRenderer;
-use lightmeter_gpu::{Clock, GpuError};
 use lightmeter_scene::frame::{Frame, MOST_LIGHTS};
 use std::time::Instant;
 
@@ -27,12 +28,17 @@ const MOST_VERTICES: [u32; 2] = [1024, 256];
 /// The names of the scalings; ids in a filter are these behind `scaling/`.
 pub const SCALINGS: [&str; 3] = ["lights", "vertices", "pixels"];
 
-/// By lights, by vertices and by pixels, those of these names.
+/// By lights, by vertices and by pixels, those of these names: put behind those that are there.
 ///
 /// # Errors
-/// Where a shader is invalid or the device fails.
-pub fn scalings(on: &On<'_>, names: &[&str], observer: &mut dyn Observer) -> Result<Vec<Scaling>, GpuError> {
-    let Some(drawer) = Drawer::new(on) else { return Ok(vec![]) };
+/// Where a shader is invalid, the device fails or somebody stops it.
+pub fn scalings(
+    on: &On<'_>,
+    names: &[&str],
+    scalings: &mut Vec<Scaling>,
+    observer: &mut dyn Observer,
+) -> Result<(), BenchError> {
+    let Some(drawer) = Drawer::new(on) else { return Ok(()) };
     let (gpu, setting) = (drawer.gpu, &on.setting);
     let most = usize::from(setting.quick);
     let powers =
@@ -70,13 +76,12 @@ pub fn scalings(on: &On<'_>, names: &[&str], observer: &mut dyn Observer) -> Res
             frame: &|side| sized(frames::sheet("phong"), side),
         },
     ];
-    let mut scalings = vec![];
     for kind in kinds.into_iter().filter(|kind| names.contains(&kind.id)) {
         observer.see(&Event::Group(&format!("scaling/{}", kind.id)));
         scalings.push(kind.measure(&drawer, setting)?);
         observer.see(&Event::Advanced(1));
     }
-    Ok(scalings)
+    Ok(())
 }
 
 /// What grows.
@@ -97,9 +102,10 @@ struct Step {
 }
 
 impl Kind<'_> {
-    fn measure(self, drawer: &Drawer<'_>, setting: &Setting) -> Result<Scaling, GpuError> {
+    fn measure(self, drawer: &Drawer<'_>, setting: &Setting) -> Result<Scaling, BenchError> {
         let (mut steps, mut unavailable) = (vec![], vec![]);
         for (work, size) in self.steps {
+            unless_stopped(drawer.stop)?;
             let frame = (self.frame)(size);
             let most = drawer.gpu.most_pixels();
             if frame.target.width.max(frame.target.height) > most {
@@ -140,13 +146,14 @@ impl Kind<'_> {
 }
 
 /// The laps of each step in turns, the slow ones in few of their own.
-fn laps(drawer: &Drawer<'_>, steps: &[Step], effort: Effort) -> Result<Vec<Laps>, GpuError> {
+fn laps(drawer: &Drawer<'_>, steps: &[Step], effort: Effort) -> Result<Vec<Laps>, BenchError> {
     let mut laps: Vec<Laps> = vec![vec![]; steps.len()];
     for is_slow in [false, true] {
         let places: Vec<usize> = (0..steps.len()).filter(|&place| steps[place].is_slow == is_slow).collect();
         if is_slow {
             for _ in 0..FEW.min(effort.turns) {
                 for &place in &places {
+                    unless_stopped(drawer.stop)?;
                     let reading = steps[place].renderer.time(drawer.gpu, drawer.clock, 1)?;
                     laps[place].push(reading.seconds());
                 }
@@ -162,7 +169,7 @@ fn laps(drawer: &Drawer<'_>, steps: &[Step], effort: Effort) -> Result<Vec<Laps>
                 })
             })
             .collect();
-        for (place, own) in places.iter().zip(turns::measure(&mut entries, effort)?) {
+        for (place, own) in places.iter().zip(turns::measure(&mut entries, effort, drawer.stop)?) {
             laps[*place] = own;
         }
     }

@@ -2,10 +2,11 @@
 
 use super::drawing::{Drawer, Plan, Standard, side, sized};
 use super::{On, Setting, frames};
+use crate::ended::BenchError;
 use lightmeter_document::bench::{BenchGroup, GroupKind};
 use lightmeter_document::event::{Event, Observer};
+use lightmeter_gpu::Rung;
 use lightmeter_gpu::compose::{Recipe, ShaderForm, Technique};
-use lightmeter_gpu::{GpuError, Rung};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
 
@@ -22,24 +23,24 @@ pub fn technique_ids() -> Vec<&'static str> {
     comparisons().into_iter().map(|comparison| comparison.id).collect()
 }
 
-/// The groups of these ids, each way to draw at the rungs of the ladder.
+/// The groups of these ids, each way to draw at the rungs of the ladder: put behind those that are there.
 ///
 /// # Errors
-/// Where a shader is invalid or the device fails.
+/// Where a shader is invalid, the device fails or somebody stops it.
 pub fn techniques(
     on: &On<'_>,
     ladder: &[(Rung, Option<String>)],
     ids: &[&str],
+    groups: &mut Vec<BenchGroup>,
     observer: &mut dyn Observer,
-) -> Result<Vec<BenchGroup>, GpuError> {
-    let Some(drawer) = Drawer::new(on) else { return Ok(vec![]) };
-    let mut groups = vec![];
+) -> Result<(), BenchError> {
+    let Some(drawer) = Drawer::new(on) else { return Ok(()) };
     for comparison in comparisons().into_iter().filter(|comparison| ids.contains(&comparison.id)) {
         observer.see(&Event::Group(comparison.id));
         groups.push(comparison.measure(&drawer, ladder, &on.setting)?);
         observer.see(&Event::Advanced(1));
     }
-    Ok(groups)
+    Ok(())
 }
 
 /// Ways to draw the same.
@@ -87,7 +88,7 @@ impl Comparison {
         drawer: &Drawer<'_>,
         ladder: &[(Rung, Option<String>)],
         setting: &Setting,
-    ) -> Result<BenchGroup, GpuError> {
+    ) -> Result<BenchGroup, BenchError> {
         let standards = self.standards(drawer, side(setting, SIDE, SIDE_QUICK));
         let plans = self.plans(&standards, ladder);
         let drawn = drawer.draw(&plans, &standards[0])?;

@@ -8,6 +8,7 @@ pub mod pareto;
 pub mod recommendation;
 
 use crate::Number;
+use crate::run::Interrupted;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +35,9 @@ pub struct BenchDocument {
     pub cores: usize,
     /// What was measured, adapter by adapter.
     pub adapters: Vec<Measured>,
+    /// What was under way when a signal ended the bench: it lacks groups, or sittings of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interrupted: Option<Interrupted>,
 }
 
 /// What was measured on an adapter.

@@ -1,5 +1,6 @@
 //! What `bench --recommend` writes: the cheapest row of each group within an error limit, `lightmeter.recommendation/1`.
 
+use crate::run::Interrupted;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -51,6 +52,9 @@ pub struct Recommendation {
     pub inputs: Inputs,
     /// The groups, adapter by adapter.
     pub groups: Vec<Advice>,
+    /// What was under way when a signal ended the bench: groups are missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interrupted: Option<Interrupted>,
 }
 
 /// What is recommended of a group.

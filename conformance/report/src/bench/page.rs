@@ -397,6 +397,9 @@ const SHOWN: [&str; 2] = ["lighting/blinn", "fog/exp"];
 /// # Errors
 /// Where the writer fails.
 pub fn readme(document: &BenchDocument, out: &mut impl Write) -> Result {
+    if let Some(interrupted) = &document.interrupted {
+        writeln!(out, "Interrupted: {}.\n", plain(&interrupted.to_string()))?;
+    }
     for measured in &document.adapters {
         let is_in_shaders = |group: &&BenchGroup| group.kind == GroupKind::Formula && !is_processor(&group.baseline);
         let formulas = measured.groups.iter().filter(is_in_shaders);

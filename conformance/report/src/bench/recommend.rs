@@ -94,7 +94,8 @@ pub fn recommend(document: &BenchDocument, limit: Limit, inputs: Inputs) -> Reco
         .iter()
         .flat_map(|measured| measured.groups.iter().map(|group| advice(&measured.adapter, group, limit, inputs)));
     let groups = groups.collect();
-    Recommendation { schema: SCHEMA.into(), limit: limit.to_string(), inputs, groups }
+    let interrupted = document.interrupted.clone();
+    Recommendation { schema: SCHEMA.into(), limit: limit.to_string(), inputs, groups, interrupted }
 }
 
 fn advice(adapter: &str, group: &BenchGroup, limit: Limit, inputs: Inputs) -> Advice {
@@ -149,6 +150,9 @@ pub fn write(recommendation: &Recommendation, out: &mut impl Write) -> Written {
     };
     let unit = recommendation.limit.parse().map_or("", Limit::unit);
     writeln!(out, "the cheapest whose largest error on {inputs} is at most {}", recommendation.limit)?;
+    if let Some(interrupted) = &recommendation.interrupted {
+        wrapped("interrupted: ", "  ", &interrupted.to_string(), out)?;
+    }
     let width = recommendation.groups.iter().map(|one| one.group.chars().count()).max().unwrap_or(0).min(44);
     let mut adapter = "";
     for one in &recommendation.groups {

@@ -193,6 +193,7 @@ pub(crate) fn document() -> BenchDocument {
         seconds: 512.3,
         cores: 2,
         adapters: vec![first, second],
+        interrupted: None,
     }
 }
 

@@ -20,6 +20,9 @@ pub fn write(document: &BenchDocument, details: bool, out: &mut impl Write) -> R
     let quick = if document.quick { "quick: fewer formulas and turns; " } else { "" };
     let head = format!("{command}: {quick}version {version}, seed {seed}, {}, {seconds:.0} s", count(*cores, "core"));
     wrapped("", "  ", &head, out)?;
+    if let Some(interrupted) = &document.interrupted {
+        wrapped("interrupted: ", "  ", &interrupted.to_string(), out)?;
+    }
     for measured in &document.adapters {
         adapter(measured, out)?;
         claims(measured, out)?;
