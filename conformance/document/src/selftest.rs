@@ -1,6 +1,7 @@
 //! The JSON of `selftest`.
 
 use crate::Word;
+use crate::run::Interrupted;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +35,9 @@ pub struct SelftestDocument {
     /// The mistakes of whole renderers, in the scenes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenes: Option<SceneRecord>,
+    /// What was under way when a signal ended the self-test: not every mistake was tried.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interrupted: Option<Interrupted>,
 }
 
 /// What became of a mistake in a formula.
@@ -118,13 +122,16 @@ pub struct Record {
     pub kills: Vec<Kill>,
     /// Every formula without a mistake.
     pub clean: Vec<Clean>,
+    /// Whether every mistake was tried, and none in every formula; a signal can end the self-test earlier.
+    pub is_complete: bool,
 }
 
 impl Record {
-    /// Whether every mistake is caught and nothing right is flagged.
+    /// Whether all was tried, every mistake is caught and nothing right is flagged.
     #[must_use]
     pub fn is_good(&self) -> bool {
-        self.kills.iter().all(|kill| kill.finding != Finding::Survived)
+        self.is_complete
+            && self.kills.iter().all(|kill| kill.finding != Finding::Survived)
             && self.clean.iter().all(|clean| clean.failed == 0 && clean.systematic.is_none())
     }
 
@@ -224,13 +231,16 @@ pub struct SceneRecord {
     pub rows: Vec<SceneRow>,
     /// Scenes in which nothing is wrong and something fails all the same.
     pub alarms: Vec<String>,
+    /// How many scenes were judged before a signal ended the self-test; absent where all were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judged: Option<usize>,
 }
 
 impl SceneRecord {
-    /// Whether every mistake is caught, and nothing that is right is flagged.
+    /// Whether every scene was judged, every mistake is caught, and nothing that is right is flagged.
     #[must_use]
     pub fn is_good(&self) -> bool {
-        self.alarms.is_empty() && self.rows.iter().all(SceneRow::is_caught)
+        self.judged.is_none() && self.alarms.is_empty() && self.rows.iter().all(SceneRow::is_caught)
     }
 
     /// How often a mistake was caught, and how often it was told by its name.

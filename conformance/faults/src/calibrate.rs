@@ -7,6 +7,7 @@ use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::{CaseRef, Member, Shard, catalogue, select};
+use lightmeter_document::event::Stop;
 use lightmeter_document::selftest::{OffBy, Resolution};
 use lightmeter_judge::{Outcome, judge};
 use rayon::prelude::*;
@@ -25,7 +26,7 @@ const STEP: f64 = 1.25;
 const MOST_STEPS: u32 = 16;
 
 /// Measures every parameter of every formula that a filter selects. Of the many blend states, which have their operands in
-/// common, the named modes stand for all.
+/// common, the named modes stand for all. Once it is told to stop, no other parameter is measured.
 #[must_use]
 pub fn calibrate(options: &SelftestOptions) -> Vec<Resolution> {
     let members = catalogue();
@@ -36,7 +37,10 @@ pub fn calibrate(options: &SelftestOptions) -> Vec<Resolution> {
         Kind::Arithmetic => true,
     };
     let members: Vec<&Member> = selected.iter().map(|chosen| &members[chosen.member]).filter(is_measured).collect();
-    members.into_par_iter().flat_map_iter(|member| Scale::new(member, options).measure()).collect()
+    let measure = |member| {
+        if options.stop.is_set() { vec![] } else { Scale::new(member, options).measure(&options.stop) }
+    };
+    members.into_par_iter().flat_map_iter(measure).collect()
 }
 
 /// 4,096 cases of a formula.
@@ -76,7 +80,7 @@ impl<'a> Scale<'a> {
         Self { member, inputs, reference, legal, right, design }
     }
 
-    fn measure(&self) -> Vec<Resolution> {
+    fn measure(&self, stop: &Stop) -> Vec<Resolution> {
         let of = |(place, parameter): (usize, &Parameter)| Resolution {
             formula: self.member.spec.id.clone(),
             parameter: parameter.name.clone(),
@@ -85,7 +89,7 @@ impl<'a> Scale<'a> {
             single: self.single(place, parameter),
             group: self.group(place, parameter),
         };
-        self.design.parameters.iter().enumerate().map(of).collect()
+        self.design.parameters.iter().enumerate().take_while(|_| !stop.is_set()).map(of).collect()
     }
 
     /// The embedded implementation with the parameter off by so much.

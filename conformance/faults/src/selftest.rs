@@ -12,6 +12,7 @@ use lightmeter_arithmetic::{Accept, Profile, RandomLegal, random};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::{CaseRef, Member, Shard, catalogue, select};
+use lightmeter_document::event::Stop;
 use lightmeter_document::selftest::{Clean, Finding, Kill, Record};
 use lightmeter_judge::diagnose::Answered;
 use lightmeter_judge::{Outcome, judge};
@@ -32,30 +33,40 @@ pub struct SelftestOptions {
     pub draws: u64,
     /// By which rules.
     pub profile: &'static Profile,
+    /// Ends it before its time.
+    pub stop: Stop,
 }
 
-/// Tries every mistake, and none, in every formula that a filter selects.
+/// Tries every mistake, and none, in every formula that a filter selects. Once it is told to stop, no other mistake is tried, and a
+/// formula whose legal evaluations are under way is left out of those without a mistake.
 #[must_use]
 pub fn selftest(options: &SelftestOptions) -> Record {
     let members = catalogue();
     let selected = select(&members, &options.filter, options.cases, Shard::WHOLE);
-    let tried: Vec<(Vec<Kill>, Clean)> =
+    let tried: Vec<(Vec<Kill>, Option<Clean>)> =
         selected.par_iter().map(|chosen| try_all(&members[chosen.member], options)).collect();
-    let (kills, clean): (Vec<Vec<Kill>>, Vec<Clean>) = tried.into_iter().unzip();
-    Record { kills: kills.into_iter().flatten().collect(), clean }
+    let (kills, clean): (Vec<Vec<Kill>>, Vec<Option<Clean>>) = tried.into_iter().unzip();
+    let is_complete = clean.iter().all(Option::is_some);
+    Record { kills: kills.into_iter().flatten().collect(), clean: clean.into_iter().flatten().collect(), is_complete }
 }
 
 /// Random cases of a run, which a mistake must show in at the latest.
 const CASES_OF_A_RUN: u64 = 4096;
 
-/// Every mistake in a formula, and none.
-fn try_all(member: &Member, options: &SelftestOptions) -> (Vec<Kill>, Clean) {
+/// Every mistake in a formula, and none; `None` where that was stopped.
+fn try_all(member: &Member, options: &SelftestOptions) -> (Vec<Kill>, Option<Clean>) {
+    if options.stop.is_set() {
+        return (vec![], None);
+    }
     let spec = &member.spec;
     let is_state = matches!(spec.kind, Kind::Blend(_));
     let few = Bench::new(member, options, if is_state { options.cases.div_ceil(4) } else { options.cases });
     let all = LazyCell::new(|| Bench::new(member, options, CASES_OF_A_RUN));
     let mut kills = vec![];
     for fault in concerning(spec) {
+        if options.stop.is_set() {
+            return (kills, None);
+        }
         let Some(variation) = Variation::new(member, &[fault]) else { continue };
         let kill = few.kill(fault, &variation);
         // What does not show in a few cases has those of a run.
@@ -183,7 +194,8 @@ impl<'a> Bench<'a> {
         same() || (within(variation, &other) && within(&other, variation))
     }
 
-    fn clean(&self) -> Clean {
+    /// Verdicts on what is right; `None` where they were stopped.
+    fn clean(&self) -> Option<Clean> {
         let spec = &self.member.spec;
         let mut clean = Clean { formula: spec.id.clone(), verdicts: 0, failed: 0, systematic: None };
         let mut take = |values: Vec<Vec<f32>>, grouped: bool| {
@@ -201,11 +213,14 @@ impl<'a> Bench<'a> {
         // A rasteriser chooses where it snaps, not how it rounds.
         if !matches!(spec.kind, Kind::Raster(_)) {
             for draw in 0..self.options.draws {
+                if self.options.stop.is_set() {
+                    return None;
+                }
                 random::seed(self.options.seed.wrapping_add(draw));
                 take(self.answers(|inputs, out| self.draw(inputs, out)), draw == 0);
             }
         }
-        clean
+        Some(clean)
     }
 
     /// One legal evaluation.

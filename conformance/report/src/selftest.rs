@@ -28,7 +28,8 @@ pub fn text(record: &Record, mistakes: &[Mistake], resolutions: &[Resolution], o
     let aliases = record.kills.iter().filter(|kill| kill.alias).count();
     writeln!(
         out,
-        "\n{total} mistakes in formulas: {} caught, {} named first ({aliases} of them by an alias of the same values)",
+        "\n{total} mistakes in formulas{}: {} caught, {} named first ({aliases} of them by an alias of the same values)",
+        if record.is_complete { "" } else { ", not all that there are" },
         total - record.count(Finding::Survived),
         record.count(Finding::Named),
     )?;

@@ -1,12 +1,15 @@
 //! `lightmeter selftest`.
 
 use super::options::{Choice, Format, Targets};
+use super::signals::{status_of, stopped_by_signals};
 use super::{NothingToRun, Status, emit};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::selftest::selftest;
 use lightmeter::document::Document as _;
+use lightmeter::document::event::Stop;
+use lightmeter::document::run::Interrupted;
 use lightmeter::document::selftest::{
     Mistake, NamedFrom, Record, Resolution, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow,
 };
@@ -20,9 +23,12 @@ use lightmeter_scene::target::TargetFormat;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Pixels of the longer side of each scene.
 const SCENE_SIZE: u32 = 64;
+/// How often a signal is looked for while a target is tested.
+const LOOKED_EVERY: Duration = Duration::from_millis(20);
 
 /// What is tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -80,6 +86,7 @@ struct Tested {
     resolutions: Vec<Resolution>,
     scenes: Option<SceneRecord>,
     unit: Option<Vec<UnitRow>>,
+    interrupted: Option<Interrupted>,
 }
 
 impl Selftest {
@@ -91,37 +98,57 @@ impl Selftest {
             bail!("a filter selects formulas; expected none beside `--only` of anything else");
         }
         let targets = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
-        let tested = self.test(&targets)?;
+        let tested = self.test(&targets, &stopped_by_signals()?)?;
         let text = match self.format {
             Format::Json => tested.json()?,
             Format::Text | Format::Junit => tested.text(&targets)?,
         };
         emit(&text, self.out.as_deref())?;
-        Ok(if tested.is_good() { Status::Success } else { Status::Failed })
+        Ok(match &tested.interrupted {
+            Some(interrupted) => status_of(interrupted),
+            None if tested.is_good() => Status::Success,
+            None => Status::Failed,
+        })
     }
 
     fn wants(&self, part: Part) -> bool {
         self.only.is_none_or(|only| only == part)
     }
 
-    fn test(&self, targets: &[TargetFormat]) -> anyhow::Result<Tested> {
+    fn test(&self, targets: &[TargetFormat], stop: &Stop) -> anyhow::Result<Tested> {
         let filter = Filter::new(&self.filter)?;
         let mut tested = Tested::default();
+        let mut under_way = String::new();
+        let mut say = |what: &str| {
+            say(what);
+            what.clone_into(&mut under_way);
+        };
         if self.wants(Part::Formulas) {
-            self.test_formulas(filter, &mut tested)?;
+            self.test_formulas(filter, stop, &mut say, &mut tested)?;
         }
-        if self.wants(Part::Scenes) && self.filter.is_empty() {
-            let progress = |id: &str| say(&format!("every mistake in {id}"));
-            tested.scenes = Some(scenes::selftest(SCENE_SIZE, self.profile, &progress)?);
+        let is_asked = |part| self.wants(part) && self.filter.is_empty() && !stop.is_set();
+        if is_asked(Part::Scenes) {
+            let mut progress = |id: &str| say(&format!("every mistake in {id}"));
+            tested.scenes = Some(scenes::selftest(SCENE_SIZE, self.profile, stop, &mut progress)?);
         }
-        if self.wants(Part::BlendUnit) && self.filter.is_empty() {
-            let mut progress = |target: &str| say(&format!("every fault on {target}"));
-            tested.unit = Some(selftest(targets, self.cases, &mut progress)?);
+        if is_asked(Part::BlendUnit) {
+            for &target in targets {
+                say(&format!("every fault on {}", target.name()));
+                let Some(rows) = unit(target, self.cases, stop)? else { break };
+                tested.unit.get_or_insert_default().extend(rows);
+            }
         }
+        tested.interrupted = stop.interrupted("the self-test", &under_way);
         Ok(tested)
     }
 
-    fn test_formulas(&self, filter: Filter, tested: &mut Tested) -> anyhow::Result<()> {
+    fn test_formulas(
+        &self,
+        filter: Filter,
+        stop: &Stop,
+        say: &mut impl FnMut(&str),
+        tested: &mut Tested,
+    ) -> anyhow::Result<()> {
         say("every mistake in every formula that it concerns");
         let options = formulas::SelftestOptions {
             filter,
@@ -129,14 +156,15 @@ impl Selftest {
             seed: self.seed,
             draws: self.draws,
             profile: self.profile,
+            stop: stop.clone(),
         };
         let record = formulas::selftest(&options);
-        if record.clean.is_empty() {
+        if record.clean.is_empty() && !stop.is_set() {
             return Err(NothingToRun("no formula matches the filter".into()).into());
         }
         tested.formulas = Some(record);
-        if self.calibrate {
-            say("the smallest errors that are named");
+        if self.calibrate && !stop.is_set() {
+            say("measuring the smallest errors that are named");
             tested.resolutions = calibrate(&options);
         }
         Ok(())
@@ -145,7 +173,8 @@ impl Selftest {
 
 impl Tested {
     fn is_good(&self) -> bool {
-        self.unit.iter().flatten().all(|row| row.finding.is_good())
+        self.interrupted.is_none()
+            && self.unit.iter().flatten().all(|row| row.finding.is_good())
             && self.formulas.iter().all(Record::is_good)
             && self.scenes.iter().all(SceneRecord::is_good)
     }
@@ -160,6 +189,7 @@ impl Tested {
             named_from: (!self.resolutions.is_empty()).then_some(NAMED_FROM),
             calibration: self.formulas.is_some().then(|| self.resolutions.clone()),
             scenes: self.scenes.clone(),
+            interrupted: self.interrupted.clone(),
         };
         Ok(document.to_json()?)
     }
@@ -180,7 +210,24 @@ impl Tested {
         if let Some(rows) = &self.unit {
             parts.push(table(targets, rows)?);
         }
+        parts.extend(self.interrupted.as_ref().map(|interrupted| format!("interrupted: {interrupted}\n")));
         Ok(parts.join("\n"))
+    }
+}
+
+/// Every fault of the blend unit on a target; `None` where a signal came before all were tried. What is under way then ends with the
+/// process.
+fn unit(target: TargetFormat, cases: u64, stop: &Stop) -> anyhow::Result<Option<Vec<UnitRow>>> {
+    let work = std::thread::spawn(move || selftest(&[target], cases, &mut |_| {}));
+    while !work.is_finished() {
+        if stop.is_set() {
+            return Ok(None);
+        }
+        std::thread::sleep(LOOKED_EVERY);
+    }
+    match work.join() {
+        Ok(rows) => Ok(Some(rows?)),
+        Err(panic) => std::panic::resume_unwind(panic),
     }
 }
 
@@ -217,8 +264,10 @@ fn word(finding: UnitFinding) -> &'static str {
 
 fn table(targets: &[TargetFormat], rows: &[UnitRow]) -> anyhow::Result<String> {
     let mut text = String::new();
+    let targets: Vec<&TargetFormat> =
+        targets.iter().filter(|target| rows.iter().any(|row| row.target == target.name())).collect();
     write!(text, "{:<30}", "blend unit")?;
-    for target in targets {
+    for target in &targets {
         write!(text, " {:<17}", target.name())?;
     }
     writeln!(text)?;

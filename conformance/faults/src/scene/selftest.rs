@@ -4,6 +4,7 @@ use super::{SCENE_FAULTS, Trial, draw, fails};
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
+use lightmeter_document::event::Stop;
 use lightmeter_document::selftest::{SceneRecord, SceneRow};
 use lightmeter_judge::image::expect;
 use lightmeter_judge::image::file::StoredImage;
@@ -17,9 +18,16 @@ use std::fmt::{Result, Write};
 /// Where the writer fails.
 pub fn text(record: &SceneRecord, out: &mut impl Write) -> Result {
     let [caught, named] = record.counts();
-    writeln!(out, "scenes: {} mistakes, caught {caught} times, told by name first {named} times", record.rows.len())?;
+    let judged = record.judged.map(|judged| format!(" in the {judged} of {} that were judged", SCENES.len()));
+    let (judged, mistakes) = (judged.unwrap_or_default(), record.rows.len());
+    writeln!(out, "scenes: {mistakes} mistakes{judged}, caught {caught} times, told by name first {named} times")?;
     for row in &record.rows {
-        let mark = if row.is_caught() { '✓' } else { '✗' };
+        let mark = match (row.is_caught(), record.judged) {
+            (true, _) => '✓',
+            (false, None) => '✗',
+            // Another scene may catch it.
+            (false, Some(_)) => '·',
+        };
         let [caught, named] = [row.caught.len(), row.named.len()];
         writeln!(out, "{mark} {:<28} caught in {caught:>2} scenes, named in {named:>2}: {}", row.fault, row.says)?;
     }
@@ -30,14 +38,15 @@ pub fn text(record: &SceneRecord, out: &mut impl Write) -> Result {
 }
 
 /// What the scenes catch, drawn with so many pixels on their longer side; and the scenes in which nothing is wrong and
-/// something fails all the same.
+/// something fails all the same. A scene that is under way when it is told to stop is left out.
 ///
 /// # Errors
 /// Where a scene is refused, which a test rules out.
 pub fn selftest(
     size: u32,
     profile: &Profile,
-    progress: &(impl Fn(&str) + Sync),
+    stop: &Stop,
+    progress: &mut impl FnMut(&str),
 ) -> std::result::Result<SceneRecord, lightmeter_catalogue::scene::SceneError> {
     let mut rows: Vec<SceneRow> = SCENE_FAULTS
         .iter()
@@ -51,17 +60,21 @@ pub fn selftest(
         .collect();
     let mut alarms = vec![];
     for place in 0..SCENES.len() {
+        if stop.is_set() {
+            return Ok(SceneRecord { rows, alarms, judged: Some(place) });
+        }
         let id = scene_id(place);
         progress(&id);
         let frame = builtin(place, Some(size))?.frame;
         let expected = expect(&frame, None, None, profile);
         let reference = StoredImage::unrounded(&render::<f64>(&frame, None, None), frame.target.format);
-        if fails(&draw::<f32>(&frame, &[]), &reference, &expected) {
-            alarms.push(id.clone());
-        }
+        let is_alarm = fails(&draw::<f32>(&frame, &[]), &reference, &expected);
         let found: Vec<Option<std::result::Result<(), String>>> = SCENE_FAULTS
             .par_iter()
             .map(|fault| {
+                if stop.is_set() {
+                    return None;
+                }
                 let image = draw::<f32>(&frame, &[fault]);
                 if !fails(&image, &reference, &expected) {
                     return None;
@@ -75,6 +88,10 @@ pub fn selftest(
                 Some(if is_named { Ok(()) } else { Err(diagnosis.sentence) })
             })
             .collect();
+        if stop.is_set() {
+            return Ok(SceneRecord { rows, alarms, judged: Some(place) });
+        }
+        alarms.extend(is_alarm.then(|| id.clone()));
         for (row, found) in rows.iter_mut().zip(found) {
             match found {
                 None => continue,
@@ -84,7 +101,7 @@ pub fn selftest(
             row.caught.push(id.clone());
         }
     }
-    Ok(SceneRecord { rows, alarms })
+    Ok(SceneRecord { rows, alarms, judged: None })
 }
 
 #[cfg(test)]
@@ -94,7 +111,7 @@ mod tests {
 
     #[test]
     fn every_mistake_is_caught_and_nearly_all_are_named() {
-        let record = selftest(40, &WGSL, &|_| {}).expect("the scenes load");
+        let record = selftest(40, &WGSL, &Stop::default(), &mut |_| {}).expect("the scenes load");
         assert!(record.alarms.is_empty(), "{:?}", record.alarms);
         let rows = &record.rows;
         let survivors: Vec<&str> = rows.iter().filter(|row| !row.is_caught()).map(|row| row.fault.as_str()).collect();

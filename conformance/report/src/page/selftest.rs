@@ -25,9 +25,12 @@ impl SelftestRun {
     /// Reads the JSON.
     ///
     /// # Errors
-    /// Where it is another document, of the blend unit alone, or of mistakes that this version does not have.
+    /// Where it is another document, interrupted, of the blend unit alone, or of mistakes that this version does not have.
     pub fn read(json: &str) -> Result<Self, String> {
         let document = SelftestDocument::read(json).map_err(|error| error.to_string())?;
+        if let Some(interrupted) = document.interrupted {
+            return Err(format!("it was interrupted: {interrupted}; expected one that is complete"));
+        }
         let (Some(kills), Some(clean)) = (document.kills, document.clean) else {
             return Err("it is of the blend unit alone; expected formulas too".into());
         };
@@ -35,7 +38,7 @@ impl SelftestRun {
             return Err("it does not name its mistakes, as older versions did not; run the self-test anew".into());
         }
         let run = Self {
-            record: Record { kills, clean },
+            record: Record { kills, clean, is_complete: true },
             mistakes: document.mistakes,
             named_from: document.named_from,
             calibration: document.calibration.unwrap_or_default(),
@@ -278,6 +281,11 @@ mod tests {
             ("{", "not JSON"),
             (r#"{"schema":"lightmeter.run/1"}"#, "expected lightmeter.selftest/1"),
             (r#"{"schema":"lightmeter.selftest/1","rows":[]}"#, "of the blend unit alone"),
+            (
+                r#"{"schema":"lightmeter.selftest/1","kills":[],"clean":[],
+                    "interrupted":{"under_way":"scene/phong","message":"a signal ended the self-test","signal":2}}"#,
+                "it was interrupted: scene/phong was under way",
+            ),
         ] {
             let error = SelftestRun::read(json).expect_err("it is no page's");
             assert!(error.contains(message), "{error}");
