@@ -46,6 +46,9 @@ pub fn write(report: &SpecialReport, out: &mut impl Write) -> Result {
             writeln!(out, "{line}")?;
         }
     }
+    if let Some(interrupted) = &report.interrupted {
+        writeln!(out, "interrupted: {interrupted}")?;
+    }
     verdict(report, out)
 }
 

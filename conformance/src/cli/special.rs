@@ -1,6 +1,8 @@
 //! `lightmeter special`.
 
 use super::options::Format;
+use super::progress::Bar;
+use super::signals::{status_of, stopped_by_signals};
 use super::{NothingToRun, Status, emit};
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -39,10 +41,15 @@ impl Special {
         if self.format == Format::Junit {
             bail!("probes are written as text or json");
         }
+        // Before anything is read: a signal ends each command in the same way.
+        let stop = stopped_by_signals()?;
         let code = code_of(self.shaders.as_deref())?;
         let subjects = adapters::open(&self.adapter)?;
-        let report = run(&subjects, &code)?;
-        if report.outcomes.is_empty() {
+        let mut bar = Bar::new(None, "adapters");
+        let report = run(&subjects, &code, &stop, &mut bar);
+        bar.bar.finish_and_clear();
+        let report = report?;
+        if report.outcomes.is_empty() && report.interrupted.is_none() {
             let message = "nothing could be probed: the embedded implementation has no shading language";
             return Err(NothingToRun(message.into()).into());
         }
@@ -57,7 +64,11 @@ impl Special {
             text
         };
         emit(&text, self.out.as_deref())?;
-        Ok(if report.is_success() { Status::Success } else { Status::Failed })
+        Ok(match &report.interrupted {
+            Some(interrupted) => status_of(interrupted),
+            None if report.is_success() => Status::Success,
+            None => Status::Failed,
+        })
     }
 }
 

@@ -116,9 +116,14 @@ fn carry(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::adapters::open;
     use lightmeter_catalogue::special::{Class, PROBES};
+    use lightmeter_document::event::{Event, Observer, Stop};
+    use lightmeter_document::special::SpecialReport;
+    use lightmeter_engine::special::run::run;
     use lightmeter_scene::target::SENTINEL;
     use std::collections::BTreeSet;
+    use std::sync::atomic::Ordering;
 
     #[test]
     fn every_function_has_a_probe() {
@@ -147,6 +152,50 @@ mod tests {
         }
         for class in Class::ALL {
             assert!(PROBES.iter().any(|probe| probe.class == class), "{class:?} has no probe");
+        }
+    }
+
+    /// Whether an event is the one that the probes are stopped at.
+    type IsIt = fn(&Event<'_>) -> bool;
+
+    /// Stops the probes at an event.
+    struct StopsAt {
+        stop: Stop,
+        is_it: IsIt,
+    }
+
+    impl Observer for StopsAt {
+        fn see(&mut self, event: &Event<'_>) {
+            if (self.is_it)(event) {
+                self.stop.flag().store(15, Ordering::Relaxed);
+            }
+        }
+    }
+
+    /// What is left of the probes on two devices of one adapter.
+    fn stopped_at(is_it: IsIt) -> SpecialReport {
+        let first = || open(&[]).unwrap_or_else(|error| panic!("{error}"));
+        let subjects: Vec<_> = first().into_iter().chain(first()).collect();
+        let code = crate::code(Shaders::built_in().expect("the built-in shaders are valid"));
+        let mut observer = StopsAt { stop: Stop::default(), is_it };
+        run(&subjects, &code, &observer.stop.clone(), &mut observer).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn no_adapter_is_probed_after_a_stop() {
+        // An event, and how many adapters are probed once it stops the probes.
+        let rows: [(IsIt, usize); 4] = [
+            (|_| false, 2),
+            (|event| matches!(event, Event::Begun(_)), 0),
+            (|event| matches!(event, Event::Group(_)), 0),
+            (|event| matches!(event, Event::Advanced(_)), 1),
+        ];
+        for (is_it, probed) in rows {
+            let report = stopped_at(is_it);
+            assert_eq!(report.adapters.len(), probed);
+            assert_eq!(report.outcomes.is_empty(), probed == 0);
+            let signal = report.interrupted.as_ref().and_then(|interrupted| interrupted.signal);
+            assert_eq!((signal, report.is_success()), if probed == 2 { (None, true) } else { (Some(15), false) });
         }
     }
 }

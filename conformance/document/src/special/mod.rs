@@ -3,7 +3,7 @@
 pub mod record;
 
 use crate::Word;
-use crate::run::Identity;
+use crate::run::{Identity, Interrupted};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -129,13 +129,16 @@ pub struct SpecialReport {
     pub skipped: Vec<Skipped>,
     /// Every result.
     pub outcomes: Vec<ProbeResult>,
+    /// The adapter that was under way when a signal ended the probes: none after it was probed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interrupted: Option<Interrupted>,
 }
 
 impl SpecialReport {
-    /// Whether every promise was kept, and every result is as on record where a record binds.
+    /// Whether every adapter was probed, every promise was kept, and every result is as on record where a record binds.
     #[must_use]
     pub fn is_success(&self) -> bool {
-        !self.outcomes.iter().any(|outcome| outcome.verdict.is_failure())
+        self.interrupted.is_none() && !self.outcomes.iter().any(|outcome| outcome.verdict.is_failure())
     }
 
     /// A probe's results on an adapter, stage by stage.

@@ -4,6 +4,7 @@ use crate::device::{Code, DeviceError, Probed};
 use crate::subject::Subject;
 use lightmeter_catalogue::special::{PROBES, Probe, Promise, SpecialDeviation};
 use lightmeter_document::Word;
+use lightmeter_document::event::{Event, Observer, Stop};
 use lightmeter_document::run::Identity;
 use lightmeter_document::special::{self, ProbeResult, ProbeRow, ProbeVerdict, RecordUse, Skipped, SpecialReport};
 use lightmeter_judge::special::record::{DriverRecord, OnRecord};
@@ -42,11 +43,17 @@ pub fn record(report: &SpecialReport, adapter: &Identity) -> DriverRecord {
     record
 }
 
-/// Evaluates every probe on every device. The embedded implementation has no shading language and is left out.
+/// Evaluates every probe on every device, one after the other until somebody stops it. The embedded implementation has no shading
+/// language and is left out.
 ///
 /// # Errors
 /// Where a shader is invalid, or a device fails.
-pub fn run(subjects: &[Subject], code: &Code) -> Result<SpecialReport, DeviceError> {
+pub fn run(
+    subjects: &[Subject],
+    code: &Code,
+    stop: &Stop,
+    observer: &mut dyn Observer,
+) -> Result<SpecialReport, DeviceError> {
     let mut report = SpecialReport {
         schema: special::SCHEMA.into(),
         adapters: vec![],
@@ -54,14 +61,24 @@ pub fn run(subjects: &[Subject], code: &Code) -> Result<SpecialReport, DeviceErr
         probes: PROBES.iter().map(row).collect(),
         skipped: vec![],
         outcomes: vec![],
+        interrupted: None,
     };
     let probes: Vec<&'static Probe> = PROBES.iter().collect();
+    observer.see(&Event::Begun(subjects.len() as u64));
     for subject in subjects {
-        let Some(results) = evaluate(subject, code, &probes)? else { continue };
-        report.adapters.push(subject.identity.clone());
-        report.outcomes.extend(results.outcomes);
-        report.skipped.extend(results.skipped);
-        report.records.extend(results.record);
+        observer.see(&Event::Group(&subject.identity.name));
+        let results = if stop.is_set() { None } else { evaluate(subject, code, &probes)? };
+        if let Some(results) = results {
+            report.adapters.push(subject.identity.clone());
+            report.outcomes.extend(results.outcomes);
+            report.skipped.extend(results.skipped);
+            report.records.extend(results.record);
+        }
+        observer.see(&Event::Advanced(1));
+        report.interrupted = stop.interrupted("the probes", &subject.identity.name);
+        if report.interrupted.is_some() {
+            break;
+        }
     }
     let place = |outcome: &ProbeResult| PROBES.iter().position(|probe| outcome.probe == probe.name);
     report.outcomes.sort_by_key(place);

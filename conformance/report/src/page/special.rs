@@ -23,9 +23,12 @@ impl SpecialRun {
     /// Reads the JSON.
     ///
     /// # Errors
-    /// Where it is another document, or of probes that this version does not have.
+    /// Where it is another document, interrupted, or of probes that this version does not have.
     pub fn read(json: &str) -> Result<Self, String> {
         let run = Self(SpecialReport::read(json).map_err(|error| error.to_string())?);
+        if let Some(interrupted) = &run.interrupted {
+            return Err(format!("it was interrupted: {interrupted}; expected one that is complete"));
+        }
         let unknown = run.outcomes.iter().find(|outcome| Probe::by_name(&outcome.probe).is_none());
         match unknown {
             Some(outcome) => Err(format!("no probe `{}`: the file is of another version", outcome.probe)),
