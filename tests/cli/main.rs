@@ -12,6 +12,7 @@ mod live;
 mod mistakes;
 mod scene;
 mod selftest;
+mod signals;
 mod special;
 mod sweep;
 
