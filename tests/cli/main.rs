@@ -4,6 +4,7 @@
 
 mod bench;
 mod blend;
+mod compared;
 mod documents;
 mod gate;
 mod hard;

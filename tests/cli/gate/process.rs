@@ -371,3 +371,68 @@ fn all_is_asked_as_often_as_is_said() {
     let (status, found) = report(&process(&["fog/exp"], fault, &[]));
     assert_eq!((status, count(&found, "unstable")), (1, 1), "{found}");
 }
+
+#[test]
+fn blending_is_asked_on_every_target_that_is_declared() {
+    let of = |fault: &str, more: &[&str]| {
+        report(&process(&["blend/{add,min}/src-alpha", "blend/write-mask", "blend/layers"], fault, more))
+    };
+    let named = |found: &serde_json::Value, target: &str, words: &str| {
+        let groups = found["groups"].as_array().expect("an array");
+        let is_so = |group: &&serde_json::Value| group["target"] == target && group.to_string().contains(words);
+        groups.iter().filter(is_so).count()
+    };
+    let (status, found) = of("targets=all", &[]);
+    assert_eq!((status, count(&found, "failed"), count(&found, "missing")), (0, 0, 0), "{}", found["totals"]);
+    for target in ["rgba32float", "rgba16float", "rgba8unorm", "rgba8unorm-srgb", "bgra8unorm"] {
+        assert_eq!(named(&found, target, "\"asked\""), 4, "{target}");
+    }
+    // Each alias of MIN has cases of its own.
+    let min = found["groups"]
+        .as_array()
+        .expect("an array")
+        .iter()
+        .find(|group| group["id"] == "blend/min" && group["target"] == "rgba8unorm");
+    assert_eq!(min.and_then(|group| group["asked"].as_u64()), Some(15 * 64), "{min:?}");
+    let (status, found) = of("targets=all blends-by=truncate", &[]);
+    assert!(status == 1 && named(&found, "rgba8unorm", "stored truncated") == 4, "{}", found["totals"]);
+    let (status, found) = of("targets=all blends-by=times-256", &["--target", "rgba8unorm"]);
+    assert!(status == 1 && named(&found, "rgba8unorm", "×256 for ×255") >= 2, "{}", found["totals"]);
+    assert_eq!(named(&found, "bgra8unorm", ""), 0, "one target was asked for");
+    let (status, found) = of("targets=all blends-by=factors-in-min", &[]);
+    assert!(status == 1 && named(&found, "rgba16float", "multiplied by their factors") == 1, "{}", found["totals"]);
+    let (status, found) = of("", &[]);
+    assert!(status == 0 && named(&found, "rgba8unorm", "") == 0, "nothing was declared: {}", found["totals"]);
+}
+
+#[test]
+fn a_process_that_fails_at_a_pixel_costs_that_pixel_alone() {
+    let id = "blend/add/src-alpha/one/0003@rgba8unorm";
+    for (fault, failed) in [("crash-at", 4), ("short-at", 1), ("nan-at", 1)] {
+        let (status, found) = report(&process(&["blend/add/src-alpha/one"], &format!("targets=all {fault}={id}"), &[]));
+        assert_eq!(
+            (status, count(&found, "failed"), count(&found, "missing")),
+            (failed, 1, 0),
+            "{fault}: {}",
+            found["totals"]
+        );
+        let failure = &found["failures"][0];
+        assert_eq!(
+            (&failure["id"], &failure["target"]),
+            (&id.split('@').next().into(), &"rgba8unorm".into()),
+            "{failure}"
+        );
+    }
+}
+
+#[test]
+fn shards_of_a_gate_are_its_cases() {
+    let whole = report(&process(&["fog"], "wrong-at=fog/exp/random/000017", &[])).1;
+    let (mut asked, mut failed) = (0, 0);
+    for shard in ["1/3", "2/3", "3/3"] {
+        let (_, part) = report(&process(&["fog"], "wrong-at=fog/exp/random/000017", &["--shard", shard]));
+        asked += count(&part, "asked");
+        failed += count(&part, "failed");
+    }
+    assert_eq!((asked, failed), (count(&whole, "asked"), 1));
+}

@@ -1,0 +1,127 @@
+//! A run held against an earlier one, against known failures, and against itself.
+
+use super::{code, edited, json, lightmeter, stderr, stdout};
+use serde_json::Value;
+use std::path::PathBuf;
+
+/// A file of this test's own.
+fn file(name: &str) -> PathBuf {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_file(&path);
+    path
+}
+
+/// A run of a few cases.
+fn run(filter: &[&str], more: &[&str]) -> (i32, String, String) {
+    let output = lightmeter(&[&["run", "--cases", "200"], filter, more].concat());
+    (code(&output), stdout(&output), stderr(&output))
+}
+
+#[test]
+fn a_run_is_no_worse_than_its_baseline_or_says_where() {
+    let baseline = file("run-baseline.json");
+    let path = baseline.to_str().expect("the path is UTF-8");
+    let wrong = edited("run-baseline-wrong", "vector.wgsl", |text| text.replace("return i - 2.0", "return i - 2.0001"));
+    let wrong = wrong.to_str().expect("the path is UTF-8");
+    let filter = ["vector/reflect", "fog/linear", "blend/add/one"];
+    let (status, _, said) = run(&filter, &["--baseline", path, "--update-baseline"]);
+    assert!(status == 0 && said.contains("is this result now"), "{said}");
+    // The same cases, a filter of them, and each shard.
+    for (filter, more) in
+        [(&filter[..], &[][..]), (&["fog/linear"], &[]), (&filter, &["--shard", "1/3"]), (&filter, &["--shard", "3/3"])]
+    {
+        let (status, said, _) = run(filter, &[&["--baseline", path], more].concat());
+        assert_eq!(status, 0, "{more:?}: {said}");
+    }
+    let (status, said, _) = run(&filter, &["--baseline", path, "--shaders", wrong]);
+    assert!(status == 1 && said.contains("are worse than in the baseline"), "{said}");
+    assert!(
+        said.contains("vector/reflect on lavapipe, compute:") && said.contains("failed and did not before"),
+        "{said}"
+    );
+    assert!(!said.contains("fog/linear on lavapipe, compute:"), "{said}");
+    let (status, _, said) = run(&filter, &["--baseline", path, "--seed", "2"]);
+    assert!(status == 2 && said.contains("seed 1 there, 2 here"), "{said}");
+    // What is wrong in the baseline and right now is no regression.
+    let (status, ..) = run(&["vector/reflect"], &["--baseline", path, "--update-baseline", "--shaders", wrong]);
+    assert_eq!(status, 1);
+    assert_eq!(run(&["vector/reflect"], &["--baseline", path]).0, 0);
+}
+
+#[test]
+fn what_is_no_result_of_a_run_is_no_baseline() {
+    let baseline = file("run-no-baseline.json");
+    let path = baseline.to_str().expect("the path is UTF-8");
+    for (text, expected) in [
+        ("", "cannot read"),
+        ("{\"schema\": \"lightmeter.gate/1\"}", "lightmeter.run/1"),
+        ("{\"schema\": \"lightmeter.run/1\"}", "cannot read"),
+    ] {
+        std::fs::write(&baseline, text).expect("it can be written");
+        let (status, _, said) = run(&["fog/linear"], &["--baseline", path]);
+        assert!(status == 2 && said.contains(expected), "{text}: {said}");
+    }
+}
+
+#[test]
+fn a_known_failure_is_expected_on_an_adapter_and_told_when_it_passes() {
+    let expected = file("run-expected.toml");
+    let path = expected.to_str().expect("the path is UTF-8");
+    let wrong = edited("run-expected-wrong", "vector.wgsl", |text| text.replace("return i - 2.0", "return i + 2.0"));
+    let wrong = wrong.to_str().expect("the path is UTF-8");
+    let write = |id: &str| {
+        let text = format!("[[expected]]\nid = \"{id}\"\nreason = \"a sign is lost\"\n");
+        std::fs::write(&expected, text).expect("it can be written");
+    };
+    write("vector/reflect");
+    let filter = ["vector/reflect", "fog/linear"];
+    let (status, said, _) = run(&filter, &["--expect", path, "--shaders", wrong]);
+    assert!(status == 0 && said.contains("fails as expected") && said.contains("a sign is lost"), "{said}");
+    let report = json(
+        &[&["run", "--cases", "200", "--format", "json"], &filter[..], &["--expect", path, "--shaders", wrong]]
+            .concat(),
+    );
+    let of = |name: &str| report["totals"][name].as_u64();
+    assert!(of("failed") == Some(0) && of("expected_failures") > Some(100), "{}", report["totals"]);
+    let (status, said, _) = run(&filter, &["--expect", path]);
+    assert!(status == 1 && said.contains("PASSES: take it out"), "{said}");
+    write("vector/reflect/random/000003");
+    let (status, said, _) = run(&filter, &["--expect", path, "--shaders", wrong]);
+    assert!(status == 1 && said.contains("fails as expected"), "{said}");
+    write("vector/no-such");
+    let (status, _, said) = run(&filter, &["--expect", path]);
+    assert!(status == 2 && said.contains("matches no case"), "{said}");
+}
+
+#[test]
+fn results_are_the_same_however_often_they_are_asked() {
+    let report =
+        json(&["run", "fog", "depth", "interpolation/linear", "--cases", "100", "--runs", "3", "--format", "json"]);
+    assert_eq!((report.get("unstable"), report["totals"]["failed"].as_u64()), (None, Some(0)), "{}", report["totals"]);
+}
+
+#[test]
+fn failures_are_annotations_for_a_server() {
+    let wrong = edited("run-github-wrong", "vector.wgsl", |text| text.replace("return i - 2.0", "return i + 2.0"));
+    let wrong = wrong.to_str().expect("the path is UTF-8");
+    let (status, said, _) = run(&["vector/reflect"], &["--shaders", wrong, "--format", "github"]);
+    let lines: Vec<&str> = said.lines().collect();
+    assert!(status == 1 && lines.len() >= 3, "{said}");
+    assert!(
+        lines.iter().all(|line| line.starts_with("::error title=") || line.starts_with("::notice title=")),
+        "{said}"
+    );
+    assert!(lines[0].contains("vector/reflect") && lines[0].contains("lightmeter run"), "{said}");
+}
+
+#[test]
+fn each_group_says_what_became_of_its_cases() {
+    let report = json(&["run", "fog/linear", "blend/add/one/zero", "--cases", "100", "--format", "json"]);
+    for group in report["groups"].as_array().expect("an array") {
+        let counts = &group["by_case"];
+        let count = |name: &str| counts[name].as_u64().unwrap_or_default();
+        assert!(count("asked") >= 6 && count("asked") == count("passed"), "{group}");
+        assert_eq!(counts["not_passed"], Value::Object(serde_json::Map::new()), "{group}");
+    }
+    assert_eq!(report["compared_by"]["choice"]["cases"], 100);
+}
