@@ -1,10 +1,10 @@
 //! Formulas as arithmetic, in the compute and in the fragment stage: the same WGSL, which drivers compile differently.
 
 use crate::device::Gpu;
+use crate::device::readback::{Pending, staging};
 use crate::error::GpuError;
 use crate::kernel::{FRAGMENT_WIDTH, Kernel};
 use crate::pipeline::{bind, cleared, compute_pipeline, render_pipeline};
-use crate::readback::{Pending, staging};
 use lightmeter_scene::target::SENTINEL;
 
 const BITS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;

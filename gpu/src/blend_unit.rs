@@ -4,9 +4,9 @@
 //! one pixel are layers that overlap in order. Destinations are uploaded and results read back in the target's own bits, so
 //! that nothing but the unit itself converts them.
 
+use crate::device::readback::{Pending, staging};
 use crate::device::{Gpu, format, middle};
 use crate::error::GpuError;
-use crate::readback::{Pending, staging};
 use crate::shaders::Shaders;
 use lightmeter_scene::blend::{Equation, Factor, Route, Separate, State, WriteMask};
 use lightmeter_scene::target::TargetFormat;

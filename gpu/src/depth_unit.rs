@@ -1,8 +1,8 @@
 //! The fixed-function depth test: every case a pixel, two fragments on it, one read-back for all.
 
+use crate::device::readback::{Pending, read_target};
 use crate::device::{Gpu, middle};
 use crate::error::GpuError;
-use crate::readback::{Pending, read_target};
 use crate::screen::{BITS, draw_screen, screen_pipeline};
 use crate::shaders::Shaders;
 use lightmeter_scene::depth::{Compare, DepthTest};

@@ -1,5 +1,11 @@
 //! One open device and what all evaluations on it share.
 
+mod clock;
+pub(crate) mod readback;
+
+pub use clock::{Clock, ClockKind, ClockReading};
+pub use readback::Pending;
+
 use crate::error::GpuError;
 use lightmeter_scene::target::TargetFormat;
 use std::sync::{Arc, Mutex, PoisonError};

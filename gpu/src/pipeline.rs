@@ -1,7 +1,7 @@
 //! Pipelines of generated entry points, and what is bound and attached to them.
 
 use crate::device::Gpu;
-use crate::readback::sentinel_color;
+use crate::device::readback::sentinel_color;
 
 /// An entry point in the compute stage.
 pub(crate) fn compute_pipeline(gpu: &Gpu, label: &str, source: String, entry: &str) -> wgpu::ComputePipeline {

@@ -2,9 +2,9 @@
 
 use crate::depth_unit::compare_function;
 use crate::device::Gpu;
+use crate::device::readback::{Pending, read_target};
 use crate::error::GpuError;
 use crate::pipeline::{bind, cleared};
-use crate::readback::{Pending, read_target};
 use crate::screen::{BITS, draw_screen, screen_pipeline};
 use crate::shaders::Shaders;
 use lightmeter_scene::depth::Compare;

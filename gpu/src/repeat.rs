@@ -2,12 +2,12 @@
 //! what comes out is folded into one word, so that nothing can be left out and little is read or written. The same pipeline
 //! hands back what it gives for the rows as they are.
 
-use crate::clock::{Clock, ClockReading};
 use crate::device::Gpu;
+use crate::device::readback::{Pending, staging};
+use crate::device::{Clock, ClockReading};
 use crate::error::GpuError;
 use crate::kernel::Kernel;
 use crate::pipeline::bind;
-use crate::readback::{Pending, staging};
 use crate::rung::Rung;
 use crate::shaders::Shaders;
 use lightmeter_scene::target::SENTINEL;
@@ -137,7 +137,7 @@ impl RepeatPipeline {
 mod tests {
     use super::*;
     use crate::adapters;
-    use crate::clock::ClockKind;
+    use crate::device::ClockKind;
 
     /// Timestamps that a driver takes before it has computed would tell less than goes by on the wall.
     #[test]

@@ -7,11 +7,11 @@ mod geometry;
 mod pipeline;
 mod uniforms;
 
-use crate::clock::{Clock, ClockReading};
 use crate::compose::{Composer, Intermediate, MOST_TOWARD, Recipe, ShaderForm, Technique, live};
+use crate::device::readback::{Pending, staging};
+use crate::device::{Clock, ClockReading};
 use crate::device::{Gpu, format};
 use crate::error::GpuError;
-use crate::readback::{Pending, staging};
 use crate::shaders::Shaders;
 use geometry::Geometry;
 use lightmeter_scene::effects::{Called, Effect, Effects};

@@ -6,10 +6,10 @@
 
 use crate::arithmetic::Programmable;
 use crate::device::Gpu;
+use crate::device::readback::staging;
 use crate::error::GpuError;
 use crate::kernel::{Kernel, SWEEP_GROUP, SWEEP_WIDTH};
 use crate::pipeline::{bind, cleared, compute_pipeline, render_pipeline};
-use crate::readback::staging;
 use crate::shaders::Shaders;
 use lightmeter_scene::along::Along;
 use lightmeter_scene::target::SENTINEL;

@@ -4,9 +4,9 @@
 use super::Rung;
 use super::dialect::Prelude;
 use crate::device::Gpu;
+use crate::device::readback::{Pending, staging};
 use crate::error::GpuError;
 use crate::pipeline::bind;
-use crate::readback::{Pending, staging};
 use lightmeter_scene::target::SENTINEL;
 
 /// What is wrong with what came of two numbers.

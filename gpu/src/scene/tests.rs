@@ -3,7 +3,7 @@
 use super::uniforms::Told;
 use super::*;
 use crate::adapters;
-use crate::clock::ClockKind;
+use crate::device::ClockKind;
 use crate::rung::Rung;
 use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::depth::{Compare, DepthTest};
