@@ -113,7 +113,7 @@ impl BlendUnit {
         self.lanes.iter_mut().zip(batches).map(|(lane, batch)| lane.submit(target, batch)).collect()
     }
 
-    /// The pixels of each batch in the target's own bits.
+    /// All pixels of each batch's target in its own bits: those of the batch first.
     ///
     /// # Errors
     /// Where a device failed or was lost.
@@ -170,8 +170,7 @@ impl Lane {
             },
             drawn.size(),
         );
-        // The target's last row may have pixels of no case.
-        Ok(Pending::submit(gpu, encoder, staging, (row_bytes / 4, row_bytes / 4)).of_bytes(batch.destinations.len()))
+        Ok(Pending::submit(gpu, encoder, staging, (row_bytes / 4, row_bytes / 4)))
     }
 
     /// Makes the pipelines that are not there yet.

@@ -1,9 +1,13 @@
 //! One open device and what all evaluations on it share.
 
 mod clock;
+mod encode;
+mod executor;
+mod objects;
 pub(crate) mod readback;
 
 pub use clock::{Clock, ClockKind, ClockReading};
+pub(crate) use executor::Executor;
 pub use readback::Pending;
 
 use crate::error::GpuError;
@@ -119,7 +123,8 @@ impl Gpu {
         match self.device.poll(wait) {
             Ok(_) => self.check(),
             Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout(PATIENCE.as_secs())),
-            Err(error) => Err(GpuError::Device(error.to_string())),
+            // What the device said before is why nothing can be waited for.
+            Err(error) => Err(self.check().err().unwrap_or_else(|| GpuError::Device(error.to_string()))),
         }
     }
 

@@ -21,6 +21,7 @@ pub mod scene;
 mod screen;
 mod shaders;
 mod sweep;
+pub mod work;
 
 pub use adapters::{Adapter, adapters, vulkan_adapters};
 pub use arithmetic::{ArithmeticPipeline, Programmable};

@@ -158,7 +158,7 @@ impl SceneRenderer {
     pub fn time(&self, gpu: &Gpu, clock: &Clock, repeats: u32) -> Result<ClockReading, GpuError> {
         clock.time(gpu, |encoder, span| {
             for k in 0..repeats {
-                self.encode(encoder, span.render(k == 0, k + 1 == repeats));
+                self.encode(encoder, span.part(k == 0, k + 1 == repeats).render());
             }
         })
     }

@@ -91,30 +91,46 @@ struct Stamps {
     period: f64,
 }
 
-/// Where a measurement's passes write their timestamps.
+/// The timestamps that a measurement's passes write.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Span<'a>(Option<&'a wgpu::QuerySet>);
+pub(crate) struct Span<'a> {
+    queries: Option<&'a wgpu::QuerySet>,
+    /// Whether the next pass begins it.
+    begins: bool,
+    /// Whether the next pass ends it.
+    ends: bool,
+}
 
 impl<'a> Span<'a> {
     /// Nothing is measured.
-    pub(crate) const NONE: Self = Self(None);
+    pub(crate) const NONE: Self = Self { queries: None, begins: false, ends: false };
+
+    const fn of(queries: &'a wgpu::QuerySet) -> Self {
+        Self { queries: Some(queries), begins: true, ends: true }
+    }
+
+    /// What one of several parts of the work writes.
+    pub(crate) const fn part(self, is_first: bool, is_last: bool) -> Self {
+        Self { queries: self.queries, begins: self.begins && is_first, ends: self.ends && is_last }
+    }
 
     /// For a compute pass.
     pub(crate) fn compute(self) -> Option<wgpu::ComputePassTimestampWrites<'a>> {
-        self.0.map(|query_set| wgpu::ComputePassTimestampWrites {
+        let query_set = self.queries.filter(|_| self.begins || self.ends)?;
+        Some(wgpu::ComputePassTimestampWrites {
             query_set,
-            beginning_of_pass_write_index: Some(0),
-            end_of_pass_write_index: Some(1),
+            beginning_of_pass_write_index: self.begins.then_some(0),
+            end_of_pass_write_index: self.ends.then_some(1),
         })
     }
 
-    /// For a render pass, of some in one submission.
-    pub(crate) fn render(self, is_first: bool, is_last: bool) -> Option<wgpu::RenderPassTimestampWrites<'a>> {
-        let query_set = self.0.filter(|_| is_first || is_last)?;
+    /// For a render pass.
+    pub(crate) fn render(self) -> Option<wgpu::RenderPassTimestampWrites<'a>> {
+        let query_set = self.queries.filter(|_| self.begins || self.ends)?;
         Some(wgpu::RenderPassTimestampWrites {
             query_set,
-            beginning_of_pass_write_index: is_first.then_some(0),
-            end_of_pass_write_index: is_last.then_some(1),
+            beginning_of_pass_write_index: self.begins.then_some(0),
+            end_of_pass_write_index: self.ends.then_some(1),
         })
     }
 }
@@ -164,7 +180,7 @@ impl Clock {
         encode: impl FnOnce(&mut wgpu::CommandEncoder, Span<'_>),
     ) -> Result<ClockReading, GpuError> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        encode(&mut encoder, self.stamps.as_ref().map_or(Span::NONE, |stamps| Span(Some(&stamps.queries))));
+        encode(&mut encoder, self.stamps.as_ref().map_or(Span::NONE, |stamps| Span::of(&stamps.queries)));
         if let Some(stamps) = &self.stamps {
             encoder.resolve_query_set(&stamps.queries, 0..2, &stamps.resolved, 0);
             encoder.copy_buffer_to_buffer(&stamps.resolved, 0, &stamps.staging, 0, 16);
