@@ -2,26 +2,27 @@
 //! what comes out is folded into one word, so that nothing can be left out and little is read or written. The same pipeline
 //! hands back what it gives for the rows as they are.
 
-use crate::device::Gpu;
-use crate::device::readback::{Pending, staging};
-use crate::device::{Clock, ClockReading};
+use crate::device::{Clock, ClockReading, Executor, Gpu};
 use crate::error::GpuError;
 use crate::kernel::Kernel;
-use crate::pipeline::bind;
 use crate::rung::Rung;
 use crate::shaders::Shaders;
-use lightmeter_scene::target::SENTINEL;
+use crate::work::{BindGroup, Buffer, ComputePass, ComputePipeline, Handle, Read, Resources, Step, Submission};
+use wgpu_types::BufferUsages;
 
 /// Evaluations of one invocation.
 pub(crate) const TIMES: u32 = 32;
 /// Invocations of a workgroup.
 const GROUP: u32 = 64;
+/// The pipeline of a kernel's [`Resources`].
+const PIPELINE: Handle = Handle::Kept(0);
+/// The rows of a kernel's [`Resources`].
+const ROWS: Handle = Handle::Kept(0);
 
 /// A kernel compiled to be timed.
 #[derive(Debug)]
 pub struct RepeatPipeline {
-    pipeline: wgpu::ComputePipeline,
-    rows: wgpu::Buffer,
+    executor: Executor,
     /// Numbers of a row.
     inputs: usize,
     /// Words of a row's outputs: for each, those that its rung hands it back in.
@@ -72,19 +73,9 @@ impl RepeatPipeline {
         if let Some(reason) = gpu.lacks_compute() {
             return Ok(Err(reason.into()));
         }
-        let module = gpu.module(&kernel.function, source);
-        let constants = [("lightmeter_times", f64::from(TIMES))];
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(&kernel.function),
-            layout: None,
-            module: &module,
-            entry_point: Some("lightmeter_repeat"),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            cache: None,
-        });
-        gpu.check_shader(&kernel.file)?;
-        let rows = gpu.buffer(bytemuck::cast_slice(rows), wgpu::BufferUsages::STORAGE);
-        Ok(Ok(Self { pipeline, rows, inputs: kernel.inputs, words }))
+        let mut executor = Executor::default();
+        executor.make(gpu, &resources(kernel, source, rows), &kernel.file)?;
+        Ok(Ok(Self { executor, inputs: kernel.inputs, words }))
     }
 
     /// The words of the outputs of rows of inputs, row after row.
@@ -92,15 +83,8 @@ impl RepeatPipeline {
     /// # Errors
     /// Where the device failed or was lost.
     pub fn outputs(&self, gpu: &Gpu, rows: &[f32]) -> Result<Vec<u32>, GpuError> {
-        let (stride, count) = (self.words + 1, rows.len() / self.inputs);
-        let rows = gpu.buffer(bytemuck::cast_slice(rows), wgpu::BufferUsages::STORAGE);
-        let (results, bindings) = self.bindings(gpu, &rows, count * stride);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let groups = u32::try_from(count).unwrap_or(u32::MAX).div_ceil(GROUP);
-        self.encode(&mut encoder, None, &bindings, groups);
-        let staging = staging(gpu, count * stride);
-        encoder.copy_buffer_to_buffer(&results, 0, &staging, 0, staging.size());
-        Pending::submit(gpu, encoder, staging, (stride, self.words)).wait(gpu)
+        let words = self.executor.submit(gpu, &self.submission(rows)).wait(gpu)?;
+        Ok(words.chunks_exact(self.words + 1).flat_map(|row| &row[..self.words]).copied().collect())
     }
 
     /// How long so many workgroups take, of [`Self::EVALUATIONS`] each.
@@ -108,29 +92,42 @@ impl RepeatPipeline {
     /// # Errors
     /// Where the device fails.
     pub fn time(&self, gpu: &Gpu, clock: &Clock, groups: u32) -> Result<ClockReading, GpuError> {
-        let (_, bindings) = self.bindings(gpu, &self.rows, self.words + 1);
-        clock.time(gpu, |encoder, span| self.encode(encoder, span.compute(), &bindings, groups))
+        let mut work = Submission::default();
+        self.evaluate(&mut work, ROWS, 1, groups);
+        self.executor.time(gpu, clock, &work, 1)
     }
 
-    fn bindings(&self, gpu: &Gpu, rows: &wgpu::Buffer, words: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let results = gpu.buffer(bytemuck::cast_slice(&vec![SENTINEL; words]), usage);
-        let bindings = bind(gpu, &self.pipeline.get_bind_group_layout(0), &[rows, &results]);
-        (results, bindings)
+    /// The evaluation of rows of inputs. Each row gives its outputs, and what was folded.
+    #[must_use]
+    pub fn submission(&self, rows: &[f32]) -> Submission {
+        let count = rows.len() / self.inputs;
+        let mut work = Submission::default();
+        let rows = work.buffer(Buffer::of(rows, BufferUsages::STORAGE));
+        let groups = u32::try_from(count).unwrap_or(u32::MAX).div_ceil(GROUP);
+        let results = self.evaluate(&mut work, rows, count, groups);
+        work.reads.push(Read::Buffer { buffer: results, bytes: 4 * count * (self.words + 1) });
+        work
     }
 
-    fn encode(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
-        bindings: &wgpu::BindGroup,
-        groups: u32,
-    ) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, bindings, &[]);
-        pass.dispatch_workgroups(groups, 1, 1);
+    /// Evaluates rows by some workgroups, of which the first invocations write the results of `count` rows.
+    fn evaluate(&self, work: &mut Submission, rows: Handle, count: usize, groups: u32) -> Handle {
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+        let results = work.buffer(Buffer::sentinels(count * (self.words + 1), usage));
+        let group = work.group(BindGroup::of_buffers(PIPELINE, &[rows, results]));
+        work.steps.push(Step::Compute(ComputePass { pipeline: PIPELINE, group, workgroups: [groups, 1, 1] }));
+        results
     }
+}
+
+/// What a kernel needs from one submission to the next: its pipeline, and the rows that are timed.
+fn resources(kernel: &Kernel, source: String, rows: &[f32]) -> Resources {
+    let mut resources = Resources::default();
+    let shader = resources.shader(&kernel.function, source);
+    let mut pipeline = ComputePipeline::new(&kernel.function, shader, "lightmeter_repeat");
+    pipeline.constants.insert("lightmeter_times".into(), TIMES.into());
+    resources.pipeline(pipeline);
+    resources.buffer(Buffer::of(rows, BufferUsages::STORAGE));
+    resources
 }
 
 #[cfg(test)]
@@ -138,6 +135,21 @@ mod tests {
     use super::*;
     use crate::adapters;
     use crate::device::ClockKind;
+    use crate::work::tests::{device, words_by_json};
+
+    #[test]
+    fn rows_are_evaluated_over_and_over_alike_by_way_of_json() {
+        let gpu = device();
+        let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+        let kernel = Kernel::new(&shaders, "fog.wgsl", "fog_exp").unwrap_or_else(|error| panic!("{error}"));
+        let rows: Vec<f32> = (0..100 * kernel.inputs).map(|k| [0.25, 0.5, 0.75, 1.0, 1.5][k * k % 13 % 5]).collect();
+        let source = kernel.repeat(&shaders, Rung::F32).unwrap_or_else(|error| panic!("{error}"));
+        let source = source.unwrap_or_else(|reason| panic!("{reason}"));
+        let made = RepeatPipeline::new(&gpu, &shaders, &kernel, Rung::F32, &rows);
+        let pipeline = made.unwrap_or_else(|error| panic!("{error}")).unwrap_or_else(|reason| panic!("{reason}"));
+        let words = words_by_json(&gpu, &resources(&kernel, source, &rows), &pipeline.submission(&rows));
+        assert_eq!(words.len(), 100 * (kernel.outputs + 1));
+    }
 
     /// Timestamps that a driver takes before it has computed would tell less than goes by on the wall.
     #[test]

@@ -1,10 +1,10 @@
 //! Runs descriptions of work on a device by wgpu: the one place that makes objects, encodes commands and submits them.
 
-use super::Gpu;
 use super::clock::Span;
 use super::encode::encode;
 use super::objects::Objects;
 use super::readback::{Layout, Pending};
+use super::{Clock, ClockReading, Gpu};
 use crate::error::GpuError;
 use crate::work::{Resources, Submission};
 
@@ -41,6 +41,26 @@ impl Executor {
         encode(&mut encoder, scope, &work.steps, Span::NONE);
         layout.encode(&mut encoder, scope, &work.reads, &through);
         Pending::new(gpu.queue.submit([encoder.finish()]), through, layout)
+    }
+
+    /// How long the steps of the work take, so many times over. Nothing comes back.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub(crate) fn time(
+        &self,
+        gpu: &Gpu,
+        clock: &Clock,
+        work: &Submission,
+        repeats: u32,
+    ) -> Result<ClockReading, GpuError> {
+        let own = self.prepare(gpu, work);
+        let scope = own.scope(Some(&self.kept));
+        clock.time(gpu, |encoder, span| {
+            for k in 0..repeats {
+                encode(encoder, scope, &work.steps, span.part(k == 0, k + 1 == repeats));
+            }
+        })
     }
 
     /// Makes what ends with the submission, and writes what is to be written before it.

@@ -3,11 +3,10 @@
 
 use super::Rung;
 use super::dialect::Prelude;
-use crate::device::Gpu;
-use crate::device::readback::{Pending, staging};
+use crate::device::{Executor, Gpu};
 use crate::error::GpuError;
-use crate::pipeline::bind;
-use lightmeter_scene::target::SENTINEL;
+use crate::work::{BindGroup, Buffer, ComputePass, ComputePipeline, Read, Resources, Step, Submission};
+use wgpu_types::BufferUsages;
 
 /// What is wrong with what came of two numbers.
 type Judge = fn(f64, f64, &[f32]) -> Option<&'static str>;
@@ -158,29 +157,18 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
         count = PAIRS * words,
         zero = if rung == Rung::DoubleFloat { "rung_zero = id.y;" } else { "" },
     );
-    let module = gpu.module("probe", source);
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("probe"),
-        layout: None,
-        module: &module,
-        entry_point: Some("main"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
-    gpu.check_shader("rung/probe")?;
-    let given = gpu.buffer(bytemuck::cast_slice(given), wgpu::BufferUsages::STORAGE);
-    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-    let found = gpu.buffer(bytemuck::cast_slice(&vec![SENTINEL; PAIRS * words]), usage);
-    let bindings = bind(gpu, &pipeline.get_bind_group_layout(0), &[&given, &found]);
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bindings, &[]);
-        pass.dispatch_workgroups(u32::try_from(PAIRS / 64).unwrap_or(u32::MAX), 1, 1);
-    }
-    let staging = staging(gpu, PAIRS * words);
-    encoder.copy_buffer_to_buffer(&found, 0, &staging, 0, found.size());
-    let bits = Pending::submit(gpu, encoder, staging, (words, words)).wait(gpu)?;
+    let mut resources = Resources::default();
+    let shader = resources.shader("probe", source);
+    let pipeline = resources.pipeline(ComputePipeline::new("probe", shader, "main"));
+    let mut executor = Executor::default();
+    executor.make(gpu, &resources, "rung/probe")?;
+    let mut work = Submission::default();
+    let given = work.buffer(Buffer::of(given, BufferUsages::STORAGE));
+    let found = work.buffer(Buffer::sentinels(PAIRS * words, BufferUsages::STORAGE | BufferUsages::COPY_SRC));
+    let group = work.group(BindGroup::of_buffers(pipeline, &[given, found]));
+    let workgroups = [u32::try_from(PAIRS / 64).unwrap_or(u32::MAX), 1, 1];
+    work.steps.push(Step::Compute(ComputePass { pipeline, group, workgroups }));
+    work.reads.push(Read::Buffer { buffer: found, bytes: 4 * PAIRS * words });
+    let bits = executor.submit(gpu, &work).wait(gpu)?;
     Ok(bits.into_iter().map(f32::from_bits).collect())
 }
