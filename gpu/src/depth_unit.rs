@@ -1,19 +1,29 @@
 //! The fixed-function depth test: every case a pixel, two fragments on it, one read-back for all.
 
-use crate::device::readback::{Pending, read_target};
-use crate::device::{Gpu, middle};
+use crate::device::{Executor, Gpu, Pending, middle};
 use crate::error::GpuError;
-use crate::screen::{BITS, draw_screen, screen_pipeline};
 use crate::shaders::Shaders;
+use crate::work::{
+    BindGroup, Buffer, ColorAttachment, Command, DepthAttachment, Handle, Read, RenderPass, RenderPipeline, Resources,
+    Step, Submission, Texture, VertexBuffer,
+};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use std::collections::HashMap;
 use std::ops::Range;
+use wgpu_types::{
+    BufferUsages, Color, CompareFunction, DepthStencilState, PrimitiveState, PrimitiveTopology, TextureFormat,
+    TextureUsages, VertexAttribute, VertexFormat, VertexStepMode,
+};
 
 const FILE: &str = "depth_unit.wgsl";
 /// Pixels of a row of the target.
 const WIDTH: u32 = 256;
-const NUMBERS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const NUMBERS: TextureFormat = TextureFormat::R32Uint;
+const BITS: TextureFormat = TextureFormat::Rgba32Uint;
+/// The format of every depth that is tested.
+pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+/// The shader module of the unit's [`Resources`].
+const SHADER: Handle = Handle::Kept(0);
 
 /// Numbers that come out: the fragment that is seen, 1 or 2, and the depth that is left.
 pub const DEPTH_OUTPUTS: usize = 2;
@@ -21,10 +31,19 @@ pub const DEPTH_OUTPUTS: usize = 2;
 /// The depth test of an adapter, with the pipelines that were needed so far.
 #[derive(Debug)]
 pub struct DepthUnit {
-    module: wgpu::ShaderModule,
-    first: wgpu::RenderPipeline,
-    seconds: HashMap<DepthTest, wgpu::RenderPipeline>,
-    reader: wgpu::RenderPipeline,
+    executor: Executor,
+    pipelines: DepthPipelines,
+}
+
+#[derive(Debug)]
+struct DepthPipelines {
+    resources: Resources,
+    /// Draws what is there before.
+    first: Handle,
+    /// Draws what is tested.
+    seconds: HashMap<DepthTest, Handle>,
+    /// Turns what was drawn into bits.
+    reader: Handle,
 }
 
 impl DepthUnit {
@@ -33,12 +52,9 @@ impl DepthUnit {
     /// # Errors
     /// Where a shader is invalid or the device refuses a pipeline.
     pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, GpuError> {
-        let module = gpu.module(FILE, shaders.source(FILE));
-        let always = DepthTest { compare: Compare::Always, write: true };
-        let first = pipeline(gpu, &module, ("unit_old", "unit_first"), always);
-        let reader = screen_pipeline(gpu, &module, "unit_screen", "unit_left");
-        gpu.check_shader(FILE)?;
-        Ok(Self { module, first, seconds: HashMap::new(), reader })
+        let (mut executor, pipelines) = (Executor::default(), DepthPipelines::new(shaders));
+        executor.make(gpu, &pipelines.resources, FILE)?;
+        Ok(Self { executor, pipelines })
     }
 
     /// Draws every case: `tests[i]` on row i of `rows`, the new depth and the old.
@@ -46,70 +62,68 @@ impl DepthUnit {
     /// # Errors
     /// Where the device refuses a pipeline.
     pub fn submit(&mut self, gpu: &Gpu, tests: &[DepthTest], rows: &[f32]) -> Result<Pending, GpuError> {
-        for test in tests {
-            let module = &self.module;
-            self.seconds.entry(*test).or_insert_with(|| pipeline(gpu, module, ("unit_new", "unit_second"), *test));
-        }
-        gpu.check_shader(FILE)?;
-        let count = u32::try_from(tests.len()).unwrap_or(u32::MAX);
-        // A power of two, so that the middle of every pixel is exact in clip coordinates.
-        let height = count.div_ceil(WIDTH).next_power_of_two();
-        let vertex = wgpu::BufferUsages::VERTEX;
-        let places: Vec<[f32; 2]> = (0..count).map(|case| middle(case, WIDTH, height)).collect();
-        let places = gpu.buffer(bytemuck::cast_slice(&places), vertex);
-        let depths = gpu.buffer(bytemuck::cast_slice(rows), vertex);
-        let (numbers, depth) = (gpu.target(WIDTH, height, NUMBERS), gpu.target(WIDTH, height, DEPTH));
-        let [numbers, depth] = [&numbers, &depth].map(|texture| texture.create_view(&Default::default()));
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &numbers,
-                    depth_slice: None,
-                    resolve_target: None,
-                    // No fragment's number.
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view: &depth,
-                    // A depth that no case writes exactly.
-                    depth_ops: Some(wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(0.314_159_3),
-                        store: wgpu::StoreOp::Store,
-                    }),
-                    stencil_ops: None,
-                }),
-                ..Default::default()
-            });
-            pass.set_vertex_buffer(0, places.slice(..));
-            pass.set_vertex_buffer(1, depths.slice(..));
-            pass.set_pipeline(&self.first);
-            pass.draw(0..count, 0..1);
-            for (test, cases) in draws(tests) {
-                pass.set_pipeline(&self.seconds[&test]);
-                pass.draw(cases, 0..1);
-            }
-        }
-        let bits = gpu.target(WIDTH, height, BITS);
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &self.reader.get_bind_group_layout(0),
-            entries: &[(0, &numbers), (1, &depth)].map(|(binding, view)| wgpu::BindGroupEntry {
-                binding,
-                resource: wgpu::BindingResource::TextureView(view),
-            }),
-        });
-        draw_screen(&mut encoder, &self.reader, &group, &bits);
-        Ok(read_target(gpu, encoder, &bits))
+        self.pipelines.add(tests);
+        self.executor.make(gpu, &self.pipelines.resources, FILE)?;
+        Ok(self.executor.submit(gpu, &self.pipelines.submission(tests, rows)))
     }
 
     /// The outputs of each of `count` cases, from the words of the pending result.
     #[must_use]
     pub fn outputs(words: &[u32], count: usize) -> Vec<u32> {
         words.chunks_exact(4).take(count).flat_map(|pixel| pixel[..DEPTH_OUTPUTS].iter().copied()).collect()
+    }
+}
+
+impl DepthPipelines {
+    fn new(shaders: &Shaders) -> Self {
+        let mut resources = Resources::default();
+        resources.shader(FILE, shaders.source(FILE));
+        let always = DepthTest { compare: Compare::Always, write: true };
+        let first = resources.pipeline(pipeline(("unit_old", "unit_first"), always));
+        let reader = ("unit_screen", "unit_left");
+        let reader = resources.pipeline(RenderPipeline::new(reader.1, SHADER, reader, [BITS.into()]));
+        Self { resources, first, seconds: HashMap::new(), reader }
+    }
+
+    /// Describes the pipelines that are not there yet.
+    fn add(&mut self, tests: &[DepthTest]) {
+        for test in tests {
+            let describe = || self.resources.pipeline(pipeline(("unit_new", "unit_second"), *test));
+            self.seconds.entry(*test).or_insert_with(describe);
+        }
+    }
+
+    fn submission(&self, tests: &[DepthTest], rows: &[f32]) -> Submission {
+        let count = u32::try_from(tests.len()).unwrap_or(u32::MAX);
+        // A power of two, so that the middle of every pixel is exact in clip coordinates.
+        let height = count.div_ceil(WIDTH).next_power_of_two();
+        let places: Vec<[f32; 2]> = (0..count).map(|case| middle(case, WIDTH, height)).collect();
+        let mut work = Submission::default();
+        let places = work.buffer(Buffer::of(&places, BufferUsages::VERTEX));
+        let depths = work.buffer(Buffer::of(rows, BufferUsages::VERTEX));
+        let mut target = |format, also| work.texture(Texture::target([WIDTH, height], format, also));
+        let numbers = target(NUMBERS, TextureUsages::TEXTURE_BINDING);
+        let depth = target(DEPTH, TextureUsages::TEXTURE_BINDING);
+        let bits = target(BITS, TextureUsages::COPY_SRC);
+        let mut commands = vec![
+            Command::Vertices { slot: 0, buffer: places },
+            Command::Vertices { slot: 1, buffer: depths },
+            Command::Pipeline(self.first),
+            Command::Draw { vertices: 0..count, instances: 0..1 },
+        ];
+        for (test, vertices) in draws(tests) {
+            commands.extend([Command::Pipeline(self.seconds[&test]), Command::Draw { vertices, instances: 0..1 }]);
+        }
+        work.steps.push(Step::Render(RenderPass {
+            // No fragment's number.
+            colors: vec![ColorAttachment::cleared(numbers, Color::BLACK)],
+            depth: Some(DepthAttachment::unwritten(depth)),
+            commands,
+        }));
+        let group = work.group(BindGroup::of_textures(self.reader, &[(0, numbers), (1, depth)]));
+        work.steps.push(Step::Render(RenderPass::screen(self.reader, group, &[bits])));
+        work.reads.push(Read::Texture(bits));
+        work
     }
 }
 
@@ -125,55 +139,63 @@ fn draws(tests: &[DepthTest]) -> Vec<(DepthTest, Range<u32>)> {
     draws
 }
 
-pub(crate) const fn compare_function(compare: Compare) -> wgpu::CompareFunction {
-    match compare {
-        Compare::Never => wgpu::CompareFunction::Never,
-        Compare::Less => wgpu::CompareFunction::Less,
-        Compare::Equal => wgpu::CompareFunction::Equal,
-        Compare::LessEqual => wgpu::CompareFunction::LessEqual,
-        Compare::Greater => wgpu::CompareFunction::Greater,
-        Compare::NotEqual => wgpu::CompareFunction::NotEqual,
-        Compare::GreaterEqual => wgpu::CompareFunction::GreaterEqual,
-        Compare::Always => wgpu::CompareFunction::Always,
+/// The state of a depth test.
+pub(crate) fn depth_state(test: DepthTest) -> DepthStencilState {
+    DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(test.write),
+        depth_compare: Some(compare_function(test.compare)),
+        stencil: Default::default(),
+        bias: Default::default(),
     }
 }
 
-fn pipeline(
-    gpu: &Gpu,
-    module: &wgpu::ShaderModule,
-    (vertex, fragment): (&str, &str),
-    test: DepthTest,
-) -> wgpu::RenderPipeline {
-    let place = wgpu::vertex_attr_array![0 => Float32x2];
-    let depths = wgpu::vertex_attr_array![1 => Float32x2];
-    let buffer = |attributes| {
-        Some(wgpu::VertexBufferLayout { array_stride: 8, step_mode: wgpu::VertexStepMode::Vertex, attributes })
+const fn compare_function(compare: Compare) -> CompareFunction {
+    match compare {
+        Compare::Never => CompareFunction::Never,
+        Compare::Less => CompareFunction::Less,
+        Compare::Equal => CompareFunction::Equal,
+        Compare::LessEqual => CompareFunction::LessEqual,
+        Compare::Greater => CompareFunction::Greater,
+        Compare::NotEqual => CompareFunction::NotEqual,
+        Compare::GreaterEqual => CompareFunction::GreaterEqual,
+        Compare::Always => CompareFunction::Always,
+    }
+}
+
+fn pipeline(entries: (&str, &str), test: DepthTest) -> RenderPipeline {
+    let buffer = |shader_location| VertexBuffer {
+        stride: 8,
+        step: VertexStepMode::Vertex,
+        attributes: vec![VertexAttribute { format: VertexFormat::Float32x2, offset: 0, shader_location }],
     };
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(fragment),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(vertex),
-            compilation_options: Default::default(),
-            buffers: &[buffer(&place), buffer(&depths)],
-        },
-        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::PointList, ..Default::default() },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH,
-            depth_write_enabled: Some(test.write),
-            depth_compare: Some(compare_function(test.compare)),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(fragment),
-            compilation_options: Default::default(),
-            targets: &[Some(NUMBERS.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    RenderPipeline {
+        buffers: vec![buffer(0), buffer(1)],
+        primitive: PrimitiveState { topology: PrimitiveTopology::PointList, ..Default::default() },
+        depth: Some(depth_state(test)),
+        ..RenderPipeline::new(entries.1, SHADER, entries, [NUMBERS.into()])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::work::tests::{device, words_by_json};
+
+    #[test]
+    fn depths_are_tested_alike_by_way_of_json() {
+        let gpu = device();
+        let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+        let tests: Vec<DepthTest> = [Compare::Less, Compare::Less, Compare::GreaterEqual, Compare::NotEqual]
+            .into_iter()
+            .flat_map(|compare| [true, false].map(|write| DepthTest { compare, write }))
+            .collect();
+        let rows: Vec<f32> = (0..2 * tests.len()).map(|k| [0.25, 0.5, 0.5, 0.5, 0.75][k % 5]).collect();
+        let mut pipelines = DepthPipelines::new(&shaders);
+        pipelines.add(&tests);
+        let words = words_by_json(&gpu, &pipelines.resources, &pipelines.submission(&tests, &rows));
+        let mut unit = DepthUnit::new(&gpu, &shaders).unwrap_or_else(|error| panic!("{error}"));
+        let pending = unit.submit(&gpu, &tests, &rows).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(words, pending.wait(&gpu).unwrap_or_else(|error| panic!("{error}")));
+    }
 }

@@ -18,7 +18,6 @@ mod raster;
 mod repeat;
 mod rung;
 pub mod scene;
-mod screen;
 mod shaders;
 mod sweep;
 pub mod work;

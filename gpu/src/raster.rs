@@ -1,30 +1,44 @@
 //! Cases that only a rasteriser can answer: each draws its primitive and looks at one pixel of a target.
 
-use crate::depth_unit::compare_function;
-use crate::device::Gpu;
-use crate::device::readback::{Pending, read_target};
+use crate::depth_unit::{DEPTH, depth_state};
+use crate::device::{Executor, Gpu, Pending};
 use crate::error::GpuError;
-use crate::pipeline::{bind, cleared};
-use crate::screen::{BITS, draw_screen, screen_pipeline};
 use crate::shaders::Shaders;
-use lightmeter_scene::depth::Compare;
+use crate::work::{
+    BindGroup, Buffer, ColorAttachment, Command, DepthAttachment, Handle, Read, RenderPass, RenderPipeline, Resources,
+    Step, Submission, Texture,
+};
+use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::raster::{Provoking, Raster, TARGET_SIZE, Topology};
+use wgpu_types::{
+    BindGroupLayoutEntry, BindingType, BlendComponent, BlendFactor, BlendOperation, BlendState, BufferBindingType,
+    BufferUsages, Color, ColorTargetState, ColorWrites, Face, FrontFace, PrimitiveState, PrimitiveTopology,
+    ShaderStages, TextureFormat, TextureUsages,
+};
 
-const COUNTS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const BITS: TextureFormat = TextureFormat::Rgba32Uint;
+const COUNTS: TextureFormat = TextureFormat::Rgba16Float;
 const FILE: &str = "raster.wgsl";
+const SIZE: [u32; 2] = [TARGET_SIZE; 2];
 
 /// A raster case compiled for a device.
 #[derive(Debug)]
 pub struct RasterPipeline {
+    executor: Executor,
     kind: Raster,
-    pipeline: wgpu::RenderPipeline,
-    /// Draws every case once more.
-    again: Option<wgpu::RenderPipeline>,
-    /// Turns what was drawn into bits, where it was not drawn as bits.
-    reader: Option<wgpu::RenderPipeline>,
+    pipelines: RasterPipelines,
     vertices: u32,
     selector: u32,
+}
+
+/// The pipelines of a case's [`Resources`].
+#[derive(Clone, Copy, Debug)]
+struct RasterPipelines {
+    once: Handle,
+    /// Draws every case once more.
+    again: Option<Handle>,
+    /// Turns what was drawn into bits, where it was not drawn as bits.
+    reader: Option<Handle>,
 }
 
 impl RasterPipeline {
@@ -36,80 +50,78 @@ impl RasterPipeline {
         if let Some(reason) = gpu.lacks_storage(true) {
             return Ok(Err(reason));
         }
-        let (mut entries, mut source) = (entries(kind), shaders.source(FILE));
-        if gpu.is_gl {
-            // GLSL cannot choose the provoking vertex; OpenGL's own is the last.
-            match kind {
-                Raster::Flat { provoking: Provoking::First, .. } => {
-                    return Ok(Err(
-                        "OpenGL takes flat attributes from the last vertex and wgpu offers no choice there",
-                    ));
-                }
-                Raster::Flat { provoking: Provoking::Last, .. } => entries.0 = "raster_flat_first_vertex",
-                _ => {}
-            }
-            source = source.replace("@interpolate(flat, first)", "@interpolate(flat, either)");
+        // GLSL cannot choose the provoking vertex; OpenGL's own is the last.
+        if gpu.is_gl && matches!(kind, Raster::Flat { provoking: Provoking::First, .. }) {
+            return Ok(Err("OpenGL takes flat attributes from the last vertex and wgpu offers no choice there"));
         }
-        let module = gpu.module(FILE, source);
-        let (topology, vertices) = drawn(kind, gpu.is_gl);
-        let once = pipeline(gpu, &module, kind, entries, topology, Compare::Always);
-        let again = match kind {
-            Raster::SameDepth(compare) => {
-                Some(pipeline(gpu, &module, kind, (entries.0, "raster_covered_again"), topology, compare))
-            }
-            _ => None,
-        };
-        let reader = matches!(kind, Raster::OwnDepth | Raster::Quad)
-            .then(|| screen_pipeline(gpu, &module, "raster_screen", "raster_result"));
-        gpu.check_shader(FILE)?;
+        let (resources, pipelines) = resources(shaders, kind, gpu.is_gl);
+        let mut executor = Executor::default();
+        executor.make(gpu, &resources, FILE)?;
+        let (_, vertices) = drawn(kind, gpu.is_gl);
         let selector = if let Raster::Flat { topology, .. } = kind { topology.code() } else { 0 };
-        Ok(Ok(Self { kind, pipeline: once, again, reader, vertices, selector }))
+        Ok(Ok(Self { executor, kind, pipelines, vertices, selector }))
     }
 
     /// Draws every case that can share a target: as many of the rows, from the first on, as look at pixels of their own.
     /// Returns how many those are. The words of the pending result go to [`RasterPipeline::outputs`].
     #[must_use]
     pub fn submit(&self, gpu: &Gpu, rows: &[f32]) -> (usize, Pending) {
+        let (count, work) = self.submission(rows);
+        (count, self.executor.submit(gpu, &work))
+    }
+
+    /// What draws every case that can share a target, and how many those are.
+    #[must_use]
+    pub fn submission(&self, rows: &[f32]) -> (usize, Submission) {
         let inputs = self.kind.inputs();
         let count = distinct_pixels(rows, inputs);
         let rows = &rows[..count * inputs];
-        let buffer = gpu.buffer(bytemuck::cast_slice(rows), wgpu::BufferUsages::STORAGE);
+        let mut work = Submission::default();
         let stride = [u32::try_from(inputs).unwrap_or(u32::MAX), self.selector, 0, 0];
-        let stride = gpu.buffer(bytemuck::cast_slice(&stride), wgpu::BufferUsages::UNIFORM);
-        let drawn = gpu.target(TARGET_SIZE, TARGET_SIZE, self.format());
-        let view = drawn.create_view(&Default::default());
-        let is_depth = self.kind == Raster::OwnDepth;
-        let tested =
-            self.again.as_ref().map(|_| gpu.target(TARGET_SIZE, TARGET_SIZE, DEPTH).create_view(&Default::default()));
-        let depth = if is_depth { Some(&view) } else { tested.as_ref() };
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                color_attachments: &if is_depth { vec![] } else { vec![Some(self.attachment(&view))] },
-                depth_stencil_attachment: depth.map(clear_depth),
-                ..Default::default()
-            });
-            for pipeline in [Some(&self.pipeline), self.again.as_ref()].into_iter().flatten() {
-                pass.set_pipeline(pipeline);
-                let layout = pipeline.get_bind_group_layout(0);
-                pass.set_bind_group(0, &bind(gpu, &layout, &[&buffer, &stride]), &[]);
-                for (case, row) in (0..).zip(rows.chunks_exact(inputs)) {
-                    let [x, y] = pixel(row);
-                    pass.set_scissor_rect(x, y, 1, 1);
-                    pass.draw(0..self.vertices, case..case + 1);
-                }
+        let buffers = [
+            work.buffer(Buffer::of(rows, BufferUsages::STORAGE)),
+            work.buffer(Buffer::of(&stride, BufferUsages::UNIFORM)),
+        ];
+        let format = drawn_format(self.kind);
+        let also = if format == BITS { TextureUsages::COPY_SRC } else { TextureUsages::TEXTURE_BINDING };
+        let drawn = work.texture(Texture::target(SIZE, format, also));
+        let mut pass = self.pass(&mut work, drawn);
+        let RasterPipelines { once, again, reader } = self.pipelines;
+        for pipeline in [Some(once), again].into_iter().flatten() {
+            let group = work.group(BindGroup::of_buffers(pipeline, &buffers));
+            pass.commands.extend([Command::Pipeline(pipeline), Command::Group(group)]);
+            for (case, row) in (0..).zip(rows.chunks_exact(inputs)) {
+                let [x, y] = pixel(row);
+                let (vertices, instances) = (0..self.vertices, case..case + 1);
+                pass.commands.extend([Command::Scissor([x, y, 1, 1]), Command::Draw { vertices, instances }]);
             }
         }
-        let pending = match &self.reader {
-            None => read_target(gpu, encoder, &drawn),
-            Some(reader) => {
-                let bits = gpu.target(TARGET_SIZE, TARGET_SIZE, BITS);
-                let group = texture_group(gpu, &reader.get_bind_group_layout(0), 2, &view);
-                draw_screen(&mut encoder, reader, &group, &bits);
-                read_target(gpu, encoder, &bits)
-            }
+        work.steps.push(Step::Render(pass));
+        let bits = reader.map(|reader| {
+            let bits = work.texture(Texture::target(SIZE, BITS, TextureUsages::COPY_SRC));
+            let group = work.group(BindGroup::of_textures(reader, &[(2, drawn)]));
+            work.steps.push(Step::Render(RenderPass::screen(reader, group, &[bits])));
+            bits
+        });
+        work.reads.push(Read::Texture(bits.unwrap_or(drawn)));
+        (count, work)
+    }
+
+    /// A pass on the target that is drawn to, and on a depth where one is tested.
+    fn pass(&self, work: &mut Submission, drawn: Handle) -> RenderPass {
+        if self.kind == Raster::OwnDepth {
+            return RenderPass { colors: vec![], depth: Some(DepthAttachment::unwritten(drawn)), commands: vec![] };
+        }
+        let color = if counts_uncovered(self.kind) {
+            ColorAttachment::cleared(drawn, Color::TRANSPARENT)
+        } else {
+            ColorAttachment::sentinel(drawn)
         };
-        (count, pending)
+        let depth = self.pipelines.again.map(|_| {
+            let tested = work.texture(Texture::target(SIZE, DEPTH, TextureUsages::TEXTURE_BINDING));
+            DepthAttachment::unwritten(tested)
+        });
+        RenderPass { colors: vec![color], depth, commands: vec![] }
     }
 
     /// The outputs of each of the rows that were drawn, in order.
@@ -123,21 +135,41 @@ impl RasterPipeline {
         })
         .collect()
     }
+}
 
-    fn format(&self) -> wgpu::TextureFormat {
-        match self.kind {
-            Raster::Quad => COUNTS,
-            Raster::OwnDepth => DEPTH,
-            _ => BITS,
+/// The shaders and pipelines of a case.
+fn resources(shaders: &Shaders, kind: Raster, is_gl: bool) -> (Resources, RasterPipelines) {
+    let (mut entries, mut source) = (entries(kind), shaders.source(FILE));
+    if is_gl {
+        if matches!(kind, Raster::Flat { provoking: Provoking::Last, .. }) {
+            entries.0 = "raster_flat_first_vertex";
         }
+        source = source.replace("@interpolate(flat, first)", "@interpolate(flat, either)");
     }
-
-    fn attachment<'a>(&self, view: &'a wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'a> {
-        let mut attachment = cleared(view);
-        if counts_uncovered(self.kind) {
-            attachment.ops.load = wgpu::LoadOp::Clear(wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 0.0 });
+    let mut resources = Resources::default();
+    let shader = resources.shader(FILE, source);
+    let (topology, _) = drawn(kind, is_gl);
+    let once = resources.pipeline(pipeline(shader, kind, entries, topology, Compare::Always));
+    let again = match kind {
+        Raster::SameDepth(compare) => {
+            let entries = (entries.0, "raster_covered_again");
+            Some(resources.pipeline(pipeline(shader, kind, entries, topology, compare)))
         }
-        attachment
+        _ => None,
+    };
+    let reader = matches!(kind, Raster::OwnDepth | Raster::Quad).then(|| {
+        let entries = ("raster_screen", "raster_result");
+        resources.pipeline(RenderPipeline::new(entries.1, shader, entries, [BITS.into()]))
+    });
+    (resources, RasterPipelines { once, again, reader })
+}
+
+/// The format that a kind is drawn in.
+const fn drawn_format(kind: Raster) -> TextureFormat {
+    match kind {
+        Raster::Quad => COUNTS,
+        Raster::OwnDepth => DEPTH,
+        _ => BITS,
     }
 }
 
@@ -161,112 +193,63 @@ fn distinct_pixels(rows: &[f32], inputs: usize) -> usize {
     taken.count()
 }
 
-/// Depths that no case writes exactly tell an unwritten pixel.
-fn clear_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    wgpu::RenderPassDepthStencilAttachment {
-        view,
-        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.314_159_3), store: wgpu::StoreOp::Store }),
-        stencil_ops: None,
-    }
-}
-
 fn pipeline(
-    gpu: &Gpu,
-    module: &wgpu::ShaderModule,
+    shader: Handle,
     kind: Raster,
-    (vertex, fragment): (&str, &str),
-    topology: wgpu::PrimitiveTopology,
+    entries: (&str, &str),
+    topology: PrimitiveTopology,
     compare: Compare,
-) -> wgpu::RenderPipeline {
+) -> RenderPipeline {
     let is_depth = kind == Raster::OwnDepth;
     let tests_depth = is_depth || matches!(kind, Raster::SameDepth(_));
     let target = (!is_depth).then(|| color_target(kind));
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        bind_group_layouts: &[Some(&vertex_bindings(gpu))],
-        ..Default::default()
-    });
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(fragment),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(vertex),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
+    RenderPipeline {
+        layout: Some(vertex_bindings()),
         primitive: primitive(kind, topology),
-        depth_stencil: tests_depth.then(|| wgpu::DepthStencilState {
-            format: DEPTH,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(compare_function(compare)),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(fragment),
-            compilation_options: Default::default(),
-            targets: if is_depth { &[] } else { std::slice::from_ref(&target) },
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+        depth: tests_depth.then(|| depth_state(DepthTest { compare, write: true })),
+        ..RenderPipeline::new(entries.1, shader, entries, target)
+    }
 }
 
 /// What a kind is drawn to: quads are counted by adding.
-fn color_target(kind: Raster) -> wgpu::ColorTargetState {
+fn color_target(kind: Raster) -> ColorTargetState {
     if kind != Raster::Quad {
         return BITS.into();
     }
-    let add = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::One,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Add,
-    };
-    wgpu::ColorTargetState {
+    let add =
+        BlendComponent { src_factor: BlendFactor::One, dst_factor: BlendFactor::One, operation: BlendOperation::Add };
+    ColorTargetState {
         format: COUNTS,
-        blend: Some(wgpu::BlendState { color: add, alpha: add }),
-        write_mask: wgpu::ColorWrites::ALL,
+        blend: Some(BlendState { color: add, alpha: add }),
+        write_mask: ColorWrites::ALL,
     }
 }
 
 /// The topology with the faces that are culled.
-fn primitive(kind: Raster, topology: wgpu::PrimitiveTopology) -> wgpu::PrimitiveState {
-    let mut primitive = wgpu::PrimitiveState { topology, ..Default::default() };
+fn primitive(kind: Raster, topology: PrimitiveTopology) -> PrimitiveState {
+    let mut primitive = PrimitiveState { topology, ..Default::default() };
     if let Raster::Culled { back, front_is_ccw } = kind {
-        primitive.cull_mode = Some(if back { wgpu::Face::Back } else { wgpu::Face::Front });
-        primitive.front_face = if front_is_ccw { wgpu::FrontFace::Ccw } else { wgpu::FrontFace::Cw };
+        primitive.cull_mode = Some(if back { Face::Back } else { Face::Front });
+        primitive.front_face = if front_is_ccw { FrontFace::Ccw } else { FrontFace::Cw };
     }
     if matches!(kind, Raster::Flat { topology: Topology::TriangleStrip, .. }) {
         // Every triangle of the strip faces front, unless the winding was lost on the way to the last vertex.
-        primitive.cull_mode = Some(wgpu::Face::Back);
+        primitive.cull_mode = Some(Face::Back);
     }
     primitive
 }
 
 /// The bindings of the vertex stage: rows, and their stride.
-fn vertex_bindings(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries: Vec<wgpu::BindGroupLayoutEntry> =
-        [(0, wgpu::BufferBindingType::Storage { read_only: true }), (1, wgpu::BufferBindingType::Uniform)]
-            .into_iter()
-            .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-                binding,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-                count: None,
-            })
-            .collect();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
-}
-
-/// A bind group of one texture.
-fn texture_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroup {
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout,
-        entries: &[wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }],
-    })
+fn vertex_bindings() -> Vec<BindGroupLayoutEntry> {
+    [(0, BufferBindingType::Storage { read_only: true }), (1, BufferBindingType::Uniform)]
+        .into_iter()
+        .map(|(binding, ty)| BindGroupLayoutEntry {
+            binding,
+            visibility: ShaderStages::VERTEX,
+            ty: BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+            count: None,
+        })
+        .collect()
 }
 
 /// The entry points of a vertex and of a fragment.
@@ -285,8 +268,8 @@ const fn entries(kind: Raster) -> (&'static str, &'static str) {
 }
 
 /// The topology given to the hardware, and the vertices of a case.
-fn drawn(kind: Raster, native_last: bool) -> (wgpu::PrimitiveTopology, u32) {
-    use wgpu::PrimitiveTopology as P;
+fn drawn(kind: Raster, native_last: bool) -> (PrimitiveTopology, u32) {
+    use PrimitiveTopology as P;
     match kind {
         Raster::LineAttributes => (P::LineList, 2),
         Raster::Quad => (P::TriangleList, 6),
@@ -309,4 +292,33 @@ fn drawn(kind: Raster, native_last: bool) -> (wgpu::PrimitiveTopology, u32) {
 /// Whether an uncovered pixel is an answer, 0, rather than a failure to write.
 const fn counts_uncovered(kind: Raster) -> bool {
     matches!(kind, Raster::Quad | Raster::Clipped | Raster::Culled { .. })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::work::tests::{device, words_by_json};
+
+    #[test]
+    fn primitives_are_drawn_alike_by_way_of_json() {
+        let gpu = device();
+        let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+        let corners = [-1.0, -1.0, 0.5, 1.0, 3.0, -1.0, 0.25, 1.0, -1.0, 3.0, 0.75, 1.0];
+        let triangle = [&corners[..], &[1.0, 2.0, 4.0]].concat();
+        let quad = [0.0, 0.0, 0.0, 256.0, 256.0, 256.0, 256.0, 0.0];
+        for (kind, drawn) in [
+            (Raster::TriangleAttributes, &triangle[..]),
+            (Raster::SameDepth(Compare::LessEqual), &triangle),
+            (Raster::Quad, &quad),
+            (Raster::OwnDepth, &[0.75]),
+        ] {
+            let made = RasterPipeline::new(&gpu, &shaders, kind).unwrap_or_else(|error| panic!("{error}"));
+            let pipeline = made.unwrap_or_else(|reason| panic!("{reason}"));
+            let rows: Vec<f32> = [10.0, 200.0].iter().flat_map(|x| [drawn, &[*x, 7.0]].concat()).collect();
+            let (resources, _) = resources(&shaders, kind, gpu.is_gl);
+            let (count, work) = pipeline.submission(&rows);
+            let words = words_by_json(&gpu, &resources, &work);
+            assert_eq!((count, words.len()), (2, 4 * 256 * 256), "{kind:?}");
+        }
+    }
 }

@@ -8,6 +8,7 @@ mod pipeline;
 mod uniforms;
 
 use crate::compose::{Composer, Intermediate, MOST_TOWARD, Recipe, ShaderForm, Technique, live};
+use crate::depth_unit::DEPTH;
 use crate::device::readback::{Pending, staging};
 use crate::device::{Clock, ClockReading};
 use crate::device::{Gpu, format};
@@ -17,7 +18,7 @@ use geometry::Geometry;
 use lightmeter_scene::effects::{Called, Effect, Effects};
 use lightmeter_scene::frame::{Frame, Place, Texture};
 use lightmeter_scene::target::TargetFormat;
-use pipeline::{DEPTH, Key, Pipelines};
+use pipeline::{Key, Pipelines};
 use uniforms::{Packer, Resource, resource};
 
 /// A frame on a device, ready to be drawn: pipelines, buffers and textures.

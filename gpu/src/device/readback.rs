@@ -167,32 +167,6 @@ pub(crate) fn staging(gpu: &Gpu, words: usize) -> wgpu::Buffer {
     })
 }
 
-/// Copies a whole target of four words a pixel into a staging buffer, whose rows are `width` pixels wide: the width must
-/// be a multiple of 16.
-fn copy_target(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &wgpu::Texture) -> wgpu::Buffer {
-    let size = target.size();
-    let staging = staging(gpu, 4 * (size.width * size.height) as usize);
-    encoder.copy_texture_to_buffer(
-        target.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &staging,
-            layout: wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(16 * size.width),
-                rows_per_image: None,
-            },
-        },
-        size,
-    );
-    staging
-}
-
-/// [`copy_target`] and the submission: all pixels of a target of four words each.
-pub(crate) fn read_target(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, target: &wgpu::Texture) -> Pending {
-    let staging = copy_target(gpu, &mut encoder, target);
-    Pending::submit(gpu, encoder, staging, (4, 4))
-}
-
 /// A clear value that fills an integer target with the sentinel.
 pub(crate) fn sentinel_color() -> wgpu::Color {
     let word = f64::from(lightmeter_scene::target::SENTINEL);

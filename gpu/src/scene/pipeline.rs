@@ -4,7 +4,7 @@ use super::geometry::Input;
 use super::{Effects, Gpu, GpuError, Intermediate, Recipe, ShaderForm};
 use crate::blend_unit;
 use crate::compose::{Composer, Composition, live};
-use crate::depth_unit::compare_function;
+use crate::depth_unit::depth_state;
 use lightmeter_scene::blend::WriteMask;
 use lightmeter_scene::blend::{Route, routes};
 use lightmeter_scene::depth::{Compare, DepthTest};
@@ -12,7 +12,8 @@ use lightmeter_scene::frame::{Blend, Cull, Draw};
 use std::collections::HashMap;
 use std::rc::Rc;
 
-pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// No test is one that always passes and leaves nothing.
+const PASSES: DepthTest = DepthTest { compare: Compare::Always, write: false };
 
 /// What a draw's pipeline depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -158,7 +159,7 @@ impl<'a> Pipelines<'a> {
                 },
                 ..Default::default()
             },
-            depth_stencil: self.tests_depth.then(|| depth_state(key.depth)),
+            depth_stencil: self.tests_depth.then(|| depth_state(key.depth.unwrap_or(PASSES))),
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &program.module,
@@ -173,18 +174,6 @@ impl<'a> Pipelines<'a> {
             multiview_mask: None,
             cache: None,
         })
-    }
-}
-
-/// A depth test; no test is one that always passes and leaves nothing.
-fn depth_state(test: Option<DepthTest>) -> wgpu::DepthStencilState {
-    let test = test.unwrap_or(DepthTest { compare: Compare::Always, write: false });
-    wgpu::DepthStencilState {
-        format: DEPTH,
-        depth_write_enabled: Some(test.write),
-        depth_compare: Some(compare_function(test.compare)),
-        stencil: Default::default(),
-        bias: Default::default(),
     }
 }
 
