@@ -4,14 +4,21 @@
 //! one pixel are layers that overlap in order. Destinations are uploaded and results read back in the target's own bits, so
 //! that nothing but the unit itself converts them.
 
-use crate::device::readback::{Pending, staging};
-use crate::device::{Gpu, format, middle};
+use crate::device::{Executor, Gpu, Pending, format, middle};
 use crate::error::GpuError;
 use crate::shaders::Shaders;
+use crate::work::{
+    Buffer, ColorAttachment, Command, Handle, Read, RenderPass, RenderPipeline, Resources, Step, Submission, Texture,
+    VertexBuffer,
+};
 use lightmeter_scene::blend::{Equation, Factor, Route, Separate, State, WriteMask};
 use lightmeter_scene::target::TargetFormat;
 use std::collections::HashMap;
 use std::ops::Range;
+use wgpu_types::{
+    BlendComponent, BlendFactor, BlendOperation, BlendState, BufferUsages, Color, ColorTargetState, ColorWrites,
+    PrimitiveState, PrimitiveTopology, TextureUsages, VertexAttribute, VertexFormat, VertexStepMode,
+};
 
 /// Pixels of a row of the target.
 const WIDTH: u32 = 1024;
@@ -56,15 +63,24 @@ pub struct BlendUnit {
 #[derive(Debug)]
 struct Lane {
     gpu: Gpu,
-    module: wgpu::ShaderModule,
-    dual: Option<wgpu::ShaderModule>,
-    pipelines: HashMap<(TargetFormat, Lowered), wgpu::RenderPipeline>,
+    executor: Executor,
+    pipelines: UnitPipelines,
+}
+
+/// The shaders of the unit, and the pipelines that were needed so far.
+#[derive(Debug)]
+struct UnitPipelines {
+    resources: Resources,
+    shader: Handle,
+    /// Where a fragment may have two source colours.
+    dual: Option<Handle>,
+    described: HashMap<(TargetFormat, Lowered), Handle>,
 }
 
 /// A state as the unit takes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Lowered {
-    pub(crate) blend: wgpu::BlendState,
+    pub(crate) blend: BlendState,
     mask: WriteMask,
     entry: &'static str,
 }
@@ -97,7 +113,7 @@ impl BlendUnit {
     /// Why a route is not open on this adapter; `None` where it is.
     #[must_use]
     pub fn lacks_route(&self, route: Route) -> Option<&'static str> {
-        (route == Route::DualSource && self.lanes[0].dual.is_none())
+        (route == Route::DualSource && self.lanes[0].pipelines.dual.is_none())
             .then_some("the adapter lacks the feature DUAL_SOURCE_BLENDING")
     }
 
@@ -118,109 +134,100 @@ impl BlendUnit {
     /// # Errors
     /// Where a device failed or was lost.
     pub fn wait(&self, pending: Vec<Pending>) -> Result<Vec<Vec<u8>>, GpuError> {
-        self.lanes.iter().zip(pending).map(|(lane, pending)| pending.wait_bytes(&lane.gpu)).collect()
+        let bytes = |words: &[u32]| bytemuck::cast_slice(words).to_vec();
+        self.lanes.iter().zip(pending).map(|(lane, pending)| pending.map(&lane.gpu, |words| bytes(&words))).collect()
     }
 
     /// Lets go of the pipelines, of which a software driver keeps some hundred kilobytes each.
     pub fn forget_pipelines(&mut self) {
         for lane in &mut self.lanes {
-            lane.pipelines.clear();
+            lane.pipelines.forget();
+            lane.executor.forget_pipelines();
         }
     }
 
     /// What destroys its devices, as if they were lost: for tests of what then happens.
     pub fn breaker(&self) -> impl Fn() + use<> {
-        let devices: Vec<wgpu::Device> = self.lanes.iter().map(|lane| lane.gpu.device.clone()).collect();
-        move || devices.iter().for_each(wgpu::Device::destroy)
+        let breakers: Vec<_> = self.lanes.iter().map(|lane| lane.gpu.breaker()).collect();
+        move || breakers.iter().for_each(|destroy| destroy())
     }
 }
 
 impl Lane {
     fn new(gpu: Gpu, shaders: &Shaders) -> Result<Self, GpuError> {
-        let module = gpu.module(FILE, shaders.source(FILE));
-        let dual = gpu.has_dual_source().then(|| gpu.module(DUAL_FILE, shaders.source(DUAL_FILE)));
-        gpu.check_shader(FILE)?;
-        Ok(Self { gpu, module, dual, pipelines: HashMap::new() })
+        let (mut executor, pipelines) = (Executor::default(), UnitPipelines::new(shaders, gpu.has_dual_source()));
+        executor.make(&gpu, &pipelines.resources, FILE)?;
+        Ok(Self { gpu, executor, pipelines })
     }
 
     fn submit(&mut self, target: TargetFormat, batch: &Batch) -> Result<Pending, GpuError> {
-        let lowered: Vec<Lowered> = batch.draws.iter().map(lower).collect();
-        self.compile(target, &lowered)?;
-        let gpu = &self.gpu;
-        let pixel_bytes = 4 * target.component_bytes();
-        let count = batch.destinations.len() / pixel_bytes;
+        let states: Vec<Lowered> = batch.draws.iter().map(lower).collect();
+        self.pipelines.add(target, &states);
+        self.executor.make(&self.gpu, &self.pipelines.resources, FILE)?;
+        Ok(self.executor.submit(&self.gpu, &self.pipelines.submission(target, batch, &states)))
+    }
+}
+
+impl UnitPipelines {
+    fn new(shaders: &Shaders, has_dual_source: bool) -> Self {
+        let mut resources = Resources::default();
+        let shader = resources.shader(FILE, shaders.source(FILE));
+        let dual = has_dual_source.then(|| resources.shader(DUAL_FILE, shaders.source(DUAL_FILE)));
+        Self { resources, shader, dual, described: HashMap::new() }
+    }
+
+    /// Describes the pipelines that are not there yet.
+    fn add(&mut self, target: TargetFormat, states: &[Lowered]) {
+        for lowered in states {
+            let shader = match lowered.entry {
+                DUAL_SOURCE => self.dual.expect("the route is open"),
+                _ => self.shader,
+            };
+            let describe = || self.resources.pipeline(pipeline(shader, target, *lowered));
+            self.described.entry((target, *lowered)).or_insert_with(describe);
+        }
+    }
+
+    fn forget(&mut self) {
+        self.described.clear();
+        self.resources.pipelines.clear();
+    }
+
+    /// Draws a batch over its destinations, its states as they were lowered.
+    fn submission(&self, target: TargetFormat, batch: &Batch, states: &[Lowered]) -> Submission {
+        let count = batch.destinations.len() / (4 * target.component_bytes());
         let count = u32::try_from(count).unwrap_or(u32::MAX);
         // A power of two, so that the middle of every pixel is exact in clip coordinates.
         let height = count.div_ceil(WIDTH).next_power_of_two();
-        let drawn = gpu.blend_target(WIDTH, height, format(target));
-        gpu.upload(&drawn, &batch.destinations, pixel_bytes);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.draw(&mut encoder, target, batch, &lowered, &drawn);
-        let row_bytes = pixel_bytes * WIDTH as usize;
-        let staging = staging(gpu, row_bytes * height as usize / 4);
-        encoder.copy_texture_to_buffer(
-            drawn.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &staging,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: u32::try_from(row_bytes).ok(),
-                    rows_per_image: None,
-                },
-            },
-            drawn.size(),
-        );
-        Ok(Pending::submit(gpu, encoder, staging, (row_bytes / 4, row_bytes / 4)))
-    }
-
-    /// Makes the pipelines that are not there yet.
-    fn compile(&mut self, target: TargetFormat, states: &[Lowered]) -> Result<(), GpuError> {
-        let gpu = &self.gpu;
-        for lowered in states {
-            let module = match lowered.entry {
-                DUAL_SOURCE => self.dual.as_ref().expect("the route is open"),
-                _ => &self.module,
-            };
-            self.pipelines.entry((target, *lowered)).or_insert_with(|| pipeline(gpu, module, format(target), *lowered));
-        }
-        gpu.check_shader(FILE)
-    }
-
-    /// Draws a batch over its destinations.
-    fn draw(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: TargetFormat,
-        batch: &Batch,
-        states: &[Lowered],
-        drawn: &wgpu::Texture,
-    ) {
-        let gpu = &self.gpu;
-        let vertex = wgpu::BufferUsages::VERTEX;
-        let sources = gpu.buffer(bytemuck::cast_slice(&batch.sources), vertex);
-        let places: Vec<[f32; 2]> =
-            batch.pixels.iter().map(|&pixel| middle(pixel, drawn.width(), drawn.height())).collect();
-        let places = gpu.buffer(bytemuck::cast_slice(&places), vertex);
+        let places: Vec<[f32; 2]> = batch.pixels.iter().map(|&pixel| middle(pixel, WIDTH, height)).collect();
         let instances: Vec<u8> = batch.draws.iter().flat_map(|draw| instance(target, draw)).collect();
-        let instances = gpu.buffer(&instances, vertex);
-        let view = drawn.create_view(&Default::default());
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
+        let mut work = Submission::default();
+        let vertex = BufferUsages::VERTEX;
+        let buffers = [
+            work.buffer(Buffer::of(&batch.sources, vertex)),
+            work.buffer(Buffer::of(&places, vertex)),
+            work.buffer(Buffer::of(&instances, vertex)),
+        ];
+        let drawn = work.texture(Texture {
+            contents: batch.destinations.as_slice().into(),
+            ..Texture::target([WIDTH, height], format(target), TextureUsages::COPY_SRC | TextureUsages::COPY_DST)
         });
-        for (slot, buffer) in (0..).zip([&sources, &places, &instances]) {
-            pass.set_vertex_buffer(slot, buffer.slice(..));
-        }
+        let mut commands: Vec<Command> =
+            (0..).zip(buffers).map(|(slot, buffer)| Command::Vertices { slot, buffer }).collect();
         for (number, (draw, lowered)) in (0..).zip(batch.draws.iter().zip(states)) {
-            pass.set_pipeline(&self.pipelines[&(target, *lowered)]);
-            pass.set_blend_constant(blend_constant(draw));
-            pass.draw(draw.points.clone(), number..number + 1);
+            commands.extend([
+                Command::Pipeline(self.described[&(target, *lowered)]),
+                Command::BlendConstant(blend_constant(draw)),
+                Command::Draw { vertices: draw.points.clone(), instances: number..number + 1 },
+            ]);
         }
+        work.steps.push(Step::Render(RenderPass {
+            colors: vec![ColorAttachment::loaded(drawn)],
+            depth: None,
+            commands,
+        }));
+        work.reads.push(Read::Texture(drawn));
+        work
     }
 }
 
@@ -229,22 +236,22 @@ pub(crate) fn lower(draw: &UnitDraw) -> Lowered {
     let folded = draw.route == Route::FoldedIntoSource;
     let dual = draw.route == Route::DualSource;
     let of_color = |factor: Factor| match factor {
-        Factor::ConstantAlpha if dual => wgpu::BlendFactor::Src1Alpha,
-        Factor::OneMinusConstantAlpha if dual => wgpu::BlendFactor::OneMinusSrc1Alpha,
+        Factor::ConstantAlpha if dual => BlendFactor::Src1Alpha,
+        Factor::OneMinusConstantAlpha if dual => BlendFactor::OneMinusSrc1Alpha,
         other => unit_factor(other),
     };
-    let component = |state: State, src: wgpu::BlendFactor, dst: wgpu::BlendFactor| {
-        let one = wgpu::BlendFactor::One;
+    let component = |state: State, src: BlendFactor, dst: BlendFactor| {
+        let one = BlendFactor::One;
         let ignored = state.equation.ignores_factors();
-        wgpu::BlendComponent {
+        BlendComponent {
             src_factor: if ignored { one } else { src },
             dst_factor: if ignored { one } else { dst },
             operation: operation(state.equation),
         }
     };
-    let src = if folded { wgpu::BlendFactor::One } else { of_color(color.src) };
+    let src = if folded { BlendFactor::One } else { of_color(color.src) };
     Lowered {
-        blend: wgpu::BlendState {
+        blend: BlendState {
             color: component(color, src, of_color(color.dst)),
             alpha: component(alpha, unit_factor(alpha.src), unit_factor(alpha.dst)),
         },
@@ -258,7 +265,7 @@ pub(crate) fn lower(draw: &UnitDraw) -> Lowered {
 }
 
 /// The constant that the unit is given.
-pub(crate) fn blend_constant(draw: &UnitDraw) -> wgpu::Color {
+pub(crate) fn blend_constant(draw: &UnitDraw) -> Color {
     let [r, g, b, a] = draw.constant;
     let replicated = match draw.route {
         Route::ConstantReplicated => true,
@@ -267,7 +274,7 @@ pub(crate) fn blend_constant(draw: &UnitDraw) -> wgpu::Color {
     };
     let [r, g, b, a] = if replicated { [a; 4] } else { [r, g, b, a] }.map(f64::from);
     let read = draw.state.reads_constant();
-    if read { wgpu::Color { r, g, b, a } } else { wgpu::Color::TRANSPARENT }
+    if read { Color { r, g, b, a } } else { Color::TRANSPARENT }
 }
 
 fn instance(target: TargetFormat, draw: &UnitDraw) -> [u8; INSTANCE_BYTES] {
@@ -276,18 +283,18 @@ fn instance(target: TargetFormat, draw: &UnitDraw) -> [u8; INSTANCE_BYTES] {
     bytemuck::cast(words)
 }
 
-const fn operation(equation: Equation) -> wgpu::BlendOperation {
+const fn operation(equation: Equation) -> BlendOperation {
     match equation {
-        Equation::Add => wgpu::BlendOperation::Add,
-        Equation::Subtract => wgpu::BlendOperation::Subtract,
-        Equation::ReverseSubtract => wgpu::BlendOperation::ReverseSubtract,
-        Equation::Min => wgpu::BlendOperation::Min,
-        Equation::Max => wgpu::BlendOperation::Max,
+        Equation::Add => BlendOperation::Add,
+        Equation::Subtract => BlendOperation::Subtract,
+        Equation::ReverseSubtract => BlendOperation::ReverseSubtract,
+        Equation::Min => BlendOperation::Min,
+        Equation::Max => BlendOperation::Max,
     }
 }
 
-const fn unit_factor(factor: Factor) -> wgpu::BlendFactor {
-    use wgpu::BlendFactor as B;
+const fn unit_factor(factor: Factor) -> BlendFactor {
+    use BlendFactor as B;
     match factor {
         Factor::Zero => B::Zero,
         Factor::One => B::One,
@@ -305,54 +312,36 @@ const fn unit_factor(factor: Factor) -> wgpu::BlendFactor {
     }
 }
 
-fn pipeline(
-    gpu: &Gpu,
-    module: &wgpu::ShaderModule,
-    format: wgpu::TextureFormat,
-    lowered: Lowered,
-) -> wgpu::RenderPipeline {
-    let source = wgpu::vertex_attr_array![0 => Float32x4];
-    let place = wgpu::vertex_attr_array![1 => Float32x2];
-    let draw = wgpu::vertex_attr_array![2 => Float32x4, 3 => Uint32, 4 => Uint32];
-    let buffer =
-        |array_stride, step_mode, attributes| Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes });
-    let (vertex, instance) = (wgpu::VertexStepMode::Vertex, wgpu::VertexStepMode::Instance);
-    let buffers =
-        [buffer(16, vertex, &source), buffer(8, vertex, &place), buffer(INSTANCE_BYTES as u64, instance, &draw)];
+fn pipeline(shader: Handle, target: TargetFormat, lowered: Lowered) -> RenderPipeline {
+    let attribute = |shader_location, offset, format| VertexAttribute { format, offset, shader_location };
+    let buffer = |stride, step, attributes| VertexBuffer { stride, step, attributes };
+    let source = vec![attribute(0, 0, VertexFormat::Float32x4)];
+    let place = vec![attribute(1, 0, VertexFormat::Float32x2)];
+    let draw = vec![
+        attribute(2, 0, VertexFormat::Float32x4),
+        attribute(3, 16, VertexFormat::Uint32),
+        attribute(4, 20, VertexFormat::Uint32),
+    ];
+    let (vertex, instance) = (VertexStepMode::Vertex, VertexStepMode::Instance);
+    let mut buffers = vec![buffer(16, vertex, source), buffer(8, vertex, place)];
     // What a shader does not read is not fetched.
-    let buffers = if lowered.entry == SOURCE { &buffers[..2] } else { &buffers };
-    let mut write_mask = wgpu::ColorWrites::empty();
-    let components =
-        [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA];
-    for (component, _) in components.into_iter().zip(lowered.mask.0).filter(|(_, on)| *on) {
-        write_mask |= component;
+    if lowered.entry != SOURCE {
+        buffers.push(buffer(INSTANCE_BYTES as u64, instance, draw));
     }
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: None,
-        layout: None,
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(lowered.entry),
-            compilation_options: Default::default(),
-            buffers,
-        },
-        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::PointList, ..Default::default() },
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some("unit_color"),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState { format, blend: Some(lowered.blend), write_mask })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let components = [ColorWrites::RED, ColorWrites::GREEN, ColorWrites::BLUE, ColorWrites::ALPHA];
+    let written = components.into_iter().zip(lowered.mask.0).filter(|(_, on)| *on).map(|(component, _)| component);
+    let target = ColorTargetState { format: format(target), blend: Some(lowered.blend), write_mask: written.collect() };
+    RenderPipeline {
+        buffers,
+        primitive: PrimitiveState { topology: PrimitiveTopology::PointList, ..Default::default() },
+        ..RenderPipeline::new("unit_color", shader, (lowered.entry, "unit_color"), [target])
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::work::tests::{device, words_by_json};
     use lightmeter_scene::blend::routes;
     use std::collections::BTreeSet;
 
@@ -375,5 +364,35 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn batches_are_drawn_alike_by_way_of_json() {
+        let gpu = device();
+        let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+        let mut pipelines = UnitPipelines::new(&shaders, gpu.has_dual_source());
+        let factors = (Factor::ConstantColor, Factor::OneMinusSrcAlpha);
+        let state = State { equation: Equation::Add, src: factors.0, dst: factors.1 };
+        let draw = |points, mask| UnitDraw {
+            state: state.into(),
+            mask: WriteMask(mask),
+            route: Route::Native,
+            constant: [0.1, 0.7, 0.3, 0.9],
+            points,
+        };
+        let batch = Batch {
+            draws: vec![draw(0..2, [true; 4]), draw(2..3, [true, false, true, false])],
+            sources: vec![[0.9, 0.5, 0.25, 0.5], [0.1, 0.2, 0.3, 0.4], [1.0, 0.5, 1.0, 0.75]],
+            pixels: vec![0, 2, 1],
+            destinations: (0..12).map(|k| 20 * k).collect(),
+        };
+        let states: Vec<Lowered> = batch.draws.iter().map(lower).collect();
+        let target = TargetFormat::Rgba8Unorm;
+        pipelines.add(target, &states);
+        let words = words_by_json(&gpu, &pipelines.resources, &pipelines.submission(target, &batch, &states));
+        let mut unit = BlendUnit::new(&gpu, &shaders).unwrap_or_else(|error| panic!("{error}"));
+        let pending = unit.submit(target, &[batch]).unwrap_or_else(|error| panic!("{error}"));
+        let bytes = unit.wait(pending).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(bytes, [bytemuck::cast_slice::<u32, u8>(&words)]);
     }
 }

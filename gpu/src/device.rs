@@ -87,6 +87,12 @@ impl Gpu {
         Self::open(&self.name, &self.adapter)
     }
 
+    /// What destroys the device, as if it were lost.
+    pub(crate) fn breaker(&self) -> impl Fn() + use<> {
+        let device = self.device.clone();
+        move || device.destroy()
+    }
+
     /// How many devices compile pipelines side by side: a software Vulkan driver compiles at the first draw, on the one
     /// thread of its queue.
     pub(crate) fn lanes(&self) -> usize {

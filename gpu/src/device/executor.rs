@@ -28,6 +28,11 @@ impl Executor {
         gpu.check()
     }
 
+    /// Drops all pipelines.
+    pub(crate) fn forget_pipelines(&mut self) {
+        self.kept.forget_pipelines();
+    }
+
     /// Submits the work and asks for what comes back.
     pub(crate) fn submit(&self, gpu: &Gpu, work: &Submission) -> Pending {
         let own = self.prepare(gpu, work);

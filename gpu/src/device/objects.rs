@@ -57,6 +57,10 @@ impl Objects {
         self.groups.extend(made);
     }
 
+    pub(super) fn forget_pipelines(&mut self) {
+        self.pipelines.clear();
+    }
+
     /// What handles name in a description of these objects.
     pub(super) fn scope<'a>(&'a self, kept: Option<&'a Self>) -> Scope<'a> {
         Scope { kept: kept.unwrap_or(self), own: self }

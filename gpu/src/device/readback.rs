@@ -151,12 +151,8 @@ impl Pending {
         let rows = usize::try_from(buffer.size()).unwrap_or(usize::MAX) / stride;
         Self::new(gpu.queue.submit([encoder.finish()]), buffer, Layout(vec![Part { rows, stride, row_bytes }]))
     }
-
-    /// The bytes that came back.
-    pub(crate) fn wait_bytes(self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
-        self.map(gpu, |words| bytemuck::cast_slice(&words).to_vec())
-    }
 }
+
 /// A buffer to read back through.
 pub(crate) fn staging(gpu: &Gpu, words: usize) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
