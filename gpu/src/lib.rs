@@ -13,7 +13,6 @@ mod device;
 mod error;
 mod kernel;
 mod library;
-mod pipeline;
 mod raster;
 mod repeat;
 mod rung;

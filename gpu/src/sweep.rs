@@ -5,56 +5,52 @@
 //! begins and how long it is, and makes the inputs itself. Buffers are made once.
 
 use crate::arithmetic::Programmable;
-use crate::device::Gpu;
-use crate::device::readback::staging;
+use crate::device::{Executor, Gpu, Pending};
 use crate::error::GpuError;
 use crate::kernel::{Kernel, SWEEP_GROUP, SWEEP_WIDTH};
-use crate::pipeline::{bind, cleared, compute_pipeline, render_pipeline};
 use crate::shaders::Shaders;
+use crate::work::{
+    BindGroup, Buffer, ComputePass, ComputePipeline, Handle, Read, RenderPass, RenderPipeline, Resources, Step,
+    Submission, Texture, Write,
+};
 use lightmeter_scene::along::Along;
-use lightmeter_scene::target::SENTINEL;
-use std::sync::mpsc;
+use wgpu_types::{BufferUsages, TextureFormat, TextureUsages};
 
-const BITS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+const BITS: TextureFormat = TextureFormat::R32Uint;
 
 /// A formula compiled for a stage of a device, to be evaluated along one of its inputs.
 #[derive(Debug)]
 pub struct Sweep {
-    pipeline: Pipeline,
-    slots: [Slot; Sweep::UNDER_WAY],
-    unwritten: wgpu::Buffer,
-    capacity: usize,
+    executor: Executor,
+    plan: SweepPlan,
     next: usize,
 }
 
+/// What a sweep has on a device.
 #[derive(Debug)]
-enum Pipeline {
-    Compute(wgpu::ComputePipeline),
-    Fragment(wgpu::RenderPipeline),
+struct SweepPlan {
+    pipeline: Handle,
+    slots: [Slot; Sweep::UNDER_WAY],
+    /// As many sentinels as a block is long, where results go to a buffer; else they go to a target.
+    unwritten: Option<Handle>,
+    capacity: usize,
 }
 
 /// What one block under way needs.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Slot {
-    span: wgpu::Buffer,
-    results: Results,
-    staging: wgpu::Buffer,
-    bindings: wgpu::BindGroup,
-}
-
-#[derive(Debug)]
-enum Results {
-    Buffer(wgpu::Buffer),
-    Target(wgpu::Texture),
+    span: Handle,
+    /// A buffer or a texture.
+    results: Handle,
+    staging: Handle,
+    group: Handle,
 }
 
 /// A block that a device may still be working on.
 #[derive(Debug)]
 pub struct Block {
-    slot: usize,
     count: usize,
-    submission: wgpu::SubmissionIndex,
-    mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+    pending: Pending,
 }
 
 impl Sweep {
@@ -79,25 +75,14 @@ impl Sweep {
         assert_eq!(along.row.len(), kernel.inputs, "the row is not of {} numbers", kernel.inputs);
         assert!((kernel.selectors..kernel.inputs).contains(&along.free), "number {} is no input", along.free);
         assert!(along.output < kernel.outputs, "number {} is no output", along.output);
-        let lacking = match stage {
-            Programmable::Compute => gpu.lacks_compute(),
-            Programmable::Fragment => gpu.lacks_storage(false),
-        };
-        if let Some(reason) = lacking {
+        if let Some(reason) = stage.lacks(gpu) {
             return Ok(Err(reason));
         }
-        let capacity = capacity.next_multiple_of(SWEEP_WIDTH as usize);
-        let (label, source) = (&kernel.function, kernel.sweep(shaders, along.free, along.output)?);
-        let pipeline = match stage {
-            Programmable::Compute => Pipeline::Compute(compute_pipeline(gpu, label, source, "lightmeter_sweep")),
-            Programmable::Fragment => Pipeline::Fragment(render_pipeline(gpu, label, source, &[BITS])),
-        };
-        gpu.check_shader(&kernel.file)?;
-        let row = gpu.buffer(bytemuck::cast_slice(along.row), wgpu::BufferUsages::STORAGE);
-        let unwritten = gpu.buffer(bytemuck::cast_slice(&vec![SENTINEL; capacity]), wgpu::BufferUsages::COPY_SRC);
-        let slots = std::array::from_fn(|_| Slot::new(gpu, &pipeline, &row, capacity));
-        gpu.check()?;
-        Ok(Ok(Self { pipeline, slots, unwritten, capacity, next: 0 }))
+        let source = kernel.sweep(shaders, along.free, along.output)?;
+        let (resources, plan) = SweepPlan::new(&kernel.function, source, stage, along.row, capacity);
+        let mut executor = Executor::default();
+        executor.make(gpu, &resources, &kernel.file)?;
+        Ok(Ok(Self { executor, plan, next: 0 }))
     }
 
     /// Starts on the `count` floats from the one of that key on.
@@ -105,60 +90,11 @@ impl Sweep {
     /// # Panics
     /// Where the block is longer than it may be. No more than [`Sweep::UNDER_WAY`] blocks may be under way.
     pub fn submit(&mut self, gpu: &Gpu, first: u32, count: usize) -> Block {
-        assert!(count <= self.capacity, "{count} inputs in blocks of {}", self.capacity);
-        let number = self.next;
+        assert!(count <= self.plan.capacity, "{count} inputs in blocks of {}", self.plan.capacity);
+        let slot = self.plan.slots[self.next];
         self.next = (self.next + 1) % Self::UNDER_WAY;
-        let slot = &self.slots[number];
-        let length = u32::try_from(count).unwrap_or(u32::MAX);
-        gpu.queue.write_buffer(&slot.span, 0, bytemuck::cast_slice(&[first, length]));
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        match (&self.pipeline, &slot.results) {
-            (Pipeline::Compute(pipeline), Results::Buffer(results)) => {
-                encoder.copy_buffer_to_buffer(&self.unwritten, 0, results, 0, 4 * count as u64);
-                {
-                    let mut pass = encoder.begin_compute_pass(&Default::default());
-                    pass.set_pipeline(pipeline);
-                    pass.set_bind_group(0, &slot.bindings, &[]);
-                    // At most 65,535 groups lie side by side.
-                    let groups = length.div_ceil(SWEEP_GROUP);
-                    let wide = groups.min(1 << 12);
-                    pass.dispatch_workgroups(wide, groups.div_ceil(wide.max(1)), 1);
-                }
-                encoder.copy_buffer_to_buffer(results, 0, &slot.staging, 0, 4 * count as u64);
-            }
-            (Pipeline::Fragment(pipeline), Results::Target(target)) => {
-                let view = target.create_view(&Default::default());
-                {
-                    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                        color_attachments: &[Some(cleared(&view))],
-                        ..Default::default()
-                    });
-                    pass.set_pipeline(pipeline);
-                    pass.set_bind_group(0, &slot.bindings, &[]);
-                    pass.draw(0..3, 0..1);
-                }
-                encoder.copy_texture_to_buffer(
-                    target.as_image_copy(),
-                    wgpu::TexelCopyBufferInfo {
-                        buffer: &slot.staging,
-                        layout: wgpu::TexelCopyBufferLayout {
-                            offset: 0,
-                            bytes_per_row: Some(4 * SWEEP_WIDTH),
-                            rows_per_image: None,
-                        },
-                    },
-                    target.size(),
-                );
-            }
-            _ => unreachable!("a slot is made for its pipeline"),
-        }
-        let submission = gpu.queue.submit([encoder.finish()]);
-        let (done, mapped) = mpsc::channel();
-        slot.staging.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only where nobody waits for the result any more.
-            let _ = done.send(result);
-        });
-        Block { slot: number, count, submission, mapped }
+        let pending = self.executor.submit(gpu, &self.plan.submission(slot, first, count));
+        Block { count, pending }
     }
 
     /// Hands the results of a block on, one word for each input, once they are there.
@@ -166,43 +102,97 @@ impl Sweep {
     /// # Errors
     /// Where the device failed or was lost.
     pub fn read<T>(&self, gpu: &Gpu, block: Block, then: impl FnOnce(&[u32]) -> T) -> Result<T, GpuError> {
-        gpu.wait_for(block.submission)?;
-        match block.mapped.recv() {
-            Ok(Ok(())) => {}
-            Ok(Err(error)) => return Err(GpuError::Device(error.to_string())),
-            Err(error) => return Err(GpuError::Device(error.to_string())),
-        }
-        let staging = &self.slots[block.slot].staging;
-        let result = {
-            let view = staging.get_mapped_range(..).map_err(|error| GpuError::Device(error.to_string()))?;
-            let words: &[u32] = bytemuck::cast_slice(&view);
-            then(&words[..block.count])
+        block.pending.map(gpu, |words| then(&words[..block.count]))
+    }
+}
+
+impl SweepPlan {
+    fn new(label: &str, source: String, stage: Programmable, row: &[f32], capacity: usize) -> (Resources, Self) {
+        let capacity = capacity.next_multiple_of(SWEEP_WIDTH as usize);
+        let mut resources = Resources::default();
+        let shader = resources.shader(label, source);
+        let pipeline = match stage {
+            Programmable::Compute => resources.pipeline(ComputePipeline::new(label, shader, "lightmeter_sweep")),
+            Programmable::Fragment => resources.pipeline(RenderPipeline::of_kernel(label, shader, [BITS.into()])),
         };
-        staging.unmap();
-        Ok(result)
+        let row = resources.buffer(Buffer::of(row, BufferUsages::STORAGE));
+        let slots = std::array::from_fn(|_| Slot::new(&mut resources, (stage, pipeline), row, capacity));
+        let unwritten = (stage == Programmable::Compute)
+            .then(|| resources.buffer(Buffer::sentinels(capacity, BufferUsages::COPY_SRC)));
+        (resources, Self { pipeline, slots, unwritten, capacity })
+    }
+
+    /// The evaluation of the `count` floats from the one of that key on.
+    fn submission(&self, slot: Slot, first: u32, count: usize) -> Submission {
+        let length = u32::try_from(count).unwrap_or(u32::MAX);
+        let contents = bytemuck::cast_slice(&[first, length]).into();
+        let writes = vec![Write { buffer: slot.span, contents }];
+        let Slot { results, group, staging, .. } = slot;
+        let (bytes, pipeline) = (4 * count, self.pipeline);
+        let (steps, read) = match self.unwritten {
+            Some(unwritten) => {
+                // At most 65,535 groups lie side by side.
+                let groups = length.div_ceil(SWEEP_GROUP);
+                let wide = groups.min(1 << 12);
+                let workgroups = [wide, groups.div_ceil(wide.max(1)), 1];
+                let pass = Step::Compute(ComputePass { pipeline, group, workgroups });
+                let steps = vec![Step::Copy { from: unwritten, to: results, bytes }, pass];
+                (steps, Read::Buffer { buffer: results, bytes })
+            }
+            None => (vec![Step::Render(RenderPass::screen(pipeline, group, &[results]))], Read::Texture(results)),
+        };
+        Submission { own: Resources::default(), writes, steps, reads: vec![read], through: Some(staging) }
     }
 }
 
 impl Slot {
-    fn new(gpu: &Gpu, pipeline: &Pipeline, row: &wgpu::Buffer, capacity: usize) -> Self {
-        let span = gpu.buffer(&[0; 8], wgpu::BufferUsages::UNIFORM);
-        let (results, bindings) = match pipeline {
-            Pipeline::Compute(pipeline) => {
-                let results = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("results"),
-                    size: 4 * capacity as u64,
-                    usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                });
-                let bindings = bind(gpu, &pipeline.get_bind_group_layout(0), &[row, &span, &results]);
-                (Results::Buffer(results), bindings)
+    fn new(resources: &mut Resources, (stage, pipeline): (Programmable, Handle), row: Handle, capacity: usize) -> Self {
+        let span = resources.buffer(Buffer::of(&[0_u32; 2], BufferUsages::UNIFORM | BufferUsages::COPY_DST));
+        let copied = TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
+        let (results, bound) = match stage {
+            Programmable::Compute => {
+                let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+                let results = resources.buffer(Buffer::unwritten(4 * capacity, usage));
+                (results, vec![row, span, results])
             }
-            Pipeline::Fragment(pipeline) => {
+            Programmable::Fragment => {
                 let height = u32::try_from(capacity / SWEEP_WIDTH as usize).unwrap_or(u32::MAX);
-                let target = gpu.blend_target(SWEEP_WIDTH, height, BITS);
-                (Results::Target(target), bind(gpu, &pipeline.get_bind_group_layout(0), &[row, &span]))
+                (resources.texture(Texture::target([SWEEP_WIDTH, height], BITS, copied)), vec![row, span])
             }
         };
-        Self { span, results, staging: staging(gpu, capacity), bindings }
+        let group = resources.group(BindGroup::of_buffers(pipeline, &bound));
+        let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
+        let staging = resources.buffer(Buffer::unwritten(4 * capacity, usage));
+        Self { span, results, staging, group }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::work::tests::{device, words_by_json};
+
+    #[test]
+    fn blocks_are_evaluated_alike_by_way_of_json() {
+        let gpu = device();
+        let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+        let made = Kernel::new(&shaders, "fog.wgsl", "fog_exp_factor");
+        let kernel = made.unwrap_or_else(|error| panic!("{error}"));
+        let source = kernel.sweep(&shaders, 0, 0).unwrap_or_else(|error| panic!("{error}"));
+        for stage in [Programmable::Compute, Programmable::Fragment] {
+            let (resources, plan) = SweepPlan::new("fog_exp_factor", source.clone(), stage, &[0.0, 0.5], 5000);
+            let first = lightmeter_scene::along::key_of(0.5);
+            let words = words_by_json(&gpu, &resources, &plan.submission(plan.slots[1], first, 4321));
+            let along = Along { row: &[0.0, 0.5], free: 0, output: 0 };
+            let made =
+                Sweep::new(&gpu, &shaders, &kernel, stage, along, 5000).unwrap_or_else(|error| panic!("{error}"));
+            let mut sweep = made.unwrap_or_else(|reason| panic!("{reason}"));
+            for _ in 0..3 {
+                let block = sweep.submit(&gpu, first, 4321);
+                sweep
+                    .read(&gpu, block, |read| assert_eq!(read, &words[..4321]))
+                    .unwrap_or_else(|error| panic!("{error}"));
+            }
+        }
     }
 }

@@ -162,9 +162,3 @@ pub(crate) fn staging(gpu: &Gpu, words: usize) -> wgpu::Buffer {
         mapped_at_creation: false,
     })
 }
-
-/// A clear value that fills an integer target with the sentinel.
-pub(crate) fn sentinel_color() -> wgpu::Color {
-    let word = f64::from(lightmeter_scene::target::SENTINEL);
-    wgpu::Color { r: word, g: word, b: word, a: word }
-}
