@@ -67,8 +67,7 @@ impl ArithmeticPipeline {
     }
 
     /// What a kernel needs from one submission to the next: its pipeline.
-    #[must_use]
-    pub fn resources(kernel: &Kernel, stage: Programmable) -> Resources {
+    fn resources(kernel: &Kernel, stage: Programmable) -> Resources {
         let mut resources = Resources::default();
         match stage {
             Programmable::Compute => {
@@ -85,11 +84,7 @@ impl ArithmeticPipeline {
     }
 
     /// The evaluation of rows.
-    ///
-    /// # Panics
-    /// Where `rows` is not a whole number of rows.
-    #[must_use]
-    pub fn submission(&self, rows: &[f32]) -> Submission {
+    fn submission(&self, rows: &[f32]) -> Submission {
         assert!(rows.len().is_multiple_of(self.inputs), "rows are not of {} numbers each", self.inputs);
         let count = rows.len() / self.inputs;
         let mut work = Submission::default();

@@ -4,7 +4,7 @@ mod clock;
 mod encode;
 mod executor;
 mod objects;
-pub(crate) mod readback;
+mod readback;
 
 pub use clock::{Clock, ClockKind, ClockReading};
 pub(crate) use executor::Executor;
@@ -21,8 +21,8 @@ const PATIENCE: Duration = Duration::from_secs(300);
 /// An open device.
 #[derive(Debug)]
 pub struct Gpu {
-    pub(crate) device: wgpu::Device,
-    pub(crate) queue: wgpu::Queue,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
     pub(crate) is_gl: bool,
     features: wgpu::Features,
     downlevel: wgpu::DownlevelFlags,
@@ -101,13 +101,13 @@ impl Gpu {
     }
 
     /// The first error that the device reported since the last time this was asked.
-    pub(crate) fn check(&self) -> Result<(), GpuError> {
+    fn check(&self) -> Result<(), GpuError> {
         let failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
         failure.map_or(Ok(()), |message| Err(GpuError::Device(message)))
     }
 
     /// The same after a shader was compiled: what the device says then is of the shader.
-    pub(crate) fn check_shader(&self, file: &str) -> Result<(), GpuError> {
+    fn check_shader(&self, file: &str) -> Result<(), GpuError> {
         self.check().map_err(|error| match error {
             GpuError::Device(message) if !message.contains("lost") => GpuError::Shader { file: file.into(), message },
             other => other,
@@ -115,12 +115,12 @@ impl Gpu {
     }
 
     /// Waits until everything submitted is done, but not for ever: an edited shader may loop.
-    pub(crate) fn wait(&self) -> Result<(), GpuError> {
+    fn wait(&self) -> Result<(), GpuError> {
         self.wait_until(None)
     }
 
     /// The same until a submission is done, whatever came after it.
-    pub(crate) fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
+    fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
         self.wait_until(Some(submission))
     }
 
@@ -184,77 +184,6 @@ impl Gpu {
 
     pub(crate) fn lacks_compute(&self) -> Option<&'static str> {
         (!self.downlevel.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)).then_some("the adapter has no compute stage")
-    }
-
-    /// A buffer of these bytes.
-    pub(crate) fn buffer(&self, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: bytes.len().max(16) as u64,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        self.queue.write_buffer(&buffer, 0, bytes);
-        buffer
-    }
-
-    /// A texture that can be drawn to and copied from.
-    pub(crate) fn target(&self, width: u32, height: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
-        let sampled_or_copied = if format.is_depth_stencil_format() || format != wgpu::TextureFormat::Rgba32Uint {
-            wgpu::TextureUsages::TEXTURE_BINDING
-        } else {
-            wgpu::TextureUsages::COPY_SRC
-        };
-        self.texture(width, height, format, sampled_or_copied)
-    }
-
-    /// A texture that can be written, drawn to and copied from.
-    pub(crate) fn blend_target(&self, width: u32, height: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
-        self.texture(width, height, format, wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST)
-    }
-
-    fn texture(
-        &self,
-        width: u32,
-        height: u32,
-        format: wgpu::TextureFormat,
-        also: wgpu::TextureUsages,
-    ) -> wgpu::Texture {
-        self.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | also,
-            view_formats: &[],
-        })
-    }
-
-    /// Fills a texture's first pixels, row after row.
-    pub(crate) fn upload(&self, texture: &wgpu::Texture, bytes: &[u8], pixel_bytes: usize) {
-        let (width, mut y) = (texture.width(), 0);
-        let row_bytes = pixel_bytes * width as usize;
-        let whole = bytes.len() / row_bytes * row_bytes;
-        for part in [&bytes[..whole], &bytes[whole..]].into_iter().filter(|part| !part.is_empty()) {
-            let rows = u32::try_from(part.len().div_ceil(row_bytes)).unwrap_or(u32::MAX);
-            let columns = u32::try_from(part.len().min(row_bytes) / pixel_bytes).unwrap_or(u32::MAX);
-            let mut place = texture.as_image_copy();
-            place.origin.y = y;
-            let bytes_per_row = u32::try_from(row_bytes).ok();
-            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
-            let size = wgpu::Extent3d { width: columns, height: rows, depth_or_array_layers: 1 };
-            self.queue.write_texture(place, part, layout, size);
-            y += rows;
-        }
-    }
-
-    pub(crate) fn module(&self, label: &str, source: String) -> wgpu::ShaderModule {
-        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        })
     }
 }
 

@@ -71,8 +71,7 @@ impl RasterPipeline {
     }
 
     /// What draws every case that can share a target, and how many those are.
-    #[must_use]
-    pub fn submission(&self, rows: &[f32]) -> (usize, Submission) {
+    fn submission(&self, rows: &[f32]) -> (usize, Submission) {
         let inputs = self.kind.inputs();
         let count = distinct_pixels(rows, inputs);
         let rows = &rows[..count * inputs];

@@ -98,8 +98,7 @@ impl RepeatPipeline {
     }
 
     /// The evaluation of rows of inputs. Each row gives its outputs, and what was folded.
-    #[must_use]
-    pub fn submission(&self, rows: &[f32]) -> Submission {
+    fn submission(&self, rows: &[f32]) -> Submission {
         let count = rows.len() / self.inputs;
         let mut work = Submission::default();
         let rows = work.buffer(Buffer::of(rows, BufferUsages::STORAGE));

@@ -73,8 +73,8 @@ impl Rung {
     pub fn lacks(self, gpu: &Gpu) -> Option<&'static str> {
         let (feature, reason) = match self {
             Self::Cheap | Self::F32 | Self::Stable | Self::DoubleFloat => return None,
-            Self::F16 => (wgpu::Features::SHADER_F16, "the adapter lacks the feature SHADER_F16"),
-            Self::F64 => (wgpu::Features::SHADER_F64, "the adapter lacks the feature SHADER_F64"),
+            Self::F16 => (wgpu_types::Features::SHADER_F16, "the adapter lacks the feature SHADER_F16"),
+            Self::F64 => (wgpu_types::Features::SHADER_F64, "the adapter lacks the feature SHADER_F64"),
         };
         (!gpu.has(feature)).then_some(reason)
     }

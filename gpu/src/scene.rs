@@ -9,39 +9,38 @@ mod uniforms;
 
 use crate::compose::{Composer, Intermediate, MOST_TOWARD, Recipe, ShaderForm, Technique, live};
 use crate::depth_unit::DEPTH;
-use crate::device::readback::{Pending, staging};
-use crate::device::{Clock, ClockReading};
-use crate::device::{Gpu, format};
+use crate::device::{Clock, ClockReading, Executor, Gpu, Pending, format};
 use crate::error::GpuError;
 use crate::shaders::Shaders;
+use crate::work::{
+    BindGroup, Binding, Bytes, ColorAttachment, Command, DepthAttachment, Handle, Read, RenderPass, Resources, Step,
+    Submission, Texture,
+};
 use geometry::Geometry;
 use lightmeter_scene::effects::{Called, Effect, Effects};
-use lightmeter_scene::frame::{Frame, Place, Texture};
+use lightmeter_scene::frame::{self, Draw, Frame, Place};
 use lightmeter_scene::target::TargetFormat;
-use pipeline::{Key, Pipelines};
+use pipeline::{Key, Pipelines, Program};
+use std::rc::Rc;
 use uniforms::{Packer, Resource, resource};
+use wgpu_types::{Color, IndexFormat, LoadOp, Operations, StoreOp, TextureFormat, TextureUsages};
+
+/// The shaders' file in messages: they are composed of several.
+const FILE: &str = "scene.wgsl";
 
 /// A frame on a device, ready to be drawn: pipelines, buffers and textures.
 #[derive(Debug)]
 pub struct SceneRenderer {
-    draws: Vec<PreparedDraw>,
-    target: wgpu::Texture,
-    /// Where some draw has a depth test.
-    depth: Option<wgpu::TextureView>,
-    background: wgpu::Color,
-    clear_depth: f32,
-    pixel_bytes: u32,
+    executor: Executor,
+    work: Submission,
 }
 
-/// A draw, ready.
-#[derive(Debug)]
+/// What a draw is drawn by.
 struct PreparedDraw {
-    pipeline: wgpu::RenderPipeline,
-    group: wgpu::BindGroup,
-    vertices: Vec<wgpu::Buffer>,
-    indices: wgpu::Buffer,
-    index_count: u32,
-    constant: Option<wgpu::Color>,
+    pipeline: Handle,
+    program: Rc<Program>,
+    resources: Vec<(u32, Resource)>,
+    constant: Option<Color>,
 }
 
 impl SceneRenderer {
@@ -64,83 +63,22 @@ impl SceneRenderer {
     /// # Panics
     /// Where a stage is asked of [`ShaderForm::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
     pub fn new(gpu: &Gpu, shaders: &Shaders, frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<Self, GpuError> {
-        let stage = recipe.stage;
         if sets.len() != frame.draws.len() {
             return Err(GpuError::Sets { draws: frame.draws.len(), sets: sets.len() });
         }
         if let Some(reason) = recipe.rung.lacks(gpu) {
             return Err(GpuError::Unavailable { what: recipe.rung.name().into(), reason: reason.into() });
         }
-        check_technique(frame, sets, recipe)?;
-        let composer = Composer::new(shaders)?;
-        let target = if stage.is_some() { TargetFormat::Rgba32Float } else { frame.target.format };
-        let tests_depth = frame.draws.iter().any(|draw| draw.depth.is_some());
-        let mut pipelines = Pipelines::new(gpu, composer, recipe, format(target), tests_depth);
-        let mut packer = Packer::new(gpu);
-        let mut prepared = vec![];
-        for (draw, called) in frame.draws.iter().zip(sets) {
-            let blended = draw.blend.filter(|_| stage.is_none());
-            let blend = blended.map(|blend| pipeline::native(draw, blend)).transpose()?;
-            let key = Key {
-                effects: called.effects,
-                blend: blend.map(|(state, _)| state),
-                depth: draw.depth,
-                cull: draw.cull,
-                toward: toward(frame, called, recipe),
-            };
-            let (pipeline, program) = pipelines.get(key)?;
-            let told = uniforms::Told { frame, draw, called, effects: program.effects(called.effects), stage };
-            let resources: Vec<(u32, Resource)> = program
-                .bindings
-                .iter()
-                .map(|(binding, name)| Ok((*binding, resource(&told, name, &mut packer)?)))
-                .collect::<Result<_, GpuError>>()?;
-            prepared.push((pipeline, program, resources, blend.map(|(_, constant)| constant)));
-        }
-        let uniforms = packer.finish(gpu);
-        let textures: Vec<wgpu::TextureView> = frame.textures.iter().map(|texture| upload(gpu, texture)).collect();
-        let none = upload(gpu, &Texture { width: 1, height: 1, texels: vec![[1.0; 4]] });
-        let mut geometry = Geometry::new(gpu, frame);
-        let mut draws = vec![];
-        for (draw, (pipeline, program, resources, constant)) in frame.draws.iter().zip(prepared) {
-            let group = bind(gpu, &pipeline, &resources, (&uniforms, &textures, &none));
-            let (indices, index_count) = geometry.indices(draw);
-            let vertices = program.inputs.iter().map(|input| geometry.vertices(draw.mesh, *input)).collect();
-            draws.push(PreparedDraw { pipeline, group, vertices, indices, index_count, constant });
-        }
-        let (width, height) = (frame.target.width, frame.target.height);
-        let depth = tests_depth.then(|| gpu.target(width, height, DEPTH).create_view(&Default::default()));
-        let [r, g, b, a] = if stage.is_some() { [0.0; 4] } else { frame.background.map(f64::from) };
-        let renderer = Self {
-            draws,
-            target: gpu.blend_target(width, height, format(target)),
-            depth,
-            background: wgpu::Color { r, g, b, a },
-            clear_depth: frame.clear_depth,
-            pixel_bytes: u32::try_from(4 * target.component_bytes()).unwrap_or(u32::MAX),
-        };
-        gpu.check_shader("scene.wgsl")?;
-        Ok(renderer)
+        let (resources, work) = describe(shaders, frame, sets, recipe, gpu.is_gl)?;
+        let mut executor = Executor::default();
+        executor.make(gpu, &resources, FILE)?;
+        Ok(Self { executor, work })
     }
 
     /// Draws the frame and asks for its pixels.
     #[must_use]
     pub fn submit(&self, gpu: &Gpu) -> Pending {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.encode(&mut encoder, None);
-        let size = self.target.size();
-        let row_bytes = self.pixel_bytes * size.width;
-        let padded = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let staging = staging(gpu, padded as usize / 4 * size.height as usize);
-        encoder.copy_texture_to_buffer(
-            self.target.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &staging,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
-            },
-            size,
-        );
-        Pending::submit(gpu, encoder, staging, (padded as usize / 4, row_bytes as usize / 4))
+        self.executor.submit(gpu, &self.work)
     }
 
     /// The pixels of a submission in the target's own bits, the top row first, rows without gaps.
@@ -148,7 +86,7 @@ impl SceneRenderer {
     /// # Errors
     /// Where the device failed or was lost.
     pub fn pixels(gpu: &Gpu, pending: Pending) -> Result<Vec<u8>, GpuError> {
-        Ok(bytemuck::cast_slice(&pending.wait(gpu)?).to_vec())
+        pending.map(gpu, |words| bytemuck::cast_slice(&words).to_vec())
     }
 
     /// How long it takes to draw the frame so many times in one submission. A driver compiles at the first draw: draw once
@@ -157,46 +95,120 @@ impl SceneRenderer {
     /// # Errors
     /// Where the device failed or was lost.
     pub fn time(&self, gpu: &Gpu, clock: &Clock, repeats: u32) -> Result<ClockReading, GpuError> {
-        clock.time(gpu, |encoder, span| {
-            for k in 0..repeats {
-                self.encode(encoder, span.part(k == 0, k + 1 == repeats).render());
-            }
-        })
+        self.executor.time(gpu, clock, &self.work, repeats)
     }
+}
 
-    fn encode(&self, encoder: &mut wgpu::CommandEncoder, timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>) {
-        let view = self.target.create_view(&Default::default());
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(self.background), store: wgpu::StoreOp::Store },
-            })],
-            depth_stencil_attachment: self.depth.as_ref().map(|view| wgpu::RenderPassDepthStencilAttachment {
-                view,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(self.clear_depth),
-                    store: wgpu::StoreOp::Discard,
-                }),
-                stencil_ops: None,
-            }),
-            timestamp_writes: timestamps,
-            ..Default::default()
+/// What a frame needs on a device, and its drawing.
+///
+/// # Errors
+/// As [`SceneRenderer::new`] has them, but for what the device refuses.
+fn describe(
+    shaders: &Shaders,
+    frame: &Frame,
+    sets: &[Called],
+    recipe: Recipe,
+    is_gl: bool,
+) -> Result<(Resources, Submission), GpuError> {
+    check_technique(frame, sets, recipe)?;
+    let target = if recipe.stage.is_some() { TargetFormat::Rgba32Float } else { frame.target.format };
+    let tests_depth = frame.draws.iter().any(|draw| draw.depth.is_some());
+    let mut resources = Resources::default();
+    let mut pipelines = Pipelines::new(Composer::new(shaders)?, recipe, format(target), tests_depth, is_gl);
+    let mut packer = Packer::default();
+    let prepared = frame
+        .draws
+        .iter()
+        .zip(sets)
+        .map(|(draw, called)| prepare(frame, draw, called, recipe, (&mut resources, &mut pipelines, &mut packer)))
+        .collect::<Result<Vec<_>, GpuError>>()?;
+    let uniforms = resources.buffer(packer.finish());
+    let textures: Vec<Handle> = frame.textures.iter().map(|texture| resources.texture(texels(texture))).collect();
+    let white = frame::Texture { width: 1, height: 1, texels: vec![[1.0; 4]] };
+    let none = resources.texture(texels(&white));
+    let mut geometry = Geometry::new(frame, is_gl);
+    let mut commands = vec![];
+    for (draw, prepared) in frame.draws.iter().zip(prepared) {
+        let bindings = prepared.resources.iter().map(|(number, resource)| {
+            let binding = match *resource {
+                Resource::Uniform { offset, bytes } => Binding::Part { buffer: uniforms, offset, bytes },
+                Resource::Texture(place) => Binding::Texture(place.map_or(none, |place| textures[place])),
+            };
+            (*number, binding)
         });
-        for draw in self.draws.iter().filter(|draw| draw.index_count > 0) {
-            pass.set_pipeline(&draw.pipeline);
-            pass.set_bind_group(0, &draw.group, &[]);
-            for (slot, buffer) in (0..).zip(&draw.vertices) {
-                pass.set_vertex_buffer(slot, buffer.slice(..));
-            }
-            pass.set_index_buffer(draw.indices.slice(..), wgpu::IndexFormat::Uint32);
-            if let Some(constant) = draw.constant {
-                pass.set_blend_constant(constant);
-            }
-            pass.draw_indexed(0..draw.index_count, 0, 0..1);
-        }
+        let group = BindGroup { pipeline: prepared.pipeline, bindings: bindings.collect() };
+        let group = resources.group(group);
+        commands.extend(draw_commands(draw, &prepared, group, (&mut geometry, &mut resources)));
     }
+    let work = drawing(frame, recipe.stage, format(target), commands, &mut resources);
+    Ok((resources, work))
+}
+
+/// The pipeline of a draw, and what its bindings are given.
+fn prepare(
+    frame: &Frame,
+    draw: &Draw,
+    called: &Called,
+    recipe: Recipe,
+    (resources, pipelines, packer): (&mut Resources, &mut Pipelines, &mut Packer),
+) -> Result<PreparedDraw, GpuError> {
+    let stage = recipe.stage;
+    let blended = draw.blend.filter(|_| stage.is_none());
+    let blend = blended.map(|blend| pipeline::native(draw, blend)).transpose()?;
+    let key = Key {
+        effects: called.effects,
+        blend: blend.map(|(state, _)| state),
+        depth: draw.depth,
+        cull: draw.cull,
+        toward: toward(frame, called, recipe),
+    };
+    let (pipeline, program) = pipelines.get(resources, key)?;
+    let told = uniforms::Told { frame, draw, called, effects: program.effects(called.effects), stage };
+    let bound = program.bindings.iter().map(|(number, name)| Ok((*number, resource(&told, name, packer)?)));
+    let resources = bound.collect::<Result<_, GpuError>>()?;
+    Ok(PreparedDraw { pipeline, program, resources, constant: blend.map(|(_, constant)| constant) })
+}
+
+/// The commands of a draw; none of one without triangles.
+fn draw_commands(
+    draw: &Draw,
+    prepared: &PreparedDraw,
+    group: Handle,
+    (geometry, resources): (&mut Geometry<'_>, &mut Resources),
+) -> Vec<Command> {
+    let (buffer, count) = geometry.indices(resources, draw);
+    if count == 0 {
+        return vec![];
+    }
+    let mut commands = vec![Command::Pipeline(prepared.pipeline), Command::Group(group)];
+    for (slot, input) in (0..).zip(&prepared.program.inputs) {
+        commands.push(Command::Vertices { slot, buffer: geometry.vertices(resources, draw.mesh, *input) });
+    }
+    commands.push(Command::Indices { buffer, format: IndexFormat::Uint32 });
+    commands.extend(prepared.constant.map(Command::BlendConstant));
+    commands.push(Command::DrawIndexed { indices: 0..count });
+    commands
+}
+
+/// The pass over the frame's target, whose pixels come back.
+fn drawing(
+    frame: &Frame,
+    stage: Option<Intermediate>,
+    format: TextureFormat,
+    commands: Vec<Command>,
+    resources: &mut Resources,
+) -> Submission {
+    let size = [frame.target.width, frame.target.height];
+    let also = TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
+    let target = resources.texture(Texture::target(size, format, also));
+    let tests_depth = frame.draws.iter().any(|draw| draw.depth.is_some());
+    let depth = tests_depth.then(|| DepthAttachment {
+        texture: resources.texture(Texture::target(size, DEPTH, TextureUsages::TEXTURE_BINDING)),
+        operations: Operations { load: LoadOp::Clear(frame.clear_depth), store: StoreOp::Discard },
+    });
+    let [r, g, b, a] = if stage.is_some() { [0.0; 4] } else { frame.background.map(f64::from) };
+    let pass = RenderPass { colors: vec![ColorAttachment::cleared(target, Color { r, g, b, a })], depth, commands };
+    Submission { steps: vec![Step::Render(pass)], reads: vec![Read::Texture(target)], ..Default::default() }
 }
 
 /// Lights of a draw that stand somewhere and whose vectors are interpolated.
@@ -242,49 +254,15 @@ fn check_technique(frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<(),
 }
 
 /// A texture of binary32 texels.
-fn upload(gpu: &Gpu, texture: &Texture) -> wgpu::TextureView {
-    let made = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    gpu.upload(&made, bytemuck::cast_slice(&texture.texels), 16);
-    made.create_view(&Default::default())
-}
-
-/// What a draw's shader has bindings for.
-fn bind(
-    gpu: &Gpu,
-    pipeline: &wgpu::RenderPipeline,
-    resources: &[(u32, Resource)],
-    (uniforms, textures, none): (&wgpu::Buffer, &[wgpu::TextureView], &wgpu::TextureView),
-) -> wgpu::BindGroup {
-    let entries: Vec<wgpu::BindGroupEntry<'_>> = resources
-        .iter()
-        .map(|(binding, resource)| wgpu::BindGroupEntry {
-            binding: *binding,
-            resource: match resource {
-                Resource::Uniform { offset, size } => wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                    buffer: uniforms,
-                    offset: *offset,
-                    size: wgpu::BufferSize::new(*size),
-                }),
-                Resource::Texture(place) => {
-                    wgpu::BindingResource::TextureView(place.map_or(none, |place| &textures[place]))
-                }
-            },
-        })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &entries,
-    })
+fn texels(texture: &frame::Texture) -> Texture {
+    let contents: &[u8] = bytemuck::cast_slice(&texture.texels);
+    Texture {
+        width: texture.width,
+        height: texture.height,
+        format: TextureFormat::Rgba32Float,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        contents: Bytes::from(contents),
+    }
 }
 
 #[cfg(test)]

@@ -93,7 +93,7 @@ struct Stamps {
 
 /// The timestamps that a measurement's passes write.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Span<'a> {
+pub(super) struct Span<'a> {
     queries: Option<&'a wgpu::QuerySet>,
     /// Whether the next pass begins it.
     begins: bool,
@@ -103,19 +103,19 @@ pub(crate) struct Span<'a> {
 
 impl<'a> Span<'a> {
     /// Nothing is measured.
-    pub(crate) const NONE: Self = Self { queries: None, begins: false, ends: false };
+    pub(super) const NONE: Self = Self { queries: None, begins: false, ends: false };
 
     const fn of(queries: &'a wgpu::QuerySet) -> Self {
         Self { queries: Some(queries), begins: true, ends: true }
     }
 
     /// What one of several parts of the work writes.
-    pub(crate) const fn part(self, is_first: bool, is_last: bool) -> Self {
+    pub(super) const fn part(self, is_first: bool, is_last: bool) -> Self {
         Self { queries: self.queries, begins: self.begins && is_first, ends: self.ends && is_last }
     }
 
     /// For a compute pass.
-    pub(crate) fn compute(self) -> Option<wgpu::ComputePassTimestampWrites<'a>> {
+    pub(super) fn compute(self) -> Option<wgpu::ComputePassTimestampWrites<'a>> {
         let query_set = self.queries.filter(|_| self.begins || self.ends)?;
         Some(wgpu::ComputePassTimestampWrites {
             query_set,
@@ -125,7 +125,7 @@ impl<'a> Span<'a> {
     }
 
     /// For a render pass.
-    pub(crate) fn render(self) -> Option<wgpu::RenderPassTimestampWrites<'a>> {
+    pub(super) fn render(self) -> Option<wgpu::RenderPassTimestampWrites<'a>> {
         let query_set = self.queries.filter(|_| self.begins || self.ends)?;
         Some(wgpu::RenderPassTimestampWrites {
             query_set,
@@ -174,7 +174,7 @@ impl Clock {
     }
 
     /// Times the passes that are encoded, in a submission of their own on an idle device.
-    pub(crate) fn time(
+    pub(super) fn time(
         &self,
         gpu: &Gpu,
         encode: impl FnOnce(&mut wgpu::CommandEncoder, Span<'_>),

@@ -143,22 +143,3 @@ impl Part {
         self.rows * self.stride
     }
 }
-
-impl Pending {
-    /// Submits the commands and asks for the buffer, of which each row of `row.0` words holds `row.1` that count.
-    pub(crate) fn submit(gpu: &Gpu, encoder: wgpu::CommandEncoder, buffer: wgpu::Buffer, row: (usize, usize)) -> Self {
-        let (stride, row_bytes) = (4 * row.0, 4 * row.1);
-        let rows = usize::try_from(buffer.size()).unwrap_or(usize::MAX) / stride;
-        Self::new(gpu.queue.submit([encoder.finish()]), buffer, Layout(vec![Part { rows, stride, row_bytes }]))
-    }
-}
-
-/// A buffer to read back through.
-pub(crate) fn staging(gpu: &Gpu, words: usize) -> wgpu::Buffer {
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("readback"),
-        size: 4 * words as u64,
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
-}

@@ -1,11 +1,11 @@
 //! Vertices and indices on a device, each uploaded once where it is needed.
 
-use crate::device::Gpu;
-
+use crate::work::{Buffer, Bytes, Contents, Handle, Resources};
 use lightmeter_scene::frame::{Draw, Frame, Mesh};
 use lightmeter_scene::raster::Provoking;
 use lightmeter_scene::shading::Frequency;
 use std::collections::HashMap;
+use wgpu_types::{BufferUsages, VertexFormat};
 
 /// A vertex input by its location in `scene.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -28,11 +28,11 @@ impl Input {
         self as u32
     }
 
-    pub(super) const fn format(self) -> wgpu::VertexFormat {
+    pub(super) const fn format(self) -> VertexFormat {
         match self {
-            Self::Position | Self::Normal => wgpu::VertexFormat::Float32x3,
-            Self::Uv | Self::LightmapUv => wgpu::VertexFormat::Float32x2,
-            Self::Color => wgpu::VertexFormat::Float32x4,
+            Self::Position | Self::Normal => VertexFormat::Float32x3,
+            Self::Uv | Self::LightmapUv => VertexFormat::Float32x2,
+            Self::Color => VertexFormat::Float32x4,
         }
     }
 
@@ -56,36 +56,37 @@ impl Input {
 
 /// The buffers that were needed so far.
 pub(super) struct Geometry<'a> {
-    gpu: &'a Gpu,
     frame: &'a Frame,
-    vertices: HashMap<(usize, Input), wgpu::Buffer>,
+    is_gl: bool,
+    vertices: HashMap<(usize, Input), Handle>,
     /// By mesh and by how far its triangles are turned.
-    indices: HashMap<(usize, usize), wgpu::Buffer>,
+    indices: HashMap<(usize, usize), Handle>,
 }
 
 impl<'a> Geometry<'a> {
-    pub(super) fn new(gpu: &'a Gpu, frame: &'a Frame) -> Self {
-        Self { gpu, frame, vertices: HashMap::new(), indices: HashMap::new() }
+    pub(super) fn new(frame: &'a Frame, is_gl: bool) -> Self {
+        Self { frame, is_gl, vertices: HashMap::new(), indices: HashMap::new() }
     }
 
-    pub(super) fn vertices(&mut self, mesh: usize, input: Input) -> wgpu::Buffer {
-        let made = self.vertices.entry((mesh, input));
-        made.or_insert_with(|| self.gpu.buffer(&input.bytes(&self.frame.meshes[mesh]), wgpu::BufferUsages::VERTEX))
-            .clone()
+    pub(super) fn vertices(&mut self, resources: &mut Resources, mesh: usize, input: Input) -> Handle {
+        *self.vertices.entry((mesh, input)).or_insert_with(|| {
+            let contents = Contents::Bytes(Bytes(input.bytes(&self.frame.meshes[mesh])));
+            resources.buffer(Buffer { usage: BufferUsages::VERTEX, contents })
+        })
     }
 
     /// The indices of a draw and their number. Flat attributes are the first vertex's, on OpenGL the last's: triangles
     /// are turned until that is the vertex that is wanted.
-    pub(super) fn indices(&mut self, draw: &Draw) -> (wgpu::Buffer, u32) {
+    pub(super) fn indices(&mut self, resources: &mut Resources, draw: &Draw) -> (Handle, u32) {
         let flat = draw.shading.filter(|shading| shading.frequency == Frequency::Flat);
-        let turn = flat.map_or(0, |shading| turn(shading.provoking, self.gpu.is_gl));
+        let turn = flat.map_or(0, |shading| turn(shading.provoking, self.is_gl));
         let triangles = &self.frame.meshes[draw.mesh].triangles;
-        let made = self.indices.entry((draw.mesh, turn)).or_insert_with(|| {
+        let described = self.indices.entry((draw.mesh, turn)).or_insert_with(|| {
             let turned: Vec<[u32; 3]> =
                 triangles.iter().map(|t| [t[turn], t[(turn + 1) % 3], t[(turn + 2) % 3]]).collect();
-            self.gpu.buffer(bytemuck::cast_slice(&turned), wgpu::BufferUsages::INDEX)
+            resources.buffer(Buffer::of(&turned, BufferUsages::INDEX))
         });
-        (made.clone(), u32::try_from(3 * triangles.len()).unwrap_or(u32::MAX))
+        (*described, u32::try_from(3 * triangles.len()).unwrap_or(u32::MAX))
     }
 }
 

@@ -1,16 +1,21 @@
 //! Pipelines, shared by draws that differ in numbers alone.
 
 use super::geometry::Input;
-use super::{Effects, Gpu, GpuError, Intermediate, Recipe, ShaderForm};
+use super::{Effects, FILE, GpuError, Intermediate, Recipe, ShaderForm};
 use crate::blend_unit;
 use crate::compose::{Composer, Composition, live};
 use crate::depth_unit::depth_state;
+use crate::work::{Handle, RenderPipeline, Resources, VertexBuffer};
 use lightmeter_scene::blend::WriteMask;
 use lightmeter_scene::blend::{Route, routes};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::frame::{Blend, Cull, Draw};
 use std::collections::HashMap;
 use std::rc::Rc;
+use wgpu_types::{
+    BlendState, Color, ColorTargetState, ColorWrites, Face, FrontFace, PrimitiveState, TextureFormat, VertexAttribute,
+    VertexStepMode,
+};
 
 /// No test is one that always passes and leaves nothing.
 const PASSES: DepthTest = DepthTest { compare: Compare::Always, write: false };
@@ -19,7 +24,7 @@ const PASSES: DepthTest = DepthTest { compare: Compare::Always, write: false };
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Key {
     pub(super) effects: Effects,
-    pub(super) blend: Option<wgpu::BlendState>,
+    pub(super) blend: Option<BlendState>,
     pub(super) depth: Option<DepthTest>,
     pub(super) cull: Cull,
     /// Lights whose vectors are interpolated.
@@ -29,7 +34,7 @@ pub(super) struct Key {
 /// A shader with what it reads.
 #[derive(Debug)]
 pub(super) struct Program {
-    module: wgpu::ShaderModule,
+    shader: Handle,
     /// The bindings' numbers and names.
     pub(super) bindings: Vec<(u32, String)>,
     pub(super) inputs: Vec<Input>,
@@ -44,30 +49,30 @@ impl Program {
 }
 
 /// The shaders and pipelines that were needed so far.
-pub(super) struct Pipelines<'a> {
-    gpu: &'a Gpu,
+pub(super) struct Pipelines {
     composer: Composer,
     recipe: Recipe,
-    format: wgpu::TextureFormat,
+    format: TextureFormat,
     tests_depth: bool,
+    is_gl: bool,
     /// By their text: different effects may have use for the same.
     programs: HashMap<String, Rc<Program>>,
-    pipelines: HashMap<(Key, bool), (wgpu::RenderPipeline, Rc<Program>)>,
+    pipelines: HashMap<(Key, bool), (Handle, Rc<Program>)>,
 }
 
-impl<'a> Pipelines<'a> {
+impl Pipelines {
     pub(super) fn new(
-        gpu: &'a Gpu,
         composer: Composer,
         recipe: Recipe,
-        format: wgpu::TextureFormat,
+        format: TextureFormat,
         tests_depth: bool,
+        is_gl: bool,
     ) -> Self {
         let (programs, pipelines) = (HashMap::new(), HashMap::new());
-        Self { gpu, composer, recipe, format, tests_depth, programs, pipelines }
+        Self { composer, recipe, format, tests_depth, is_gl, programs, pipelines }
     }
 
-    pub(super) fn get(&mut self, mut key: Key) -> Result<(wgpu::RenderPipeline, Rc<Program>), GpuError> {
+    pub(super) fn get(&mut self, resources: &mut Resources, mut key: Key) -> Result<(Handle, Rc<Program>), GpuError> {
         // A stage without light still tells whether there are normals, which `live` leaves out.
         let has_normals = key.effects.has_normals();
         let called = key.effects;
@@ -80,18 +85,17 @@ impl<'a> Pipelines<'a> {
         let program = match self.programs.get(&composition.source) {
             Some(program) => program.clone(),
             None => {
-                let program = Rc::new(self.program(&composition)?);
+                let program = Rc::new(self.program(resources, &composition)?);
                 self.programs.insert(composition.source, program.clone());
                 program
             }
         };
-        let pipeline = self.pipeline(&program, key);
-        self.gpu.check_shader("scene.wgsl")?;
-        self.pipelines.insert((key, has_normals), (pipeline.clone(), program.clone()));
+        let pipeline = resources.pipeline(self.pipeline(&program, key));
+        self.pipelines.insert((key, has_normals), (pipeline, program.clone()));
         Ok((pipeline, program))
     }
 
-    fn program(&self, composition: &Composition) -> Result<Program, GpuError> {
+    fn program(&self, resources: &mut Resources, composition: &Composition) -> Result<Program, GpuError> {
         let (module, _) = composition.validate()?;
         let bindings = module
             .global_variables
@@ -110,70 +114,42 @@ impl<'a> Pipelines<'a> {
             _ => None,
         });
         let mut source = self.composer.lower(composition, self.recipe.rung)?;
-        if self.gpu.is_gl {
+        if self.is_gl {
             // GLSL cannot choose the provoking vertex, and naga refuses what asks for the first.
             source = source.replace("@interpolate(flat, first)", "@interpolate(flat, either)");
         }
         Ok(Program {
-            module: self.gpu.module("scene.wgsl", source),
+            shader: resources.shader(FILE, source),
             bindings: bindings.collect(),
             inputs: inputs.collect(),
             stage: self.recipe.stage,
         })
     }
 
-    fn pipeline(&self, program: &Program, key: Key) -> wgpu::RenderPipeline {
-        let attributes: Vec<[wgpu::VertexAttribute; 1]> = program
-            .inputs
-            .iter()
-            .map(|input| {
-                [wgpu::VertexAttribute { format: input.format(), offset: 0, shader_location: input.location() }]
-            })
-            .collect();
-        let buffers: Vec<_> = attributes
-            .iter()
-            .map(|attributes| {
-                Some(wgpu::VertexBufferLayout {
-                    array_stride: attributes[0].format.size(),
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes,
-                })
-            })
-            .collect();
-        self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("scene"),
-            // A binding is there exactly when the shader reads it.
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &program.module,
-                entry_point: Some(Composition::VERTEX),
-                compilation_options: Default::default(),
-                buffers: &buffers,
-            },
-            primitive: wgpu::PrimitiveState {
-                front_face: wgpu::FrontFace::Ccw,
+    fn pipeline(&self, program: &Program, key: Key) -> RenderPipeline {
+        let buffer = |input: &Input| VertexBuffer {
+            stride: input.format().size(),
+            step: VertexStepMode::Vertex,
+            attributes: vec![VertexAttribute { format: input.format(), offset: 0, shader_location: input.location() }],
+        };
+        let target = ColorTargetState { format: self.format, blend: key.blend, write_mask: ColorWrites::ALL };
+        let entries = (Composition::VERTEX, Composition::FRAGMENT);
+        RenderPipeline {
+            buffers: program.inputs.iter().map(buffer).collect(),
+            primitive: PrimitiveState {
+                front_face: FrontFace::Ccw,
                 cull_mode: match key.cull {
                     Cull::None => None,
-                    Cull::Back => Some(wgpu::Face::Back),
-                    Cull::Front => Some(wgpu::Face::Front),
+                    Cull::Back => Some(Face::Back),
+                    Cull::Front => Some(Face::Front),
                 },
                 ..Default::default()
             },
-            depth_stencil: self.tests_depth.then(|| depth_state(key.depth.unwrap_or(PASSES))),
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &program.module,
-                entry_point: Some(Composition::FRAGMENT),
-                compilation_options: Default::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: self.format,
-                    blend: key.blend,
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+            depth: self.tests_depth.then(|| depth_state(key.depth.unwrap_or(PASSES))),
+            // A binding is there exactly when the shader reads it.
+            layout: None,
+            ..RenderPipeline::new("scene", program.shader, entries, [target])
+        }
     }
 }
 
@@ -181,7 +157,7 @@ impl<'a> Pipelines<'a> {
 ///
 /// # Errors
 /// Where one factor reads the constant's colour and another its alpha: the unit has one constant for both.
-pub(super) fn native(draw: &Draw, blend: Blend) -> Result<(wgpu::BlendState, wgpu::Color), GpuError> {
+pub(super) fn native(draw: &Draw, blend: Blend) -> Result<(BlendState, Color), GpuError> {
     let route = routes(blend.state)[0];
     if !matches!(route, Route::Native | Route::ConstantReplicated) {
         let message = format!(

@@ -5,12 +5,13 @@ use super::*;
 use crate::adapters;
 use crate::device::ClockKind;
 use crate::rung::Rung;
+use crate::work::tests::words_by_json;
 use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::{
-    Blend, Cull, Draw, Fog, FogForm, Light, Material, Matrix, Mesh, Place, Sampled, Shading, Target, TextureFilter,
-    Textured, Wrap,
+    Blend, Cull, Draw, Fog, FogForm, Light, Material, Matrix, Mesh, Place, Sampled, Shading, Target, Texture,
+    TextureFilter, Textured, Wrap,
 };
 use lightmeter_scene::raster::Provoking;
 use lightmeter_scene::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
@@ -451,6 +452,24 @@ fn what_the_unit_cannot_blend_and_sets_of_another_frame_are_errors() {
     let state = State { equation: Equation::Add, src: Factor::ConstantColor, dst: Factor::ConstantAlpha };
     frame.draws[0].blend = Some(Blend { state: state.into(), constant: [0.1, 0.2, 0.3, 0.4] });
     assert!(says(&frame, &effects(&frame)).contains("constant"), "{}", says(&frame, &effects(&frame)));
+}
+
+#[test]
+fn a_frame_is_drawn_alike_by_way_of_json() {
+    let _alone = alone();
+    let (_, gpu, format) = devices().next().expect("there is one");
+    let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
+    let mut frame = frame();
+    frame.target.format = format;
+    let state = State { equation: Equation::Add, src: Factor::ConstantColor, dst: Factor::OneMinusSrcAlpha };
+    frame.draws[0].blend = Some(Blend { state: state.into(), constant: [0.9, 0.8, 0.7, 0.6] });
+    let sets = effects(&frame);
+    let recipe = Recipe::of(ShaderForm::Composed);
+    let made = describe(&shaders, &frame, &sets, recipe, gpu.is_gl);
+    let (resources, work) = made.unwrap_or_else(|error| panic!("{error}"));
+    let words = words_by_json(&gpu, &resources, &work);
+    let pixels = drawn(&gpu, &frame, &sets, ShaderForm::Composed, None);
+    assert_eq!(bytemuck::cast_slice::<u32, u8>(&words), pixels);
 }
 
 /// The first word of a binding's member by naga's layout: names of members and numbers of elements lead there.

@@ -1,8 +1,13 @@
 //! What a draw's shader is told, in the layouts of `scene_uniforms.wgsl` and of the effects' own bindings.
 
-use super::{Called, Effects, Frame, Gpu, GpuError, Intermediate};
+use super::{Called, Effects, Frame, GpuError, Intermediate};
+use crate::work::Buffer;
 use lightmeter_scene::frame::{Draw, Fog, FogForm, Light, MOST_LIGHTS, Material, Place, Sampled, Wrap};
 use std::collections::HashMap;
+use wgpu_types::BufferUsages;
+
+/// Words from one uniform to the next, at least: 256 bytes are legal on every device.
+const ALIGNMENT: usize = 64;
 
 /// A draw and what its shader computes.
 pub(super) struct Told<'a> {
@@ -17,39 +22,32 @@ pub(super) struct Told<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Resource {
     /// A part of the uniforms' buffer.
-    Uniform { offset: u64, size: u64 },
+    Uniform { offset: u64, bytes: u64 },
     /// A texture by its place; any, where the shader reads none.
     Texture(Option<usize>),
 }
 
 /// All uniforms of a frame in one buffer, equal ones once.
+#[derive(Default)]
 pub(super) struct Packer {
-    alignment: usize,
     words: Vec<u32>,
     places: HashMap<Vec<u32>, Resource>,
 }
 
 impl Packer {
-    pub(super) fn new(gpu: &Gpu) -> Self {
-        let limits = gpu.device.limits();
-        let alignment = limits.min_uniform_buffer_offset_alignment.max(limits.min_storage_buffer_offset_alignment);
-        let alignment = alignment as usize / 4;
-        Self { alignment, words: vec![], places: HashMap::new() }
-    }
-
     fn put(&mut self, words: Vec<u32>) -> Resource {
         if let Some(place) = self.places.get(&words) {
             return *place;
         }
-        self.words.resize(self.words.len().next_multiple_of(self.alignment), 0);
-        let place = Resource::Uniform { offset: 4 * self.words.len() as u64, size: 4 * words.len() as u64 };
+        self.words.resize(self.words.len().next_multiple_of(ALIGNMENT), 0);
+        let place = Resource::Uniform { offset: 4 * self.words.len() as u64, bytes: 4 * words.len() as u64 };
         self.words.extend(&words);
         self.places.insert(words, place);
         place
     }
 
-    pub(super) fn finish(self, gpu: &Gpu) -> wgpu::Buffer {
-        gpu.buffer(bytemuck::cast_slice(&self.words), wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE)
+    pub(super) fn finish(self) -> Buffer {
+        Buffer::of(&self.words, BufferUsages::UNIFORM | BufferUsages::STORAGE)
     }
 }
 
