@@ -5,6 +5,8 @@ mod encode;
 mod executor;
 mod objects;
 mod readback;
+#[cfg(test)]
+mod tests;
 
 pub use clock::{Clock, ClockKind, ClockReading};
 pub(crate) use executor::Executor;
