@@ -1,4 +1,5 @@
-//! One open device and what all evaluations on it share.
+//! One open device, the executor that runs work on it, and what tells how long that takes. Nobody outside reaches the device
+//! itself.
 
 mod clock;
 mod encode;

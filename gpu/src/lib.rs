@@ -3,6 +3,9 @@
 //! Four ways lead through a renderer, and each is judged by itself: the *compute* stage, the *fragment* stage, the
 //! *rasteriser* and the *fixed-function* blend unit. This crate never sees a formula of the reference: what a case
 //! should give is not known here.
+//!
+//! Each way describes what it does as data ([`work`]) and reads the words that come back. An executor, which keeps what
+//! outlives a submission, runs the descriptions on a device by wgpu; nothing else makes objects there or submits commands.
 
 mod adapters;
 mod arithmetic;

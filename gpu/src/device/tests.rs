@@ -15,7 +15,7 @@ fn nothing_but_the_executor_calls_wgpu() {
         let names = sources.iter().filter(|(_, text)| text.contains(needle)).map(|(path, _)| path.clone());
         names.collect()
     };
-    // Written in two parts, or this file would name it as well.
+    // Needles are written in two parts, or this file would hold them as well.
     let namers = naming(concat!("wgpu", "::"));
     let outside: Vec<_> = namers
         .iter()
