@@ -1,6 +1,6 @@
 //! A run held against an earlier one, against known failures, and against itself.
 
-use super::{code, edited, json, lightmeter, stderr, stdout};
+use super::{code, edited, gate, json, lightmeter, stderr, stdout};
 use serde_json::Value;
 use std::path::PathBuf;
 
@@ -95,8 +95,7 @@ fn a_known_failure_is_expected_on_an_adapter_and_told_when_it_passes() {
 
 #[test]
 fn results_are_the_same_however_often_they_are_asked() {
-    let report =
-        json(&["run", "fog", "depth", "vector/halfway", "--cases", "100", "--runs", "3", "--format", "json"]);
+    let report = json(&["run", "fog", "depth", "vector/halfway", "--cases", "100", "--runs", "3", "--format", "json"]);
     assert_eq!((report.get("unstable"), report["totals"]["failed"].as_u64()), (None, Some(0)), "{}", report["totals"]);
 }
 
@@ -124,4 +123,74 @@ fn each_group_says_what_became_of_its_cases() {
         assert_eq!(counts["not_passed"], Value::Object(serde_json::Map::new()), "{group}");
     }
     assert_eq!(report["compared_by"]["choice"]["cases"], 100);
+}
+
+/// Two results, but for times, the command that made them, and what a sum over parts rounds in another way.
+fn alike(mut a: Value, mut b: Value) -> (Value, Value) {
+    for report in [&mut a, &mut b] {
+        for name in ["seconds", "timing", "command", "starts"] {
+            report.as_object_mut().expect("an object").remove(name);
+        }
+        for group in report["groups"].as_array_mut().expect("an array") {
+            group.as_object_mut().expect("an object").remove("seconds");
+            let counts = if group["by_case"].is_object() { &mut group["by_case"] } else { group };
+            let mean = counts["error_mean"].as_f64().unwrap_or(f64::INFINITY);
+            counts["error_mean"] = format!("{mean:.9e}").into();
+        }
+    }
+    (a, b)
+}
+
+/// Where two results differ, by path.
+fn differences(a: &Value, b: &Value, path: &str, out: &mut Vec<String>) {
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) => {
+            let names: std::collections::BTreeSet<&String> = a.keys().chain(b.keys()).collect();
+            for name in names {
+                let of = |object: &serde_json::Map<String, Value>| object.get(name).cloned().unwrap_or_default();
+                differences(&of(a), &of(b), &format!("{path}/{name}"), out);
+            }
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            for (k, (a, b)) in a.iter().zip(b).enumerate() {
+                differences(a, b, &format!("{path}/{k}"), out);
+            }
+        }
+        (a, b) if a != b => out.push(format!("{path}: {:.100} and {:.100}", a.to_string(), b.to_string())),
+        _ => {}
+    }
+}
+
+#[test]
+fn shards_of_a_run_and_of_a_gate_merge_into_the_whole() {
+    let exec = gate::process::command_of("targets=all wrong-at=fog/exp/random/000017");
+    let run =
+        ["run", "fog", "blend/{min,max}/one", "depth", "special/nan", "vector/reflect", "scene/flat", "--size", "48"];
+    let gate = ["gate", "fog", "blend/min/one/one", "vector/reflect", "scene/flat", "scene/phong", "--exec", &exec];
+    for command in [&run[..], &gate[..]] {
+        let command = [command, &["--cases", "90", "--format", "json"][..]].concat();
+        let whole = json(&command);
+        let parts = ["2/3", "1/3", "3/3"].map(|shard| {
+            let path = file(&format!("merge-{}-{}.json", command[0], &shard[..1]));
+            let out = path.to_str().expect("the path is UTF-8").to_owned();
+            lightmeter(&[&command[..], &["--shard", shard, "--out", &out]].concat());
+            out
+        });
+        let [a, b, c] = parts.each_ref().map(String::as_str);
+        let merged = lightmeter(&["merge", a, b, c, "--format", "json"]);
+        assert_eq!(code(&merged), i32::from(command[0] == "gate"), "{}", stderr(&merged));
+        let (merged, whole) = alike(serde_json::from_slice(&merged.stdout).expect("it is JSON"), whole);
+        let mut differing = vec![];
+        differences(&merged, &whole, command[0], &mut differing);
+        assert!(differing.is_empty(), "{:#?}", &differing[..differing.len().min(12)]);
+        for (given, said) in [(&[a, b][..], "no result of shard 3/3"), (&[a, b, b], "overlap"), (&[], "required")] {
+            let output = lightmeter(&[&["merge"], given].concat());
+            assert!(code(&output) == 2 && stderr(&output).contains(said), "{}", stderr(&output));
+        }
+        let seed = file("merge-other-seed.json");
+        let seed = seed.to_str().expect("the path is UTF-8");
+        lightmeter(&[&command[..], &["--shard", "3/3", "--seed", "2", "--out", seed]].concat());
+        let output = lightmeter(&["merge", a, b, seed]);
+        assert!(code(&output) == 2 && stderr(&output).contains("different runs"), "{}", stderr(&output));
+    }
 }

@@ -33,6 +33,8 @@ pub struct CaseCounts {
     pub error_passing: Number,
     /// The mean error of the cases that pass.
     pub error_mean: Number,
+    /// How many errors that is the mean of: a finite one of each verdict.
+    pub errors: u64,
     /// The cases that were asked and did not pass, by `failed`, `skipped` and `missing`: each by the end of its id, cases in a row
     /// as `random/000003..000017`.
     pub not_passed: BTreeMap<String, Vec<String>>,
@@ -77,6 +79,9 @@ pub struct ComparedBy {
     pub choice: Choice,
     /// The version of what draws them.
     pub generator: u64,
+    /// Which part of them, as `2/8`; none for all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<String>,
 }
 
 /// A renderer that was asked, and what went wrong with it apart from its answers.

@@ -1,8 +1,8 @@
 //! What became of a gate: `lightmeter.gate/1`.
 
-use crate::by_case::CaseCounts;
+use crate::by_case::{CaseCounts, ComparedBy, FailedAnswer, RendererUse};
 use crate::pack::Choice;
-use crate::run::{Failure, Group, Report};
+use crate::run::{Failure, Group, Identity, Interrupted, Report, Totals};
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -29,6 +29,9 @@ pub struct GateReport {
     pub choice: Choice,
     /// The version of what draws them.
     pub generator: u64,
+    /// Which part of the cases, as `2/8`; none for all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<String>,
     /// The accuracy rules.
     pub profile: String,
     /// Who answered.
@@ -131,6 +134,9 @@ pub struct GateGroup {
     pub skipped: u64,
     /// Never answered.
     pub missing: u64,
+    /// Not asked, since the renderer does not declare it.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub not_asked: u64,
     /// Scalars judged.
     pub verdicts: u64,
     /// Of them, those where anything is legal.
@@ -141,6 +147,9 @@ pub struct GateGroup {
     pub error_passing: Number,
     /// The mean error of the cases that pass.
     pub error_mean: Number,
+    /// How many errors that is the mean of.
+    #[serde(default)]
+    pub errors: u64,
     /// The largest margin.
     pub margin_max: Number,
     /// The case that it is of.
@@ -178,18 +187,20 @@ impl GateGroup {
     pub fn of(group: &Group, counts: &CaseCounts) -> Self {
         Self {
             id: group.id.clone(),
-            target: group.target.clone().filter(|_| group.image.is_none()),
+            target: group.target.clone().filter(|_| !group.id.starts_with("scene/")),
             asked: counts.asked,
             failed: counts.failed,
             broken: counts.broken,
             expected_failures: counts.expected_failures,
             skipped: counts.skipped,
             missing: counts.missing,
+            not_asked: counts.not_asked,
             verdicts: group.totals.verdicts,
             indeterminate: group.totals.indeterminate,
             error_max: group.error_ulp_max,
             error_passing: counts.error_passing,
             error_mean: counts.error_mean,
+            errors: counts.errors,
             margin_max: group.margin_max,
             worst: group.worst.clone(),
             not_passed: counts.not_passed.clone(),
@@ -252,6 +263,7 @@ impl GateReport {
             version: env!("CARGO_PKG_VERSION").into(),
             choice: compared_by.choice,
             generator: compared_by.generator,
+            shard: compared_by.shard,
             profile: report.profile.to_string(),
             renderer: renderer.identity,
             seconds: report.seconds,
@@ -291,6 +303,121 @@ impl GateReport {
     }
 }
 
+/// The run that a gate is a view of, as far as that tells.
+impl From<GateReport> for Report {
+    fn from(gate: GateReport) -> Self {
+        let identity = Identity {
+            name: gate.renderer.name.clone(),
+            device: gate.renderer.name.clone(),
+            backend: "renderer".into(),
+            driver: gate.renderer.version.clone(),
+        };
+        let signal = gate.signal;
+        let interrupted = signal.map(|_| Interrupted {
+            under_way: "the gate".into(),
+            message: "a signal ended the gate".into(),
+            signal,
+        });
+        let compared_by = ComparedBy { choice: gate.choice.clone(), generator: gate.generator, shard: gate.shard };
+        let renderer = RendererUse {
+            identity: gate.renderer,
+            starts: gate.starts,
+            problems: gate.problems,
+            incidents: gate.incidents,
+            expected_incidents: gate.expected_incidents,
+        };
+        let name = &identity.name;
+        Self {
+            groups: gate.groups.into_iter().map(|group| group.of_run(name)).collect(),
+            failures: gate.failures.into_iter().map(|failure| failure.of_run(name)).collect(),
+            seconds: gate.seconds,
+            renderer: Some(renderer),
+            unstable: gate.totals.unstable,
+            unstable_cases: gate.unstable,
+            expectations: gate.expectations,
+            regressions: gate.regressions,
+            interrupted,
+            compared_by: Some(compared_by),
+            ..Self::empty(gate.choice.seed, gate.profile.into(), gate.choice.filter, vec![identity.clone()])
+        }
+    }
+}
+
+impl GateGroup {
+    /// The group of a run.
+    fn of_run(self, adapter: &str) -> Group {
+        let totals = Totals {
+            cases: self.asked,
+            verdicts: self.verdicts,
+            skipped: self.skipped,
+            indeterminate: self.indeterminate,
+            ..Totals::default()
+        };
+        let counts = CaseCounts {
+            asked: self.asked,
+            not_asked: self.not_asked,
+            passed: self.asked - self.failed - self.skipped - self.missing,
+            failed: self.failed,
+            unjudged: 0,
+            broken: self.broken,
+            expected_failures: self.expected_failures,
+            skipped: self.skipped,
+            missing: self.missing,
+            error_passing: self.error_passing,
+            error_mean: self.error_mean,
+            errors: self.errors,
+            not_passed: self.not_passed,
+            reason: self.reason,
+            smallest: self.smallest,
+        };
+        Group {
+            target: self.target,
+            totals,
+            error_ulp_max: self.error_max,
+            margin_max: self.margin_max,
+            worst: self.worst,
+            explanation: self.diagnosis,
+            problem: self.problem,
+            by_case: Some(counts),
+            ..Group::new(self.id, adapter.to_owned(), "answer")
+        }
+    }
+}
+
+impl GateFailure {
+    /// The failure of a run.
+    fn of_run(self, adapter: &str) -> Failure {
+        let none = Number(f64::NAN);
+        Failure {
+            id: self.id,
+            adapter: adapter.to_owned(),
+            stage: "answer".into(),
+            target: self.target,
+            route: None,
+            output: String::new(),
+            inputs: self.named,
+            units: self.units,
+            inputs_hex: serde_json::Map::new(),
+            reference: none,
+            interval: [none; 2],
+            promise: None,
+            value: none,
+            value_hex: String::new(),
+            unwritten: false,
+            error_ulp: self.error_ulp,
+            rerun: String::new(),
+            answer: Some(FailedAnswer {
+                inputs: self.inputs,
+                outputs: self.outputs,
+                reference: self.reference,
+                interval: self.interval,
+                value: self.value,
+                problem: self.problem,
+            }),
+        }
+    }
+}
+
 /// The failures with their numbers: the smallest of each group, and of the rest as many as there is room for.
 fn failures(report: &Report) -> Vec<GateFailure> {
     let counts = report.groups.iter().filter_map(|group| group.by_case.as_ref());
@@ -303,6 +430,11 @@ fn failures(report: &Report) -> Vec<GateFailure> {
         has_room
     };
     report.failures.iter().filter(has_room).filter_map(GateFailure::of).collect()
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+const fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Answers that cannot be read, or that nobody asked for.

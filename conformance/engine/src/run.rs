@@ -278,7 +278,7 @@ pub(crate) fn not_asked(id: String, stage: &'static str, cases: u64, reason: Str
 }
 
 /// How the distinct states of the 15 × 15 × 5 reached a blend unit: states by route, on any adapter and target.
-fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
+pub(crate) fn routes(report: &Report) -> serde_json::Map<String, serde_json::Value> {
     let mut routes = std::collections::BTreeMap::<&str, std::collections::BTreeSet<&str>>::new();
     let is_state = |id: &str| id.split('/').nth(1).is_some_and(|name| Equation::ALL.iter().any(|e| e.name() == name));
     let on_device =

@@ -251,6 +251,7 @@ impl CaseTally {
         let mean = if self.errors.1 == 0 { 0.0 } else { self.errors.0 / self.errors.1 as f64 };
         CaseCounts {
             error_mean: Number(mean),
+            errors: self.errors.1,
             not_passed: self.not_passed(members, group),
             reason: (!self.reasons.is_empty()).then(|| self.reasons.join("; ")),
             smallest: self.smallest().map(|(member, case)| members[member].case_id(case)),
@@ -309,6 +310,21 @@ fn numbered(id: &str) -> Option<(&str, u64)> {
     let (path, number) = id.rsplit_once('/').unwrap_or(("", id));
     number.bytes().all(|byte| byte.is_ascii_digit()).then_some(())?;
     Some((path, number.parse().ok()?))
+}
+
+/// Lists of cases that are written short, joined: in an order that their ids have, and short again.
+#[must_use]
+pub fn joined<K: Ord>(texts: Vec<String>, order: impl Fn(&str) -> K) -> Vec<String> {
+    let mut all: Vec<String> = texts.iter().flat_map(|text| expanded(text)).collect();
+    all.sort_by_cached_key(|id| order(id));
+    let mut rows: Vec<Row> = vec![];
+    for id in all {
+        match rows.last_mut() {
+            Some(row) if row.goes_on(&id) => row.last = id,
+            _ => rows.push(Row { first: id.clone(), last: id }),
+        }
+    }
+    rows.into_iter().map(Row::text).collect()
 }
 
 /// The ids that a text such as `random/000003..000017` stands for.

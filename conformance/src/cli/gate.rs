@@ -178,7 +178,8 @@ impl Gate {
         }
         let report = run(&mut [subject], &options, &mut bar);
         bar.bar.finish_and_clear();
-        let compared_by = ComparedBy { choice, generator: GENERATOR_VERSION };
+        let shard = self.is_shard().then(|| self.shard.to_string());
+        let compared_by = ComparedBy { choice, generator: GENERATOR_VERSION, shard };
         Ok(GateReport::of(&Report { compared_by: Some(compared_by), ..report? }, command()))
     }
 
@@ -258,7 +259,7 @@ fn command() -> String {
 }
 
 /// A renderer that broke off, or wrote what is no answer, ends with 4 whatever else is right.
-fn status(report: &GateReport) -> Status {
+pub(crate) fn status(report: &GateReport) -> Status {
     if let Some(signal) = report.signal {
         return Status::of_signal(signal);
     }

@@ -3,15 +3,21 @@
 use super::options::Format;
 use super::sweep::{status, written};
 use super::{Status, emit};
+use anyhow::Context as _;
 use clap::Args;
+use lightmeter::document::Document as _;
+use lightmeter::document::gate::GateReport;
+use lightmeter::document::run::Report;
 use lightmeter::document::sweep::{ExactFloat, SweepDocument};
+use lightmeter::merge::merge;
+use lightmeter::report::{gate as outputs, junit, text};
 use lightmeter::sweep::file;
 use std::path::PathBuf;
 
-/// Join the results of a sweep's shards.
+/// Join the results of the shards of a run, of a gate or of a sweep.
 #[derive(Debug, Args)]
 pub(crate) struct Merge {
-    /// The JSON of each shard, by `lightmeter sweep … --shard I/N --format json`, or its finished checkpoint
+    /// The JSON of each shard, by `lightmeter run … --shard I/N --format json`, or by `gate` or `sweep`, or a sweep's finished checkpoint
     #[arg(required = true)]
     results: Vec<PathBuf>,
     /// How the result is written
@@ -24,6 +30,9 @@ pub(crate) struct Merge {
 
 impl Merge {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        if let Some(status) = self.of_runs()? {
+            return Ok(status);
+        }
         let mut parts = vec![];
         for path in &self.results {
             parts.push((path.clone(), file::read(path)?));
@@ -31,6 +40,61 @@ impl Merge {
         let whole = file::merge(&parts)?;
         emit(&written(&whole, self.format, &rerun(&whole))?, self.out.as_deref())?;
         Ok(status(&whole))
+    }
+}
+
+impl Merge {
+    /// Joins the shards of a run or of a gate; `None` where the first file is neither.
+    fn of_runs(&self) -> anyhow::Result<Option<Status>> {
+        let first = self.results.first().and_then(|path| std::fs::read_to_string(path).ok()).unwrap_or_default();
+        let is_gate = GateReport::read(&first).is_ok();
+        if !is_gate && Report::read(&first).is_err() {
+            return Ok(None);
+        }
+        let mut parts = vec![];
+        for path in &self.results {
+            let failed = || format!("cannot read {}", path.display());
+            let text = std::fs::read_to_string(path).with_context(failed)?;
+            let report = if is_gate {
+                Report::from(GateReport::read(&text).with_context(failed)?)
+            } else {
+                Report::read(&text).with_context(failed)?
+            };
+            parts.push((path.clone(), report));
+        }
+        let whole = merge(parts)?;
+        if is_gate {
+            let gate = GateReport::of(&whole, "lightmeter merge".into());
+            emit(&self.written_gate(&gate)?, self.out.as_deref())?;
+            return Ok(Some(super::gate::status(&gate)));
+        }
+        emit(&self.written_run(&whole)?, self.out.as_deref())?;
+        Ok(Some(super::run::status(&whole)))
+    }
+
+    fn written_gate(&self, gate: &GateReport) -> anyhow::Result<String> {
+        Ok(match self.format {
+            Format::Json => gate.to_json()?,
+            Format::Junit => outputs::junit(gate)?,
+            Format::Text => {
+                let mut out = String::new();
+                outputs::text(gate, false, &mut out)?;
+                out
+            }
+        })
+    }
+
+    fn written_run(&self, whole: &Report) -> anyhow::Result<String> {
+        Ok(match self.format {
+            Format::Json => whole.to_json()?,
+            Format::Junit => junit::to_string(whole)?,
+            Format::Text => {
+                let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false };
+                let mut out = String::new();
+                text::write(whole, style, &mut out)?;
+                out
+            }
+        })
     }
 }
 

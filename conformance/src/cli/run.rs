@@ -76,7 +76,8 @@ impl Run {
         options.runs = self.runs;
         options.counts_cases = true;
         writable(self.out.as_deref())?;
-        let compared_by = ComparedBy { choice: self.chosen(), generator: GENERATOR_VERSION };
+        let part = (shard.count.get() > 1).then(|| self.amount.shard.to_string());
+        let compared_by = ComparedBy { choice: self.chosen(), generator: GENERATOR_VERSION, shard: part };
         if let Some(Earlier { baseline, path, .. }) = &earlier {
             baseline.is_of(&compared_by.choice, std::iter::empty(), Some(&options.profile.name.into()), path)?;
         }
@@ -150,7 +151,7 @@ fn known_failures(expectations: &Expectations, subjects: &[Subject]) -> Vec<Expe
 }
 
 /// Nothing ran where every case was skipped, or every verdict permits anything.
-fn status(report: &Report) -> Status {
+pub(crate) fn status(report: &Report) -> Status {
     if let Some(Interrupted { under_way, message, signal }) = &report.interrupted {
         eprintln!("error: {message}\n  {under_way} was under way; what was judged before stands in the result");
         return signal.map_or(Status::Device, Status::of_signal);

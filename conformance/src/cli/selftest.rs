@@ -23,12 +23,9 @@ use lightmeter_scene::target::TargetFormat;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
-use std::time::Duration;
 
 /// Pixels of the longer side of each scene.
 const SCENE_SIZE: u32 = 64;
-/// How often a signal is looked for while a target is tested.
-const LOOKED_EVERY: Duration = Duration::from_millis(20);
 
 /// What is tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -134,7 +131,7 @@ impl Selftest {
         if is_asked(Part::BlendUnit) {
             for &target in targets {
                 say(&format!("every fault on {}", target.name()));
-                let Some(rows) = unit(target, self.cases, stop)? else { break };
+                let Some(rows) = selftest(&[target], self.cases, stop, &mut |_| {})? else { break };
                 tested.unit.get_or_insert_default().extend(rows);
             }
         }
@@ -212,22 +209,6 @@ impl Tested {
         }
         parts.extend(self.interrupted.as_ref().map(|interrupted| format!("interrupted: {interrupted}\n")));
         Ok(parts.join("\n"))
-    }
-}
-
-/// Every fault of the blend unit on a target; `None` where a signal came before all were tried. What is under way then ends with the
-/// process.
-fn unit(target: TargetFormat, cases: u64, stop: &Stop) -> anyhow::Result<Option<Vec<UnitRow>>> {
-    let work = std::thread::spawn(move || selftest(&[target], cases, &mut |_| {}));
-    while !work.is_finished() {
-        if stop.is_set() {
-            return Ok(None);
-        }
-        std::thread::sleep(LOOKED_EVERY);
-    }
-    match work.join() {
-        Ok(rows) => Ok(Some(rows?)),
-        Err(panic) => std::panic::resume_unwind(panic),
     }
 }
 

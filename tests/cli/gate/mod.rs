@@ -1,6 +1,6 @@
 //! `lightmeter pack` and `lightmeter gate`: other renderers, by their files and as processes, right ones and all sorts of wrong.
 
-mod process;
+pub(crate) mod process;
 
 use super::{code, command, lightmeter, stderr, stdout};
 use serde_json::Value;

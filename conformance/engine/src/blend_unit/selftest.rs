@@ -8,45 +8,50 @@ use crate::subject::Subject;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::{Program, Samples, every_state};
 use lightmeter_catalogue::select::{Member, Random, Selected, catalogue_of};
-use lightmeter_document::event::Silent;
+use lightmeter_document::event::{Silent, Stop};
 use lightmeter_document::run::{Group, Report};
 use lightmeter_document::selftest::{UnitFinding, UnitRow};
 use lightmeter_judge::blend_unit::rules::{FAULTS, Rules, Store, UnitFault};
 use lightmeter_scene::blend::{Separate, State};
 use lightmeter_scene::target::TargetFormat;
 
-/// Tries every fault, and none, on every target, with so many pairs a state.
+/// Tries every fault, and none, on every target, with `cases` pairs of each state; `None` where it was told to stop before the end.
 ///
 /// # Errors
 /// Where a built-in shader is invalid, which a test rules out.
 pub fn selftest(
     targets: &[TargetFormat],
     cases: u64,
+    stop: &Stop,
     progress: &mut impl FnMut(&str),
-) -> Result<Vec<UnitRow>, DeviceError> {
+) -> Result<Option<Vec<UnitRow>>, DeviceError> {
     let groups = groups();
     let mut rows = vec![];
     for &target in targets {
         progress(target.name());
-        let judged = judge(&groups, target, Rules::RIGHT, cases)?;
+        let judged = judge(&groups, target, Rules::RIGHT, cases, stop)?;
         rows.push(row("none", target, &judged, |groups| {
             let found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
             if groups.iter().any(found) { UnitFinding::FalseAlarm } else { UnitFinding::Clean }
         }));
         for fault in FAULTS {
+            if stop.is_set() {
+                return Ok(None);
+            }
             if !fault.concerns(target) {
                 rows.push(row(fault.name, target, &empty_report(target)?, |_| UnitFinding::NotApplicable));
                 continue;
             }
             // A fault of one state has that state's values alone to show in.
             let judged = match fault.rules.only_state() {
-                Some(state) => judge(&[beside(state)], target, fault.rules, 4096)?,
-                None => judge(&groups, target, fault.rules, cases)?,
+                Some(state) => judge(&[beside(state)], target, fault.rules, 4096, stop)?,
+                None => judge(&groups, target, fault.rules, cases, stop)?,
             };
             rows.push(row(fault.name, target, &judged, |groups| finding(fault, groups)));
         }
     }
-    Ok(rows)
+    // What was under way when it was told to stop has not been judged in full.
+    Ok((!stop.is_set()).then_some(rows))
 }
 
 /// What a run draws with its unit, apart from sampled states; and the states that MIN and MAX make aliases of one, since a
@@ -88,8 +93,14 @@ fn beside(state: State) -> Vec<Member> {
     formulas.filter(|member| matches!(member.spec.kind, Kind::Blend(program) if shares(program))).collect()
 }
 
-fn judge(groups: &[Vec<Member>], target: TargetFormat, rules: Rules, cases: u64) -> Result<Report, DeviceError> {
-    let options = options(target, cases)?;
+fn judge(
+    groups: &[Vec<Member>],
+    target: TargetFormat,
+    rules: Rules,
+    cases: u64,
+    stop: &Stop,
+) -> Result<Report, DeviceError> {
+    let options = Options { stop: stop.clone(), ..options(target, cases)? };
     let mut subjects = [Subject::faulty(rules)];
     let mut report = options.report(&subjects);
     for group in groups {

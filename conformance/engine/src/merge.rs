@@ -1,0 +1,355 @@
+//! The reports of a run's shards, joined: what the whole run would have reported, but for times. Three things follow from samples of rows,
+//! which reports do not hold, and are those of the shard that has the most to say: the mistake that explains what fails, what is wrong with
+//! a group as a whole, and how values are stored.
+
+use crate::run::routes;
+use lightmeter_catalogue::scene::library::SCENES;
+use lightmeter_catalogue::scene::select::scene_id;
+use lightmeter_catalogue::select::{CaseRef, catalogue};
+use lightmeter_catalogue::special::Class;
+use lightmeter_document::Number;
+use lightmeter_document::by_case::{CaseCounts, ComparedBy};
+use lightmeter_document::run::{BlendState, Failure, Group, Report, StoreUse, Totals};
+use lightmeter_judge::cases::joined;
+use lightmeter_judge::tally::{KEPT, KEPT_FAILURES};
+use lightmeter_judge::{is_worse, telling, worse};
+use lightmeter_scene::target::TargetFormat;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::PathBuf;
+
+/// Why reports make no whole.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct NoWhole(pub String);
+
+/// Joins the reports of all shards of a run.
+///
+/// # Errors
+/// Where a shard is missing or there twice, where they are of different runs, and where one was interrupted.
+pub fn merge(parts: Vec<(PathBuf, Report)>) -> Result<Report, NoWhole> {
+    check(&parts)?;
+    let mut parts = parts.into_iter().map(|(_, report)| report);
+    let mut whole = parts.next().expect("there is a first part");
+    for part in parts {
+        add(&mut whole, part);
+    }
+    Order::new().sort(&mut whole);
+    whole.groups.iter_mut().for_each(|group| group.totals.failed_groups = u64::from(group.problem.is_some()));
+    whole.totals = Totals::default();
+    for group in &whole.groups {
+        whole.totals.add(&group.totals);
+    }
+    let not_needed = whole.deviations.iter().filter(|deviation| !deviation.still_needed).count();
+    let pass = whole.expectations.iter().filter(|expected| expected.passes_unexpectedly()).count();
+    whole.totals.unexpected_passes += (not_needed + pass) as u64;
+    whole.routes = routes(&whole);
+    sort_failures(&mut whole);
+    if let Some(compared_by) = &mut whole.compared_by {
+        compared_by.shard = None;
+    }
+    Ok(whole)
+}
+
+/// Checks that the parts are all shards of one run.
+fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
+    let no_whole = |message: String| Err(NoWhole(message));
+    let [(first_path, first), ..] = parts else {
+        return no_whole("there is nothing to merge; expected the results of each shard".into());
+    };
+    let mut seen: BTreeMap<u64, &PathBuf> = BTreeMap::new();
+    let mut count = None;
+    for (path, part) in parts {
+        let (a, b) = (first_path.display(), path.display());
+        let Some(ComparedBy { choice, generator, shard: Some(shard) }) = &part.compared_by else {
+            return no_whole(format!(
+                "{b} is no shard of a run; expected the JSON of `run` or `gate` with --shard I/N"
+            ));
+        };
+        if let Some(interrupted) = &part.interrupted {
+            return no_whole(format!("{b} is not finished: {}", interrupted.message));
+        }
+        let of = |report: &Report| (report.profile.clone(), report.adapters.clone());
+        let other = first.compared_by.as_ref();
+        let is_alike = other.is_some_and(|other| (&other.choice, other.generator) == (choice, *generator));
+        if !is_alike || of(first) != of(part) {
+            return no_whole(format!(
+                "{a} and {b} are of different runs: expected the same cases, seed, profile and adapters"
+            ));
+        }
+        let read = shard.split_once('/').and_then(|(i, n)| Some((i.parse::<u64>().ok()?, n.parse::<u64>().ok()?)));
+        let Some((index, shards)) = read else { return no_whole(format!("{b}: `{shard}` is no shard; expected I/N")) };
+        if *count.get_or_insert(shards) != shards {
+            return no_whole(format!("{a} and {b} overlap: expected shards of the same number"));
+        }
+        if let Some(twice) = seen.insert(index, path) {
+            return no_whole(format!("{} and {b} overlap: both are shard {shard}", twice.display()));
+        }
+    }
+    let count = count.unwrap_or(1);
+    let missing: Vec<String> =
+        (1..=count).filter(|index| !seen.contains_key(index)).map(|index| format!("{index}/{count}")).collect();
+    if missing.is_empty() { Ok(()) } else { no_whole(format!("there is no result of shard {}", missing.join(", "))) }
+}
+
+/// The order of reports, by the ids of groups, formulas, hard cases and scenes.
+struct Order(HashMap<String, usize>);
+
+impl Order {
+    fn new() -> Self {
+        let mut order = Self(HashMap::new());
+        Class::ALL.into_iter().for_each(|class| order.push(format!("special/{}", class.name())));
+        for member in catalogue() {
+            order.push(member.spec.group().to_owned());
+            order.push(member.spec.id.clone());
+            (0..member.spec.hard.len()).for_each(|place| order.push(member.case_id(CaseRef::Hard(place))));
+        }
+        (0..SCENES.len()).for_each(|place| order.push(scene_id(place)));
+        order
+    }
+
+    fn push(&mut self, id: String) {
+        let place = self.0.len();
+        self.0.entry(id).or_insert(place);
+    }
+
+    /// The place of an id; of one that is not in the catalogue, as a sampled state, behind all others.
+    fn of(&self, id: &str) -> usize {
+        self.0.get(id).copied().unwrap_or(usize::MAX)
+    }
+
+    /// The place of the group of an id.
+    fn of_group(&self, id: &str) -> usize {
+        let ends = id.match_indices('/').map(|(at, _)| at).chain([id.len()]);
+        ends.filter_map(|end| self.0.get(&id[..end]).copied()).next().unwrap_or(usize::MAX)
+    }
+
+    /// Puts a report in order: tables of special values, formulas, blend states on the targets of renderers, scenes.
+    fn sort(&self, report: &mut Report) {
+        report.groups.sort_by_key(|group| {
+            let is_scene = group.id.starts_with("scene/");
+            let is_asked_on_target = group.stage == "answer" && group.target.is_some() && !is_scene;
+            (is_scene, is_asked_on_target, self.of(&group.id))
+        });
+        report
+            .stability
+            .sort_by_key(|one| (self.of_group(&one.id), one.adapter.clone(), one.stage.to_string(), self.of(&one.id)));
+        let target = |name: &str| TargetFormat::ALL.iter().position(|format| format.name() == name);
+        report.blend_states.sort_by_key(|state| {
+            (self.of_group(&state.id), state.adapter.clone(), target(&state.target), self.of(&state.id))
+        });
+        report
+            .special
+            .sort_by_key(|one| (self.of_group(&one.id), one.adapter.clone(), target(&one.target), self.of(&one.id)));
+    }
+}
+
+/// What tells a group from all others.
+fn key(group: &Group) -> (String, String, String, Option<String>) {
+    let target = group.target.as_ref().map(ToString::to_string);
+    (group.id.clone(), group.adapter.clone(), group.stage.to_string(), target)
+}
+
+/// Adds a part to the whole.
+fn add(whole: &mut Report, part: Report) {
+    // What stands before a group in a part stands before it in the whole.
+    let mut after = 0;
+    for group in part.groups {
+        match whole.groups.iter().position(|known| key(known) == key(&group)) {
+            Some(place) => {
+                add_group(&mut whole.groups[place], group);
+                after = place + 1;
+            }
+            None => {
+                whole.groups.insert(after, group);
+                after += 1;
+            }
+        }
+    }
+    for state in part.blend_states {
+        let is_it = |known: &&mut BlendState| {
+            (&known.id, &known.adapter, &known.target, &known.route)
+                == (&state.id, &state.adapter, &state.target, &state.route)
+        };
+        match whole.blend_states.iter_mut().find(is_it) {
+            Some(known) => {
+                known.cases += state.cases;
+                known.failed += state.failed;
+                known.error_max = Number(worse(known.error_max.0, state.error_max.0));
+                if let Some(tiers) = &state.tiers {
+                    known.tiers.get_or_insert_default().add(tiers);
+                }
+            }
+            None => whole.blend_states.push(state),
+        }
+    }
+    for deviation in part.deviations {
+        let is_it = |known: &&mut lightmeter_document::run::DeviationUse| {
+            (&known.name, &known.adapter) == (&deviation.name, &deviation.adapter)
+        };
+        match whole.deviations.iter_mut().find(is_it) {
+            Some(known) => {
+                known.excused += deviation.excused;
+                known.still_needed &= deviation.still_needed;
+            }
+            None => whole.deviations.push(deviation),
+        }
+    }
+    for (known, more) in whole.expectations.iter_mut().zip(part.expectations) {
+        known.failed += more.failed;
+        known.passed += more.passed;
+    }
+    whole.special.extend(part.special);
+    whole.stability.extend(part.stability);
+    whole.stable_costs.extend(part.stable_costs);
+    whole.failures.extend(part.failures);
+    whole.unstable += part.unstable;
+    whole.unstable_cases.extend(part.unstable_cases);
+    whole.regressions.extend(part.regressions);
+    if let (Some(known), Some(more)) = (&mut whole.renderer, part.renderer) {
+        known.starts += more.starts;
+        known.incidents.extend(more.incidents);
+        known.expected_incidents.extend(more.expected_incidents);
+        known.problems.first.extend(more.problems.first);
+        for (kind, count) in more.problems.counts {
+            *known.problems.counts.entry(kind).or_default() += count;
+        }
+    }
+    whole.timing.add(&part.timing);
+    whole.seconds += part.seconds;
+    if whole.blend_promises.is_empty() {
+        whole.blend_promises = part.blend_promises;
+    }
+    whole.unstable_beyond = whole.unstable_beyond.or(part.unstable_beyond);
+}
+
+fn add_group(known: &mut Group, more: Group) {
+    let fails_more = more.totals.failed > known.totals.failed;
+    if more.explanation.is_some() && (known.explanation.is_none() || fails_more) {
+        known.explanation = more.explanation;
+    }
+    if more.problem.is_some() && (known.problem.is_none() || fails_more) {
+        known.problem = more.problem;
+    }
+    known.totals.add(&more.totals);
+    known.error_ulp_max = Number(worse(known.error_ulp_max.0, more.error_ulp_max.0));
+    let is_worst = is_worse(more.margin_max.0, known.margin_max.0)
+        || (more.margin_max == known.margin_max
+            && more.worst.as_deref().map(order) < known.worst.as_deref().map(order));
+    if known.worst.is_none() || (more.worst.is_some() && is_worst) {
+        known.worst = more.worst;
+    }
+    known.margin_max = Number(worse(known.margin_max.0, more.margin_max.0));
+    known.seconds += more.seconds;
+    if let Some(warm) = more.seconds_warm {
+        *known.seconds_warm.get_or_insert(0.0) += warm;
+    }
+    if let Some(tiers) = &more.tiers {
+        known.tiers.get_or_insert_default().add(tiers);
+    }
+    known.store = match (known.store.take(), more.store) {
+        (Some(a), Some(b)) => Some(store(a, b)),
+        (a, b) => a.or(b),
+    };
+    known.by_case = match (known.by_case.take(), more.by_case) {
+        (Some(a), Some(b)) => Some(counts(a, b, &known.id)),
+        (a, b) => a.or(b),
+    };
+    known.image = known.image.take().or(more.image);
+}
+
+/// How two parts of a target's values are stored: as most of them are.
+#[expect(clippy::cast_precision_loss, reason = "counts of values")]
+fn store(a: StoreUse, b: StoreUse) -> StoreUse {
+    let of = a.of + b.of;
+    let mean = |x: f64, y: f64| (x * a.of as f64 + y * b.of as f64) / of.max(1) as f64;
+    let (share, bias) = (mean(a.share, b.share), mean(a.bias, b.bias));
+    let identified = if b.of > a.of { b.identified } else { a.identified };
+    StoreUse { identified, share, of, bias }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of errors")]
+fn counts(a: CaseCounts, b: CaseCounts, group: &str) -> CaseCounts {
+    let passed = a.passed + b.passed;
+    let errors = a.errors + b.errors;
+    let mean = (a.error_mean.0 * a.errors as f64 + b.error_mean.0 * b.errors as f64) / errors.max(1) as f64;
+    let mut not_passed = a.not_passed;
+    for (state, more) in b.not_passed {
+        let all = not_passed.remove(&state).unwrap_or_default().into_iter().chain(more);
+        not_passed.insert(state, joined(all.collect(), |id| (order(&format!("{group}/{id}")), id.to_owned())));
+    }
+    let reasons: BTreeSet<String> = a.reason.into_iter().chain(b.reason).collect();
+    CaseCounts {
+        asked: a.asked + b.asked,
+        not_asked: a.not_asked + b.not_asked,
+        passed,
+        failed: a.failed + b.failed,
+        unjudged: a.unjudged + b.unjudged,
+        broken: a.broken + b.broken,
+        expected_failures: a.expected_failures + b.expected_failures,
+        skipped: a.skipped + b.skipped,
+        missing: a.missing + b.missing,
+        error_passing: Number(worse(a.error_passing.0, b.error_passing.0)),
+        error_mean: Number(mean),
+        errors,
+        not_passed,
+        reason: (!reasons.is_empty()).then(|| reasons.into_iter().collect::<Vec<_>>().join("; ")),
+        smallest: a.smallest.or(b.smallest),
+    }
+}
+
+/// The order of a group's cases by their ids: hard ones, those near them, random ones; each by its path and number.
+fn order(id: &str) -> (u8, String, u64) {
+    let rank = match id {
+        id if id.contains("/near/") => 1,
+        id if id.contains("/hard/") => 0,
+        _ => 2,
+    };
+    let number = id.rsplit_once('/').and_then(|(path, number)| Some((path.to_owned(), number.parse().ok()?)));
+    let (path, number) = number.unwrap_or_else(|| (id.to_owned(), 0));
+    (rank, path, number)
+}
+
+/// Puts the failures that are reported in order: of each group the one of the simplest inputs, then the first.
+fn sort_failures(whole: &mut Report) {
+    let known = std::mem::take(&mut whole.failures);
+    for group in &mut whole.groups {
+        let mut of: Vec<&Failure> = known.iter().filter(|failure| is_of(failure, group)).collect();
+        of.sort_by_key(|failure| order(&failure.id));
+        if let Some(simplest) = (0..of.len()).min_by_key(|&k| simplicity(of[k])) {
+            let simplest = of.remove(simplest);
+            of.insert(0, simplest);
+        }
+        if let (Some(first), Some(counts)) = (of.first(), &mut group.by_case) {
+            counts.smallest = Some(first.id.clone());
+        }
+        let kept = if of.iter().any(|failure| failure.answer.is_some()) { KEPT + 1 } else { KEPT_FAILURES };
+        whole.failures.extend(of.into_iter().take(kept).cloned());
+    }
+}
+
+/// Whether a failure is one of a group's cases.
+fn is_of(failure: &Failure, group: &Group) -> bool {
+    let place = (&failure.adapter, &failure.stage, &failure.target) == (&group.adapter, &group.stage, &group.target);
+    let is_below = failure.id.strip_prefix(&group.id).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+    // A hard case of several formulas has the id of what they have in common.
+    let failed = group.by_case.as_ref().and_then(|counts| counts.not_passed.get("failed"));
+    place && (is_below || failed.is_some_and(|failed| failed.contains(&failure.id)))
+}
+
+/// How simple the inputs of a failure are.
+fn simplicity(failure: &Failure) -> u32 {
+    let bits = |text: &serde_json::Value| {
+        let digits = text.as_str()?.strip_prefix("0x")?;
+        u32::from_str_radix(digits, 16).ok().map(f32::from_bits)
+    };
+    let numbers = failure
+        .inputs_hex
+        .values()
+        .flat_map(|value| value.as_array().map_or(std::slice::from_ref(value), Vec::as_slice));
+    let mut inputs: Vec<f32> = numbers.filter_map(bits).collect();
+    #[expect(clippy::cast_possible_truncation, reason = "inputs are f32")]
+    if let Some(answer) = &failure.answer {
+        inputs = answer.inputs.iter().map(|number| number.0 as f32).collect();
+    }
+    telling(&inputs, !failure.id.contains("/hard/"))
+}
