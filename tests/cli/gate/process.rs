@@ -400,7 +400,7 @@ fn blending_is_asked_on_every_target_that_is_declared() {
         .find(|group| group["id"] == "blend/min" && group["target"] == "rgba8unorm");
     assert_eq!(min.and_then(|group| group["asked"].as_u64()), Some(16 * 64), "{min:?}");
     let (status, found) = of("targets=all blends-by=truncate", &[]);
-    assert!(status == 1 && named(&found, "rgba8unorm", "stored truncated") >= 3, "{}", found["totals"]);
+    assert!(status == 1 && named(&found, "rgba8unorm", "stored truncated") >= 2, "{}", found["totals"]);
     let (status, found) = of("targets=all blends-by=times-256", &["--target", "rgba8unorm"]);
     assert!(status == 1 && named(&found, "rgba8unorm", "×256 for ×255") >= 2, "{}", found["totals"]);
     assert_eq!(named(&found, "bgra8unorm", ""), 0, "one target was asked for");
