@@ -8,8 +8,8 @@ use lightmeter_catalogue::scene::select::scene_id;
 use lightmeter_catalogue::select::{CaseRef, catalogue};
 use lightmeter_catalogue::special::Class;
 use lightmeter_document::Number;
-use lightmeter_document::by_case::{CaseCounts, ComparedBy};
-use lightmeter_document::run::{BlendState, Failure, Group, Report, StoreUse, Totals};
+use lightmeter_document::by_case::{CaseCounts, ComparedBy, RendererUse};
+use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, StoreUse, Totals};
 use lightmeter_judge::cases::joined;
 use lightmeter_judge::tally::{KEPT, KEPT_FAILURES};
 use lightmeter_judge::{is_worse, telling, worse};
@@ -29,7 +29,7 @@ pub struct NoWhole(pub String);
 pub fn merge(parts: Vec<(PathBuf, Report)>) -> Result<Report, NoWhole> {
     check(&parts)?;
     let mut parts = parts.into_iter().map(|(_, report)| report);
-    let mut whole = parts.next().expect("there is a first part");
+    let Some(mut whole) = parts.next() else { unreachable!("a run has a shard at least") };
     for part in parts {
         add(&mut whole, part);
     }
@@ -165,7 +165,32 @@ fn add(whole: &mut Report, part: Report) {
             }
         }
     }
-    for state in part.blend_states {
+    add_states(whole, part.blend_states);
+    add_deviations(whole, part.deviations);
+    for (known, more) in whole.expectations.iter_mut().zip(part.expectations) {
+        known.failed += more.failed;
+        known.passed += more.passed;
+    }
+    whole.special.extend(part.special);
+    whole.stability.extend(part.stability);
+    whole.stable_costs.extend(part.stable_costs);
+    whole.failures.extend(part.failures);
+    whole.unstable += part.unstable;
+    whole.unstable_cases.extend(part.unstable_cases);
+    whole.regressions.extend(part.regressions);
+    if let (Some(known), Some(more)) = (&mut whole.renderer, part.renderer) {
+        add_renderer(known, more);
+    }
+    whole.timing.add(&part.timing);
+    whole.seconds += part.seconds;
+    if whole.blend_promises.is_empty() {
+        whole.blend_promises = part.blend_promises;
+    }
+    whole.unstable_beyond = whole.unstable_beyond.or(part.unstable_beyond);
+}
+
+fn add_states(whole: &mut Report, states: Vec<BlendState>) {
+    for state in states {
         let is_it = |known: &&mut BlendState| {
             (&known.id, &known.adapter, &known.target, &known.route)
                 == (&state.id, &state.adapter, &state.target, &state.route)
@@ -182,10 +207,11 @@ fn add(whole: &mut Report, part: Report) {
             None => whole.blend_states.push(state),
         }
     }
-    for deviation in part.deviations {
-        let is_it = |known: &&mut lightmeter_document::run::DeviationUse| {
-            (&known.name, &known.adapter) == (&deviation.name, &deviation.adapter)
-        };
+}
+
+fn add_deviations(whole: &mut Report, deviations: Vec<DeviationUse>) {
+    for deviation in deviations {
+        let is_it = |known: &&mut DeviationUse| (&known.name, &known.adapter) == (&deviation.name, &deviation.adapter);
         match whole.deviations.iter_mut().find(is_it) {
             Some(known) => {
                 known.excused += deviation.excused;
@@ -194,32 +220,16 @@ fn add(whole: &mut Report, part: Report) {
             None => whole.deviations.push(deviation),
         }
     }
-    for (known, more) in whole.expectations.iter_mut().zip(part.expectations) {
-        known.failed += more.failed;
-        known.passed += more.passed;
+}
+
+fn add_renderer(known: &mut RendererUse, more: RendererUse) {
+    known.starts += more.starts;
+    known.incidents.extend(more.incidents);
+    known.expected_incidents.extend(more.expected_incidents);
+    known.problems.first.extend(more.problems.first);
+    for (kind, count) in more.problems.counts {
+        *known.problems.counts.entry(kind).or_default() += count;
     }
-    whole.special.extend(part.special);
-    whole.stability.extend(part.stability);
-    whole.stable_costs.extend(part.stable_costs);
-    whole.failures.extend(part.failures);
-    whole.unstable += part.unstable;
-    whole.unstable_cases.extend(part.unstable_cases);
-    whole.regressions.extend(part.regressions);
-    if let (Some(known), Some(more)) = (&mut whole.renderer, part.renderer) {
-        known.starts += more.starts;
-        known.incidents.extend(more.incidents);
-        known.expected_incidents.extend(more.expected_incidents);
-        known.problems.first.extend(more.problems.first);
-        for (kind, count) in more.problems.counts {
-            *known.problems.counts.entry(kind).or_default() += count;
-        }
-    }
-    whole.timing.add(&part.timing);
-    whole.seconds += part.seconds;
-    if whole.blend_promises.is_empty() {
-        whole.blend_promises = part.blend_promises;
-    }
-    whole.unstable_beyond = whole.unstable_beyond.or(part.unstable_beyond);
 }
 
 fn add_group(known: &mut Group, more: Group) {

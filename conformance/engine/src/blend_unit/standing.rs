@@ -1,11 +1,11 @@
 //! What a group of blend states has come to on one subject and target: rows, verdicts, stores, failures.
 
+use super::asked::asked;
 use super::chunk::UnitChunk;
 use super::draw::draw;
 use crate::device::DeviceError;
 use crate::options::Options;
 use crate::piece::{Piece, Pixels};
-use crate::renderer::{AskedPixels, AskedRenderer};
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::{CaseRef, Member};
@@ -31,25 +31,6 @@ use std::time::Instant;
 /// How reports call where a subject blends.
 fn stage(subject: &Subject) -> &'static str {
     if subject.asked().is_some() { Stage::Answer.name() } else { Stage::FixedFunction.name() }
-}
-
-/// The pixels that a renderer leaves of all pieces of a chunk.
-fn asked(renderer: &mut dyn AskedRenderer, target: TargetFormat, chunk: &UnitChunk<'_>) -> Result<Pixels, DeviceError> {
-    let clock = Instant::now();
-    let mut drawn = Pixels::default();
-    for (number, ((&member, piece), cases)) in chunk.members.iter().zip(&chunk.pieces).zip(&chunk.cases).enumerate() {
-        let asked = AskedPixels { member, program: piece.program, target, cases, inputs: &piece.inputs };
-        let mut pixels = vec![[0.0; 4]; cases.len()];
-        for (place, answer) in renderer.pixels(&asked)?.into_iter().enumerate() {
-            match answer {
-                Ok(pixel) => pixels[place] = pixel,
-                Err(why) => drop(drawn.unanswered.insert((number, place), why)),
-            }
-        }
-        drawn.pieces.push(pixels);
-    }
-    drawn.seconds = clock.elapsed().as_secs_f64();
-    Ok(drawn)
 }
 
 /// Failing pixels of a group that faults are tried on.
@@ -127,33 +108,10 @@ impl UnitStanding {
             .collect::<Result<_, DeviceError>>()?;
         let live: Vec<usize> = (0..chunk.pieces.len()).filter(|&k| reasons[k].is_none()).collect();
         let pieces: Vec<&Piece> = live.iter().map(|&k| &chunk.pieces[k]).collect();
-        let drawn = if pieces.is_empty() {
-            Pixels::default()
-        } else if let Some(renderer) = subject.asked_mut() {
-            asked(renderer, self.target, chunk)?
-        } else {
-            draw(subject, &options.code, self.target, &pieces, options.again)?
-        };
-        self.seconds += drawn.seconds;
-        report.timing.devices += drawn.seconds + drawn.seconds_warm.unwrap_or(0.0);
-        if let Some(warm) = drawn.seconds_warm {
-            *self.seconds_warm.get_or_insert(0.0) += warm;
-        }
+        let drawn = self.drawn(subject, chunk, &pieces, options, report)?;
         let clock = Instant::now();
-        let (target, known) = (self.target, &subject.known);
-        let tallies: Vec<UnitTally> = pieces
-            .par_iter()
-            .zip(&drawn.pieces)
-            .enumerate()
-            .map(|(number, (piece, pixels))| {
-                let state = DrawnState { program: piece.program, route: piece.route, target, profile: options.profile };
-                let is_there = |place: &usize| !drawn.unanswered.contains_key(&(number, *place));
-                let pixel = |place: usize| (place, piece.case(place), pixels[place]);
-                let mut tally = UnitTally::default();
-                tally.pixels(state, known, (0..pixels.len()).filter(is_there).map(pixel));
-                tally
-            })
-            .collect();
+        let target = self.target;
+        let tallies = self.tallies(subject, &pieces, &drawn, options);
         let mut judged = live.iter().zip(tallies.iter().zip(&drawn.pieces)).enumerate().peekable();
         for (k, reason) in reasons.iter().enumerate() {
             let place = self.row(subject, chunk, k, *reason);
@@ -176,6 +134,44 @@ impl UnitStanding {
         }
         report.timing.judge += clock.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    /// The pixels of the pieces that can be drawn.
+    fn drawn(
+        &mut self,
+        subject: &mut Subject,
+        chunk: &UnitChunk<'_>,
+        pieces: &[&Piece],
+        options: &Options,
+        report: &mut Report,
+    ) -> Result<Pixels, DeviceError> {
+        let drawn = if pieces.is_empty() {
+            Pixels::default()
+        } else if let Some(renderer) = subject.asked_mut() {
+            asked(renderer, self.target, chunk)?
+        } else {
+            draw(subject, &options.code, self.target, pieces, options.again)?
+        };
+        self.seconds += drawn.seconds;
+        report.timing.devices += drawn.seconds + drawn.seconds_warm.unwrap_or(0.0);
+        if let Some(warm) = drawn.seconds_warm {
+            *self.seconds_warm.get_or_insert(0.0) += warm;
+        }
+        Ok(drawn)
+    }
+
+    /// Verdicts on the pixels of each piece.
+    fn tallies(&self, subject: &Subject, pieces: &[&Piece], drawn: &Pixels, options: &Options) -> Vec<UnitTally> {
+        let (target, known) = (self.target, &subject.known);
+        let of_piece = |(number, (piece, pixels)): (usize, (&&Piece, &Vec<Units>))| {
+            let state = DrawnState { program: piece.program, route: piece.route, target, profile: options.profile };
+            let is_there = |place: &usize| !drawn.unanswered.contains_key(&(number, *place));
+            let pixel = |place: usize| (place, piece.case(place), pixels[place]);
+            let mut tally = UnitTally::default();
+            tally.pixels(state, known, (0..pixels.len()).filter(is_there).map(pixel));
+            tally
+        };
+        pieces.par_iter().zip(&drawn.pieces).enumerate().map(of_piece).collect()
     }
 
     /// The place of the row of a piece's state, which may have begun in the chunk before.
