@@ -193,6 +193,20 @@ fn nothing_that_a_renderer_started_outlives_it() {
 }
 
 #[test]
+fn a_renderer_whose_hello_is_refused_is_ended() {
+    let number = folder("refused").join("number");
+    let hello = r#"{"hello": "lightmeter.protocol/1", "renderer": "r", "formulas": ["fog"], "targets": ["rgb565"]}"#;
+    let exec = format!("echo $$ > '{}'; echo '{hello}'; exec sleep 600", text(&number));
+    let output = gate(&["fog/exp"], &exec, &[]);
+    assert!(
+        code(&output) == 2 && stderr(&output).contains("no target `rgb565`; expected rgba32float"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(!runs(&number), "it goes on");
+}
+
+#[test]
 fn a_gate_that_is_told_to_stop_reports_and_leaves_nothing() {
     let folder = folder("stopped");
     let file = folder.join("pid");

@@ -144,6 +144,15 @@ pub(super) struct Session {
     pub(super) has_broken_off: bool,
 }
 
+impl Drop for Session {
+    /// Whatever ends the session, the process does not outlive it.
+    fn drop(&mut self) {
+        if let Some(running) = self.running.take() {
+            running.kill();
+        }
+    }
+}
+
 impl Session {
     pub(super) fn new(asking: Asking) -> Self {
         Self {
