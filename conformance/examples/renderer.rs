@@ -96,7 +96,7 @@ impl Renderer<'_> {
         let id = request["id"].as_str().unwrap_or_default();
         self.faults.end(id, out)?;
         let mut answer = match request.get("scene") {
-            Some(_) => draw(id, &self.folder, &self.faults)?,
+            Some(_) => draw(request, &self.folder, &self.faults)?,
             None => evaluate(request, &self.by_id, &self.faults),
         };
         self.answered += 1;
@@ -207,8 +207,13 @@ fn blended(program: Program, target: TargetFormat, row: &[f32], faults: &Faults)
 }
 
 /// A scene's image. A renderer in another language would read the scene's file; this one knows it.
-fn draw(id: &str, folder: &Path, faults: &Faults) -> anyhow::Result<Value> {
+fn draw(request: &Value, folder: &Path, faults: &Faults) -> anyhow::Result<Value> {
+    let id = request["id"].as_str().unwrap_or_default();
     let mut frame = load::scene(id)?.frame;
+    let side = |name: &str| request[name].as_u64().and_then(|side| u32::try_from(side).ok());
+    if let (Some(width), Some(height)) = (side("width"), side("height")) {
+        (frame.target.width, frame.target.height) = (width, height);
+    }
     if faults.has("half-at", id) {
         frame.target.width /= 2;
     }

@@ -5,7 +5,7 @@ use crate::error::GpuError;
 use crate::kernel::{FRAGMENT_WIDTH, Kernel};
 use crate::work::{
     BindGroup, Buffer, ComputePass, ComputePipeline, Handle, Read, RenderPass, RenderPipeline, Resources, Step,
-    Submission, Texture,
+    Submission, TextureResource,
 };
 use wgpu_types::{BufferUsages, TextureFormat, TextureUsages};
 
@@ -107,7 +107,7 @@ impl ArithmeticPipeline {
 
     fn draw(&self, work: &mut Submission, rows: Handle, count: usize) {
         let height = u32::try_from(count.div_ceil(FRAGMENT_WIDTH as usize)).unwrap_or(u32::MAX);
-        let target = Texture::target([FRAGMENT_WIDTH, height], BITS, TextureUsages::COPY_SRC);
+        let target = TextureResource::target([FRAGMENT_WIDTH, height], BITS, TextureUsages::COPY_SRC);
         let targets: Vec<Handle> = (0..self.targets).map(|_| work.texture(target.clone())).collect();
         let group = work.group(BindGroup::of_buffers(PIPELINE, &[rows]));
         work.steps.push(Step::Render(RenderPass::screen(PIPELINE, group, &targets)));

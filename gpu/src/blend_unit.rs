@@ -8,8 +8,8 @@ use crate::device::{Executor, Gpu, Pending, format, middle};
 use crate::error::GpuError;
 use crate::shaders::Shaders;
 use crate::work::{
-    Buffer, ColorAttachment, Command, Handle, Read, RenderPass, RenderPipeline, Resources, Step, Submission, Texture,
-    VertexBuffer,
+    Buffer, ColorAttachment, Command, Handle, Read, RenderPass, RenderPipeline, Resources, Step, Submission,
+    TextureResource, VertexBuffer,
 };
 use lightmeter_scene::blend::{Equation, Factor, Route, Separate, State, WriteMask};
 use lightmeter_scene::target::TargetFormat;
@@ -208,9 +208,13 @@ impl UnitPipelines {
             work.buffer(Buffer::of(&places, vertex)),
             work.buffer(Buffer::of(&instances, vertex)),
         ];
-        let drawn = work.texture(Texture {
+        let drawn = work.texture(TextureResource {
             contents: batch.destinations.as_slice().into(),
-            ..Texture::target([WIDTH, height], format(target), TextureUsages::COPY_SRC | TextureUsages::COPY_DST)
+            ..TextureResource::target(
+                [WIDTH, height],
+                format(target),
+                TextureUsages::COPY_SRC | TextureUsages::COPY_DST,
+            )
         });
         let mut commands: Vec<Command> =
             (0..).zip(buffers).map(|(slot, buffer)| Command::Vertices { slot, buffer }).collect();

@@ -5,7 +5,7 @@ use crate::error::GpuError;
 use crate::shaders::Shaders;
 use crate::work::{
     BindGroup, Buffer, ColorAttachment, Command, DepthAttachment, Handle, Read, RenderPass, RenderPipeline, Resources,
-    Step, Submission, Texture, VertexBuffer,
+    Step, Submission, TextureResource, VertexBuffer,
 };
 use lightmeter_scene::depth::{Compare, DepthTest};
 use std::collections::HashMap;
@@ -101,7 +101,7 @@ impl DepthPipelines {
         let mut work = Submission::default();
         let places = work.buffer(Buffer::of(&places, BufferUsages::VERTEX));
         let depths = work.buffer(Buffer::of(rows, BufferUsages::VERTEX));
-        let mut target = |format, also| work.texture(Texture::target([WIDTH, height], format, also));
+        let mut target = |format, also| work.texture(TextureResource::target([WIDTH, height], format, also));
         let numbers = target(NUMBERS, TextureUsages::TEXTURE_BINDING);
         let depth = target(DEPTH, TextureUsages::TEXTURE_BINDING);
         let bits = target(BITS, TextureUsages::COPY_SRC);

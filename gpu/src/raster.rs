@@ -6,7 +6,7 @@ use crate::error::GpuError;
 use crate::shaders::Shaders;
 use crate::work::{
     BindGroup, Buffer, ColorAttachment, Command, DepthAttachment, Handle, Read, RenderPass, RenderPipeline, Resources,
-    Step, Submission, Texture,
+    Step, Submission, TextureResource,
 };
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::raster::{Provoking, Raster, TARGET_SIZE, Topology};
@@ -83,7 +83,7 @@ impl RasterPipeline {
         ];
         let format = drawn_format(self.kind);
         let also = if format == BITS { TextureUsages::COPY_SRC } else { TextureUsages::TEXTURE_BINDING };
-        let drawn = work.texture(Texture::target(SIZE, format, also));
+        let drawn = work.texture(TextureResource::target(SIZE, format, also));
         let mut pass = self.pass(&mut work, drawn);
         let RasterPipelines { once, again, reader } = self.pipelines;
         for pipeline in [Some(once), again].into_iter().flatten() {
@@ -97,7 +97,7 @@ impl RasterPipeline {
         }
         work.steps.push(Step::Render(pass));
         let bits = reader.map(|reader| {
-            let bits = work.texture(Texture::target(SIZE, BITS, TextureUsages::COPY_SRC));
+            let bits = work.texture(TextureResource::target(SIZE, BITS, TextureUsages::COPY_SRC));
             let group = work.group(BindGroup::of_textures(reader, &[(2, drawn)]));
             work.steps.push(Step::Render(RenderPass::screen(reader, group, &[bits])));
             bits
@@ -117,7 +117,7 @@ impl RasterPipeline {
             ColorAttachment::sentinel(drawn)
         };
         let depth = self.pipelines.again.map(|_| {
-            let tested = work.texture(Texture::target(SIZE, DEPTH, TextureUsages::TEXTURE_BINDING));
+            let tested = work.texture(TextureResource::target(SIZE, DEPTH, TextureUsages::TEXTURE_BINDING));
             DepthAttachment::unwritten(tested)
         });
         RenderPass { colors: vec![color], depth, commands: vec![] }

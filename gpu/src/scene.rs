@@ -14,7 +14,7 @@ use crate::error::GpuError;
 use crate::shaders::Shaders;
 use crate::work::{
     BindGroup, Binding, Bytes, ColorAttachment, Command, DepthAttachment, Handle, Read, RenderPass, Resources, Step,
-    Submission, Texture,
+    Submission, TextureResource,
 };
 use geometry::Geometry;
 use lightmeter_scene::effects::{Called, Effect, Effects};
@@ -200,10 +200,10 @@ fn drawing(
 ) -> Submission {
     let size = [frame.target.width, frame.target.height];
     let also = TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
-    let target = resources.texture(Texture::target(size, format, also));
+    let target = resources.texture(TextureResource::target(size, format, also));
     let tests_depth = frame.draws.iter().any(|draw| draw.depth.is_some());
     let depth = tests_depth.then(|| DepthAttachment {
-        texture: resources.texture(Texture::target(size, DEPTH, TextureUsages::TEXTURE_BINDING)),
+        texture: resources.texture(TextureResource::target(size, DEPTH, TextureUsages::TEXTURE_BINDING)),
         operations: Operations { load: LoadOp::Clear(frame.clear_depth), store: StoreOp::Discard },
     });
     let [r, g, b, a] = if stage.is_some() { [0.0; 4] } else { frame.background.map(f64::from) };
@@ -254,9 +254,9 @@ fn check_technique(frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<(),
 }
 
 /// A texture of binary32 texels.
-fn texels(texture: &frame::Texture) -> Texture {
+fn texels(texture: &frame::Texture) -> TextureResource {
     let contents: &[u8] = bytemuck::cast_slice(&texture.texels);
-    Texture {
+    TextureResource {
         width: texture.width,
         height: texture.height,
         format: TextureFormat::Rgba32Float,

@@ -11,7 +11,7 @@ use crate::kernel::{Kernel, SWEEP_GROUP, SWEEP_WIDTH};
 use crate::shaders::Shaders;
 use crate::work::{
     BindGroup, Buffer, ComputePass, ComputePipeline, Handle, Read, RenderPass, RenderPipeline, Resources, Step,
-    Submission, Texture, Write,
+    Submission, TextureResource, Write,
 };
 use lightmeter_scene::along::Along;
 use wgpu_types::{BufferUsages, TextureFormat, TextureUsages};
@@ -157,7 +157,7 @@ impl Slot {
             }
             Programmable::Fragment => {
                 let height = u32::try_from(capacity / SWEEP_WIDTH as usize).unwrap_or(u32::MAX);
-                (resources.texture(Texture::target([SWEEP_WIDTH, height], BITS, copied)), vec![row, span])
+                (resources.texture(TextureResource::target([SWEEP_WIDTH, height], BITS, copied)), vec![row, span])
             }
         };
         let group = resources.group(BindGroup::of_buffers(pipeline, &bound));

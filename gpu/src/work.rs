@@ -17,7 +17,8 @@ pub(crate) mod tests;
 pub use bytes::Bytes;
 pub use pass::{ColorAttachment, Command, ComputePass, DepthAttachment, Read, RenderPass, Step, Write};
 pub use resource::{
-    BindGroup, Binding, Buffer, ComputePipeline, Contents, Pipeline, RenderPipeline, Shader, Texture, VertexBuffer,
+    BindGroup, Binding, Buffer, ComputePipeline, Contents, Pipeline, RenderPipeline, ShaderResource, TextureResource,
+    VertexBuffer,
 };
 
 use serde::{Deserialize, Serialize};
@@ -36,13 +37,13 @@ pub enum Handle {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Resources {
     /// Shader modules.
-    pub shaders: Vec<Shader>,
+    pub shaders: Vec<ShaderResource>,
     /// Compute and render pipelines.
     pub pipelines: Vec<Pipeline>,
     /// Buffers.
     pub buffers: Vec<Buffer>,
     /// Textures.
-    pub textures: Vec<Texture>,
+    pub textures: Vec<TextureResource>,
     /// Bind groups.
     pub groups: Vec<BindGroup>,
 }
@@ -65,7 +66,7 @@ pub struct Submission {
 impl Resources {
     /// Adds a shader module that is kept.
     pub fn shader(&mut self, label: &str, source: String) -> Handle {
-        Handle::Kept(add(&mut self.shaders, Shader { label: label.into(), source }))
+        Handle::Kept(add(&mut self.shaders, ShaderResource { label: label.into(), source }))
     }
 
     /// Adds a pipeline that is kept.
@@ -79,7 +80,7 @@ impl Resources {
     }
 
     /// Adds a texture that is kept.
-    pub fn texture(&mut self, texture: Texture) -> Handle {
+    pub fn texture(&mut self, texture: TextureResource) -> Handle {
         Handle::Kept(add(&mut self.textures, texture))
     }
 
@@ -96,7 +97,7 @@ impl Submission {
     }
 
     /// Adds a texture that ends with the submission.
-    pub fn texture(&mut self, texture: Texture) -> Handle {
+    pub fn texture(&mut self, texture: TextureResource) -> Handle {
         Handle::Own(add(&mut self.own.textures, texture))
     }
 

@@ -194,3 +194,72 @@ fn shards_of_a_run_and_of_a_gate_merge_into_the_whole() {
         assert!(code(&output) == 2 && stderr(&output).contains("different runs"), "{}", stderr(&output));
     }
 }
+
+#[test]
+fn how_values_are_stored_is_told_of_all_shards_together() {
+    let exec = gate::process::command_of("targets=all blends-by=times-256");
+    let shard = |shard: &str, more: &[&str]| {
+        let path = file(&format!("stores-{}-{}.json", &shard[..1], more.len()));
+        let out = path.to_str().expect("the path is UTF-8").to_owned();
+        let command =
+            ["gate", "blend/add/src-alpha", "--exec", &exec, "--cases", "64", "--format", "json", "--out", &out];
+        lightmeter(&[&command[..], &["--shard", shard], more].concat());
+        out
+    };
+    let parts: Vec<String> = (1..=6).map(|k| shard(&format!("{k}/6"), &["--target", "rgba8unorm"])).collect();
+    let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
+    let merged = lightmeter(&[&["merge"], &parts[..]].concat());
+    assert!(code(&merged) == 1 && stdout(&merged).contains("×256 for ×255"), "{}", stdout(&merged));
+    // A shard that was asked on another target is none of the same run.
+    let other = shard("6/6", &["--target", "rgba32float", "--seed", "1"]);
+    let output = lightmeter(&[&["merge"], &parts[..5], &[&other]].concat());
+    assert!(code(&output) == 2 && stderr(&output).contains("different runs"), "{}", stderr(&output));
+}
+
+#[test]
+fn an_expected_failure_of_another_shard_is_no_unexpected_pass() {
+    let expected = file("shard-expected.toml");
+    let text = "[[expected]]\nid = \"fog/exp\"\nreason = \"known\"\n";
+    std::fs::write(&expected, text).expect("it can be written");
+    let exec = gate::process::command_of("wrong-at=fog/exp/random/000003");
+    let expected = expected.to_str().expect("the path is UTF-8");
+    let shard = |shard: &str, exec: &str| {
+        let path = file(&format!("shard-expected-{}.json", &shard[..1]));
+        let out = path.to_str().expect("the path is UTF-8").to_owned();
+        let command = ["gate", "fog/exp", "--exec", exec, "--cases", "8", "--expect", expected, "--format", "json"];
+        (code(&lightmeter(&[&command[..], &["--shard", shard, "--out", &out]].concat())), out)
+    };
+    let (parts, status): (Vec<String>, Vec<i32>) =
+        ["1/2", "2/2"].into_iter().map(|k| shard(k, &exec)).map(|(status, out)| (out, status)).unzip();
+    assert_eq!(status, [0, 0]);
+    assert_eq!(code(&lightmeter(&["merge", &parts[0], &parts[1]])), 0);
+    let right = gate::process::command_of("");
+    let parts = ["1/2", "2/2"].map(|k| shard(k, &right).1);
+    assert_eq!(code(&lightmeter(&["merge", &parts[0], &parts[1]])), 1, "none fails in any shard");
+}
+
+#[test]
+fn damaged_shards_make_no_whole_and_no_panic() {
+    let exec = gate::process::command_of("");
+    let parts = ["1/2", "2/2"].map(|shard| {
+        let path = file(&format!("damaged-{}.json", &shard[..1]));
+        let out = path.to_str().expect("the path is UTF-8");
+        lightmeter(&[
+            "gate", "fog/exp", "--exec", &exec, "--cases", "8", "--format", "json", "--shard", shard, "--out", out,
+        ]);
+        path
+    });
+    let right = std::fs::read_to_string(&parts[1]).expect("it was written");
+    for (from, to) in [
+        ("\"failed\": 0", "\"failed\": 1000000"),
+        ("\"asked\": ", "\"asked\": 1844674407370955161"),
+        ("2/2", "5/2"),
+        ("2/2", "2/99999999999"),
+        ("2/2", "0/2"),
+    ] {
+        std::fs::write(&parts[1], right.replace(from, to)).expect("it can be written");
+        let [a, b] = parts.each_ref().map(|path| path.to_str().expect("the path is UTF-8"));
+        let output = lightmeter(&["merge", a, b]);
+        assert!(stderr(&output).len() < 2000 && [1, 2].contains(&code(&output)), "{from} as {to}: {}", stderr(&output));
+    }
+}

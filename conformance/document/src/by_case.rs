@@ -1,9 +1,8 @@
 //! What a report says by cases, beside the counts of verdicts: of subjects that are asked case by case, and wherever a run is compared
 //! with another one.
 
-use crate::Number;
-use crate::gate::{Problems, RendererIdentity};
 use crate::pack::Choice;
+use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -73,12 +72,21 @@ pub struct FailedAnswer {
 }
 
 /// What must be the same for two runs to be compared.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ComparedBy {
     /// What chose the cases.
     pub choice: Choice,
     /// The version of what draws them.
     pub generator: u64,
+    /// The formats that were asked to be blended on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub targets: Vec<Word>,
+    /// Of a renderer, those that it declares.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub declared: Vec<Word>,
+    /// Sampled states with another one for alpha.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub separate: Option<u64>,
     /// Which part of them, as `2/8`; none for all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<String>,
@@ -105,5 +113,56 @@ impl RendererUse {
     #[must_use]
     pub fn is_broken(&self) -> bool {
         !self.incidents.is_empty() || !self.problems.is_empty()
+    }
+}
+
+/// A renderer.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+pub struct RendererIdentity {
+    /// Its name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+}
+
+/// Answers that cannot be read, or that nobody asked for.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+pub struct Problems {
+    /// How many of each kind.
+    pub counts: BTreeMap<Word, u64>,
+    /// The first of them, in words.
+    pub first: Vec<String>,
+}
+
+impl Problems {
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.counts.is_empty()
+    }
+}
+
+/// A known failure, and what became of its cases.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub struct KnownFailure {
+    /// A glob of cases.
+    pub id: String,
+    /// Why they fail.
+    pub reason: String,
+    /// Cases of it that failed.
+    pub failed: u64,
+    /// Cases of it that passed.
+    pub passed: u64,
+    /// Whether the renderer may end or hang at them.
+    pub crash: bool,
+    /// Whether they may pass.
+    pub may_pass: bool,
+}
+
+impl KnownFailure {
+    /// Whether its cases were asked and none failed: it is to be taken out.
+    #[must_use]
+    pub const fn passes_unexpectedly(&self) -> bool {
+        self.failed == 0 && self.passed > 0 && !self.may_pass
     }
 }

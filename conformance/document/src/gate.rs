@@ -1,8 +1,9 @@
 //! What became of a gate: `lightmeter.gate/1`.
 
 use crate::by_case::{CaseCounts, ComparedBy, FailedAnswer, RendererUse};
+pub use crate::by_case::{KnownFailure, Problems, RendererIdentity};
 use crate::pack::Choice;
-use crate::run::{Failure, Group, Identity, Interrupted, Report, Totals};
+use crate::run::{Failure, Group, Identity, Interrupted, Report, StoresOfShard, Totals};
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -29,9 +30,9 @@ pub struct GateReport {
     pub choice: Choice,
     /// The version of what draws them.
     pub generator: u64,
-    /// Which part of the cases, as `2/8`; none for all.
+    /// The same with what else chose the cases: targets and the shard.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shard: Option<String>,
+    pub compared_by: Option<ComparedBy>,
     /// The accuracy rules.
     pub profile: String,
     /// Who answered.
@@ -72,15 +73,6 @@ pub struct GateReport {
     /// What is worse than in the baseline.
     #[serde(default)]
     pub regressions: Vec<String>,
-}
-
-/// A renderer.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
-pub struct RendererIdentity {
-    /// Its name.
-    pub name: String,
-    /// Its version.
-    pub version: String,
 }
 
 /// Counts of cases, but for the verdicts, which are of scalars.
@@ -141,6 +133,9 @@ pub struct GateGroup {
     pub verdicts: u64,
     /// Of them, those where anything is legal.
     pub indeterminate: u64,
+    /// What a shard's values say of how a target stores them, for the whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stores: Option<StoresOfShard>,
     /// The largest error in ULP of binary32; of a scene, in its target's ULP or steps.
     pub error_max: Number,
     /// The largest error of a case that passes.
@@ -197,6 +192,7 @@ impl GateGroup {
             not_asked: counts.not_asked,
             verdicts: group.totals.verdicts,
             indeterminate: group.totals.indeterminate,
+            stores: group.stores.clone(),
             error_max: group.error_ulp_max,
             error_passing: counts.error_passing,
             error_mean: counts.error_mean,
@@ -253,8 +249,7 @@ impl GateReport {
             totals.indeterminate += group.totals.indeterminate;
             groups.push(GateGroup::of(group, counts));
         }
-        totals.unexpected_passes =
-            report.expectations.iter().filter(|expected| expected.passes_unexpectedly()).count() as u64;
+        totals.unexpected_passes = report.passing_unexpectedly().count() as u64;
         let renderer = report.renderer.clone().unwrap_or_default();
         let compared_by = report.compared_by.clone().unwrap_or_default();
         Self {
@@ -263,7 +258,7 @@ impl GateReport {
             version: env!("CARGO_PKG_VERSION").into(),
             choice: compared_by.choice,
             generator: compared_by.generator,
-            shard: compared_by.shard,
+            compared_by: report.compared_by.clone(),
             profile: report.profile.to_string(),
             renderer: renderer.identity,
             seconds: report.seconds,
@@ -318,7 +313,11 @@ impl From<GateReport> for Report {
             message: "a signal ended the gate".into(),
             signal,
         });
-        let compared_by = ComparedBy { choice: gate.choice.clone(), generator: gate.generator, shard: gate.shard };
+        let compared_by = gate.compared_by.unwrap_or_else(|| ComparedBy {
+            choice: gate.choice.clone(),
+            generator: gate.generator,
+            ..ComparedBy::default()
+        });
         let renderer = RendererUse {
             identity: gate.renderer,
             starts: gate.starts,
@@ -346,7 +345,9 @@ impl From<GateReport> for Report {
 impl GateGroup {
     /// The group of a run.
     fn of_run(self, adapter: &str) -> Group {
+        // Verdicts are counted by cases here: a gate does not say how many of them failed.
         let totals = Totals {
+            failed: self.failed - self.expected_failures.min(self.failed),
             cases: self.asked,
             verdicts: self.verdicts,
             skipped: self.skipped,
@@ -356,7 +357,7 @@ impl GateGroup {
         let counts = CaseCounts {
             asked: self.asked,
             not_asked: self.not_asked,
-            passed: self.asked - self.failed - self.skipped - self.missing,
+            passed: self.asked.saturating_sub(self.failed).saturating_sub(self.skipped).saturating_sub(self.missing),
             failed: self.failed,
             unjudged: 0,
             broken: self.broken,
@@ -372,6 +373,7 @@ impl GateGroup {
         };
         Group {
             target: self.target,
+            stores: self.stores,
             totals,
             error_ulp_max: self.error_max,
             margin_max: self.margin_max,
@@ -437,23 +439,6 @@ const fn is_zero(count: &u64) -> bool {
     *count == 0
 }
 
-/// Answers that cannot be read, or that nobody asked for.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
-pub struct Problems {
-    /// How many of each kind.
-    pub counts: BTreeMap<Word, u64>,
-    /// The first of them, in words.
-    pub first: Vec<String>,
-}
-
-impl Problems {
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.counts.is_empty()
-    }
-}
-
 /// A case that failed.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct GateFailure {
@@ -483,31 +468,6 @@ pub struct GateFailure {
     pub error_ulp: Number,
     /// What is wrong, where it is not a value.
     pub problem: Option<String>,
-}
-
-/// A known failure, and what became of its cases.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct KnownFailure {
-    /// A glob of cases.
-    pub id: String,
-    /// Why they fail.
-    pub reason: String,
-    /// Cases of it that failed.
-    pub failed: u64,
-    /// Cases of it that passed.
-    pub passed: u64,
-    /// Whether the renderer may end or hang at them.
-    pub crash: bool,
-    /// Whether they may pass.
-    pub may_pass: bool,
-}
-
-impl KnownFailure {
-    /// Whether its cases were asked and none failed: it is to be taken out.
-    #[must_use]
-    pub const fn passes_unexpectedly(&self) -> bool {
-        self.failed == 0 && self.passed > 0 && !self.may_pass
-    }
 }
 
 /// `1 case`, `12 cases`.

@@ -1,13 +1,15 @@
 //! All of a run, or what failed of it, asked once more.
 
 use crate::again::{Digests, changed, digest_of, has_changed};
+use crate::blend_unit::run::{NotedPixels, run_again};
 use crate::device::DeviceError;
 use crate::image;
 use crate::options::Options;
 use crate::row_run::{Asked, RowRun};
-use crate::run::{CHUNK, Turn, cases_of, scene_of};
 use crate::selection::Selection;
 use crate::subject::Subject;
+use crate::turn::{CHUNK, Turn, cases_of, scene_of};
+use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::Observer;
 use lightmeter_document::run::Report;
@@ -17,6 +19,10 @@ pub(crate) enum Noted {
     Nothing,
     /// To each case of a group.
     Rows(Vec<Vec<Digests>>),
+    /// What a blend unit left, or a renderer on targets.
+    Pixels(NotedPixels),
+    /// The same, and what was answered to each case of the group as arithmetic.
+    Both(NotedPixels, Vec<Vec<Digests>>),
     /// To some of the cases that failed, of one formula.
     Failing(Vec<Vec<Vec<(CaseRef, u32)>>>),
     /// The image of a scene, and whether it failed.
@@ -70,6 +76,11 @@ impl Pass<'_> {
     fn turn(&mut self, turn: Turn<'_>, noted: &Noted) -> Result<(), DeviceError> {
         match (turn, noted) {
             (Turn::Formulas(group), Noted::Rows(digests)) => self.rows(group, digests),
+            (Turn::Formulas(group) | Turn::Blended(group), Noted::Pixels(pixels)) => self.pixels(group, pixels),
+            (Turn::Formulas(group), Noted::Both(pixels, digests)) => {
+                self.pixels(group, pixels)?;
+                self.rows(group, digests)
+            }
             (Turn::Formulas(group), Noted::Failing(failing)) => {
                 let Some(failing) = failing.first().and_then(|stages| stages.first()).filter(|few| !few.is_empty())
                 else {
@@ -96,6 +107,16 @@ impl Pass<'_> {
             }
             _ => Ok(()),
         }
+    }
+
+    /// What is left on targets, of all cases of a group or of those that failed.
+    fn pixels(&mut self, group: &[Selected], noted: &NotedPixels) -> Result<(), DeviceError> {
+        let catalogue = &self.selection.catalogue;
+        let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
+        if !matches!(members[0].spec.kind, Kind::Blend(_)) {
+            return Ok(());
+        }
+        run_again(&members, group, noted, self.subjects, self.options, self.report)
     }
 
     /// All cases of a group, in the same chunks.

@@ -21,5 +21,6 @@ pub mod special;
 pub mod stability;
 pub mod subject;
 pub mod sweep;
+mod turn;
 mod under_way;
 pub mod witness;

@@ -1,6 +1,6 @@
-//! The reports of a run's shards, joined: what the whole run would have reported, but for times. Three things follow from samples of rows,
-//! which reports do not hold, and are those of the shard that has the most to say: the mistake that explains what fails, what is wrong with
-//! a group as a whole, and how values are stored.
+//! The reports of a run's shards, joined: what the whole run would have reported, but for times. Two things follow from samples of rows,
+//! which reports do not hold: the mistake that explains what fails, and what is wrong with all values of a formula together. They are those of
+//! the shard that fails most. How the values of a group are stored is told anew from the counts of all shards.
 
 use crate::run::routes;
 use lightmeter_catalogue::scene::library::SCENES;
@@ -9,13 +9,17 @@ use lightmeter_catalogue::select::{CaseRef, catalogue};
 use lightmeter_catalogue::special::Class;
 use lightmeter_document::Number;
 use lightmeter_document::by_case::{CaseCounts, ComparedBy, RendererUse};
-use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, StoreUse, Totals};
+use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Identity, Report, StoreUse, Totals};
+use lightmeter_judge::blend_unit::store::problem_of;
 use lightmeter_judge::cases::joined;
 use lightmeter_judge::tally::{KEPT, KEPT_FAILURES};
 use lightmeter_judge::{is_worse, telling, worse};
 use lightmeter_scene::target::TargetFormat;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::PathBuf;
+
+/// Missing shards that are named.
+const MOST_NAMED: usize = 8;
 
 /// Why reports make no whole.
 #[derive(Debug, thiserror::Error)]
@@ -30,24 +34,34 @@ pub fn merge(parts: Vec<(PathBuf, Report)>) -> Result<Report, NoWhole> {
     check(&parts)?;
     let mut parts = parts.into_iter().map(|(_, report)| report);
     let Some(mut whole) = parts.next() else { unreachable!("a run has a shard at least") };
+    let mut most: HashMap<GroupKey, u64> = whole.groups.iter().map(|group| (key(group), group.totals.failed)).collect();
+    let order = Order::new();
     for part in parts {
-        add(&mut whole, part);
+        add(&mut whole, part, &order, &mut most);
     }
-    Order::new().sort(&mut whole);
+    whole.groups.iter_mut().for_each(tell_stores);
+    order.sort(&mut whole);
     whole.groups.iter_mut().for_each(|group| group.totals.failed_groups = u64::from(group.problem.is_some()));
     whole.totals = Totals::default();
     for group in &whole.groups {
         whole.totals.add(&group.totals);
     }
     let not_needed = whole.deviations.iter().filter(|deviation| !deviation.still_needed).count();
-    let pass = whole.expectations.iter().filter(|expected| expected.passes_unexpectedly()).count();
-    whole.totals.unexpected_passes += (not_needed + pass) as u64;
-    whole.routes = routes(&whole);
-    sort_failures(&mut whole);
     if let Some(compared_by) = &mut whole.compared_by {
         compared_by.shard = None;
     }
+    let pass = whole.passing_unexpectedly().count();
+    whole.totals.unexpected_passes += (not_needed + pass) as u64;
+    whole.routes = routes(&whole);
+    sort_failures(&mut whole, &order);
     Ok(whole)
+}
+
+/// What a run was asked and held against, which must be the same for all of its shards.
+fn asked(report: &Report) -> (Option<ComparedBy>, &str, &[Identity], Vec<(&str, &str)>) {
+    let compared_by = report.compared_by.clone().map(|by| ComparedBy { shard: None, ..by });
+    let expected = report.expectations.iter().map(|one| (one.id.as_str(), one.reason.as_str())).collect();
+    (compared_by, &report.profile, &report.adapters, expected)
 }
 
 /// Checks that the parts are all shards of one run.
@@ -60,7 +74,7 @@ fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
     let mut count = None;
     for (path, part) in parts {
         let (a, b) = (first_path.display(), path.display());
-        let Some(ComparedBy { choice, generator, shard: Some(shard) }) = &part.compared_by else {
+        let Some(ComparedBy { shard: Some(shard), .. }) = &part.compared_by else {
             return no_whole(format!(
                 "{b} is no shard of a run; expected the JSON of `run` or `gate` with --shard I/N"
             ));
@@ -68,16 +82,14 @@ fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
         if let Some(interrupted) = &part.interrupted {
             return no_whole(format!("{b} is not finished: {}", interrupted.message));
         }
-        let of = |report: &Report| (report.profile.clone(), report.adapters.clone());
-        let other = first.compared_by.as_ref();
-        let is_alike = other.is_some_and(|other| (&other.choice, other.generator) == (choice, *generator));
-        if !is_alike || of(first) != of(part) {
-            return no_whole(format!(
-                "{a} and {b} are of different runs: expected the same cases, seed, profile and adapters"
-            ));
+        if asked(first) != asked(part) {
+            let expected = "expected the same cases, seed, targets, profile, adapters and known failures";
+            return no_whole(format!("{a} and {b} are of different runs: {expected}"));
         }
         let read = shard.split_once('/').and_then(|(i, n)| Some((i.parse::<u64>().ok()?, n.parse::<u64>().ok()?)));
-        let Some((index, shards)) = read else { return no_whole(format!("{b}: `{shard}` is no shard; expected I/N")) };
+        let Some((index, shards)) = read.filter(|&(index, shards)| (1..=shards).contains(&index)) else {
+            return no_whole(format!("{b}: `{shard}` is no shard; expected I/N"));
+        };
         if *count.get_or_insert(shards) != shards {
             return no_whole(format!("{a} and {b} overlap: expected shards of the same number"));
         }
@@ -86,8 +98,9 @@ fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
         }
     }
     let count = count.unwrap_or(1);
+    let is_missing = |index: &u64| !seen.contains_key(index);
     let missing: Vec<String> =
-        (1..=count).filter(|index| !seen.contains_key(index)).map(|index| format!("{index}/{count}")).collect();
+        (1..=count).filter(is_missing).map(|index| format!("{index}/{count}")).take(MOST_NAMED).collect();
     if missing.is_empty() { Ok(()) } else { no_whole(format!("there is no result of shard {}", missing.join(", "))) }
 }
 
@@ -117,6 +130,17 @@ impl Order {
         self.0.get(id).copied().unwrap_or(usize::MAX)
     }
 
+    /// The place of a case in its group: hard ones, those near them, random ones; each by its path and number.
+    fn of_case(&self, id: &str) -> (u8, usize, String, u64) {
+        let number = id.rsplit_once('/').and_then(|(path, number)| Some((path.to_owned(), number.parse().ok()?)));
+        let (path, number) = number.unwrap_or_else(|| (id.to_owned(), 0));
+        match id.split_once("/near/") {
+            Some((hard, _)) => (1, self.of(hard), path, number),
+            None if id.contains("/hard/") => (0, self.of(id), path, number),
+            None => (2, 0, path, number),
+        }
+    }
+
     /// The place of the group of an id.
     fn of_group(&self, id: &str) -> usize {
         let ends = id.match_indices('/').map(|(at, _)| at).chain([id.len()]);
@@ -143,20 +167,34 @@ impl Order {
     }
 }
 
+/// Tells anew how all values of a group are stored, which the values of a shard may be too few for. What only the values of one state
+/// together show, and what is off in all values of a formula, is told by each shard of its own values.
+fn tell_stores(group: &mut Group) {
+    if let Some(stores) = group.stores.take()
+        && group.problem.as_ref().is_none_or(|problem| problem.starts_with("color."))
+    {
+        group.problem = problem_of(&stores.components, stores.states);
+    }
+}
+
+/// Id, adapter, stage and target.
+type GroupKey = (String, String, String, Option<String>);
+
 /// What tells a group from all others.
-fn key(group: &Group) -> (String, String, String, Option<String>) {
+fn key(group: &Group) -> GroupKey {
     let target = group.target.as_ref().map(ToString::to_string);
     (group.id.clone(), group.adapter.clone(), group.stage.to_string(), target)
 }
 
 /// Adds a part to the whole.
-fn add(whole: &mut Report, part: Report) {
+fn add(whole: &mut Report, part: Report, order: &Order, most: &mut HashMap<GroupKey, u64>) {
     // What stands before a group in a part stands before it in the whole.
     let mut after = 0;
     for group in part.groups {
         match whole.groups.iter().position(|known| key(known) == key(&group)) {
             Some(place) => {
-                add_group(&mut whole.groups[place], group);
+                let most = most.entry(key(&group)).or_default();
+                add_group(&mut whole.groups[place], group, order, most);
                 after = place + 1;
             }
             None => {
@@ -232,8 +270,9 @@ fn add_renderer(known: &mut RendererUse, more: RendererUse) {
     }
 }
 
-fn add_group(known: &mut Group, more: Group) {
-    let fails_more = more.totals.failed > known.totals.failed;
+fn add_group(known: &mut Group, more: Group, order: &Order, most: &mut u64) {
+    let fails_more = more.totals.failed > *most;
+    *most = more.totals.failed.max(*most);
     if more.explanation.is_some() && (known.explanation.is_none() || fails_more) {
         known.explanation = more.explanation;
     }
@@ -244,7 +283,7 @@ fn add_group(known: &mut Group, more: Group) {
     known.error_ulp_max = Number(worse(known.error_ulp_max.0, more.error_ulp_max.0));
     let is_worst = is_worse(more.margin_max.0, known.margin_max.0)
         || (more.margin_max == known.margin_max
-            && more.worst.as_deref().map(order) < known.worst.as_deref().map(order));
+            && more.worst.as_deref().map(|id| order.of_case(id)) < known.worst.as_deref().map(|id| order.of_case(id)));
     if known.worst.is_none() || (more.worst.is_some() && is_worst) {
         known.worst = more.worst;
     }
@@ -256,12 +295,20 @@ fn add_group(known: &mut Group, more: Group) {
     if let Some(tiers) = &more.tiers {
         known.tiers.get_or_insert_default().add(tiers);
     }
+    known.stores = match (known.stores.take(), more.stores) {
+        (Some(mut a), Some(b)) => {
+            a.components.iter_mut().zip(&b.components).for_each(|(counts, more)| counts.add(more));
+            a.states = a.states.max(b.states);
+            Some(a)
+        }
+        (a, b) => a.or(b),
+    };
     known.store = match (known.store.take(), more.store) {
         (Some(a), Some(b)) => Some(store(a, b)),
         (a, b) => a.or(b),
     };
     known.by_case = match (known.by_case.take(), more.by_case) {
-        (Some(a), Some(b)) => Some(counts(a, b, &known.id)),
+        (Some(a), Some(b)) => Some(counts(a, b, &known.id, order)),
         (a, b) => a.or(b),
     };
     known.image = known.image.take().or(more.image);
@@ -278,14 +325,14 @@ fn store(a: StoreUse, b: StoreUse) -> StoreUse {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "counts of errors")]
-fn counts(a: CaseCounts, b: CaseCounts, group: &str) -> CaseCounts {
+fn counts(a: CaseCounts, b: CaseCounts, group: &str, order: &Order) -> CaseCounts {
     let passed = a.passed + b.passed;
     let errors = a.errors + b.errors;
     let mean = (a.error_mean.0 * a.errors as f64 + b.error_mean.0 * b.errors as f64) / errors.max(1) as f64;
     let mut not_passed = a.not_passed;
     for (state, more) in b.not_passed {
         let all = not_passed.remove(&state).unwrap_or_default().into_iter().chain(more);
-        not_passed.insert(state, joined(all.collect(), |id| (order(&format!("{group}/{id}")), id.to_owned())));
+        not_passed.insert(state, joined(all.collect(), |id| (order.of_case(&whole_id(group, id)), id.to_owned())));
     }
     let reasons: BTreeSet<String> = a.reason.into_iter().chain(b.reason).collect();
     CaseCounts {
@@ -307,29 +354,26 @@ fn counts(a: CaseCounts, b: CaseCounts, group: &str) -> CaseCounts {
     }
 }
 
-/// The order of a group's cases by their ids: hard ones, those near them, random ones; each by its path and number.
-fn order(id: &str) -> (u8, String, u64) {
-    let rank = match id {
-        id if id.contains("/near/") => 1,
-        id if id.contains("/hard/") => 0,
-        _ => 2,
-    };
-    let number = id.rsplit_once('/').and_then(|(path, number)| Some((path.to_owned(), number.parse().ok()?)));
-    let (path, number) = number.unwrap_or_else(|| (id.to_owned(), 0));
-    (rank, path, number)
+/// The id of a case of a group, of which a list may have the end alone. A hard case of several formulas has its whole id there.
+fn whole_id(group: &str, ending: &str) -> String {
+    if ending.contains("/hard/") { ending.to_owned() } else { format!("{group}/{ending}") }
 }
 
 /// Puts the failures that are reported in order: of each group the one of the simplest inputs, then the first.
-fn sort_failures(whole: &mut Report) {
+fn sort_failures(whole: &mut Report, order: &Order) {
     let known = std::mem::take(&mut whole.failures);
     for group in &mut whole.groups {
         let mut of: Vec<&Failure> = known.iter().filter(|failure| is_of(failure, group)).collect();
-        of.sort_by_key(|failure| order(&failure.id));
+        of.sort_by_key(|failure| order.of_case(&failure.id));
         if let Some(simplest) = (0..of.len()).min_by_key(|&k| simplicity(of[k])) {
             let simplest = of.remove(simplest);
             of.insert(0, simplest);
         }
-        if let (Some(first), Some(counts)) = (of.first(), &mut group.by_case) {
+        let has_values = |failure: &&&Failure| {
+            let is_scene = failure.id.starts_with("scene/");
+            is_scene || failure.answer.as_ref().is_none_or(|answer| !answer.value.is_empty())
+        };
+        if let (Some(first), Some(counts)) = (of.first().filter(has_values), &mut group.by_case) {
             counts.smallest = Some(first.id.clone());
         }
         let kept = if of.iter().any(|failure| failure.answer.is_some()) { KEPT + 1 } else { KEPT_FAILURES };

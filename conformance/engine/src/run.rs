@@ -5,6 +5,7 @@
 
 use crate::ask_again::{Noted, ask_again};
 use crate::blend_unit;
+use crate::blend_unit::run::NotedPixels;
 use crate::device::DeviceError;
 use crate::image;
 use crate::options::Options;
@@ -14,25 +15,21 @@ use crate::scout;
 use crate::selection::Selection;
 use crate::special::verdict::Table;
 use crate::subject::{Compiled, Subject};
+use crate::turn::{CHUNK, Turn, cases_of, not_asked, scene_of, turns};
 use crate::under_way::{is_over, tell};
 use crate::witness;
 use crate::{special, stability};
 use lightmeter_catalogue::cases::blend;
 use lightmeter_catalogue::cases::{Kind, Stage};
-use lightmeter_catalogue::scene;
-use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::Chosen;
-use lightmeter_catalogue::select::{CaseRef, Member, Selected};
-use lightmeter_document::by_case::CaseCounts;
+use lightmeter_catalogue::select::{CaseRef, Member, Selected, Shard};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{BlendPromise, Failure, Group, Report, Totals};
+use lightmeter_document::run::{BlendPromise, Failure, Group, Report};
 use lightmeter_judge::blend_unit::policy::{InterfacePromise, PROMISES};
 use lightmeter_judge::stability::UNSTABLE;
 use lightmeter_scene::blend::Equation;
 use std::time::Instant;
 
-/// Cases of a chunk.
-pub(crate) const CHUNK: usize = 1 << 16;
 /// Failing cases of each formula that are asked once more.
 const MOST_AGAIN: usize = 1024;
 
@@ -72,8 +69,9 @@ pub fn run_selection(
     }
     report.totals.unexpected_passes +=
         report.deviations.iter().filter(|deviation| !deviation.still_needed).count() as u64;
-    report.totals.unexpected_passes +=
-        report.expectations.iter().filter(|expected| expected.passes_unexpectedly()).count() as u64;
+    if options.shard == Shard::WHOLE {
+        report.totals.unexpected_passes += report.passing_unexpectedly().count() as u64;
+    }
     report.aliases = blend::aliases()
         .filter(|(alias, canonical)| options.filter.selects(alias) || options.filter.selects(canonical))
         .count() as u64;
@@ -89,48 +87,6 @@ pub fn run_selection(
     report.unstable_beyond = (!report.stability.is_empty()).then_some(UNSTABLE);
     report.seconds = started.elapsed().as_secs_f64();
     Ok(report)
-}
-
-/// What is judged in one go.
-#[derive(Clone, Copy)]
-pub(crate) enum Turn<'a> {
-    Table(&'a Table),
-    /// The formulas of a group.
-    Formulas(&'a [Selected]),
-    /// Blend states of a group, of which a renderer is asked on targets.
-    Blended(&'a [Selected]),
-    Scene(&'a Chosen),
-}
-
-impl Turn<'_> {
-    pub(crate) fn id(self, selection: &Selection) -> String {
-        let (catalogue, is_by_formula) = (&selection.catalogue, selection.is_by_formula);
-        match self {
-            Self::Table(table) => table.id(),
-            Self::Formulas(group) if is_by_formula => catalogue[group[0].member].spec.id.clone(),
-            Self::Formulas(group) | Self::Blended(group) => catalogue[group[0].member].spec.group().to_owned(),
-            Self::Scene(chosen) => scene::select::scene_id(chosen.place),
-        }
-    }
-
-    /// When it is judged. Scenes, which have no scouts, come soon; blend states, whose pipelines take a driver's compiler longest, last.
-    fn rank(self, catalogue: &[Member]) -> usize {
-        match self {
-            Self::Table(_) => 0,
-            Self::Scene(_) => 1,
-            Self::Formulas(group) if matches!(catalogue[group[0].member].spec.kind, Kind::Blend(_)) => 3,
-            Self::Formulas(_) | Self::Blended(_) => 2,
-        }
-    }
-}
-
-/// All that a selection judges, in the order of reports.
-pub(crate) fn turns(selection: &Selection) -> Vec<Turn<'_>> {
-    // First: Mesa 22.3's lavapipe no longer flushes subnormals in fragments once it has drawn certain scenes.
-    let tables = selection.tables.iter().map(Turn::Table);
-    let formulas = selection.groups().map(Turn::Formulas);
-    let blended = selection.blended_groups().map(Turn::Blended);
-    tables.chain(formulas).chain(blended).chain(selection.scenes.iter().map(Turn::Scene)).collect()
 }
 
 /// Judges one after the other, until a device fails or the run is stopped. In the report all stands in the order of reports.
@@ -163,8 +119,7 @@ fn judge_in_turn(
             }
             Turn::Blended(group) => {
                 let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
-                blend_unit::run::run_group(&members, group, subjects, options, report, observer)
-                    .map(|()| Noted::Nothing)
+                blend_unit::run::run_group(&members, group, subjects, options, report, observer).map(Noted::Pixels)
             }
             Turn::Scene(chosen) => {
                 let loaded = scene_of(chosen, selection);
@@ -190,11 +145,6 @@ fn judge_in_turn(
         report.failures.extend(failures);
     }
     Ok(())
-}
-
-/// A chosen scene, in the size that the selection draws it in.
-pub(crate) fn scene_of(chosen: &Chosen, selection: &Selection) -> Loaded {
-    scene::select::builtin(chosen.place, selection.size).expect("a test loads every scene that is built in")
 }
 
 /// Cases that are to be judged, for the progress: those of a formula once for its stages that take rows, and once for each
@@ -245,11 +195,12 @@ fn judge_group(
         }
         return run_rows(&members, group, subjects, (options, compiled), report, observer);
     }
+    let mut pixels = NotedPixels::default();
     if matches!(members[0].spec.kind, Kind::Blend(_)) {
-        blend_unit::run::run_group(&members, group, subjects, options, report, observer)?;
+        pixels = blend_unit::run::run_group(&members, group, subjects, options, report, observer)?;
     }
     if members[0].spec.row_stages().is_empty() || options.stop.is_set() {
-        return Ok(Noted::Nothing);
+        return Ok(Noted::Pixels(pixels));
     }
     let first = report.groups.len();
     let rows: Vec<Selected> = group.iter().zip(&members).map(|(chosen, member)| chosen.rows(member)).collect();
@@ -264,17 +215,10 @@ fn judge_group(
             group.totals.failed_groups = 1;
         }
     }
-    Ok(noted)
-}
-
-/// The group of what a renderer does not declare.
-pub(crate) fn not_asked(id: String, stage: &'static str, cases: u64, reason: String, subject: &Subject) -> Group {
-    Group {
-        totals: Totals { cases, skipped: cases, ..Totals::default() },
-        skip_reason: Some(reason.clone().into()),
-        by_case: Some(CaseCounts { not_asked: cases, reason: Some(reason), ..CaseCounts::default() }),
-        ..Group::new(id, subject.identity.name.clone(), stage)
-    }
+    Ok(match noted {
+        Noted::Rows(rows) => Noted::Both(pixels, rows),
+        _ => Noted::Pixels(pixels),
+    })
 }
 
 /// How the distinct states of the 15 × 15 × 5 reached a blend unit: states by route, on any adapter and target.
@@ -337,9 +281,4 @@ fn run_rows(
     };
     run.finish(subjects, options, report);
     Ok(noted)
-}
-
-/// The cases of a group, each with its formula's place in it.
-pub(crate) fn cases_of(group: &[Selected]) -> impl Iterator<Item = (usize, CaseRef)> + '_ {
-    group.iter().enumerate().flat_map(|(of, chosen)| chosen.cases().map(move |case| (of, case)))
 }

@@ -25,6 +25,10 @@ pub struct Standard {
     choice: Choice,
     generator: u64,
     profile: String,
+    /// Which part of the cases, as `2/8`; none for all.
+    shard: Option<String>,
+    /// The formats that were asked to be blended on.
+    targets: Vec<String>,
     groups: Vec<ComparedGroup>,
     /// Failures that are expected, by their globs.
     expected: Vec<String>,
@@ -47,15 +51,18 @@ impl From<&GateReport> for Standard {
     fn from(report: &GateReport) -> Self {
         let group = |group: &GateGroup| ComparedGroup { name: group.name(), counts: group.clone(), is_by_case: true };
         let why = [
-            (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
             (report.signal.is_some(), "a signal ended the gate"),
+            (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
             (report.totals.unstable > 0, "answers changed when they were asked once more"),
             (!report.has_judged(), "nothing was judged"),
         ];
+        let compared_by = report.compared_by.clone().unwrap_or_default();
         Self {
             choice: report.choice.clone(),
             generator: report.generator,
             profile: report.profile.clone(),
+            shard: compared_by.shard,
+            targets: compared_by.targets.iter().map(ToString::to_string).collect(),
             groups: report.groups.iter().map(group).collect(),
             expected: report.expectations.iter().map(|one| one.id.clone()).collect(),
             unfit: why.into_iter().find(|(is_so, _)| *is_so).map(|(_, why)| why),
@@ -90,10 +97,26 @@ impl From<&Report> for Standard {
             choice: compared_by.choice,
             generator: compared_by.generator,
             profile: report.profile.to_string(),
+            shard: compared_by.shard,
+            targets: compared_by.targets.iter().map(ToString::to_string).collect(),
             groups: report.groups.iter().map(group).collect(),
             expected: report.expectations.iter().map(|one| one.id.clone()).collect(),
             unfit: why.into_iter().find(|(is_so, _)| *is_so).map(|(_, why)| why),
         }
+    }
+}
+
+impl Standard {
+    /// Whether a group that is missing here, and is there in an earlier result, was asked for.
+    fn asks_for(&self, before: &ComparedGroup, is_part: bool) -> bool {
+        let counts = &before.counts;
+        if counts.target.as_ref().is_some_and(|target| !self.targets.iter().any(|asked| target == asked)) {
+            return false;
+        }
+        // A renderer's group on a target is there where its states are asked for at all.
+        let is_below =
+            |group: &ComparedGroup| group.counts.id.strip_prefix(&counts.id).is_some_and(|rest| rest.starts_with('/'));
+        !is_part || (counts.target.is_some() && self.groups.iter().any(is_below))
     }
 }
 
@@ -173,6 +196,11 @@ impl Baseline {
     ) -> Result<Vec<String>, BaselineError> {
         let asked = now.groups.iter().map(|group| (group.name.as_str(), group.counts.asked));
         self.is_of(&now.choice, asked, Some(&now.profile), path)?;
+        if self.0.shard.is_some() && self.0.shard != now.shard {
+            let [before, now] = [&self.0.shard, &now.shard].map(|shard| shard.as_deref().unwrap_or("1/1"));
+            let differences = vec![format!("shard {before} there, {now} here")];
+            return Err(BaselineError::Others { path: path.into(), differences });
+        }
         let is_part = is_shard || !self.has_filter_of(&now.choice);
         // They were read when the expectations were.
         let expected: Vec<Filter> = now.expected.iter().filter_map(|glob| Filter::new(&[glob]).ok()).collect();
@@ -180,7 +208,7 @@ impl Baseline {
         let mut worse = vec![];
         for before in &self.0.groups {
             match now.groups.iter().find(|group| group.name == before.name) {
-                None if is_part => {}
+                None if !now.asks_for(before, is_part) => {}
                 None => worse.push(format!("{}: it is not among the cases any more", before.name)),
                 Some(now) => worse.extend(comparison.of(before, now)),
             }

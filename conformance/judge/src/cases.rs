@@ -142,6 +142,12 @@ impl CaseTally {
         }
     }
 
+    /// Adds what cases that pass err by: the greatest error, the sum of the finite ones and how many those are.
+    pub fn passing(&mut self, (greatest, sum, count): (f64, f64, u64)) {
+        self.counts.error_passing = Number(worse(self.counts.error_passing.0, greatest));
+        self.errors = (self.errors.0 + sum, self.errors.1 + count);
+    }
+
     /// Counts a case without a value; whether it counts as a failure.
     pub fn unanswered(&mut self, case: (usize, CaseRef), why: &Unanswered) -> bool {
         self.counts.asked += 1;

@@ -25,7 +25,7 @@ pub fn text(report: &GateReport, is_told: bool, out: &mut impl Write) -> Result 
         told(group, &report.failures, out)?;
     }
     if failed.len() > MOST_TOLD {
-        let more: Vec<&str> = failed[MOST_TOLD..].iter().map(|group| group.id.as_str()).take(200).collect();
+        let more: Vec<String> = failed[MOST_TOLD..].iter().map(|group| group.name()).take(200).collect();
         writeln!(out, "\n{} more fail: {}", failed.len() - MOST_TOLD, more.join(", "))?;
     }
     against::text(Against::of_gate(report), out)?;

@@ -48,7 +48,7 @@ pub(crate) struct Gate {
     cases: Cases,
     /// Format to blend on, among those that the renderer declares: rgba32float, rgba16float, rgba8unorm, rgba8unorm-srgb or bgra8unorm;
     /// again for several; `all`. Without it: all
-    #[arg(long, value_name = "NAME", value_parser = super::options::Choice::target)]
+    #[arg(long, value_name = "NAME", requires = "exec", value_parser = super::options::Choice::target)]
     target: Vec<Targets>,
     /// Only a part of the cases: the I-th of N
     #[arg(long, value_name = "I/N", default_value = "1/1")]
@@ -179,7 +179,14 @@ impl Gate {
         let report = run(&mut [subject], &options, &mut bar);
         bar.bar.finish_and_clear();
         let shard = self.is_shard().then(|| self.shard.to_string());
-        let compared_by = ComparedBy { choice, generator: GENERATOR_VERSION, shard };
+        let compared_by = ComparedBy {
+            choice,
+            generator: GENERATOR_VERSION,
+            targets: options.targets.iter().map(|target| target.name().into()).collect(),
+            declared: hello.targets.iter().cloned().map(Into::into).collect(),
+            separate: None,
+            shard,
+        };
         Ok(GateReport::of(&Report { compared_by: Some(compared_by), ..report? }, command()))
     }
 

@@ -77,7 +77,14 @@ impl Run {
         options.counts_cases = true;
         writable(self.out.as_deref())?;
         let part = (shard.count.get() > 1).then(|| self.amount.shard.to_string());
-        let compared_by = ComparedBy { choice: self.chosen(), generator: GENERATOR_VERSION, shard: part };
+        let compared_by = ComparedBy {
+            choice: self.chosen(),
+            generator: GENERATOR_VERSION,
+            targets: options.targets.iter().map(|target| target.name().into()).collect(),
+            declared: vec![],
+            separate: Some(self.separate),
+            shard: part,
+        };
         if let Some(Earlier { baseline, path, .. }) = &earlier {
             baseline.is_of(&compared_by.choice, std::iter::empty(), Some(&options.profile.name.into()), path)?;
         }

@@ -2,7 +2,8 @@
 
 use super::Gpu;
 use crate::work::{
-    BindGroup, Binding, Buffer, ComputePipeline, Contents, Handle, Pipeline, RenderPipeline, Resources, Shader, Texture,
+    BindGroup, Binding, Buffer, ComputePipeline, Contents, Handle, Pipeline, RenderPipeline, Resources, ShaderResource,
+    TextureResource,
 };
 
 /// What was made of [`Resources`]: each object at the place of its description.
@@ -109,7 +110,7 @@ impl<'a> Scope<'a> {
     }
 }
 
-fn shader(gpu: &Gpu, shader: &Shader) -> wgpu::ShaderModule {
+fn shader(gpu: &Gpu, shader: &ShaderResource) -> wgpu::ShaderModule {
     gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(&shader.label),
         source: wgpu::ShaderSource::Wgsl(shader.source.as_str().into()),
@@ -196,7 +197,7 @@ fn buffer(gpu: &Gpu, buffer: &Buffer) -> wgpu::Buffer {
     }
 }
 
-fn texture(gpu: &Gpu, described: &Texture) -> TextureObject {
+fn texture(gpu: &Gpu, described: &TextureResource) -> TextureObject {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: described.width, height: described.height, depth_or_array_layers: 1 },

@@ -12,7 +12,7 @@ use wgpu_types::{
 
 /// A shader module.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Shader {
+pub struct ShaderResource {
     /// The name in messages.
     pub label: String,
     /// The text in WGSL.
@@ -107,7 +107,7 @@ pub enum Contents {
 
 /// A texture of two dimensions with one level and one sample.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Texture {
+pub struct TextureResource {
     /// Pixels of a row.
     pub width: u32,
     /// Rows.
@@ -223,7 +223,7 @@ impl Buffer {
     }
 }
 
-impl Texture {
+impl TextureResource {
     /// A texture that is drawn to, and for what else.
     #[must_use]
     pub fn target([width, height]: [u32; 2], format: TextureFormat, also: TextureUsages) -> Self {

@@ -445,6 +445,56 @@ fn a_process_that_fails_at_a_pixel_costs_that_pixel_alone() {
 }
 
 #[test]
+fn a_pixel_that_changes_is_unstable() {
+    let id = "blend/add/src-alpha/one/0003@rgba8unorm";
+    let state = ["blend/add/src-alpha/one"];
+    // At each answer another value, and so at the end, when what failed is asked once more; and from the second start on.
+    let flag = folder("unstable-pixel").join("flag");
+    let (flag, renderer) = (text(&flag), renderer());
+    let later = format!(
+        "if [ -e '{flag}' ]; then exec {renderer} targets=all nan-at={id}; fi; touch '{flag}'; exec {renderer} targets=all"
+    );
+    for (exec, more) in [(command_of(&format!("targets=all unstable-at={id}")), &[][..]), (later, &["--runs", "2"])] {
+        let (status, found) = report(&gate(&state, &exec, &[&["--target", "rgba8unorm"], more].concat()));
+        assert_eq!((status, count(&found, "unstable")), (1, 1), "{more:?}: {}", found["totals"]);
+        assert_eq!(found["unstable"][0], "blend/add/src-alpha/one/0003 on rgba8unorm", "{found}");
+    }
+    let (status, found) = report(&process(&state, "targets=all", &["--runs", "2"]));
+    assert_eq!((status, count(&found, "unstable")), (0, 0), "{}", found["totals"]);
+}
+
+#[test]
+fn declaring_fewer_targets_is_a_regression_in_any_part() {
+    let baseline = folder("fewer-targets").join("baseline.json");
+    let state = ["blend/add/src-alpha"];
+    let of = |fault: &str, filter: &[&str], more: &[&str]| {
+        report(&process(filter, fault, &[&["--baseline", text(&baseline)], more].concat())).0
+    };
+    assert_eq!(of("targets=all", &state, &["--update-baseline"]), 0);
+    for (filter, more) in [(&state[..], &[][..]), (&state, &["--shard", "1/2"]), (&["blend/add/src-alpha/one"], &[])] {
+        assert_eq!(of("targets=all", filter, more), 0, "{more:?}");
+        assert_eq!(of("", filter, more), 1, "{more:?}");
+    }
+    assert_eq!(of("targets=all", &state, &["--target", "rgba8unorm"]), 0, "what is not asked for is not compared");
+    // Another shard has other cases.
+    assert_eq!(of("targets=all", &state, &["--shard", "1/2", "--update-baseline"]), 0);
+    assert_eq!(of("targets=all", &state, &["--shard", "1/2"]), 0);
+    assert_eq!(of("targets=all", &state, &["--shard", "2/2"]), 2);
+    assert_eq!(of("targets=all", &state, &[]), 2);
+}
+
+#[test]
+fn crashes_that_are_expected_do_not_add_up() {
+    let expected = folder("many-crashes").join("expected.toml");
+    std::fs::write(&expected, "[[expected]]\nid = \"fog/exp\"\nreason = \"a trap\"\ncrash = true\n")
+        .expect("it can be written");
+    let (status, found) =
+        report(&process(&["fog/exp", "fog/linear"], "crash-at=fog/exp", &["--expect", text(&expected)]));
+    assert_eq!((status, count(&found, "missing")), (0, 0), "{}", found["totals"]);
+    assert!(count(&found, "broken") > 100, "{}", found["totals"]);
+}
+
+#[test]
 fn shards_of_a_gate_are_its_cases() {
     let whole = report(&process(&["fog"], "wrong-at=fog/exp/random/000017", &[])).1;
     let (mut asked, mut failed) = (0, 0);

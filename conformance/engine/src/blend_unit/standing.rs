@@ -3,21 +3,24 @@
 use super::asked::asked;
 use super::chunk::UnitChunk;
 use super::draw::draw;
+use crate::again;
 use crate::device::DeviceError;
 use crate::options::Options;
 use crate::piece::{Piece, Pixels};
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::Stage;
-use lightmeter_catalogue::select::{CaseRef, Member};
+use lightmeter_catalogue::select::{CaseRef, Member, Shard};
 use lightmeter_document::Number;
 use lightmeter_document::by_case::FailedAnswer;
-use lightmeter_document::run::{BlendState, Failure, Group, Report, SpecialUse, StoreUse, Tiers, Totals};
+use lightmeter_document::run::{
+    BlendState, Failure, Group, Report, SpecialUse, StoreUse, StoresOfShard, Tiers, Totals,
+};
 use lightmeter_judge::blend_unit::expect::expect;
 use lightmeter_judge::blend_unit::model::BlendUnitModel;
 use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_judge::blend_unit::policy;
 use lightmeter_judge::blend_unit::rules::Rules;
-use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts, Stores as _};
+use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts, Stores as _, problem_of};
 use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, explain};
 use lightmeter_judge::cases::{CaseTally, Unanswered};
 use lightmeter_judge::formula::{by_name, units, unjudged};
@@ -28,11 +31,22 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+/// What stands for the pixels of a piece, the `number`-th that was drawn.
+fn digests(pixels: &[Units], number: usize, drawn: &Pixels) -> Vec<u32> {
+    let of_pixel = |(place, pixel): (usize, &Units)| match drawn.unanswered.get(&(number, place)) {
+        Some(why) => again::number(why),
+        None => again::digest(pixel.iter().map(|component| component.to_bits())),
+    };
+    pixels.iter().enumerate().map(of_pixel).collect()
+}
+
 /// How reports call where a subject blends.
 fn stage(subject: &Subject) -> &'static str {
     if subject.asked().is_some() { Stage::Answer.name() } else { Stage::FixedFunction.name() }
 }
 
+/// Failing pixels of a group on a target that are asked once more.
+const MOST_AGAIN: usize = 1024;
 /// Failing pixels of a group that faults are tried on.
 const SAMPLES: usize = 1024;
 
@@ -60,6 +74,10 @@ pub(super) struct UnitStanding {
     cases: CaseTally,
     /// Components that fail as is expected.
     expected: u64,
+    /// What was left of each case in turn, where all is asked again.
+    pub(super) digests: Vec<u32>,
+    /// What was left of cases that failed: the first of them.
+    pub(super) failing: Vec<(usize, CaseRef, u32)>,
     skipped: u64,
     seconds: f64,
     seconds_warm: Option<f64>,
@@ -87,6 +105,8 @@ impl UnitStanding {
             special: vec![],
             cases: CaseTally::default(),
             expected: 0,
+            digests: vec![],
+            failing: vec![],
             skipped: 0,
             seconds: 0.0,
             seconds_warm: None,
@@ -101,11 +121,7 @@ impl UnitStanding {
         members: &[&Member],
         report: &mut Report,
     ) -> Result<(), DeviceError> {
-        let reasons: Vec<Option<&'static str>> = chunk
-            .pieces
-            .iter()
-            .map(|piece| Ok(self.lacks.or(subject.lacks_route(&options.code, piece.route)?)))
-            .collect::<Result<_, DeviceError>>()?;
+        let reasons = self.reasons(subject, chunk, options)?;
         let live: Vec<usize> = (0..chunk.pieces.len()).filter(|&k| reasons[k].is_none()).collect();
         let pieces: Vec<&Piece> = live.iter().map(|&k| &chunk.pieces[k]).collect();
         let drawn = self.drawn(subject, chunk, &pieces, options, report)?;
@@ -131,9 +147,63 @@ impl UnitStanding {
             let unanswered = drawn.unanswered.range((number, 0)..(number + 1, 0));
             let unanswered = unanswered.map(|((_, place), why)| (*place, why)).collect();
             self.count_cases((chunk, k), members, tally, &unanswered, options);
+            self.cases.passing(tally.passing);
+            if options.runs > 1 || subject.asked().is_some() {
+                self.note((chunk, k), members, tally, digests(pixels, number, &drawn), options);
+            }
         }
         report.timing.judge += clock.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    /// Why each piece is not drawn; `None` where it is.
+    fn reasons(
+        &self,
+        subject: &mut Subject,
+        chunk: &UnitChunk<'_>,
+        options: &Options,
+    ) -> Result<Vec<Option<&'static str>>, DeviceError> {
+        let lacks = |piece: &Piece| Ok(self.lacks.or(subject.lacks_route(&options.code, piece.route)?));
+        chunk.pieces.iter().map(lacks).collect()
+    }
+
+    /// Notes what was left of the cases of a piece, or of those that failed, where they are asked again.
+    fn note(
+        &mut self,
+        (chunk, k): (&UnitChunk<'_>, usize),
+        members: &[&Member],
+        tally: &UnitTally,
+        digests: Vec<u32>,
+        options: &Options,
+    ) {
+        if options.runs > 1 {
+            self.digests.extend(digests);
+            return;
+        }
+        let of = members.iter().position(|one| one.spec.id == chunk.members[k].spec.id).unwrap_or_default();
+        let room = MOST_AGAIN.saturating_sub(self.failing.len());
+        let failing = tally.failing.iter().take(room).map(|&(place, _)| (of, chunk.cases[k][place], digests[place]));
+        self.failing.extend(failing);
+    }
+
+    /// What is left of a chunk that is drawn again, in the order in which it was noted: each with its case.
+    pub(super) fn draw_again<'a>(
+        &mut self,
+        subject: &mut Subject,
+        chunk: &UnitChunk<'a>,
+        options: &Options,
+        report: &mut Report,
+    ) -> Result<Vec<(&'a Member, CaseRef, u32)>, DeviceError> {
+        let reasons = self.reasons(subject, chunk, options)?;
+        let live: Vec<usize> = (0..chunk.pieces.len()).filter(|&k| reasons[k].is_none()).collect();
+        let pieces: Vec<&Piece> = live.iter().map(|&k| &chunk.pieces[k]).collect();
+        let drawn = self.drawn(subject, chunk, &pieces, options, report)?;
+        let of_piece = |(number, (&k, pixels)): (usize, (&usize, &Vec<Units>))| {
+            let digests = digests(pixels, number, &drawn);
+            let cases = chunk.cases[k].iter().zip(digests);
+            cases.map(|(&case, digest)| (chunk.members[k], case, digest)).collect::<Vec<_>>()
+        };
+        Ok(live.iter().zip(&drawn.pieces).enumerate().flat_map(of_piece).collect())
     }
 
     /// The pixels of the pieces that can be drawn.
@@ -302,6 +372,8 @@ impl UnitStanding {
             target: Some(self.target.name().into()),
             tiers: is_unorm.then_some(self.tiers),
             store: self.store(subject).filter(|_| is_unorm),
+            stores: (is_unorm && options.shard != Shard::WHOLE)
+                .then(|| StoresOfShard { components: self.stores.clone(), states: self.rows.len() }),
             totals: Totals {
                 cases: totals.cases + self.skipped,
                 skipped: self.skipped,
@@ -340,22 +412,11 @@ impl UnitStanding {
 
     /// What is wrong with how values are stored: of a component in all states, or of one in some.
     fn store_problem(&self) -> Option<String> {
-        let names = ["color.r", "color.g", "color.b", "color.a"];
-        let wrong = |counts: &[StoreCounts; 4], states: usize| {
-            let found: Vec<(&str, String)> = names
-                .into_iter()
-                .zip(counts)
-                .filter_map(|(name, counts)| Some((name, counts.problem(states)?)))
-                .collect();
-            let (_, first) = found.first()?;
-            let components: Vec<&str> = found.iter().map(|(name, _)| *name).collect();
-            Some(format!("{} {} {first}", components.join(", "), if found.len() > 1 { "are" } else { "is" }))
-        };
-        if let Some(problem) = wrong(&self.stores, self.rows.len()) {
+        if let Some(problem) = problem_of(&self.stores, self.rows.len()) {
             return Some(problem);
         }
         let mut states =
-            self.rows.iter().zip(&self.row_stores).filter_map(|(row, counts)| Some((&row.id, wrong(counts, 1)?)));
+            self.rows.iter().zip(&self.row_stores).filter_map(|(row, counts)| Some((&row.id, problem_of(counts, 1)?)));
         let (id, problem) = states.next()?;
         let others = states.count();
         let others = if others > 0 { format!(", and so in {others} other states") } else { String::new() };

@@ -47,6 +47,17 @@ pub trait Stores {
     fn problem(&self, states: usize) -> Option<String>;
 }
 
+/// What is wrong with how the components of values of `states` blend states are stored, by their names.
+#[must_use]
+pub fn problem_of(components: &[StoreCounts; 4], states: usize) -> Option<String> {
+    let names = ["color.r", "color.g", "color.b", "color.a"];
+    let found: Vec<(&str, String)> =
+        names.into_iter().zip(components).filter_map(|(name, counts)| Some((name, counts.problem(states)?))).collect();
+    let (_, first) = found.first()?;
+    let wrong: Vec<&str> = found.iter().map(|(name, _)| *name).collect();
+    Some(format!("{} {} {first}", wrong.join(", "), if found.len() > 1 { "are" } else { "is" }))
+}
+
 #[expect(clippy::cast_precision_loss, reason = "shares and means")]
 fn share(count: u64, of: u64) -> f64 {
     count as f64 / of.max(1) as f64

@@ -7,7 +7,7 @@ use super::rules::{FAULTS, Rules, Store, UnitFault};
 use super::store::{NEAR, StoreCounts, Stores as _};
 use crate::devices::{BlendDeviation, Known};
 use crate::tally::Tally;
-use crate::{Outcome, Verdict, margin, simplicity};
+use crate::{Outcome, Verdict, margin, simplicity, worse};
 use lightmeter_arithmetic::{F16, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_document::run::Tiers;
@@ -75,6 +75,8 @@ pub struct UnitTally {
     pub departure: Option<usize>,
     /// Pixels that fail, and how many of their components do.
     pub failing: Vec<(usize, u64)>,
+    /// The greatest error of pixels that pass, the sum of the finite ones and how many those are.
+    pub passing: (f64, f64, u64),
 }
 
 /// Whether a constant leaves the errors of a state's values to chance: a unit that holds its constant in 8 bits errs by it in
@@ -107,6 +109,7 @@ impl UnitTally {
         let (state, mask) = program.layer(0);
         let tells = tells_stores(state, case);
         let before = self.verdicts.totals.failed;
+        let mut errors = (0.0, 0.0, 0);
         for (k, value) in pixel.into_iter().enumerate() {
             let verdict = expected.judge(target, k, value);
             let excused = match verdict.outcome {
@@ -121,6 +124,10 @@ impl UnitTally {
                 continue;
             }
             self.verdicts.see_error(verdict.error);
+            errors.0 = worse(errors.0, verdict.error);
+            if verdict.error.is_finite() {
+                (errors.1, errors.2) = (errors.1 + verdict.error, errors.2 + 1);
+            }
             self.verdicts.see_margin(verdict.margin, place);
             if target.is_unorm() {
                 count_tier(&mut self.tiers, expected.reference[k], value, verdict.outcome);
@@ -130,6 +137,10 @@ impl UnitTally {
             }
         }
         let failed = self.verdicts.totals.failed - before;
+        if failed == 0 {
+            let (greatest, sum, count) = self.passing;
+            self.passing = (worse(greatest, errors.0), sum + errors.1, count + errors.2);
+        }
         if failed > 0 {
             self.failing.push((place, failed));
             let simple =
