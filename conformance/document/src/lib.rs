@@ -16,6 +16,7 @@ pub mod run;
 pub mod selftest;
 pub mod show;
 pub mod special;
+pub mod stores;
 pub mod sweep;
 
 use schemars::generate::SchemaSettings;

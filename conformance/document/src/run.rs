@@ -1,7 +1,7 @@
 //! The JSON of `run`.
 
 use crate::by_case::{CaseCounts, ComparedBy, FailedAnswer, KnownFailure, RendererUse};
-use crate::sweep::StoreCounts;
+use crate::stores::StoreCounts;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

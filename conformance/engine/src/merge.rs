@@ -9,7 +9,7 @@ use lightmeter_catalogue::select::{CaseRef, catalogue};
 use lightmeter_catalogue::special::Class;
 use lightmeter_document::Number;
 use lightmeter_document::by_case::{CaseCounts, ComparedBy, RendererUse};
-use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Identity, Report, StoreUse, Totals};
+use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, StoreUse, Totals};
 use lightmeter_judge::blend_unit::store::problem_of;
 use lightmeter_judge::cases::joined;
 use lightmeter_judge::tally::{KEPT, KEPT_FAILURES};
@@ -57,11 +57,13 @@ pub fn merge(parts: Vec<(PathBuf, Report)>) -> Result<Report, NoWhole> {
     Ok(whole)
 }
 
-/// What a run was asked and held against, which must be the same for all of its shards.
-fn asked(report: &Report) -> (Option<ComparedBy>, &str, &[Identity], Vec<(&str, &str)>) {
-    let compared_by = report.compared_by.clone().map(|by| ComparedBy { shard: None, ..by });
-    let expected = report.expectations.iter().map(|one| (one.id.as_str(), one.reason.as_str())).collect();
-    (compared_by, &report.profile, &report.adapters, expected)
+/// Whether two runs were asked the same and held against the same, which all shards of a run are.
+fn are_of_one_run(a: &Report, b: &Report) -> bool {
+    let compared_by = |report: &Report| report.compared_by.clone().map(|by| ComparedBy { shard: None, ..by });
+    let expected = |report: &Report| -> Vec<(String, String)> {
+        report.expectations.iter().map(|one| (one.id.clone(), one.reason.clone())).collect()
+    };
+    (compared_by(a), &a.profile, &a.adapters, expected(a)) == (compared_by(b), &b.profile, &b.adapters, expected(b))
 }
 
 /// Checks that the parts are all shards of one run.
@@ -82,7 +84,7 @@ fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
         if let Some(interrupted) = &part.interrupted {
             return no_whole(format!("{b} is not finished: {}", interrupted.message));
         }
-        if asked(first) != asked(part) {
+        if !are_of_one_run(first, part) {
             let expected = "expected the same cases, seed, targets, profile, adapters and known failures";
             return no_whole(format!("{a} and {b} are of different runs: {expected}"));
         }

@@ -4,8 +4,9 @@ mod histogram;
 pub mod presets;
 mod statistics;
 
+pub use crate::stores::StoreCounts;
 pub use histogram::Histogram;
-pub use statistics::{ExactFloat, Statistics, StoreCounts, StoreStatistics, SweepInput, SweepVerdict};
+pub use statistics::{ExactFloat, Statistics, StoreStatistics, SweepInput, SweepVerdict};
 
 use crate::Word;
 use crate::run::Identity;

@@ -373,7 +373,7 @@ impl UnitStanding {
             tiers: is_unorm.then_some(self.tiers),
             store: self.store(subject).filter(|_| is_unorm),
             stores: (is_unorm && options.shard != Shard::WHOLE)
-                .then(|| StoresOfShard { components: self.stores.clone(), states: self.rows.len() }),
+                .then_some(StoresOfShard { components: self.stores, states: self.rows.len() }),
             totals: Totals {
                 cases: totals.cases + self.skipped,
                 skipped: self.skipped,
