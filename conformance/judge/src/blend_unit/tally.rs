@@ -7,7 +7,7 @@ use super::rules::{FAULTS, Rules, Store, UnitFault};
 use super::store::{NEAR, StoreCounts, Stores as _};
 use crate::devices::{BlendDeviation, Known};
 use crate::tally::Tally;
-use crate::{Outcome, Verdict, margin, simplicity, worse};
+use crate::{Outcome, Verdict, margin, simplicity};
 use lightmeter_arithmetic::{F16, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_document::run::Tiers;
@@ -75,7 +75,7 @@ pub struct UnitTally {
     pub departure: Option<usize>,
     /// Pixels that fail, and how many of their components do.
     pub failing: Vec<(usize, u64)>,
-    /// The greatest error of pixels that pass, the sum of the finite ones and how many those are.
+    /// The greatest error of pixels that pass, and the sum and the number of those of pixels that err by no infinity.
     pub passing: (f64, f64, u64),
 }
 
@@ -124,10 +124,12 @@ impl UnitTally {
                 continue;
             }
             self.verdicts.see_error(verdict.error);
-            errors.0 = worse(errors.0, verdict.error);
-            if verdict.error.is_finite() {
-                (errors.1, errors.2) = (errors.1 + verdict.error, errors.2 + 1);
+            // A NaN fails, and so is no error of a pixel that passes.
+            if verdict.error > errors.0 {
+                errors.0 = verdict.error;
             }
+            errors.1 += verdict.error;
+            errors.2 += 1;
             self.verdicts.see_margin(verdict.margin, place);
             if target.is_unorm() {
                 count_tier(&mut self.tiers, expected.reference[k], value, verdict.outcome);
@@ -138,8 +140,13 @@ impl UnitTally {
         }
         let failed = self.verdicts.totals.failed - before;
         if failed == 0 {
-            let (greatest, sum, count) = self.passing;
-            self.passing = (worse(greatest, errors.0), sum + errors.1, count + errors.2);
+            if errors.0 > self.passing.0 {
+                self.passing.0 = errors.0;
+            }
+            // An infinite error, where infinity is legal, says nothing of the mean.
+            if errors.1.is_finite() {
+                (self.passing.1, self.passing.2) = (self.passing.1 + errors.1, self.passing.2 + errors.2);
+            }
         }
         if failed > 0 {
             self.failing.push((place, failed));
