@@ -169,8 +169,8 @@ impl Order {
     }
 }
 
-/// Tells anew how all values of a group are stored, which the values of a shard may be too few for. What only the values of one state
-/// together show, and what is off in all values of a formula, is told by each shard of its own values.
+/// Computes the group verdict on stores from the counts of all shards, since one shard may have too few values. The verdicts on a single
+/// blend state, and on a systematic error in all values of a formula, are not computed again: each shard has its own.
 fn tell_stores(group: &mut Group) {
     if let Some(stores) = group.stores.take()
         && group.problem.as_ref().is_none_or(|problem| problem.starts_with("color."))

@@ -150,7 +150,7 @@ impl<'a> RowRun<'a> {
         Ok(all)
     }
 
-    /// Cases that failed, with what was answered: a sample of at most so many of each stage of each subject.
+    /// A sample of at most `most` failing cases for each stage of each subject, each with a hash of its answer.
     pub(crate) fn failing(&self, most: usize) -> Vec<Vec<Vec<(CaseRef, u32)>>> {
         let of_stage = |(standing, _): &(RowStanding, f64)| {
             let values = |values: &[f32]| digest(values.iter().map(|value| u64::from(value.to_bits())));

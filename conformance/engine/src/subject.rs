@@ -62,7 +62,7 @@ impl Subject {
         Self { identity, known, answers: Answering::Device(device) }
     }
 
-    /// Another renderer. Nothing is known of it.
+    /// Another renderer. The suite knows no deviations of it.
     #[must_use]
     pub fn renderer(identity: Identity, renderer: Box<dyn AskedRenderer>) -> Self {
         Self { identity, known: Known::default(), answers: Answering::Renderer(renderer) }
