@@ -421,7 +421,7 @@ mod tests {
     use lightmeter_arithmetic::profile::WGSL;
     use std::sync::atomic::Ordering;
 
-    /// Stops a bench when `self.0` groups are done.
+    /// Stops a bench when `groups` groups are done.
     struct StopsAfter {
         stop: Stop,
         groups: usize,
