@@ -7,8 +7,9 @@ use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::gate::RendererIdentity;
 use lightmeter_document::run::Identity;
+use lightmeter_engine::rows::Rows;
 use lightmeter_judge::blend_unit::pixel::Units;
-use lightmeter_judge::cases::Unanswered;
+use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
 
@@ -64,6 +65,20 @@ pub(super) fn given(line: Line<'_>, asks: Asks<'_>) -> Given {
         (Line::Image(..), _) => unjudged("a formula is answered by `value`".into()),
         (Line::Hello(_), _) => unjudged("a hello is no answer".into()),
     }
+}
+
+/// What was given to each row, as the engine takes it.
+pub(super) fn answers(rows: &Rows<'_>, given: impl IntoIterator<Item = Given>) -> Answers {
+    let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
+    let each = answers.words.chunks_exact_mut(rows.outputs).zip(given).enumerate();
+    for (place, (words, given)) in each {
+        match given {
+            Given::Values(values) => words.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits()),
+            Given::Nothing(why) => drop(answers.unanswered.insert(place, why)),
+            Given::Image(_) => unreachable!("only a scene is answered by an image"),
+        }
+    }
+    answers
 }
 
 /// The pixel that was given, in the target's units.

@@ -2,7 +2,7 @@
 
 use super::answer::{Hello, Line, clipped};
 use super::error::ProcessError;
-use super::given::{Asks, Declared, Given, given};
+use super::given::{Asks, Declared, answers, given};
 use super::picture;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
@@ -83,24 +83,17 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
     }
 
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
-        let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
-        let each = rows
-            .of
-            .iter()
-            .zip(rows.inputs.chunks_exact(rows.stride()))
-            .zip(answers.words.chunks_exact_mut(rows.outputs));
-        for (place, ((&of, inputs), words)) in each.enumerate() {
+        let renderer = self.renderer();
+        let each = rows.of.iter().zip(rows.inputs.chunks_exact(rows.stride()));
+        let given = each.map(|(&of, inputs)| {
             let spec = &rows.members[of].spec;
-            let line = match self.renderer().evaluate(spec, inputs) {
+            let line = match renderer.evaluate(spec, inputs) {
                 Ok(values) => Line::Value(Cow::Borrowed(""), values),
                 Err(reason) => Line::Skip(Cow::Borrowed(""), Cow::Owned(reason)),
             };
-            match given(line, Asks::Outputs(spec)) {
-                Given::Values(values) => words.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits()),
-                Given::Nothing(why) => drop(answers.unanswered.insert(place, why)),
-                Given::Image(_) => unreachable!("only a scene is answered by an image"),
-            }
-        }
+            given(line, Asks::Outputs(spec))
+        });
+        let answers = answers(rows, given);
         advanced(rows.of.len() as u64);
         Ok(answers)
     }

@@ -10,7 +10,7 @@ mod session;
 
 use super::answer::Hello;
 use super::error::ProcessError;
-use super::given::{Asks, Declared, Given, pixel};
+use super::given::{Asks, Declared, Given, answers, pixel};
 use super::{frame, pack, picture};
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::event::Stop;
@@ -134,7 +134,6 @@ impl AskedRenderer for ProcessRenderer {
     }
 
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
-        let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
         let questions = rows.of.iter().zip(rows.cases).zip(rows.inputs.chunks_exact(rows.stride())).map(
             |((&of, &case), inputs)| {
                 let spec = &rows.members[of].spec;
@@ -143,17 +142,7 @@ impl AskedRenderer for ProcessRenderer {
             },
         );
         let given = self.session().all(&questions.collect::<Vec<_>>(), advanced);
-        for (place, given) in given.into_iter().enumerate() {
-            match given {
-                Given::Values(values) => {
-                    let row = &mut answers.words[place * rows.outputs..(place + 1) * rows.outputs];
-                    row.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits());
-                }
-                Given::Nothing(why) => drop(answers.unanswered.insert(place, why)),
-                Given::Image(_) => unreachable!("only a scene is answered by an image"),
-            }
-        }
-        Ok(answers)
+        Ok(answers(rows, given))
     }
 
     fn targets(&self) -> Vec<TargetFormat> {
