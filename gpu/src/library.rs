@@ -78,6 +78,25 @@ impl Shaders {
         Self::validated(files)
     }
 
+    /// The names of the files with their texts.
+    pub fn texts(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.files.iter().map(|(name, text)| (name.as_str(), text.as_str()))
+    }
+
+    /// The same files, of which one has another text.
+    ///
+    /// # Errors
+    /// Where there is no file of that name, or one of the files is no longer valid.
+    pub fn with(&self, name: &str, text: String) -> Result<Self, GpuError> {
+        let mut files = self.files.clone();
+        let Some(file) = files.get_mut(name) else {
+            let message = "no such shader file".into();
+            return Err(GpuError::Unreadable { path: name.into(), message });
+        };
+        *file = text;
+        Self::validated(files)
+    }
+
     fn validated(files: BTreeMap<String, String>) -> Result<Self, GpuError> {
         let shaders = Self { files };
         // A file is reported before those that require it.

@@ -4,6 +4,7 @@ pub mod certificate;
 pub mod exact;
 pub mod frames;
 pub mod harness;
+pub mod mutants;
 pub mod running;
 
 use lightmeter::arithmetic::Accept;
@@ -41,14 +42,14 @@ pub fn groups(family: &str) -> Vec<Vec<Member>> {
 
 /// Rows of inputs of a formula, drawn by proptest from the domains of its description.
 pub fn rows(spec: &Spec) -> BoxedStrategy<Vec<f32>> {
-    let fit = spec.fit;
+    let described = spec.clone();
     let inputs: Vec<BoxedStrategy<Vec<f32>>> =
         spec.inputs.iter().map(|input| numbers(input.domain, input.shape.components())).collect();
     inputs
         .prop_map(move |parts| {
             let mut row = parts.concat();
-            if let Some(fit) = fit {
-                fit(&mut row);
+            if let Some(fit) = described.fit {
+                fit(&described, &mut row);
             }
             row
         })

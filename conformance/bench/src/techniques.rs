@@ -6,7 +6,7 @@ use super::contest::{Arithmetic, Contender, On, Sample, contest};
 use super::ended::BenchError;
 use super::formulas::on_device;
 use lightmeter_catalogue::cases::formula::formula;
-use lightmeter_catalogue::cases::{Domain, Formula, Hard, Input, Output, ValueShape};
+use lightmeter_catalogue::cases::{Domain, Formula, Hard, Input, Output, Spec, ValueShape};
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::bench::{BenchGroup, GroupKind};
 use lightmeter_gpu::Rung;
@@ -45,7 +45,7 @@ const RAMP_B: Input = Input::scalar("b", "1", Domain::Uniform(0.5, 1.0));
 
 /// A point within some 45 degrees about the view's axis, 1 to 10 units away, whose normal faces the eye and the light: p, the
 /// normal and the light's travel are a row's first nine numbers.
-fn in_view(row: &mut [f32]) {
+fn in_view(_: &Spec, row: &mut [f32]) {
     let z = 1.0 + 0.9 * row[2].abs();
     row[0] *= 0.04 * z;
     row[1] *= 0.04 * z;
@@ -61,12 +61,12 @@ fn in_view(row: &mut [f32]) {
 }
 
 /// The same without a light.
-fn before_the_eye(row: &mut [f32]) {
+fn before_the_eye(_: &Spec, row: &mut [f32]) {
     row[2] = -(1.0 + 0.9 * row[2].abs());
 }
 
 /// Two unit vectors some 20 degrees apart at most: the second is drawn near the first.
-fn near_each_other(row: &mut [f32]) {
+fn near_each_other(_: &Spec, row: &mut [f32]) {
     let near: [f32; 3] = std::array::from_fn(|k| row[k] + 0.35 * row[3 + k]);
     let length = near.iter().map(|x| x * x).sum::<f32>().sqrt();
     for (k, x) in near.into_iter().enumerate() {

@@ -235,3 +235,36 @@ impl<'a> Bench<'a> {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_arithmetic::profile::PROFILES;
+
+    /// The cases of each formula that a gate asks without any option.
+    const CASES_OF_A_GATE: u64 = 256;
+    /// Every family. The many blend states differ in their factors alone, and `selftest` tries all of them.
+    const FORMULAS: [&str; 8] =
+        ["interpolation", "color", "vector", "lighting", "attenuation", "fog", "depth", "blend/mode-*"];
+
+    #[test]
+    fn every_mistake_shows_in_the_default_cases_of_a_gate() {
+        for seed in 1..=5 {
+            let options = SelftestOptions {
+                filter: Filter::new(&FORMULAS.map(String::from)).expect("the globs are valid"),
+                cases: CASES_OF_A_GATE,
+                seed,
+                draws: 0,
+                profile: PROFILES[0],
+                stop: Stop::default(),
+            };
+            let record = selftest(&options);
+            assert!(record.kills.len() > 1000, "{}", record.kills.len());
+            // What those cases do not show is looked for in all cases of a run.
+            let is_late = |kill: &&Kill| kill.finding == Finding::Survived || kill.cases as u64 >= CASES_OF_A_RUN;
+            let late: Vec<String> =
+                record.kills.iter().filter(is_late).map(|kill| format!("{} in {}", kill.fault, kill.formula)).collect();
+            assert!(late.is_empty(), "seed {seed}: {}", late.join(", "));
+        }
+    }
+}

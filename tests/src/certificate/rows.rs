@@ -74,7 +74,7 @@ fn edges(spec: &Spec, rows: &mut Vec<Row>) {
             inputs(&loose, EDGE_SEED, case, &mut row);
             row[at] = end;
             if let Some(fit) = spec.fit {
-                fit(&mut row);
+                fit(spec, &mut row);
             }
             push(row, format!("{end:e}"));
         }

@@ -1,8 +1,9 @@
 //! Cases of attenuation and spotlights. Formulas: `lightmeter_reference::attenuation`.
 
 use super::Visitor;
+use super::fit;
 use super::formula::formula;
-use super::spec::{Domain, Hard, Input, Output, ValueShape};
+use super::spec::{Domain, Hard, Input, Output, Spec, ValueShape};
 use lightmeter_reference::attenuation;
 
 const ATTEN: Output = Output::new("atten", ValueShape::Scalar, "1");
@@ -53,6 +54,7 @@ formula!(
     Point: "attenuation/point" by "attenuation_point",
     "atten = 1 / (kc + kl·d + kq·d²), d = |light − p|", "004",
     [KC, KL, KQ, Input::position("light"), Input::position("p")] -> [ATTEN],
+    fit fit::light,
     |kc, kl, kq, light, p; out| { out.scalar(attenuation::point(kc, kl, kq, light, p)); },
 );
 formula!(
@@ -75,12 +77,17 @@ formula!(
     |l, axis, cutoff_cosine, exponent; out| { out.scalar(attenuation::spot_exponent(l, axis, cutoff_cosine, exponent)); },
     hard [
         Hard::new("no-exponent", "an evenly lit cone", &[("l", &[0.0, 0.6, -0.8]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[0.0])]),
+        Hard::new("slight-exponent", "an exponent of 0.0005 is not 0", SLIGHT),
         Hard::new("behind", "0 behind the light with the widest cone", &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[2.0])]),
     ],
 );
 
+/// A direction 84° from the axis, 0.1^0.0005 as bright.
+const SLIGHT: &[(&str, &[f32])] =
+    &[("l", &[0.994_987_44, 0.0, -0.1]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[5e-4])];
+
 /// Half of all random directions lie behind the light: turn those round.
-fn toward_the_cone(row: &mut [f32]) {
+fn toward_the_cone(_: &Spec, row: &mut [f32]) {
     let behind = (0..3).map(|k| row[k] * row[3 + k]).sum::<f32>() > 0.0;
     if behind {
         row[..3].iter_mut().for_each(|x| *x = -*x);
@@ -119,6 +126,7 @@ formula!(
     PointScaled: "attenuation/point-scaled" by "attenuation_point_scaled",
     "atten of attenuation/polynomial-bounded at d = |(light − p)·2ᵏ|·2⁻ᵏ", "004, at any distance",
     [KC, KL, KQ, Input::position("light"), Input::position("p")] -> [ATTEN],
+    fit fit::light,
     stable 40.0 Own "a distance of 16 roundings, which its square doubles",
     |kc, kl, kq, light, p; out| { out.scalar(attenuation::point_scaled(kc, kl, kq, light, p)); },
     hard [
@@ -137,6 +145,7 @@ formula!(
     stable 32.0 Unit "as lighting/cosine-power-by-chord",
     |l, axis, cutoff_cosine, exponent; out| { out.scalar(attenuation::spot_exponent_by_chord(l, axis, cutoff_cosine, exponent)); },
     hard [
+        Hard::new("slight-exponent-by-chord", "an exponent of 0.0005 is not 0", SLIGHT),
         Hard::new("beam-1e4", "half as bright at 0.67°", &[("l", &[-0.011_773_7, 0.0, -0.999_930_7]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e4])])
             .naive("attenuation/spot-exponent", "l·axis near 1 has no digits for the angle, which l + axis keeps", 1e3),
         Hard::new("beam-1e6", "half as bright at 0.07°", &[("l", &[-0.001_177_4, 0.0, -0.999_999_3]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e6])])

@@ -47,7 +47,7 @@ impl Formula for OverAnother {
 }
 
 /// Of four cases one has equal depths, one the next above and one the next below: depths drawn apart never meet.
-fn bring_together(row: &mut [f32]) {
+fn bring_together(_: &Spec, row: &mut [f32]) {
     let new = row[0];
     row[1] = match new.to_bits() & 3 {
         0 => new,

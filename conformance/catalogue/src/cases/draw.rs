@@ -6,7 +6,7 @@ use super::spec::{Domain, Hard, Input, Kind, Spec, ValueShape};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State};
 
 /// Raised whenever the same seed would give other inputs.
-pub const GENERATOR_VERSION: u64 = 2;
+pub const GENERATOR_VERSION: u64 = 3;
 
 /// The inputs of random case `k` of a formula.
 pub fn inputs(spec: &Spec, seed: u64, k: u64, row: &mut Vec<f32>) {
@@ -20,7 +20,7 @@ pub fn inputs(spec: &Spec, seed: u64, k: u64, row: &mut Vec<f32>) {
         draw(input, &mut numbers, row);
     }
     if let Some(fit) = spec.fit {
-        fit(&mut row[start..]);
+        fit(spec, &mut row[start..]);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Visitor;
 use super::formula::formula;
 use super::rows::Writer;
-use super::spec::{Domain, Hard, Input, Output, ValueShape};
+use super::spec::{Domain, Hard, Input, Output, Spec, ValueShape};
 use lightmeter_reference::fog::{self, Distance};
 use lightmeter_reference::{Real, Vec3};
 
@@ -24,7 +24,7 @@ fn fogged<R: Real>(out: &mut Writer<'_, R>, f: R, fog: Vec3<R>, shaded: Vec3<R>)
 }
 
 /// dmin and dmax in order, but for one case in sixteen, which turns the fog round.
-fn in_order(row: &mut [f32]) {
+fn in_order(_: &Spec, row: &mut [f32]) {
     let turned = row[0].to_bits() & 15 == 0;
     if (row[3] > row[4]) != turned {
         row.swap(3, 4);

@@ -255,7 +255,7 @@ macro_rules! formula {
         impl $crate::cases::Formula for $name {
             fn spec(&self) -> $crate::cases::Spec {
                 const NORMALISED: &[bool] = &[$($normalised)?];
-                const FIT: &[fn(&mut [f32])] = &[$($fit)?];
+                const FIT: &[fn(&$crate::cases::Spec, &mut [f32])] = &[$($fit)?];
                 const KIND: &[$crate::cases::Kind] = &[$($kind)?];
                 const OUTPUTS: &[$crate::cases::Output] = &[$($output),*];
                 const HARD: &[$crate::cases::Hard] = &[$($($hard),*)?];

@@ -3,7 +3,7 @@
 
 use super::Visitor;
 use super::formula::formula;
-use super::spec::{Domain, Hard, Input, Output, ValueShape};
+use super::spec::{Domain, Hard, Input, Output, Spec, ValueShape};
 use lightmeter_reference::Vector;
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_scene::raster::Provoking;
@@ -210,7 +210,7 @@ formula!(
 );
 
 /// The point between the first vertex's line and the nearer of the other two, where both edges have a scan line.
-fn within_the_scanlines(row: &mut [f32]) {
+fn within_the_scanlines(_: &Spec, row: &mut [f32]) {
     let (y1, far) = (row[1], if (row[3] - row[1]).abs() < (row[5] - row[1]).abs() { row[3] } else { row[5] });
     if (row[3] < y1) != (row[5] < y1) {
         // The other two on one side of the first.
@@ -222,7 +222,7 @@ fn within_the_scanlines(row: &mut [f32]) {
 }
 
 /// The point on the line between a vertex and the middle of another edge, moved to the half-pixel grid.
-fn near_the_triangle(row: &mut [f32]) {
+fn near_the_triangle(_: &Spec, row: &mut [f32]) {
     for k in 0..2 {
         let middle = (row[k] + row[2 + k]) * 0.5;
         let t = row[6 + k] / 64.0;

@@ -2,8 +2,9 @@
 
 use super::Visitor;
 use super::attenuation::{CUTOFF, EXPONENT, KC, KL, KQ};
+use super::fit;
 use super::formula::formula;
-use super::spec::{Domain, Hard, Input, Output, ValueShape};
+use super::spec::{Domain, Hard, Input, Output, Spec, ValueShape};
 use lightmeter_reference::Vec3;
 use lightmeter_reference::lighting::{self, Falloff, Light, Material, Specular, SpecularGate, Vertex};
 
@@ -99,7 +100,7 @@ formula!(
 );
 
 /// Half of all pairs of directions look away from each other, where the highlight is 0: keep a quarter of those.
-fn facing_vectors(row: &mut [f32]) {
+fn facing_vectors(_: &Spec, row: &mut [f32]) {
     let away = (0..3).map(|k| row[6 + k] * row[9 + k]).sum::<f32>() < 0.0;
     if away && row[6].to_bits() & 3 != 0 {
         row[6..9].iter_mut().for_each(|x| *x = -*x);
@@ -113,6 +114,7 @@ macro_rules! directional {
             /// A directional light.
             $name: $id by $function, $text, $source,
             [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, DIRECTION] -> [RGBA],
+            fit fit::surface,
             $(stable $bound $size $because,)?
             |la, ld, ls, ma, md, ms, shininess, p, normal, direction; out| {
                 let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
@@ -158,6 +160,7 @@ formula!(
     BlinnUnnormalised: "lighting/blinn-unnormalised" by "lighting_blinn_unnormalised",
     "CF as lighting/blinn with h = v + l", "000 §6.4; ruling 3, a dialect",
     [LA, LD, LS, MA, MD, MS, Input::scalar("shininess", "1", Domain::Uniform(1.0, 16.0)), P, NORMAL, DIRECTION] -> [RGBA],
+    fit fit::surface,
     |la, ld, ls, ma, md, ms, shininess, p, normal, direction; out| {
         let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
         let dialect = (Specular::BlinnUnnormalised, SpecularGate::Documents);
@@ -169,6 +172,7 @@ formula!(
     PhongUnitLight: "lighting/phong-unit-light" by "lighting_phong_unit_light",
     "CF as lighting/phong, the light's direction not normalised", "000 §6.4",
     [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, Input::direction("direction")] -> [RGBA],
+    fit fit::surface,
     |la, ld, ls, ma, md, ms, shininess, p, normal, direction; out| {
         let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
         out.vector(lighting::unit_light(&light, &material, [p, normal, direction]));
@@ -179,6 +183,7 @@ formula!(
     PhongNonlocal: "lighting/phong-nonlocal" by "lighting_phong_nonlocal",
     "CF as lighting/phong-unit-light with v = (0, 0, 1)", "000 §6.4",
     [LA, LD, LS, MA, MD, MS, SHININESS, NORMAL, Input::direction("direction")] -> [RGBA],
+    fit fit::surface,
     |la, ld, ls, ma, md, ms, shininess, normal, direction; out| {
         let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
         out.vector(lighting::nonlocal(&light, &material, normal, direction));
@@ -191,6 +196,7 @@ macro_rules! point {
             /// A point light.
             $name: $id by $function, $text, "000 §6.4, 004; rulings 2 and 11", normalised true,
             [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, LIGHT_POSITION, KC, KL, KQ] -> [RGBA],
+            fit fit::surface,
             |la, ld, ls, ma, md, ms, shininess, p, normal, position, kc, kl, kq; out| {
                 let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
                 let (dialect, falloff) = (($model, SpecularGate::Documents), Falloff { kc, kl, kq });
@@ -222,6 +228,7 @@ formula!(
         LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, LIGHT_POSITION, KC, KL, KQ,
         Input::scalar("alpha", "color", Domain::Unit),
     ] -> [RGBA],
+    fit fit::surface,
     |la, ld, ls, ma, md, ms, shininess, p, normal, position, kc, kl, kq, alpha; out| {
         let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
         let falloff = Falloff { kc, kl, kq };
@@ -235,24 +242,13 @@ formula!(
     [
         LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, LIGHT_POSITION, Input::vector("axis"), KC, KL, KQ, CUTOFF, EXPONENT,
     ] -> [RGBA],
-    fit aimed,
+    fit fit::surface,
     |la, ld, ls, ma, md, ms, shininess, p, normal, position, axis, kc, kl, kq, cutoff_cosine, exponent; out| {
         let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
         let (vectors, falloff) = ([p, normal, position, axis], Falloff { kc, kl, kq });
         out.vector(lighting::spot(&light, &material, vectors, &falloff, [cutoff_cosine, exponent]));
     },
 );
-
-/// Three spotlights of four are aimed near the surface point, or most cases would lie outside their cones.
-fn aimed(row: &mut [f32]) {
-    if row[28].to_bits() & 3 != 0 {
-        for k in 0..3 {
-            let toward_surface = row[19 + k] - row[25 + k];
-            row[28 + k] = 0.25 * row[28 + k] + 0.25 * toward_surface;
-        }
-        row[34] *= 0.5;
-    }
-}
 
 formula!(
     /// A scalar material.
@@ -263,6 +259,7 @@ formula!(
         Input::scalar("ka", "1", Domain::Unit), Input::scalar("kd", "1", Domain::Unit), Input::scalar("ks", "1", Domain::Unit),
         SHININESS, P, NORMAL, LIGHT_POSITION,
     ] -> [RGBA],
+    fit fit::surface,
     |ambient_color, light_color, ka, kd, ks, shininess, p, normal, position; out| { out.vector(lighting::scalar_material([ambient_color, light_color], [ka, kd, ks, shininess], [p, normal, position])); },
 );
 formula!(
@@ -273,6 +270,7 @@ formula!(
         Input::rgba("ambient"), Input::rgba("color0"), Input::rgba("color1"), Input::rgba("diffuse"),
         Input::rgba("specular"), SHININESS, P, NORMAL, DIRECTION, LIGHT_POSITION,
     ] -> [RGBA],
+    fit fit::surface,
     |ambient, color0, color1, diffuse, specular, shininess, p, normal, direction, position; out| {
         let (colors, material, vectors) = ([color0, color1], [diffuse, specular], [p, normal, direction, position]);
         out.vector(lighting::two_lights(ambient, colors, material, shininess, vectors));
@@ -320,6 +318,7 @@ macro_rules! along_an_edge {
                 Input::position("pa"), Input::vector("na"), Input::position("pb"), Input::vector("nb"), T,
                 LIGHT_POSITION, KD, KS, SHININESS,
             ] -> [INTENSITY],
+            fit fit::edge,
             $(stable $bound $size $because,)?
             |pa, na, pb, nb, t, position, kd, ks, shininess; out| {
                 let (a, b) = (Vertex { p: pa, n: na }, Vertex { p: pb, n: nb });
@@ -376,6 +375,7 @@ formula!(
     Flat: "lighting/flat" by "lighting_flat",
     "I of the face's own normal ⟨(b − a) × (c − a)⟩ at its first vertex", "004", normalised true,
     [Input::position("a"), Input::position("b"), Input::position("c"), LIGHT_POSITION, KD, KS, SHININESS] -> [INTENSITY],
+    fit fit::face,
     |a, b, c, position, kd, ks, shininess; out| { out.scalar(lighting::flat([a, b, c], position, [kd, ks, shininess])); },
     hard [
         Hard::new("no-area", "0, not NaN, for three points on a line", &[("a", &[0.0, 0.0, -1.0]), ("b", &[1.0, 1.0, -1.0]), ("c", &[2.0, 2.0, -1.0])]),
@@ -432,7 +432,7 @@ formula!(
 );
 
 /// Half of all pairs of directions look away from each other, where the power is 0: keep a quarter of those.
-fn toward_each_other(row: &mut [f32]) {
+fn toward_each_other(_: &Spec, row: &mut [f32]) {
     let away = (0..3).map(|k| row[k] * row[3 + k]).sum::<f32>() < 0.0;
     if away && row[0].to_bits() & 3 != 0 {
         row[..3].iter_mut().for_each(|x| *x = -*x);
@@ -440,7 +440,7 @@ fn toward_each_other(row: &mut [f32]) {
 }
 
 /// A negative base has no power: turn every such pair round, and keep off the right angle.
-fn toward_each_other_only(row: &mut [f32]) {
+fn toward_each_other_only(_: &Spec, row: &mut [f32]) {
     let cosine = (0..3).map(|k| row[k] * row[3 + k]).sum::<f32>();
     if cosine < 0.0 {
         row[..3].iter_mut().for_each(|x| *x = -*x);
@@ -455,6 +455,7 @@ formula!(
     BlinnStable: "lighting/blinn-stable" by "lighting_blinn_stable",
     "CF as lighting/blinn, vectors of any length, the highlight 0 where l·n ≤ 0 and its power by the chord", "000 §6.4, 004; ruling 9, `opengl`",
     [LA, LD, LS, MA, MD, MS, SHININESS, P, NORMAL, DIRECTION] -> [RGBA],
+    fit fit::surface,
     stable 2048.0 Unit "up to a shininess of 64 pow, whose log2 errs by 2⁻²¹, 5 roundings for each unit of it, on a cosine of 40; by the chord 16 roundings and more with √shininess",
     |la, ld, ls, ma, md, ms, shininess, p, normal, direction; out| {
         let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));

@@ -12,6 +12,7 @@ pub mod lighting;
 pub mod vector;
 
 mod draw;
+mod fit;
 pub mod formula;
 mod program;
 mod rasteriser;

@@ -291,7 +291,7 @@ pub struct Spec {
     /// What comes out.
     pub outputs: &'static [Output],
     /// Makes independently drawn inputs fit each other.
-    pub fit: Option<fn(&mut [f32])>,
+    pub fit: Option<fn(&Spec, &mut [f32])>,
     /// The named hard cases.
     pub hard: &'static [Hard],
     /// What it claims, where it is a stable form.

@@ -41,6 +41,7 @@ pub(crate) enum Twist {
     SpecularNotAttenuated,
     DistanceSquaredTwice,
     AttenuationNotInverted,
+    AttenuationAtMostOne,
     NotAttenuated,
     NoCone,
     NoCutoff,
@@ -140,6 +141,8 @@ pub(super) enum Attenuation {
     Right,
     DistanceSquared,
     NotInverted,
+    /// Limited to 1.
+    AtMostOne,
     None,
 }
 
@@ -342,6 +345,7 @@ impl Model {
             Twist::SpecularNotAttenuated if attenuated => self.attenuated[2] = false,
             Twist::DistanceSquaredTwice if attenuated => self.attenuation = Attenuation::DistanceSquared,
             Twist::AttenuationNotInverted if attenuated => self.attenuation = Attenuation::NotInverted,
+            Twist::AttenuationAtMostOne if attenuated => self.attenuation = Attenuation::AtMostOne,
             Twist::NotAttenuated if attenuated => self.attenuation = Attenuation::None,
             Twist::NoCone if self.cone == Cone::Right => self.cone = Cone::Ignored,
             Twist::NoCutoff if self.cone == Cone::Right => self.cone = Cone::NoCutoff,

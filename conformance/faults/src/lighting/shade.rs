@@ -140,6 +140,7 @@ impl Model {
                 match self.attenuation {
                     Attenuation::DistanceSquared => polynomial(kc, kl, kq, d * d),
                     Attenuation::NotInverted => R::quadratic([kc, kl, kq], d),
+                    Attenuation::AtMostOne => polynomial(kc, kl, kq, d).min(one),
                     _ => polynomial(kc, kl, kq, d),
                 }
             }

@@ -55,8 +55,12 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[lit(Lit::AttenuationNotInverted)], &[Body(Wrong::NotInverted)], &[After(Out::Reciprocal("atten"))]],
     )
     .only(|spec| spec.id != "attenuation/constant"),
-    fault("attenuation-at-most-one", "attenuation is limited to 1", &[&[After(Out::AtMostOne("atten"))]])
-        .only(|spec| spec.id != "attenuation/constant"),
+    fault(
+        "attenuation-at-most-one",
+        "attenuation is limited to 1",
+        &[&[lit(Lit::AttenuationAtMostOne)], &[After(Out::AtMostOne("atten"))]],
+    )
+    .only(|spec| spec.id != "attenuation/constant"),
     fault(
         "linear-divisor-floored",
         "the distance that light is divided by is held above 0.01",

@@ -1,6 +1,7 @@
 //! Where the primitives of raster cases lie: raw numbers drawn between 0 and 1, or on a grid, become vertices about the
 //! case's pixel.
 
+use crate::cases::Spec;
 use crate::cases::draw::narrow;
 use lightmeter_scene::raster::TARGET_SIZE;
 
@@ -20,14 +21,14 @@ fn center(row: &[f32]) -> [f64; 2] {
     [f64::from(row[row.len() - 2]) + 0.5, f64::from(row[row.len() - 1]) + 0.5]
 }
 
-pub(in crate::cases) fn triangle_around_the_pixel(row: &mut [f32]) {
+pub(in crate::cases) fn triangle_around_the_pixel(_: &Spec, row: &mut [f32]) {
     for k in 0..3 {
         row[4 * k + 2] = 0.05 + 0.9 * row[4 * k + 2];
     }
     triangle_around(row);
 }
 
-pub(super) fn triangle_across_the_volume(row: &mut [f32]) {
+pub(super) fn triangle_across_the_volume(_: &Spec, row: &mut [f32]) {
     let behind = row[12].to_bits() & 3 == 0;
     for k in 0..3 {
         row[4 * k + 2] = 2.0 * row[4 * k + 2] - 0.5;
@@ -49,7 +50,7 @@ fn triangle_around(row: &mut [f32]) {
     }
 }
 
-pub(super) fn line_through_the_pixel(row: &mut [f32]) {
+pub(super) fn line_through_the_pixel(_: &Spec, row: &mut [f32]) {
     let (pixel, angle) = (center(row), std::f64::consts::TAU * f64::from(row[0]));
     for (k, turn) in [(0, 0.0), (1, std::f64::consts::PI)] {
         row[4 * k + 2] = 0.05 + 0.9 * row[4 * k + 2];
@@ -58,7 +59,7 @@ pub(super) fn line_through_the_pixel(row: &mut [f32]) {
 }
 
 /// Four corners in order about the middle of the grid, moved so that they surround the pixel.
-pub(super) fn quad_on_the_grid(row: &mut [f32]) {
+pub(super) fn quad_on_the_grid(_: &Spec, row: &mut [f32]) {
     let [px, py] = [row[8], row[9]];
     for (k, (right, down)) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].into_iter().enumerate() {
         // Corners 0 to 8 pixels from the pixel, so that edges often pass through its centre.
@@ -69,7 +70,7 @@ pub(super) fn quad_on_the_grid(row: &mut [f32]) {
 }
 
 /// Four corners about the pixel, two of them nearly opposite, so that the shared edge passes close by.
-pub(super) fn quad_around_the_pixel(row: &mut [f32]) {
+pub(super) fn quad_around_the_pixel(_: &Spec, row: &mut [f32]) {
     let pixel = center(row);
     let base = std::f64::consts::TAU * f64::from(row[0]) / 256.0;
     for (k, turn) in (0..4).zip([0.0, 0.25, 0.5, 0.75]) {

@@ -1,0 +1,122 @@
+//! Judges mutants of the shaders, and prints what became of them. `--update` writes those that survive to `tests/mutants.txt`.
+
+#![expect(clippy::print_stdout, reason = "the table is what it is for")]
+
+use lightmeter::adapters;
+use lightmeter_tests::mutants::{Campaign, Finding, Mutant, SURVIVORS, Survivors, mutants};
+
+use std::collections::BTreeMap;
+use std::process::ExitCode;
+use std::time::Instant;
+
+const HELP: &str = "usage: ./x mutants [--only FILE] [--every N] [--update]
+
+Changes one constant, operator or argument of the built-in shaders at a time, and tells whether a default run fails.
+
+  --only FILE   mutants of this file alone, such as fog.wgsl or effects/spot.wgsl
+  --every N     only each N-th mutant
+  --update      write the survivors to tests/mutants.txt
+
+Exit code: 0, or 1 where a mutant survives that tests/mutants.txt does not name, or 2 where an argument is wrong.";
+
+/// What is asked for.
+struct Asked {
+    only: Option<String>,
+    every: usize,
+    update: bool,
+}
+
+fn asked() -> Result<Asked, String> {
+    let mut asked = Asked { only: None, every: 1, update: false };
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        let mut value = || arguments.next().ok_or_else(|| format!("{argument} takes a value"));
+        match argument.as_str() {
+            "--only" => asked.only = Some(value()?),
+            "--every" => {
+                let text = value()?;
+                let number = text.parse().ok().filter(|&every: &usize| every > 0);
+                asked.every = number.ok_or_else(|| format!("--every `{text}`: expected a whole number above 0"))?;
+            }
+            "--update" => asked.update = true,
+            _ => return Err(format!("unexpected argument `{argument}`")),
+        }
+    }
+    Ok(asked)
+}
+
+fn main() -> ExitCode {
+    if std::env::args().any(|argument| argument == "--help" || argument == "-h") {
+        println!("{HELP}");
+        return ExitCode::SUCCESS;
+    }
+    let asked = match asked() {
+        Ok(asked) => asked,
+        Err(message) => {
+            eprintln!("{message}\n\n{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    match judge_all(&asked) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether every survivor is known.
+fn judge_all(asked: &Asked) -> Result<bool, String> {
+    let subject = adapters::open(&[]).map_err(|error| error.to_string())?.swap_remove(0);
+    let mut campaign = Campaign::new(subject).map_err(|error| error.to_string())?;
+    let files: Vec<(String, String)> =
+        campaign.shaders().texts().map(|(file, text)| (file.to_owned(), text.to_owned())).collect();
+    let of_file = |(file, text): &(String, String)| mutants(file, text);
+    let is_asked = |mutant: &Mutant| asked.only.as_ref().is_none_or(|only| *only == mutant.file);
+    let all: Vec<Mutant> = files.iter().flat_map(of_file).filter(is_asked).step_by(asked.every).collect();
+    if all.is_empty() {
+        let names: Vec<&str> = files.iter().map(|(file, _)| file.as_str()).collect();
+        return Err(format!("no mutants of that file; the files are {}", names.join(", ")));
+    }
+    let mut known = Survivors::read().map_err(|error| format!("{SURVIVORS}: {error}"))?;
+    let mut counts: BTreeMap<&str, BTreeMap<Finding, usize>> = BTreeMap::new();
+    let (mut is_all_known, clock) = (true, Instant::now());
+    for (place, mutant) in all.iter().enumerate() {
+        let began = Instant::now();
+        let finding = campaign.judge(mutant).map_err(|error| format!("{}: {error}", mutant.name()))?;
+        *counts.entry(&mutant.file).or_default().entry(finding).or_default() += 1;
+        let is_known = known.allows(mutant, finding);
+        if !matches!(finding, Finding::Killed | Finding::Invalid) {
+            let mark = if is_known { "" } else { " (new)" };
+            println!("{finding:<9}{}{mark}", mutant.name());
+        }
+        is_all_known &= is_known;
+        known.note(mutant, finding);
+        if (place + 1) % 50 == 0 {
+            let seconds = clock.elapsed().as_secs();
+            eprintln!("{} of {} mutants in {seconds} s, the last in {:.1?}", place + 1, all.len(), began.elapsed());
+        }
+    }
+    print_table(&counts);
+    println!("{} mutants in {} s", all.len(), clock.elapsed().as_secs());
+    if asked.update {
+        known.write().map_err(|error| format!("{SURVIVORS}: {error}"))?;
+        return Ok(true);
+    }
+    Ok(is_all_known)
+}
+
+fn print_table(counts: &BTreeMap<&str, BTreeMap<Finding, usize>>) {
+    let heads: String = Finding::ALL.iter().map(|finding| format!("{finding:>10}")).collect();
+    println!("\n{:<36}{heads}", "file");
+    let mut sums = [0; Finding::ALL.len()];
+    for (file, of_file) in counts {
+        let row: Vec<usize> =
+            Finding::ALL.iter().map(|finding| of_file.get(finding).copied().unwrap_or_default()).collect();
+        sums.iter_mut().zip(&row).for_each(|(sum, count)| *sum += count);
+        println!("{file:<36}{}", row.iter().map(|count| format!("{count:>10}")).collect::<String>());
+    }
+    println!("{:<36}{}", "all", sums.iter().map(|count| format!("{count:>10}")).collect::<String>());
+}

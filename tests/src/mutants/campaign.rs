@@ -1,0 +1,317 @@
+//! Mutants judged on an adapter.
+
+use super::generate::Mutant;
+use super::tokens::{TokenKind, tokens};
+use lightmeter::arithmetic::Accept;
+use lightmeter::cases::{Kind, Spec};
+use lightmeter::device::{Code, DeviceError, Picture};
+use lightmeter::document::event::{Event, Observer, Stop};
+use lightmeter::document::run::Group;
+use lightmeter::evaluate::Evaluator;
+use lightmeter::filter::Filter;
+use lightmeter::image::drawn::drawn;
+use lightmeter::options::Options;
+use lightmeter::run::run_selection;
+use lightmeter::scene::library::SCENES;
+use lightmeter::scene::select::{SIZE_AMONG_ALL, builtin};
+use lightmeter::select::{CaseRef, Member, catalogue};
+use lightmeter::selection::Selection;
+use lightmeter::subject::Subject;
+use lightmeter::subject_gpu::code;
+use lightmeter_gpu::Shaders;
+use lightmeter_scene::effects::effects;
+use std::collections::BTreeSet;
+use std::fmt;
+
+/// Random inputs that tell what survives: of each formula, or of all of them together where there are as many as blend states.
+const INPUTS_OF_A_SURVIVOR: u64 = 1_000_000;
+/// As many formulas are blend states.
+const MANY: usize = 200;
+/// Random cases of each blend state.
+const CASES_OF_A_STATE: u64 = 64;
+/// How many of them are evaluated at once.
+const ROWS: usize = 1 << 16;
+
+/// What became of a mutant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Finding {
+    /// It is no valid WGSL.
+    Invalid,
+    /// A run fails.
+    Killed,
+    /// It gives the same bits.
+    Equal,
+    /// It gives other bits, all of which are legal.
+    Legal,
+    /// It gives what is not legal, and no run of default cases shows it.
+    Missed,
+    /// Every case gives the same bits: of the pixels of all scenes, or of the rasteriser, the depth test, the blend unit or special values.
+    Unshown,
+    /// No run judges the function that it is in.
+    Unjudged,
+}
+
+impl Finding {
+    /// All of them, in the order of tables.
+    pub const ALL: [Self; 7] =
+        [Self::Killed, Self::Equal, Self::Legal, Self::Missed, Self::Unshown, Self::Unjudged, Self::Invalid];
+
+    /// Whether it is a mutant that no run fails.
+    #[must_use]
+    pub const fn survives(self) -> bool {
+        !matches!(self, Self::Invalid | Self::Killed)
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Invalid => "invalid",
+            Self::Killed => "killed",
+            Self::Equal => "equal",
+            Self::Legal => "legal",
+            Self::Missed => "missed",
+            Self::Unshown => "unshown",
+            Self::Unjudged => "unjudged",
+        })
+    }
+}
+
+/// What is judged to tell a mutant of a file from what is right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// The formulas, by their places in the catalogue, whose functions call the mutated one.
+    Formulas(Vec<usize>),
+    /// Whatever these globs select.
+    Filter(Vec<String>),
+}
+
+/// Judges mutants of the built-in shaders.
+pub struct Campaign {
+    shaders: Shaders,
+    right: Code,
+    catalogue: Vec<Member>,
+    subject: Subject,
+}
+
+/// Ends a run at its first failure.
+struct UntilOneFails {
+    stop: Stop,
+    has_failed: bool,
+}
+
+impl Observer for UntilOneFails {
+    fn see(&mut self, event: &Event<'_>) {
+        if let Event::Judged { group: Group { totals, .. }, .. } = event
+            && (totals.failed > 0 || totals.failed_groups > 0)
+        {
+            self.has_failed = true;
+            // The number of a signal; none was sent.
+            self.stop.flag().store(1, std::sync::atomic::Ordering::Relaxed);
+        }
+    }
+}
+
+impl Campaign {
+    /// On this adapter.
+    ///
+    /// # Errors
+    /// Where the built-in shaders are invalid, which a test rules out.
+    pub fn new(subject: Subject) -> Result<Self, lightmeter_gpu::GpuError> {
+        let shaders = Shaders::built_in()?;
+        Ok(Self { right: code(shaders.clone()), shaders, catalogue: catalogue(), subject })
+    }
+
+    /// The shaders that are mutated.
+    #[must_use]
+    pub const fn shaders(&self) -> &Shaders {
+        &self.shaders
+    }
+
+    /// What judges a mutant; `None` where nothing does.
+    #[must_use]
+    pub fn scope(&self, mutant: &Mutant) -> Option<Scope> {
+        let globs = |globs: &[&str]| Some(Scope::Filter(globs.iter().map(|&glob| glob.to_owned()).collect()));
+        let file = mutant.file.as_str();
+        match file {
+            "special.wgsl" => globs(&["special"]),
+            "raster.wgsl" => {
+                let is_raster = |spec: &Spec| matches!(spec.kind, Kind::Raster(_));
+                let ids = self.catalogue.iter().map(|member| &member.spec).filter(|spec| is_raster(spec));
+                Some(Scope::Filter(ids.map(|spec| spec.id.clone()).collect()))
+            }
+            "depth_unit.wgsl" => globs(&["depth"]),
+            "blend_unit.wgsl" | "blend_unit_dual.wgsl" => globs(&["blend/mode-*", "blend/min", "blend/add/src1-*"]),
+            "probe.wgsl" | "technique.wgsl" => None,
+            _ if file.starts_with("effects/") || file.starts_with("scene") || file == "texture.wgsl" => {
+                globs(&["scene"])
+            }
+            _ if file.starts_with("rung/") => None,
+            _ => {
+                let callers = self.callers(&mutant.function);
+                let is_judged = |&place: &usize| {
+                    let spec = &self.catalogue[place].spec;
+                    callers.contains(spec.function) && !spec.row_stages().is_empty()
+                };
+                let places: Vec<usize> = (0..self.catalogue.len()).filter(is_judged).collect();
+                (!places.is_empty()).then_some(Scope::Formulas(places))
+            }
+        }
+    }
+
+    /// The functions that call one, by way of others too, and itself. Outside of functions, every one.
+    fn callers(&self, function: &str) -> BTreeSet<String> {
+        let calls: Vec<(String, String)> = self.shaders.texts().flat_map(|(_, text)| calls(text)).collect();
+        if function.is_empty() {
+            return calls.into_iter().map(|(caller, _)| caller).collect();
+        }
+        let mut found = BTreeSet::from([function.to_owned()]);
+        loop {
+            let before = found.len();
+            let more = calls.iter().filter(|(_, called)| found.contains(called)).map(|(caller, _)| caller.clone());
+            found.extend(more.collect::<Vec<String>>());
+            if found.len() == before {
+                return found;
+            }
+        }
+    }
+
+    /// Judges a mutant, and where it survives tells by bits what it is.
+    ///
+    /// # Errors
+    /// Where the device fails, which a mutant must not make it do.
+    pub fn judge(&mut self, mutant: &Mutant) -> Result<Finding, DeviceError> {
+        let Some(scope) = self.scope(mutant) else { return Ok(Finding::Unjudged) };
+        let text = self.shaders.texts().find(|(file, _)| *file == mutant.file).map_or("", |(_, text)| text);
+        let Ok(shaders) = self.shaders.with(&mutant.file, mutant.apply(text)) else { return Ok(Finding::Invalid) };
+        let mutated = code(shaders);
+        let is_failed = match self.fails(&scope, &mutated) {
+            // A signature that no longer fits, or a constant that no pipeline can be made of.
+            Err(error) if !error.is_of_device() => return Ok(Finding::Invalid),
+            other => other?,
+        };
+        if is_failed {
+            return Ok(Finding::Killed);
+        }
+        match scope {
+            Scope::Formulas(places) => self.survivor(&places, &mutated),
+            Scope::Filter(globs) if globs == ["scene"] => self.scenes(&mutated),
+            Scope::Filter(_) => Ok(Finding::Unshown),
+        }
+    }
+
+    /// Whether a default run of the scope fails.
+    fn fails(&mut self, scope: &Scope, mutated: &Code) -> Result<bool, DeviceError> {
+        let globs = match scope {
+            Scope::Formulas(places) => {
+                let groups: BTreeSet<&str> = places.iter().map(|&place| self.catalogue[place].spec.group()).collect();
+                groups.into_iter().map(str::to_owned).collect()
+            }
+            Scope::Filter(globs) => globs.clone(),
+        };
+        let filter = Filter::new(&globs).map_err(|error| DeviceError::Refused(Box::new(error)))?;
+        let stop = Stop::default();
+        let size = Some(SIZE_AMONG_ALL);
+        let mut options = Options { filter, size, stop: stop.clone(), ..Options::new(mutated.clone()) };
+        if matches!(scope, Scope::Formulas(places) if places.len() > MANY) {
+            options.cases = CASES_OF_A_STATE;
+        }
+        let mut selection = Selection::of(&options);
+        selection.deviations.clear();
+        if let Scope::Formulas(places) = scope {
+            let is_wanted = |id: &str| places.iter().any(|&place| self.catalogue[place].spec.id == id);
+            let catalogue = selection.catalogue.clone();
+            selection.formulas.retain(|chosen| is_wanted(&catalogue[chosen.member].spec.id));
+        }
+        let mut observer = UntilOneFails { stop, has_failed: false };
+        let report = run_selection(&selection, std::slice::from_mut(&mut self.subject), &options, &mut observer)?;
+        match &report.interrupted {
+            Some(interrupted) if interrupted.signal.is_none() => Err(DeviceError::Failed(interrupted.message.clone())),
+            _ => Ok(observer.has_failed || !report.is_success()),
+        }
+    }
+
+    /// What a mutant is that no run fails.
+    fn survivor(&mut self, places: &[usize], mutated: &Code) -> Result<Finding, DeviceError> {
+        let mut worst = Finding::Equal;
+        let each = if places.len() > MANY { INPUTS_OF_A_SURVIVOR / places.len() as u64 } else { INPUTS_OF_A_SURVIVOR };
+        for &place in places {
+            worst = worst.max(self.compared(place, each, mutated)?);
+            if worst == Finding::Missed {
+                break;
+            }
+        }
+        Ok(worst)
+    }
+
+    /// What a mutant is that is seen in no scene: whether it changes a pixel.
+    fn scenes(&mut self, mutated: &Code) -> Result<Finding, DeviceError> {
+        for place in 0..SCENES.len() {
+            let loaded = builtin(place, Some(SIZE_AMONG_ALL)).map_err(|error| DeviceError::Refused(Box::new(error)))?;
+            let called = effects(&loaded.frame);
+            let image = |code| drawn(&self.subject, code, &loaded.frame, &called, Picture::Composed);
+            if let (Ok(right), Ok(other)) = (image(&self.right)?, image(mutated)?)
+                && right.pixels != other.pixels
+            {
+                return Ok(Finding::Legal);
+            }
+        }
+        Ok(Finding::Unshown)
+    }
+
+    /// What a mutant is to one formula.
+    fn compared(&mut self, place: usize, random: u64, mutated: &Code) -> Result<Finding, DeviceError> {
+        let member = &self.catalogue[place];
+        let members = [member];
+        let right = Evaluator::new(&mut self.subject, &members, &self.right)?;
+        let other = Evaluator::new(&mut self.subject, &members, mutated)?;
+        let hard = (0..member.spec.hard.len()).map(CaseRef::Hard);
+        let near =
+            (0..member.spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));
+        let mut cases = hard.chain(near).chain((0..random).map(CaseRef::Random));
+        let (mut worst, outputs) = (Finding::Equal, member.spec.output_len());
+        let options = Options::new(mutated.clone());
+        loop {
+            let mut inputs = vec![];
+            let count = cases.by_ref().take(ROWS).map(|case| member.inputs(case, options.seed, &mut inputs)).count();
+            if count == 0 {
+                return Ok(worst);
+            }
+            let of = vec![0; count];
+            let expected = right.run(&mut self.subject, &of, &inputs)?;
+            let found = other.run(&mut self.subject, &of, &inputs)?;
+            for ((_, expected), (_, found)) in expected.iter().zip(&found) {
+                let (Ok(expected), Ok(found)) = (expected, found) else { continue };
+                let rows = inputs.chunks_exact(member.spec.input_len());
+                let words = expected.chunks_exact(outputs).zip(found.chunks_exact(outputs));
+                for (inputs, (_, found)) in rows.zip(words).filter(|(_, (expected, found))| expected != found) {
+                    worst = Finding::Legal;
+                    let mut legal = vec![Accept::ANY; outputs];
+                    member.formula.promised_interval(member.spec.kind, inputs, options.profile, &mut legal);
+                    let is_legal = |(word, legal): (&u32, &Accept)| {
+                        legal.is_any() || legal.contains(f64::from(f32::from_bits(*word)))
+                    };
+                    if !found.iter().zip(&legal).all(is_legal) {
+                        return Ok(Finding::Missed);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Each function of a text with each that it calls, and with itself.
+fn calls(text: &str) -> Vec<(String, String)> {
+    let tokens = tokens(text);
+    let word = |at: usize| tokens.get(at).map_or("", |token| &text[token.range.clone()]);
+    let (mut found, mut function) = (vec![], "");
+    for at in 0..tokens.len() {
+        if word(at) == "fn" {
+            function = word(at + 1);
+        }
+        if tokens[at].kind == TokenKind::Word && word(at + 1) == "(" && !function.is_empty() {
+            found.push((function.to_owned(), word(at).to_owned()));
+        }
+    }
+    found
+}
