@@ -389,25 +389,11 @@ impl GateGroup {
 impl GateFailure {
     /// The failure of a run.
     fn of_run(self, adapter: &str) -> Failure {
-        let none = Number(f64::NAN);
         Failure {
-            id: self.id,
-            adapter: adapter.to_owned(),
-            stage: "answer".into(),
             target: self.target,
-            route: None,
-            output: String::new(),
             inputs: self.named,
             units: self.units,
-            inputs_hex: serde_json::Map::new(),
-            reference: none,
-            interval: [none; 2],
-            promise: None,
-            value: none,
-            value_hex: String::new(),
-            unwritten: false,
             error_ulp: self.error_ulp,
-            rerun: String::new(),
             answer: Some(FailedAnswer {
                 inputs: self.inputs,
                 outputs: self.outputs,
@@ -416,6 +402,7 @@ impl GateFailure {
                 value: self.value,
                 problem: self.problem,
             }),
+            ..Failure::new(self.id, adapter.to_owned(), "answer")
         }
     }
 }

@@ -304,26 +304,10 @@ fn failure(member: &Member, place: RowPlace, words: &[u32], stage: Stage, by: &J
 /// A case whose answer cannot be judged: there is no number to show.
 #[must_use]
 pub fn unjudged(id: String, message: &str, stage: &'static str, adapter: &str) -> Failure {
-    let none = Number(f64::NAN);
     Failure {
-        rerun: String::new(),
-        id,
-        adapter: adapter.to_owned(),
-        stage: stage.into(),
-        target: None,
-        route: None,
-        output: String::new(),
-        inputs: serde_json::Map::new(),
-        units: BTreeMap::new(),
-        inputs_hex: serde_json::Map::new(),
-        reference: none,
-        interval: [none; 2],
-        promise: None,
-        value: none,
-        value_hex: String::new(),
-        unwritten: false,
         error_ulp: Number(f64::INFINITY),
         answer: Some(FailedAnswer { problem: Some(message.to_owned()), ..FailedAnswer::default() }),
+        ..Failure::new(id, adapter.to_owned(), stage)
     }
 }
 

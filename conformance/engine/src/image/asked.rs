@@ -184,7 +184,6 @@ impl Scene<'_> {
         let (reference, value) = (scene.reference(pixel), image.pixels[pixel]);
         let problem = format!("{failed} of {verdicts} components of pixels are outside of what is legal");
         let id = pixel_id(&self.id, image.width, pixel);
-        let blank = unjudged(id, &problem, STAGE, &self.subject.identity.name);
         let k = worst(judged).map_or(0, |worst| worst.component);
         Failure {
             target: Some(self.loaded.frame.target.format.name().into()),
@@ -201,7 +200,7 @@ impl Scene<'_> {
                 value: value.map(Number).to_vec(),
                 problem: Some(problem),
             }),
-            ..blank
+            ..Failure::new(id, self.subject.identity.name.clone(), STAGE)
         }
     }
 }

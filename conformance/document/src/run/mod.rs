@@ -1,7 +1,12 @@
 //! The JSON of `run`.
 
+mod blend;
+mod stability;
+
+pub use blend::{BlendPromise, BlendState, SpecialUse, StoreUse, StoresOfShard, Tiers};
+pub use stability::{Cost, Examined};
+
 use crate::by_case::{CaseCounts, ComparedBy, FailedAnswer, KnownFailure, RendererUse};
-use crate::stores::StoreCounts;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,140 +66,6 @@ impl Totals {
         self.indeterminate = self.indeterminate.saturating_add(other.indeterminate);
         self.failed_groups = self.failed_groups.saturating_add(other.failed_groups);
     }
-}
-
-/// Values on a target of 8 bits by how near they come.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Tiers {
-    /// The formula gives a whole step, and it came out.
-    pub exact: u64,
-    /// The nearest step.
-    pub nearest: u64,
-    /// The other neighbour.
-    pub neighbour: u64,
-    /// Farther, but within the format's bound.
-    pub bound: u64,
-    /// Outside.
-    pub outside: u64,
-}
-
-impl Tiers {
-    /// The sum.
-    pub fn add(&mut self, other: &Self) {
-        self.exact += other.exact;
-        self.nearest += other.nearest;
-        self.neighbour += other.neighbour;
-        self.bound += other.bound;
-        self.outside += other.outside;
-    }
-
-    /// Each with its name.
-    #[must_use]
-    pub const fn named(&self) -> [(&'static str, u64); 5] {
-        [
-            ("exact", self.exact),
-            ("nearest", self.nearest),
-            ("neighbour", self.neighbour),
-            ("bound", self.bound),
-            ("outside", self.outside),
-        ]
-    }
-}
-
-/// How a target's values are stored, told from many of them together.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct StoreUse {
-    /// The store that most values speak for, or the model that all of them follow.
-    pub identified: Word,
-    /// The share of the values that are as it would have them.
-    pub share: f64,
-    /// Values that tell stores apart.
-    pub of: u64,
-    /// Their mean error with its sign, in steps.
-    pub bias: f64,
-}
-
-/// What a shard's values on a target of 8 bits say of how they are stored, by component, and how many blend states they are of: too few of
-/// them by themselves may tell nothing.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct StoresOfShard {
-    /// By component.
-    pub components: [StoreCounts; 4],
-    /// States by route.
-    pub states: usize,
-}
-
-/// A blend state by one route on a target.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct BlendState {
-    /// The state's id.
-    pub id: String,
-    /// The adapter's short name.
-    pub adapter: String,
-    /// The target's format.
-    pub target: Word,
-    /// How the state reached the unit.
-    pub route: Word,
-    /// Pixels.
-    pub cases: u64,
-    /// Components outside what is legal.
-    pub failed: u64,
-    /// The greatest error: ULP on float targets, steps on those of 8 bits.
-    pub error_max: Number,
-    /// On targets of 8 bits.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tiers: Option<Tiers>,
-    /// Why it was not drawn.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub skip_reason: Option<Word>,
-}
-
-impl BlendState {
-    /// Whether it was drawn.
-    #[must_use]
-    pub const fn is_drawn(&self) -> bool {
-        self.skip_reason.is_none()
-    }
-
-    /// Its tiers, none where it was not drawn on a target of 8 bits.
-    #[must_use]
-    pub fn tiers(&self) -> Tiers {
-        self.tiers.unwrap_or_default()
-    }
-}
-
-/// NaN or infinity in a blend unit.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct SpecialUse {
-    /// The case.
-    pub id: String,
-    /// The adapter's short name.
-    pub adapter: String,
-    /// The target's format.
-    pub target: Word,
-    /// What was left of the colour.
-    pub seen: String,
-    /// What is on record for the driver.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub recorded: Option<Word>,
-}
-
-impl SpecialUse {
-    /// Whether it is what is on record, if anything is.
-    #[must_use]
-    pub fn is_as_recorded(&self) -> bool {
-        self.recorded.as_ref().is_none_or(|recorded| *recorded == self.seen)
-    }
-}
-
-/// What an interface says of NaN and infinity in blending.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct BlendPromise {
-    /// The interface.
-    pub interface: Word,
-    /// What it says.
-    pub says: Word,
 }
 
 /// A group on an adapter in a stage.
@@ -363,6 +234,34 @@ pub struct Failure {
     /// All that was answered to the case, where it was answered as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub answer: Option<FailedAnswer>,
+}
+
+impl Failure {
+    /// A failure without inputs and numbers.
+    #[must_use]
+    pub fn new(id: String, adapter: String, stage: impl Into<Word>) -> Self {
+        let none = Number(f64::NAN);
+        Self {
+            id,
+            adapter,
+            stage: stage.into(),
+            target: None,
+            route: None,
+            output: String::new(),
+            inputs: serde_json::Map::new(),
+            units: BTreeMap::new(),
+            inputs_hex: serde_json::Map::new(),
+            reference: none,
+            interval: [none; 2],
+            promise: None,
+            value: none,
+            value_hex: String::new(),
+            unwritten: false,
+            error_ulp: none,
+            rerun: String::new(),
+            answer: None,
+        }
+    }
 }
 
 /// A named deviation that was granted or asked for.
@@ -566,70 +465,4 @@ impl Report {
             && self.passing_unexpectedly().next().is_none()
             && !self.groups.iter().any(is_failed)
     }
-}
-
-/// A hard case by its stable and its naive form, on an adapter in a stage. Errors are in roundings, the greatest at the case
-/// and within a few ULP of it; infinite where a value is NaN or infinite.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct Examined {
-    /// The case, of the stable formula.
-    pub id: String,
-    /// The adapter's short name.
-    pub adapter: String,
-    /// The stage's name.
-    pub stage: Word,
-    /// How much the result amplifies the inputs' errors at the case itself.
-    pub condition: Number,
-    /// What the stable form claims.
-    pub bound: f64,
-    /// The stable form's error.
-    pub stable: Number,
-    /// The case near by where that is.
-    pub stable_at: String,
-    /// The naive formula.
-    pub naive_formula: Word,
-    /// What goes wrong with it.
-    pub fails: Word,
-    /// By how much at least.
-    pub naive_at_least: Number,
-    /// The naive form's error.
-    pub naive: Number,
-    /// Its error against its own exact value: where that is far less, it computes another function.
-    pub naive_rounding: Number,
-}
-
-impl Examined {
-    /// Whether the stable form keeps its claim.
-    #[must_use]
-    pub fn is_stable(&self) -> bool {
-        self.stable.0 <= self.bound
-    }
-
-    /// Whether the naive form fails as it is said to.
-    #[must_use]
-    pub fn naive_fails(&self) -> bool {
-        self.naive.0 >= self.naive_at_least.0
-    }
-}
-
-/// What a stable form takes beside a naive one, in the compute stage: nanoseconds of wall time for an evaluation, medians of
-/// turns in which each is measured, less what reading the inputs takes.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct Cost {
-    /// The stable formula.
-    pub formula: String,
-    /// The naive one.
-    pub naive: Word,
-    /// The adapter's short name.
-    pub adapter: String,
-    /// Of the stable form.
-    pub stable_ns: f64,
-    /// Of the naive form.
-    pub naive_ns: f64,
-    /// Of reading the inputs, which is in neither.
-    pub idle_ns: f64,
-    /// Median of the stable form's time over the naive one's, turn by turn, reading included in both.
-    pub ratio: f64,
-    /// Its lower and upper quartile.
-    pub quartiles: [f64; 2],
 }
