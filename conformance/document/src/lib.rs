@@ -24,7 +24,7 @@ use schemars::{JsonSchema, Schema};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-pub use number::{Number, thousands};
+pub use number::{Number, is_worse, thousands, worse};
 
 /// A word that is written from a constant and read from a file.
 pub type Word = std::borrow::Cow<'static, str>;

@@ -73,6 +73,20 @@ pub fn thousands(n: u64) -> String {
     text
 }
 
+/// Whether a margin or an error is worse than another: a NaN is worse than every number, so that no maximum loses one.
+#[inline]
+#[must_use]
+pub fn is_worse(a: f64, than: f64) -> bool {
+    !than.is_nan() && (a.is_nan() || a > than)
+}
+
+/// The worse of two.
+#[inline]
+#[must_use]
+pub fn worse(a: f64, b: f64) -> f64 {
+    if is_worse(b, a) { b } else { a }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,5 +94,15 @@ mod tests {
     #[test]
     fn numbers_are_grouped() {
         assert_eq!([0, 999, 1000, 1_234_567].map(thousands), ["0", "999", "1,000", "1,234,567"]);
+    }
+
+    #[test]
+    fn no_maximum_loses_a_nan() {
+        for values in [[f64::NAN, 1.0, 2.0], [1.0, f64::NAN, 2.0], [1.0, 2.0, f64::NAN]] {
+            assert!(values.into_iter().fold(0.0, worse).is_nan(), "{values:?}");
+        }
+        for (a, b, expected) in [(1.0, 2.0, 2.0_f64), (2.0, 1.0, 2.0), (f64::INFINITY, 1.0, f64::INFINITY)] {
+            assert_eq!(worse(a, b).to_bits(), expected.to_bits());
+        }
     }
 }

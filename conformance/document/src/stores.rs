@@ -16,6 +16,10 @@ pub struct StoreCounts {
 }
 
 impl StoreCounts {
+    /// The names of the stores, in the order of `as_by`. The first is the right one.
+    pub const STORES: [&'static str; 6] =
+        ["nearest", "truncated", "×256 for ×255", "rounded up", "one step up", "one step down"];
+
     /// Adds another's counts.
     pub fn add(&mut self, other: &Self) {
         self.of += other.of;
@@ -23,5 +27,32 @@ impl StoreCounts {
         for (sum, count) in self.as_by.iter_mut().zip(other.as_by) {
             *sum += count;
         }
+    }
+
+    /// The share of nearest values.
+    #[must_use]
+    pub fn nearest(&self) -> f64 {
+        self.share(self.as_by[0])
+    }
+
+    /// The mean distance from the nearest step, with its sign.
+    #[must_use]
+    pub fn bias(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a mean")]
+        let of = self.of.max(1) as f64;
+        self.error / of
+    }
+
+    /// The store that most values speak for, by its place in `as_by`, and their share. Of equals this is the first.
+    #[must_use]
+    pub fn likeliest_place(&self) -> (usize, f64) {
+        let counts = self.as_by.into_iter().enumerate().rev();
+        let (place, count) = counts.max_by_key(|(_, count)| *count).unwrap_or_default();
+        (place, self.share(count))
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a share")]
+    fn share(&self, count: u64) -> f64 {
+        count as f64 / self.of.max(1) as f64
     }
 }

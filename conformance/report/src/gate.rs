@@ -75,8 +75,8 @@ fn families(report: &GateReport, out: &mut impl Write) -> Result {
             (sum(|group| group.asked), sum(|group| group.failed), sum(|group| group.missing));
         let failing = of.iter().filter(|group| group.is_failed()).count();
         let mark = if failing == 0 { '✓' } else { '✗' };
-        let error = of.iter().map(|group| group.error_max.0).fold(0.0, lightmeter_judge::worse);
-        let margin = of.iter().map(|group| group.margin_max.0).fold(0.0, lightmeter_judge::worse);
+        let error = of.iter().map(|group| group.error_max.0).fold(0.0, lightmeter_document::worse);
+        let margin = of.iter().map(|group| group.margin_max.0).fold(0.0, lightmeter_document::worse);
         let what = if name == "scene" { "scenes" } else { "formulas" };
         write!(out, "{mark} {name:<14} {:>4} {what:<9} {asked:>9} cases", of.len())?;
         if failing > 0 {

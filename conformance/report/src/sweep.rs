@@ -1,9 +1,10 @@
 //! A sweep's result for people.
 
 use lightmeter_document::run::Identity;
-use lightmeter_document::sweep::{Description, ExactFloat, Statistics, SweepDocument, SweepInput, SweepVerdict};
+use lightmeter_document::sweep::{
+    Description, ExactFloat, Statistics, StoreCounts, SweepDocument, SweepInput, SweepVerdict,
+};
 use lightmeter_document::{Number, thousands};
-use lightmeter_judge::blend_unit::store::{StoreCounts, Stores as _};
 use std::fmt::{Result, Write};
 
 /// Characters of the longest bar.
@@ -106,8 +107,8 @@ fn verdicts(found: &Statistics, out: &mut impl Write) -> Result {
 /// The store that most values speak for, by its name, and their share.
 #[must_use]
 pub fn likeliest(counts: &StoreCounts) -> (&'static str, f64) {
-    let (store, share) = counts.likeliest();
-    (store.name(), share)
+    let (place, share) = counts.likeliest_place();
+    (StoreCounts::STORES[place], share)
 }
 
 /// A verdict, under what it is.

@@ -2,8 +2,7 @@
 
 use crate::against::{self, Against};
 use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, ImageUse, Report, Tiers, Totals};
-use lightmeter_document::{Number, Word, thousands};
-use lightmeter_judge::{is_worse, worse};
+use lightmeter_document::{Number, Word, is_worse, thousands, worse};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
 use std::fmt::{Result, Write};

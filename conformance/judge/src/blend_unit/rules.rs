@@ -1,6 +1,7 @@
 //! The rules that a blend unit follows, and the faulty ones that tell which mistake was made.
 
 use lightmeter_catalogue::cases::blend::UnitCase;
+use lightmeter_document::stores::StoreCounts;
 use lightmeter_reference::blend::{Operands, Saturate, blend_separate, factor};
 use lightmeter_reference::{Real, Rgba};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
@@ -41,7 +42,7 @@ pub struct Rules {
     only_in: Option<State>,
 }
 
-/// How a real number of steps from 0 to 255 becomes a whole one.
+/// How a real number of steps from 0 to 255 becomes a whole one, in the order of [`StoreCounts::STORES`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Store {
     /// The nearest.
@@ -66,14 +67,7 @@ impl Store {
     /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Nearest => "nearest",
-            Self::Truncated => "truncated",
-            Self::Times256 => "×256 for ×255",
-            Self::RoundedUp => "rounded up",
-            Self::StepUp => "one step up",
-            Self::StepDown => "one step down",
-        }
+        StoreCounts::STORES[self as usize]
     }
 
     /// The step that it stores.

@@ -34,12 +34,6 @@ pub trait Stores {
     /// Counts a value. At whole steps and halfway between two stores cannot be told apart.
     fn count(&mut self, reference: f64, value: f64);
 
-    /// The share of nearest values.
-    fn nearest(&self) -> f64;
-
-    /// The mean distance from the nearest step, with its sign.
-    fn bias(&self) -> f64;
-
     /// The store that most values speak for, and their share; the first of equals, which is the right one.
     fn likeliest(&self) -> (Store, f64);
 
@@ -58,11 +52,6 @@ pub fn problem_of(components: &[StoreCounts; 4], states: usize) -> Option<String
     Some(format!("{} {} {first}", wrong.join(", "), if found.len() > 1 { "are" } else { "is" }))
 }
 
-#[expect(clippy::cast_precision_loss, reason = "shares and means")]
-fn share(count: u64, of: u64) -> f64 {
-    count as f64 / of.max(1) as f64
-}
-
 impl Stores for StoreCounts {
     fn count(&mut self, reference: f64, value: f64) {
         let fraction = reference - reference.floor();
@@ -76,20 +65,9 @@ impl Stores for StoreCounts {
         }
     }
 
-    fn nearest(&self) -> f64 {
-        share(self.as_by[0], self.of)
-    }
-
-    fn bias(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "a mean")]
-        let of = self.of.max(1) as f64;
-        self.error / of
-    }
-
     fn likeliest(&self) -> (Store, f64) {
-        let counts = Store::ALL.into_iter().zip(self.as_by).rev();
-        let (store, count) = counts.max_by_key(|(_, count)| *count).unwrap_or((Store::Nearest, 0));
-        (store, share(count, self.of))
+        let (place, share) = self.likeliest_place();
+        (Store::ALL[place], share)
     }
 
     fn problem(&self, states: usize) -> Option<String> {

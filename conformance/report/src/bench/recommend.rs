@@ -2,10 +2,10 @@
 
 use super::figures::{digits, error, time};
 use super::text::wrapped;
-use lightmeter_document::Number;
 use lightmeter_document::bench::pareto::refusal;
 use lightmeter_document::bench::recommendation::{Advice, Candidate, Inputs, Recommendation, SCHEMA};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Errors};
+use lightmeter_document::{Number, worse};
 use std::fmt::{Display, Formatter, Result as Written, Write};
 use std::str::FromStr;
 
@@ -131,7 +131,7 @@ fn candidate(row: &BenchRow, limit: Limit, inputs: Inputs) -> Option<Candidate> 
     let error = match inputs {
         Inputs::Random => random?,
         Inputs::Hard => hard?,
-        Inputs::All => lightmeter_judge::worse(random?, hard?),
+        Inputs::All => worse(random?, hard?),
     };
     let time = row.time.as_ref().filter(|time| time.ns.is_finite())?;
     let (row, what) = (row.name.clone(), row.what.clone());
