@@ -10,7 +10,7 @@ use lightmeter::document::eval::{EvalAnswer, EvalRequest};
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::list::{CasesDocument, FormulasDocument, ListedCases, ListedDomain};
 use lightmeter::document::pack::Manifest;
-use lightmeter::document::run::Report;
+use lightmeter::document::run::{Examined, Report};
 use lightmeter::document::selftest::SelftestDocument;
 use lightmeter::document::show::{ShowDocument, ShownAnswer};
 use lightmeter::document::special::SpecialReport;
@@ -141,6 +141,8 @@ fn a_run_is_read_again() {
     let (report, _) = read_and_written::<Report>(&args);
     assert!(!report.groups.is_empty() && !report.stability.is_empty() && !report.special.is_empty());
     assert!(!report.blend_states.is_empty() && !report.blend_promises.is_empty() && report.unstable_beyond.is_some());
+    let claims = |row: &Examined| report.stable_forms.iter().any(|form| row.id.starts_with(&form.formula));
+    assert!(report.stability.iter().all(claims), "each examined form says what it claims");
     assert!(report.groups.iter().any(|group| group.image.is_some()), "a scene is among them");
 }
 
@@ -158,6 +160,9 @@ fn failures_are_read_again() {
 fn special_values_are_read_again() {
     let (report, written) = read_and_written::<SpecialReport>(&["special", "--adapter", "lavapipe"]);
     assert!(report.outcomes.len() > 100 && report.probes.len() > 100);
+    assert!(report.probes.iter().all(|probe| report.classes.iter().any(|class| class.name == probe.class)));
+    assert!(report.probes.iter().all(|probe| report.sources.iter().any(|source| source.section == probe.source)));
+    assert!(report.deviations.iter().flat_map(|deviation| &deviation.probes).all(|name| report.probe(name).is_some()));
     let bits = written["outcomes"][0]["bits"].as_str().expect("bits are written in hex");
     assert_eq!(bits, format!("0x{:08x}", report.outcomes[0].bits));
 }

@@ -96,6 +96,13 @@ fn a_page_has_every_case_with_both_errors_and_a_picture() {
     let picture = std::fs::read_to_string(at("stability.svg")).expect("a picture");
     assert_eq!(picture.matches("<title>depth/recovered-reversed/hard/").count(), 4, "{picture}");
 
+    let json = std::fs::read_to_string(&run).expect("the run was written");
+    let mut older: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    older.as_object_mut().expect("an object").remove("stable_forms").expect("the run says what stable forms claim");
+    std::fs::write(&run, older.to_string()).expect("a file");
+    let refused = lightmeter(&["page", "stability", &run]);
+    assert!(code(&refused) == 2 && stderr(&refused).contains("it does not say what stable forms claim"));
+
     std::fs::write(&run, stdout(&lightmeter(&["run", "fog/exp/random/000001", "--format", "json"]))).expect("a file");
     let refused = lightmeter(&["page", "stability", &run]);
     assert_eq!(code(&refused), 2);

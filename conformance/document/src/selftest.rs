@@ -135,11 +135,30 @@ impl Record {
             && self.clean.iter().all(|clean| clean.failed == 0 && clean.systematic.is_none())
     }
 
+    /// The families of its formulas, each once: first in the order of the formulas without a mistake, which is that of the catalogue.
+    #[must_use]
+    pub fn families(&self) -> Vec<&str> {
+        let formulas = self.clean.iter().map(|clean| &clean.formula).chain(self.kills.iter().map(|kill| &kill.formula));
+        let mut families: Vec<&str> = vec![];
+        for family in formulas.map(|formula| family_of(formula)) {
+            if !families.contains(&family) {
+                families.push(family);
+            }
+        }
+        families
+    }
+
     /// Mistakes in formulas of a finding.
     #[must_use]
     pub fn count(&self, finding: Finding) -> usize {
         self.kills.iter().filter(|kill| kill.finding == finding).count()
     }
+}
+
+/// The family of a formula, the first part of its id.
+#[must_use]
+pub fn family_of(formula: &str) -> &str {
+    formula.split('/').next().unwrap_or_default()
 }
 
 /// How a number is off.
@@ -312,5 +331,18 @@ impl UnitFinding {
     #[must_use]
     pub const fn is_good(self) -> bool {
         matches!(self, Self::Named | Self::NotApplicable | Self::Clean)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn families_come_in_the_order_of_the_formulas() {
+        let clean = |formula: &str| Clean { formula: formula.into(), verdicts: 1, failed: 0, systematic: None };
+        let clean = ["vector/reflect", "fog/exp", "fog/linear", "blend/add"].map(clean).to_vec();
+        let record = Record { kills: vec![], clean, is_complete: true };
+        assert_eq!(record.families(), ["vector", "fog", "blend"]);
     }
 }

@@ -227,6 +227,9 @@ fn add(whole: &mut Report, part: Report, order: &Order, most: &mut HashMap<Group
         whole.blend_promises = part.blend_promises;
     }
     whole.unstable_beyond = whole.unstable_beyond.or(part.unstable_beyond);
+    if whole.stable_forms.is_empty() {
+        whole.stable_forms = part.stable_forms;
+    }
 }
 
 fn add_states(whole: &mut Report, states: Vec<BlendState>) {

@@ -84,7 +84,10 @@ pub fn run_selection(
         report.blend_promises = PROMISES.iter().map(told).collect();
     }
     report.renderer = subjects.iter_mut().find_map(|subject| subject.asked_mut()).map(|renderer| renderer.used());
-    report.unstable_beyond = (!report.stability.is_empty()).then_some(UNSTABLE);
+    if !report.stability.is_empty() {
+        report.unstable_beyond = Some(UNSTABLE);
+        report.stable_forms = stability::stable_forms(&selection.catalogue);
+    }
     report.seconds = started.elapsed().as_secs_f64();
     Ok(report)
 }

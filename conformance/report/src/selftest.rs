@@ -1,7 +1,6 @@
 //! The self-test of formulas as text.
 
-use lightmeter_catalogue::cases::FAMILIES;
-use lightmeter_document::selftest::{Clean, Finding, Kill, Mistake, Record, Resolution};
+use lightmeter_document::selftest::{Clean, Finding, Kill, Mistake, Record, Resolution, family_of};
 use std::fmt::{Result, Write};
 
 /// The kill matrix by mistake, what went wrong, and the resolution where it was measured.
@@ -33,7 +32,7 @@ pub fn text(record: &Record, mistakes: &[Mistake], resolutions: &[Resolution], o
         total - record.count(Finding::Survived),
         record.count(Finding::Named),
     )?;
-    for family in FAMILIES {
+    for family in record.families() {
         let verdicts: u64 = of_family(record, family).map(|clean| clean.verdicts).sum();
         let failed: u64 = of_family(record, family).map(|clean| clean.failed).sum();
         if verdicts > 0 {
@@ -67,7 +66,7 @@ pub fn text(record: &Record, mistakes: &[Mistake], resolutions: &[Resolution], o
 }
 
 fn of_family<'a>(record: &'a Record, family: &'a str) -> impl Iterator<Item = &'a Clean> {
-    record.clean.iter().filter(move |clean| clean.formula.split('/').next() == Some(family))
+    record.clean.iter().filter(move |clean| family_of(&clean.formula) == family)
 }
 
 /// The median and the greatest of the smallest numbers of cases.

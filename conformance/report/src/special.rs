@@ -1,8 +1,9 @@
 //! The probes of NaN, infinity, subnormals and signed zero, for people to read.
 
-use lightmeter_catalogue::special::{Class, DEVIATIONS, PROBES, Probe, Source, SpecialDeviation};
 use lightmeter_document::run::Identity;
-use lightmeter_document::special::{ProbeResult, ProbeVerdict, SpecialReport};
+use lightmeter_document::special::{
+    ProbeClass, ProbeResult, ProbeRow, ProbeSource, ProbeVerdict, PromiseDeviation, SpecialReport,
+};
 use std::fmt::{Result, Write};
 
 /// Writes the report: a row for each probe, a column for each adapter.
@@ -20,7 +21,7 @@ pub fn write(report: &SpecialReport, out: &mut impl Write) -> Result {
             }
         }
     }
-    for class in Class::ALL {
+    for class in &report.classes {
         writeln!(out)?;
         table(report, class, out)?;
     }
@@ -29,11 +30,10 @@ pub fn write(report: &SpecialReport, out: &mut impl Write) -> Result {
         "\na / b: in the compute and in the fragment stage · ✗ not as promised · ! the same, as a deviation says · ≠ not as on \
          record"
     )?;
-    for source in Source::ALL {
-        writeln!(out, "{}: {}", source.section(), source.says())?;
+    for ProbeSource { section, says } in &report.sources {
+        writeln!(out, "{section}: {says}")?;
     }
-    for deviation in DEVIATIONS {
-        let SpecialDeviation { name, backend, reason, .. } = deviation;
+    for PromiseDeviation { name, backend, reason, .. } in &report.deviations {
         if report.adapters.iter().any(|adapter| adapter.backend == *backend) {
             writeln!(out, "deviation {name} on {backend}: {reason}")?;
         }
@@ -52,11 +52,11 @@ pub fn write(report: &SpecialReport, out: &mut impl Write) -> Result {
     verdict(report, out)
 }
 
-fn table(report: &SpecialReport, class: Class, out: &mut impl Write) -> Result {
-    let mut rows: Vec<Vec<String>> = vec![vec![class.title().into(), "computed".into(), "promised".into()]];
+fn table(report: &SpecialReport, class: &ProbeClass, out: &mut impl Write) -> Result {
+    let mut rows: Vec<Vec<String>> = vec![vec![class.title.to_string(), "computed".into(), "promised".into()]];
     rows[0].extend(report.adapters.iter().map(|adapter| adapter.name.clone()));
-    for probe in PROBES.iter().filter(|probe| probe.class == class) {
-        let mut row = vec![probe.name.into(), probe.what.into(), probe.promise.words(probe.gives)];
+    for probe in report.of_class(class) {
+        let mut row = vec![probe.name.to_string(), probe.what.to_string(), probe.promise.clone()];
         row.extend(report.adapters.iter().map(|adapter| cell(report, probe, adapter)));
         rows.push(row);
     }
@@ -70,14 +70,14 @@ fn table(report: &SpecialReport, class: Class, out: &mut impl Write) -> Result {
 }
 
 /// What an adapter gives, once where all stages agree.
-fn cell(report: &SpecialReport, probe: &Probe, adapter: &Identity) -> String {
+fn cell(report: &SpecialReport, probe: &ProbeRow, adapter: &Identity) -> String {
     let marked = |outcome: &ProbeResult| match outcome.verdict {
         ProbeVerdict::Broken => format!("✗ {}", outcome.value),
         ProbeVerdict::Deviates => format!("! {}", outcome.value),
         _ if outcome.recorded.is_some_and(|recorded| recorded != outcome.bits) => format!("≠ {}", outcome.value),
         _ => outcome.value.clone(),
     };
-    let mut words: Vec<String> = report.of(probe.name, &adapter.name).map(marked).collect();
+    let mut words: Vec<String> = report.of(&probe.name, &adapter.name).map(marked).collect();
     words.dedup();
     if words.is_empty() { "—".into() } else { words.join(" / ") }
 }
@@ -90,7 +90,7 @@ fn verdict(report: &SpecialReport, out: &mut impl Write) -> Result {
         "{} {} probes, {} results: {} as promised, {} promises broken, {} deviate, {} indeterminate, {} changed; \
          {} are not as on record",
         if report.is_success() { "✓" } else { "✗" },
-        PROBES.len(),
+        report.probes.len(),
         report.outcomes.len(),
         count(ProbeVerdict::Kept),
         count(ProbeVerdict::Broken),
@@ -103,18 +103,16 @@ fn verdict(report: &SpecialReport, out: &mut impl Write) -> Result {
 
 /// A failure in a line.
 fn failure(report: &SpecialReport, outcome: &ProbeResult) -> Option<String> {
-    let probe = Probe::by_name(&outcome.probe)?;
+    let probe = report.probe(&outcome.probe)?;
     let ProbeResult { adapter, stage, bits, value, .. } = outcome;
     let is = format!("{} on {adapter}, {stage}: {} is {value} (0x{bits:08x})", probe.name, probe.what);
     match outcome.verdict {
-        ProbeVerdict::Broken => {
-            let promised = probe.promise.words(probe.gives);
-            Some(format!("BROKEN {is}, where {} promises {promised}", probe.source.section()))
-        }
+        ProbeVerdict::Broken => Some(format!("BROKEN {is}, where {} promises {}", probe.source, probe.promise)),
         ProbeVerdict::Changed => {
             let recorded = outcome.recorded.unwrap_or_default();
             let whose = report.records.iter().find(|record| record.adapter == *adapter).map(|record| &record.of);
-            let (whose, word) = (whose.map_or("the driver", String::as_str), probe.gives.word(recorded));
+            let whose = whose.map_or("the driver", String::as_str);
+            let word = outcome.recorded_value.as_deref().unwrap_or_default();
             Some(format!("CHANGED {is}, where {whose} is on record with {word} (0x{recorded:08x})"))
         }
         ProbeVerdict::Kept | ProbeVerdict::Indeterminate | ProbeVerdict::Deviates => None,

@@ -4,7 +4,7 @@ mod blend;
 mod stability;
 
 pub use blend::{BlendPromise, BlendState, SpecialUse, StoreUse, StoresOfShard, Tiers};
-pub use stability::{Cost, Examined};
+pub use stability::{Cost, Examined, StableForm};
 
 use crate::by_case::{CaseCounts, ComparedBy, FailedAnswer, KnownFailure, RendererUse};
 use crate::{Number, Word};
@@ -368,6 +368,9 @@ pub struct Report {
     /// How many times more than its condition explains a form may err before it is called unstable, where any was examined.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unstable_beyond: Option<f64>,
+    /// Every stable form of the suite, in the order of reports, where any hard case was examined.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stable_forms: Vec<StableForm>,
     /// Hard cases by their stable and their naive form.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stability: Vec<Examined>,
@@ -425,6 +428,7 @@ impl Report {
             special: vec![],
             blend_promises: vec![],
             unstable_beyond: None,
+            stable_forms: vec![],
             stability: vec![],
             stable_costs: vec![],
             interrupted: None,

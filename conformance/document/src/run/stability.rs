@@ -1,8 +1,19 @@
-//! What the JSON of `run` has of hard cases: the errors of stable and naive forms, and their costs.
+//! What the JSON of `run` has of hard cases: what stable forms claim, the errors of stable and naive forms, and their costs.
 
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+/// A formula in a stable form, and what it claims: at its hard cases and near them it errs by no more.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StableForm {
+    /// The formula.
+    pub formula: String,
+    /// The largest error, in roundings.
+    pub bound: f64,
+    /// The reason for the bound, and where the form may be used.
+    pub because: Word,
+}
 
 /// A hard case by its stable and its naive form, on an adapter in a stage. Errors are in roundings, the greatest at the case
 /// and within a few ULP of it; infinite where a value is NaN or infinite.

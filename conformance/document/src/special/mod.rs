@@ -67,6 +67,9 @@ pub struct ProbeResult {
     #[serde(default, with = "maybe_hex", skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub recorded: Option<u32>,
+    /// What is on record, in few letters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recorded_value: Option<String>,
 }
 
 /// A stage that an adapter lacks.
@@ -110,6 +113,37 @@ pub struct ProbeRow {
     pub source: Word,
 }
 
+/// What probes are about, as reports group them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct ProbeClass {
+    /// The name that probes have as their `class`.
+    pub name: Word,
+    /// The heading in reports.
+    pub title: Word,
+}
+
+/// A rule of the language that promises something of special values, or refuses to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct ProbeSource {
+    /// The section that states it. A section may state several rules.
+    pub section: Word,
+    /// What it says.
+    pub says: Word,
+}
+
+/// A promise that an interface is known to break.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct PromiseDeviation {
+    /// The name in reports.
+    pub name: Word,
+    /// The interface: `vulkan` or `gl`.
+    pub backend: Word,
+    /// The probes whose promise it breaks.
+    pub probes: Vec<Word>,
+    /// Why.
+    pub reason: Word,
+}
+
 /// The JSON of `special`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SpecialReport {
@@ -124,6 +158,15 @@ pub struct SpecialReport {
     /// The probes.
     #[serde(default)]
     pub probes: Vec<ProbeRow>,
+    /// What the probes are about, in the order of reports.
+    #[serde(default)]
+    pub classes: Vec<ProbeClass>,
+    /// The rules that the promises are from, in the order of reports.
+    #[serde(default)]
+    pub sources: Vec<ProbeSource>,
+    /// Promises that are known to be broken, on whichever interface.
+    #[serde(default)]
+    pub deviations: Vec<PromiseDeviation>,
     /// Stages that an adapter lacks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<Skipped>,
@@ -139,6 +182,17 @@ impl SpecialReport {
     #[must_use]
     pub fn is_success(&self) -> bool {
         self.interrupted.is_none() && !self.outcomes.iter().any(|outcome| outcome.verdict.is_failure())
+    }
+
+    /// The probe of that name.
+    #[must_use]
+    pub fn probe(&self, name: &str) -> Option<&ProbeRow> {
+        self.probes.iter().find(|probe| probe.name == name)
+    }
+
+    /// The probes of a class.
+    pub fn of_class<'a>(&'a self, class: &'a ProbeClass) -> impl Iterator<Item = &'a ProbeRow> {
+        self.probes.iter().filter(|probe| probe.class == class.name)
     }
 
     /// A probe's results on an adapter, stage by stage.

@@ -2,11 +2,14 @@
 
 use crate::device::{Code, DeviceError, Probed};
 use crate::subject::Subject;
-use lightmeter_catalogue::special::{PROBES, Probe, Promise, SpecialDeviation};
+use lightmeter_catalogue::special::{Class, DEVIATIONS, PROBES, Probe, Promise, Source, SpecialDeviation};
 use lightmeter_document::Word;
 use lightmeter_document::event::{Event, Observer, Stop};
 use lightmeter_document::run::Identity;
-use lightmeter_document::special::{self, ProbeResult, ProbeRow, ProbeVerdict, RecordUse, Skipped, SpecialReport};
+use lightmeter_document::special::{
+    self, ProbeClass, ProbeResult, ProbeRow, ProbeSource, ProbeVerdict, PromiseDeviation, RecordUse, Skipped,
+    SpecialReport,
+};
 use lightmeter_judge::special::record::{DriverRecord, OnRecord};
 use lightmeter_scene::target::SENTINEL;
 
@@ -54,15 +57,7 @@ pub fn run(
     stop: &Stop,
     observer: &mut dyn Observer,
 ) -> Result<SpecialReport, DeviceError> {
-    let mut report = SpecialReport {
-        schema: special::SCHEMA.into(),
-        adapters: vec![],
-        records: vec![],
-        probes: PROBES.iter().map(row).collect(),
-        skipped: vec![],
-        outcomes: vec![],
-        interrupted: None,
-    };
+    let mut report = nothing_yet();
     let probes: Vec<&'static Probe> = PROBES.iter().collect();
     observer.see(&Event::Begun(subjects.len() as u64));
     for subject in subjects {
@@ -138,7 +133,35 @@ impl Sink<'_> {
             value: probe.gives.word(bits),
             verdict: verdict(probe.promise, bits, binding, deviation.is_some()),
             recorded,
+            recorded_value: recorded.map(|bits| probe.gives.word(bits)),
         });
+    }
+}
+
+/// A report without results. It says what is asked and what is promised.
+fn nothing_yet() -> SpecialReport {
+    let class = |class: Class| ProbeClass { name: class.name().into(), title: class.title().into() };
+    let source = |source: Source| ProbeSource { section: source.section().into(), says: source.says().into() };
+    SpecialReport {
+        schema: special::SCHEMA.into(),
+        adapters: vec![],
+        records: vec![],
+        probes: PROBES.iter().map(row).collect(),
+        classes: Class::ALL.map(class).to_vec(),
+        sources: Source::ALL.map(source).to_vec(),
+        deviations: DEVIATIONS.iter().map(deviation).collect(),
+        skipped: vec![],
+        outcomes: vec![],
+        interrupted: None,
+    }
+}
+
+fn deviation(deviation: &SpecialDeviation) -> PromiseDeviation {
+    PromiseDeviation {
+        name: deviation.name.into(),
+        backend: deviation.backend.into(),
+        probes: deviation.probes.iter().map(|&probe| probe.into()).collect(),
+        reason: deviation.reason.into(),
     }
 }
 

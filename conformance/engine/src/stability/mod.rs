@@ -13,8 +13,7 @@ use crate::subject::Subject;
 use lightmeter_catalogue::cases::{Naive, Stable};
 use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
 use lightmeter_document::Number;
-use lightmeter_document::run::Report;
-use lightmeter_document::run::{Cost, Examined};
+use lightmeter_document::run::{Cost, Examined, Report, StableForm};
 use std::collections::BTreeMap;
 
 /// The rows of a hard case: itself, and those near it.
@@ -75,6 +74,16 @@ pub fn examine(
         report.stability.extend(examined);
     }
     Ok(())
+}
+
+/// What the stable forms of a catalogue claim.
+#[must_use]
+pub fn stable_forms(catalogue: &[Member]) -> Vec<StableForm> {
+    let form = |member: &Member| {
+        let Stable { bound, because, .. } = member.spec.stable?;
+        Some(StableForm { formula: member.spec.id.clone(), bound, because: because.into() })
+    };
+    catalogue.iter().filter_map(form).collect()
 }
 
 /// A formula's stable form, its naive ones, and the rows that all of them are tried on.

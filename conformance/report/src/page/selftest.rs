@@ -1,11 +1,10 @@
 //! The page on the self-test, made from the JSON of `lightmeter selftest`: the kill matrix, and the suite's resolution.
 
 use crate::selftest::{percent, smallest};
-use lightmeter_catalogue::cases::FAMILIES;
 use lightmeter_document::Document as _;
 use lightmeter_document::selftest::{
     Clean, Finding, Kill, Mistake, NamedFrom, OffBy, Record, Resolution, SceneRecord, SelftestDocument, UnitFinding,
-    UnitRow,
+    UnitRow, family_of,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
@@ -100,7 +99,8 @@ fn matrix(SelftestRun { record, mistakes, .. }: &SelftestRun, out: &mut impl Wri
         "By family: in how many formulas a mistake is made; bold where one is not told by its name. *Cases* is how many suffice \
          to\ncatch it, in the order of a run: the median over its formulas, and the most.\n"
     )?;
-    let families: Vec<&str> = FAMILIES
+    let families: Vec<&str> = record
+        .families()
         .into_iter()
         .filter(|family| record.kills.iter().any(|kill| family_of(&kill.formula) == *family))
         .collect();
@@ -165,7 +165,7 @@ fn clean(record: &Record, out: &mut impl Write) -> Written {
          form, fusion and flush at random, as freely as the rules permit:\n"
     )?;
     writeln!(out, "| family | formulas | verdicts | failed | group verdicts |\n|---|--:|--:|--:|--:|")?;
-    for family in FAMILIES {
+    for family in record.families() {
         let of: Vec<&Clean> = record.clean.iter().filter(|clean| family_of(&clean.formula) == family).collect();
         let verdicts: u64 = of.iter().map(|clean| clean.verdicts).sum();
         let failed: u64 = of.iter().map(|clean| clean.failed).sum();
@@ -265,10 +265,6 @@ fn resolution(SelftestRun { calibration, named_from, .. }: &SelftestRun, out: &m
         writeln!(out)?;
     }
     Ok(())
-}
-
-fn family_of(formula: &str) -> &str {
-    formula.split('/').next().unwrap_or_default()
 }
 
 #[cfg(test)]

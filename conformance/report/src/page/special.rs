@@ -1,9 +1,8 @@
 //! The page on NaN, infinity, subnormals and signed zero, made from the JSON of `lightmeter special`.
 
-use lightmeter_catalogue::special::{Class, DEVIATIONS, PROBES, Probe, Source};
 use lightmeter_document::Document as _;
 use lightmeter_document::run::Identity;
-use lightmeter_document::special::{ProbeResult, SpecialReport};
+use lightmeter_document::special::{ProbeClass, ProbeResult, ProbeRow, ProbeSource, SpecialReport};
 use std::fmt::{Result as Written, Write};
 use std::ops::Deref;
 
@@ -23,28 +22,32 @@ impl SpecialRun {
     /// Reads the JSON.
     ///
     /// # Errors
-    /// Where it is another document, interrupted, or of probes that this version does not have.
+    /// Where it is another document or interrupted, or does not describe its probes.
     pub fn read(json: &str) -> Result<Self, String> {
         let run = Self(SpecialReport::read(json).map_err(|error| error.to_string())?);
         if let Some(interrupted) = &run.interrupted {
             return Err(format!("it was interrupted: {interrupted}; expected one that is complete"));
         }
-        let unknown = run.outcomes.iter().find(|outcome| Probe::by_name(&outcome.probe).is_none());
-        match unknown {
-            Some(outcome) => Err(format!("no probe `{}`: the file is of another version", outcome.probe)),
-            None if run.outcomes.is_empty() => Err("nothing was probed".into()),
+        if run.outcomes.is_empty() {
+            return Err("nothing was probed".into());
+        }
+        if run.classes.is_empty() || run.sources.is_empty() {
+            return Err("it does not name its rules, as older versions did not; run the probes anew".into());
+        }
+        match run.outcomes.iter().find(|outcome| run.probe(&outcome.probe).is_none()) {
+            Some(outcome) => Err(format!("it does not describe the probe `{}`", outcome.probe)),
             None => Ok(run),
         }
     }
 
     /// Probes whose results differ between the stages of an adapter.
     fn by_stage(&self, adapter: &Identity) -> usize {
-        let differs = |probe: &&Probe| {
-            let mut values = self.of(probe.name, &adapter.name).map(|outcome| &outcome.value);
+        let differs = |probe: &&ProbeRow| {
+            let mut values = self.of(&probe.name, &adapter.name).map(|outcome| &outcome.value);
             let first = values.next();
             values.any(|value| Some(value) != first)
         };
-        PROBES.iter().filter(differs).count()
+        self.probes.iter().filter(differs).count()
     }
 }
 
@@ -57,25 +60,25 @@ pub fn markdown(run: &SpecialRun, out: &mut impl Write) -> Written {
     writeln!(out, "What the shading language promises of them, and what each driver does. Made from a run's JSON:\n")?;
     writeln!(out, "```\n./x special --adapter all --format json --out special.json")?;
     writeln!(out, "./x page special special.json --out docs/special-values.md\n```\n")?;
-    policy(out)?;
+    policy(run, out)?;
     drivers(run, out)?;
-    for class in Class::ALL {
+    for class in &run.classes {
         table(run, class, out)?;
     }
     Ok(())
 }
 
-fn policy(out: &mut impl Write) -> Written {
+fn policy(run: &SpecialRun, out: &mut impl Write) -> Written {
     writeln!(out, "## What is promised\n")?;
     writeln!(out, "| section | says |\n|---|---|")?;
-    for source in Source::ALL {
-        writeln!(out, "| {} | {} |", source.section(), source.says())?;
+    for ProbeSource { section, says } in &run.sources {
+        writeln!(out, "| {section} | {says} |")?;
     }
-    let definite = PROBES.iter().filter(|probe| probe.promise.is_definite()).count();
+    let definite = run.probes.iter().filter(|probe| probe.definite).count();
     writeln!(
         out,
         "\nA *probe* is one operation on operands that are known at run time alone. Of {} probes {definite} are promised",
-        PROBES.len()
+        run.probes.len()
     )?;
     writeln!(
         out,
@@ -86,7 +89,7 @@ fn policy(out: &mut impl Write) -> Written {
         "What each driver gave is on record in `conformance/judge/records/special/`; where a driver tells its version, and it is the"
     )?;
     writeln!(out, "one on record, a result that changes fails by name.\n")?;
-    for deviation in DEVIATIONS {
+    for deviation in &run.deviations {
         writeln!(
             out,
             "Deviation *{}* of {}: {} ({}).\n",
@@ -131,16 +134,15 @@ fn drivers(run: &SpecialRun, out: &mut impl Write) -> Written {
     )
 }
 
-fn table(run: &SpecialRun, class: Class, out: &mut impl Write) -> Written {
-    writeln!(out, "\n## {}\n", class.title())?;
+fn table(run: &SpecialRun, class: &ProbeClass, out: &mut impl Write) -> Written {
+    writeln!(out, "\n## {}\n", class.title)?;
     write!(out, "| probe | computed | promised |")?;
     for adapter in &run.adapters {
         write!(out, " {} |", adapter.name)?;
     }
     writeln!(out, "\n|---|---|---|{}", "---|".repeat(run.adapters.len()))?;
-    for probe in PROBES.iter().filter(|probe| probe.class == class) {
-        let promise = probe.promise.words(probe.gives);
-        write!(out, "| {} | {} | {promise} |", probe.name, probe.what)?;
+    for probe in run.of_class(class) {
+        write!(out, "| {} | {} | {} |", probe.name, probe.what, probe.promise)?;
         for adapter in &run.adapters {
             write!(out, " {} |", cell(run, probe, adapter))?;
         }
@@ -149,7 +151,7 @@ fn table(run: &SpecialRun, class: Class, out: &mut impl Write) -> Written {
     Ok(())
 }
 
-fn cell(run: &SpecialRun, probe: &Probe, adapter: &Identity) -> String {
+fn cell(run: &SpecialRun, probe: &ProbeRow, adapter: &Identity) -> String {
     let marked = |outcome: &ProbeResult| {
         let mark = match outcome.verdict.name() {
             "broken" => "✗ ",
@@ -159,7 +161,7 @@ fn cell(run: &SpecialRun, probe: &Probe, adapter: &Identity) -> String {
         };
         format!("{mark}{}", outcome.value)
     };
-    let mut words: Vec<String> = run.of(probe.name, &adapter.name).map(marked).collect();
+    let mut words: Vec<String> = run.of(&probe.name, &adapter.name).map(marked).collect();
     words.dedup();
     if words.is_empty() { "–".into() } else { words.join(" / ") }
 }
@@ -174,6 +176,11 @@ mod tests {
             ("{", "not JSON"),
             (r#"{"schema":"lightmeter.run/1"}"#, "expected lightmeter.special/1"),
             (r#"{"schema":"lightmeter.special/1","adapters":[],"outcomes":[]}"#, "nothing was probed"),
+            (
+                r#"{"schema":"lightmeter.special/1","adapters":[],"outcomes":[{"probe":"min-nan","adapter":"cpu","stage":"compute",
+                    "bits":"0x00000000","value":"0","verdict":"indeterminate"}]}"#,
+                "it does not name its rules",
+            ),
         ] {
             let error = SpecialRun::read(json).expect_err("it is no page's");
             assert!(error.contains(message), "{error}");

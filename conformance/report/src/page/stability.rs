@@ -1,10 +1,8 @@
 //! The page on hard cases, made from a run's JSON: naive against stable error with condition numbers, what stable forms
 //! claim and cost, and a picture of both errors against the condition.
 
-use lightmeter_catalogue::cases::Stable;
-use lightmeter_catalogue::select::{Member, catalogue};
 use lightmeter_document::Document as _;
-use lightmeter_document::run::{Examined, Report};
+use lightmeter_document::run::{Examined, Report, StableForm};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
 use std::ops::Deref;
@@ -54,11 +52,14 @@ impl StabilityRun {
     /// Reads the JSON.
     ///
     /// # Errors
-    /// Where it is another document, or of a run without hard cases.
+    /// Where it is another document, or of a run without hard cases or without the claims of stable forms.
     pub fn read(json: &str) -> Result<Self, String> {
         let run = Report::read(json).map_err(|error| error.to_string())?;
         if run.stability.is_empty() {
             return Err("the run examined no hard case; expected one of `lightmeter run '*/*/hard'`".into());
+        }
+        if run.stable_forms.is_empty() {
+            return Err("it does not say what stable forms claim, as older versions did not; run the cases anew".into());
         }
         Ok(Self(run))
     }
@@ -88,7 +89,6 @@ impl StabilityRun {
 /// Where the writer fails.
 pub fn markdown(run: &StabilityRun, picture: Option<&str>, out: &mut impl Write) -> Written {
     let cases = run.cases();
-    let catalogue = catalogue();
     writeln!(out, "# Hard cases: where the naive form fails, and the form that does not\n")?;
     let quoted: Vec<String> = run.filter.iter().map(|glob| format!("'{glob}'")).collect();
     let filter = quoted.join(" ");
@@ -127,7 +127,7 @@ pub fn markdown(run: &StabilityRun, picture: Option<&str>, out: &mut impl Write)
         writeln!(out, "![Errors of naive and stable forms against the condition]({picture})\n")?;
     }
     table(run, &cases, out)?;
-    claims(run, &cases, &catalogue, out)
+    claims(run, &cases, out)
 }
 
 fn table(run: &StabilityRun, cases: &[Case<'_>], out: &mut impl Write) -> Written {
@@ -158,7 +158,7 @@ fn table(run: &StabilityRun, cases: &[Case<'_>], out: &mut impl Write) -> Writte
     writeln!(out)
 }
 
-fn claims(run: &StabilityRun, cases: &[Case<'_>], catalogue: &[Member], out: &mut impl Write) -> Written {
+fn claims(run: &StabilityRun, cases: &[Case<'_>], out: &mut impl Write) -> Written {
     writeln!(out, "## What stable forms claim, and what they cost\n")?;
     writeln!(
         out,
@@ -167,9 +167,7 @@ fn claims(run: &StabilityRun, cases: &[Case<'_>], catalogue: &[Member], out: &mu
     )?;
     writeln!(out, "| stable form | bound | seen | because | adapter | ns | naive form | ns | ratio |")?;
     writeln!(out, "|---|--:|--:|---|---|--:|---|--:|--:|")?;
-    for member in catalogue {
-        let Some(Stable { bound, because, .. }) = member.spec.stable else { continue };
-        let id = &member.spec.id;
+    for StableForm { formula: id, bound, because } in &run.stable_forms {
         let of = |case: &&Case<'_>| case.row.id.starts_with(&format!("{id}/hard/"));
         let seen = cases.iter().filter(of).map(|case| case.stable).fold(0.0, f64::max);
         let mut costs = run.stable_costs.iter().filter(|cost| cost.formula == *id).peekable();
@@ -177,7 +175,7 @@ fn claims(run: &StabilityRun, cases: &[Case<'_>], catalogue: &[Member], out: &mu
             writeln!(out, "| `{id}` | {bound} | {} | {because} | | | | | |", short(seen))?;
         }
         for (place, cost) in costs.enumerate() {
-            let (seen, because) = if place == 0 { (short(seen), because) } else { (String::new(), "") };
+            let (seen, because) = if place == 0 { (short(seen), because.as_ref()) } else { (String::new(), "") };
             let name = if place == 0 { format!("`{id}` | {bound}") } else { " | ".into() };
             writeln!(
                 out,
