@@ -3,6 +3,7 @@
 mod adapters;
 mod bench;
 mod comparison;
+mod contact_sheet;
 mod effects;
 mod eval;
 mod gate;

@@ -1,5 +1,6 @@
 //! `lightmeter page`.
 
+use super::contact_sheet;
 use super::{Status, emit};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
@@ -7,6 +8,7 @@ use lightmeter::document::Document as _;
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::report;
 use lightmeter::report::bench::{page, plot};
+use lightmeter::report::page::scenes::ToldScene;
 use lightmeter::report::page::sweep::Swept;
 use lightmeter::report::page::{BlendRun, markdown, scenes, selftest, special, stability, svg};
 use lightmeter::select::catalogue;
@@ -139,13 +141,14 @@ impl Page {
 
     fn scenes(&self, json: &str) -> anyhow::Result<String> {
         let run = scenes::SceneRun::read(json).map_err(|message| anyhow!(message))?;
-        let loaded = scenes::scenes()?;
+        let loaded = contact_sheet::scenes()?;
         let picture = self.picture("png");
         if let Some((path, _)) = &picture {
-            scenes::contact_sheet(&loaded).write(path)?;
+            contact_sheet::draw(&loaded).write(path)?;
         }
+        let told: Vec<ToldScene> = loaded.iter().map(contact_sheet::told).collect();
         let mut text = String::new();
-        scenes::markdown(&run, &loaded, picture.as_ref().map(|(_, name)| name.as_str()), &mut text)?;
+        scenes::markdown(&run, &told, picture.as_ref().map(|(_, name)| name.as_str()), &mut text)?;
         Ok(text)
     }
 

@@ -1,25 +1,13 @@
-//! The page on the built-in scenes: a contact sheet, what each shows, and what a run found.
+//! The page on the built-in scenes: what each shows, which the caller hands over, and what a run found.
 
-use lightmeter_catalogue::scene::SceneError;
-use lightmeter_catalogue::scene::library::SCENES;
-use lightmeter_catalogue::scene::load;
-use lightmeter_catalogue::scene::load::Loaded;
 use lightmeter_document::Document as _;
 use lightmeter_document::run::{EffectsCost, Group, Report};
-use lightmeter_judge::blend_unit::pixel::Units;
-use lightmeter_judge::image::file::StoredImage;
-use lightmeter_reference::render::render;
-use lightmeter_scene::effects::effects;
-use lightmeter_scene::target::TargetFormat;
+use lightmeter_scene::effects::Effects;
 use std::fmt::{Result, Write};
 use std::ops::Deref;
 
-/// Pictures side by side.
-const COLUMNS: usize = 6;
-/// Pixels of a picture's side.
-const SIDE: usize = 160;
-/// Pixels between pictures.
-const GAP: usize = 4;
+/// Pictures side by side on the contact sheet.
+pub const COLUMNS: usize = 6;
 
 /// A run that scenes were judged in.
 #[derive(Clone, Debug)]
@@ -52,60 +40,22 @@ impl SceneRun {
     }
 }
 
-/// The built-in scenes, in their order.
-///
-/// # Errors
-/// Where one is refused, which a test rules out.
-pub fn scenes() -> std::result::Result<Vec<Loaded>, SceneError> {
-    SCENES.iter().map(|(name, _)| load::builtin(name)).collect()
-}
-
-/// Every scene by the reference, side by side and row after row, each shrunk by averaging.
-#[must_use]
-pub fn contact_sheet(scenes: &[Loaded]) -> StoredImage {
-    let rows = scenes.len().div_ceil(COLUMNS);
-    let [width, height] = [COLUMNS, rows].map(|count| count * (SIDE + GAP) + GAP);
-    let mut sheet = StoredImage {
-        width,
-        format: TargetFormat::Rgba8Unorm,
-        pixels: vec![[24.0, 24.0, 26.0, 255.0]; width * height],
-    };
-    for (number, loaded) in scenes.iter().enumerate() {
-        let image = StoredImage::of(&render::<f64>(&loaded.frame, None, None), loaded.frame.target.format);
-        let [left, top] = [number % COLUMNS, number / COLUMNS].map(|place| place * (SIDE + GAP) + GAP);
-        for y in 0..SIDE {
-            for x in 0..SIDE {
-                sheet.pixels[(top + y) * width + left + x] = average(&image, [x, y]);
-            }
-        }
-    }
-    sheet
-}
-
-/// The mean of the pixels that a pixel of the sheet stands for, in steps from 0 to 255.
-fn average(image: &StoredImage, at: [usize; 2]) -> Units {
-    let size = [image.width, image.pixels.len() / image.width];
-    let span = |axis: usize| {
-        at[axis] * size[axis] / SIDE..((at[axis] + 1) * size[axis] / SIDE).max(at[axis] * size[axis] / SIDE + 1)
-    };
-    let scale = if image.format.is_unorm() { 1.0 } else { 255.0 };
-    let (mut sum, mut count) = ([0.0; 4], 0.0);
-    for y in span(1) {
-        for x in span(0) {
-            count += 1.0;
-            for (sum, c) in sum.iter_mut().zip(image.pixels[y * image.width + x]) {
-                *sum += (c * scale).clamp(0.0, 255.0);
-            }
-        }
-    }
-    [sum[0] / count, sum[1] / count, sum[2] / count, 255.0]
+/// A scene as the page tells it.
+#[derive(Clone, Debug)]
+pub struct ToldScene {
+    /// Its name.
+    pub name: String,
+    /// What it is for.
+    pub shows: String,
+    /// Every effect that one of its draws calls for.
+    pub effects: Effects,
 }
 
 /// The page in Markdown.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(run: &SceneRun, scenes: &[Loaded], picture: Option<&str>, out: &mut impl Write) -> Result {
+pub fn markdown(run: &SceneRun, scenes: &[ToldScene], picture: Option<&str>, out: &mut impl Write) -> Result {
     writeln!(out, "# Scenes\n")?;
     writeln!(out, "Made by `./x run 'scene/*' --adapter all --timing --format json --out RUN.json` and")?;
     writeln!(
@@ -119,18 +69,14 @@ pub fn markdown(run: &SceneRun, scenes: &[Loaded], picture: Option<&str>, out: &
         writeln!(out, "* **{}**: {}, {}", adapter.name, adapter.device, adapter.driver)?;
     }
     writeln!(out, "\n## What each shows\n\n| scene | shows | called for |\n|---|---|---|")?;
-    for loaded in scenes {
-        let all = effects(&loaded.frame)
-            .iter()
-            .flat_map(|called| called.effects.iter())
-            .fold(lightmeter_scene::effects::Effects::NONE, lightmeter_scene::effects::Effects::with);
-        writeln!(out, "| {} | {} | {all} |", loaded.name, loaded.shows)?;
+    for ToldScene { name, shows, effects } in scenes {
+        writeln!(out, "| {name} | {shows} | {effects} |")?;
     }
     judged(run, scenes, out)?;
     costs(run, scenes, out)
 }
 
-fn judged(run: &SceneRun, scenes: &[Loaded], out: &mut impl Write) -> Result {
+fn judged(run: &SceneRun, scenes: &[ToldScene], out: &mut impl Write) -> Result {
     writeln!(out, "\n## What a run found\n")?;
     writeln!(
         out,
@@ -152,7 +98,7 @@ fn judged(run: &SceneRun, scenes: &[Loaded], out: &mut impl Write) -> Result {
 /// A row for each scene, a column for each adapter; `lacking` where there is nothing to say.
 fn table(
     run: &SceneRun,
-    scenes: &[Loaded],
+    scenes: &[ToldScene],
     stage: &str,
     lacking: &str,
     out: &mut impl Write,
@@ -163,10 +109,10 @@ fn table(
         write!(out, " {} |", adapter.name)?;
     }
     writeln!(out, "\n|---|{}", "---:|".repeat(run.adapters.len()))?;
-    for loaded in scenes {
-        write!(out, "| {} |", loaded.name)?;
+    for scene in scenes {
+        write!(out, "| {} |", scene.name)?;
         for adapter in &run.adapters {
-            let found = run.group(&format!("scene/{}", loaded.name), &adapter.name, stage);
+            let found = run.group(&format!("scene/{}", scene.name), &adapter.name, stage);
             write!(out, " {} |", found.and_then(&cell).as_deref().unwrap_or(lacking))?;
         }
         writeln!(out)?;
@@ -174,7 +120,7 @@ fn table(
     Ok(())
 }
 
-fn costs(run: &SceneRun, scenes: &[Loaded], out: &mut impl Write) -> Result {
+fn costs(run: &SceneRun, scenes: &[ToldScene], out: &mut impl Write) -> Result {
     let costs = || run.groups.iter().filter_map(|group| group.image.as_ref()?.cost);
     if costs().next().is_none() {
         return Ok(());
