@@ -42,17 +42,26 @@ pub fn passes<R: Real>(compare: Compare, new: R, old: R) -> R {
     }
 }
 
-/// An eye-space distance z written as depth `f(z − n)/(z(f − n))`, 0 at the near plane n and 1 at the far plane f, and read
-/// back as `n·f/(f − depth(f − n))`: z again, but for what the depth has lost near 1. For n ≤ z ≤ f.
-pub fn recovered<R: Real>(near: R, far: R, z: R) -> R {
-    let range = far - near;
-    let depth = (far * (z - near) / (z * range)).named("depth");
-    near * far / (far - depth * range)
+/// The depth that a perspective projection stores for an eye-space distance z: `f(z − n)/(z(f − n))`, 0 at the near plane n and 1 at the
+/// far plane f. Source: 000 §6.6; ruling 15.
+pub fn stored<R: Real>(near: R, far: R, z: R) -> R {
+    far * (z - near) / (z * (far - near))
 }
 
-/// The same with depth reversed, `n(f − z)/(z(f − n))`: 0 at the far plane, where binary32 has its finest steps.
+/// The same with depth reversed, `n(f − z)/(z(f − n))`: 1 at the near plane, and 0 at the far plane, where binary32 has its finest steps.
+pub fn stored_reversed<R: Real>(near: R, far: R, z: R) -> R {
+    near * (far - z) / (z * (far - near))
+}
+
+/// An eye-space distance z written as [`stored`] depth and read back as `n·f/(f − depth(f − n))`: z again, but for what the depth has
+/// lost near 1. For n ≤ z ≤ f.
+pub fn recovered<R: Real>(near: R, far: R, z: R) -> R {
+    let depth = stored(near, far, z).named("depth");
+    near * far / (far - depth * (far - near))
+}
+
+/// The same with depth reversed: [`stored_reversed`].
 pub fn recovered_reversed<R: Real>(near: R, far: R, z: R) -> R {
-    let range = far - near;
-    let depth = (near * (far - z) / (z * range)).named("depth");
-    near * far / (near + depth * range)
+    let depth = stored_reversed(near, far, z).named("depth");
+    near * far / (near + depth * (far - near))
 }

@@ -1,7 +1,7 @@
 //! Laws of the depth test.
 
 use crate::family;
-use lightmeter_reference::depth::{passes, test};
+use lightmeter_reference::depth::{passes, stored, stored_reversed, test};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use proptest::prelude::*;
 
@@ -84,5 +84,14 @@ proptest! {
     fn beyond_the_range_all_are_equal(a in 1.0..9.0_f64, b in 1.0..9.0_f64) {
         prop_assert_eq!(seen(Compare::Equal, a, b), 2.0);
         prop_assert_eq!(seen(Compare::Less, -a, -b), 1.0);
+    }
+
+    #[test]
+    fn stored_depth_and_reversed_depth_are_one_together(near in 0.01..1.0_f64, far in 2.0..1e4_f64, t in 0.0..=1.0_f64) {
+        let z = near + (far - near) * t;
+        let (depth, reversed) = (stored(near, far, z), stored_reversed(near, far, z));
+        prop_assert!((depth + reversed - 1.0).abs() < 1e-12);
+        prop_assert!((0.0..=1.0 + 1e-12).contains(&depth));
+        prop_assert_eq!((stored(near, far, near), stored_reversed(near, far, far)), (0.0, 0.0));
     }
 }

@@ -11,6 +11,7 @@ use lightmeter_judge::{Outcome, judge};
 use crate::device::{Code, DeviceError};
 use crate::special;
 use crate::subject::Subject;
+use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected};
 use lightmeter_catalogue::special as special_values;
 use lightmeter_catalogue::special::Probe;
@@ -94,8 +95,16 @@ impl NamedDeviation {
     }
 }
 
-/// The function at the witness: outside of what is promised, and inside of what is granted. Wronger than that is another
-/// mistake, which the cases will show.
+/// Whether the function's value at the witness is the deviation that is described: outside of what is promised, and inside of what is
+/// granted. Wronger than that is another mistake, which the cases will show.
+fn shows(deviation: &devices::Deviation, bits: u32, profile: &Profile) -> bool {
+    let promised = deviation.builtin.interval(deviation.witness, profile);
+    let granted = deviation.builtin.interval(deviation.witness, &deviation.grant(*profile));
+    let exact = deviation.builtin.exact(deviation.witness);
+    let outcome = |legal| judge(bits, exact, legal).outcome;
+    outcome(&promised) == Outcome::Fail && outcome(&granted) == Outcome::Pass
+}
+
 fn accuracy(
     deviation: &devices::Deviation,
     subject: &Subject,
@@ -107,11 +116,7 @@ fn accuracy(
     }
     let Some(device) = subject.device() else { return Ok(None) };
     let Some(bits) = device.probe(code, deviation.builtin.probe(), deviation.witness)? else { return Ok(None) };
-    let promised = deviation.builtin.interval(deviation.witness, options.profile);
-    let granted = deviation.builtin.interval(deviation.witness, &deviation.grant(*options.profile));
-    let exact = deviation.builtin.exact(deviation.witness);
-    let outcome = |legal| judge(bits, exact, legal).outcome;
-    Ok(Some(outcome(&promised) == Outcome::Fail && outcome(&granted) == Outcome::Pass))
+    Ok(Some(shows(deviation, bits, options.profile)))
 }
 
 /// The case that is the witness, on the target that the deviation is of.
@@ -140,7 +145,7 @@ fn blend(
     Ok(is_drawn.then_some(totals.expected_failures > 0 && totals.failed == 0))
 }
 
-/// Each result that breaks its promise on record. The witness is asked for where a record binds the driver: elsewhere the deviation is
+/// Each result that breaks its promise on record, which must be as it is on record. The witness is asked for where a record binds the driver: elsewhere the deviation is
 /// granted, not required.
 fn special(
     deviation: &special_values::SpecialDeviation,
@@ -160,7 +165,8 @@ fn special(
     };
     let known = |outcome: &&ProbeResult| outcome.recorded.is_some_and(|recorded| breaks(outcome, recorded));
     let mut known = results.outcomes.iter().filter(known).peekable();
-    Ok(Some(known.peek().is_some() && known.all(|outcome| breaks(outcome, outcome.bits))))
+    // Another broken promise than the one on record is not this deviation.
+    Ok(Some(known.peek().is_some() && known.all(|outcome| outcome.recorded == Some(outcome.bits))))
 }
 
 /// Asks the witness of a deviation on every subject that it concerns, and notes what it shows.
@@ -207,6 +213,24 @@ mod tests {
                     assert!(!probes.is_empty() && missing.is_empty(), "{name}: {missing:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn only_the_deviation_that_is_described_is_a_witness_of_itself() {
+        use lightmeter_arithmetic::profile::PROFILES;
+        for deviation in devices::DEVIATIONS {
+            #[expect(clippy::cast_possible_truncation, reason = "the value nearest to the exact one")]
+            let exact = deviation.builtin.exact(deviation.witness) as f32;
+            let promised = deviation.builtin.interval(deviation.witness, PROFILES[0]);
+            let shown = |value: f32| shows(deviation, value.to_bits(), PROFILES[0]);
+            assert!(!shown(exact) && !shown(-exact) && !shown(f32::NAN) && !shown(1.01 * exact), "{}", deviation.name);
+            // The first value beyond what is promised, on either side.
+            let beyond = |next: fn(f32) -> f32| {
+                std::iter::successors(Some(exact), |x| Some(next(*x))).find(|x| !promised.contains((*x).into()))
+            };
+            let shown_beyond = [beyond(f32::next_up), beyond(f32::next_down)];
+            assert!(shown_beyond.into_iter().flatten().all(shown), "{}", deviation.name);
         }
     }
 

@@ -29,15 +29,19 @@ fn depth_test(compare: u32, write: u32, new_depth: f32, old_depth: f32) -> Teste
 
 // Depth as it is stored, and the distance read back from it.
 
+fn depth_stored(near: f32, far: f32, z: f32) -> f32 {
+    return far * (z - near) / (z * (far - near));
+}
+
+fn depth_stored_reversed(near: f32, far: f32, z: f32) -> f32 {
+    return near * (far - z) / (z * (far - near));
+}
+
 fn depth_recovered(near: f32, far: f32, z: f32) -> f32 {
-    let range = far - near;
-    let stored = far * (z - near) / (z * range);
-    return near * far / (far - stored * range);
+    return near * far / (far - depth_stored(near, far, z) * (far - near));
 }
 
 // stable form of: depth_recovered
 fn depth_recovered_reversed(near: f32, far: f32, z: f32) -> f32 {
-    let range = far - near;
-    let stored = near * (far - z) / (z * range);
-    return near * far / (near + stored * range);
+    return near * far / (near + depth_stored_reversed(near, far, z) * (far - near));
 }

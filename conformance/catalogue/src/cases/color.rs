@@ -48,6 +48,7 @@ formula!(
     |e; out| { out.vector(color::srgb_decode_rgba(e)); },
     hard [
         Hard::new("threshold", "both pieces are legal where they meet", &[("e", &[0.040_45, 0.040_449, 0.040_451, 1.0])]),
+        Hard::new("above-the-threshold", "the power a thousandth above the threshold", &[("e", &[0.040_488, 0.040_489, 0.040_49, 1.0])]),
     ],
 );
 formula!(
@@ -118,6 +119,7 @@ formula!(
             .naive("color/gamma-encode", "12 times too bright", 1e8),
         Hard::new("black-of-half-a-step", "the straight piece", &[("c", &[1.5e-4])])
             .naive("color/gamma-encode", "9 times too bright", 1e8),
+        Hard::new("a-thousandth-above-the-threshold", "the power", &[("c", &[0.003_133_8])]),
         Hard::new("just-above-the-threshold", "the two pieces meet", &[("c", &[0.0032])])
             .naive("color/gamma-encode", "1.8 times too bright", 1e7),
     ],

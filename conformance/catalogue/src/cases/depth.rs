@@ -6,7 +6,7 @@ use super::interpolation::raster;
 use super::rows::{Reader, Writer};
 use super::spec::{Domain, Hard, Input, Kind, Output, Spec, ValueShape};
 use lightmeter_reference::Real;
-use lightmeter_reference::depth::{passes, recovered, recovered_reversed, test};
+use lightmeter_reference::depth::{passes, recovered, recovered_reversed, stored, stored_reversed, test};
 use lightmeter_scene::depth::{Compare, DepthTest};
 use lightmeter_scene::raster::Raster;
 
@@ -143,8 +143,31 @@ impl Formula for OverItself {
 const NEAR: Input = Input::scalar("near", "unit", Domain::LogUniform(0.5, 1.0));
 const FAR: Input = Input::scalar("far", "unit", Domain::LogUniform(50.0, 100.0));
 const EYE_DISTANCE: Input = Input::scalar("z", "unit", Domain::LogUniform(1.0, 50.0));
+const STORED: Output = Output::new("depth", ValueShape::Scalar, "1");
 const READ_BACK: Output = Output::new("z", ValueShape::Scalar, "unit");
 
+formula!(
+    /// A distance as depth.
+    Stored: "depth/stored" by "depth_stored",
+    "depth = f(z − n)/(z(f − n))", "000 §6.6; ruling 15",
+    [NEAR, FAR, EYE_DISTANCE] -> [STORED],
+    |near, far, z; out| { out.scalar(stored(near, far, z)); },
+    hard [
+        Hard::new("at-the-near-plane", "0", &[("near", &[0.75]), ("z", &[0.75])]),
+        Hard::new("at-the-far-plane", "1", &[("far", &[96.0]), ("z", &[96.0])]),
+    ],
+);
+formula!(
+    /// A distance as depth reversed.
+    StoredReversed: "depth/stored-reversed" by "depth_stored_reversed",
+    "depth = n(f − z)/(z(f − n))", "000 §6.6, with depth reversed",
+    [NEAR, FAR, EYE_DISTANCE] -> [STORED],
+    |near, far, z; out| { out.scalar(stored_reversed(near, far, z)); },
+    hard [
+        Hard::new("at-the-near-plane", "1", &[("near", &[0.75]), ("z", &[0.75])]),
+        Hard::new("at-the-far-plane", "0", &[("far", &[96.0]), ("z", &[96.0])]),
+    ],
+);
 formula!(
     /// A distance read back from depth.
     Recovered: "depth/recovered" by "depth_recovered",
@@ -178,6 +201,8 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
     for compare in Compare::ALL {
         visitor.formula(OverItself(compare));
     }
+    visitor.formula(Stored);
+    visitor.formula(StoredReversed);
     visitor.formula(Recovered);
     visitor.formula(RecoveredReversed);
 }

@@ -416,6 +416,8 @@ formula!(
             .naive("lighting/cosine-power", "a·b is a few ULP from 1", 1e5),
         Hard::new("above-one-1e6", "never more than 1", &[("a", &[0.6, 0.0, 0.800_000_2]), ("b", &[0.6, 0.0, 0.800_000_2]), ("exponent", &[1e6])])
             .naive("lighting/cosine-power", "a cosine above 1 gives a highlight above 1", 1e5),
+        Hard::new("above-one-just-above-64", "above 64 by the chord, which gives 1 where a = b", &[("a", &[0.6, 0.0, 0.800_000_2]), ("b", &[0.6, 0.0, 0.800_000_2]), ("exponent", &[64.03])]),
+        Hard::new("above-one-above-64", "likewise", &[("a", &[0.6, 0.0, 0.800_000_2]), ("b", &[0.6, 0.0, 0.800_000_2]), ("exponent", &[64.5])]),
         Hard::new("half-1e3", "half as bright at 2.1°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.037_228_2, 0.0, 0.999_306_8]), ("exponent", &[1e3])])
             .naive("lighting/cosine-power", "a·b near 1 has no digits for the angle, which a − b keeps", 100.0),
         Hard::new("half-1e4", "half as bright at 0.67°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.011_773_7, 0.0, 0.999_930_7]), ("exponent", &[1e4])])

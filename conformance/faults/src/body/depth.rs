@@ -39,6 +39,17 @@ pub(super) fn depths<R: Real>(spec: &Spec, body: Body, x: &InputRow<'_, R>, out:
     let [near, far, z] = [x.scalar("near")?, x.scalar("far")?, x.scalar("z")?];
     let reversed = spec.id.ends_with("-reversed");
     let range = far - near;
+    if spec.id.starts_with("depth/stored") {
+        let wrong = match (body, reversed) {
+            (Body::LinearDepth, false) => (z - near) / range,
+            (Body::LinearDepth, true) => (far - z) / range,
+            (Body::PlanesExchanged, false) => near * (far - z) / (z * range),
+            (Body::PlanesExchanged, true) => far * (z - near) / (z * range),
+            _ => return None,
+        };
+        put(out, 0, Vector([wrong]));
+        return Some(());
+    }
     let depth = if reversed { near * (far - z) / (z * range) } else { far * (z - near) / (z * range) };
     put(
         out,

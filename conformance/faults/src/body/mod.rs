@@ -210,7 +210,9 @@ pub(super) fn concerns(spec: &Spec, body: Body) -> bool {
             matches!(spec.kind, Kind::Depth(by) if by.write && !matches!(by.compare, Compare::Always | Compare::NotEqual))
         }
         Body::DepthNotClamped => tested || is(&["interpolation/frag-depth"]),
-        Body::LinearDepth | Body::PlanesExchanged => is(&["depth/recovered", "depth/recovered-reversed"]),
+        Body::LinearDepth | Body::PlanesExchanged => {
+            is(&["depth/stored", "depth/stored-reversed", "depth/recovered", "depth/recovered-reversed"])
+        }
     }
 }
 
