@@ -182,22 +182,43 @@ impl Campaign {
     /// Where the device fails, which a mutant must not make it do.
     pub fn judge(&mut self, mutant: &Mutant) -> Result<Finding, DeviceError> {
         let Some(scope) = self.scope(mutant) else { return Ok(Finding::Unjudged) };
-        let text = self.shaders.texts().find(|(file, _)| *file == mutant.file).map_or("", |(_, text)| text);
-        let Ok(shaders) = self.shaders.with(&mutant.file, mutant.apply(text)) else { return Ok(Finding::Invalid) };
-        let mutated = code(shaders);
-        let is_failed = match self.fails(&scope, &mutated) {
+        let Some(mutated) = self.code_of(mutant) else { return Ok(Finding::Invalid) };
+        match self.fails(&scope, &mutated) {
             // A signature that no longer fits, or a constant that no pipeline can be made of.
             Err(error) if !error.is_of_device() => return Ok(Finding::Invalid),
-            other => other?,
-        };
-        if is_failed {
-            return Ok(Finding::Killed);
+            Err(error) => return Err(error),
+            Ok(true) => return Ok(Finding::Killed),
+            Ok(false) => {}
         }
         match scope {
             Scope::Formulas(places) => self.survivor(&places, &mutated),
             Scope::Filter(globs) if globs == ["scene"] => self.scenes(&mutated),
             Scope::Filter(_) => Ok(Finding::Unshown),
         }
+    }
+
+    /// Whether a default run fails; `None` where the mutant is invalid, or nothing judges it.
+    ///
+    /// # Errors
+    /// Where the device fails.
+    pub fn is_noticed(&mut self, mutant: &Mutant) -> Result<Option<bool>, DeviceError> {
+        let (Some(scope), Some(mutated)) = (self.scope(mutant), self.code_of(mutant)) else { return Ok(None) };
+        match self.fails(&scope, &mutated) {
+            Err(error) if !error.is_of_device() => Ok(None),
+            other => other.map(Some),
+        }
+    }
+
+    /// Whether formulas judge a mutant, and not scenes or fixed functions.
+    #[must_use]
+    pub fn is_of_formulas(&self, mutant: &Mutant) -> bool {
+        matches!(self.scope(mutant), Some(Scope::Formulas(_)))
+    }
+
+    /// The shaders with the mutant in them; `None` where they are invalid.
+    fn code_of(&self, mutant: &Mutant) -> Option<Code> {
+        let (_, text) = self.shaders.texts().find(|(file, _)| *file == mutant.file)?;
+        Some(code(self.shaders.with(&mutant.file, mutant.apply(text)).ok()?))
     }
 
     /// Whether a default run of the scope fails.

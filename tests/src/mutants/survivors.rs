@@ -77,6 +77,12 @@ impl Survivors {
         std::fs::write(path(), format!("{HEADER}{}", lines.concat()))
     }
 
+    /// How many are known for this.
+    #[must_use]
+    pub fn count(&self, finding: Finding) -> usize {
+        self.of.values().filter(|class| **class == finding.to_string()).count()
+    }
+
     /// The names of all.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.of.keys().map(String::as_str)

@@ -123,8 +123,8 @@ formula!(
         Hard::new("bottom-edge", "does not", &[("a", &[0.0, 8.0]), ("b", &[8.0, 8.0]), ("c", &[4.0, 0.0]), ("p", &[4.0, 8.0])]),
         Hard::new("left-edge", "belongs to the triangle", &[("a", &[0.0, 0.0]), ("b", &[8.0, 4.0]), ("c", &[0.0, 8.0]), ("p", &[0.0, 4.0])]),
         Hard::new("right-edge", "does not", &[("a", &[8.0, 0.0]), ("b", &[8.0, 8.0]), ("c", &[0.0, 4.0]), ("p", &[8.0, 4.0])]),
-        Hard::new("of-half-a-pixel", "covers what lies inside, however small", &[("a", &[0.0, 0.0]), ("b", &[0.75, 0.0]), ("c", &[0.0, 0.75]), ("p", &[0.25, 0.25])]),
-        Hard::new("of-half-a-pixel-turned", "likewise the other way round", &[("a", &[0.0, 0.0]), ("b", &[0.0, 0.75]), ("c", &[0.75, 0.0]), ("p", &[0.25, 0.25])]),
+        Hard::new("of-half-a-pixel", "covers what lies inside, however small", &[("a", &[0.0, 0.0]), ("b", &[1.0, 0.0]), ("c", &[0.0, 1.0]), ("p", &[0.25, 0.25])]),
+        Hard::new("of-half-a-pixel-turned", "likewise the other way round", &[("a", &[0.0, 0.0]), ("b", &[0.0, 1.0]), ("c", &[1.0, 0.0]), ("p", &[0.25, 0.25])]),
         Hard::new("no-area", "covers nothing", &[("a", &[0.0, 0.0]), ("b", &[4.0, 4.0]), ("c", &[8.0, 8.0]), ("p", &[4.0, 4.0])]),
     ],
 );
