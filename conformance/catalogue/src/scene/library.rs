@@ -8,7 +8,7 @@ macro_rules! scenes {
     };
 }
 
-const COUNT: usize = 32;
+const COUNT: usize = 34;
 
 /// Each built-in scene's name and JSON.
 pub const SCENES: [(&str, &str); COUNT] = scenes! {
@@ -29,6 +29,7 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "light-ambient"
     "light-ambient-opengl"
     "lightmap"
+    "lights-together"
     "missed-highlight"
     "near-clip"
     "obj"
@@ -41,6 +42,7 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "sorted"
     "spotlight"
     "teapot"
+    "texture-edges"
     "translucent-square"
     "unit-light"
     "viewer"
