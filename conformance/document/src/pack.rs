@@ -3,6 +3,7 @@
 use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The schema's name.
 pub const SCHEMA: &str = "lightmeter.pack/1";
@@ -18,6 +19,9 @@ pub struct Choice {
     pub seed: u64,
     /// Pixels of the longer side of every scene; `None` for the scenes' own.
     pub size: Option<u32>,
+    /// Of a pack, the formats of targets that its blend states are asked for on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub targets: Vec<String>,
 }
 
 /// What a pack holds.
@@ -35,6 +39,9 @@ pub struct Manifest {
     pub choice: Choice,
     /// The formulas, with their inputs and outputs.
     pub formulas: Vec<PackedFormula>,
+    /// How many cases of blend states there are on each target.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub on_targets: BTreeMap<String, u64>,
     /// The scenes.
     pub scenes: Vec<PackedScene>,
     /// Each file's bytes and checksum.

@@ -38,11 +38,17 @@ pub struct AskedPixels<'a> {
     pub inputs: &'a [f32],
 }
 
+/// The id of a blend state's case on a target, which no other target's case has: `blend/add/src-alpha/one/0003@rgba8unorm`.
+#[must_use]
+pub fn pixel_id(member: &Member, case: CaseRef, target: TargetFormat) -> String {
+    format!("{}@{}", member.case_id(case), target.name())
+}
+
 impl AskedPixels<'_> {
-    /// The id of a case, which no other target's case has.
+    /// The id of a case.
     #[must_use]
     pub fn id(&self, case: CaseRef) -> String {
-        format!("{}@{}", self.member.case_id(case), self.target.name())
+        pixel_id(self.member, case, self.target)
     }
 
     /// Each case with its inputs.

@@ -7,7 +7,7 @@ use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::scene::select::{Chosen, SIZE_AMONG_ALL};
-use lightmeter_catalogue::select::{CaseRef, Member, Selected, alias_members, catalogue_of, select};
+use lightmeter_catalogue::select::{CaseRef, Member, Selected, Shard, alias_members, catalogue_of, select};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -33,6 +33,28 @@ pub struct Selection {
     pub is_by_formula: bool,
     /// Blend states that a renderer is asked for on targets, each under all of its names.
     pub blended: Vec<Selected>,
+}
+
+/// Whether something is promised of a formula's cases, as it is of all but NaN and infinity in blending.
+const fn is_promised(member: &Member) -> bool {
+    !matches!(member.spec.kind, Kind::Blend(program) if program.is_special())
+}
+
+/// The blend states of a catalogue that a renderer is asked for on targets, of `cases` random cases for each. Those of a group come one
+/// after the other; an alias belongs to the group of its equation.
+#[must_use]
+pub fn blended_states(catalogue: &[Member], filter: &Filter, cases: u64, shard: Shard) -> Vec<Selected> {
+    let mut blended = select(catalogue, filter, cases, shard);
+    let is_blended = |member: &Member| matches!(member.spec.kind, Kind::Blend(_)) && is_promised(member);
+    blended.retain(|chosen| is_blended(&catalogue[chosen.member]));
+    let group = |chosen: &Selected| catalogue[chosen.member].spec.group();
+    let mut order: HashMap<&str, usize> = HashMap::new();
+    for chosen in &blended {
+        let next = order.len();
+        order.entry(group(chosen)).or_insert(next);
+    }
+    blended.sort_by_key(|chosen| order[group(chosen)]);
+    blended
 }
 
 /// A part of a selection.
@@ -90,20 +112,9 @@ impl Selection {
         let canonical = catalogue.len();
         catalogue.extend(alias_members());
         let catalogue: Arc<[Member]> = catalogue.into();
-        let is_promised = |chosen: &Selected| !matches!(catalogue[chosen.member].spec.kind, Kind::Blend(program) if program.is_special());
         let mut formulas = select(&catalogue[..canonical], &options.filter, options.cases, options.shard);
-        formulas.retain(is_promised);
-        let mut blended = select(&catalogue, &options.filter, options.cases, options.shard);
-        let is_blended = |chosen: &Selected| matches!(catalogue[chosen.member].spec.kind, Kind::Blend(_));
-        blended.retain(|chosen| is_blended(chosen) && is_promised(chosen));
-        // An alias belongs to the group of its equation.
-        let group = |chosen: &Selected| catalogue[chosen.member].spec.group();
-        let mut order: HashMap<&str, usize> = HashMap::new();
-        for chosen in &blended {
-            let next = order.len();
-            order.entry(group(chosen)).or_insert(next);
-        }
-        blended.sort_by_key(|chosen| order[group(chosen)]);
+        formulas.retain(|chosen| is_promised(&catalogue[chosen.member]));
+        let blended = blended_states(&catalogue, &options.filter, options.cases, options.shard);
         let scenes = lightmeter_catalogue::scene::select::select(&options.filter, options.shard, options.size);
         Self {
             catalogue,

@@ -7,6 +7,7 @@ use super::pack::PackError;
 use super::picture;
 use super::plan::{CasePlace, GatePlan};
 use super::problems::note;
+use lightmeter_catalogue::select::CaseRef;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::event::Stop;
 use lightmeter_document::gate::Problems;
@@ -27,6 +28,8 @@ use std::path::{Path, PathBuf};
 
 /// The name of a folder's answers.
 pub const ANSWERS: &str = "answers.jsonl";
+/// Components of a pixel.
+const COMPONENTS: usize = 4;
 /// Lines that are read at once.
 const LINES: usize = 1 << 14;
 
@@ -98,6 +101,8 @@ struct Column {
 struct Contents {
     /// By the formula's place in the plan, once one of its cases is answered.
     formulas: HashMap<usize, Column>,
+    /// By the blend state's place in the plan, and the target.
+    states: HashMap<(usize, TargetFormat), Column>,
     scenes: HashMap<usize, Given>,
     /// Where images lie.
     folder: PathBuf,
@@ -124,7 +129,10 @@ impl FileRenderer {
     /// # Panics
     /// Where there is no file.
     pub fn read(plan: GatePlan, files: Vec<AnswerFile>, stop: Stop) -> Result<Self, FilesError> {
-        let hello = files[0].hello.clone().unwrap_or_else(Hello::everything);
+        // Answers that do not say what they are to are to all that the pack has.
+        let targets = || plan.targets.iter().map(|target| target.name().to_owned()).collect();
+        let everything = || Hello { targets: targets(), ..Hello::everything() };
+        let hello = files[0].hello.clone().unwrap_or_else(everything);
         let are_many = files.len() > 1;
         let mut renderer = Self {
             plan,
@@ -232,49 +240,75 @@ impl Read {
         let Some(place) = plan.find(id) else {
             return Self::Problem("unknown", format!("no case `{}` was asked for", clipped(id)));
         };
-        let (asks, group) = match place {
+        let (asks, group, target) = match place {
             CasePlace::Case { formula, .. } => {
-                (Asks::Outputs(&plan.member(formula).spec), plan.member(formula).spec.id.clone())
+                let spec = &plan.member(formula).spec;
+                (Asks::Outputs(spec), spec.id.clone(), None)
             }
-            CasePlace::Scene(_) => (Asks::Image, plan.id(place)),
+            CasePlace::Pixel { target, state, .. } => {
+                let spec = &plan.state_member(state).spec;
+                (Asks::Pixel(spec), spec.id.clone(), Some(target))
+            }
+            CasePlace::Scene(_) => (Asks::Image, plan.id(place), None),
         };
-        if declared.lacks(&group).is_some() {
+        if declared.lacks(&group).is_some() || target.is_some_and(|target| !declared.targets.contains(&target)) {
             return Self::Problem("unknown", format!("`{id}` is not among what the renderer declares"));
         }
         Self::Answer(place, given(line, asks))
     }
 }
 
-impl Contents {
-    /// Takes an answer; whether it is the first to its case.
-    fn put(&mut self, plan: &GatePlan, place: CasePlace, given: Given) -> bool {
-        let (formula, case) = match place {
-            CasePlace::Case { formula, case } => (formula, case),
-            CasePlace::Scene(scene) => {
-                let is_first = !self.scenes.contains_key(&scene);
-                self.scenes.entry(scene).or_insert(given);
-                return is_first;
-            }
-        };
-        let outputs = plan.member(formula).spec.output_len();
-        let count = plan.formulas[formula].count();
-        let column = self.formulas.entry(formula).or_insert_with(|| Column {
-            words: vec![0; count * outputs],
-            is_answered: vec![false; count],
-            others: HashMap::new(),
-        });
-        if std::mem::replace(&mut column.is_answered[case], true) {
+impl Column {
+    /// Of so many cases with so many outputs each, none of which is answered.
+    fn new(count: usize, outputs: usize) -> Self {
+        Self { words: vec![0; count * outputs], is_answered: vec![false; count], others: HashMap::new() }
+    }
+
+    /// Takes an answer of so many numbers, or what stands in their place; whether it is the first to its case.
+    fn put(&mut self, case: usize, outputs: usize, given: Given) -> bool {
+        if std::mem::replace(&mut self.is_answered[case], true) {
             return false;
         }
         match given {
             Given::Values(values) => {
-                let row = &mut column.words[case * outputs..(case + 1) * outputs];
+                let row = &mut self.words[case * outputs..(case + 1) * outputs];
                 row.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits());
             }
-            Given::Nothing(why) => drop(column.others.insert(case, why)),
+            Given::Nothing(why) => drop(self.others.insert(case, why)),
             Given::Image(_) => unreachable!("only a scene is answered by an image"),
         }
         true
+    }
+
+    /// What is answered to a case, as words.
+    fn get(&self, case: usize, outputs: usize) -> Result<&[u32], Unanswered> {
+        if !self.is_answered[case] {
+            return Err(Unanswered::Missing);
+        }
+        let words = &self.words[case * outputs..(case + 1) * outputs];
+        self.others.get(&case).map_or(Ok(words), |why| Err(why.clone()))
+    }
+}
+
+impl Contents {
+    /// Takes an answer; whether it is the first to its case.
+    fn put(&mut self, plan: &GatePlan, place: CasePlace, given: Given) -> bool {
+        match place {
+            CasePlace::Case { formula, case } => {
+                let outputs = plan.member(formula).spec.output_len();
+                let blank = || Column::new(plan.formulas[formula].count(), outputs);
+                self.formulas.entry(formula).or_insert_with(blank).put(case, outputs, given)
+            }
+            CasePlace::Pixel { target, state, case } => {
+                let blank = || Column::new(plan.states[state].count(), COMPONENTS);
+                self.states.entry((state, target)).or_insert_with(blank).put(case, COMPONENTS, given)
+            }
+            CasePlace::Scene(scene) => {
+                let is_first = !self.scenes.contains_key(&scene);
+                self.scenes.entry(scene).or_insert(given);
+                is_first
+            }
+        }
     }
 }
 
@@ -293,12 +327,9 @@ impl AskedRenderer for FileRenderer {
         let column = formula.and_then(|formula| Some((formula, self.contents.formulas.get(&formula)?)));
         for (place, (&case, words)) in rows.cases.iter().zip(answers.words.chunks_exact_mut(rows.outputs)).enumerate() {
             let found = column.and_then(|(formula, column)| Some((column, self.plan.formulas[formula].place(case)?)));
-            match found.filter(|(column, case)| column.is_answered[*case]) {
-                None => drop(answers.unanswered.insert(place, Unanswered::Missing)),
-                Some((column, case)) => match column.others.get(&case) {
-                    Some(why) => drop(answers.unanswered.insert(place, why.clone())),
-                    None => words.copy_from_slice(&column.words[case * rows.outputs..(case + 1) * rows.outputs]),
-                },
+            match found.map_or(Err(Unanswered::Missing), |(column, case)| column.get(case, rows.outputs)) {
+                Ok(answered) => words.copy_from_slice(answered),
+                Err(why) => drop(answers.unanswered.insert(place, why)),
             }
         }
         advanced(rows.of.len() as u64);
@@ -306,12 +337,20 @@ impl AskedRenderer for FileRenderer {
     }
 
     fn targets(&self) -> Vec<TargetFormat> {
-        // A pack has no cases on targets.
-        vec![]
+        let is_declared = |target: &TargetFormat| self.declared.targets.contains(target);
+        self.plan.targets.iter().copied().filter(is_declared).collect()
     }
 
     fn pixels(&mut self, asked: &AskedPixels<'_>) -> Result<Vec<Result<Units, Unanswered>>, DeviceError> {
-        Ok(vec![Err(Unanswered::Missing); asked.cases.len()])
+        let state = self.plan.state(&asked.member.spec.id);
+        let column = state.and_then(|state| Some((state, self.contents.states.get(&(state, asked.target))?)));
+        let of_case = |&case: &CaseRef| {
+            let found = column.and_then(|(state, column)| Some((column, self.plan.states[state].place(case)?)));
+            let (column, place) = found.ok_or(Unanswered::Missing)?;
+            let words = column.get(place, COMPONENTS)?;
+            Ok(std::array::from_fn(|k| f32::from_bits(words[k]).into()))
+        };
+        Ok(asked.cases.iter().map(of_case).collect())
     }
 
     fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError> {

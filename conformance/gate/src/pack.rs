@@ -4,7 +4,7 @@ use super::frame;
 use super::picture::within;
 use super::plan::{CasePlace, GatePlan};
 use lightmeter_catalogue::cases::blend::Program;
-use lightmeter_catalogue::cases::{GENERATOR_VERSION, Spec, ValueShape};
+use lightmeter_catalogue::cases::{GENERATOR_VERSION, Kind, Spec, ValueShape};
 use lightmeter_document::Document as _;
 use lightmeter_document::Number;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
@@ -127,14 +127,7 @@ pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
     let path = folder.join(CASES);
     let mut out =
         Summed { out: BufWriter::new(File::create(&path).map_err(failed(&path))?), sum: Default::default(), bytes: 0 };
-    for formula in 0..plan.formulas.len() {
-        for place in 0..plan.formulas[formula].count() {
-            let id = plan.id(CasePlace::Case { formula, case: place });
-            let asked = case(&plan.member(formula).spec, &id, &plan.inputs(formula, place));
-            writeln!(out, "{asked}").map_err(failed(&path))?;
-        }
-    }
-    out.flush().map_err(failed(&path))?;
+    write_cases(plan, &mut out).and_then(|()| out.flush()).map_err(failed(&path))?;
     files.push(out.listed(CASES));
     for scene in 0..plan.scenes.len() {
         for (name, bytes) in PackedDraw::new(plan, scene)?.files() {
@@ -150,6 +143,27 @@ pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
     let text = manifest.to_json().map_err(|error| PackError::Plan(error.to_string()))?;
     whole(&path, text.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
     Ok(manifest)
+}
+
+/// Writes the cases of formulas, and behind them those of blend states on targets, a line each.
+fn write_cases(plan: &GatePlan, out: &mut impl Write) -> std::io::Result<()> {
+    for formula in 0..plan.formulas.len() {
+        for place in 0..plan.formulas[formula].count() {
+            let id = plan.id(CasePlace::Case { formula, case: place });
+            writeln!(out, "{}", case(&plan.member(formula).spec, &id, &plan.inputs(formula, place)))?;
+        }
+    }
+    for state in 0..plan.states.len() {
+        let spec = &plan.state_member(state).spec;
+        let Kind::Blend(program) = spec.kind else { unreachable!("the plan has no other formulas on targets") };
+        for &target in &plan.targets {
+            for case in 0..plan.states[state].count() {
+                let id = plan.id(CasePlace::Pixel { target, state, case });
+                writeln!(out, "{}", on_target(spec, &id, &plan.state_inputs(state, case), target, program))?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Takes the files of an earlier pack out of a folder, and nothing else.
@@ -185,6 +199,7 @@ fn manifest(plan: &GatePlan) -> Result<Manifest, PackError> {
         version: env!("CARGO_PKG_VERSION").into(),
         choice: plan.choice.clone(),
         formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
+        on_targets: plan.targets.iter().map(|target| (target.name().to_owned(), plan.pixels())).collect(),
         scenes: scenes.collect::<Result<_, PackError>>()?,
         files: vec![],
     })
@@ -344,7 +359,7 @@ pub fn read(folder: &Path) -> Result<GatePlan, PackError> {
     let plan = GatePlan::new(manifest.choice.clone()).map_err(|error| refused(error.to_string()))?;
     difference(&manifest, &plan)?.map_or(Ok(plan), |what| {
         Err(refused(format!(
-            "its {what} are not those that its `filter`, `cases`, `seed` and `size` choose: write the pack again"
+            "its {what} are not those that its `filter`, `cases`, `seed`, `size` and `targets` choose: write the pack again"
         )))
     })
 }
@@ -354,6 +369,9 @@ fn difference(listed: &Manifest, plan: &GatePlan) -> Result<Option<&'static str>
     let own = manifest(plan)?;
     if listed.formulas != own.formulas {
         return Ok(Some("formulas"));
+    }
+    if listed.on_targets != own.on_targets {
+        return Ok(Some("cases on targets"));
     }
     if listed.scenes != own.scenes {
         return Ok(Some("scenes"));

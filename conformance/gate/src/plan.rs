@@ -5,21 +5,48 @@ use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::filter::{Filter, FilterError};
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
-use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected, Shard, catalogue, select};
+use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected, Shard, alias_members, catalogue, select};
 use lightmeter_document::pack::Choice;
+use lightmeter_engine::renderer::pixel_id;
+use lightmeter_engine::selection::blended_states;
 use lightmeter_scene::frame::Frame;
+use lightmeter_scene::target::TargetFormat;
 use std::collections::HashMap;
 
 /// The cases that are chosen.
 pub struct GatePlan {
     /// What chose them.
     pub choice: Choice,
-    /// Every formula.
+    /// Every formula, and behind them the other names of blend states, where targets are asked for.
     pub catalogue: Vec<Member>,
     /// The formulas that have cases in it.
     pub formulas: Vec<PlannedFormula>,
+    /// The targets that blend states are asked for on.
+    pub targets: Vec<TargetFormat>,
+    /// The blend states that have cases on each of the targets, under each of their names.
+    pub states: Vec<PlannedFormula>,
     /// The scenes, by their places among the built-in ones.
     pub scenes: Vec<usize>,
+    /// Where the cases of the formulas stand.
+    of_formulas: Index,
+    /// Where the cases of the blend states stand.
+    of_states: Index,
+}
+
+/// Why there is no plan of a choice.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// A glob cannot be read.
+    #[error("{0}")]
+    Filter(#[from] FilterError),
+    /// A target is unknown.
+    #[error("no target `{0}`; expected {formats}", formats = TargetFormat::ALL.map(TargetFormat::name).join(", "))]
+    Target(String),
+}
+
+/// The places of formulas and of their cases by ids.
+#[derive(Default)]
+struct Index {
     /// The formula of a path of random cases.
     random: HashMap<String, usize>,
     /// The formula and the case of an id with a name.
@@ -48,45 +75,54 @@ pub enum CasePlace {
         /// Of the case.
         case: usize,
     },
+    /// A case of a blend state on a target: the state's place among the plan's, and the case's among its own.
+    Pixel {
+        /// What it is blended on.
+        target: TargetFormat,
+        /// Of the state.
+        state: usize,
+        /// Of the case.
+        case: usize,
+    },
     /// The scene's place among the plan's.
     Scene(usize),
 }
 
 impl GatePlan {
-    /// The cases of a choice. NaN and infinity, of which nothing is promised, are no cases here.
+    /// The cases of a choice. NaN and infinity in blending, of which nothing is promised, are no cases here.
     ///
     /// # Errors
-    /// Where a glob cannot be read.
-    pub fn new(choice: Choice) -> Result<Self, FilterError> {
+    /// Where a glob cannot be read, or a target is unknown.
+    pub fn new(choice: Choice) -> Result<Self, PlanError> {
         let filter = Filter::new(&choice.filter)?;
-        let catalogue = catalogue();
+        let named = |name: &String| TargetFormat::by_name(name).ok_or_else(|| PlanError::Target(name.clone()));
+        let asked: Vec<TargetFormat> = choice.targets.iter().map(named).collect::<Result<_, _>>()?;
+        let mut catalogue = catalogue();
+        let canonical = catalogue.len();
+        if !asked.is_empty() {
+            catalogue.extend(alias_members());
+        }
         let mut plan = Self {
             scenes: (0..SCENES.len()).filter(|&place| filter.selects(&scene_id(place))).collect(),
             formulas: vec![],
-            random: HashMap::new(),
-            named: HashMap::new(),
-            places: HashMap::new(),
+            targets: TargetFormat::ALL.into_iter().filter(|target| asked.contains(target)).collect(),
+            states: vec![],
+            of_formulas: Index::default(),
+            of_states: Index::default(),
             catalogue,
             choice,
         };
-        for selected in select(&plan.catalogue, &filter, plan.choice.cases, Shard::WHOLE) {
+        for selected in select(&plan.catalogue[..canonical], &filter, plan.choice.cases, Shard::WHOLE) {
             let member = &plan.catalogue[selected.member];
-            if matches!(member.spec.kind, Kind::Blend(Program::Special(_))) {
-                continue;
+            if !matches!(member.spec.kind, Kind::Blend(Program::Special(_))) {
+                plan.formulas.push(plan.of_formulas.add(plan.formulas.len(), member, selected));
             }
-            let formula = plan.formulas.len();
-            plan.places.insert(member.spec.id.clone(), formula);
-            if selected.random_count() > 0 {
-                let first = member.case_id(CaseRef::Random(0));
-                let path = first.rsplit_once('/').map_or("", |(path, _)| path);
-                plan.random.insert(path.to_owned(), formula);
+        }
+        if !plan.targets.is_empty() {
+            for selected in blended_states(&plan.catalogue, &filter, plan.choice.cases, Shard::WHOLE) {
+                let member = &plan.catalogue[selected.member];
+                plan.states.push(plan.of_states.add(plan.states.len(), member, selected));
             }
-            let mut places = HashMap::new();
-            for (place, case) in selected.cases().take_while(|case| !matches!(case, CaseRef::Random(_))).enumerate() {
-                plan.named.insert(member.case_id(case), (formula, case));
-                places.insert(case, place);
-            }
-            plan.formulas.push(PlannedFormula { selected, named: places.len(), places });
         }
         Ok(plan)
     }
@@ -105,16 +141,34 @@ impl GatePlan {
         self.formulas.iter().map(|formula| formula.selected.count()).sum()
     }
 
+    /// How many cases of blend states there are on each target.
+    #[must_use]
+    pub fn pixels(&self) -> u64 {
+        self.states.iter().map(|state| state.selected.count()).sum()
+    }
+
     /// The description of a formula of the plan.
     #[must_use]
     pub fn member(&self, formula: usize) -> &Member {
         &self.catalogue[self.formulas[formula].selected.member]
     }
 
+    /// The description of a blend state of the plan.
+    #[must_use]
+    pub fn state_member(&self, state: usize) -> &Member {
+        &self.catalogue[self.states[state].selected.member]
+    }
+
     /// The place of a formula; `None` where the plan has none of its cases.
     #[must_use]
     pub fn formula(&self, id: &str) -> Option<usize> {
-        self.places.get(id).copied()
+        self.of_formulas.places.get(id).copied()
+    }
+
+    /// The place of a blend state; `None` where the plan has none of its cases on targets.
+    #[must_use]
+    pub fn state(&self, id: &str) -> Option<usize> {
+        self.of_states.places.get(id).copied()
     }
 
     /// The place of an id; `None` where the plan has no such case.
@@ -124,16 +178,13 @@ impl GatePlan {
             let scene = self.scenes.iter().position(|&place| SCENES[place].0 == name)?;
             return Some(CasePlace::Scene(scene));
         }
-        if let Some(&(formula, case)) = self.named.get(id) {
-            let case = *self.formulas[formula].places.get(&case)?;
-            return Some(CasePlace::Case { formula, case });
+        if let Some((id, target)) = id.split_once('@') {
+            let target = TargetFormat::by_name(target).filter(|target| self.targets.contains(target))?;
+            let (state, case) = self.of_states.find(id, &self.states, &self.catalogue)?;
+            return Some(CasePlace::Pixel { target, state, case });
         }
-        let (path, number) = id.rsplit_once('/')?;
-        let &formula = self.random.get(path)?;
-        let case = self.formulas[formula].random(number.parse().ok()?)?;
-        // `17` is no id of case `000017`.
-        (self.member(formula).case_id(self.formulas[formula].case(case)) == id)
-            .then_some(CasePlace::Case { formula, case })
+        let (formula, case) = self.of_formulas.find(id, &self.formulas, &self.catalogue)?;
+        Some(CasePlace::Case { formula, case })
     }
 
     /// The id at a place.
@@ -142,15 +193,28 @@ impl GatePlan {
         match place {
             CasePlace::Scene(scene) => scene_id(self.scenes[scene]),
             CasePlace::Case { formula, case } => self.member(formula).case_id(self.formulas[formula].case(case)),
+            CasePlace::Pixel { target, state, case } => {
+                pixel_id(self.state_member(state), self.states[state].case(case), target)
+            }
         }
     }
 
     /// The inputs of a case.
     #[must_use]
     pub fn inputs(&self, formula: usize, case: usize) -> Vec<f32> {
-        let member = self.member(formula);
+        self.row(&self.formulas[formula], case)
+    }
+
+    /// The inputs of a case of a blend state, which are the same on each target.
+    #[must_use]
+    pub fn state_inputs(&self, state: usize, case: usize) -> Vec<f32> {
+        self.row(&self.states[state], case)
+    }
+
+    fn row(&self, planned: &PlannedFormula, case: usize) -> Vec<f32> {
+        let member = &self.catalogue[planned.selected.member];
         let mut row = Vec::with_capacity(member.spec.input_len());
-        member.inputs(self.formulas[formula].case(case), self.choice.seed, &mut row);
+        member.inputs(planned.case(case), self.choice.seed, &mut row);
         row
     }
 
@@ -161,6 +225,37 @@ impl GatePlan {
     pub fn frame(&self, scene: usize) -> Result<(String, Frame), lightmeter_catalogue::scene::SceneError> {
         let loaded = builtin(self.scenes[scene], self.choice.size)?;
         Ok((loaded.title, loaded.frame))
+    }
+}
+
+impl Index {
+    /// Adds what is selected of a formula, whose place among the plan's is given.
+    fn add(&mut self, formula: usize, member: &Member, selected: Selected) -> PlannedFormula {
+        self.places.insert(member.spec.id.clone(), formula);
+        if selected.random_count() > 0 {
+            let first = member.case_id(CaseRef::Random(0));
+            let path = first.rsplit_once('/').map_or("", |(path, _)| path);
+            self.random.insert(path.to_owned(), formula);
+        }
+        let mut places = HashMap::new();
+        for (place, case) in selected.cases().take_while(|case| !matches!(case, CaseRef::Random(_))).enumerate() {
+            self.named.insert(member.case_id(case), (formula, case));
+            places.insert(case, place);
+        }
+        PlannedFormula { named: places.len(), selected, places }
+    }
+
+    /// The place of the formula and the place of the case that an id names.
+    fn find(&self, id: &str, formulas: &[PlannedFormula], catalogue: &[Member]) -> Option<(usize, usize)> {
+        if let Some(&(formula, case)) = self.named.get(id) {
+            return Some((formula, *formulas[formula].places.get(&case)?));
+        }
+        let (path, number) = id.rsplit_once('/')?;
+        let &formula = self.random.get(path)?;
+        let planned = &formulas[formula];
+        let case = planned.random(number.parse().ok()?)?;
+        // `17` is no id of case `000017`.
+        (catalogue[planned.selected.member].case_id(planned.case(case)) == id).then_some((formula, case))
     }
 }
 
@@ -209,15 +304,17 @@ impl PlannedFormula {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::HashSet;
 
-    fn plan(filter: &[&str]) -> GatePlan {
-        let filter = filter.iter().map(|&glob| glob.to_owned()).collect();
-        GatePlan::new(Choice { filter, cases: 5, seed: 1, size: Some(32) }).expect("the globs are valid")
+    fn plan(filter: &[&str], targets: &[&str]) -> Result<GatePlan, PlanError> {
+        let [filter, targets] = [filter, targets].map(|words| words.iter().map(|&word| word.to_owned()).collect());
+        GatePlan::new(Choice { filter, cases: 5, seed: 1, size: Some(32), targets })
     }
 
     #[test]
     fn every_case_is_found_by_its_id_and_no_other() {
-        let plan = plan(&["fog", "blend/add/zero", "vector/reflect", "blend/add/one/one/0003", "scene/phong"]);
+        let filter = ["fog", "blend/add/zero", "vector/reflect", "blend/add/one/one/0003", "scene/phong"];
+        let plan = plan(&filter, &[]).expect("the choice is right");
         let mut seen = 0;
         for formula in 0..plan.formulas.len() {
             for case in 0..plan.formulas[formula].count() {
@@ -234,5 +331,44 @@ mod tests {
         {
             assert_eq!(plan.find(id), None, "{id}");
         }
+    }
+
+    #[test]
+    fn every_case_on_a_target_is_found_by_its_id_and_no_other() {
+        let filter = ["blend/{add,min}/zero", "blend/layers", "blend/add/one/one/0003"];
+        let plan = plan(&filter, &["bgra8unorm", "rgba8unorm", "rgba8unorm"]).expect("the choice is right");
+        assert_eq!(plan.targets, [TargetFormat::Rgba8Unorm, TargetFormat::Bgra8Unorm]);
+        let mut seen = HashSet::new();
+        for state in 0..plan.states.len() {
+            for case in 0..plan.states[state].count() {
+                for &target in &plan.targets {
+                    let place = CasePlace::Pixel { target, state, case };
+                    let id = plan.id(place);
+                    assert_eq!(plan.find(&id), Some(place), "{id}");
+                    assert_eq!(plan.state_inputs(state, case).len(), plan.state_member(state).spec.input_len());
+                    seen.insert(id);
+                }
+            }
+        }
+        assert_eq!(seen.len() as u64, 2 * plan.pixels());
+        // Each name of MIN with a factor of 0 has cases of its own.
+        assert!(seen.contains("blend/min/zero/src-color/0004@rgba8unorm"));
+        for id in [
+            "blend/min/zero/src-color/0004",
+            "blend/min/zero/src-color/0004@rgba16float",
+            "blend/min/zero/src-color/0004@unknown",
+            "blend/min/zero/src-color/0004@",
+            "blend/min/zero/src-color/0005@rgba8unorm",
+            "blend/min/zero/src-color@rgba8unorm",
+            "unknown@rgba8unorm",
+        ] {
+            assert_eq!(plan.find(id), None, "{id}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_target_is_refused_by_its_name() {
+        let error = plan(&["fog"], &["rgba8unorm", "rgb565"]).err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(error.starts_with("no target `rgb565`; expected rgba32float"), "{error}");
     }
 }

@@ -79,7 +79,7 @@ impl Comparison {
 
 /// An expectation of what no renderer is ever asked is a mistake in its file.
 pub(crate) fn matches_something(expectations: &Expectations) -> anyhow::Result<()> {
-    let all = GatePlan::new(Choice { filter: vec![], cases: 1, seed: 1, size: None })?;
+    let all = GatePlan::new(Choice { filter: vec![], cases: 1, seed: 1, ..Choice::default() })?;
     for id in expectations.ids() {
         let filter = Filter::new(&[id])?;
         // Any number of a random case may be meant.

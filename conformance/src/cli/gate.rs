@@ -123,7 +123,7 @@ impl Gate {
     /// The cases, and the files of answers.
     fn asked(&self) -> anyhow::Result<(GatePlan, Vec<AnswerFile>)> {
         if self.exec.is_some() {
-            return Ok((self.cases.plan(&self.given)?, vec![]));
+            return Ok((self.cases.plan(&self.given, &[])?, vec![]));
         }
         let [folder, answers @ ..] = self.given.as_slice() else {
             bail!("expected PACK ANSWERS, or --exec COMMAND; `lightmeter pack DIR` writes a pack");
@@ -147,6 +147,8 @@ impl Gate {
     ) -> anyhow::Result<GateReport> {
         let choice = plan.choice.clone();
         let runs = if self.exec.is_some() { self.runs } else { answers.len() as u64 };
+        let asked = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
+        let targets = if self.exec.is_some() { asked } else { plan.targets.clone() };
         let (hello, subject) = match &self.exec {
             Some(command) => {
                 let mut process = ProcessRenderer::start(self.asking(command, images, stop))?;
@@ -163,7 +165,7 @@ impl Gate {
             filter: Filter::new(&choice.filter)?,
             cases: choice.cases,
             size: choice.size,
-            targets: Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec()),
+            targets,
             counts_cases: true,
             shard: self.shard.0,
             diagnose: Some(&Mistakes),

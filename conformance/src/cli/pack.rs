@@ -1,5 +1,6 @@
 //! `lightmeter pack`.
 
+use super::options::Targets;
 use super::run::matching;
 use super::{NothingToRun, Status};
 use clap::Args;
@@ -7,6 +8,7 @@ use lightmeter::cases::blend::Samples;
 use lightmeter::document::pack::Choice;
 use lightmeter::gate::pack;
 use lightmeter::gate::plan::GatePlan;
+use lightmeter_scene::target::TargetFormat;
 use std::path::PathBuf;
 
 /// Which cases a renderer is asked.
@@ -24,12 +26,13 @@ pub(crate) struct Cases {
 }
 
 impl Cases {
-    /// The plan of globs, each of which must match something.
-    pub(crate) fn plan(&self, globs: &[String]) -> anyhow::Result<GatePlan> {
+    /// The plan of globs, each of which must match something, and of targets.
+    pub(crate) fn plan(&self, globs: &[String], targets: &[TargetFormat]) -> anyhow::Result<GatePlan> {
         matching(globs, self.cases, &Samples::default(), self.size)?;
-        let choice = Choice { filter: globs.to_vec(), cases: self.cases, seed: self.seed, size: self.size };
+        let targets = targets.iter().map(|target| target.name().to_owned()).collect();
+        let choice = Choice { filter: globs.to_vec(), cases: self.cases, seed: self.seed, size: self.size, targets };
         let plan = GatePlan::new(choice)?;
-        if plan.cases() == 0 && plan.scenes.is_empty() {
+        if plan.cases() + plan.pixels() == 0 && plan.scenes.is_empty() {
             let message = "of these cases nothing is promised, so that no renderer is asked them";
             return Err(NothingToRun(message.into()).into());
         }
@@ -44,16 +47,22 @@ pub(crate) struct Pack {
     dir: PathBuf,
     /// Globs that match an id or an ancestor of it: `fog`, `lighting/blinn`, `scene/phong*`; without them: all
     filter: Vec<String>,
+    /// Ask for each blend state on this format as well: rgba32float, rgba16float, rgba8unorm, rgba8unorm-srgb or bgra8unorm; again for
+    /// several; `all`. Without it: on none
+    #[arg(long, value_name = "NAME", value_parser = super::options::Choice::target)]
+    target: Vec<Targets>,
     #[command(flatten)]
     cases: Cases,
 }
 
 impl Pack {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let plan = self.cases.plan(&self.filter)?;
+        let plan = self.cases.plan(&self.filter, &Targets::asked(&self.target).unwrap_or_default())?;
         let manifest = pack::write(&plan, &self.dir)?;
+        let on_targets: u64 = manifest.on_targets.values().sum();
+        let besides = if on_targets > 0 { format!("{on_targets} on targets, ") } else { String::new() };
         eprintln!(
-            "{}: {} cases of {} formulas, {} scenes, {} files; judge the answers by `lightmeter gate {} ANSWERS`",
+            "{}: {} cases of {} formulas, {besides}{} scenes, {} files; judge the answers by `lightmeter gate {} ANSWERS`",
             self.dir.display(),
             plan.cases(),
             manifest.formulas.len(),

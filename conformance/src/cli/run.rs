@@ -120,7 +120,7 @@ impl Run {
     /// What chooses the cases.
     fn chosen(&self) -> CaseChoice {
         let Choice { seed, size, .. } = self.choice;
-        CaseChoice { filter: self.filter.clone(), cases: self.amount.cases, seed, size }
+        CaseChoice { filter: self.filter.clone(), cases: self.amount.cases, seed, size, ..CaseChoice::default() }
     }
 
     /// Whether the result is text on standard output.

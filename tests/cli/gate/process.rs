@@ -24,7 +24,7 @@ pub(crate) fn command_of(fault: &str) -> String {
 }
 
 /// A gate over the example renderer, with something that goes wrong in it.
-fn process(filter: &[&str], fault: &str, more: &[&str]) -> Output {
+pub(crate) fn process(filter: &[&str], fault: &str, more: &[&str]) -> Output {
     gate(filter, &command_of(fault), more)
 }
 
