@@ -40,7 +40,11 @@ const MOST_AGAIN: usize = 1024;
 /// Where a shader is invalid, or a device fails before anything ran.
 pub fn run(subjects: &mut [Subject], options: &Options, observer: &mut dyn Observer) -> Result<Report, DeviceError> {
     let is_asked = subjects.iter().all(|subject| subject.asked().is_some());
-    let selection = if is_asked { Selection::of_renderer(options) } else { Selection::of(options) };
+    let mut selection = if is_asked { Selection::of_renderer(options) } else { Selection::of(options) };
+    // Of states on targets only those are asked that the renderer declares.
+    let lacks = |id: &str| subjects.iter().filter_map(Subject::asked).any(|renderer| renderer.lacks(id).is_some());
+    let catalogue = &selection.catalogue;
+    selection.blended.retain(|chosen| !lacks(&catalogue[chosen.member].spec.id));
     run_selection(&selection, subjects, options, observer)
 }
 
