@@ -6,6 +6,8 @@
 //! lightmeter gate fog --exec 'target/debug/examples/renderer'
 //! lightmeter gate fog --exec 'target/debug/examples/renderer crash-at=fog/exp/random/000017'
 //! lightmeter gate blend --exec 'target/debug/examples/renderer targets=all blends-by=truncate'
+//! lightmeter gate special --exec 'target/debug/examples/renderer special=true'
+//! lightmeter gate special --exec 'target/debug/examples/renderer special=swaps-select'
 //! ```
 
 use lightmeter::blend_unit::embedded;
@@ -85,8 +87,9 @@ impl Renderer<'_> {
             "hello": "lightmeter.protocol/1",
             "renderer": "example",
             "version": "1.0",
-            "formulas": ["**"],
+            "formulas": [self.faults.0.get("formulas").map_or("**", String::as_str)],
             "scenes": ["**"],
+            "special": self.faults.0.contains_key("special"),
             "targets": if self.faults.0.contains_key("targets") { TargetFormat::ALL.map(TargetFormat::name).to_vec() } else { vec![] },
         })
     }
@@ -95,9 +98,12 @@ impl Renderer<'_> {
     fn respond(&mut self, request: &Value, out: &mut impl Write) -> anyhow::Result<()> {
         let id = request["id"].as_str().unwrap_or_default();
         self.faults.end(id, out)?;
-        let mut answer = match request.get("scene") {
-            Some(_) => draw(request, &self.folder, &self.faults)?,
-            None => evaluate(request, &self.by_id, &self.faults),
+        let mut answer = if request.get("scene").is_some() {
+            draw(request, &self.folder, &self.faults)?
+        } else if request.get("function").is_some() {
+            special(request, &self.faults)
+        } else {
+            evaluate(request, &self.by_id, &self.faults)
         };
         self.answered += 1;
         if self.faults.has("unstable-at", id) {
@@ -195,6 +201,104 @@ fn evaluate(request: &Value, by_id: &HashMap<&str, &Member>, faults: &Faults) ->
         values.clear();
     }
     json!({ "id": id, "value": values.into_iter().map(|x| Number(x.into())).collect::<Vec<_>>() })
+}
+
+/// What an operation on special values comes to.
+fn special(request: &Value, faults: &Faults) -> Value {
+    let id = &request["id"];
+    let operand = |name: &str| {
+        let digits = request["inputs_hex"][name].as_str().and_then(|digits| digits.strip_prefix("0x"));
+        digits.and_then(|digits| u32::from_str_radix(digits, 16).ok()).unwrap_or_default()
+    };
+    let operands = ["x", "y", "z"].map(operand);
+    let function = request["function"].as_str().unwrap_or_default();
+    let swaps_select = faults.0.get("special").is_some_and(|fault| fault == "swaps-select");
+    let name = id.as_str().unwrap_or_default();
+    if faults.has("short-at", name) {
+        return json!({ "id": id, "value": [] });
+    }
+    match (float(function, operands, swaps_select), word(function, operands)) {
+        (Some(_), _) if faults.has("nan-at", name) => json!({ "id": id, "hex": "0xffc00001" }),
+        // A number in JSON has no payload.
+        (Some(x), _) if x.is_nan() => json!({ "id": id, "hex": format!("0x{:08x}", x.to_bits()) }),
+        (Some(x), _) => json!({ "id": id, "value": [Number(x.into())] }),
+        (None, Some(word)) => json!({ "id": id, "value": [word] }),
+        (None, None) => json!({ "id": id, "skip": "no numbers of 16 bits and no packing" }),
+    }
+}
+
+/// The functions that give a float; `None` of another one.
+fn float(function: &str, operands: [u32; 3], swaps_select: bool) -> Option<f32> {
+    let [x, y, z] = operands.map(f32::from_bits);
+    let dot = x * x + y * y + z * z;
+    let between = |x: f32, low: f32, high: f32| x.max(low).min(high);
+    #[expect(clippy::cast_precision_loss, reason = "the conversion is what is asked for")]
+    let from_word = operands[0] as f32;
+    Some(match function {
+        "special_keep" => x,
+        "special_add" => x + y,
+        "special_subtract" => x - y,
+        "special_multiply" => x * y,
+        "special_divide" => x / y,
+        "special_negate" => -x,
+        "special_fma" => x.mul_add(y, z),
+        "special_multiply_add" => x * y + z,
+        "special_min" => x.min(y),
+        "special_max" => x.max(y),
+        "special_clamp" => between(x, y, z),
+        "special_saturate" => between(x, 0.0, 1.0),
+        "special_select" if (z > 0.5) != swaps_select => y,
+        "special_select" => x,
+        "special_abs" => x.abs(),
+        "special_sign" if x == 0.0 => x,
+        "special_sign" => x.signum(),
+        "special_floor" => x.floor(),
+        "special_ceil" => x.ceil(),
+        "special_fract" => x - x.floor(),
+        "special_round" => x.round_ties_even(),
+        "special_trunc" => x.trunc(),
+        "special_mix" => x * (1.0 - z) + y * z,
+        "special_step" => f32::from(u8::from(x <= y)),
+        "special_smoothstep" => {
+            let t = between((z - x) / (y - x), 0.0, 1.0);
+            t * t * (3.0 - 2.0 * t)
+        }
+        "special_sqrt" => x.sqrt(),
+        "special_inverse_sqrt" => 1.0 / x.sqrt(),
+        "special_exp" => x.exp(),
+        "special_exp2" => x.exp2(),
+        "special_log" => x.ln(),
+        "special_pow" => x.powf(y),
+        "special_normalize" => x / dot.sqrt(),
+        "special_length" => dot.sqrt(),
+        "special_dot" => dot,
+        "special_from_u32" => from_word,
+        _ => return None,
+    })
+}
+
+/// The functions that give a word, and comparisons; `None` of another one.
+fn word(function: &str, operands: [u32; 3]) -> Option<u32> {
+    let [x, y, _] = operands.map(f32::from_bits);
+    let holds = match function {
+        #[expect(clippy::float_cmp, reason = "the comparison is what is asked for")]
+        "special_equal" => x == y,
+        "special_equals_itself" => !x.is_nan(),
+        "special_differs_from_itself" => x.is_nan(),
+        "special_less" => x < y,
+        "special_not_less" => x >= y || x.is_nan() || y.is_nan(),
+        "special_is_nan_by_bits" => operands[0] & 0x7fff_ffff > 0x7f80_0000,
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the conversion is what is asked for"
+        )]
+        "special_to_u32" => return Some(x as u32),
+        #[expect(clippy::cast_possible_truncation, reason = "the conversion is what is asked for")]
+        "special_to_i32" => return Some((x as i32).cast_unsigned()),
+        _ => return None,
+    };
+    Some(u32::from(holds))
 }
 
 /// What a blend state leaves on a target.

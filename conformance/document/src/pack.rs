@@ -22,6 +22,19 @@ pub struct Choice {
     /// Of a pack, the formats of targets that its blend states are asked for on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<String>,
+    /// Whether a pack has special values.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub special: bool,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+const fn is_false(is_so: &bool) -> bool {
+    !*is_so
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+const fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// What a pack holds.
@@ -42,6 +55,9 @@ pub struct Manifest {
     /// How many cases of blend states there are on each target.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub on_targets: BTreeMap<String, u64>,
+    /// How many special values there are.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub probes: usize,
     /// The scenes.
     pub scenes: Vec<PackedScene>,
     /// Each file's bytes and checksum.

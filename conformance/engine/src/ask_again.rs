@@ -7,6 +7,7 @@ use crate::image;
 use crate::options::Options;
 use crate::row_run::{Asked, RowRun};
 use crate::selection::Selection;
+use crate::special::asked::{NotedProbe, ask_again as ask_probes};
 use crate::subject::Subject;
 use crate::turn::{CHUNK, Turn, cases_of, scene_of};
 use lightmeter_catalogue::cases::Kind;
@@ -25,6 +26,8 @@ pub(crate) enum Noted {
     Both(NotedPixels, Vec<Vec<Digests>>),
     /// To some of the cases that failed, of one formula.
     Failing(Vec<Vec<Vec<(CaseRef, u32)>>>),
+    /// What a renderer answered to the probes of a table.
+    Probes(Vec<NotedProbe>),
     /// The image of a scene, and whether it failed.
     Images(Vec<(u32, bool)>),
 }
@@ -92,6 +95,7 @@ impl Pass<'_> {
                 let run = RowRun::new(&members, RowRun::compile(members[0], self.subjects, self.options)?, Asked::All);
                 self.chunk(&run, &members, &cases, &[vec![&digests]])
             }
+            (Turn::Table(_), Noted::Probes(noted)) => ask_probes(noted, self.subjects, self.options, self.report),
             (Turn::Scene(chosen), Noted::Images(images)) => {
                 let id = turn.id(self.selection);
                 for (subject, &(digest, has_failed)) in self.subjects.iter_mut().zip(images) {

@@ -5,6 +5,7 @@ use crate::device::DeviceError;
 use crate::rows::Rows;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::{CaseRef, Member};
+use lightmeter_catalogue::special::Probe;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, Unanswered};
@@ -78,6 +79,12 @@ pub trait AskedRenderer: Send + Sync {
 
     /// The pixels that it leaves on a target: in steps of 8 bits as they are stored, in numbers of float formats.
     fn pixels(&mut self, asked: &AskedPixels<'_>) -> Result<Vec<Result<Units, Unanswered>>, DeviceError>;
+
+    /// Whether it is asked for special values.
+    fn asks_special(&self) -> bool;
+
+    /// The word that it gives to each of some probes, all of which are functions.
+    fn probes(&mut self, probes: &[&'static Probe]) -> Result<Vec<Result<u32, Unanswered>>, DeviceError>;
 
     /// The image that it draws of a scene.
     fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError>;

@@ -39,13 +39,24 @@ const MOST_AGAIN: usize = 1024;
 /// # Errors
 /// Where a shader is invalid, or a device fails before anything ran.
 pub fn run(subjects: &mut [Subject], options: &Options, observer: &mut dyn Observer) -> Result<Report, DeviceError> {
-    let is_asked = subjects.iter().all(|subject| subject.asked().is_some());
-    let mut selection = if is_asked { Selection::of_renderer(options) } else { Selection::of(options) };
-    // Of states on targets only those are asked that the renderer declares.
-    let lacks = |id: &str| subjects.iter().filter_map(Subject::asked).any(|renderer| renderer.lacks(id).is_some());
-    let catalogue = &selection.catalogue;
-    selection.blended.retain(|chosen| !lacks(&catalogue[chosen.member].spec.id));
+    let selection = selection_of(subjects, options);
     run_selection(&selection, subjects, options, observer)
+}
+
+/// What the options select for the subjects: of renderers, what they declare besides formulas and scenes.
+fn selection_of(subjects: &[Subject], options: &Options) -> Selection {
+    let asked: Vec<&dyn AskedRenderer> = subjects.iter().filter_map(Subject::asked).collect();
+    if asked.len() < subjects.len() {
+        return Selection::of(options);
+    }
+    let mut selection = Selection::of_renderer(options);
+    let catalogue = &selection.catalogue;
+    let is_declared = |id: &str| asked.iter().all(|renderer| renderer.lacks(id).is_none());
+    selection.blended.retain(|chosen| is_declared(&catalogue[chosen.member].spec.id));
+    if asked.iter().all(|renderer| renderer.asks_special()) {
+        selection.tables = special::verdict::select(&options.filter, options.shard);
+    }
+    selection
 }
 
 /// Runs a selection, or a part of one, on every subject. Where a device fails, what was judged until then is the report, which
@@ -117,9 +128,7 @@ fn judge_in_turn(
         let id = turn.id(selection);
         observer.see(&Event::Group(&id));
         let result = match turn {
-            Turn::Table(table) => {
-                special::verdict::run_table(table, subjects, options, report, observer).map(|()| Noted::Nothing)
-            }
+            Turn::Table(table) => judge_table(table, subjects, options, report, observer),
             Turn::Formulas(group) => {
                 let compiled = compiled.remove(&id);
                 judge_group(catalogue, group, subjects, (options, compiled), report, observer)
@@ -161,7 +170,8 @@ fn work(selection: &Selection, subjects: &[Subject], options: &Options) -> u64 {
         let count = |all: &[Selected]| all.iter().map(Selected::count).sum::<u64>();
         let targets = options.targets.iter().filter(|target| renderer.targets().contains(target)).count() as u64;
         let pixels = targets * count(&selection.blended);
-        return options.runs * (count(&selection.formulas) + selection.scenes.len() as u64) + pixels;
+        let probes = selection.tables.iter().map(|table| table.functions().count() as u64).sum::<u64>();
+        return options.runs * (count(&selection.formulas) + selection.scenes.len() as u64) + pixels + probes;
     }
     let of_formula = |chosen: &Selected| {
         let member = &selection.catalogue[chosen.member];
@@ -175,6 +185,22 @@ fn work(selection: &Selection, subjects: &[Subject], options: &Options) -> u64 {
     let formulas: u64 = selection.formulas.iter().map(of_formula).sum();
     let others: u64 = selection.tables.iter().map(Table::work).chain(selection.scenes.iter().map(Chosen::work)).sum();
     formulas + others * subjects.len() as u64
+}
+
+/// Judges a table of special values.
+fn judge_table(
+    table: &Table,
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut Report,
+    observer: &mut dyn Observer,
+) -> Result<Noted, DeviceError> {
+    if let [subject] = subjects
+        && subject.asked().is_some()
+    {
+        return special::asked::run_table(table, subject, options, report, observer).map(Noted::Probes);
+    }
+    special::verdict::run_table(table, subjects, options, report, observer).map(|()| Noted::Nothing)
 }
 
 /// Judges a group in the blend unit, if that draws it, and in the stages that take rows, which may be compiled already.

@@ -104,8 +104,9 @@ impl Selection {
         Self { catalogue, formulas, tables, scenes, deviations, size, is_by_formula: false, blended: vec![] }
     }
 
-    /// What the options select for renderers that are asked case by case: formulas, blend states and scenes. The special values of
-    /// drivers are left out, and so are NaN and infinity in blending, for which no specification promises a result.
+    /// What the options select for renderers that are asked case by case: formulas, blend states and scenes. The tables of
+    /// special values are for those alone that declare them. NaN and infinity in blending are left out, for which no specification
+    /// promises a result.
     #[must_use]
     pub fn of_renderer(options: &Options) -> Self {
         let mut catalogue = lightmeter_catalogue::select::catalogue();

@@ -37,6 +37,8 @@ pub struct Hello {
     pub profile: Option<String>,
     /// Formats of targets that it blends on, step for step; none where it is asked for blending as arithmetic alone.
     pub targets: Vec<String>,
+    /// Whether it is asked for special values: NaN, infinity, subnormals, signed zero and rounding, an operation at a time.
+    pub special: bool,
 }
 
 impl Hello {
@@ -88,7 +90,9 @@ pub enum Line<'a> {
     /// Who answers.
     Hello(Box<Hello>),
     /// A case's outputs.
-    Value(Cow<'a, str>, Vec<f32>),
+    Value(Cow<'a, str>, Vec<f64>),
+    /// The bits of a special value, as they are written.
+    Hex(Cow<'a, str>, Cow<'a, str>),
     /// A scene's image, by the name of its file.
     Image(Cow<'a, str>, Cow<'a, str>),
     /// The renderer does not do this, and why.
@@ -103,7 +107,9 @@ impl Line<'_> {
     pub fn id(&self) -> Option<&str> {
         match self {
             Self::Hello(_) => None,
-            Self::Value(id, _) | Self::Image(id, _) | Self::Skip(id, _) | Self::Error(id, _) => Some(id),
+            Self::Value(id, _) | Self::Hex(id, _) | Self::Image(id, _) | Self::Skip(id, _) | Self::Error(id, _) => {
+                Some(id)
+            }
         }
     }
 }
@@ -115,6 +121,8 @@ struct Raw<'a> {
     id: Cow<'a, str>,
     value: Option<Values>,
     #[serde(borrow)]
+    hex: Option<Cow<'a, str>>,
+    #[serde(borrow)]
     image: Option<Cow<'a, str>>,
     #[serde(borrow)]
     skip: Option<Cow<'a, str>>,
@@ -123,40 +131,41 @@ struct Raw<'a> {
 }
 
 /// Numbers, or one.
-struct Values(Vec<f32>);
+struct Values(Vec<f64>);
 
-/// A number, or the word of one that JSON has not.
-struct Float(f32);
+/// A number, or the word of one that JSON has not. An integer is exact, or the nearest f32 where f64 does not have it.
+struct Float(f64);
 
 impl<'de> Deserialize<'de> for Float {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        /// All integers up to this are numbers of f64.
+        const EXACT: u64 = 1 << 53;
         struct Read;
         impl Visitor<'_> for Read {
-            type Value = f32;
+            type Value = f64;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a number, \"NaN\", \"Inf\" or \"-Inf\"")
             }
-            #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is what is asked for")]
-            fn visit_f64<E>(self, x: f64) -> Result<f32, E> {
-                Ok(x as f32)
+            fn visit_f64<E>(self, x: f64) -> Result<f64, E> {
+                Ok(x)
             }
             #[expect(clippy::cast_precision_loss, reason = "the nearest f32 is what is asked for")]
-            fn visit_i64<E>(self, x: i64) -> Result<f32, E> {
-                Ok(x as f32)
+            fn visit_i64<E>(self, x: i64) -> Result<f64, E> {
+                Ok(if x.unsigned_abs() <= EXACT { x as f64 } else { f64::from(x as f32) })
             }
             #[expect(clippy::cast_precision_loss, reason = "the nearest f32 is what is asked for")]
-            fn visit_u64<E>(self, x: u64) -> Result<f32, E> {
-                Ok(x as f32)
+            fn visit_u64<E>(self, x: u64) -> Result<f64, E> {
+                Ok(if x <= EXACT { x as f64 } else { f64::from(x as f32) })
             }
             // What JavaScript writes for NaN.
-            fn visit_unit<E>(self) -> Result<f32, E> {
-                Ok(f32::NAN)
+            fn visit_unit<E>(self) -> Result<f64, E> {
+                Ok(f64::NAN)
             }
-            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<f32, E> {
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<f64, E> {
                 match text {
-                    "NaN" => Ok(f32::NAN),
-                    "Inf" => Ok(f32::INFINITY),
-                    "-Inf" => Ok(f32::NEG_INFINITY),
+                    "NaN" => Ok(f64::NAN),
+                    "Inf" => Ok(f64::INFINITY),
+                    "-Inf" => Ok(f64::NEG_INFINITY),
                     _ => Err(E::invalid_value(serde::de::Unexpected::Str(text), &self)),
                 }
             }
@@ -229,14 +238,15 @@ fn quoted(text: &str) -> String {
 
 fn told(raw: Raw<'_>) -> Result<Line<'_>, String> {
     let id = raw.id;
-    match (raw.value, raw.image, raw.skip, raw.error) {
-        (Some(Values(values)), None, None, None) => Ok(Line::Value(id, values)),
-        (None, Some(file), None, None) => Ok(Line::Image(id, file)),
-        (None, None, Some(reason), None) => Ok(Line::Skip(id, reason)),
-        (None, None, None, Some(reason)) => Ok(Line::Error(id, reason)),
-        _ => {
-            Err(format!("it has none, or more than one, of `value`, `image`, `skip` and `error`; expected {EXPECTED}"))
-        }
+    match (raw.value, raw.hex, raw.image, raw.skip, raw.error) {
+        (Some(Values(values)), None, None, None, None) => Ok(Line::Value(id, values)),
+        (None, Some(digits), None, None, None) => Ok(Line::Hex(id, digits)),
+        (None, None, Some(file), None, None) => Ok(Line::Image(id, file)),
+        (None, None, None, Some(reason), None) => Ok(Line::Skip(id, reason)),
+        (None, None, None, None, Some(reason)) => Ok(Line::Error(id, reason)),
+        _ => Err(format!(
+            "it has none, or more than one, of `value`, `hex`, `image`, `skip` and `error`; expected {EXPECTED}"
+        )),
     }
 }
 
@@ -246,6 +256,7 @@ impl Line<'_> {
         match self {
             Self::Hello(hello) => Line::Hello(hello),
             Self::Value(id, values) => Line::Value(own(id), values),
+            Self::Hex(id, digits) => Line::Hex(own(id), own(digits)),
             Self::Image(id, file) => Line::Image(own(id), own(file)),
             Self::Skip(id, reason) => Line::Skip(own(id), own(reason)),
             Self::Error(id, reason) => Line::Error(own(id), own(reason)),
@@ -378,12 +389,18 @@ mod tests {
 
     #[test]
     fn lines_are_read_and_what_is_wrong_is_said() {
-        let value = |numbers: &[f32]| Line::Value("a".into(), numbers.to_vec());
+        let value = |numbers: &[f64]| Line::Value("a".into(), numbers.to_vec());
         assert_eq!(read(br#"{"id":"a","value":[1,-2.5,1e-3]}"#), Ok(value(&[1.0, -2.5, 1e-3])));
         assert_eq!(
-            read(br#"{"id":"a","value":["Inf","-Inf",1e39]}"#).ok().map(|line| format!("{line:?}")).unwrap_or_default(),
-            format!("{:?}", value(&[f32::INFINITY, f32::NEG_INFINITY, f32::INFINITY]))
+            read(br#"{"id":"a","value":["Inf","-Inf",1e39]}"#),
+            Ok(value(&[f64::INFINITY, f64::NEG_INFINITY, 1e39]))
         );
+        // Words are exact, and what is no word is the nearest f32.
+        assert_eq!(
+            read(br#"{"id":"a","value":[4294967295,-2147483648,4611686018427387905]}"#),
+            Ok(value(&[4_294_967_295.0, -2_147_483_648.0, 4_611_686_018_427_387_904.0]))
+        );
+        assert_eq!(read(br#"{"id":"a","hex":"0x7fc00000"}"#), Ok(Line::Hex("a".into(), "0x7fc00000".into())));
         assert_eq!(read(br#"{"id":"s","image":"s.png"}"#), Ok(Line::Image("s".into(), "s.png".into())));
         assert_eq!(read(br#"{"id":"s","skip":"no fog"}"#), Ok(Line::Skip("s".into(), "no fog".into())));
         let hello =
@@ -395,7 +412,7 @@ mod tests {
             br#"{"id": "NaN", "value": ["NaN","-Inf","Inf"]}"#,
         ] {
             let Ok(Line::Value(id, values)) = read(bare) else { panic!("bare words are read") };
-            assert!(id == "NaN" && values[0].is_nan() && values[1..] == [f32::NEG_INFINITY, f32::INFINITY]);
+            assert!(id == "NaN" && values[0].is_nan() && values[1..] == [f64::NEG_INFINITY, f64::INFINITY]);
             assert_eq!(super::id(bare).as_deref(), Some("NaN"));
         }
         assert_eq!(read("\u{feff}{\"id\":\"a\",\"value\":[1]}".as_bytes()), Ok(value(&[1.0])));
@@ -403,7 +420,7 @@ mod tests {
             [&br#"{"id":"a","value":[nan,-nan,inf,-inf]}"#[..], br#"{"id":"a","value":[null,null,"Inf","-Inf"]}"#]
         {
             let Ok(Line::Value(_, values)) = read(bare) else { panic!("bare words are read") };
-            assert!(values[0].is_nan() && values[1].is_nan() && values[2..] == [f32::INFINITY, f32::NEG_INFINITY]);
+            assert!(values[0].is_nan() && values[1].is_nan() && values[2..] == [f64::INFINITY, f64::NEG_INFINITY]);
         }
         for (line, id) in [
             (&br#"{"id":"fog\/exp","value":[1]}"#[..], "fog/exp"),
@@ -419,12 +436,14 @@ mod tests {
             (br#"{"id":"a","value":["nan"]}"#, "expected"),
             (br#"{"id":"a"}"#, "none, or more than one"),
             (br#"{"id":"a","value":[1],"skip":"x"}"#, "none, or more than one"),
+            (br#"{"id":"a","value":[1],"hex":"0x1"}"#, "none, or more than one"),
             (br#"{"id":"a","values":[1]}"#, "none, or more than one"),
             (br#"[1]"#, "expected an answer"),
             (b"\xff", "UTF-8"),
             (br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#, "expected `lightmeter.protocol/1`"),
             (br#"{"renderer":"r","formulas":"fog"}"#, "`formulas` is no list"),
             (br#"{"renderer":"r","version":1.2}"#, "`version` is no string"),
+            (br#"{"renderer":"r","special":"yes"}"#, "expected a boolean"),
         ] {
             let error = read(line).expect_err(said);
             assert!(error.contains(said), "{error}");

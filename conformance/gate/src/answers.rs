@@ -2,12 +2,14 @@
 
 use super::answer::{self, Hello, Line, Unread, clipped};
 use super::error::ProcessError;
-use super::given::{Asks, Declared, Given, given};
+use super::given::{Asks, Declared, Given, given, word};
 use super::pack::PackError;
 use super::picture;
 use super::plan::{CasePlace, GatePlan};
 use super::problems::note;
+use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::select::CaseRef;
+use lightmeter_catalogue::special::Probe;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::event::Stop;
 use lightmeter_document::gate::Problems;
@@ -21,6 +23,7 @@ use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
 use std::fs::File;
 use std::io::BufReader;
@@ -103,6 +106,8 @@ struct Contents {
     formulas: HashMap<usize, Column>,
     /// By the blend state's place in the plan, and the target.
     states: HashMap<(usize, TargetFormat), Column>,
+    /// By the special value's place in the plan.
+    probes: HashMap<usize, Given>,
     scenes: HashMap<usize, Given>,
     /// Where images lie.
     folder: PathBuf,
@@ -131,7 +136,7 @@ impl FileRenderer {
     pub fn read(plan: GatePlan, files: Vec<AnswerFile>, stop: Stop) -> Result<Self, FilesError> {
         // Answers that do not say what they are to are to all that the pack has.
         let targets = || plan.targets.iter().map(|target| target.name().to_owned()).collect();
-        let everything = || Hello { targets: targets(), ..Hello::everything() };
+        let everything = || Hello { targets: targets(), special: plan.choice.special, ..Hello::everything() };
         let hello = files[0].hello.clone().unwrap_or_else(everything);
         let are_many = files.len() > 1;
         let mut renderer = Self {
@@ -240,18 +245,20 @@ impl Read {
         let Some(place) = plan.find(id) else {
             return Self::Problem("unknown", format!("no case `{}` was asked for", clipped(id)));
         };
-        let (asks, group, target) = match place {
+        let lacks = |spec: &Spec| declared.lacks(&spec.id).is_some();
+        let (asks, is_declared) = match place {
             CasePlace::Case { formula, .. } => {
                 let spec = &plan.member(formula).spec;
-                (Asks::Outputs(spec), spec.id.clone(), None)
+                (Asks::Outputs(spec), !lacks(spec))
             }
             CasePlace::Pixel { target, state, .. } => {
                 let spec = &plan.state_member(state).spec;
-                (Asks::Pixel(spec), spec.id.clone(), Some(target))
+                (Asks::Pixel(spec), !lacks(spec) && declared.targets.contains(&target))
             }
-            CasePlace::Scene(_) => (Asks::Image, plan.id(place), None),
+            CasePlace::Probe(probe) => (Asks::Word(plan.probes[probe]), declared.hello.special),
+            CasePlace::Scene(_) => (Asks::Image, declared.lacks(&plan.id(place)).is_none()),
         };
-        if declared.lacks(&group).is_some() || target.is_some_and(|target| !declared.targets.contains(&target)) {
+        if !is_declared {
             return Self::Problem("unknown", format!("`{id}` is not among what the renderer declares"));
         }
         Self::Answer(place, given(line, asks))
@@ -275,7 +282,7 @@ impl Column {
                 row.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits());
             }
             Given::Nothing(why) => drop(self.others.insert(case, why)),
-            Given::Image(_) => unreachable!("only a scene is answered by an image"),
+            Given::Word(_) | Given::Image(_) => unreachable!("a formula is answered by values"),
         }
         true
     }
@@ -288,6 +295,13 @@ impl Column {
         let words = &self.words[case * outputs..(case + 1) * outputs];
         self.others.get(&case).map_or(Ok(words), |why| Err(why.clone()))
     }
+}
+
+/// Takes an answer to what has one place of its own; whether it is the first.
+fn is_first(entry: Entry<'_, usize, Given>, given: Given) -> bool {
+    let is_first = matches!(entry, Entry::Vacant(_));
+    entry.or_insert(given);
+    is_first
 }
 
 impl Contents {
@@ -303,11 +317,8 @@ impl Contents {
                 let blank = || Column::new(plan.states[state].count(), COMPONENTS);
                 self.states.entry((state, target)).or_insert_with(blank).put(case, COMPONENTS, given)
             }
-            CasePlace::Scene(scene) => {
-                let is_first = !self.scenes.contains_key(&scene);
-                self.scenes.entry(scene).or_insert(given);
-                is_first
-            }
+            CasePlace::Probe(probe) => is_first(self.probes.entry(probe), given),
+            CasePlace::Scene(scene) => is_first(self.scenes.entry(scene), given),
         }
     }
 }
@@ -353,6 +364,20 @@ impl AskedRenderer for FileRenderer {
         Ok(asked.cases.iter().map(of_case).collect())
     }
 
+    fn asks_special(&self) -> bool {
+        self.plan.choice.special && self.declared.hello.special
+    }
+
+    fn probes(&mut self, probes: &[&'static Probe]) -> Result<Vec<Result<u32, Unanswered>>, DeviceError> {
+        let answer = |probe: &&'static Probe| match self.plan.find(&probe.id()) {
+            Some(CasePlace::Probe(place)) => {
+                self.contents.probes.get(&place).cloned().map_or(Err(Unanswered::Missing), word)
+            }
+            _ => Err(Unanswered::Missing),
+        };
+        Ok(probes.iter().map(answer).collect())
+    }
+
     fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError> {
         let place = match self.plan.find(scene.id) {
             Some(CasePlace::Scene(place)) => self.contents.scenes.get(&place),
@@ -363,7 +388,7 @@ impl AskedRenderer for FileRenderer {
                 picture::read(&self.contents.folder, file, scene.frame, None).map_err(Unanswered::Unjudged)
             }
             Some(Given::Nothing(why)) => Err(why.clone()),
-            Some(Given::Values(_)) => unreachable!("a scene is answered by an image, or by nothing"),
+            Some(Given::Values(_) | Given::Word(_)) => unreachable!("a scene is answered by an image, or by nothing"),
             None => Err(Unanswered::Missing),
         })
     }

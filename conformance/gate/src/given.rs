@@ -4,6 +4,8 @@ use super::answer::{Hello, Line, clipped};
 use super::error::ProcessError;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::filter::Filter;
+use lightmeter_catalogue::special::{Gives, Probe};
+use lightmeter_document::Number;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::gate::RendererIdentity;
 use lightmeter_document::run::Identity;
@@ -18,6 +20,8 @@ use lightmeter_scene::target::TargetFormat;
 pub(super) enum Given {
     /// A formula's outputs.
     Values(Vec<f32>),
+    /// The bits of a special value.
+    Word(u32),
     /// The file of a scene's image.
     Image(String),
     /// Neither.
@@ -31,15 +35,18 @@ pub(super) enum Asks<'a> {
     Outputs(&'a Spec),
     /// What a blend state leaves on a target: red, green, blue and alpha.
     Pixel(&'a Spec),
+    /// The word that a probe of special values comes to.
+    Word(&'static Probe),
     /// The image of a scene.
     Image,
 }
 
-impl<'a> Asks<'a> {
-    /// The formula; `None` of a scene.
-    pub(super) const fn spec(self) -> Option<&'a Spec> {
+impl Asks<'_> {
+    /// The id of the formula or of the table; `None` of a scene.
+    pub(super) fn group(self) -> Option<String> {
         match self {
-            Self::Outputs(spec) | Self::Pixel(spec) => Some(spec),
+            Self::Outputs(spec) | Self::Pixel(spec) => Some(spec.id.clone()),
+            Self::Word(probe) => Some(probe.class.table()),
             Self::Image => None,
         }
     }
@@ -51,19 +58,59 @@ pub(super) fn given(line: Line<'_>, asks: Asks<'_>) -> Given {
     let (outputs, names) = match asks {
         Asks::Outputs(spec) => (spec.output_len(), spec.outputs.iter().map(|output| output.name).collect::<Vec<_>>()),
         Asks::Pixel(_) => (4, vec!["red", "green", "blue", "alpha"]),
+        Asks::Word(probe) => (1, vec![probe.what]),
         Asks::Image => (0, vec![]),
     };
     match (line, asks) {
         (Line::Skip(_, reason), _) => Given::Nothing(Unanswered::Skipped(clipped(&reason))),
         (Line::Error(_, reason), _) => unjudged(clipped(&reason)),
         (Line::Image(_, file), Asks::Image) => Given::Image(file.into_owned()),
-        (Line::Value(..), Asks::Image) => unjudged("a scene is answered by `image`".into()),
-        (Line::Value(_, values), _) if values.len() == outputs => Given::Values(values),
+        (Line::Value(..) | Line::Hex(..), Asks::Image) => unjudged("a scene is answered by `image`".into()),
+        (Line::Hex(_, digits), Asks::Word(_)) => {
+            let word = digits.strip_prefix("0x").filter(|digits| !digits.starts_with('+'));
+            word.and_then(|digits| u32::from_str_radix(digits, 16).ok()).map_or_else(
+                || unjudged(format!("`hex` is `{}`; expected such as \"0x7fc00000\"", clipped(&digits))),
+                Given::Word,
+            )
+        }
+        (Line::Value(_, values), Asks::Word(probe)) if values.len() == 1 => {
+            word_of(probe.gives, values[0]).map_or_else(unjudged, Given::Word)
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is what is asked for")]
+        (Line::Value(_, values), _) if values.len() == outputs => {
+            Given::Values(values.into_iter().map(|x| x as f32).collect())
+        }
         (Line::Value(_, values), _) => {
             unjudged(format!("{} numbers; expected {outputs}: {}", values.len(), names.join(", ")))
         }
+        (Line::Hex(..), _) => unjudged("only a special value is answered by `hex`".into()),
         (Line::Image(..), _) => unjudged("a formula is answered by `value`".into()),
         (Line::Hello(_), _) => unjudged("a hello is no answer".into()),
+    }
+}
+
+/// The bits of a result of this type that is given as a number: of a float the nearest f32, else an integer of 32 bits, which may have a
+/// sign.
+fn word_of(gives: Gives, x: f64) -> Result<u32, String> {
+    const WORDS: std::ops::Range<f64> = -2_147_483_648.0..4_294_967_296.0;
+    if gives == Gives::Float {
+        #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is what is asked for")]
+        return Ok((x as f32).to_bits());
+    }
+    #[expect(clippy::float_cmp, reason = "an integer is its own whole part")]
+    if !WORDS.contains(&x) || x.trunc() != x {
+        return Err(format!("{}; expected an integer of 32 bits, or 0 or 1 for whether it holds", Number(x)));
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the low 32 bits of an integer")]
+    Ok((x as i64) as u32)
+}
+
+/// The word that was given to a probe.
+pub(super) fn word(given: Given) -> Result<u32, Unanswered> {
+    match given {
+        Given::Word(bits) => Ok(bits),
+        Given::Nothing(why) => Err(why),
+        Given::Values(_) | Given::Image(_) => unreachable!("a special value is answered by a word"),
     }
 }
 
@@ -75,7 +122,7 @@ pub(super) fn answers(rows: &Rows<'_>, given: impl IntoIterator<Item = Given>) -
         match given {
             Given::Values(values) => words.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits()),
             Given::Nothing(why) => drop(answers.unanswered.insert(place, why)),
-            Given::Image(_) => unreachable!("only a scene is answered by an image"),
+            Given::Word(_) | Given::Image(_) => unreachable!("a formula is answered by values"),
         }
     }
     answers
@@ -86,7 +133,7 @@ pub(super) fn pixel(given: Given) -> Result<Units, Unanswered> {
     match given {
         Given::Values(values) => Ok(std::array::from_fn(|k| values.get(k).copied().map_or(f64::NAN, f64::from))),
         Given::Nothing(why) => Err(why),
-        Given::Image(_) => unreachable!("only a scene is answered by an image"),
+        Given::Word(_) | Given::Image(_) => unreachable!("a pixel is answered by values"),
     }
 }
 
@@ -130,5 +177,58 @@ impl Declared {
     /// Why a frame is not asked for; `None` where it is.
     pub(super) fn lacks_frame(&self, frame: &Frame) -> Option<String> {
         self.hello.lacks(frame)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::answer::read;
+    use super::*;
+
+    /// What an answer gives to a probe.
+    fn of(probe: &str, answer: &str) -> Given {
+        let line = format!(r#"{{"id": "a", {answer}}}"#);
+        let probe = Probe::by_name(probe).expect("the tables have it");
+        given(read(line.as_bytes()).expect("it can be read"), Asks::Word(probe))
+    }
+
+    #[test]
+    fn special_values_are_read_bit_for_bit() {
+        for (probe, answer, word) in [
+            ("zero-over-zero", r#""value": ["NaN"]"#, 0x7fc0_0000),
+            ("zero-over-zero", r#""hex": "0xffc00001""#, 0xffc0_0001),
+            ("keep-minus-zero", r#""value": [-0.0]"#, 0x8000_0000),
+            ("keep-subnormal", r#""value": [1e-40]"#, 1e-40_f32.to_bits()),
+            ("round-half", r#""hex": "0x1""#, 1),
+            ("too-large-to-u32", r#""value": [4294967295]"#, u32::MAX),
+            ("too-large-to-u32", r#""value": [4294967040.0]"#, 0xffff_ff00),
+            ("too-small-to-i32", r#""value": [-2147483648]"#, 0x8000_0000),
+            ("number-by-its-bits", r#""value": [1]"#, 1),
+        ] {
+            assert_eq!(of(probe, answer), Given::Word(word), "{probe}: {answer}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_word_is_not_judged_and_said() {
+        for (answer, said) in [
+            (r#""value": [4294967296]"#, "expected an integer of 32 bits"),
+            (r#""value": [-2147483649]"#, "expected an integer of 32 bits"),
+            (r#""value": [0.5]"#, "0.5; expected an integer"),
+            (r#""value": ["NaN"]"#, "NaN; expected an integer"),
+            (r#""value": [1, 2]"#, "2 numbers; expected 1: u32(1e20)"),
+            (r#""value": []"#, "0 numbers; expected 1"),
+            (r#""hex": "7fc00000""#, "expected such as \"0x7fc00000\""),
+            (r#""hex": "0x""#, "expected such as"),
+            (r#""hex": "0x+1""#, "expected such as"),
+            (r#""hex": "0x1ffffffff""#, "expected such as"),
+            (r#""image": "a.png""#, "answered by `value`"),
+            (r#""error": "no unit""#, "no unit"),
+        ] {
+            let Given::Nothing(Unanswered::Unjudged(why)) = of("too-large-to-u32", answer) else { panic!("{answer}") };
+            assert!(why.contains(said), "{answer}: {why}");
+        }
+        let hex = read(br#"{"id": "a", "hex": "0x1"}"#).expect("it can be read");
+        assert!(matches!(given(hex, Asks::Image), Given::Nothing(Unanswered::Unjudged(_))));
     }
 }

@@ -5,6 +5,7 @@ use super::picture::within;
 use super::plan::{CasePlace, GatePlan};
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{GENERATOR_VERSION, Kind, Spec, ValueShape};
+use lightmeter_catalogue::special::Probe;
 use lightmeter_document::Document as _;
 use lightmeter_document::Number;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
@@ -108,6 +109,23 @@ pub fn on_target(spec: &Spec, id: &str, row: &[f32], target: TargetFormat, progr
     asked
 }
 
+/// A probe of special values as a renderer is asked it: one operation on operands, which are told as numbers and bit for bit.
+#[must_use]
+pub fn probe(probe: &Probe) -> Value {
+    let named = |value: &dyn Fn(u32) -> Value| -> Map<String, Value> {
+        let each = Probe::OPERANDS.iter().zip(probe.inputs);
+        each.map(|(name, &bits)| ((*name).to_owned(), value(bits))).collect()
+    };
+    json!({
+        "id": probe.id(),
+        "formula": probe.class.table(),
+        "operation": probe.what,
+        "function": probe.function(),
+        "inputs": named(&|bits| json!(Number(probe.operand(bits)))),
+        "inputs_hex": named(&|bits| format!("0x{bits:08x}").into()),
+    })
+}
+
 /// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go.
 ///
 /// # Errors
@@ -145,7 +163,7 @@ pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
     Ok(manifest)
 }
 
-/// Writes the cases of formulas, and behind them those of blend states on targets, a line each.
+/// Writes the cases of formulas, behind them those of blend states on targets, and last special values, a line each.
 fn write_cases(plan: &GatePlan, out: &mut impl Write) -> std::io::Result<()> {
     for formula in 0..plan.formulas.len() {
         for place in 0..plan.formulas[formula].count() {
@@ -163,7 +181,7 @@ fn write_cases(plan: &GatePlan, out: &mut impl Write) -> std::io::Result<()> {
             }
         }
     }
-    Ok(())
+    plan.probes.iter().try_for_each(|asked| writeln!(out, "{}", probe(asked)))
 }
 
 /// Takes the files of an earlier pack out of a folder, and nothing else.
@@ -199,6 +217,7 @@ fn manifest(plan: &GatePlan) -> Result<Manifest, PackError> {
         version: env!("CARGO_PKG_VERSION").into(),
         choice: plan.choice.clone(),
         formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
+        probes: plan.probes.len(),
         on_targets: plan.targets.iter().map(|target| (target.name().to_owned(), plan.pixels())).collect(),
         scenes: scenes.collect::<Result<_, PackError>>()?,
         files: vec![],
@@ -359,7 +378,7 @@ pub fn read(folder: &Path) -> Result<GatePlan, PackError> {
     let plan = GatePlan::new(manifest.choice.clone()).map_err(|error| refused(error.to_string()))?;
     difference(&manifest, &plan)?.map_or(Ok(plan), |what| {
         Err(refused(format!(
-            "its {what} are not those that its `filter`, `cases`, `seed`, `size` and `targets` choose: write the pack again"
+            "its {what} are not those that its `filter`, `cases`, `seed`, `size`, `targets` and `special` choose: write the pack again"
         )))
     })
 }
@@ -372,6 +391,9 @@ fn difference(listed: &Manifest, plan: &GatePlan) -> Result<Option<&'static str>
     }
     if listed.on_targets != own.on_targets {
         return Ok(Some("cases on targets"));
+    }
+    if listed.probes != own.probes {
+        return Ok(Some("special values"));
     }
     if listed.scenes != own.scenes {
         return Ok(Some("scenes"));

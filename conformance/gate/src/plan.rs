@@ -6,9 +6,11 @@ use lightmeter_catalogue::filter::{Filter, FilterError};
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
 use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected, Shard, alias_members, catalogue, select};
+use lightmeter_catalogue::special::{FAMILY, Probe};
 use lightmeter_document::pack::Choice;
 use lightmeter_engine::renderer::pixel_id;
 use lightmeter_engine::selection::blended_states;
+use lightmeter_engine::special::verdict::{self, Table};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
 use std::collections::HashMap;
@@ -25,6 +27,8 @@ pub struct GatePlan {
     pub targets: Vec<TargetFormat>,
     /// The blend states that have cases on each of the targets, under each of their names.
     pub states: Vec<PlannedFormula>,
+    /// The special values, where they are asked for: those that are functions.
+    pub probes: Vec<&'static Probe>,
     /// The scenes, by their places among the built-in ones.
     pub scenes: Vec<usize>,
     /// Where the cases of the formulas stand.
@@ -84,6 +88,8 @@ pub enum CasePlace {
         /// Of the case.
         case: usize,
     },
+    /// The special value's place among the plan's.
+    Probe(usize),
     /// The scene's place among the plan's.
     Scene(usize),
 }
@@ -102,7 +108,9 @@ impl GatePlan {
         if !asked.is_empty() {
             catalogue.extend(alias_members());
         }
+        let tables = if choice.special { verdict::select(&filter, Shard::WHOLE) } else { vec![] };
         let mut plan = Self {
+            probes: tables.iter().flat_map(Table::functions).collect(),
             scenes: (0..SCENES.len()).filter(|&place| filter.selects(&scene_id(place))).collect(),
             formulas: vec![],
             targets: TargetFormat::ALL.into_iter().filter(|target| asked.contains(target)).collect(),
@@ -147,6 +155,12 @@ impl GatePlan {
         self.states.iter().map(|state| state.selected.count()).sum()
     }
 
+    /// Whether there is nothing to ask.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.formulas.is_empty() && self.states.is_empty() && self.probes.is_empty() && self.scenes.is_empty()
+    }
+
     /// The description of a formula of the plan.
     #[must_use]
     pub fn member(&self, formula: usize) -> &Member {
@@ -178,6 +192,9 @@ impl GatePlan {
             let scene = self.scenes.iter().position(|&place| SCENES[place].0 == name)?;
             return Some(CasePlace::Scene(scene));
         }
+        if id.split('/').next() == Some(FAMILY) {
+            return self.probes.iter().position(|probe| probe.id() == id).map(CasePlace::Probe);
+        }
         if let Some((id, target)) = id.split_once('@') {
             let target = TargetFormat::by_name(target).filter(|target| self.targets.contains(target))?;
             let (state, case) = self.of_states.find(id, &self.states, &self.catalogue)?;
@@ -192,6 +209,7 @@ impl GatePlan {
     pub fn id(&self, place: CasePlace) -> String {
         match place {
             CasePlace::Scene(scene) => scene_id(self.scenes[scene]),
+            CasePlace::Probe(probe) => self.probes[probe].id(),
             CasePlace::Case { formula, case } => self.member(formula).case_id(self.formulas[formula].case(case)),
             CasePlace::Pixel { target, state, case } => {
                 pixel_id(self.state_member(state), self.states[state].case(case), target)
@@ -308,7 +326,7 @@ mod tests {
 
     fn plan(filter: &[&str], targets: &[&str]) -> Result<GatePlan, PlanError> {
         let [filter, targets] = [filter, targets].map(|words| words.iter().map(|&word| word.to_owned()).collect());
-        GatePlan::new(Choice { filter, cases: 5, seed: 1, size: Some(32), targets })
+        GatePlan::new(Choice { filter, cases: 5, seed: 1, size: Some(32), targets, special: true })
     }
 
     #[test]
@@ -370,5 +388,21 @@ mod tests {
     fn an_unknown_target_is_refused_by_its_name() {
         let error = plan(&["fog"], &["rgba8unorm", "rgb565"]).err().map(|error| error.to_string()).unwrap_or_default();
         assert!(error.starts_with("no target `rgb565`; expected rgba32float"), "{error}");
+    }
+
+    #[test]
+    fn special_values_are_found_where_they_are_asked_for() {
+        let mut plan = plan(&["special/nan"], &[]).expect("the choice is right");
+        assert!(plan.probes.len() > 50 && plan.cases() == 0, "{}", plan.probes.len());
+        for probe in 0..plan.probes.len() {
+            let place = CasePlace::Probe(probe);
+            assert_eq!(plan.find(&plan.id(place)), Some(place), "{}", plan.id(place));
+        }
+        // Of another table, of a rasteriser, of no table, and where none is asked for.
+        for id in ["special/infinity/sum-overflow", "special/nan/varying-nan", "special/nan/none", "special"] {
+            assert_eq!(plan.find(id), None, "{id}");
+        }
+        plan = GatePlan::new(Choice { special: false, ..plan.choice }).expect("the choice is right");
+        assert_eq!((plan.find("special/nan/negate-nan"), plan.probes.len()), (None, 0));
     }
 }

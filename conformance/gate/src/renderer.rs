@@ -7,6 +7,7 @@ use super::picture;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_catalogue::select::CaseRef;
+use lightmeter_catalogue::special::Probe;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
@@ -39,6 +40,14 @@ pub trait Renderer {
     fn blend(&mut self, program: Program, target: TargetFormat, case: &UnitCase) -> Result<[f32; 4], String> {
         let _ = (program, case);
         Err(format!("no blending on {}", target.name()))
+    }
+
+    /// The bits that an operation on special values comes to, where its hello declares that it is asked for them.
+    ///
+    /// # Errors
+    /// Why it does not do this.
+    fn special(&mut self, probe: &Probe) -> Result<u32, String> {
+        Err(format!("no {}", probe.what))
     }
 
     /// Draws a frame to a file in the folder: its name, which ends in .png, .exr or .npy.
@@ -88,7 +97,7 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
         let given = each.map(|(&of, inputs)| {
             let spec = &rows.members[of].spec;
             let line = match renderer.evaluate(spec, inputs) {
-                Ok(values) => Line::Value(Cow::Borrowed(""), values),
+                Ok(values) => Line::Value(Cow::Borrowed(""), values.into_iter().map(f64::from).collect()),
                 Err(reason) => Line::Skip(Cow::Borrowed(""), Cow::Owned(reason)),
             };
             given(line, Asks::Outputs(spec))
@@ -108,6 +117,17 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
             pixel.map(|pixel| pixel.map(f64::from)).map_err(|reason| Unanswered::Skipped(clipped(&reason)))
         };
         Ok(asked.rows().map(blended).collect())
+    }
+
+    fn asks_special(&self) -> bool {
+        self.declared.hello.special
+    }
+
+    fn probes(&mut self, probes: &[&'static Probe]) -> Result<Vec<Result<u32, Unanswered>>, DeviceError> {
+        let renderer = self.renderer();
+        let answer =
+            |probe: &&'static Probe| renderer.special(probe).map_err(|reason| Unanswered::Skipped(clipped(&reason)));
+        Ok(probes.iter().map(answer).collect())
     }
 
     fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError> {

@@ -77,7 +77,11 @@ fn families(report: &GateReport, out: &mut impl Write) -> Result {
         let mark = if failing == 0 { '✓' } else { '✗' };
         let error = of.iter().map(|group| group.error_max.0).fold(0.0, lightmeter_document::worse);
         let margin = of.iter().map(|group| group.margin_max.0).fold(0.0, lightmeter_document::worse);
-        let what = if name == "scene" { "scenes" } else { "formulas" };
+        let what = match name.as_str() {
+            "scene" => "scenes",
+            "special" => "tables",
+            _ => "formulas",
+        };
         write!(out, "{mark} {name:<14} {:>4} {what:<9} {asked:>9} cases", of.len())?;
         if failing > 0 {
             write!(out, ", {failed} fail in {failing} {what}")?;

@@ -2,7 +2,7 @@
 
 use super::comparison::{Comparison, Earlier, matches_something};
 use super::options::{ReportFormat, ShardArgument, Targets};
-use super::pack::Cases;
+use super::pack::{Cases, nothing_to_ask};
 use super::progress::{Bar, Stream};
 use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit, writable};
@@ -27,6 +27,8 @@ use lightmeter::gate::process::{Asking, Limits, ProcessRenderer};
 use lightmeter::options::Options;
 use lightmeter::report::{gate as outputs, github};
 use lightmeter::run::run;
+use lightmeter::select::Shard;
+use lightmeter::special::verdict;
 use lightmeter::subject::Subject;
 use lightmeter_scene::target::TargetFormat;
 use std::path::{Path, PathBuf};
@@ -123,7 +125,10 @@ impl Gate {
     /// The cases, and the files of answers.
     fn asked(&self) -> anyhow::Result<(GatePlan, Vec<AnswerFile>)> {
         if self.exec.is_some() {
-            return Ok((self.cases.plan(&self.given, &[])?, vec![]));
+            let plan = self.cases.plan(self.cases.choice(&self.given))?;
+            // What it declares is not known yet.
+            let has_tables = !verdict::select(&Filter::new(&self.given)?, Shard::WHOLE).is_empty();
+            return if plan.is_empty() && !has_tables { Err(nothing_to_ask()) } else { Ok((plan, vec![])) };
         }
         let [folder, answers @ ..] = self.given.as_slice() else {
             bail!("expected PACK ANSWERS, or --exec COMMAND; `lightmeter pack DIR` writes a pack");

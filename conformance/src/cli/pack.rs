@@ -8,7 +8,6 @@ use lightmeter::cases::blend::Samples;
 use lightmeter::document::pack::Choice;
 use lightmeter::gate::pack;
 use lightmeter::gate::plan::GatePlan;
-use lightmeter_scene::target::TargetFormat;
 use std::path::PathBuf;
 
 /// Which cases a renderer is asked.
@@ -26,18 +25,23 @@ pub(crate) struct Cases {
 }
 
 impl Cases {
-    /// The plan of globs, each of which must match something, and of targets.
-    pub(crate) fn plan(&self, globs: &[String], targets: &[TargetFormat]) -> anyhow::Result<GatePlan> {
-        matching(globs, self.cases, &Samples::default(), self.size)?;
-        let targets = targets.iter().map(|target| target.name().to_owned()).collect();
-        let choice = Choice { filter: globs.to_vec(), cases: self.cases, seed: self.seed, size: self.size, targets };
-        let plan = GatePlan::new(choice)?;
-        if plan.cases() + plan.pixels() == 0 && plan.scenes.is_empty() {
-            let message = "of these cases nothing is promised, so that no renderer is asked them";
-            return Err(NothingToRun(message.into()).into());
-        }
-        Ok(plan)
+    /// What chooses the cases of globs.
+    pub(crate) fn choice(&self, globs: &[String]) -> Choice {
+        Choice { filter: globs.to_vec(), cases: self.cases, seed: self.seed, size: self.size, ..Choice::default() }
     }
+
+    /// The plan of a choice, each of whose globs must match something.
+    pub(crate) fn plan(&self, choice: Choice) -> anyhow::Result<GatePlan> {
+        matching(&choice.filter, self.cases, &Samples::default(), self.size)?;
+        Ok(GatePlan::new(choice)?)
+    }
+}
+
+/// That no renderer is asked for any of the cases.
+pub(crate) fn nothing_to_ask() -> anyhow::Error {
+    let message = "no renderer is asked these cases: nothing is promised of NaN and infinity in blending, deviations are those of drivers, \
+                   and a pack has special values where it is written with --special";
+    NothingToRun(message.into()).into()
 }
 
 /// Write the cases as files, for a renderer that answers by files: see docs/gate.md.
@@ -51,16 +55,27 @@ pub(crate) struct Pack {
     /// several; `all`. Without it: on none
     #[arg(long, value_name = "NAME", value_parser = super::options::Choice::target)]
     target: Vec<Targets>,
+    /// Ask for special values as well: NaN, infinity, subnormals, signed zero and rounding, an operation at a time
+    #[arg(long)]
+    special: bool,
     #[command(flatten)]
     cases: Cases,
 }
 
 impl Pack {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let plan = self.cases.plan(&self.filter, &Targets::asked(&self.target).unwrap_or_default())?;
+        let targets = Targets::asked(&self.target).unwrap_or_default();
+        let targets = targets.into_iter().map(|target| target.name().to_owned()).collect();
+        let choice = Choice { targets, special: self.special, ..self.cases.choice(&self.filter) };
+        let plan = self.cases.plan(choice)?;
+        if plan.is_empty() {
+            return Err(nothing_to_ask());
+        }
         let manifest = pack::write(&plan, &self.dir)?;
         let on_targets: u64 = manifest.on_targets.values().sum();
-        let besides = if on_targets > 0 { format!("{on_targets} on targets, ") } else { String::new() };
+        let besides = [(on_targets, "on targets"), (manifest.probes as u64, "special values")];
+        let besides = besides.into_iter().filter(|(count, _)| *count > 0);
+        let besides: String = besides.map(|(count, what)| format!("{count} {what}, ")).collect();
         eprintln!(
             "{}: {} cases of {} formulas, {besides}{} scenes, {} files; judge the answers by `lightmeter gate {} ANSWERS`",
             self.dir.display(),

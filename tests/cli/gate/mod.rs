@@ -1,6 +1,7 @@
 //! `lightmeter pack` and `lightmeter gate`: other renderers, by their files and as processes, right ones and all sorts of wrong.
 
 pub(crate) mod process;
+mod special;
 mod targets;
 
 use super::{code, command, lightmeter, stderr, stdout};

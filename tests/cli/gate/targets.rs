@@ -56,6 +56,15 @@ fn a_pack_is_asked_on_targets_as_a_process_is() {
 }
 
 #[test]
+fn states_that_are_not_declared_are_not_asked_for_on_targets() {
+    let (status, found) = report(&process(&STATES, "targets=all formulas=blend/add/src-alpha/one", &TARGETS));
+    let groups = found["groups"].as_array().expect("an array");
+    let asked = |group: &&Value| group["target"] == "rgba8unorm";
+    let asked: Vec<(&Value, &Value)> = groups.iter().filter(asked).map(|one| (&one["id"], &one["asked"])).collect();
+    assert_eq!((status, asked), (0, vec![(&"blend/add".into(), &64.into())]), "{}", found["totals"]);
+}
+
+#[test]
 fn a_hello_restricts_the_targets_that_a_file_is_judged_on() {
     let pack = packed("declared-targets", &TARGETS);
     let answers = answered(&pack, "");

@@ -38,6 +38,12 @@ impl Class {
         }
     }
 
+    /// The id of its table: `special/nan`.
+    #[must_use]
+    pub fn table(self) -> String {
+        format!("{FAMILY}/{}", self.name())
+    }
+
     /// The heading in reports.
     #[must_use]
     pub const fn title(self) -> &'static str {
@@ -85,9 +91,26 @@ pub struct Probe {
 }
 
 impl Probe {
+    /// The operands' names, in their order.
+    pub const OPERANDS: [&str; 3] = ["x", "y", "z"];
+
+    /// The function that evaluates it; `None` of what a rasteriser carries.
+    #[must_use]
+    pub const fn function(&self) -> Option<&'static str> {
+        if let Way::Function(name) = self.way { Some(name) } else { None }
+    }
+
+    /// An operand as a number: the value of a float, or a word where the function takes one.
+    #[must_use]
+    pub fn operand(&self, bits: u32) -> f64 {
+        let takes_word = matches!(self.way, Way::Function("special_from_u32" | "special_unpack_half"));
+        let operands = if takes_word { Gives::Word } else { Gives::Float };
+        operands.number(bits)
+    }
+
     /// Its id: `special/nan/nan-plus-one`.
     #[must_use]
     pub fn id(&self) -> String {
-        format!("{FAMILY}/{}/{}", self.class.name(), self.name)
+        format!("{}/{}", self.class.table(), self.name)
     }
 }

@@ -7,7 +7,7 @@ use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
-use lightmeter_catalogue::special::{Class, FAMILY, Gives, PROBES, Probe, SpecialDeviation, Way};
+use lightmeter_catalogue::special::{Class, PROBES, Probe, SpecialDeviation, Way};
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::{DeviationUse, Failure, Group, Report, Totals};
 use lightmeter_document::special::{ProbeResult, ProbeVerdict, Skipped};
@@ -18,8 +18,6 @@ use lightmeter_scene::target::SENTINEL;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// The operands' names, as the functions of `special.wgsl` have them.
-const OPERANDS: [&str; 3] = ["x", "y", "z"];
 /// The stages that a probe may be evaluated in, in the order of reports.
 const STAGES: [&str; 3] = ["compute", "fragment", "raster"];
 
@@ -36,13 +34,18 @@ impl Table {
     /// The id: `special/nan`.
     #[must_use]
     pub fn id(&self) -> String {
-        format!("{FAMILY}/{}", self.class.name())
+        self.class.table()
     }
 
     /// How many results there are on each subject: one for each probe and stage.
     #[must_use]
     pub fn work(&self) -> u64 {
         STAGES.iter().map(|stage| self.in_stage(stage)).sum()
+    }
+
+    /// The probes that are functions, which can be asked for by themselves.
+    pub fn functions(&self) -> impl Iterator<Item = &'static Probe> {
+        self.probes.iter().copied().filter(|probe| probe.function().is_some())
     }
 
     /// Probes that a stage evaluates.
@@ -157,7 +160,12 @@ fn granted(deviation: &SpecialDeviation, adapter: &str, report: &mut Report) {
 }
 
 /// What is known of a result that fails, and how simple its operands are.
-fn failure(outcome: &ProbeResult, results: &Results, subject: &Subject, options: &Options) -> Option<(u32, Failure)> {
+pub(super) fn failure(
+    outcome: &ProbeResult,
+    results: &Results,
+    subject: &Subject,
+    options: &Options,
+) -> Option<(u32, Failure)> {
     let probe = Probe::by_name(&outcome.probe)?;
     let (reference, interval) = probe.promise.bounds(probe.gives);
     let legal = match (outcome.verdict, outcome.recorded) {
@@ -168,7 +176,7 @@ fn failure(outcome: &ProbeResult, results: &Results, subject: &Subject, options:
         _ => format!("{}, by {}", probe.promise.words(probe.gives), probe.source.section()),
     };
     let named = |value: &dyn Fn(u32) -> serde_json::Value| {
-        OPERANDS.iter().zip(probe.inputs).map(|(name, &bits)| ((*name).to_owned(), value(bits))).collect()
+        Probe::OPERANDS.iter().zip(probe.inputs).map(|(name, &bits)| ((*name).to_owned(), value(bits))).collect()
     };
     let operands: Vec<f32> = probe.inputs.iter().map(|&bits| f32::from_bits(bits)).collect();
     let told = Failure {
@@ -179,7 +187,7 @@ fn failure(outcome: &ProbeResult, results: &Results, subject: &Subject, options:
         target: None,
         route: None,
         output: probe.what.into(),
-        inputs: named(&|bits| serde_json::to_value(Number(Gives::Float.number(bits))).unwrap_or_default()),
+        inputs: named(&|bits| serde_json::to_value(Number(probe.operand(bits))).unwrap_or_default()),
         units: BTreeMap::new(),
         inputs_hex: named(&|bits| format!("0x{bits:08x}").into()),
         reference: Number(reference),

@@ -10,8 +10,9 @@ mod session;
 
 use super::answer::Hello;
 use super::error::ProcessError;
-use super::given::{Asks, Declared, Given, answers, pixel};
+use super::given::{Asks, Declared, Given, answers, pixel, word};
 use super::{frame, pack, picture};
+use lightmeter_catalogue::special::Probe;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::event::Stop;
 use lightmeter_document::run::Identity;
@@ -160,6 +161,20 @@ impl AskedRenderer for ProcessRenderer {
         Ok(given.into_iter().map(pixel).collect())
     }
 
+    fn asks_special(&self) -> bool {
+        self.declared.hello.special
+    }
+
+    fn probes(&mut self, probes: &[&'static Probe]) -> Result<Vec<Result<u32, Unanswered>>, DeviceError> {
+        let question = |probe: &&'static Probe| Question {
+            id: probe.id(),
+            request: pack::probe(probe).to_string(),
+            asks: Asks::Word(probe),
+        };
+        let given = self.session().all(&probes.iter().map(question).collect::<Vec<_>>(), &mut |_| {});
+        Ok(given.into_iter().map(word).collect())
+    }
+
     fn image(&mut self, scene: AskedScene<'_>) -> Result<Result<StoredImage, Unanswered>, DeviceError> {
         let (path, asked) = write_scene(&self.folder, scene).map_err(refused)?;
         let AskedScene { id, frame, .. } = scene;
@@ -174,7 +189,7 @@ impl AskedRenderer for ProcessRenderer {
                 picture::read(&self.folder, &file, frame, Some(asked)).map_err(Unanswered::Unjudged)
             }
             Some(Given::Nothing(why)) => Err(why),
-            Some(Given::Values(_)) | None => {
+            Some(Given::Values(_) | Given::Word(_)) | None => {
                 unreachable!("each question has an answer of its kind, or the reason why it has none")
             }
         })

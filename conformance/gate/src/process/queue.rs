@@ -129,21 +129,20 @@ impl Session {
 
     /// After a few cases of a formula that it ended or hung at, asks no more of that formula.
     fn gives_up(&mut self, queue: &Queue<'_>, culprit: usize) {
-        let Some(spec) = queue.questions.all[culprit].asks.spec() else { return };
-        let culprits = self.culprits_of.entry(spec.id.clone()).or_default();
+        let Some(group) = queue.questions.all[culprit].asks.group() else { return };
+        let culprits = self.culprits_of.entry(group.clone()).or_default();
         *culprits += 1;
         if *culprits == MOST_OF_FORMULA {
             let left = queue.open.len();
-            let what =
-                format!("{}: no more of it is asked after {MOST_OF_FORMULA} such cases; {left} are left", spec.id);
+            let what = format!("{group}: no more of it is asked after {MOST_OF_FORMULA} such cases; {left} are left");
             self.used.incidents.push(what);
         }
     }
 
     /// Whether no more of the questions' formula is asked.
     fn has_given_up(&self, queue: &Queue<'_>) -> bool {
-        let spec = queue.questions.all.first().and_then(|question| question.asks.spec());
-        spec.and_then(|spec| self.culprits_of.get(&spec.id)).is_some_and(|culprits| *culprits >= MOST_OF_FORMULA)
+        let group = queue.questions.all.first().and_then(|question| question.asks.group());
+        group.and_then(|group| self.culprits_of.get(&group)).is_some_and(|culprits| *culprits >= MOST_OF_FORMULA)
     }
 
     /// Starts the process once more, or tells that it will not.

@@ -278,7 +278,7 @@ impl Session {
         let Some(mut running) = self.running.take() else { return (Ended::Crashed, batch.to_vec()) };
         let writing = running.send(text);
         let limits = self.asking.limits;
-        let limit = if questions.all[batch[0]].asks.spec().is_none() { limits.scene } else { limits.case };
+        let limit = if matches!(questions.all[batch[0]].asks, Asks::Image) { limits.scene } else { limits.case };
         let start = Instant::now();
         let mut waiting = Waiting {
             open: batch.iter().map(|&place| (questions.all[place].id.clone(), place)).collect(),
