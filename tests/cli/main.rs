@@ -244,6 +244,11 @@ fn cases_and_formulas_are_listed() {
         (Some("dmin"), Some("unit"))
     );
     assert!(!linear["inputs"][1]["domain"].is_null() && linear["outputs"][0]["name"] == "f");
+    let step = |rule: &Value| rule.as_str().is_some_and(|rule| rule.starts_with("where dmin = dmax it is a step"));
+    assert!(linear["rules"].as_array().expect("rules").iter().any(step), "{linear}");
+    assert_eq!(linear["inputs"][4]["means"], "the surface's colour before fog");
+    let text = stdout(&lightmeter(&["list", "--formulas", "lighting/two-lights"]));
+    assert!(text.contains("towards light 0") && text.contains("  rule lights are not attenuated"), "{text}");
 }
 
 #[test]
@@ -251,6 +256,10 @@ fn a_case_is_shown_whole() {
     let text = stdout(&lightmeter(&["show", "fog/linear/hard/at-dmax"]));
     for part in
         ["f = clamp", "pins:", "0xc1200000", "steps", "distance", "reference", "compute", "fragment", "condition"]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    for part in ["rule: where dmin = dmax it is a step", "the surface's colour before fog", "f: share of the surface's"]
     {
         assert!(text.contains(part), "{part}: {text}");
     }

@@ -144,6 +144,9 @@ pub struct ListedFormula {
     pub id: String,
     /// The formula, on a line.
     pub formula: Word,
+    /// The rules that the formula on a line does not state: divisors of 0, vectors of length 0, edges and ties, what is clamped.
+    #[serde(default)]
+    pub rules: Vec<Word>,
     /// Where the formula is from.
     pub source: Word,
     /// The stages that judge it: `compute`, `fragment`, `fixed-function` or `raster`.
@@ -178,6 +181,9 @@ pub struct ListedInput {
     pub shape: Word,
     /// The unit.
     pub unit: Word,
+    /// What the input means: which way it points, whether the formula normalises it, in which space it is.
+    #[serde(default)]
+    pub means: Word,
     /// What random cases draw the input from.
     pub domain: ListedDomain,
 }
@@ -191,6 +197,9 @@ pub struct ListedOutput {
     pub shape: Word,
     /// The unit.
     pub unit: Word,
+    /// What the output means.
+    #[serde(default)]
+    pub means: Word,
 }
 
 /// What random cases draw an input from. Bounds are those of f32, widened exactly.

@@ -72,6 +72,9 @@ pub struct PackedFormula {
     pub id: String,
     /// It, on a line.
     pub formula: Word,
+    /// The rules that the line does not state.
+    #[serde(default)]
+    pub rules: Vec<Word>,
     /// What it takes, in the order of a case's numbers.
     pub inputs: Vec<PackedValue>,
     /// What it gives, in the order of an answer's numbers.
@@ -90,6 +93,20 @@ pub struct PackedValue {
     pub shape: Word,
     /// Its unit.
     pub unit: Word,
+    /// What it means.
+    #[serde(default)]
+    pub means: Word,
+}
+
+impl PackedFormula {
+    /// The same without rules and meanings. They explain the cases and do not choose them, and packs of older versions have none.
+    #[must_use]
+    pub fn without_explanations(&self) -> Self {
+        let plain = |values: &[PackedValue]| {
+            values.iter().map(|value| PackedValue { means: Word::default(), ..value.clone() }).collect()
+        };
+        Self { rules: vec![], inputs: plain(&self.inputs), outputs: plain(&self.outputs), ..self.clone() }
+    }
 }
 
 /// A scene of a pack.

@@ -31,8 +31,17 @@ pub struct ShownCase {
     pub id: String,
     /// The formula, on a line.
     pub formula: Word,
+    /// The rules that the formula on a line does not state.
+    #[serde(default)]
+    pub rules: Vec<Word>,
     /// Where the formula is from.
     pub source: Word,
+    /// What each input means.
+    #[serde(default)]
+    pub inputs_mean: Vec<ShownMeaning>,
+    /// What each output means.
+    #[serde(default)]
+    pub outputs_mean: Vec<ShownMeaning>,
     /// The inputs by name.
     pub inputs: serde_json::Map<String, serde_json::Value>,
     /// Their bits.
@@ -47,6 +56,15 @@ pub struct ShownCase {
     pub answers: Vec<ShownAnswer>,
     /// Of a hard case: its stable and its naive form.
     pub forms: Vec<Examined>,
+}
+
+/// What an input or an output means.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct ShownMeaning {
+    /// The name of the input or output.
+    pub name: Word,
+    /// What it means.
+    pub means: Word,
 }
 
 /// A step of a formula.

@@ -4,11 +4,10 @@ use super::frame;
 use super::picture::within;
 use super::plan::{CasePlace, GatePlan};
 use lightmeter_catalogue::cases::blend::Program;
-use lightmeter_catalogue::cases::{GENERATOR_VERSION, Kind, Spec, ValueShape};
+use lightmeter_catalogue::cases::{GENERATOR_VERSION, Input, Kind, Output, Spec, ValueShape};
 use lightmeter_catalogue::special::Probe;
-use lightmeter_document::Document as _;
-use lightmeter_document::Number;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
+use lightmeter_document::{Document as _, Number, Word};
 use lightmeter_judge::image::file::{StoredImage, whole};
 use lightmeter_scene::blend::{Separate, State};
 use lightmeter_scene::frame::{Frame, Mesh, Texture};
@@ -60,16 +59,20 @@ pub enum PackError {
 /// What a formula of a plan takes and gives.
 fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {
     let spec = &plan.member(formula).spec;
-    let value = |name: &'static str, shape: ValueShape, unit: &'static str| PackedValue {
+    let value = |name: &'static str, shape: ValueShape, unit: &'static str, means: &'static str| PackedValue {
         name: name.into(),
         shape: shape.name().into(),
         unit: unit.into(),
+        means: means.into(),
     };
+    let input = |input: &Input| value(input.name, input.shape, input.unit, spec.input_means(input));
+    let output = |output: &Output| value(output.name, output.shape, output.unit, spec.output_means(output));
     PackedFormula {
         id: spec.id.clone(),
         formula: spec.text.into(),
-        inputs: spec.inputs.iter().map(|input| value(input.name, input.shape, input.unit)).collect(),
-        outputs: spec.outputs.iter().map(|output| value(output.name, output.shape, output.unit)).collect(),
+        rules: spec.rules().into_iter().map(Word::from).collect(),
+        inputs: spec.inputs.iter().map(input).collect(),
+        outputs: spec.outputs.iter().map(output).collect(),
         count: plan.formulas[formula].count(),
     }
 }
@@ -386,7 +389,10 @@ pub fn read(folder: &Path) -> Result<GatePlan, PackError> {
 /// What of a manifest is not as this lightmeter would write it for the plan. The cases themselves go by the generator's version.
 fn difference(listed: &Manifest, plan: &GatePlan) -> Result<Option<&'static str>, PackError> {
     let own = manifest(plan)?;
-    if listed.formulas != own.formulas {
+    let asked = |manifest: &Manifest| -> Vec<PackedFormula> {
+        manifest.formulas.iter().map(PackedFormula::without_explanations).collect()
+    };
+    if asked(listed) != asked(&own) {
         return Ok(Some("formulas"));
     }
     if listed.on_targets != own.on_targets {

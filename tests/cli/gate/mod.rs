@@ -235,7 +235,7 @@ fn packs_that_are_damaged_or_of_another_kind_are_refused() {
     let right = std::fs::read_to_string(&manifest).expect("there is a manifest");
     let rows = [
         ("lightmeter.pack/1", "lightmeter.pack/9", "its schema is `lightmeter.pack/9`"),
-        ("\"generator\": 2", "\"generator\": 1", "drawn by generator 1"),
+        ("\"generator\": 3", "\"generator\": 2", "drawn by generator 2"),
         ("\"cases.jsonl\"", "\"../answers.jsonl\"", "leaves the folder"),
         ("\"crc32\": \"", "\"crc32\": \"0", "not what was packed"),
         ("\"files\"", "\"", "damaged"),
@@ -273,6 +273,25 @@ fn packs_that_are_damaged_or_of_another_kind_are_refused() {
         let output = lightmeter(args);
         assert!(code(&output) >= 2 && stderr(&output).contains(said), "{args:?}: {}", stderr(&output));
     }
+}
+
+#[test]
+fn a_pack_without_rules_and_meanings_is_read() {
+    let (pack, answers) = answered("older", &["fog/exp"]);
+    let manifest = pack.join("manifest.json");
+    let right = std::fs::read_to_string(&manifest).expect("there is a manifest");
+    let mut older: Value = serde_json::from_str(&right).expect("it is JSON");
+    for formula in older["formulas"].as_array_mut().expect("formulas") {
+        formula.as_object_mut().expect("an object").remove("rules").expect("it has rules");
+        for list in ["inputs", "outputs"] {
+            for value in formula[list].as_array_mut().expect("values") {
+                value.as_object_mut().expect("an object").remove("means").expect("it has a meaning");
+            }
+        }
+    }
+    std::fs::write(&manifest, older.to_string()).expect("it can be written");
+    let output = lightmeter(&["gate", text(&pack), text(&answers)]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
 }
 
 #[test]

@@ -14,9 +14,12 @@ pub mod vector;
 mod draw;
 mod fit;
 pub mod formula;
+mod meaning;
+mod pattern;
 mod program;
 mod rasteriser;
 mod rows;
+mod rule;
 mod spec;
 
 pub use draw::{GENERATOR_VERSION, inputs, mix, move_by_ulps};

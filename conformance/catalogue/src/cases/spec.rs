@@ -1,6 +1,7 @@
 //! The description of a formula: what goes in, what comes out, where it is from, and its hard cases.
 
 use super::program::Program;
+use super::{meaning, rule};
 use lightmeter_scene::depth::DepthTest;
 use lightmeter_scene::raster::Raster;
 
@@ -330,6 +331,24 @@ impl Spec {
     pub fn group(&self) -> &str {
         let end = self.id.match_indices('/').nth(1).map_or(self.id.len(), |(at, _)| at);
         &self.id[..end]
+    }
+
+    /// The rules that its text does not state: divisors of 0, vectors of length 0, edges and ties, what is clamped.
+    #[must_use]
+    pub fn rules(&self) -> Vec<&'static str> {
+        rule::of(&self.id)
+    }
+
+    /// What an input means here: which way it points, whether it is normalised, in which space it is.
+    #[must_use]
+    pub fn input_means(&self, input: &Input) -> &'static str {
+        meaning::of_input(&self.id, input.name)
+    }
+
+    /// What an output means here, component by component where they are of different kinds.
+    #[must_use]
+    pub fn output_means(&self, output: &Output) -> &'static str {
+        meaning::of_output(&self.id, output.name)
     }
 
     /// Numbers of an input row.

@@ -72,16 +72,19 @@ fn formula(member: &Member, aliases: &Aliases) -> ListedFormula {
         name: input.name.into(),
         shape: input.shape.name().into(),
         unit: input.unit.into(),
+        means: spec.input_means(input).into(),
         domain: domain(input.domain),
     };
     let output = |output: &cases::Output| ListedOutput {
         name: output.name.into(),
         shape: output.shape.name().into(),
         unit: output.unit.into(),
+        means: spec.output_means(output).into(),
     };
     ListedFormula {
         id: spec.id.clone(),
         formula: spec.text.into(),
+        rules: spec.rules().into_iter().map(Word::from).collect(),
         source: spec.source.into(),
         stages: spec.stages().iter().map(|stage| Word::from(stage.name())).collect(),
         stable: spec.stable.map(stable),

@@ -82,12 +82,17 @@ fn signatures(catalogue: &[Member], selected: &[Selected]) -> anyhow::Result<Str
     for chosen in selected {
         let spec = &catalogue[chosen.member].spec;
         writeln!(text, "{}\n  {}  ({})", spec.id, spec.text, spec.source)?;
+        for rule in spec.rules() {
+            writeln!(text, "  rule {rule}")?;
+        }
         for input in spec.inputs {
-            let shape = input.shape.name();
-            writeln!(text, "  in   {:<16} {shape:<7} {:<8} {:?}", input.name, input.unit, input.domain)?;
+            let (shape, means) = (input.shape.name(), spec.input_means(input));
+            let domain = format!("{:?}", input.domain);
+            writeln!(text, "  in   {:<16} {shape:<7} {:<8} {domain:<26} {means}", input.name, input.unit)?;
         }
         for output in spec.outputs {
-            writeln!(text, "  out  {:<16} {:<7} {}", output.name, output.shape.name(), output.unit)?;
+            let (shape, means) = (output.shape.name(), spec.output_means(output));
+            writeln!(text, "  out  {:<16} {shape:<7} {:<8} {:26} {means}", output.name, output.unit, "")?;
         }
     }
     Ok(text)

@@ -3,11 +3,12 @@
 use super::unit::{UnitAnswer, unit_answer};
 use super::{Answer, Known, outcome};
 use lightmeter::arithmetic::{Accept, trace};
-use lightmeter::document::Number;
 use lightmeter::document::run::Examined;
 use lightmeter::document::show::{
-    SCHEMA, ShowDocument, ShownAnswer, ShownCase, ShownConditioning, ShownOutput, ShownStanding, ShownStep, ShownValue,
+    SCHEMA, ShowDocument, ShownAnswer, ShownCase, ShownConditioning, ShownMeaning, ShownOutput, ShownStanding,
+    ShownStep, ShownValue,
 };
+use lightmeter::document::{Number, Word};
 use lightmeter::formula::by_name;
 use lightmeter::select::{CaseRef, Member};
 use lightmeter::stability::{Conditioning, FormStanding};
@@ -26,12 +27,17 @@ pub(super) fn case(
         interval: bounds(&known.outputs[k].interval),
         condition: Number(known.condition[k]),
     };
+    let spec = &member.spec;
+    let meaning = |name: &'static str, means: &'static str| ShownMeaning { name: name.into(), means: means.into() };
     let rows = answers.iter().map(|one| answer(member, known, one));
     ShowDocument::Case(ShownCase {
         schema: SCHEMA.into(),
         id: member.case_id(case),
         formula: member.spec.text.into(),
+        rules: member.spec.rules().into_iter().map(Word::from).collect(),
         source: member.spec.source.into(),
+        inputs_mean: spec.inputs.iter().map(|one| meaning(one.name, spec.input_means(one))).collect(),
+        outputs_mean: spec.outputs.iter().map(|one| meaning(one.name, spec.output_means(one))).collect(),
         inputs: by_name(member, &known.inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         inputs_hex: by_name(member, &known.inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
         steps: known.steps.iter().map(step).collect(),

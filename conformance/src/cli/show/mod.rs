@@ -202,6 +202,9 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
     if let CaseRef::Near(place, _) = case {
         writeln!(text, "  near: {} ({})", spec.hard[place].name, spec.hard[place].pins)?;
     }
+    for rule in spec.rules() {
+        writeln!(text, "  rule: {rule}")?;
+    }
     text += &inputs_text(member, known)?;
     writeln!(text, "\nsteps                    f64                      legal")?;
     for (step, name) in known.steps.iter().zip(step_names(&known.steps)) {
@@ -217,6 +220,9 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
             Number(output.value).to_string(),
             range(&output.interval)
         )?;
+    }
+    for output in spec.outputs {
+        writeln!(text, "  {}: {}", output.name, spec.output_means(output))?;
     }
     writeln!(text, "\nconditioning\n  {}", known.conditioning.text())?;
     let is_promised_less =
@@ -243,7 +249,8 @@ fn inputs_text(member: &Member, known: &Known) -> anyhow::Result<String> {
         rest = others;
         let decimal: Vec<String> = these.iter().map(|&x| Number(x.into()).to_string()).collect();
         let hex: Vec<String> = these.iter().map(|x| format!("0x{:08x}", x.to_bits())).collect();
-        writeln!(text, "  {:<22} {}  {}  {}", input.name, decimal.join(" "), hex.join(" "), input.unit)?;
+        let means = member.spec.input_means(input);
+        writeln!(text, "  {:<22} {}  {}  {}  {means}", input.name, decimal.join(" "), hex.join(" "), input.unit)?;
     }
     Ok(text)
 }
