@@ -39,9 +39,6 @@ pub struct ShownCase {
     /// What each input means.
     #[serde(default)]
     pub inputs_mean: Vec<ShownMeaning>,
-    /// What each output means.
-    #[serde(default)]
-    pub outputs_mean: Vec<ShownMeaning>,
     /// The inputs by name.
     pub inputs: serde_json::Map<String, serde_json::Value>,
     /// Their bits.
@@ -58,10 +55,10 @@ pub struct ShownCase {
     pub forms: Vec<Examined>,
 }
 
-/// What an input or an output means.
+/// What an input means.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ShownMeaning {
-    /// The name of the input or output.
+    /// The name of the input.
     pub name: Word,
     /// What it means.
     pub means: Word,
@@ -83,6 +80,9 @@ pub struct ShownStep {
 pub struct ShownOutput {
     /// Its name, such as `color.g`.
     pub name: String,
+    /// What the output means that it is a number of.
+    #[serde(default)]
+    pub means: Word,
     /// The f64 reference.
     pub reference: Number,
     /// The least and the greatest legal value.

@@ -84,7 +84,7 @@ formula!(
 
 /// A direction 84° from the axis, 0.1^0.0005 as bright.
 const SLIGHT: &[(&str, &[f32])] =
-    &[("l", &[0.994_987_44, 0.0, -0.1]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[5e-4])];
+    &[("l", &[0.994_987_4, 0.0, -0.1]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[5e-4])];
 
 /// Half of all random directions lie behind the light: turn those round.
 fn toward_the_cone(_: &Spec, row: &mut [f32]) {

@@ -52,7 +52,11 @@ const INPUTS: &[Row] = &[
     ("*", "light", "the light's position in eye space"),
     ("*", "axis", "the way the spotlight points, away from the light; a unit vector, not normalised by the formula"),
     ("*", "cutoff_cosine", "cosine of the angle between the cone's axis and its edge"),
-    ("*", "exponent", "exponent of the power, 0 or greater"),
+    (
+        "*",
+        "exponent",
+        "exponent of the spotlight: the greater it is, the more of the light falls near the axis; 0 or greater",
+    ),
     ("*", "kc", "constant coefficient of the attenuation"),
     ("*", "kl", "coefficient of the distance in the attenuation"),
     ("*", "kq", "coefficient of the squared distance in the attenuation"),
@@ -131,6 +135,7 @@ const INPUTS: &[Row] = &[
         "a b",
         "one of the two vectors between which the cosine is taken; a unit vector, not normalised by the formula",
     ),
+    ("lighting/cosine-power*", "exponent", "exponent of the highlight, 0 or greater"),
     // Attenuation.
     ("attenuation/*", "d", "distance from the surface to the light, 0 or greater"),
     // Vectors.

@@ -3,6 +3,7 @@
 use super::unit::{UnitAnswer, unit_answer};
 use super::{Answer, Known, outcome};
 use lightmeter::arithmetic::{Accept, trace};
+use lightmeter::cases::Input;
 use lightmeter::document::run::Examined;
 use lightmeter::document::show::{
     SCHEMA, ShowDocument, ShownAnswer, ShownCase, ShownConditioning, ShownMeaning, ShownOutput, ShownStanding,
@@ -21,14 +22,17 @@ pub(super) fn case(
     unit: &[UnitAnswer],
     forms: Vec<Examined>,
 ) -> ShowDocument {
+    let spec = &member.spec;
+    let meaning = |one: &Input| ShownMeaning { name: one.name.into(), means: spec.input_means(one).into() };
+    let means: Vec<&'static str> =
+        spec.outputs.iter().flat_map(|one| vec![spec.output_means(one); one.shape.components()]).collect();
     let output = |k: usize| ShownOutput {
-        name: member.spec.output_name(k),
+        name: spec.output_name(k),
+        means: means[k].into(),
         reference: Number(known.outputs[k].value),
         interval: bounds(&known.outputs[k].interval),
         condition: Number(known.condition[k]),
     };
-    let spec = &member.spec;
-    let meaning = |name: &'static str, means: &'static str| ShownMeaning { name: name.into(), means: means.into() };
     let rows = answers.iter().map(|one| answer(member, known, one));
     ShowDocument::Case(ShownCase {
         schema: SCHEMA.into(),
@@ -36,8 +40,7 @@ pub(super) fn case(
         formula: member.spec.text.into(),
         rules: member.spec.rules().into_iter().map(Word::from).collect(),
         source: member.spec.source.into(),
-        inputs_mean: spec.inputs.iter().map(|one| meaning(one.name, spec.input_means(one))).collect(),
-        outputs_mean: spec.outputs.iter().map(|one| meaning(one.name, spec.output_means(one))).collect(),
+        inputs_mean: spec.inputs.iter().map(meaning).collect(),
         inputs: by_name(member, &known.inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         inputs_hex: by_name(member, &known.inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
         steps: known.steps.iter().map(step).collect(),
