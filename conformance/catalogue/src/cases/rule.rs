@@ -139,7 +139,7 @@ const RULES: &[(&str, &str)] = &[
     // Vectors.
     (
         "vector/normalize vector/toward vector/average-normal vector/face-normal vector/halfway vector/interpolated-normal vector/normal-by-determinant",
-        "⟨v⟩ is v/|v|, and 0 for the zero vector: no NaN",
+        "⟨x⟩ is x/|x|, and 0 for the zero vector: no NaN",
     ),
     (
         "vector/normalize vector/toward vector/average-normal vector/face-normal vector/halfway vector/interpolated-normal vector/normal-by-determinant vector/normalize-unguarded vector/halfway-unguarded",
@@ -147,7 +147,7 @@ const RULES: &[(&str, &str)] = &[
     ),
     (
         "vector/normalize-scaled vector/length-scaled vector/reflect-any-normal vector/normal-by-cofactors vector/face-normal-compensated",
-        "a vector is scaled by a power of two before it is squared, so that any is right whose largest component is a normal number, 2⁻¹²⁶ or greater; of the zero vector the length and ⟨v⟩ are 0",
+        "a vector is scaled by a power of two before it is squared, so that any is right whose largest component is a normal number, 2⁻¹²⁶ or greater; the length of the zero vector is 0, and so is that vector normalised",
     ),
     ("vector/normalize-unguarded", "of the zero vector nothing is promised"),
     (
