@@ -149,6 +149,7 @@ impl TableStanding<'_> {
             value: probe.gives.word(bits),
             verdict,
             recorded: None,
+            recorded_value: None,
         };
         let nothing_else = Results { outcomes: vec![], skipped: vec![], record: None };
         let Some((simple, told)) = failure(&outcome, &nothing_else, self.subject, self.options) else {
