@@ -3,7 +3,7 @@
 #![expect(clippy::print_stdout, reason = "the table is what it is for")]
 
 use lightmeter::adapters;
-use lightmeter_tests::mutants::{Campaign, Finding, Mutant, SURVIVORS, Survivors, mutants};
+use lightmeter_tests::mutants::{Campaign, Mutant, MutantClass, SURVIVORS, Survivors, mutants};
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -81,14 +81,14 @@ fn judge_all(asked: &Asked) -> Result<bool, String> {
         return Err(format!("no mutants of that file; the files are {}", names.join(", ")));
     }
     let mut known = Survivors::read().map_err(|error| format!("{SURVIVORS}: {error}"))?;
-    let mut counts: BTreeMap<&str, BTreeMap<Finding, usize>> = BTreeMap::new();
+    let mut counts: BTreeMap<&str, BTreeMap<MutantClass, usize>> = BTreeMap::new();
     let (mut is_all_known, clock) = (true, Instant::now());
     for (place, mutant) in all.iter().enumerate() {
         let began = Instant::now();
         let finding = campaign.judge(mutant).map_err(|error| format!("{}: {error}", mutant.name()))?;
         *counts.entry(&mutant.file).or_default().entry(finding).or_default() += 1;
         let is_known = known.allows(mutant, finding);
-        if !matches!(finding, Finding::Killed | Finding::Invalid) {
+        if !matches!(finding, MutantClass::Killed | MutantClass::Invalid) {
             let mark = if is_known { "" } else { " (new)" };
             println!("{finding:<9}{}{mark}", mutant.name());
         }
@@ -108,13 +108,13 @@ fn judge_all(asked: &Asked) -> Result<bool, String> {
     Ok(is_all_known)
 }
 
-fn print_table(counts: &BTreeMap<&str, BTreeMap<Finding, usize>>) {
-    let heads: String = Finding::ALL.iter().map(|finding| format!("{finding:>10}")).collect();
+fn print_table(counts: &BTreeMap<&str, BTreeMap<MutantClass, usize>>) {
+    let heads: String = MutantClass::ALL.iter().map(|finding| format!("{finding:>10}")).collect();
     println!("\n{:<36}{heads}", "file");
-    let mut sums = [0; Finding::ALL.len()];
+    let mut sums = [0; MutantClass::ALL.len()];
     for (file, of_file) in counts {
         let row: Vec<usize> =
-            Finding::ALL.iter().map(|finding| of_file.get(finding).copied().unwrap_or_default()).collect();
+            MutantClass::ALL.iter().map(|finding| of_file.get(finding).copied().unwrap_or_default()).collect();
         sums.iter_mut().zip(&row).for_each(|(sum, count)| *sum += count);
         println!("{file:<36}{}", row.iter().map(|count| format!("{count:>10}")).collect::<String>());
     }

@@ -339,13 +339,17 @@ fn judge_row(
 impl<'a> Bench<'a> {
     /// The formula that a stable form is by itself, where one stands in for a contender's function: what is legal of the
     /// published form may leave no room for it.
-    fn judged_by(&self, contender: &Contender<'_>, of: &Member) -> Option<&'a Member> {
+    fn judged_by<'b>(&self, contender: &Contender<'_>, of: &'b Member) -> Option<&'b Member>
+    where
+        'a: 'b,
+    {
         let spec = &contender.formula.unwrap_or(of).spec;
         let function = match contender.on {
             On::Device(Rung::Stable) => self.shaders.stable_form(spec.function)?,
             _ => return None,
         };
-        self.catalogue.iter().find(|member| {
+        // Techniques are not in the catalogue; the first of a group may be the stable form of another.
+        self.catalogue.iter().chain([of]).find(|member| {
             let own = &member.spec;
             own.function == function && own.inputs == spec.inputs && own.outputs == spec.outputs
         })

@@ -37,6 +37,7 @@ fn technique_power(a: vec3f, b: vec3f, exponent: f32) -> f32 {
     return vector_cosine_power(a, b, exponent);
 }
 
+// stable form of: technique_power
 fn technique_power_by_chord(a: vec3f, b: vec3f, exponent: f32) -> f32 {
     return vector_cosine_power_by_chord(a, b, exponent);
 }

@@ -34,7 +34,7 @@ const ROWS: usize = 1 << 16;
 
 /// What became of a mutant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Finding {
+pub enum MutantClass {
     /// It is no valid WGSL.
     Invalid,
     /// A run fails.
@@ -51,7 +51,7 @@ pub enum Finding {
     Unjudged,
 }
 
-impl Finding {
+impl MutantClass {
     /// All of them, in the order of tables.
     pub const ALL: [Self; 7] =
         [Self::Killed, Self::Equal, Self::Legal, Self::Missed, Self::Unshown, Self::Unjudged, Self::Invalid];
@@ -63,7 +63,7 @@ impl Finding {
     }
 }
 
-impl fmt::Display for Finding {
+impl fmt::Display for MutantClass {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::Invalid => "invalid",
@@ -180,20 +180,20 @@ impl Campaign {
     ///
     /// # Errors
     /// Where the device fails, which a mutant must not make it do.
-    pub fn judge(&mut self, mutant: &Mutant) -> Result<Finding, DeviceError> {
-        let Some(scope) = self.scope(mutant) else { return Ok(Finding::Unjudged) };
-        let Some(mutated) = self.code_of(mutant) else { return Ok(Finding::Invalid) };
+    pub fn judge(&mut self, mutant: &Mutant) -> Result<MutantClass, DeviceError> {
+        let Some(scope) = self.scope(mutant) else { return Ok(MutantClass::Unjudged) };
+        let Some(mutated) = self.code_of(mutant) else { return Ok(MutantClass::Invalid) };
         match self.fails(&scope, &mutated) {
             // A signature that no longer fits, or a constant that no pipeline can be made of.
-            Err(error) if !error.is_of_device() => return Ok(Finding::Invalid),
+            Err(error) if !error.is_of_device() => return Ok(MutantClass::Invalid),
             Err(error) => return Err(error),
-            Ok(true) => return Ok(Finding::Killed),
+            Ok(true) => return Ok(MutantClass::Killed),
             Ok(false) => {}
         }
         match scope {
             Scope::Formulas(places) => self.survivor(&places, &mutated),
             Scope::Filter(globs) if globs == ["scene"] => self.scenes(&mutated),
-            Scope::Filter(_) => Ok(Finding::Unshown),
+            Scope::Filter(_) => Ok(MutantClass::Unshown),
         }
     }
 
@@ -253,12 +253,12 @@ impl Campaign {
     }
 
     /// What a mutant is that no run fails.
-    fn survivor(&mut self, places: &[usize], mutated: &Code) -> Result<Finding, DeviceError> {
-        let mut worst = Finding::Equal;
+    fn survivor(&mut self, places: &[usize], mutated: &Code) -> Result<MutantClass, DeviceError> {
+        let mut worst = MutantClass::Equal;
         let each = if places.len() > MANY { INPUTS_OF_A_SURVIVOR / places.len() as u64 } else { INPUTS_OF_A_SURVIVOR };
         for &place in places {
             worst = worst.max(self.compared(place, each, mutated)?);
-            if worst == Finding::Missed {
+            if worst == MutantClass::Missed {
                 break;
             }
         }
@@ -266,7 +266,7 @@ impl Campaign {
     }
 
     /// What a mutant is that is seen in no scene: whether it changes a pixel.
-    fn scenes(&mut self, mutated: &Code) -> Result<Finding, DeviceError> {
+    fn scenes(&mut self, mutated: &Code) -> Result<MutantClass, DeviceError> {
         for place in 0..SCENES.len() {
             let loaded = builtin(place, Some(SIZE_AMONG_ALL)).map_err(|error| DeviceError::Refused(Box::new(error)))?;
             let called = effects(&loaded.frame);
@@ -274,14 +274,14 @@ impl Campaign {
             if let (Ok(right), Ok(other)) = (image(&self.right)?, image(mutated)?)
                 && right.pixels != other.pixels
             {
-                return Ok(Finding::Legal);
+                return Ok(MutantClass::Legal);
             }
         }
-        Ok(Finding::Unshown)
+        Ok(MutantClass::Unshown)
     }
 
     /// What a mutant is to one formula.
-    fn compared(&mut self, place: usize, random: u64, mutated: &Code) -> Result<Finding, DeviceError> {
+    fn compared(&mut self, place: usize, random: u64, mutated: &Code) -> Result<MutantClass, DeviceError> {
         let member = &self.catalogue[place];
         let members = [member];
         let right = Evaluator::new(&mut self.subject, &members, &self.right)?;
@@ -290,7 +290,7 @@ impl Campaign {
         let near =
             (0..member.spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));
         let mut cases = hard.chain(near).chain((0..random).map(CaseRef::Random));
-        let (mut worst, outputs) = (Finding::Equal, member.spec.output_len());
+        let (mut worst, outputs) = (MutantClass::Equal, member.spec.output_len());
         let options = Options::new(mutated.clone());
         loop {
             let mut inputs = vec![];
@@ -306,14 +306,14 @@ impl Campaign {
                 let rows = inputs.chunks_exact(member.spec.input_len());
                 let words = expected.chunks_exact(outputs).zip(found.chunks_exact(outputs));
                 for (inputs, (_, found)) in rows.zip(words).filter(|(_, (expected, found))| expected != found) {
-                    worst = Finding::Legal;
+                    worst = MutantClass::Legal;
                     let mut legal = vec![Accept::ANY; outputs];
                     member.formula.promised_interval(member.spec.kind, inputs, options.profile, &mut legal);
                     let is_legal = |(word, legal): (&u32, &Accept)| {
                         legal.is_any() || legal.contains(f64::from(f32::from_bits(*word)))
                     };
                     if !found.iter().zip(&legal).all(is_legal) {
-                        return Ok(Finding::Missed);
+                        return Ok(MutantClass::Missed);
                     }
                 }
             }
@@ -326,11 +326,11 @@ fn calls(text: &str) -> Vec<(String, String)> {
     let tokens = tokens(text);
     let word = |at: usize| tokens.get(at).map_or("", |token| &text[token.range.clone()]);
     let (mut found, mut function) = (vec![], "");
-    for at in 0..tokens.len() {
+    for (at, token) in tokens.iter().enumerate() {
         if word(at) == "fn" {
             function = word(at + 1);
         }
-        if tokens[at].kind == TokenKind::Word && word(at + 1) == "(" && !function.is_empty() {
+        if token.kind == TokenKind::Word && word(at + 1) == "(" && !function.is_empty() {
             found.push((function.to_owned(), word(at).to_owned()));
         }
     }

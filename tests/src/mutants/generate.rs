@@ -25,7 +25,9 @@ impl Mutant {
     pub fn name(&self) -> String {
         let Self { file, function, place, before, after, .. } = self;
         let of = if function.is_empty() { String::new() } else { format!(" {function}") };
-        format!("{file}{of} {place}: {before} -> {after}")
+        // What stands on several lines is named on one.
+        let line = |text: &str| text.split_whitespace().collect::<Vec<&str>>().join(" ");
+        format!("{file}{of} {place}: {} -> {}", line(before), line(after))
     }
 
     /// The text with the change.

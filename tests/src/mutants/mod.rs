@@ -9,6 +9,6 @@ mod generate;
 mod survivors;
 mod tokens;
 
-pub use campaign::{Campaign, Finding, Scope};
+pub use campaign::{Campaign, MutantClass, Scope};
 pub use generate::{Mutant, mutants};
 pub use survivors::{SURVIVORS, Survivors};

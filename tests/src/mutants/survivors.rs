@@ -1,6 +1,6 @@
 //! The mutants that are known to survive, as `tests/mutants.txt` lists them: a line each, what it is and its name.
 
-use super::campaign::Finding;
+use super::campaign::MutantClass;
 use super::generate::Mutant;
 use std::collections::BTreeMap;
 use std::io;
@@ -48,7 +48,7 @@ impl Survivors {
 
     /// Whether a mutant is killed, or survives as what it is known for.
     #[must_use]
-    pub fn allows(&self, mutant: &Mutant, finding: Finding) -> bool {
+    pub fn allows(&self, mutant: &Mutant, finding: MutantClass) -> bool {
         !finding.survives() || self.of.get(&mutant.name()).is_some_and(|class| *class == finding.to_string())
     }
 
@@ -59,7 +59,7 @@ impl Survivors {
     }
 
     /// Takes what became of a mutant for what is known of it.
-    pub fn note(&mut self, mutant: &Mutant, finding: Finding) {
+    pub fn note(&mut self, mutant: &Mutant, finding: MutantClass) {
         if finding.survives() {
             self.of.insert(mutant.name(), finding.to_string());
         } else {
@@ -79,7 +79,7 @@ impl Survivors {
 
     /// How many are known for this.
     #[must_use]
-    pub fn count(&self, finding: Finding) -> usize {
+    pub fn count(&self, finding: MutantClass) -> usize {
         self.of.values().filter(|class| **class == finding.to_string()).count()
     }
 
@@ -94,5 +94,5 @@ fn path() -> PathBuf {
 }
 
 fn is_class(text: &str) -> bool {
-    Finding::ALL.iter().any(|finding| finding.survives() && finding.to_string() == text)
+    MutantClass::ALL.iter().any(|finding| finding.survives() && finding.to_string() == text)
 }

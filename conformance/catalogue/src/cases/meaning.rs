@@ -280,9 +280,13 @@ const INPUTS: &[Row] = &[
     // Depth.
     ("depth/test/*", "new", "depth of the fragment that is drawn"),
     ("depth/test/*", "old", "depth that is there"),
-    ("depth/recovered*", "near", "distance n of the near plane from the eye"),
-    ("depth/recovered*", "far", "distance f of the far plane from the eye"),
-    ("depth/recovered*", "z", "distance from the eye along its line of sight, positive, from near to far"),
+    ("depth/recovered* depth/stored*", "near", "distance n of the near plane from the eye"),
+    ("depth/recovered* depth/stored*", "far", "distance f of the far plane from the eye"),
+    (
+        "depth/recovered* depth/stored*",
+        "z",
+        "distance from the eye along its line of sight, positive, from near to far",
+    ),
     // Blending.
     ("blend/*", "src", "colour that is drawn, (Cs, As), with straight alpha"),
     ("blend/*", "dst", "colour that is there, (Cd, Ad)"),
@@ -388,6 +392,7 @@ const OUTPUTS: &[Row] = &[
     ("depth/*", "seen", "1 where the fragment that was there stays, 2 where the new one is seen"),
     ("depth/same-geometry-*", "seen", "1 where the triangle's first drawing stays, 2 where its second is seen"),
     ("depth/test/*", "depth", "depth that is left"),
+    ("depth/stored*", "depth", "depth that is stored, 0 to 1 for z between the planes"),
     ("depth/recovered*", "z", "distance that is read back from depth"),
     ("blend/*", "color", "colour that is left, RGBA"),
     (

@@ -324,6 +324,14 @@ const RULES: &[(&str, &str)] = &[
         "depth/test/*",
         "both depths are clamped to [0, 1] before they are compared and before one is stored: depths beyond an end are equal to it",
     ),
+    (
+        "depth/stored",
+        "depth is 0 at the near plane and 1 at the far plane, for a viewer at the origin; z is a distance and so above 0",
+    ),
+    (
+        "depth/stored-reversed",
+        "depth is 1 at the near plane and 0 at the far plane, for a viewer at the origin; z is a distance and so above 0",
+    ),
     ("depth/test/never/*", "nothing passes"),
     ("depth/test/less/*", "new passes where it is < old"),
     ("depth/test/equal/*", "new passes where it is = old"),
