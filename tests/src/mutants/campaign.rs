@@ -209,10 +209,10 @@ impl Campaign {
         }
     }
 
-    /// Whether formulas judge a mutant, and not scenes or fixed functions.
+    /// Whether a few formulas judge a mutant, which takes less than a second: not scenes, fixed functions or all blend states.
     #[must_use]
     pub fn is_of_formulas(&self, mutant: &Mutant) -> bool {
-        matches!(self.scope(mutant), Some(Scope::Formulas(_)))
+        matches!(self.scope(mutant), Some(Scope::Formulas(places)) if places.len() <= MANY)
     }
 
     /// The shaders with the mutant in them; `None` where they are invalid.
