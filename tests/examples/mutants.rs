@@ -5,7 +5,7 @@
 use lightmeter::adapters;
 use lightmeter_tests::mutants::{Campaign, Mutant, MutantClass, SURVIVORS, Survivors, mutants};
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -102,6 +102,8 @@ fn judge_all(asked: &Asked) -> Result<bool, String> {
     print_table(&counts);
     println!("{} mutants in {} s", all.len(), clock.elapsed().as_secs());
     if asked.update {
+        let names: BTreeSet<String> = files.iter().flat_map(of_file).map(|mutant| mutant.name()).collect();
+        known.retain(|name| names.contains(name));
         known.write().map_err(|error| format!("{SURVIVORS}: {error}"))?;
         return Ok(true);
     }

@@ -112,7 +112,7 @@ fn failure(report: &SpecialReport, outcome: &ProbeResult) -> Option<String> {
             let recorded = outcome.recorded.unwrap_or_default();
             let whose = report.records.iter().find(|record| record.adapter == *adapter).map(|record| &record.of);
             let whose = whose.map_or("the driver", String::as_str);
-            let word = outcome.recorded_value.as_deref().unwrap_or_default();
+            let word = outcome.recorded_value.as_deref().unwrap_or("the word");
             Some(format!("CHANGED {is}, where {whose} is on record with {word} (0x{recorded:08x})"))
         }
         ProbeVerdict::Kept | ProbeVerdict::Indeterminate | ProbeVerdict::Deviates => None,

@@ -59,7 +59,7 @@ impl MutantClass {
     /// Whether it is a mutant that no run fails.
     #[must_use]
     pub const fn survives(self) -> bool {
-        !matches!(self, Self::Invalid | Self::Killed)
+        !matches!(self, Self::Invalid | Self::Killed | Self::Unjudged)
     }
 }
 
@@ -92,6 +92,8 @@ pub struct Campaign {
     right: Code,
     catalogue: Vec<Member>,
     subject: Subject,
+    /// Scopes in which the right shaders were seen to pass.
+    passed: Vec<Scope>,
 }
 
 /// Ends a run at its first failure.
@@ -119,7 +121,7 @@ impl Campaign {
     /// Where the built-in shaders are invalid, which a test rules out.
     pub fn new(subject: Subject) -> Result<Self, lightmeter_gpu::GpuError> {
         let shaders = Shaders::built_in()?;
-        Ok(Self { right: code(shaders.clone()), shaders, catalogue: catalogue(), subject })
+        Ok(Self { right: code(shaders.clone()), shaders, catalogue: catalogue(), subject, passed: vec![] })
     }
 
     /// The shaders that are mutated.
@@ -183,7 +185,7 @@ impl Campaign {
     pub fn judge(&mut self, mutant: &Mutant) -> Result<MutantClass, DeviceError> {
         let Some(scope) = self.scope(mutant) else { return Ok(MutantClass::Unjudged) };
         let Some(mutated) = self.code_of(mutant) else { return Ok(MutantClass::Invalid) };
-        match self.fails(&scope, &mutated) {
+        match self.is_failed(&scope, &mutated) {
             // A signature that no longer fits, or a constant that no pipeline can be made of.
             Err(error) if !error.is_of_device() => return Ok(MutantClass::Invalid),
             Err(error) => return Err(error),
@@ -203,7 +205,7 @@ impl Campaign {
     /// Where the device fails.
     pub fn is_noticed(&mut self, mutant: &Mutant) -> Result<Option<bool>, DeviceError> {
         let (Some(scope), Some(mutated)) = (self.scope(mutant), self.code_of(mutant)) else { return Ok(None) };
-        match self.fails(&scope, &mutated) {
+        match self.is_failed(&scope, &mutated) {
             Err(error) if !error.is_of_device() => Ok(None),
             other => other.map(Some),
         }
@@ -219,6 +221,20 @@ impl Campaign {
     fn code_of(&self, mutant: &Mutant) -> Option<Code> {
         let (_, text) = self.shaders.texts().find(|(file, _)| *file == mutant.file)?;
         Some(code(self.shaders.with(&mutant.file, mutant.apply(text)).ok()?))
+    }
+
+    /// Whether a default run of the scope fails with the mutant, and passes without it.
+    fn is_failed(&mut self, scope: &Scope, mutated: &Code) -> Result<bool, DeviceError> {
+        if !self.fails(scope, mutated)? {
+            return Ok(false);
+        }
+        if !self.passed.contains(scope) {
+            if self.fails(scope, &self.right.clone())? {
+                return Err(DeviceError::Failed(format!("the right shaders fail too, in {scope:?}")));
+            }
+            self.passed.push(scope.clone());
+        }
+        Ok(true)
     }
 
     /// Whether a default run of the scope fails.
@@ -302,7 +318,11 @@ impl Campaign {
             let expected = right.run(&mut self.subject, &of, &inputs)?;
             let found = other.run(&mut self.subject, &of, &inputs)?;
             for ((_, expected), (_, found)) in expected.iter().zip(&found) {
-                let (Ok(expected), Ok(found)) = (expected, found) else { continue };
+                let (expected, found) = match (expected, found) {
+                    (Ok(expected), Ok(found)) => (expected, found),
+                    (Err(_), Err(_)) => continue,
+                    _ => return Ok(MutantClass::Missed),
+                };
                 let rows = inputs.chunks_exact(member.spec.input_len());
                 let words = expected.chunks_exact(outputs).zip(found.chunks_exact(outputs));
                 for (inputs, (_, found)) in rows.zip(words).filter(|(_, (expected, found))| expected != found) {

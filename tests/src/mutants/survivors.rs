@@ -13,7 +13,6 @@ const HEADER: &str = "\
 # Mutants of the shaders that no default run fails, as `./x mutants --update` finds them: what each is, and its name.
 # equal: the same bits on a million inputs of each formula, and on all hard cases. legal: other bits, all within the intervals.
 # missed: a value that is not legal, on an input that a default run does not draw. unshown: the same bits in every scene or case.
-# unjudged: no run judges the function.
 ";
 
 /// Mutants that are known to survive.
@@ -75,6 +74,11 @@ impl Survivors {
         let mut lines: Vec<String> = self.of.iter().map(|(name, class)| format!("{class:<9}{name}\n")).collect();
         lines.sort();
         std::fs::write(path(), format!("{HEADER}{}", lines.concat()))
+    }
+
+    /// Leaves out what is no mutant any more.
+    pub fn retain(&mut self, is_mutant: impl Fn(&str) -> bool) {
+        self.of.retain(|name, _| is_mutant(name));
     }
 
     /// How many are known for this.

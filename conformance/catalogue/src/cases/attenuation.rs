@@ -78,9 +78,14 @@ formula!(
     hard [
         Hard::new("no-exponent", "an evenly lit cone", &[("l", &[0.0, 0.6, -0.8]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[0.0])]),
         Hard::new("slight-exponent", "an exponent of 0.0005 is not 0", SLIGHT),
+        Hard::new("no-exponent-behind", "evenly lit where the cone reaches behind the light too", BEHIND),
         Hard::new("behind", "0 behind the light with the widest cone", &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[2.0])]),
     ],
 );
+
+/// A direction 107° from the axis, in a cone of 120°.
+const BEHIND: &[(&str, &[f32])] =
+    &[("l", &[0.953_939_2, 0.0, 0.3]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[-0.5]), ("exponent", &[0.0])];
 
 /// A direction 84° from the axis, 0.1^0.0005 as bright.
 const SLIGHT: &[(&str, &[f32])] =
@@ -146,6 +151,7 @@ formula!(
     |l, axis, cutoff_cosine, exponent; out| { out.scalar(attenuation::spot_exponent_by_chord(l, axis, cutoff_cosine, exponent)); },
     hard [
         Hard::new("slight-exponent-by-chord", "an exponent of 0.0005 is not 0", SLIGHT),
+        Hard::new("no-exponent-behind", "evenly lit where the cone reaches behind the light too", BEHIND),
         Hard::new("beam-1e4", "half as bright at 0.67°", &[("l", &[-0.011_773_7, 0.0, -0.999_930_7]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e4])])
             .naive("attenuation/spot-exponent", "l·axis near 1 has no digits for the angle, which l + axis keeps", 1e3),
         Hard::new("beam-1e6", "half as bright at 0.07°", &[("l", &[-0.001_177_4, 0.0, -0.999_999_3]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e6])])

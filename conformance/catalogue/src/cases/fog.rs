@@ -81,6 +81,9 @@ linear!(
     ]
 );
 
+/// Without a clamp the factor is e.
+const NEGATIVE: &[(&str, &[f32])] = &[("p", &[0.0, 0.0, -10.0]), ("density", &[-0.01])];
+
 macro_rules! exponential {
     (
         $name:ident, $id:literal, $function:literal, $distance:expr, $factor:path, $density:expr, $text:literal,
@@ -126,6 +129,7 @@ exponential!(
         Hard::new("far-in-the-thinnest-fog", "density·z² is 4.8 though z² overflows", &[("p", &[0.0, 0.0, -2e19]), ("density", &[1.2e-38])])
             .naive("fog/exp2-document-square", "z² is ∞", 1e4),
         Hard::new("no-density", "density 0 is no fog", &[("density", &[0.0])]),
+        Hard::new("negative-density", "clamped: never clearer than clear", NEGATIVE),
     ]
 );
 exponential!(
@@ -136,7 +140,8 @@ exponential!(
     fog::exp2_document,
     DENSITY_SQUARED,
     "f = clamp(exp(−density·|p|²), 0, 1); color = mix(fog, shaded, f)",
-    "000 §6.5, a dialect"
+    "000 §6.5, a dialect",
+    hard[Hard::new("negative-density", "clamped: never clearer than clear", NEGATIVE)]
 );
 exponential!(
     Exp2OpenGl, "fog/exp2-opengl", "fog_exp2_opengl", Distance::Planar, fog::exp2_opengl, DENSITY,
@@ -179,6 +184,7 @@ formula!(
     |p, density, fog, shaded; out| {
         fogged(out, fog::exp2_document_square(fog::distance(p, Distance::Planar), density), fog, shaded);
     },
+    hard [Hard::new("negative-density", "clamped: never clearer than clear", NEGATIVE)],
 );
 formula!(
     /// OpenGL's exponential-squared fog, density and distance squared alone.

@@ -206,8 +206,12 @@ const RULES: &[(&str, &str)] = &[
         "vectors are scaled by a power of two before they are normalised, and the highlight is lighting/cosine-power-by-chord of n and h",
     ),
     (
-        "lighting/phong lighting/phong-gated lighting/phong-unit-light lighting/point-phong lighting/spot lighting/scalar-material lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
+        "lighting/phong lighting/phong-gated lighting/point-phong lighting/spot lighting/scalar-material lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
         "n, l and v are the unit vectors of the normal, towards the light and towards the eye; r = i − 2(i·n)n with i = −l",
+    ),
+    (
+        "lighting/phong-unit-light",
+        "n and v are the unit vectors of the normal and towards the eye, and l = −direction as it is; r = i − 2(i·n)n with i = −l",
     ),
     ("lighting/phong-nonlocal", "n is the unit vector of the normal, and l = −direction; r = i − 2(i·n)n with i = −l"),
     (
@@ -227,11 +231,12 @@ const RULES: &[(&str, &str)] = &[
         "with a normal of length 0, r is i: the highlight is that of light which goes straight on",
     ),
     (
-        "lighting/phong lighting/phong-gated lighting/phong-unit-light lighting/point-phong lighting/spot lighting/scalar-material lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
+        "lighting/phong lighting/phong-gated lighting/phong-unit-light lighting/scalar-material lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
         "with a light or a view vector of length 0, r·v is 0",
     ),
+    ("lighting/point-phong lighting/spot", "with a view vector of length 0, r·v is 0"),
     (
-        "lighting/blinn lighting/blinn-unnormalised lighting/point-blinn lighting/two-lights",
+        "lighting/blinn lighting/blinn-unnormalised lighting/two-lights",
         "with a light vector of length 0, h is v: there is a highlight without a light",
     ),
     (
@@ -241,6 +246,10 @@ const RULES: &[(&str, &str)] = &[
     (
         "lighting/phong lighting/blinn lighting/blinn-unnormalised lighting/phong-unit-light lighting/phong-nonlocal lighting/point-phong lighting/point-blinn lighting/spot lighting/scalar-material lighting/two-lights lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
         "the highlight is computed where l·n ≤ 0 too",
+    ),
+    (
+        "lighting/phong lighting/blinn lighting/blinn-unnormalised lighting/phong-gated lighting/phong-unit-light lighting/phong-nonlocal lighting/point-* lighting/spot lighting/scalar-material lighting/two-lights lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
+        "where the square of the length of a vector that is normalised overflows, or is below 2⁻¹²⁶ but not 0, nothing is promised",
     ),
     ("lighting/phong-gated lighting/point-opengl lighting/blinn-stable", "l·n = 0 has no highlight"),
     ("lighting/point-opengl", "the highlight is Blinn's"),
@@ -312,10 +321,12 @@ const RULES: &[(&str, &str)] = &[
         "fog/exp-radial-scaled",
         "the distance is |p|, with p scaled by a power of two before it is squared, so that it is right where its largest component is a normal number",
     ),
+    ("fog/exp*", "a density of 0 is no fog, f = 1; far away f may underflow to 0"),
     (
-        "fog/exp*",
-        "a density of 0 is no fog, f = 1; f is clamped, so that with a negative density it is 1 too; far away it may underflow to 0",
+        "fog/exp fog/exp-radial fog/exp-radial-scaled fog/exp2-document*",
+        "f is clamped, so that with a negative density it is 1",
     ),
+    ("fog/exp2-opengl*", "the sign of the density does not matter, since it is squared"),
     ("fog/linear* fog/exp*", "color = mix(fog, shaded, f) = fog·(1 − f) + shaded·f"),
     ("fog/exp2-document-square fog/exp2-opengl-squares", "where a square overflows nothing is promised"),
     ("fog/opacity*", "0 where the density or the distance is 0; not clamped"),
@@ -347,9 +358,10 @@ const RULES: &[(&str, &str)] = &[
         "the triangle is drawn into an empty depth buffer first, with its depth written, then again with the depth test of the id: the same geometry has the same depths",
     ),
     (
-        "depth/recovered depth/recovered-reversed",
-        "n is `near`, f is `far`, and depth is computed and read back in one evaluation; where near = far, or z = 0, nothing is promised",
+        "depth/stored depth/stored-reversed depth/recovered depth/recovered-reversed",
+        "n is `near` and f is `far`; where near = far, or z = 0, nothing is promised",
     ),
+    ("depth/recovered depth/recovered-reversed", "depth is computed and read back in one evaluation"),
     // Blending.
     (
         "blend/add/* blend/subtract/* blend/reverse-subtract/*",

@@ -105,7 +105,8 @@ formula!(
     ] -> [EYE],
     |modelview, position; out| { out.vector(vector::light_position(&modelview, position)); },
     hard [
-        Hard::new("at-infinity", "w = 0: a direction, undivided", &[("position", &[0.5, 0.0, 0.0, 0.0])]),
+        Hard::new("at-infinity", "w = 0: a direction, undivided", &[("position", &[0.5, 0.25, -0.75, 0.0])]),
+        Hard::new("at-no-height", "only w = 0 leaves it undivided", &[("position", &[0.5, 0.0, -0.75, 2.0])]),
         Hard::new("behind-infinity", "a negative w turns it round", &[("position", &[1.0, 2.0, 3.0, -2.0])]),
     ],
 );
@@ -313,6 +314,7 @@ formula!(
     hard [
         Hard::new("opposite", "nothing is left to normalise", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.0, -0.6, -0.8]), ("face", &[1.0, 0.0, 0.0]), ("t", &[0.5])])
             .naive("vector/interpolated-normal", "0, or the direction of a rounding", 1e6),
+        Hard::new("opposite-beside-a-long-face", "the face's normal is normalised", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.0, -0.6, -0.8]), ("face", &[3.0, 0.0, 4.0]), ("t", &[0.5])]),
         Hard::new("opposite-but-1e-6", "what is left is 1e-6", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.000_001, -0.6, -0.8]), ("face", &[0.0, 0.8, -0.6]), ("t", &[0.5])])
             .naive("vector/interpolated-normal", "2 rad off with the least change of t", 1e6),
     ],
