@@ -133,5 +133,5 @@ fn a_manifest_with_other_targets_is_refused() {
     assert!(code(&output) == 2 && stderr(&output).contains("no such format"), "{}", stderr(&output));
     // Without the option a pack is what it was before there was one.
     let plain = std::fs::read_to_string(packed("no-targets", &[]).join("manifest.json")).expect("there is a manifest");
-    assert!(!plain.contains("target"), "{plain}");
+    assert!(!plain.contains("\"targets\"") && !plain.contains("\"on_targets\""), "{plain}");
 }

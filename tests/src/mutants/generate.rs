@@ -27,7 +27,7 @@ impl Mutant {
         let of = if function.is_empty() { String::new() } else { format!(" {function}") };
         // What stands on several lines is named on one.
         let line = |text: &str| text.split_whitespace().collect::<Vec<&str>>().join(" ");
-        format!("{file}{of} {place}: {} -> {}", line(before), line(after))
+        format!("{file}{of} {place}: {} -> {}", line(before), line(after)).trim_end().to_owned()
     }
 
     /// The text with the change.
