@@ -266,12 +266,12 @@ impl Read {
 }
 
 impl Column {
-    /// Of so many cases with so many outputs each, none of which is answered.
+    /// An empty column for `count` cases of `outputs` numbers each.
     fn new(count: usize, outputs: usize) -> Self {
         Self { words: vec![0; count * outputs], is_answered: vec![false; count], others: HashMap::new() }
     }
 
-    /// Takes an answer of so many numbers, or what stands in their place; whether it is the first to its case.
+    /// Stores the answer to a case, or the reason why it has none. Returns whether it is the first answer to that case.
     fn put(&mut self, case: usize, outputs: usize, given: Given) -> bool {
         if std::mem::replace(&mut self.is_answered[case], true) {
             return false;
@@ -287,7 +287,7 @@ impl Column {
         true
     }
 
-    /// What is answered to a case, as words.
+    /// The answer to a case, as words.
     fn get(&self, case: usize, outputs: usize) -> Result<&[u32], Unanswered> {
         if !self.is_answered[case] {
             return Err(Unanswered::Missing);
@@ -297,7 +297,7 @@ impl Column {
     }
 }
 
-/// Takes an answer to what has one place of its own; whether it is the first.
+/// Stores the answer to a scene or a special value. Returns whether it is the first.
 fn is_first(entry: Entry<'_, usize, Given>, given: Given) -> bool {
     let is_first = matches!(entry, Entry::Vacant(_));
     entry.or_insert(given);
@@ -305,7 +305,7 @@ fn is_first(entry: Entry<'_, usize, Given>, given: Given) -> bool {
 }
 
 impl Contents {
-    /// Takes an answer; whether it is the first to its case.
+    /// Stores an answer. Returns whether it is the first to its case.
     fn put(&mut self, plan: &GatePlan, place: CasePlace, given: Given) -> bool {
         match place {
             CasePlace::Case { formula, case } => {

@@ -76,6 +76,10 @@ fn edges(spec: &Spec, rows: &mut Vec<Row>) {
             if let Some(fit) = spec.fit {
                 fit(spec, &mut row);
             }
+            // A fit may move the number that was put there. What a rasteriser is drawn with, it makes of raw numbers.
+            if matches!(spec.kind, Kind::Arithmetic) {
+                row[at] = end;
+            }
             push(row, format!("{end:e}"));
         }
         // What a rasteriser may give is bounded for what lies around the pixel alone, as the domains do.
