@@ -59,6 +59,30 @@ fn one_pixel_is_judged_and_shown_by_its_name() {
     assert!(text.contains("✓ gives") && !text.contains('✗'), "{text}");
 }
 
+/// Truncation in place of `floor` shows at negative coordinates alone. Mesa's OpenGL cannot draw intermediate results of a wrong image, which
+/// must not keep it from being told.
+#[test]
+fn a_texture_that_is_truncated_fails_on_every_adapter() {
+    let dir = edited("truncated", "texture.wgsl", |text| {
+        let right = "vec2i(floor(uv * vec2f(textureDimensions(image))))";
+        assert!(text.contains(right));
+        text.replace(right, "vec2i(uv * vec2f(textureDimensions(image)))")
+    });
+    let shaders = dir.to_str().expect("UTF-8");
+    let listed = json(&["adapters", "--format", "json"]);
+    let adapters = listed["adapters"].as_array().expect("adapters").iter().filter(|one| one["backend"] != "embedded");
+    let names: Vec<&str> = adapters.map(|one| one["name"].as_str().expect("a name")).collect();
+    assert!(!names.is_empty(), "{listed}");
+    for adapter in names {
+        let args = ["run", "scene/texture-edges", "--size", "64", "--adapter", adapter];
+        let right = lightmeter(&args);
+        assert_eq!(code(&right), 0, "{adapter}: {}{}", stdout(&right), stderr(&right));
+        let wrong = crate::command(&args).args(["--shaders", shaders]).output().expect("the binary starts");
+        assert_eq!(code(&wrong), 1, "{adapter}: {}{}", stdout(&wrong), stderr(&wrong));
+        assert!(stdout(&wrong).contains("FAIL scene/texture-edges/"), "{adapter}: {}", stdout(&wrong));
+    }
+}
+
 #[test]
 fn a_wrong_image_names_its_stage_and_leaves_pictures() {
     let dir = edited("images", "vector.wgsl", |text| {

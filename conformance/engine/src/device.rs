@@ -153,6 +153,9 @@ pub trait Device: Send + Sync {
     /// Gives up the blend unit, which may be lost: the next one is a fresh one.
     fn renew_blend_unit(&mut self);
 
+    /// Why a format cannot be drawn on; `None` where it can.
+    fn lacks_target(&self, target: TargetFormat) -> Option<&'static str>;
+
     /// Why a frame cannot be drawn; `None` where it can.
     fn lacks_frame(&self, frame: &Frame) -> Option<&'static str>;
 

@@ -286,6 +286,10 @@ impl Device for GpuDevice {
         }
     }
 
+    fn lacks_target(&self, target: TargetFormat) -> Option<&'static str> {
+        self.gpu.lacks_target(target)
+    }
+
     fn lacks_frame(&self, frame: &Frame) -> Option<&'static str> {
         SceneRenderer::lacks(&self.gpu, frame)
     }

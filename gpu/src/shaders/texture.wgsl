@@ -1,9 +1,10 @@
 // Reading textures with an arithmetic of one's own: no specification bounds a sampler's.
 // u and v run right and down from the image's upper left corner, 0 to 1; texels are the middles of squares.
 
-// The texel again beyond an edge, by Euclidean division; or the texel at the edge.
+// The texel again beyond an edge, by Euclidean division; or the texel at the edge. A negative i is counted from the other end, since
+// naga 30 passes % to GLSL and to SPIR-V, which leave it open for negative operands (wgpu's pull requests 9674 and 9687).
 fn texture_wrap(i: i32, size: i32, clamps: bool) -> i32 {
-    let repeated = ((i % size) + size) % size;
+    let repeated = select(i % size, size - 1 - (-1 - i) % size, i < 0);
     return select(repeated, clamp(i, 0, size - 1), clamps);
 }
 

@@ -30,13 +30,10 @@ impl fmt::Display for Departure {
     }
 }
 
-/// Compares the intermediate results of failing pixels, in the order in which they come about.
+/// Compares the intermediate results of failing pixels, in the order in which they come about; `None` where the subject cannot draw them.
 ///
 /// # Errors
 /// Where a shader is invalid or the device fails.
-///
-/// # Panics
-/// Where the subject cannot draw the frame.
 pub fn departure(
     subject: &Subject,
     code: &Code,
@@ -44,10 +41,10 @@ pub fn departure(
     sets: &[Called],
     profile: &Profile,
     pixels: &[usize],
-) -> Result<Departure, DeviceError> {
+) -> Result<Option<Departure>, DeviceError> {
     let pixels = &pixels[..pixels.len().min(LOOKED_AT)];
     for stage in Intermediate::ALL {
-        let image = intermediate(subject, code, frame, sets, stage)?.expect("the frame was drawn");
+        let Ok(image) = intermediate(subject, code, frame, sets, stage)? else { return Ok(None) };
         let expectation = Expectation::new(frame, None, Some(stage), profile);
         let departs = |&&pixel: &&usize| {
             let legal = expectation.pixel(pixel % image.width, pixel / image.width);
@@ -56,9 +53,9 @@ pub fn departure(
         };
         let departing = pixels.iter().filter(departs).count();
         if departing > 0 {
-            return Ok(Departure { stage: stage.name(), pixels: departing, of: pixels.len() });
+            return Ok(Some(Departure { stage: stage.name(), pixels: departing, of: pixels.len() }));
         }
     }
     let stage = if frame.draws.iter().any(|draw| draw.blend.is_some()) { "blend" } else { "store" };
-    Ok(Departure { stage, pixels: pixels.len(), of: pixels.len() })
+    Ok(Some(Departure { stage, pixels: pixels.len(), of: pixels.len() }))
 }

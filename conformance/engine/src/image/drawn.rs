@@ -33,7 +33,9 @@ pub fn drawn(
             StoredImage::of(&image, format)
         }));
     };
-    if let Some(reason) = device.lacks_frame(frame) {
+    // An intermediate result is drawn on another format, and is not blended.
+    let lacks = if stage.is_some() { device.lacks_target(format) } else { device.lacks_frame(frame) };
+    if let Some(reason) = lacks {
         return Ok(Err(reason));
     }
     let bytes = device.pixels(device.draw(code, frame, sets, picture)?)?;

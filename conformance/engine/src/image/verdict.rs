@@ -195,7 +195,8 @@ impl<'a> JudgedScene<'a> {
         report: &mut Report,
     ) -> Result<String, DeviceError> {
         let departure = self.departure(drawn, named, judged)?;
-        used.departs_in = Some(departure.stage.into());
+        used.departs_in = departure.map(|departure| departure.stage.into());
+        let departure = departure.map_or_else(String::new, |departure| format!("; {departure}"));
         used.files = self.write(drawn);
         let kept = judged.misses.iter().filter(|miss| miss.component == 0 || **miss != worst).take(KEPT_FAILURES);
         for miss in std::iter::once(worst).chain(kept.copied()).take(KEPT_FAILURES) {
@@ -209,10 +210,15 @@ impl<'a> JudgedScene<'a> {
             format!("; {}", diagnose.image(self.frame, drawn.image, expected, &drawn.profile))
         });
         report.timing.diagnose += clock.elapsed().as_secs_f64();
-        Ok(format!("{pixels} pixels; {departure}{mistake}; the worst: {command}{}", files_told(&used.files)))
+        Ok(format!("{pixels} pixels{departure}{mistake}; the worst: {command}{}", files_told(&used.files)))
     }
 
-    fn departure(&self, drawn: &Drawn<'_>, named: &[Called], judged: &Judged) -> Result<Departure, DeviceError> {
+    fn departure(
+        &self,
+        drawn: &Drawn<'_>,
+        named: &[Called],
+        judged: &Judged,
+    ) -> Result<Option<Departure>, DeviceError> {
         // What a texture replaces is an intermediate result all the same.
         let code = &drawn.options.code;
         diagnose::departure(drawn.subject, code, self.frame, named, &drawn.profile, &judged.pixels())

@@ -49,7 +49,7 @@ impl Prepared {
     /// Where it departs, of those pixels.
     fn departure(&self, subject: &Subject, code: &Code, profile: &Profile, pixels: &[usize]) -> Departure {
         let departure = departure(subject, code, &self.frame, &self.sets, profile, pixels);
-        departure.expect("intermediate results are drawn")
+        departure.expect("intermediate results are drawn").expect("the adapter draws on rgba32float")
     }
 
     /// The scene as a device draws it by composed shaders, judged.
