@@ -88,6 +88,17 @@ fn a_known_failure_is_expected_on_an_adapter_and_told_when_it_passes() {
     write("vector/reflect/random/000003");
     let (status, said, _) = run(&filter, &["--expect", path, "--shaders", wrong]);
     assert!(status == 1 && said.contains("fails as expected"), "{said}");
+    let on = |place: &str| {
+        let text = format!("[[expected]]\nid = \"vector/reflect\"\nreason = \"a sign is lost\"\non = \"{place}\"\n");
+        std::fs::write(&expected, text).expect("it can be written");
+        run(&filter, &["--expect", path, "--shaders", wrong])
+    };
+    let (status, said, _) = on("compute");
+    // The fragment stage fails as well, which nobody expects.
+    assert!(status == 1 && said.contains("fails as expected") && said.contains("lavapipe, fragment"), "{said}");
+    assert!(!said.contains("lavapipe, compute"), "{said}");
+    let (status, _, said) = on("rgba9");
+    assert!(status == 2 && said.contains("no stage and no target"), "{said}");
     write("vector/no-such");
     let (status, _, said) = run(&filter, &["--expect", path]);
     assert!(status == 2 && said.contains("matches no case"), "{said}");
@@ -183,6 +194,8 @@ fn shards_of_a_run_and_of_a_gate_merge_into_the_whole() {
         let mut differing = vec![];
         differences(&merged, &whole, command[0], &mut differing);
         assert!(differing.is_empty(), "{:#?}", &differing[..differing.len().min(12)]);
+        let told = lightmeter(&["merge", a, b, c, "--format", "github"]);
+        assert_eq!(stdout(&told).starts_with("::error"), command[0] == "gate", "{}", stdout(&told));
         for (given, said) in [(&[a, b][..], "no result of shard 3/3"), (&[a, b, b], "overlap"), (&[], "required")] {
             let output = lightmeter(&[&["merge"], given].concat());
             assert!(code(&output) == 2 && stderr(&output).contains(said), "{}", stderr(&output));

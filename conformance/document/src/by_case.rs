@@ -149,7 +149,10 @@ pub struct KnownFailure {
     pub id: String,
     /// Why they fail.
     pub reason: String,
-    /// Cases of it that failed.
+    /// The stage or the target that they fail on; any without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
+    /// Cases of it that failed, and groups of it that failed as a whole.
     pub failed: u64,
     /// Cases of it that passed.
     pub passed: u64,

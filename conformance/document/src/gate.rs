@@ -156,6 +156,9 @@ pub struct GateGroup {
     pub reason: Option<String>,
     /// What is wrong with the whole, where no single case shows it.
     pub problem: Option<String>,
+    /// The same, where a known failure says that it is so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected_problem: Option<String>,
     /// What explains its failures.
     pub diagnosis: Option<String>,
     /// The failing case with the simplest inputs.
@@ -202,6 +205,7 @@ impl GateGroup {
             not_passed: counts.not_passed.clone(),
             reason: counts.reason.clone(),
             problem: group.problem.clone(),
+            expected_problem: group.expected_problem.clone(),
             diagnosis: group.explanation.clone(),
             smallest: counts.smallest.clone(),
         }
@@ -380,6 +384,7 @@ impl GateGroup {
             worst: self.worst,
             explanation: self.diagnosis,
             problem: self.problem,
+            expected_problem: self.expected_problem,
             by_case: Some(counts),
             ..Group::new(self.id, adapter.to_owned(), "answer")
         }

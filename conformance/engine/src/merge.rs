@@ -2,6 +2,7 @@
 //! which reports do not hold: the mistake that explains what fails, and what is wrong with all values of a formula together. They are those of
 //! the shard that fails most. How the values of a group are stored is told anew from the counts of all shards.
 
+use crate::expected::expect_problems;
 use crate::run::routes;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::scene_id;
@@ -41,6 +42,7 @@ pub fn merge(parts: Vec<(PathBuf, Report)>) -> Result<Report, NoWhole> {
     }
     whole.groups.iter_mut().for_each(tell_stores);
     order.sort(&mut whole);
+    expect_problems(&mut whole.groups, &mut whole.expectations);
     whole.groups.iter_mut().for_each(|group| group.totals.failed_groups = u64::from(group.problem.is_some()));
     whole.totals = Totals::default();
     for group in &whole.groups {
@@ -284,6 +286,7 @@ fn add_group(known: &mut Group, more: Group, order: &Order, most: &mut u64) {
     if more.problem.is_some() && (known.problem.is_none() || fails_more) {
         known.problem = more.problem;
     }
+    known.expected_problem = known.expected_problem.take().or(more.expected_problem);
     known.totals.add(&more.totals);
     known.error_ulp_max = Number(worse(known.error_ulp_max.0, more.error_ulp_max.0));
     let is_worst = is_worse(more.margin_max.0, known.margin_max.0)

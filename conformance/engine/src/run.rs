@@ -7,6 +7,7 @@ use crate::ask_again::{Noted, ask_again};
 use crate::blend_unit;
 use crate::blend_unit::run::NotedPixels;
 use crate::device::DeviceError;
+use crate::expected::expect_problems;
 use crate::image;
 use crate::options::Options;
 use crate::renderer::AskedRenderer;
@@ -143,7 +144,8 @@ fn judge_in_turn(
             }
         };
         let result = result.map(|of_turn| noted.push((turn, of_turn)));
-        let (groups, failures) = (std::mem::take(&mut report.groups), std::mem::take(&mut report.failures));
+        let (mut groups, failures) = (std::mem::take(&mut report.groups), std::mem::take(&mut report.failures));
+        expect_problems(&mut groups, &mut report.expectations);
         tell(&groups, &failures, false, observer);
         judged.push((place, groups, failures));
         // Of a renderer everything is reported: what it was not asked is missing.

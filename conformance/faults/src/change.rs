@@ -21,6 +21,8 @@ pub(super) enum Before {
     Set(&'static str, f64),
     /// The second gets the first's numbers.
     Copy(&'static str, &'static str),
+    /// The first times the second, number by number.
+    Times(&'static str, &'static str),
     /// x → x².
     Square(&'static str),
     /// x → 1/x.
@@ -50,7 +52,7 @@ impl Before {
     pub(super) fn fits(self, spec: &Spec) -> bool {
         let shape = |name: &str| spec.inputs.iter().find(|input| input.name == name).map(|input| input.shape);
         match self {
-            Self::Swap(a, b) | Self::Copy(a, b) => shape(a).is_some() && shape(a) == shape(b),
+            Self::Swap(a, b) | Self::Copy(a, b) | Self::Times(a, b) => shape(a).is_some() && shape(a) == shape(b),
             Self::Rotate(x) => shape(x).is_some_and(|shape| shape != ValueShape::Scalar),
             Self::Decode(x) => matches!(shape(x), Some(ValueShape::Vec3 | ValueShape::Vec4)),
             Self::Premultiply(x) => shape(x) == Some(ValueShape::Vec4),
@@ -91,6 +93,11 @@ impl Before {
             Self::Swap(a, b) => {
                 if let (Some(a), Some(b)) = (spec.place(a), spec.place(b)) {
                     a.zip(b).for_each(|(a, b)| row.swap(a, b));
+                }
+            }
+            Self::Times(a, b) => {
+                if let (Some(a), Some(b)) = (spec.place(a), spec.place(b)) {
+                    a.zip(b).for_each(|(a, b)| row[a] = row[a] * row[b]);
                 }
             }
             Self::Copy(from, to) => {

@@ -1,8 +1,10 @@
 //! Known failures, written down with their reason: they do not fail a gate, and it says so when they pass.
 
+use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::gate::KnownFailure;
 use lightmeter_judge::cases::ExpectedFailure;
+use lightmeter_scene::target::TargetFormat;
 use semver::{Version, VersionReq};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -19,6 +21,8 @@ struct Written {
     renderer: Option<String>,
     /// The renderer's versions, as `>=0.150, <0.170`; any without it.
     version: Option<String>,
+    /// The stage, or the target of a blend state or an image, that they fail on; any without it.
+    on: Option<String>,
     /// Whether the renderer ends or hangs at them: such a run is no broken one.
     #[serde(default)]
     crash: bool,
@@ -66,6 +70,13 @@ impl Expectations {
             if written.reason.trim().is_empty() {
                 return Err(format!("expected[{k}] `{}` has no reason", written.id));
             }
+            if let Some(on) = written.on.as_ref().filter(|on| !places().any(|place| place == on.as_str())) {
+                let places: Vec<&str> = places().collect();
+                return Err(format!(
+                    "expected[{k}].on `{on}` is no stage and no target; expected {}",
+                    places.join(", ")
+                ));
+            }
             let version = written.version.as_ref().map(|text| {
                 let expected = "expected such as \">=1.2, <2\"";
                 VersionReq::parse(text).map_err(|error| format!("expected[{k}].version `{text}`: {error}; {expected}"))
@@ -93,6 +104,7 @@ impl Expectations {
             known: KnownFailure {
                 id: written.id.clone(),
                 reason: written.reason.clone(),
+                on: written.on.clone(),
                 failed: 0,
                 passed: 0,
                 crash: written.crash,
@@ -102,6 +114,12 @@ impl Expectations {
         };
         self.written.iter().filter(concerns).map(of).collect()
     }
+}
+
+/// The stages and targets that something can be known to fail on.
+fn places() -> impl Iterator<Item = &'static str> {
+    let targets = TargetFormat::ALL.map(TargetFormat::name).into_iter().chain(["image", "image-full"]);
+    Stage::ALL.map(Stage::name).into_iter().chain(targets)
 }
 
 /// The first number of a version in any words: `Mesa 22.3.6` is 22.3.6, `r170` is 170.0.0.
@@ -137,12 +155,20 @@ mod tests {
         assert_eq!(ids("three.js", "0.160.1"), ["fog/linear", "scene/**"]);
         assert_eq!(ids("three.js", "three r0.170"), ["scene/**"]);
         assert_eq!(ids("other", "0.160.1"), ["scene/**"]);
-        assert!(file.of("three.js", "0.160")[0].has("fog/linear/random/000001"));
-        assert!(!file.of("three.js", "0.160")[0].has("fog/linear-radial/random/000001"));
+        let known = &file.of("three.js", "0.160")[0];
+        assert!(known.has("fog/linear/random/000001", &["answer"]));
+        assert!(!known.has("fog/linear-radial/random/000001", &["answer"]));
+        let text = "[[expected]]\nid = \"blend/**\"\nreason = \"r\"\non = \"rgba8unorm\"";
+        let known = &Expectations::parse(text).expect("it is valid").of("any", "1")[0];
+        assert!(
+            known.has("blend/add/one/one/0001", &["answer", "rgba8unorm"])
+                && !known.has("blend/add/one/one/0001", &["answer"])
+        );
         for (text, said) in [
             ("[[expected]]\nid = \"fog\"", "missing field `reason`"),
             ("[[expected]]\nid = \"fog\"\nreason = \" \"", "no reason"),
             ("[[expected]]\nid = \"fog\"\nreason = \"r\"\nversion = \"new\"", "version `new`"),
+            ("[[expected]]\nid = \"fog\"\nreason = \"r\"\non = \"rgba9\"", "expected compute, fragment"),
             ("[[expect]]\nid = \"fog\"\nreason = \"r\"", "unknown field `expect`"),
             ("[[expected]]\nid = \"[\"\nreason = \"r\"", "["),
         ] {

@@ -64,10 +64,10 @@ pub struct ExpectedFailure {
 }
 
 impl ExpectedFailure {
-    /// Whether it has a case.
+    /// Whether it has a case on a stage or a target.
     #[must_use]
-    pub fn has(&self, id: &str) -> bool {
-        self.filter.selects(id)
+    pub fn has(&self, id: &str, on: &[&str]) -> bool {
+        self.known.on.as_ref().is_none_or(|known| on.contains(&known.as_str())) && self.filter.selects(id)
     }
 }
 
@@ -179,11 +179,11 @@ impl CaseTally {
         }
     }
 
-    /// Notes at the expectations that have a case whether it failed; whether its failure was expected.
-    pub fn expect(&mut self, expected: &[ExpectedFailure], id: &str, has_failed: bool) -> bool {
+    /// Notes at the expectations that have a case on a stage or a target whether it failed; whether its failure was expected.
+    pub fn expect(&mut self, expected: &[ExpectedFailure], id: &str, on: &[&str], has_failed: bool) -> bool {
         self.expected.resize(expected.len(), [0; 2]);
         let mut is_expected = false;
-        for (counts, _) in self.expected.iter_mut().zip(expected).filter(|(_, one)| one.has(id)) {
+        for (counts, _) in self.expected.iter_mut().zip(expected).filter(|(_, one)| one.has(id, on)) {
             is_expected = true;
             counts[usize::from(!has_failed)] += 1;
         }

@@ -126,7 +126,7 @@ impl RowStanding {
             let totals = &mut self.tally.totals;
             totals.skipped += u64::from(matches!(why, Unanswered::Skipped(_)));
             if self.cases.unanswered(place, why) && !by.expected.is_empty() {
-                self.cases.expect(by.expected, &id(), true);
+                self.cases.expect(by.expected, &id(), &[stage.name()], true);
             }
             return;
         }
@@ -136,7 +136,7 @@ impl RowStanding {
         if by.counts_cases {
             self.cases.judged(place, chunk.inputs_of(case), failed > 0, error, errors);
         }
-        if !by.expected.is_empty() && self.cases.expect(by.expected, &id(), failed > 0) {
+        if !by.expected.is_empty() && self.cases.expect(by.expected, &id(), &[stage.name()], failed > 0) {
             self.tally.totals.failed -= failed;
             self.tally.totals.expected_failures += failed;
         }

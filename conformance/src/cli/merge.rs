@@ -1,16 +1,16 @@
 //! `lightmeter merge`.
 
-use super::options::Format;
+use super::options::{Format, ReportFormat};
 use super::sweep::{status, written};
 use super::{Status, emit};
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::document::Document as _;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::run::Report;
 use lightmeter::document::sweep::{ExactFloat, SweepDocument};
 use lightmeter::merge::merge;
-use lightmeter::report::{gate as outputs, junit, text};
+use lightmeter::report::{gate as outputs, github, junit, text};
 use lightmeter::sweep::file;
 use std::path::PathBuf;
 
@@ -22,7 +22,7 @@ pub(crate) struct Merge {
     results: Vec<PathBuf>,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: ReportFormat,
     /// Write it to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -38,7 +38,7 @@ impl Merge {
             parts.push((path.clone(), file::read(path)?));
         }
         let whole = file::merge(&parts)?;
-        emit(&written(&whole, self.format, &rerun(&whole))?, self.out.as_deref())?;
+        emit(&written(&whole, self.of_sweep()?, &rerun(&whole))?, self.out.as_deref())?;
         Ok(status(&whole))
     }
 }
@@ -72,11 +72,22 @@ impl Merge {
         Ok(Some(super::run::status(&whole)))
     }
 
+    /// How the result of a sweep is written.
+    fn of_sweep(&self) -> anyhow::Result<Format> {
+        Ok(match self.format {
+            ReportFormat::Text => Format::Text,
+            ReportFormat::Json => Format::Json,
+            ReportFormat::Junit => Format::Junit,
+            ReportFormat::Github => bail!("a sweep is written as text or json"),
+        })
+    }
+
     fn written_gate(&self, gate: &GateReport) -> anyhow::Result<String> {
         Ok(match self.format {
-            Format::Json => gate.to_json()?,
-            Format::Junit => outputs::junit(gate)?,
-            Format::Text => {
+            ReportFormat::Json => gate.to_json()?,
+            ReportFormat::Junit => outputs::junit(gate)?,
+            ReportFormat::Github => github::of_gate(gate),
+            ReportFormat::Text => {
                 let mut out = String::new();
                 outputs::text(gate, false, &mut out)?;
                 out
@@ -86,9 +97,10 @@ impl Merge {
 
     fn written_run(&self, whole: &Report) -> anyhow::Result<String> {
         Ok(match self.format {
-            Format::Json => whole.to_json()?,
-            Format::Junit => junit::to_string(whole)?,
-            Format::Text => {
+            ReportFormat::Json => whole.to_json()?,
+            ReportFormat::Junit => junit::to_string(whole)?,
+            ReportFormat::Github => github::of_run(whole),
+            ReportFormat::Text => {
                 let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false };
                 let mut out = String::new();
                 text::write(whole, style, &mut out)?;

@@ -186,6 +186,12 @@ fn what_is_off_by_less_than_any_answer_shows_is_named() {
     let problem = report["groups"][0]["problem"].to_string();
     assert_eq!((status, count(&report, "failed")), (1, 0), "{report}");
     assert!(problem.contains("as if v were") && problem.contains("larger"), "{problem}");
+    let file = pack.with_file_name("expected.toml");
+    std::fs::write(&file, "[[expected]]\nid = \"vector/normalize\"\nreason = \"known\"\n").expect("it can be written");
+    let (status, report) = judged(&pack, &off, &["--expect", text(&file)]);
+    let group = &report["groups"][0];
+    assert!(status == 0 && group["problem"].is_null(), "{report}");
+    assert!(group["expected_problem"].to_string().contains("as if v were"), "{group}");
 }
 
 #[test]

@@ -192,6 +192,33 @@ impl Formula for SpecialValues {
 
 const OVER_RGB: &[Input] = &[Input::rgba("src"), Input::rgb("dst")];
 
+/// MIN or MAX with factors that are not 1, as arithmetic: pipelines of wgpu refuse such factors.
+#[derive(Clone, Copy, Debug)]
+struct FactorsIgnored(Equation);
+
+impl Formula for FactorsIgnored {
+    fn spec(&self) -> Spec {
+        let equation = self.0;
+        let text = match equation {
+            Equation::Min => "color = min(src, dst), with the factors S = constant and D = 1",
+            _ => "color = max(src, dst), with the factors S = constant and D = 1",
+        };
+        Spec {
+            id: format!("blend/{}-factors-ignored", equation.name()),
+            text,
+            source: "000 §6.6; ruling 1",
+            function: "blend_state",
+            selectors: vec![equation.code(), Factor::ConstantColor.code(), Factor::One.code()],
+            ..unit_spec()
+        }
+    }
+
+    fn evaluate<R: Real>(&self, x: &Reader<'_, R>, out: &mut Writer<'_, R>) {
+        let state = State { equation: self.0, src: Factor::ConstantColor, dst: Factor::One };
+        out.vector(blend(state, &operands(x), Saturate::SourceAndDestination));
+    }
+}
+
 /// A factor of the destination's alpha, where there is none.
 #[derive(Clone, Copy, Debug)]
 struct AlphaReadsAsOne(State);
@@ -450,6 +477,9 @@ pub(super) fn visit(visitor: &mut impl Visitor) {
         let state = |src, dst| State { equation: Equation::Add, src, dst };
         visitor.formula(AlphaReadsAsOne(state(factor, Factor::One)));
         visitor.formula(AlphaReadsAsOne(state(Factor::One, factor)));
+    }
+    for equation in Equation::ALL.into_iter().filter(|equation| equation.ignores_factors()) {
+        visitor.formula(FactorsIgnored(equation));
     }
     for layers in LAYERS {
         visitor.formula(layers);

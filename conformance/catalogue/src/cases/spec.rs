@@ -21,6 +21,9 @@ pub enum Stage {
 }
 
 impl Stage {
+    /// Every stage.
+    pub const ALL: [Self; 5] = [Self::Compute, Self::Fragment, Self::FixedFunction, Self::Raster, Self::Answer];
+
     /// The name in ids, JSON and reports.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -113,6 +113,9 @@ pub struct Group {
     /// Why the group fails as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
+    /// Why it fails as a whole, as a known failure says that it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected_problem: Option<String>,
     /// Of a scene's image.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image: Option<ImageUse>,
@@ -165,6 +168,7 @@ impl Group {
             skip_reason: None,
             explanation: None,
             problem: None,
+            expected_problem: None,
             image: None,
             by_case: None,
         }

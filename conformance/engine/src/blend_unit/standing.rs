@@ -146,7 +146,7 @@ impl UnitStanding {
             self.add(subject, chunk, k, tally, pixels, options);
             let unanswered = drawn.unanswered.range((number, 0)..(number + 1, 0));
             let unanswered = unanswered.map(|((_, place), why)| (*place, why)).collect();
-            self.count_cases((chunk, k), members, tally, &unanswered, options);
+            self.count_cases((chunk, k), members, stage(subject), tally, &unanswered, options);
             self.cases.passing(tally.passing);
             if options.runs > 1 || subject.asked().is_some() {
                 self.note((chunk, k), members, tally, digests(pixels, number, &drawn), options);
@@ -272,6 +272,7 @@ impl UnitStanding {
         &mut self,
         (chunk, k): (&UnitChunk<'_>, usize),
         members: &[&Member],
+        stage: &str,
         tally: &UnitTally,
         unanswered: &BTreeMap<usize, &Unanswered>,
         options: &Options,
@@ -280,19 +281,22 @@ impl UnitStanding {
             return;
         }
         let (member, piece) = (chunk.members[k], &chunk.pieces[k]);
+        let on = [stage, self.target.name()];
         let of = members.iter().position(|one| one.spec.id == member.spec.id).unwrap_or_default();
         let mut failing = tally.failing.iter().peekable();
         for (place, &case) in chunk.cases[k].iter().enumerate() {
             if let Some(why) = unanswered.get(&place) {
                 if self.cases.unanswered((of, case), why) {
-                    self.cases.expect(&options.expected, &member.case_id(case), true);
+                    self.cases.expect(&options.expected, &member.case_id(case), &on, true);
                 }
                 continue;
             }
             let failed = failing.next_if(|(failing, _)| *failing == place).map_or(0, |(_, components)| *components);
             let inputs = &piece.inputs[place * piece.stride..(place + 1) * piece.stride];
             self.cases.judged((of, case), inputs, failed > 0, 0.0, (0.0, 0));
-            if !options.expected.is_empty() && self.cases.expect(&options.expected, &member.case_id(case), failed > 0) {
+            if !options.expected.is_empty()
+                && self.cases.expect(&options.expected, &member.case_id(case), &on, failed > 0)
+            {
                 self.expected += failed;
             }
         }

@@ -84,7 +84,8 @@ impl Scene<'_> {
 
     /// Notes at the expectations whether the scene failed; 1 where that was expected.
     fn expected(&mut self, has_failed: bool) -> u64 {
-        u64::from(expect(self.report, self.options, &self.id, has_failed))
+        let on = [STAGE, self.loaded.frame.target.format.name()];
+        u64::from(expect(self.report, self.options, &self.id, &on, has_failed))
     }
 
     /// The state of the scene's one case, where it did not pass.

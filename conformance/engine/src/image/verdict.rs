@@ -126,7 +126,8 @@ impl<'a> JudgedScene<'a> {
         let problem = judged.verdicts.problem();
         let mut totals = Totals { failed_groups: u64::from(problem.is_some()), ..judged.verdicts.totals };
         let has_failed = totals.failed > 0;
-        if crate::expected::expect(report, drawn.options, &self.id, has_failed) {
+        let on = [stage(drawn.picture), self.frame.target.format.name()];
+        if crate::expected::expect(report, drawn.options, &self.id, &on, has_failed) {
             totals.expected_failures += std::mem::take(&mut totals.failed);
         }
         let by_case = drawn.options.counts_cases.then(|| self.counts(has_failed, totals.failed == 0));

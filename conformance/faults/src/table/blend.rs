@@ -34,6 +34,12 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[blended(Blended::MinForMax)]],
     ),
     fault(
+        "factors-in-min-and-max",
+        "MIN and MAX multiply by their factors",
+        &[&[Before(In::Times("src", "constant"))]],
+    )
+    .only(|spec| spec.id.ends_with("-factors-ignored")),
+    fault(
         "constant-alpha-for-color",
         "the constant's alpha stands for its colour, or the reverse",
         &[&[blended(Blended::ConstantAlphaForColor)]],

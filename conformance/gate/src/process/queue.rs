@@ -112,7 +112,7 @@ impl Session {
         for place in std::mem::take(&mut queue.untold).into_iter().rev() {
             self.used.incidents.remove(place);
         }
-        let is_expected = self.expected.iter().any(|expected| expected.known.crash && expected.has(id));
+        let is_expected = self.expected.iter().any(|expected| expected.known.crash && expected.filter.selects(id));
         let message = format!("{message}: {how}");
         let incidents = if is_expected { &mut self.used.expected_incidents } else { &mut self.used.incidents };
         incidents.push(format!("{id}: {message}"));
