@@ -127,7 +127,13 @@ impl Mode {
 }
 
 /// A named mode on a back buffer without alpha, which reads as 1. Source: 002.
+///
+/// What shaders write for [`Mode::Alpha`] is `mix(dst, src, As)`, so that either form of a mix is legal in it; [`over`] is the formula
+/// that promises all of an opaque source.
 pub fn without_alpha<R: Real>(mode: Mode, src: Rgba<R>, dst: Rgb<R>) -> Rgb<R> {
+    if mode == Mode::Alpha {
+        return dst.mix(src.xyz(), src.w());
+    }
     let (one, zero) = (R::literal(1.0), R::literal(0.0));
     let of = Operands { src, dst: dst.extend(one), constant: Vector::splat(zero) };
     blend(mode.state(), &of, Saturate::SourceAndDestination).xyz()

@@ -1,7 +1,9 @@
 //! What the property tests share: inputs as proptest strategies, and their evaluation in one dispatch.
 
+pub mod callers;
 pub mod certificate;
 pub mod exact;
+pub mod forms;
 pub mod frames;
 pub mod harness;
 pub mod mutants;

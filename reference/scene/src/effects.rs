@@ -75,6 +75,16 @@ effects! {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Effects(u64);
 
+/// Effects of which a draw has one at most.
+pub const EXCLUSIVE: [&[Effect]; 6] = [
+    &[Effect::Flat, Effect::Gouraud, Effect::Phong],
+    &[Effect::SpecularPhong, Effect::SpecularBlinn, Effect::SpecularUnnormalised],
+    &[Effect::AmbientProduct, Effect::AmbientConstant],
+    &[Effect::TextureNearest, Effect::TextureBilinear],
+    &[Effect::LightmapNearest, Effect::LightmapBilinear],
+    &[Effect::FogLinear, Effect::FogExp, Effect::FogExp2Document, Effect::FogExp2OpenGl],
+];
+
 impl Effects {
     /// None.
     pub const NONE: Self = Self(0);
@@ -154,19 +164,11 @@ impl Effects {
     #[must_use]
     pub fn contradiction(self) -> Option<&'static str> {
         use Effect as E;
-        let exclusive: [&[E]; 6] = [
-            &[E::Flat, E::Gouraud, E::Phong],
-            &[E::SpecularPhong, E::SpecularBlinn, E::SpecularUnnormalised],
-            &[E::AmbientProduct, E::AmbientConstant],
-            &[E::TextureNearest, E::TextureBilinear],
-            &[E::LightmapNearest, E::LightmapBilinear],
-            &[E::FogLinear, E::FogExp, E::FogExp2Document, E::FogExp2OpenGl],
-        ];
         let lit = self.has(E::Diffuse) || self.has_specular() || self.has(E::LightAmbient);
         let positional = self.has_any(&[E::Point, E::Spot]);
         let at_a_frequency = self.has_any(&[E::Flat, E::Gouraud, E::Phong]);
         let rules = [
-            (exclusive.iter().any(|set| set.iter().filter(|&&e| self.has(e)).count() > 1), "two of one kind"),
+            (EXCLUSIVE.iter().any(|set| set.iter().filter(|&&e| self.has(e)).count() > 1), "two of one kind"),
             (lit != self.has_lights(), "lights and terms of lights go together"),
             (lit && !at_a_frequency, "lights shine at a frequency"),
             (

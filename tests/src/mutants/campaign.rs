@@ -1,7 +1,7 @@
 //! Mutants judged on an adapter.
 
 use super::generate::Mutant;
-use super::tokens::{TokenKind, tokens};
+use crate::callers::callers;
 use lightmeter::arithmetic::Accept;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::{Code, DeviceError, Picture};
@@ -150,30 +150,13 @@ impl Campaign {
             }
             _ if file.starts_with("rung/") => None,
             _ => {
-                let callers = self.callers(&mutant.function);
+                let callers = callers(&self.shaders, [&*mutant.function]);
                 let is_judged = |&place: &usize| {
                     let spec = &self.catalogue[place].spec;
                     callers.contains(spec.function) && !spec.row_stages().is_empty()
                 };
                 let places: Vec<usize> = (0..self.catalogue.len()).filter(is_judged).collect();
                 (!places.is_empty()).then_some(Scope::Formulas(places))
-            }
-        }
-    }
-
-    /// The functions that call one, by way of others too, and itself. Outside of functions, every one.
-    fn callers(&self, function: &str) -> BTreeSet<String> {
-        let calls: Vec<(String, String)> = self.shaders.texts().flat_map(|(_, text)| calls(text)).collect();
-        if function.is_empty() {
-            return calls.into_iter().map(|(caller, _)| caller).collect();
-        }
-        let mut found = BTreeSet::from([function.to_owned()]);
-        loop {
-            let before = found.len();
-            let more = calls.iter().filter(|(_, called)| found.contains(called)).map(|(caller, _)| caller.clone());
-            found.extend(more.collect::<Vec<String>>());
-            if found.len() == before {
-                return found;
             }
         }
     }
@@ -339,20 +322,4 @@ impl Campaign {
             }
         }
     }
-}
-
-/// Each function of a text with each that it calls, and with itself.
-fn calls(text: &str) -> Vec<(String, String)> {
-    let tokens = tokens(text);
-    let word = |at: usize| tokens.get(at).map_or("", |token| &text[token.range.clone()]);
-    let (mut found, mut function) = (vec![], "");
-    for (at, token) in tokens.iter().enumerate() {
-        if word(at) == "fn" {
-            function = word(at + 1);
-        }
-        if token.kind == TokenKind::Word && word(at + 1) == "(" && !function.is_empty() {
-            found.push((function.to_owned(), word(at).to_owned()));
-        }
-    }
-    found
 }

@@ -7,7 +7,7 @@
 mod campaign;
 mod generate;
 mod survivors;
-mod tokens;
+pub(crate) mod tokens;
 
 pub use campaign::{Campaign, MutantClass, Scope};
 pub use generate::{Mutant, mutants};

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum TokenKind {
+pub(crate) enum TokenKind {
     /// A name or a keyword.
     Word,
     /// A literal with a decimal point, an exponent or the suffix `f`.
@@ -17,10 +17,10 @@ pub(super) enum TokenKind {
 
 /// A token of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Token {
-    pub(super) kind: TokenKind,
+pub(crate) struct Token {
+    pub(crate) kind: TokenKind,
     /// Its bytes in the file.
-    pub(super) range: Range<usize>,
+    pub(crate) range: Range<usize>,
 }
 
 /// Signs of more than one character; longer ones come first.
@@ -29,7 +29,7 @@ const SIGNS: [&str; 19] = [
 ];
 
 /// The tokens of a text. Comments are left out.
-pub(super) fn tokens(text: &str) -> Vec<Token> {
+pub(crate) fn tokens(text: &str) -> Vec<Token> {
     let mut found = vec![];
     let mut at = 0;
     while let Some(first) = text[at..].chars().next() {

@@ -65,7 +65,14 @@ const RULES: &[(&str, &str)] = &[
         "w_min is the least of the three w, and a vertex whose w is w_min has q = λ: where a w is 0, only the vertices of w = 0 count",
     ),
     ("interpolation/perspective-scaled", "where the weights of the vertices that count are 0 nothing is promised"),
-    ("interpolation/mix", "t = 0 gives a and t = 1 gives b, to the last bit"),
+    (
+        "interpolation/mix",
+        "t = 0 gives a and t = 1 gives b, to the last bit; no other form of it is the same, not b − (1 − t)(b − a) either",
+    ),
+    (
+        "interpolation/edge",
+        "the sides are taken from a, the first vertex: from another one they round otherwise, and where p lies near the line that shows",
+    ),
     (
         "interpolation/edge*",
         "0 where p lies on the line through a and b; positive where a, b, p run clockwise as seen, y being down",
@@ -394,7 +401,12 @@ const RULES: &[(&str, &str)] = &[
     factor!("constant-alpha", "Ac for all four components"),
     factor!("one-minus-constant-alpha", "1 − Ac for all four components"),
     factor!("src-alpha-saturate", "min(As, 1 − Ad) for red, green and blue, 1 for alpha"),
-    ("blend/min/* blend/max/*", "by component, alpha too"),
+    ("blend/min/* blend/max/* blend/*-factors-ignored", "by component, alpha too"),
+    ("blend/*-factors-ignored", "the factors change nothing: this equation reads none"),
+    (
+        "blend/mode-alpha",
+        "the same as mix(dst, src, As), of which either form is legal: dst(1 − As) + src·As and dst + As(src − dst)",
+    ),
     (
         "blend/add/* blend/subtract/* blend/reverse-subtract/* blend/min/* blend/max/* blend/separate/* blend/write-mask/* blend/without-alpha/* blend/layers/* blend/mode-* blend/saturate-source-only",
         "numbers are not clamped; on a target of 8 bits src, dst, the constant and the result are clamped to [0, 1]",

@@ -139,12 +139,29 @@ pub struct ImageUse {
     /// Of the shader with all effects: what they cost, where that was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost: Option<EffectsCost>,
+    /// To which side of the reference all pixels lie together, where each alone is legal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bias: Option<ImageBias>,
     /// The first intermediate result in which a wrong image departs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub departs_in: Option<Word>,
     /// Reference, result and error map of a wrong image.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<String>,
+}
+
+/// An image of 8 bits that is to one side of its reference, by less than one pixel shows.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+pub struct ImageBias {
+    /// What the values are as if multiplied by; where it is missing, as if something were added.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factor: Option<f64>,
+    /// How far it moves values, in steps, negative where it is downwards.
+    pub steps: f64,
+    /// Its standard error, in steps.
+    pub error: f64,
+    /// Steps by which the accuracy rules let all pixels be off before they are stored. What is within is no failure.
+    pub legal: Number,
 }
 
 impl Group {

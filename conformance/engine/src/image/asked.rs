@@ -1,6 +1,6 @@
 //! Scenes that a renderer is asked to draw: one image of each, with nothing of how it came about.
 
-use super::verdict::{JudgedScene, worst};
+use super::verdict::{JudgedScene, told, worst};
 use crate::again::digest_of;
 use crate::device::DeviceError;
 use crate::expected::expect;
@@ -128,7 +128,9 @@ impl Scene<'_> {
         scene.expect(&profile);
         let judged = scene.judged(image, &profile);
         let verdicts = &judged.verdicts;
-        let (has_failed, problem) = (verdicts.totals.failed > 0, verdicts.problem());
+        let has_failed = verdicts.totals.failed > 0;
+        let bias = if has_failed { None } else { scene.bias(image, &profile) };
+        let problem = verdicts.problem().or(bias.and_then(|bias| told(&bias)));
         let is_expected = self.expected(has_failed) > 0;
         let mut counts = scene.counts(has_failed, is_expected);
         if !has_failed {
@@ -162,6 +164,7 @@ impl Scene<'_> {
                 marked: scene.expected(&profile).iter().filter(|pixel| pixel.is_marked).count() as u64,
                 differs_from_composed: None,
                 cost: None,
+                bias,
                 departs_in: None,
                 files: vec![],
             }),

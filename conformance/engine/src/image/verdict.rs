@@ -9,10 +9,11 @@ use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
 use lightmeter_document::Number;
 use lightmeter_document::by_case::CaseCounts;
-use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
+use lightmeter_document::run::{Failure, Group, ImageBias, ImageUse, Report, Totals};
 use lightmeter_judge::cases::ending;
 use lightmeter_judge::devices::Deviation;
 use lightmeter_judge::image::LegalPixel;
+use lightmeter_judge::image::bias::{Bias, legal_steps};
 use lightmeter_judge::image::expect::{Expectation, expect};
 use lightmeter_judge::image::file::{ImageFileError, StoredImage};
 use lightmeter_judge::image::judge::{Judged, Miss, error, error_map, judge};
@@ -21,6 +22,7 @@ use lightmeter_judge::tally::KEPT_FAILURES;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
+use lightmeter_scene::target::{Encoding, TargetFormat};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -112,6 +114,20 @@ impl<'a> JudgedScene<'a> {
         judge(image, &self.reference, self.expected(profile), &self.pixels)
     }
 
+    /// What all pixels of a right image say together; of blended ones nothing, since each layer was rounded.
+    pub(super) fn bias(&self, image: &StoredImage, profile: &Profile) -> Option<ImageBias> {
+        let frame = self.frame;
+        if frame.target.format.encoding() != Encoding::Unorm8 || frame.draws.iter().any(|draw| draw.blend.is_some()) {
+            return None;
+        }
+        let found = Bias::of(image, &self.reference, self.expected(profile), &self.pixels)?;
+        let mut on_floats = frame.clone();
+        on_floats.target.format = TargetFormat::Rgba32Float;
+        let on_floats = expect(&on_floats, None, None, profile);
+        let legal = legal_steps(&self.reference, &on_floats, &self.pixels);
+        Some(ImageBias { factor: found.factor, steps: found.steps, error: found.error, legal: Number(legal) })
+    }
+
     /// What the reference has at a pixel.
     pub(super) fn reference(&self, pixel: usize) -> [f64; 4] {
         self.reference.pixels[pixel]
@@ -123,7 +139,8 @@ impl<'a> JudgedScene<'a> {
         let expected = self.expected(&drawn.profile);
         let mut judged = self.judged(drawn.image, &drawn.profile);
         self.excuse(&mut judged, drawn, report);
-        let problem = judged.verdicts.problem();
+        let bias = if judged.misses.is_empty() { self.bias(drawn.image, &drawn.profile) } else { None };
+        let problem = judged.verdicts.problem().or(bias.and_then(|bias| told(&bias)));
         let mut totals = Totals { failed_groups: u64::from(problem.is_some()), ..judged.verdicts.totals };
         let has_failed = totals.failed > 0;
         let on = [stage(drawn.picture), self.frame.target.format.name()];
@@ -131,7 +148,7 @@ impl<'a> JudgedScene<'a> {
             totals.expected_failures += std::mem::take(&mut totals.failed);
         }
         let by_case = drawn.options.counts_cases.then(|| self.counts(has_failed, totals.failed == 0));
-        let mut used = self.image_use(drawn.image, expected);
+        let mut used = ImageUse { bias, ..self.image_use(drawn.image, expected) };
         let explanation = match worst(&judged) {
             Some(worst) => Some(self.explain(drawn, named, (&judged, worst), &mut used, report)?),
             None => None,
@@ -181,6 +198,7 @@ impl<'a> JudgedScene<'a> {
             marked: self.pixels.iter().filter(|&&pixel| expected[pixel].is_marked).count() as u64,
             differs_from_composed: None,
             cost: None,
+            bias: None,
             departs_in: None,
             files: vec![],
         }
@@ -281,6 +299,22 @@ impl<'a> JudgedScene<'a> {
             answer: None,
         }
     }
+}
+
+/// What a bias says that the accuracy rules do not explain.
+pub(super) fn told(bias: &ImageBias) -> Option<String> {
+    let ImageBias { factor, steps, legal: Number(legal), .. } = *bias;
+    let is = match factor {
+        Some(factor) => format!("as if every value were {factor:.4} times what it is to be"),
+        None => format!("as if {steps:+.2} were added to every value"),
+    };
+    // Where anything is legal, nothing is told.
+    (steps.abs() > legal).then(|| {
+        format!(
+            "each pixel is legal, but together they lie to one side: {is}, {steps:+.2} steps on average where the accuracy \
+             rules leave {legal:.3}"
+        )
+    })
 }
 
 /// Which shader drew an image, as reports name it.
