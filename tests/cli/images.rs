@@ -84,6 +84,32 @@ fn a_texture_that_is_truncated_fails_on_every_adapter() {
 }
 
 #[test]
+fn all_pixels_together_tell_what_none_shows_alone() {
+    let lit = "return sum.diffuse + sum.specular;";
+    let run = |name: &str, factor: f64, scene: &str| {
+        let by = format!("return {factor:?} * (sum.diffuse + sum.specular);");
+        let shaders = edited(name, "scene_lighting.wgsl", |text| text.replace(lit, &by));
+        let shaders = shaders.to_str().expect("UTF-8").to_owned();
+        let report = json(&["run", scene, "--size", "256", "--shaders", &shaders, "--format", "json"]);
+        report["groups"][0].clone()
+    };
+    // Every pixel of an image of 8 bits is legal, and the image is not.
+    let flat = run("bias-flat", 1.002, "scene/flat");
+    let bias = &flat["image"]["bias"];
+    assert_eq!((&flat["failed"], &flat["failed_groups"]), (&0.into(), &1.into()), "{flat}");
+    assert!(flat["problem"].as_str().is_some_and(|said| said.contains("to one side")), "{flat}");
+    assert!(bias["factor"].as_f64().is_some_and(|factor| (factor - 1.002).abs() < 0.0005), "{bias}");
+    // What the accuracy rules leave to a highlight of a high power explains as much: it is told, and fails nothing.
+    let legal = run("bias-legal", 1.003, "scene/missed-highlight");
+    assert!(legal["image"]["bias"]["factor"].is_f64() && legal.get("problem").is_none(), "{legal}");
+    // On floats the pixels themselves are wrong.
+    let floats = run("bias-floats", 1.0005, "scene/combined-exp");
+    assert!(floats["failed"].as_u64().is_some_and(|failed| failed > 1000), "{floats}");
+    let right = run("bias-none", 1.0, "scene/flat");
+    assert!(right["image"].get("bias").is_none() && right["failed_groups"] == 0, "{right}");
+}
+
+#[test]
 fn a_wrong_image_names_its_stage_and_leaves_pictures() {
     let dir = edited("images", "vector.wgsl", |text| {
         let right = "return i - 2.0 * dot(i, n) * n;";
