@@ -13,7 +13,7 @@ use lightmeter::image::drawn::drawn;
 use lightmeter::options::Options;
 use lightmeter::run::run_selection;
 use lightmeter::scene::library::SCENES;
-use lightmeter::scene::select::{SIZE_AMONG_ALL, builtin};
+use lightmeter::scene::select::{SIZE_AMONG_ALL, builtin, scene_id};
 use lightmeter::select::{CaseRef, Member, catalogue};
 use lightmeter::selection::Selection;
 use lightmeter::subject::Subject;
@@ -145,9 +145,12 @@ impl Campaign {
             "depth_unit.wgsl" => globs(&["depth"]),
             "blend_unit.wgsl" | "blend_unit_dual.wgsl" => globs(&["blend/mode-*", "blend/min", "blend/add/src1-*"]),
             "probe.wgsl" | "technique.wgsl" => None,
-            _ if file.starts_with("effects/") || file.starts_with("scene") || file == "texture.wgsl" => {
-                globs(&["scene"])
+            _ if file.starts_with("effects/") => {
+                let effect = file.trim_start_matches("effects/").trim_end_matches(".wgsl");
+                let scenes = self.scenes_with(effect);
+                (!scenes.is_empty()).then_some(Scope::Filter(scenes))
             }
+            _ if file.starts_with("scene") || file == "texture.wgsl" => globs(&["scene"]),
             _ if file.starts_with("rung/") => None,
             _ => {
                 let callers = callers(&self.shaders, [&*mutant.function]);
@@ -159,6 +162,17 @@ impl Campaign {
                 (!places.is_empty()).then_some(Scope::Formulas(places))
             }
         }
+    }
+
+    /// The scenes of which some draw calls for an effect.
+    fn scenes_with(&self, effect: &str) -> Vec<String> {
+        let calls = |place: &usize| {
+            let loaded = builtin(*place, Some(SIZE_AMONG_ALL)).ok();
+            loaded.is_some_and(|loaded| {
+                effects(&loaded.frame).iter().any(|called| called.effects.iter().any(|one| one.name() == effect))
+            })
+        };
+        (0..SCENES.len()).filter(calls).map(scene_id).collect()
     }
 
     /// Judges a mutant, and where it survives tells by bits what it is.
@@ -177,7 +191,7 @@ impl Campaign {
         }
         match scope {
             Scope::Formulas(places) => self.survivor(&places, &mutated),
-            Scope::Filter(globs) if globs == ["scene"] => self.scenes(&mutated),
+            Scope::Filter(globs) if globs[0].starts_with("scene") => self.scenes(&mutated),
             Scope::Filter(_) => Ok(MutantClass::Unshown),
         }
     }
