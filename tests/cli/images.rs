@@ -68,7 +68,7 @@ fn a_texture_that_is_truncated_fails_on_every_adapter() {
         assert!(text.contains(right));
         text.replace(right, "vec2i(uv * vec2f(textureDimensions(image)))")
     });
-    let shaders = dir.to_str().expect("UTF-8");
+    let (shaders, images) = (dir.to_str().expect("UTF-8"), path(&folder("truncated-images"), ""));
     let listed = json(&["adapters", "--format", "json"]);
     let adapters = listed["adapters"].as_array().expect("adapters").iter().filter(|one| one["backend"] != "embedded");
     let names: Vec<&str> = adapters.map(|one| one["name"].as_str().expect("a name")).collect();
@@ -77,7 +77,10 @@ fn a_texture_that_is_truncated_fails_on_every_adapter() {
         let args = ["run", "scene/texture-edges", "--size", "64", "--adapter", adapter];
         let right = lightmeter(&args);
         assert_eq!(code(&right), 0, "{adapter}: {}{}", stdout(&right), stderr(&right));
-        let wrong = crate::command(&args).args(["--shaders", shaders]).output().expect("the binary starts");
+        let wrong = crate::command(&args)
+            .args(["--shaders", shaders, "--images", &images])
+            .output()
+            .expect("the binary starts");
         assert_eq!(code(&wrong), 1, "{adapter}: {}{}", stdout(&wrong), stderr(&wrong));
         assert!(stdout(&wrong).contains("FAIL scene/texture-edges/"), "{adapter}: {}", stdout(&wrong));
     }
@@ -86,11 +89,13 @@ fn a_texture_that_is_truncated_fails_on_every_adapter() {
 #[test]
 fn all_pixels_together_tell_what_none_shows_alone() {
     let lit = "return sum.diffuse + sum.specular;";
+    let images = path(&folder("bias-images"), "");
     let run = |name: &str, factor: f64, scene: &str| {
         let by = format!("return {factor:?} * (sum.diffuse + sum.specular);");
         let shaders = edited(name, "scene_lighting.wgsl", |text| text.replace(lit, &by));
         let shaders = shaders.to_str().expect("UTF-8").to_owned();
-        let report = json(&["run", scene, "--size", "256", "--shaders", &shaders, "--format", "json"]);
+        let args = ["run", scene, "--size", "256", "--shaders", &shaders, "--images", &images, "--format", "json"];
+        let report = json(&args);
         report["groups"][0].clone()
     };
     // Every pixel of an image of 8 bits is legal, and the image is not.

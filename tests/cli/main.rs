@@ -57,7 +57,11 @@ fn edited(test: &str, file: &str, edit: impl Fn(&str) -> String) -> PathBuf {
     let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     let _ = std::fs::remove_dir_all(&dir);
     std::fs::create_dir_all(&dir).expect("a folder for shaders can be made");
-    let (_, text) = lightmeter_gpu::FILES.into_iter().chain(lightmeter_gpu::SCENE_FILES).find(|(name, _)| *name == file).expect("the shader is built in");
+    let (_, text) = lightmeter_gpu::FILES
+        .into_iter()
+        .chain(lightmeter_gpu::SCENE_FILES)
+        .find(|(name, _)| *name == file)
+        .expect("the shader is built in");
     std::fs::write(dir.join(file), edit(text)).expect("a shader can be written");
     dir
 }
