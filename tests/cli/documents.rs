@@ -7,9 +7,11 @@ use lightmeter::document::bench::BenchDocument;
 use lightmeter::document::bench::recommendation::Recommendation;
 use lightmeter::document::effects::EffectsDocument;
 use lightmeter::document::eval::{EvalAnswer, EvalRequest};
+use lightmeter::document::frame::FrameDocument;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::list::{CasesDocument, FormulasDocument, ListedCases, ListedDomain};
 use lightmeter::document::pack::Manifest;
+use lightmeter::document::protocol::ProtocolLine;
 use lightmeter::document::run::{Examined, Report};
 use lightmeter::document::selftest::SelftestDocument;
 use lightmeter::document::show::{ShowDocument, ShownAnswer};
@@ -24,11 +26,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// What `lightmeter schema` prints and `docs/schemas/` has, but for the scene.
-const NAMES: [&str; 16] = [
+const NAMES: [&str; 18] = [
     "run",
     "special",
     "gate",
     "pack",
+    "protocol",
+    "frame",
     "sweep",
     "bench",
     "selftest",
@@ -338,6 +342,43 @@ fn a_document_that_departs_from_its_schema_is_told() {
         change(&mut wrong);
         let departure = departure(&schema, &schema, &wrong, "").unwrap_or_default();
         assert!(departure.contains(said), "{said}: {departure}");
+    }
+}
+
+#[test]
+fn what_a_renderer_reads_is_read_again() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents-protocol");
+    let _ = std::fs::remove_dir_all(&folder);
+    let dir = folder.to_str().expect("UTF-8");
+    let scenes = ["scene/combined-exp", "scene/spotlight", "scene/sorted", "scene/fog-exp2-document"];
+    let filter = ["fog/exp", "blend/add/src-alpha/one", "blend/layers", "special/nan"];
+    let options = ["--cases", "8", "--size", "16", "--target", "rgba8unorm", "--special"];
+    let output = lightmeter(&[&["pack", dir], &scenes[..], &filter, &options].concat());
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let schema = super::json(&["schema", "protocol"]);
+    let lines = std::fs::read_to_string(folder.join("cases.jsonl")).expect("there are cases");
+    let mut kinds = BTreeSet::new();
+    for line in lines.lines() {
+        let value: Value = serde_json::from_str(line).expect("it is JSON");
+        assert_eq!(departure(&schema, &schema, &value, ""), None);
+        let read: ProtocolLine = serde_json::from_value(value).expect("it is a line");
+        let (kind, written) = match &read {
+            ProtocolLine::Case(case) if case.target.is_some() => ("on a target", case.to_string()),
+            ProtocolLine::Case(case) => ("case", case.to_string()),
+            ProtocolLine::Probe(probe) => ("probe", probe.to_string()),
+            ProtocolLine::Scene(_) | ProtocolLine::Greeting(_) | ProtocolLine::Batch(_) => {
+                panic!("no line of a pack: {line}")
+            }
+        };
+        kinds.insert(kind);
+        assert_eq!(written, line);
+    }
+    assert_eq!(kinds, BTreeSet::from(["on a target", "case", "probe"]));
+    for id in scenes {
+        let file = folder.join("scenes").join(id.trim_start_matches("scene/")).join("scene.json");
+        let text = std::fs::read(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        let (frame, _) = again::<FrameDocument>(&text);
+        assert!(frame.id == id && !frame.draws.is_empty(), "{id}");
     }
 }
 

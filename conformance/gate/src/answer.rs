@@ -5,6 +5,7 @@ use super::frame;
 use lightmeter_arithmetic::Profile;
 use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::filter::Filter;
+use lightmeter_document::protocol::PROTOCOL;
 use lightmeter_scene::frame::Frame;
 use serde::de::{Deserializer, Visitor};
 use serde::{Deserialize, Serialize};
@@ -14,8 +15,6 @@ use std::io::BufRead;
 
 /// Bytes of a line, at most.
 pub const MOST_BYTES: usize = 1 << 20;
-/// The protocol's name and version.
-pub const PROTOCOL: &str = "lightmeter.protocol/1";
 
 /// Who answers, and what is to be asked.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

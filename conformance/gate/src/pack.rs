@@ -7,9 +7,10 @@ use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{GENERATOR_VERSION, Input, Kind, Output, Spec, ValueShape};
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
+use lightmeter_document::protocol::{CaseRequest, LayerRequest, ProbeRequest};
 use lightmeter_document::{Document as _, Number, Word};
 use lightmeter_judge::image::file::{StoredImage, whole};
-use lightmeter_scene::blend::{Separate, State};
+use lightmeter_scene::blend::Separate;
 use lightmeter_scene::frame::{Frame, Mesh, Texture};
 use lightmeter_scene::target::TargetFormat;
 use serde_json::{Map, Value, json};
@@ -79,7 +80,7 @@ fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {
 
 /// A case of a formula as a renderer is asked it.
 #[must_use]
-pub fn case(spec: &Spec, id: &str, row: &[f32]) -> Value {
+pub fn case(spec: &Spec, id: &str, row: &[f32]) -> CaseRequest {
     let mut inputs = Map::new();
     let mut rest = row;
     for input in spec.inputs {
@@ -89,44 +90,38 @@ pub fn case(spec: &Spec, id: &str, row: &[f32]) -> Value {
         let value = if let [one] = numbers.as_slice() { one.clone() } else { numbers.into() };
         inputs.insert(input.name.to_owned(), value);
     }
-    json!({ "id": id, "formula": spec.id, "inputs": inputs })
+    CaseRequest { id: id.to_owned(), formula: spec.id.clone(), inputs, target: None, blend: None }
 }
 
 /// A case of a blend state as a renderer is asked it on a target: with the states that it draws by, one for each of its layers in turn.
 #[must_use]
-pub fn on_target(spec: &Spec, id: &str, row: &[f32], target: TargetFormat, program: Program) -> Value {
+pub fn on_target(spec: &Spec, id: &str, row: &[f32], target: TargetFormat, program: Program) -> CaseRequest {
     let layers = if let Program::Layers(modes) = program { modes.len() } else { 1 };
-    let state = |state: State| {
-        let State { equation, src, dst } = state;
-        json!({ "equation": equation.name(), "src": src.name(), "dst": dst.name() })
-    };
     let layer = |number: usize| {
         let (Separate { color, alpha }, mask) = program.layer(number);
         let written: Vec<&str> =
             ["r", "g", "b", "a"].into_iter().zip(mask.0).filter(|(_, is)| *is).map(|(k, _)| k).collect();
-        json!({ "color": state(color), "alpha": state(alpha), "mask": written.concat() })
+        LayerRequest { color: frame::words(color), alpha: frame::words(alpha), mask: written.concat() }
     };
-    let mut asked = case(spec, id, row);
-    asked["target"] = json!(target.name());
-    asked["blend"] = (0..layers).map(layer).collect();
-    asked
+    let blend = (0..layers).map(layer).collect();
+    CaseRequest { target: Some(target.name().into()), blend: Some(blend), ..case(spec, id, row) }
 }
 
 /// A probe of special values as a renderer is asked it: one operation on operands, which are told as numbers and bit for bit.
 #[must_use]
-pub fn probe(probe: &Probe) -> Value {
+pub fn probe(probe: &Probe) -> ProbeRequest {
     let named = |value: &dyn Fn(u32) -> Value| -> Map<String, Value> {
         let each = Probe::OPERANDS.iter().zip(probe.inputs);
         each.map(|(name, &bits)| ((*name).to_owned(), value(bits))).collect()
     };
-    json!({
-        "id": probe.id(),
-        "formula": probe.class.table(),
-        "operation": probe.what,
-        "function": probe.function(),
-        "inputs": named(&|bits| json!(Number(probe.operand(bits)))),
-        "inputs_hex": named(&|bits| format!("0x{bits:08x}").into()),
-    })
+    ProbeRequest {
+        id: probe.id(),
+        formula: probe.class.table().to_owned(),
+        operation: probe.what.into(),
+        function: probe.function().map(Word::from),
+        inputs: named(&|bits| json!(Number(probe.operand(bits)))),
+        inputs_hex: named(&|bits| format!("0x{bits:08x}").into()),
+    }
 }
 
 /// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go.
@@ -260,7 +255,7 @@ impl PackedDraw {
     /// Its files, by their names.
     fn files(&self) -> impl Iterator<Item = (String, Vec<u8>)> {
         let (name, frame) = (self.folder(), &self.frame);
-        let scene = format!("{}\n", frame::to_json(&self.id, &self.title, frame));
+        let scene = frame::document(&self.id, &self.title, frame).to_json().unwrap_or_default();
         let meshes = frame.meshes.iter().enumerate().map(|(k, mesh)| (format!("mesh-{k}.obj"), obj(mesh).into_bytes()));
         let textures = frame.textures.iter().enumerate().map(|(k, texture)| (format!("texture-{k}.png"), png(texture)));
         let scene = std::iter::once(("scene.json".to_owned(), scene.into_bytes()));

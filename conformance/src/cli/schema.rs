@@ -6,6 +6,7 @@ use lightmeter::document::adapters::AdaptersDocument;
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::document::bench::recommendation::Recommendation;
 use lightmeter::document::effects::EffectsDocument;
+use lightmeter::document::frame::FrameDocument;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::list::{CasesDocument, FormulasDocument};
 use lightmeter::document::pack::Manifest;
@@ -16,7 +17,7 @@ use lightmeter::document::special::SpecialReport;
 use lightmeter::document::special::record::SpecialRecord;
 use lightmeter::document::sweep::SweepDocument;
 use lightmeter::document::sweep::presets::PresetsDocument;
-use lightmeter::document::{Document as _, eval};
+use lightmeter::document::{Document as _, eval, protocol};
 use lightmeter_scene::model::Scene;
 use std::path::PathBuf;
 
@@ -42,6 +43,10 @@ enum Of {
     Gate,
     /// The manifest that `pack` writes
     Pack,
+    /// A line that a renderer reads, of `gate --exec` or of a pack
+    Protocol,
+    /// The file of a scene, by which a renderer draws it
+    Frame,
     /// The JSON of `sweep` and `merge`
     Sweep,
     /// The JSON of `bench`
@@ -76,6 +81,8 @@ impl Schema {
             Of::Special => SpecialReport::schema(),
             Of::Gate => GateReport::schema(),
             Of::Pack => Manifest::schema(),
+            Of::Protocol => protocol::schema(),
+            Of::Frame => FrameDocument::schema(),
             Of::Sweep => SweepDocument::schema(),
             Of::Bench => BenchDocument::schema(),
             Of::Selftest => SelftestDocument::schema(),

@@ -13,8 +13,10 @@ use super::error::ProcessError;
 use super::given::{Asks, Declared, Given, answers, pixel, word};
 use super::{frame, pack, picture};
 use lightmeter_catalogue::special::Probe;
+use lightmeter_document::Document as _;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::event::Stop;
+use lightmeter_document::protocol::SceneRequest;
 use lightmeter_document::run::Identity;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
@@ -24,7 +26,6 @@ use lightmeter_judge::cases::{Answers, ExpectedFailure, Unanswered};
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
-use serde_json::json;
 use session::{Question, Session};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -117,7 +118,7 @@ fn refused(error: ProcessError) -> DeviceError {
 /// Writes what a renderer draws a scene by; the file, and when that was.
 fn write_scene(folder: &Path, scene: AskedScene<'_>) -> Result<(PathBuf, SystemTime), ProcessError> {
     let path = folder.join(format!("{}.json", scene.id.replace('/', "-")));
-    let text = frame::to_json(scene.id, scene.title, scene.frame).to_string();
+    let text = frame::document(scene.id, scene.title, scene.frame).to_json().unwrap_or_default();
     let failed = |error: std::io::Error| ProcessError::Folder { path: path.clone(), message: error.to_string() };
     std::fs::write(&path, text).map_err(failed)?;
     // By the same clock that an image gets its time from.
@@ -179,10 +180,10 @@ impl AskedRenderer for ProcessRenderer {
         let (path, asked) = write_scene(&self.folder, scene).map_err(refused)?;
         let AskedScene { id, frame, .. } = scene;
         let (width, height) = (frame.target.width, frame.target.height);
-        let format = frame.target.format.name();
+        let format = frame.target.format.name().into();
         let request =
-            json!({ "id": id, "scene": path, "width": width, "height": height, "format": format }).to_string();
-        let question = Question { id: id.to_owned(), request, asks: Asks::Image };
+            SceneRequest { id: id.to_owned(), scene: path.to_string_lossy().into_owned(), width, height, format };
+        let question = Question { id: id.to_owned(), request: request.to_string(), asks: Asks::Image };
         let given = self.session().all(&[question], &mut |_| {});
         Ok(match given.into_iter().next() {
             Some(Given::Image(file)) => {

@@ -1,6 +1,6 @@
 //! A conversation with a process: its start, batches of questions, its answers as they come, its end.
 
-use super::super::answer::{self, Hello, Line, PROTOCOL, Unread, clipped};
+use super::super::answer::{self, Hello, Line, Unread, clipped};
 use super::super::error::ProcessError;
 use super::super::given::{Asks, Given, given};
 use super::super::problems::note;
@@ -8,9 +8,9 @@ use super::Asking;
 use super::running::{Event, Running};
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::gate::RendererIdentity;
+use lightmeter_document::protocol::{BatchEnd, Greeting, PROTOCOL};
 use lightmeter_judge::cases::ExpectedFailure;
 use rayon::prelude::*;
-use serde_json::json;
 use std::collections::{HashMap, HashSet};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::process::ChildStdin;
@@ -224,7 +224,11 @@ impl Session {
         let failed = |message: String| ProcessError::Start { command: self.asking.command.clone(), message };
         let mut running = Running::start(&self.asking.command).map_err(&failed)?;
         self.used.starts += 1;
-        let greeting = json!({ "hello": PROTOCOL, "version": env!("CARGO_PKG_VERSION"), "folder": self.asking.folder });
+        let greeting = Greeting {
+            hello: PROTOCOL.into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            folder: self.asking.folder.to_string_lossy().into_owned(),
+        };
         let written = running.send(format!("{greeting}\n"));
         let begun = Instant::now();
         let until = begun + self.asking.limits.start;
@@ -313,7 +317,7 @@ impl Session {
             text.push('\n');
         }
         self.number += 1;
-        text + &format!("{{\"batch\": {}}}\n", self.number)
+        text + &format!("{}\n", BatchEnd { batch: self.number })
     }
 
     /// Takes lines for answers to questions. What answers none of them is a problem.

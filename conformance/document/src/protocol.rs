@@ -1,0 +1,127 @@
+//! What a renderer that runs as a process is told and asked, a line each: `lightmeter.protocol/1`.
+
+use crate::Word;
+use crate::frame::BlendWords;
+use schemars::{JsonSchema, Schema};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use std::fmt;
+
+/// The protocol's name.
+pub const PROTOCOL: &str = "lightmeter.protocol/1";
+
+/// The first line.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Greeting {
+    /// `lightmeter.protocol/1`.
+    #[schemars(extend("const" = PROTOCOL))]
+    pub hello: Word,
+    /// The version of lightmeter.
+    pub version: Word,
+    /// The folder that images are written to.
+    pub folder: String,
+}
+
+/// A case of a formula; of a blend state on a target, with the states that it is drawn by.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CaseRequest {
+    /// The case's id, which the answer has too.
+    pub id: String,
+    /// The formula's id.
+    pub formula: String,
+    /// The inputs by name: a number each, or an array of the components; `"NaN"`, `"Inf"` and `"-Inf"` for what JSON has no number for.
+    pub inputs: Map<String, Value>,
+    /// The target's format.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<Word>,
+    /// The states, one for each layer in turn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blend: Option<Vec<LayerRequest>>,
+}
+
+/// How a layer is drawn.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct LayerRequest {
+    /// Of red, green and blue.
+    pub color: BlendWords,
+    /// Of alpha.
+    pub alpha: BlendWords,
+    /// The components that are written: letters of `rgba`.
+    pub mask: String,
+}
+
+/// An operation on special values.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ProbeRequest {
+    /// The probe's id.
+    pub id: String,
+    /// Its table.
+    pub formula: String,
+    /// The operation, in words.
+    pub operation: Word,
+    /// WGSL's function for it, where it has one.
+    pub function: Option<Word>,
+    /// The operands as numbers.
+    pub inputs: Map<String, Value>,
+    /// The same bit for bit.
+    pub inputs_hex: Map<String, Value>,
+}
+
+/// A scene to be drawn.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct SceneRequest {
+    /// The scene's id.
+    pub id: String,
+    /// Where its file is: `lightmeter.frame/1`.
+    pub scene: String,
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+    /// The target's format.
+    pub format: Word,
+}
+
+/// The end of a batch: all cases before it are to be answered now.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct BatchEnd {
+    /// The number of the batch, from 1.
+    pub batch: u64,
+}
+
+/// A line that a renderer reads, which the published schema describes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum ProtocolLine {
+    /// The first line.
+    Greeting(Greeting),
+    /// An operation on special values.
+    Probe(ProbeRequest),
+    /// A scene to be drawn.
+    Scene(SceneRequest),
+    /// A case of a formula.
+    Case(CaseRequest),
+    /// The end of a batch.
+    Batch(BatchEnd),
+}
+
+/// The JSON Schema of a line.
+#[must_use]
+pub fn schema() -> Schema {
+    crate::schema::<ProtocolLine>()
+}
+
+macro_rules! lines {
+    ($($line:ty)*) => {
+        $(
+            /// The line, without its line feed.
+            impl fmt::Display for $line {
+                fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                    f.write_str(&serde_json::to_string(self).map_err(|_| fmt::Error)?)
+                }
+            }
+        )*
+    };
+}
+
+lines! { Greeting CaseRequest ProbeRequest SceneRequest BatchEnd }
