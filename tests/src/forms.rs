@@ -41,8 +41,10 @@ enum Operation {
     Call(MathFunction),
     /// a / b.
     Quotient,
-    /// A product and a sum or a difference, with the sign of each.
+    /// A product and a sum or a difference, with the sign of each; of two products the one after the sign.
     ProductAndSum,
+    /// The same, of two products the one before the sign.
+    SumOfProducts,
     /// A matrix times a vector.
     Transform,
 }
@@ -110,6 +112,8 @@ forms! {
     "abs by max", Operation::Call(MathFunction::Abs) => |x, _size| format!("max({x}, -{x})", x = x[0].text);
     "quotient by the reciprocal", Operation::Quotient => |x, _size| format!("({} * (1.0 / {}))", x[0].text, x[1].text);
     "product and sum contracted", Operation::ProductAndSum => |x, size|
+        format!("fma({}, {}, {})", splat(&x[0], size), splat(&x[1], size), splat(&x[2], size));
+    "sum of products contracted in the first", Operation::SumOfProducts => |x, size|
         format!("fma({}, {}, {})", splat(&x[0], size), splat(&x[1], size), splat(&x[2], size));
     "transform from the last column", Operation::Transform => |x, _size| {
         let column = |(k, c): (usize, char)| format!("{}[{k}] * {}.{c}", x[0].text, x[1].text);
@@ -295,7 +299,8 @@ impl Found<'_> {
                 let is_it = match operation {
                     Operation::Quotient => op == BinaryOperator::Divide,
                     Operation::Transform => is_transform,
-                    Operation::ProductAndSum => return self.contraction(at, op, [left, right]),
+                    Operation::ProductAndSum => return self.contraction(at, op, [left, right], false),
+                    Operation::SumOfProducts => return self.contraction(at, op, [left, right], true),
                     Operation::Call(_) => false,
                 };
                 let [first, second] = self.operands(at).filter(|_| is_it)?;
@@ -312,6 +317,7 @@ impl Found<'_> {
         at: Handle<Expression>,
         op: BinaryOperator,
         [left, right]: [Handle<Expression>; 2],
+        in_the_first: bool,
     ) -> Option<Place> {
         let minus = match op {
             BinaryOperator::Add => "",
@@ -324,11 +330,12 @@ impl Found<'_> {
             self.product(one)
                 .filter(|_| self.range(one).is_some_and(|range| part.start <= range.start && range.end <= part.end))
         };
-        let (product, [a, b], signs, other) = match (is_here(right, &second), is_here(left, &first)) {
-            (Some(of), _) => (right, of, [minus, ""], (first, self.size(left)?)),
-            (None, Some(of)) => (left, of, ["", minus], (second, self.size(right)?)),
-            (None, None) => return None,
-        };
+        let (product, [a, b], signs, other) =
+            match (is_here(right, &second).filter(|_| !in_the_first), is_here(left, &first)) {
+                (Some(of), _) => (right, of, [minus, ""], (first, self.size(left)?)),
+                (None, Some(of)) => (left, of, ["", minus], (second, self.size(right)?)),
+                (None, None) => return None,
+            };
         let [first, second] = self.operands(product)?;
         let arguments =
             vec![(signs[0], first, self.size(a)?), ("", second, self.size(b)?), (signs[1], other.0, other.1)];
@@ -427,6 +434,7 @@ mod tests {
             ),
             ("product and sum contracted", "return vec4f(t * a + b, 1.0);", "vec4ffmavec3ft,a,b,1.0;"),
             ("product and sum contracted", "return vec4f(a * t - 0.5, 1.0);", "vec4ffmaa,vec3ft,vec3f-0.5,1.0;"),
+            ("sum of products contracted in the first", "return vec4f(t * 2.0 - t * a.x);", "vec4ffmat,2.0,-t*a.x;"),
             ("transform contracted", "return vec4f(m * v, v);", "vec4ffmam[1],vec2fv.y,m[0]*vec2fv.x,v;"),
         ] {
             let found = put(name, text);

@@ -143,7 +143,7 @@ impl Problems {
 }
 
 /// A known failure, and what became of its cases.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct KnownFailure {
     /// A glob of cases.
     pub id: String,

@@ -124,4 +124,11 @@ macro_rules! lines {
     };
 }
 
-lines! { Greeting CaseRequest ProbeRequest SceneRequest BatchEnd }
+lines! { Greeting CaseRequest ProbeRequest SceneRequest }
+
+/// The line, without its line feed. It has always had its space.
+impl fmt::Display for BatchEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{{\"batch\": {}}}", self.batch)
+    }
+}

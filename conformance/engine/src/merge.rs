@@ -9,7 +9,7 @@ use lightmeter_catalogue::scene::select::scene_id;
 use lightmeter_catalogue::select::{CaseRef, catalogue};
 use lightmeter_catalogue::special::Class;
 use lightmeter_document::Number;
-use lightmeter_document::by_case::{CaseCounts, ComparedBy, RendererUse};
+use lightmeter_document::by_case::{CaseCounts, ComparedBy, KnownFailure, RendererUse};
 use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, StoreUse, Totals};
 use lightmeter_judge::blend_unit::store::problem_of;
 use lightmeter_judge::cases::joined;
@@ -62,8 +62,8 @@ pub fn merge(parts: Vec<(PathBuf, Report)>) -> Result<Report, NoWhole> {
 /// Whether two runs were asked the same and held against the same, which all shards of a run are.
 fn are_of_one_run(a: &Report, b: &Report) -> bool {
     let compared_by = |report: &Report| report.compared_by.clone().map(|by| ComparedBy { shard: None, ..by });
-    let expected = |report: &Report| -> Vec<(String, String)> {
-        report.expectations.iter().map(|one| (one.id.clone(), one.reason.clone())).collect()
+    let expected = |report: &Report| -> Vec<KnownFailure> {
+        report.expectations.iter().map(|one| KnownFailure { failed: 0, passed: 0, ..one.clone() }).collect()
     };
     (compared_by(a), &a.profile, &a.adapters, expected(a)) == (compared_by(b), &b.profile, &b.adapters, expected(b))
 }
@@ -174,6 +174,9 @@ impl Order {
 /// Computes the group verdict on stores from the counts of all shards, since one shard may have too few values. The verdicts on a single
 /// blend state, and on a systematic error in all values of a formula, are not computed again: each shard has its own.
 fn tell_stores(group: &mut Group) {
+    if group.expected_problem.as_ref().is_some_and(|problem| problem.starts_with("color.")) {
+        group.expected_problem = None;
+    }
     if let Some(stores) = group.stores.take()
         && group.problem.as_ref().is_none_or(|problem| problem.starts_with("color."))
     {

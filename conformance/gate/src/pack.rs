@@ -255,7 +255,7 @@ impl PackedDraw {
     /// Its files, by their names.
     fn files(&self) -> impl Iterator<Item = (String, Vec<u8>)> {
         let (name, frame) = (self.folder(), &self.frame);
-        let scene = frame::document(&self.id, &self.title, frame).to_json().unwrap_or_default();
+        let scene = frame::document(&self.id, &self.title, frame).to_json().expect("a frame has no map");
         let meshes = frame.meshes.iter().enumerate().map(|(k, mesh)| (format!("mesh-{k}.obj"), obj(mesh).into_bytes()));
         let textures = frame.textures.iter().enumerate().map(|(k, texture)| (format!("texture-{k}.png"), png(texture)));
         let scene = std::iter::once(("scene.json".to_owned(), scene.into_bytes()));

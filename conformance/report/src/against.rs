@@ -1,20 +1,22 @@
 //! What a result was held against: known failures, an earlier result, the same cases asked once more.
 
-use lightmeter_document::gate::{GateReport, KnownFailure};
-use lightmeter_document::run::Report;
+use lightmeter_document::gate::{GateGroup, GateReport, KnownFailure};
+use lightmeter_document::run::{Group, Report};
 use std::fmt::{Result, Write};
 
 /// Cases that are named.
 const MOST_NAMED: usize = 24;
 
 /// What a result was held against, and what came of it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Against<'a> {
     /// Whether the cases are a shard, of which nobody can tell that an expected failure passes.
     is_shard: bool,
     expectations: &'a [KnownFailure],
     unstable: &'a [String],
     regressions: &'a [String],
+    /// What is wrong with whole groups as known failures say, each with its group.
+    problems: Vec<String>,
 }
 
 impl<'a> Against<'a> {
@@ -22,14 +24,21 @@ impl<'a> Against<'a> {
     pub(crate) fn of_gate(report: &'a GateReport) -> Self {
         let GateReport { expectations, unstable, regressions, .. } = report;
         let is_shard = report.compared_by.as_ref().is_some_and(|by| by.shard.is_some());
-        Self { is_shard, expectations, unstable, regressions }
+        let told = |group: &GateGroup| Some(format!("{}: {}", group.name(), group.expected_problem.as_ref()?));
+        let problems = report.groups.iter().filter_map(told).collect();
+        Self { is_shard, expectations, unstable, regressions, problems }
     }
 
     /// Of a run.
     pub(crate) fn of_run(report: &'a Report) -> Self {
         let Report { expectations, unstable_cases: unstable, regressions, .. } = report;
         let is_shard = report.compared_by.as_ref().is_some_and(|by| by.shard.is_some());
-        Self { is_shard, expectations, unstable, regressions }
+        let told = |group: &Group| {
+            let problem = group.expected_problem.as_ref()?;
+            Some(format!("{} on {}, {}: {problem}", group.id, group.adapter, group.place()))
+        };
+        let problems = report.groups.iter().filter_map(told).collect();
+        Self { is_shard, expectations, unstable, regressions, problems }
     }
 
     /// What is wrong, each on a line with its title.
@@ -62,6 +71,7 @@ pub(crate) fn text(against: Against<'_>, out: &mut impl Write) -> Result {
             one.id, one.failed, one.passed, one.reason
         )?;
     }
+    against.problems.iter().try_for_each(|problem| writeln!(out, "\nas expected: {problem}"))?;
     Ok(())
 }
 

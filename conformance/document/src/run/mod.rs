@@ -160,8 +160,9 @@ pub struct ImageBias {
     pub steps: f64,
     /// Its standard error, in steps.
     pub error: f64,
-    /// Steps by which the accuracy rules let all pixels be off before they are stored. What is within is no failure.
-    pub legal: Number,
+    /// What of these steps the accuracy rules do not explain, which fails the image; missing where they explain it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beyond: Option<f64>,
 }
 
 impl Group {

@@ -13,7 +13,7 @@ use lightmeter_document::run::{Failure, Group, ImageBias, ImageUse, Report, Tota
 use lightmeter_judge::cases::ending;
 use lightmeter_judge::devices::Deviation;
 use lightmeter_judge::image::LegalPixel;
-use lightmeter_judge::image::bias::{Bias, legal_steps};
+use lightmeter_judge::image::bias::Bias;
 use lightmeter_judge::image::expect::{Expectation, expect};
 use lightmeter_judge::image::file::{ImageFileError, StoredImage};
 use lightmeter_judge::image::judge::{Judged, Miss, error, error_map, judge};
@@ -124,8 +124,8 @@ impl<'a> JudgedScene<'a> {
         let mut on_floats = frame.clone();
         on_floats.target.format = TargetFormat::Rgba32Float;
         let on_floats = expect(&on_floats, None, None, profile);
-        let legal = legal_steps(&self.reference, &on_floats, &self.pixels);
-        Some(ImageBias { factor: found.factor, steps: found.steps, error: found.error, legal: Number(legal) })
+        let beyond = Bias::beyond(image, &self.reference, &on_floats, &self.pixels).map(|beyond| beyond.steps);
+        Some(ImageBias { factor: found.factor, steps: found.steps, error: found.error, beyond })
     }
 
     /// What the reference has at a pixel.
@@ -303,16 +303,15 @@ impl<'a> JudgedScene<'a> {
 
 /// What a bias says that the accuracy rules do not explain.
 pub(super) fn told(bias: &ImageBias) -> Option<String> {
-    let ImageBias { factor, steps, legal: Number(legal), .. } = *bias;
+    let ImageBias { factor, steps, beyond, .. } = *bias;
     let is = match factor {
         Some(factor) => format!("as if every value were {factor:.4} times what it is to be"),
         None => format!("as if {steps:+.2} were added to every value"),
     };
-    // Where anything is legal, nothing is told.
-    (steps.abs() > legal).then(|| {
+    beyond.map(|beyond| {
         format!(
-            "each pixel is legal, but together they lie to one side: {is}, {steps:+.2} steps on average where the accuracy \
-             rules leave {legal:.3}"
+            "each pixel is legal, but together they lie to one side: {is}, {steps:+.2} steps on average, of which the accuracy \
+             rules do not explain {beyond:+.2}"
         )
     })
 }

@@ -118,8 +118,8 @@ fn refused(error: ProcessError) -> DeviceError {
 /// Writes what a renderer draws a scene by; the file, and when that was.
 fn write_scene(folder: &Path, scene: AskedScene<'_>) -> Result<(PathBuf, SystemTime), ProcessError> {
     let path = folder.join(format!("{}.json", scene.id.replace('/', "-")));
-    let text = frame::document(scene.id, scene.title, scene.frame).to_json().unwrap_or_default();
     let failed = |error: std::io::Error| ProcessError::Folder { path: path.clone(), message: error.to_string() };
+    let text = frame::document(scene.id, scene.title, scene.frame).to_json().map_err(|error| failed(error.into()))?;
     std::fs::write(&path, text).map_err(failed)?;
     // By the same clock that an image gets its time from.
     let asked = path.metadata().and_then(|metadata| metadata.modified()).map_err(failed)?;

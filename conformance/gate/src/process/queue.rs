@@ -3,6 +3,7 @@
 
 use super::super::given::Given;
 use super::session::{BATCH, Ended, Question, Questions, Session};
+use lightmeter_catalogue::cases::Stage;
 use lightmeter_judge::cases::Unanswered;
 use std::collections::VecDeque;
 use std::time::Instant;
@@ -112,7 +113,8 @@ impl Session {
         for place in std::mem::take(&mut queue.untold).into_iter().rev() {
             self.used.incidents.remove(place);
         }
-        let is_expected = self.expected.iter().any(|expected| expected.known.crash && expected.filter.selects(id));
+        let is_expected =
+            self.expected.iter().any(|expected| expected.known.crash && expected.has(id, &[Stage::Answer.name()]));
         let message = format!("{message}: {how}");
         let incidents = if is_expected { &mut self.used.expected_incidents } else { &mut self.used.incidents };
         incidents.push(format!("{id}: {message}"));

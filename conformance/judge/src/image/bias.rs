@@ -2,7 +2,8 @@
 //!
 //! A step of 8 bits hides what is wrong by less. Where a shader is off by a third of a step, a third of the pixels are a step off, all to
 //! one side; each is legal wherever arithmetic leaves it to the shader which of two steps is next. So the steps by which pixels differ from the
-//! reference, rounded, are added up: of a right image they are few, and as often up as down.
+//! reference, rounded, are added up: of a right image they are few, and as often up as down. Where a shader compiler may be off to one side all over an
+//! image, it may be: what fails an image is what is left beyond that.
 
 use super::file::StoredImage;
 use super::pixel::LegalPixel;
@@ -27,17 +28,40 @@ pub struct Bias {
 }
 
 impl Bias {
-    /// What an image of 8 bits says of itself; `None` where it lies to no side. Marked pixels say nothing, and neither do those
-    /// at the ends of the range, where values are clamped.
+    /// To which side of its reference an image of 8 bits lies; `None` where it lies to none. Marked pixels say nothing, and neither do
+    /// those at the ends of the range, where values are clamped.
     #[must_use]
     pub fn of(image: &StoredImage, reference: &StoredImage, expected: &[LegalPixel], pixels: &[usize]) -> Option<Self> {
         let unmarked = pixels.iter().copied().filter(|&pixel| !expected[pixel].is_marked);
-        let points = means(reference, unmarked, |pixel, component, nearest| image.pixels[pixel][component] - nearest);
+        Self::fitted(&means(reference, unmarked, |pixel, component, nearest| image.pixels[pixel][component] - nearest))
+    }
+
+    /// What is left of it where every value that a pixel may have before it is stored is rounded to the nearest step, at a tie to either: of
+    /// an image that the accuracy rules explain nothing is left.
+    #[must_use]
+    pub fn beyond(
+        image: &StoredImage,
+        reference: &StoredImage,
+        on_floats: &[LegalPixel],
+        pixels: &[usize],
+    ) -> Option<Self> {
+        let unmarked = pixels.iter().copied().filter(|&pixel| !on_floats[pixel].is_marked);
+        let off = |pixel: usize, component: usize, _: f64| {
+            let legal = &on_floats[pixel];
+            let least = (255.0 * legal.low[component] - 0.5).ceil();
+            let greatest = (255.0 * legal.high[component] + 0.5).floor();
+            let value = image.pixels[pixel][component];
+            value - value.max(least).min(greatest)
+        };
+        Self::fitted(&means(reference, unmarked, off))
+    }
+
+    fn fitted(points: &[[f64; 2]]) -> Option<Self> {
         if points.len() < LEAST_VALUES {
             return None;
         }
-        let added = fit(&points, |_| 1.0);
-        let multiplied = fit(&points, |x| x);
+        let added = fit(points, |_| 1.0);
+        let multiplied = fit(points, |x| x);
         let is_multiplied = multiplied.rest < added.rest;
         let better = if is_multiplied { multiplied } else { added };
         let found = Self {
@@ -48,20 +72,6 @@ impl Bias {
         // The error is not negative, and may be 0.
         (found.steps.abs() >= STEPS && found.steps.abs() >= ERRORS * found.error).then_some(found)
     }
-}
-
-/// By how many steps of 8 bits an image may be off by the accuracy rules before it is stored, where all of its pixels are off to one
-/// side: the mean over what is legal on a target of floats, each value of the reference counting once.
-#[must_use]
-pub fn legal_steps(reference: &StoredImage, on_floats: &[LegalPixel], pixels: &[usize]) -> f64 {
-    let unmarked = pixels.iter().copied().filter(|&pixel| !on_floats[pixel].is_marked);
-    let half = |pixel: usize, component: usize, _: f64| {
-        255.0 * (on_floats[pixel].high[component] - on_floats[pixel].low[component]) / 2.0
-    };
-    let points = means(reference, unmarked, half);
-    #[expect(clippy::cast_precision_loss, reason = "at most some hundred points")]
-    let count = points.len() as f64;
-    points.iter().map(|[_, half]| half).sum::<f64>() / count
 }
 
 /// For each component and each value of the reference in whole steps, that value and the mean of something over the pixels that have it.
@@ -149,6 +159,41 @@ mod tests {
             let bias = found(|c| c + offset).expect("it is to one side");
             assert!(bias.factor.is_none() && (bias.steps - offset).abs() < 0.05, "{offset}: {bias:?}");
         }
+    }
+
+    #[test]
+    fn what_the_rules_explain_is_not_beyond_them() {
+        // A ramp, which is 60 % of what is legal too bright, and one on the ties between steps that is rounded down.
+        let exact: Vec<[f64; 4]> = (0..20_000).map(|k| [10.0 + f64::from(k) * 0.01; 4]).collect();
+        let reference = StoredImage { width: 100, format: TargetFormat::Rgba8Unorm, pixels: exact.clone() };
+        let on_floats = |half: f64| -> Vec<LegalPixel> {
+            let legal = |pixel: &[f64; 4]| LegalPixel {
+                low: pixel.map(|c| c * (1.0 - half) / 255.0),
+                high: pixel.map(|c| c * (1.0 + half) / 255.0),
+                is_marked: false,
+            };
+            exact.iter().map(legal).collect()
+        };
+        let drawn = |change: &dyn Fn(f64) -> f64| StoredImage {
+            pixels: exact.iter().map(|pixel| pixel.map(change)).collect(),
+            ..reference.clone()
+        };
+        let all: Vec<usize> = (0..exact.len()).collect();
+        let bright = drawn(&|c| (c * 1.003).round_ties_even());
+        assert!(Bias::of(&bright, &reference, &on_floats(0.005), &all).is_some());
+        assert_eq!(Bias::beyond(&bright, &reference, &on_floats(0.005), &all), None);
+        assert_eq!(Bias::beyond(&bright, &reference, &on_floats(0.003_001), &all), None);
+        assert!(Bias::beyond(&bright, &reference, &on_floats(0.000_01), &all).is_some());
+        let ties =
+            StoredImage { pixels: (0..20_000).map(|k| [f64::from(k / 100) + 10.5; 4]).collect(), ..reference.clone() };
+        let down =
+            StoredImage { pixels: ties.pixels.iter().map(|pixel| pixel.map(f64::floor)).collect(), ..ties.clone() };
+        let legal: Vec<LegalPixel> = ties
+            .pixels
+            .iter()
+            .map(|pixel| LegalPixel { low: pixel.map(|c| c / 255.0), high: pixel.map(|c| c / 255.0), is_marked: false })
+            .collect();
+        assert_eq!(Bias::beyond(&down, &ties, &legal, &all), None);
     }
 
     #[test]
