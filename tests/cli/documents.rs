@@ -377,8 +377,8 @@ fn what_a_renderer_reads_is_read_again() {
     for id in scenes {
         let file = folder.join("scenes").join(id.trim_start_matches("scene/")).join("scene.json");
         let text = std::fs::read(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
-        let (frame, _) = again::<FrameDocument>(&text);
-        assert!(frame.id == id && !frame.draws.is_empty(), "{id}");
+        let (read, _) = again::<FrameDocument>(&text);
+        assert!(read.id == id && !read.frame.draws.is_empty(), "{id}");
     }
 }
 

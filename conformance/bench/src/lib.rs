@@ -10,7 +10,7 @@ mod formulas;
 mod growth;
 pub mod scenes;
 mod sittings;
-mod techniques;
+pub mod techniques;
 pub mod turns;
 
 use ended::BenchError;

@@ -1,5 +1,5 @@
 //! Techniques as formulas: those of a group take the same numbers, and the first is what the others stand in for. None of them
-//! is in the catalogue: `run` does not judge them.
+//! is in the catalogue, so that `run` does not judge them; a property test does.
 
 use super::Bench;
 use super::contest::{Arithmetic, Contender, On, Sample, contest};
@@ -251,6 +251,12 @@ pub(super) fn all() -> Vec<Techniques> {
     let mut all = points();
     all.extend(spans());
     all
+}
+
+/// The formulas of all techniques, each once, described as those of the catalogue are.
+#[must_use]
+pub fn formulas() -> Vec<Member> {
+    all().into_iter().flat_map(|group| group.techniques).map(|technique| technique.member).collect()
 }
 
 /// What is computed at a point.

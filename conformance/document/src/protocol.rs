@@ -1,7 +1,8 @@
 //! What a renderer that runs as a process is told and asked, a line each: `lightmeter.protocol/1`.
 
 use crate::Word;
-use crate::frame::BlendWords;
+use lightmeter_scene::blend::State;
+use lightmeter_scene::target::TargetFormat;
 use schemars::{JsonSchema, Schema};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -33,7 +34,7 @@ pub struct CaseRequest {
     pub inputs: Map<String, Value>,
     /// The target's format.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub target: Option<Word>,
+    pub target: Option<TargetFormat>,
     /// The states, one for each layer in turn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blend: Option<Vec<LayerRequest>>,
@@ -43,9 +44,9 @@ pub struct CaseRequest {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct LayerRequest {
     /// Of red, green and blue.
-    pub color: BlendWords,
+    pub color: State,
     /// Of alpha.
-    pub alpha: BlendWords,
+    pub alpha: State,
     /// The components that are written: letters of `rgba`.
     pub mask: String,
 }
@@ -79,7 +80,7 @@ pub struct SceneRequest {
     /// Pixels.
     pub height: u32,
     /// The target's format.
-    pub format: Word,
+    pub format: TargetFormat,
 }
 
 /// The end of a batch: all cases before it are to be answered now.

@@ -104,6 +104,21 @@ impl Selection {
         Self { catalogue, formulas, tables, scenes, deviations, size, is_by_formula: false, blended: vec![] }
     }
 
+    /// What the options select of these formulas, whether or not they are those of the catalogue, and nothing besides.
+    #[must_use]
+    pub fn of_formulas(catalogue: Arc<[Member]>, options: &Options) -> Self {
+        Self {
+            formulas: select(&catalogue, &options.filter, options.cases, options.shard),
+            catalogue,
+            tables: vec![],
+            scenes: vec![],
+            deviations: vec![],
+            size: None,
+            is_by_formula: false,
+            blended: vec![],
+        }
+    }
+
     /// What the options select for renderers that are asked case by case: formulas, blend states and scenes. The tables of
     /// special values are for those alone that declare them. NaN and infinity in blending are left out, for which no specification
     /// promises a result.

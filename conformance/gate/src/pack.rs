@@ -101,10 +101,10 @@ pub fn on_target(spec: &Spec, id: &str, row: &[f32], target: TargetFormat, progr
         let (Separate { color, alpha }, mask) = program.layer(number);
         let written: Vec<&str> =
             ["r", "g", "b", "a"].into_iter().zip(mask.0).filter(|(_, is)| *is).map(|(k, _)| k).collect();
-        LayerRequest { color: frame::words(color), alpha: frame::words(alpha), mask: written.concat() }
+        LayerRequest { color, alpha, mask: written.concat() }
     };
     let blend = (0..layers).map(layer).collect();
-    CaseRequest { target: Some(target.name().into()), blend: Some(blend), ..case(spec, id, row) }
+    CaseRequest { target: Some(target), blend: Some(blend), ..case(spec, id, row) }
 }
 
 /// A probe of special values as a renderer is asked it: one operation on operands, which are told as numbers and bit for bit.

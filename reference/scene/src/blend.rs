@@ -3,10 +3,13 @@
 //! A [`State`] is a pair of factors and an equation, of which there are 15 × 15 × 5. Colour and alpha have one each: alike, or
 //! [`Separate`].
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// What multiplies the source (`S`) or the destination (`D`) colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Factor {
     /// 0
     Zero,
@@ -102,7 +105,8 @@ impl Factor {
 }
 
 /// How the two products are combined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Equation {
     /// Cs·S + Cd·D
     Add,
@@ -146,7 +150,7 @@ impl Equation {
 }
 
 /// One blend state: a factor a side and an equation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 pub struct State {
     /// The equation.
     pub equation: Equation,
@@ -224,7 +228,7 @@ impl State {
 }
 
 /// A state for the colour and one for the alpha.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 pub struct Separate {
     /// Of red, green and blue.
     pub color: State,

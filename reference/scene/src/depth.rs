@@ -1,5 +1,7 @@
 //! Depth tests, as OpenGL, Vulkan and WebGPU name them.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// When a fragment's depth passes against the depth that is stored.
@@ -60,7 +62,7 @@ impl Compare {
 }
 
 /// A depth test, and whether a fragment that passes leaves its depth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 pub struct DepthTest {
     /// When it passes.
     pub compare: Compare,

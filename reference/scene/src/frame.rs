@@ -9,6 +9,8 @@ use crate::depth::DepthTest;
 use crate::raster::Provoking;
 use crate::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 use crate::target::TargetFormat;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A 4 × 4 matrix of columns.
 pub type Matrix = [[f32; 4]; 4];
@@ -17,7 +19,7 @@ pub type Matrix = [[f32; 4]; 4];
 pub const MOST_LIGHTS: usize = 64;
 
 /// Everything that an image is made from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Frame {
     /// What is drawn to.
     pub target: Target,
@@ -44,6 +46,7 @@ pub struct Frame {
     /// What is drawn, in this order.
     pub draws: Vec<Draw>,
     /// What is drawn otherwise than any scene asks for.
+    #[serde(skip)]
     pub departures: Departures,
 }
 
@@ -62,7 +65,7 @@ pub struct Departures {
 }
 
 /// An image's size and format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Target {
     /// Pixels.
     pub width: u32,
@@ -73,7 +76,7 @@ pub struct Target {
 }
 
 /// A light in eye space.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Light {
     /// What it is called.
     pub name: String,
@@ -88,7 +91,8 @@ pub struct Light {
 }
 
 /// Where a light is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Place {
     /// Infinitely far away.
     Directional {
@@ -120,7 +124,7 @@ pub enum Place {
 }
 
 /// Fog.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Fog {
     /// Its colour.
     pub color: [f32; 3],
@@ -131,7 +135,8 @@ pub struct Fog {
 }
 
 /// The factor of a fog.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum FogForm {
     /// (dmax − distance)/(dmax − dmin)
     Linear {
@@ -151,6 +156,7 @@ pub enum FogForm {
         density: f32,
     },
     /// exp(−(density·distance)²)
+    #[serde(rename = "exp2-opengl")]
     Exp2OpenGl {
         /// 1/unit.
         density: f32,
@@ -158,7 +164,7 @@ pub enum FogForm {
 }
 
 /// Triangles. Attributes that a mesh lacks are empty; the others have one entry a vertex.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Mesh {
     /// Object space.
     pub positions: Vec<[f32; 3]>,
@@ -175,7 +181,7 @@ pub struct Mesh {
 }
 
 /// An image that is read by texture coordinates.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Texture {
     /// Texels.
     pub width: u32,
@@ -186,7 +192,7 @@ pub struct Texture {
 }
 
 /// A mesh with everything that its drawing needs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Draw {
     /// What it is called.
     pub name: String,
@@ -217,7 +223,7 @@ pub struct Draw {
 }
 
 /// What a surface does with light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Material {
     /// CE.
     pub emissive: [f32; 3],
@@ -232,7 +238,7 @@ pub struct Material {
 }
 
 /// How a surface is lit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Shading {
     /// Where.
     pub frequency: Frequency,
@@ -249,16 +255,17 @@ pub struct Shading {
 }
 
 /// A texture in use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Textured {
     /// How it is read.
+    #[serde(flatten)]
     pub sampled: Sampled,
     /// Whether it stands in place of the colour, rather than multiplying it.
     pub replaces: bool,
 }
 
 /// How a texture is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Sampled {
     /// Its place among the textures.
     pub texture: usize,
@@ -287,9 +294,10 @@ pub enum Wrap {
 }
 
 /// A blend state with its constant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Blend {
     /// Factors and equations.
+    #[serde(flatten)]
     pub state: Separate,
     /// Cc, Ac.
     pub constant: [f32; 4],

@@ -1,7 +1,11 @@
 //! How a surface is shaded: where it is lit, which highlight it has, and which dialect of the documents is meant.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 /// Where a surface is lit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Frequency {
     /// Once a face: the colour lit at the provoking vertex.
     Flat,

@@ -180,7 +180,7 @@ impl AskedRenderer for ProcessRenderer {
         let (path, asked) = write_scene(&self.folder, scene).map_err(refused)?;
         let AskedScene { id, frame, .. } = scene;
         let (width, height) = (frame.target.width, frame.target.height);
-        let format = frame.target.format.name().into();
+        let format = frame.target.format;
         let request =
             SceneRequest { id: id.to_owned(), scene: path.to_string_lossy().into_owned(), width, height, format };
         let question = Question { id: id.to_owned(), request: request.to_string(), asks: Asks::Image };

@@ -4,8 +4,9 @@ use crate::frame;
 use crate::raster::Provoking;
 use crate::shading;
 use crate::target::TargetFormat;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
 
 macro_rules! choice {
     (
@@ -43,6 +44,29 @@ macro_rules! choice {
                 match resolved {
                     $(<$resolved>::$variant => Self::$variant,)*
                 }
+            }
+        }
+
+        /// By the word that stands for it.
+        impl Serialize for $resolved {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                $name::from(*self).serialize(serializer)
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $resolved {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                $name::deserialize(deserializer).map(Self::from)
+            }
+        }
+
+        impl JsonSchema for $resolved {
+            fn schema_name() -> Cow<'static, str> {
+                $name::schema_name()
+            }
+
+            fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+                $name::json_schema(generator)
             }
         }
     };
