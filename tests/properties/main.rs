@@ -14,6 +14,7 @@ mod lighting;
 mod scene;
 mod soundness;
 mod stability;
+mod technique;
 mod vector;
 
 use lightmeter_reference::Vec3;

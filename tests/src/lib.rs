@@ -8,6 +8,7 @@ pub mod frames;
 pub mod harness;
 pub mod mutants;
 pub mod running;
+pub mod techniques;
 
 use lightmeter::arithmetic::Accept;
 use lightmeter::arithmetic::profile::WGSL;

@@ -2,14 +2,18 @@
 
 use super::generate::Mutant;
 use crate::callers::callers;
+use crate::techniques::drawn_by;
 use lightmeter::arithmetic::Accept;
+use lightmeter::arithmetic::profile::WGSL;
+use lightmeter::bench::techniques;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::{Code, DeviceError, Picture};
 use lightmeter::document::event::{Event, Observer, Stop};
 use lightmeter::document::run::Group;
 use lightmeter::evaluate::Evaluator;
 use lightmeter::filter::Filter;
-use lightmeter::image::drawn::drawn;
+use lightmeter::image::drawn::{drawn, intermediate};
+use lightmeter::image::expect::expect;
 use lightmeter::options::Options;
 use lightmeter::run::run_selection;
 use lightmeter::scene::library::SCENES;
@@ -17,11 +21,15 @@ use lightmeter::scene::select::{SIZE_AMONG_ALL, builtin, scene_id};
 use lightmeter::select::{CaseRef, Member, catalogue};
 use lightmeter::selection::Selection;
 use lightmeter::subject::Subject;
-use lightmeter::subject_gpu::code;
+use lightmeter::subject_gpu::{code, device_error};
 use lightmeter_gpu::Shaders;
-use lightmeter_scene::effects::effects;
+use lightmeter_gpu::compose::Technique;
+use lightmeter_scene::effects::{effects, named};
+use lightmeter_scene::frame::Frame;
+use lightmeter_scene::stage::Intermediate;
 use std::collections::BTreeSet;
 use std::fmt;
+use std::sync::Arc;
 
 /// Random inputs that tell what survives: of each formula, or of all of them together where there are as many as blend states.
 const INPUTS_OF_A_SURVIVOR: u64 = 1_000_000;
@@ -31,6 +39,9 @@ const MANY: usize = 200;
 const CASES_OF_A_STATE: u64 = 64;
 /// How many of them are evaluated at once.
 const ROWS: usize = 1 << 16;
+
+/// Pixels of the longer side of a scene's intermediate results.
+const SIZE_OF_STAGES: u32 = 64;
 
 /// What became of a mutant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -90,7 +101,8 @@ pub enum Scope {
 pub struct Campaign {
     shaders: Shaders,
     right: Code,
-    catalogue: Vec<Member>,
+    /// The formulas of the catalogue, and the techniques of `bench`.
+    catalogue: Arc<[Member]>,
     subject: Subject,
     /// Scopes in which the right shaders were seen to pass.
     passed: Vec<Scope>,
@@ -121,7 +133,8 @@ impl Campaign {
     /// Where the built-in shaders are invalid, which a test rules out.
     pub fn new(subject: Subject) -> Result<Self, lightmeter_gpu::GpuError> {
         let shaders = Shaders::built_in()?;
-        Ok(Self { right: code(shaders.clone()), shaders, catalogue: catalogue(), subject, passed: vec![] })
+        let catalogue = catalogue().into_iter().chain(techniques::formulas()).collect();
+        Ok(Self { right: code(shaders.clone()), shaders, catalogue, subject, passed: vec![] })
     }
 
     /// The shaders that are mutated.
@@ -144,7 +157,7 @@ impl Campaign {
             }
             "depth_unit.wgsl" => globs(&["depth"]),
             "blend_unit.wgsl" | "blend_unit_dual.wgsl" => globs(&["blend/mode-*", "blend/min", "blend/add/src1-*"]),
-            "probe.wgsl" | "technique.wgsl" => None,
+            "probe.wgsl" => globs(&["deviation"]),
             _ if file.starts_with("effects/") => {
                 let effect = file.trim_start_matches("effects/").trim_end_matches(".wgsl");
                 let scenes = self.scenes_with(effect);
@@ -191,7 +204,7 @@ impl Campaign {
         }
         match scope {
             Scope::Formulas(places) => self.survivor(&places, &mutated),
-            Scope::Filter(globs) if globs[0].starts_with("scene") => self.scenes(&mutated),
+            Scope::Filter(globs) if globs[0].starts_with("scene") => self.scenes(&globs, &mutated),
             Scope::Filter(_) => Ok(MutantClass::Unshown),
         }
     }
@@ -250,13 +263,20 @@ impl Campaign {
         if matches!(scope, Scope::Formulas(places) if places.len() > MANY) {
             options.cases = CASES_OF_A_STATE;
         }
-        let mut selection = Selection::of(&options);
-        selection.deviations.clear();
-        if let Scope::Formulas(places) = scope {
-            let is_wanted = |id: &str| places.iter().any(|&place| self.catalogue[place].spec.id == id);
-            let catalogue = selection.catalogue.clone();
-            selection.formulas.retain(|chosen| is_wanted(&catalogue[chosen.member].spec.id));
-        }
+        let selection = match scope {
+            Scope::Formulas(places) => {
+                let mut selection = Selection::of_formulas(self.catalogue.clone(), &options);
+                selection.formulas.retain(|chosen| places.contains(&chosen.member));
+                selection
+            }
+            Scope::Filter(globs) => {
+                let mut selection = Selection::of(&options);
+                if !globs.iter().any(|glob| glob == "deviation") {
+                    selection.deviations.clear();
+                }
+                selection
+            }
+        };
         let mut observer = UntilOneFails { stop, has_failed: false };
         let report = run_selection(&selection, std::slice::from_mut(&mut self.subject), &options, &mut observer)?;
         match &report.interrupted {
@@ -278,19 +298,55 @@ impl Campaign {
         Ok(worst)
     }
 
-    /// What a mutant is that is seen in no scene: whether it changes a pixel.
-    fn scenes(&mut self, mutated: &Code) -> Result<MutantClass, DeviceError> {
-        for place in 0..SCENES.len() {
-            let loaded = builtin(place, Some(SIZE_AMONG_ALL)).map_err(|error| DeviceError::Refused(Box::new(error)))?;
-            let called = effects(&loaded.frame);
-            let image = |code| drawn(&self.subject, code, &loaded.frame, &called, Picture::Composed);
-            if let (Ok(right), Ok(other)) = (image(&self.right)?, image(mutated)?)
-                && right.pixels != other.pixels
-            {
-                return Ok(MutantClass::Legal);
+    /// What a mutant is that no run of scenes fails: whether an intermediate result or a technique of drawing is wrong, or a pixel changes.
+    fn scenes(&self, globs: &[String], mutated: &Code) -> Result<MutantClass, DeviceError> {
+        let filter = Filter::new(globs).map_err(|error| DeviceError::Refused(Box::new(error)))?;
+        let mut found = MutantClass::Unshown;
+        for place in (0..SCENES.len()).filter(|&place| filter.selects(&scene_id(place))) {
+            let load = |size| builtin(place, Some(size)).map_err(|error| DeviceError::Refused(Box::new(error)));
+            let frame = load(SIZE_AMONG_ALL)?.frame;
+            for (picture, sets) in [(Picture::Composed, effects(&frame)), (Picture::Full, named(&frame))] {
+                let image = |code| drawn(&self.subject, code, &frame, &sets, picture);
+                if let (Ok(right), Ok(other)) = (image(&self.right)?, image(mutated)?)
+                    && right.pixels != other.pixels
+                {
+                    found = MutantClass::Legal;
+                }
+            }
+            if self.is_wrong_within(&load(SIZE_OF_STAGES)?.frame, mutated)? {
+                return Ok(MutantClass::Killed);
             }
         }
-        Ok(MutantClass::Unshown)
+        let shaders = mutated.get().expect("the code is shaders");
+        for technique in Technique::ALL {
+            if drawn_by(technique, &self.subject, shaders).map_err(device_error)?.departure.is_some() {
+                return Ok(MutantClass::Killed);
+            }
+        }
+        Ok(found)
+    }
+
+    /// Whether an intermediate result of a frame is not legal.
+    fn is_wrong_within(&self, frame: &Frame, mutated: &Code) -> Result<bool, DeviceError> {
+        let (sets, profile) = (named(frame), self.subject.known.profile(&WGSL));
+        let drawn_for_certain = expect(frame, None, Some(Intermediate::Depth), &profile);
+        for stage in Intermediate::ALL {
+            let image = |code| intermediate(&self.subject, code, frame, &sets, stage);
+            let (Ok(right), Ok(other)) = (image(&self.right)?, image(mutated)?) else { continue };
+            if right.pixels == other.pixels {
+                continue;
+            }
+            let legal = expect(frame, None, Some(stage), &profile);
+            let is_legal = |pixel: usize| {
+                let (value, legal) = (other.pixels[pixel], &legal[pixel]);
+                (0..4).all(|k| legal.low[k] <= value[k] && value[k] <= legal.high[k])
+            };
+            let mut pixels = (0..legal.len()).filter(|&pixel| drawn_for_certain[pixel].low[3] > 0.0);
+            if !pixels.all(is_legal) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// What a mutant is to one formula.
