@@ -88,7 +88,7 @@ impl NamedDeviation {
         let Some(device) = subject.device() else { return Ok(None) };
         let code = device.built_in()?;
         match self {
-            Self::Accuracy(deviation) => accuracy(deviation, subject, &code, options),
+            Self::Accuracy(deviation) => accuracy(deviation, subject, &code, options.profile),
             Self::Blend(deviation) => blend(deviation, subject, catalogue, Options { code, ..options.clone() }),
             Self::Special(deviation) => special(deviation, subject, &code),
         }
@@ -105,18 +105,22 @@ fn shows(deviation: &devices::Deviation, bits: u32, profile: &Profile) -> bool {
     outcome(&promised) == Outcome::Fail && outcome(&granted) == Outcome::Pass
 }
 
-fn accuracy(
+/// Whether the witness of a function's accuracy shows its deviation, by these shaders; `None` as for [`NamedDeviation::is_still_seen`].
+///
+/// # Errors
+/// Where the device fails.
+pub fn accuracy(
     deviation: &devices::Deviation,
     subject: &Subject,
     code: &Code,
-    options: &Options,
+    profile: &Profile,
 ) -> Result<Option<bool>, DeviceError> {
     if !subject.known.deviations.iter().any(|known| known.name == deviation.name) {
         return Ok(None);
     }
     let Some(device) = subject.device() else { return Ok(None) };
     let Some(bits) = device.probe(code, deviation.builtin.probe(), deviation.witness)? else { return Ok(None) };
-    Ok(Some(shows(deviation, bits, options.profile)))
+    Ok(Some(shows(deviation, bits, profile)))
 }
 
 /// The case that is the witness, on the target that the deviation is of.

@@ -8,6 +8,7 @@ use lightmeter_catalogue::select::Member;
 use lightmeter_document::selftest::{OffBy, Systematic};
 use lightmeter_judge::diagnose::Answered;
 use rayon::prelude::*;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// A number of a formula's that may be off: an input as a whole, one number of an input, or an output.
@@ -90,6 +91,61 @@ pub(super) struct Design {
     pub(super) parameters: Vec<Parameter>,
     /// For each parameter the derivative of each output of each case, in tolerances.
     derivatives: Vec<Vec<f32>>,
+    /// Cases that have those inputs in common of which there are few values; `None` where there is no such input.
+    clusters: Option<Clusters>,
+}
+
+/// Cases that have inputs in common, such as the constant of a blend state, of which there are two. What is computed of these inputs alone is rounded
+/// alike in all of them, so that their residuals are no independent samples.
+pub(super) struct Clusters {
+    /// The cluster of each case.
+    of_case: Vec<usize>,
+    count: usize,
+    outputs: usize,
+}
+
+impl Clusters {
+    /// Cases for each value of an input, on average, from which it is one that many have in common.
+    const MANY: usize = 8;
+    /// Clusters that all say the same differ from 0 by the root of their number, in standard errors: fewer than these never by [`LEAST_Z`].
+    const LEAST: usize = 64;
+
+    /// By the inputs that a formula's outputs depend upon.
+    fn new(rows: &[&[f32]], design: &Design) -> Option<Self> {
+        let numbers = rows.first()?.len();
+        let is_used = |number: usize| {
+            let is_of = |parameter: &Parameter| !parameter.is_output && parameter.range.contains(&number);
+            let mut derivatives =
+                design.parameters.iter().zip(&design.derivatives).filter(|(parameter, _)| is_of(parameter));
+            derivatives.any(|(_, derivatives)| derivatives.iter().any(|&d| d != 0.0))
+        };
+        let is_shared = |&number: &usize| {
+            let values: HashSet<u32> = rows.iter().map(|row| row[number].to_bits()).collect();
+            values.len() * Self::MANY <= rows.len() && is_used(number)
+        };
+        let shared: Vec<usize> = (0..numbers).filter(is_shared).collect();
+        if shared.is_empty() {
+            return None;
+        }
+        let mut known = HashMap::new();
+        let of_case = rows.iter().map(|row| {
+            let values: Vec<u32> = shared.iter().map(|&number| row[number].to_bits()).collect();
+            let next = known.len();
+            *known.entry(values).or_insert(next)
+        });
+        let of_case = of_case.collect();
+        Some(Self { of_case, count: known.len(), outputs: design.outputs })
+    }
+
+    /// By how many standard errors the moments of all cases differ from 0, were each cluster one sample.
+    fn z(&self, moments: impl Iterator<Item = f64>) -> f64 {
+        let mut sums = vec![0.0; self.count];
+        for (place, moment) in moments.enumerate() {
+            sums[self.of_case[place / self.outputs]] += moment;
+        }
+        let variance: f64 = sums.iter().map(|sum| sum * sum).sum();
+        if variance > 0.0 { sums.iter().sum::<f64>() / variance.sqrt() } else { 0.0 }
+    }
 }
 
 impl Design {
@@ -105,6 +161,7 @@ impl Design {
                 derivatives.extend(of_part);
             }
         }
+        design.clusters = Clusters::new(&rows, &design);
         design
     }
 
@@ -119,6 +176,7 @@ impl Design {
             weight: vec![],
             derivatives: vec![vec![]; parameters.len()],
             parameters,
+            clusters: None,
         };
         let mut legal = vec![Accept::ANY; outputs];
         let mut reference = vec![0.0; outputs];
@@ -178,7 +236,7 @@ impl Design {
     pub(super) fn verdict(&self, values: &[f32]) -> Option<Systematic> {
         let residuals = self.residuals(values)?;
         let regressed: Vec<Regressed> =
-            self.derivatives.par_iter().map(|derivatives| Regressed::new(&residuals, derivatives)).collect();
+            self.derivatives.par_iter().map(|derivatives| self.regressed(&residuals, derivatives)).collect();
         let strongest = regressed.iter().filter(|r| r.is_named()).map(|r| r.z.abs()).fold(0.0, f64::max);
         // Of those that show alike a number that is asked for by itself is the likeliest, then a vector as a whole.
         let best = (0..regressed.len())
@@ -212,7 +270,16 @@ impl Design {
 
     /// Whether the answers show that parameter to be off, whether or not another shows as well.
     pub(super) fn names(&self, place: usize, values: &[f32]) -> bool {
-        self.residuals(values).is_some_and(|residuals| Regressed::new(&residuals, &self.derivatives[place]).is_named())
+        self.residuals(values).is_some_and(|residuals| self.regressed(&residuals, &self.derivatives[place]).is_named())
+    }
+
+    /// A parameter's error. Where cases have inputs in common it is as certain as these clusters make it.
+    fn regressed(&self, residuals: &[f64], derivatives: &[f32]) -> Regressed {
+        let regressed = Regressed::new(residuals, derivatives);
+        let (Some(clusters), Some(limit)) = (&self.clusters, limit(derivatives)) else { return regressed };
+        let moment = |(r, &d): (&f64, &f32)| f64::from(d).clamp(-limit, limit) * r.clamp(-FARTHEST, FARTHEST);
+        let z = clusters.z(residuals.iter().zip(derivatives).map(moment)).abs();
+        Regressed { z: regressed.z.clamp(-z, z), ..regressed }
     }
 
     /// The error of a parameter that would just be named, were the answers linear in it, beside the residuals of answers that
@@ -220,6 +287,9 @@ impl Design {
     pub(super) fn least_amount(&self, place: usize, right: &[f32]) -> Option<f64> {
         let derivatives = &self.derivatives[place];
         let (residuals, limit) = (self.residuals(right)?, limit(derivatives)?);
+        if self.clusters.as_ref().is_some_and(|clusters| clusters.count < Clusters::LEAST) {
+            return None;
+        }
         let (mut shift, mut count, mut variance, mut slopes) = (0.0, 0.0, 0.0, 0.0);
         for (r, &d) in residuals.iter().zip(derivatives).filter(|(_, d)| **d != 0.0) {
             let (d, psi) = (f64::from(d), f64::from(d).clamp(-limit, limit));
@@ -361,6 +431,28 @@ mod tests {
         assert!((named.amount - 3e-6).abs() < 3e-7 && named.says.contains("density"), "{named:?}");
         let named = verdict(&answers(&|row| row[4] += 4e-7)).expect("a systematic error");
         assert_eq!(named.parameter, "fog.r", "{named:?}");
+    }
+
+    /// Both constants of a state are rounded in a way of their own, and ten thousand cases have one of them.
+    #[test]
+    fn few_constants_are_few_samples() {
+        for factor in ["one-minus-constant-color", "one-minus-constant-alpha"] {
+            for source in ["zero", "one", "src-color", "dst-alpha", "one-minus-dst-alpha"] {
+                let id = format!("blend/add/{source}/{factor}");
+                let member = formulas().iter().find(|member| member.spec.id == id).expect("it is a state");
+                let rows = rows_of(member, 10_000);
+                let answer = |row: &Vec<f32>| {
+                    let mut out = vec![0.0; 4];
+                    member.formula.embedded(row, &mut out);
+                    out
+                };
+                let values: Vec<Vec<f32>> = rows.iter().map(answer).collect();
+                let rows = rows.iter().zip(&values);
+                let rows: Vec<Answered<'_>> =
+                    rows.map(|(inputs, values)| Answered { inputs, values, is_wrong: false }).collect();
+                assert_eq!(group_verdict(member, &rows, &WGSL), None, "{id}");
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,8 @@
 # What the renderers' gates share; sourced by each `gate` after it has set `here`, its own folder.
 renderers=$(dirname "$here")
 build=$renderers/.build
+# The accuracy rules, unless the caller has said which.
+profile=opengl
 options=
 arguments=$*
 mkdir -p "$build"
@@ -36,13 +38,9 @@ has_library() {
     return 1
 }
 
-# Mesa's software OpenGL through EGL, and a Python with what `common/requirements.txt` names.
-prepare_opengl() {
-    missing=
-    has_library libEGL.so.1 || missing="$missing libegl1"
-    has_library libOpenGL.so.0 || has_library libGL.so.1 || missing="$missing libgl1"
-    has_library libEGL_mesa.so.0 || missing="$missing libegl-mesa0"
-    has_library dri/swrast_dri.so || has_library libgallium.so || missing="$missing libgl1-mesa-dri"
+# A Python with what `common/requirements.txt` names, and the Debian packages that are asked for.
+prepare_python() {
+    missing=$*
     python3 -c 'import ensurepip, venv' 2>/dev/null || missing="$missing python3 python3-venv"
     # shellcheck disable=SC2086
     [ -z "$missing" ] || apt_install $missing
@@ -54,6 +52,17 @@ prepare_opengl() {
             cannot_install "what common/requirements.txt names"
         cp "$renderers/common/requirements.txt" "$build/python/requirements.txt"
     fi
+}
+
+# Mesa's software OpenGL through EGL, and that Python.
+prepare_opengl() {
+    missing=
+    has_library libEGL.so.1 || missing="$missing libegl1"
+    has_library libOpenGL.so.0 || has_library libGL.so.1 || missing="$missing libgl1"
+    has_library libEGL_mesa.so.0 || missing="$missing libegl-mesa0"
+    has_library dri/swrast_dri.so || has_library libgallium.so || missing="$missing libgl1-mesa-dri"
+    # shellcheck disable=SC2086
+    prepare_python $missing
     (cd "$renderers/common" && "$python" -c 'import context; context.create()') >&2 ||
         cannot_install "an OpenGL 4.5 of the compatibility profile"
 }
@@ -71,9 +80,10 @@ default_option() {
 run_gate() {
     command=$1
     shift
-    default_option --profile opengl
+    default_option --profile "$profile"
     default_option --cases 64
-    expected=$here/expected.toml
+    expected=
+    [ ! -e "$here/expected.toml" ] || expected=$here/expected.toml
     case " $arguments " in *" --expect"*) expected= ;; esac
     set -- --exec "$command" ${expected:+--expect "$expected"} "$@"
     if [ -n "${LIGHTMETER:-}" ]; then

@@ -8,6 +8,7 @@ use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::bench::techniques;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::{Code, DeviceError, Picture};
+use lightmeter::devices::DEVIATIONS;
 use lightmeter::document::event::{Event, Observer, Stop};
 use lightmeter::document::run::Group;
 use lightmeter::evaluate::Evaluator;
@@ -22,6 +23,7 @@ use lightmeter::select::{CaseRef, Member, catalogue};
 use lightmeter::selection::Selection;
 use lightmeter::subject::Subject;
 use lightmeter::subject_gpu::{code, device_error};
+use lightmeter::witness;
 use lightmeter_gpu::Shaders;
 use lightmeter_gpu::compose::Technique;
 use lightmeter_scene::effects::{effects, named};
@@ -95,6 +97,8 @@ pub enum Scope {
     Formulas(Vec<usize>),
     /// Whatever these globs select.
     Filter(Vec<String>),
+    /// The witnesses of what drivers' built-in functions are known for, which a run asks by the built-in shaders.
+    Witnesses,
 }
 
 /// Judges mutants of the built-in shaders.
@@ -157,7 +161,7 @@ impl Campaign {
             }
             "depth_unit.wgsl" => globs(&["depth"]),
             "blend_unit.wgsl" | "blend_unit_dual.wgsl" => globs(&["blend/mode-*", "blend/min", "blend/add/src1-*"]),
-            "probe.wgsl" => globs(&["deviation"]),
+            "probe.wgsl" => Some(Scope::Witnesses),
             _ if file.starts_with("effects/") => {
                 let effect = file.trim_start_matches("effects/").trim_end_matches(".wgsl");
                 let scenes = self.scenes_with(effect);
@@ -205,7 +209,7 @@ impl Campaign {
         match scope {
             Scope::Formulas(places) => self.survivor(&places, &mutated),
             Scope::Filter(globs) if globs[0].starts_with("scene") => self.scenes(&globs, &mutated),
-            Scope::Filter(_) => Ok(MutantClass::Unshown),
+            Scope::Filter(_) | Scope::Witnesses => Ok(MutantClass::Unshown),
         }
     }
 
@@ -255,6 +259,7 @@ impl Campaign {
                 groups.into_iter().map(str::to_owned).collect()
             }
             Scope::Filter(globs) => globs.clone(),
+            Scope::Witnesses => return self.is_witness_lost(mutated),
         };
         let filter = Filter::new(&globs).map_err(|error| DeviceError::Refused(Box::new(error)))?;
         let stop = Stop::default();
@@ -269,11 +274,9 @@ impl Campaign {
                 selection.formulas.retain(|chosen| places.contains(&chosen.member));
                 selection
             }
-            Scope::Filter(globs) => {
+            Scope::Filter(_) | Scope::Witnesses => {
                 let mut selection = Selection::of(&options);
-                if !globs.iter().any(|glob| glob == "deviation") {
-                    selection.deviations.clear();
-                }
+                selection.deviations.clear();
                 selection
             }
         };
@@ -283,6 +286,16 @@ impl Campaign {
             Some(interrupted) if interrupted.signal.is_none() => Err(DeviceError::Failed(interrupted.message.clone())),
             _ => Ok(observer.has_failed || !report.is_success()),
         }
+    }
+
+    /// Whether some witness no longer shows the deviation that it is for.
+    fn is_witness_lost(&self, mutated: &Code) -> Result<bool, DeviceError> {
+        for deviation in DEVIATIONS {
+            if witness::accuracy(deviation, &self.subject, mutated, &WGSL)? == Some(false) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// What a mutant is that no run fails.

@@ -145,6 +145,11 @@ macro_rules! viewport {
             |clip, origin, size, depth; out| {
                 out.vector($formula(clip, &Viewport { origin, size, depth }));
             },
+            hard [
+                Hard::new("no-depth-range", "near = far is the depth of every vertex, to the last bit", &[
+                    ("clip", &[0.3, -0.4, 0.6, 1.3]), ("origin", &[0.0, 0.0]), ("size", &[640.0, 480.0]), ("depth", &[0.7, 0.7]),
+                ]),
+            ],
         );
     };
 }

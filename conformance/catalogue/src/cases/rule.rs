@@ -45,8 +45,9 @@ const RULES: &[(&str, &str)] = &[
     ("interpolation/weights", "the vertices may run either way round; outside the triangle some weights are below 0"),
     (
         "interpolation/weights interpolation/last-weight*",
-        "a vertex is subtracted from the others before anything is multiplied; of a triangle without area nothing is promised",
+        "(x y z) is the area (y − x) × (z − x), the sides taken from the first letter: from another vertex they round otherwise; of a triangle without area nothing is promised",
     ),
+    ("interpolation/weights", "λ = ((b c p), (c a p), (a b p))/(a b c)"),
     (
         "interpolation/scanline",
         "Ia and xa lie on the edge v1 v2, Ib and xb on the edge v1 v3, all at the height of p: Ia = (I1(p.y − v2.y) + I2(v1.y − p.y))/(v1.y − v2.y), and so on",
@@ -129,7 +130,11 @@ const RULES: &[(&str, &str)] = &[
     // Colours.
     (
         "color/to-unorm8",
-        "at a tie, 255·c halfway between two whole numbers, either is legal; one that is near enough to a tie for rounding counts as one",
+        "at a tie, 255·c halfway between two whole numbers, either is legal; one that is near enough to a tie for the rounding of 255·c counts as one",
+    ),
+    (
+        "color/to-unorm8",
+        "the product is rounded in one step: ⌊255·c + ½⌋ rounds the sum as well, and takes the number right below ½ for 1",
     ),
     (
         "color/srgb-encode color/srgb-encode-component",
@@ -190,7 +195,7 @@ const RULES: &[(&str, &str)] = &[
     ("vector/interpolated-normal", "where nothing is left of the mix the result is 0"),
     (
         "vector/interpolated-normal-guarded",
-        "the face's normal, normalised, where |mix|² < 2⁻²⁰; 0 where that is the zero vector",
+        "the face's normal, normalised like any other as x/|x|, where |mix|² < 2⁻²⁰; 0 where that is the zero vector",
     ),
     // Lighting.
     ("lighting/diffuse-*", "l·n below 0 gives 0"),
@@ -204,6 +209,10 @@ const RULES: &[(&str, &str)] = &[
     ),
     ("lighting/cosine-power-unguarded", "for a·b ≤ 0 nothing is promised"),
     ("lighting/cosine-power-by-chord", "for exponents of 64 and below, and where q ≥ ½, it is max(a·b, 0)^exponent"),
+    (
+        "lighting/cosine-power-by-chord lighting/blinn-stable attenuation/spot-exponent-by-chord",
+        "ln(1 − q) is computed without forming 1 − q, as log1p(−q): that is what keeps the digits of a small q",
+    ),
     (
         "attenuation/spot-exponent-by-chord",
         "for exponents of 64 and below, and where q ≥ ½, it is max(−l·axis, 0)^e within the cone",
@@ -267,7 +276,7 @@ const RULES: &[(&str, &str)] = &[
     ("lighting/spot", "the highlight is Phong's, l = ⟨position − p⟩"),
     (
         "lighting/spot attenuation/spot-*",
-        "the cone is where −l·axis ≥ cutoff_cosine: its edge belongs to it, and with a cutoff_cosine of −1 it is everything",
+        "the cone is where −l·axis ≥ cutoff_cosine: its edge belongs to it; with a cutoff_cosine of −1 that is everything for unit vectors, but of vectors a little too long −l·axis may be below −1, which lies outside",
     ),
     (
         "lighting/spot attenuation/spot-exponent*",
@@ -419,7 +428,7 @@ const RULES: &[(&str, &str)] = &[
         "blend/write-mask/*",
         "the last part of the id names the components that are written, of r, g, b and a, or none; the others stay as they were",
     ),
-    ("blend/special/*", "any answer is legal"),
+    ("blend/special/*", "any answer is legal; they are asked of the blend unit on targets alone"),
     ("blend/without-alpha/* blend/mode-*", "the target has no alpha: Ad reads as 1"),
     (
         "blend/layers/*",

@@ -9,11 +9,12 @@ pub(super) fn colors<R: Real>(spec: &Spec, body: Body, x: &InputRow<'_, R>, out:
     let (zero, one, byte) = (R::literal(0.0), R::literal(1.0), R::literal(255.0));
     let decodes = spec.id == "color/srgb-decode";
     match body {
-        Body::TruncatedByte | Body::By256 | Body::UnclampedByte => {
+        Body::TruncatedByte | Body::By256 | Body::UnclampedByte | Body::RoundedBySum => {
             let c = x.scalar("c")?;
             let unit = c.clamp(zero, one);
             let value = match body {
                 Body::TruncatedByte => (byte * unit).floor_then(R::literal),
+                Body::RoundedBySum => (byte * unit + R::literal(0.5)).floor_then(R::literal),
                 Body::By256 => (R::literal(256.0) * unit).floor_then(|n| R::literal(n.min(255.0))),
                 _ => (byte * c).round(),
             };

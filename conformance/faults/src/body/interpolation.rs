@@ -17,7 +17,24 @@ pub(super) fn interpolated<R: Real>(spec: &Spec, body: Body, x: &InputRow<'_, R>
         }
         Body::EveryEdge | Body::NoEdge => put(out, 0, Vector([coverage(body, x)?])),
         Body::FrontAlways => put(out, 0, Vector([R::literal(1.0)])),
-        Body::WindowNotDivided | Body::UpsideDown | Body::DepthRange => put(out, 0, window(body, opengl, x)?),
+        Body::MixFromTheEnd => {
+            let [a, b, t] = [x.scalar("a")?, x.scalar("b")?, x.scalar("t")?];
+            put(out, 0, Vector([b - (R::literal(1.0) - t) * (b - a)]));
+        }
+        Body::EdgeFromItsEnd => {
+            let [a, b, p] = [x.vector::<2>("a")?, x.vector("b")?, x.vector("p")?];
+            let edge = |a, b, p| interpolation::edge(b, p, a);
+            match (x.vector("c"), out.len()) {
+                (None, _) => put(out, 0, Vector([edge(a, b, p)])),
+                (Some(c), 1) => put(out, 0, Vector([edge(a, b, p) / edge(a, b, c)])),
+                (Some(c), _) => {
+                    put(out, 0, Vector([(b, c), (c, a), (a, b)].map(|(u, v)| edge(u, v, p) / edge(a, b, c))))
+                }
+            }
+        }
+        Body::WindowNotDivided | Body::UpsideDown | Body::DepthRange | Body::DepthBetween => {
+            put(out, 0, window(body, opengl, x)?)
+        }
         Body::NoFarPlane => put(out, 0, Vector([before_the_far_plane(opengl, x)?])),
         Body::OneStepTooMany => {
             let [a, b] = [x.scalar("a")?, x.scalar("b")?];
@@ -85,8 +102,13 @@ fn window<R: Real>(body: Body, opengl: bool, x: &InputRow<'_, R>) -> Option<Vec3
     let halved = opengl != (body == Body::DepthRange);
     let y = if up { ndc.y() + one } else { one - ndc.y() };
     let range = far - near;
-    let z = if halved { R::product([ndc.z() + one, half, range]) } else { ndc.z() * range };
-    Some(Vector([ox + R::product([ndc.x() + one, half, sx]), oy + R::product([y, half, sy]), near + z]))
+    let z = if body == Body::DepthBetween {
+        let t = if halved { (ndc.z() + one) * half } else { ndc.z() };
+        near * (one - t) + far * t
+    } else {
+        near + if halved { R::product([ndc.z() + one, half, range]) } else { ndc.z() * range }
+    };
+    Some(Vector([ox + R::product([ndc.x() + one, half, sx]), oy + R::product([y, half, sy]), z]))
 }
 
 /// Whether a vertex lies in the clip volume, but for its far plane: 1 or 0.

@@ -89,6 +89,14 @@ pub(super) enum Body {
     DepthRange,
     /// The near plane at the eye, the far plane nowhere.
     NoFarPlane,
+    /// b − (1 − t)(b − a) for a mix.
+    MixFromTheEnd,
+    /// (p − b) × (a − b) for (b − a) × (p − a).
+    EdgeFromItsEnd,
+    /// near(1 − z) + far·z for near + z(far − near).
+    DepthBetween,
+    /// ⌊255·c + ½⌋ for round(255·c).
+    RoundedBySum,
     /// One step too many along the span.
     OneStepTooMany,
     // Colours.
@@ -185,6 +193,10 @@ pub(super) fn concerns(spec: &Spec, body: Body) -> bool {
         Body::FrontAlways => is(&["interpolation/front-facing"]),
         Body::WindowNotDivided | Body::UpsideDown | Body::DepthRange => is(&viewport),
         Body::NoFarPlane => is(&["interpolation/clip-volume", "interpolation/clip-volume-opengl"]),
+        Body::MixFromTheEnd => is(&["interpolation/mix"]),
+        Body::EdgeFromItsEnd => is(&["interpolation/edge", "interpolation/weights", "interpolation/last-weight"]),
+        Body::DepthBetween => is(&viewport),
+        Body::RoundedBySum => is(&["color/to-unorm8"]),
         Body::OneStepTooMany => is(&["interpolation/forward-differences"]),
         Body::TruncatedByte | Body::By256 | Body::UnclampedByte => is(&["color/to-unorm8"]),
         Body::Over256 => is(&["color/from-unorm8"]),

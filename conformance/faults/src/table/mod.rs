@@ -9,6 +9,7 @@ mod interpolation;
 mod lighting;
 mod naive;
 mod output;
+mod rearranged;
 mod vector;
 
 use super::blend::Twist as Blended;
@@ -27,6 +28,7 @@ pub(super) fn all() -> impl Iterator<Item = &'static Fault> {
         attenuation::FAULTS,
         fog::FAULTS,
         output::FAULTS,
+        rearranged::FAULTS,
         vector::FAULTS,
         interpolation::FAULTS,
         color::FAULTS,
