@@ -2,6 +2,7 @@
 //! family has its four files, every shader function of the catalogue is there with the right signature, and no formula lacks hard data.
 //! None of this needs a GPU.
 
+mod bugs;
 mod imports;
 
 use imports::{Imports, imports, public_types};

@@ -9,6 +9,7 @@ use lightmeter_document::selftest::{OffBy, Systematic};
 use lightmeter_judge::diagnose::Answered;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
+use std::hash::Hash;
 use std::ops::Range;
 
 /// A number of a formula's that may be off: an input as a whole, one number of an input, or an output.
@@ -91,17 +92,15 @@ pub(super) struct Design {
     pub(super) parameters: Vec<Parameter>,
     /// For each parameter the derivative of each output of each case, in tolerances.
     derivatives: Vec<Vec<f32>>,
-    /// Cases that have those inputs in common of which there are few values; `None` where there is no such input.
-    clusters: Option<Clusters>,
+    /// Values that are no independent samples, by each reason for it.
+    clusters: Vec<Clusters>,
 }
 
-/// Cases that have inputs in common, such as the constant of a blend state, of which there are two. What is computed of these inputs alone is rounded
-/// alike in all of them, so that their residuals are no independent samples.
+/// Values that are no independent samples: their roundings are the same.
 pub(super) struct Clusters {
-    /// The cluster of each case.
-    of_case: Vec<usize>,
+    /// The cluster of each output of each case.
+    of_value: Vec<usize>,
     count: usize,
-    outputs: usize,
 }
 
 impl Clusters {
@@ -110,38 +109,45 @@ impl Clusters {
     /// Clusters that all say the same differ from 0 by the root of their number, in standard errors: fewer than these never by [`LEAST_Z`].
     const LEAST: usize = 64;
 
-    /// By the inputs that a formula's outputs depend upon.
-    fn new(rows: &[&[f32]], design: &Design) -> Option<Self> {
-        let numbers = rows.first()?.len();
+    /// Those that have a key in common.
+    fn by<K: Eq + Hash>(keys: impl Iterator<Item = K>) -> Self {
+        let mut known = HashMap::new();
+        let of_value = keys.map(|key| {
+            let next = known.len();
+            *known.entry(key).or_insert(next)
+        });
+        Self { of_value: of_value.collect(), count: known.len() }
+    }
+
+    /// Cases with the same result, as the corners of blend states have, which come again and again.
+    fn by_reference(design: &Design) -> Self {
+        Self::by(design.reference.iter().map(|reference| reference.to_bits()))
+    }
+
+    /// Cases with an input in common of which there are few values, such as the constant of a blend state, of which there are two: what is computed of
+    /// it alone is rounded alike in all of them. `None` where the outputs depend on no such input.
+    fn by_input(rows: &[&[f32]], design: &Design) -> Option<Self> {
         let is_used = |number: usize| {
             let is_of = |parameter: &Parameter| !parameter.is_output && parameter.range.contains(&number);
-            let mut derivatives =
-                design.parameters.iter().zip(&design.derivatives).filter(|(parameter, _)| is_of(parameter));
+            let parameters = design.parameters.iter().zip(&design.derivatives);
+            let mut derivatives = parameters.filter(|(parameter, _)| is_of(parameter));
             derivatives.any(|(_, derivatives)| derivatives.iter().any(|&d| d != 0.0))
         };
         let is_shared = |&number: &usize| {
             let values: HashSet<u32> = rows.iter().map(|row| row[number].to_bits()).collect();
             values.len() * Self::MANY <= rows.len() && is_used(number)
         };
-        let shared: Vec<usize> = (0..numbers).filter(is_shared).collect();
-        if shared.is_empty() {
-            return None;
-        }
-        let mut known = HashMap::new();
-        let of_case = rows.iter().map(|row| {
-            let values: Vec<u32> = shared.iter().map(|&number| row[number].to_bits()).collect();
-            let next = known.len();
-            *known.entry(values).or_insert(next)
-        });
-        let of_case = of_case.collect();
-        Some(Self { of_case, count: known.len(), outputs: design.outputs })
+        let shared: Vec<usize> = (0..rows.first()?.len()).filter(is_shared).collect();
+        let key = |row: &&[f32]| shared.iter().map(|&number| row[number].to_bits()).collect::<Vec<u32>>();
+        let keys = rows.iter().flat_map(|row| std::iter::repeat_n(key(row), design.outputs));
+        (!shared.is_empty()).then(|| Self::by(keys))
     }
 
     /// By how many standard errors the moments of all cases differ from 0, were each cluster one sample.
     fn z(&self, moments: impl Iterator<Item = f64>) -> f64 {
         let mut sums = vec![0.0; self.count];
         for (place, moment) in moments.enumerate() {
-            sums[self.of_case[place / self.outputs]] += moment;
+            sums[self.of_value[place]] += moment;
         }
         let variance: f64 = sums.iter().map(|sum| sum * sum).sum();
         if variance > 0.0 { sums.iter().sum::<f64>() / variance.sqrt() } else { 0.0 }
@@ -161,7 +167,8 @@ impl Design {
                 derivatives.extend(of_part);
             }
         }
-        design.clusters = Clusters::new(&rows, &design);
+        design.clusters.push(Clusters::by_reference(&design));
+        design.clusters.extend(Clusters::by_input(&rows, &design));
         design
     }
 
@@ -176,7 +183,7 @@ impl Design {
             weight: vec![],
             derivatives: vec![vec![]; parameters.len()],
             parameters,
-            clusters: None,
+            clusters: vec![],
         };
         let mut legal = vec![Accept::ANY; outputs];
         let mut reference = vec![0.0; outputs];
@@ -245,7 +252,7 @@ impl Design {
                 let rank = |place: usize| self.parameters[place].rank();
                 rank(a).cmp(&rank(b)).then(regressed[b].z.abs().total_cmp(&regressed[a].z.abs()))
             })?;
-        let Regressed { amount, z, share } = regressed[best];
+        let Regressed { amount, z, share, .. } = regressed[best];
         let parameter = &self.parameters[best];
         let as_well = |place: &usize| *place != best && regressed[*place].z.abs() >= 0.99 * z.abs();
         let or = (0..regressed.len()).filter(as_well).map(|place| self.parameters[place].name.clone());
@@ -273,13 +280,14 @@ impl Design {
         self.residuals(values).is_some_and(|residuals| self.regressed(&residuals, &self.derivatives[place]).is_named())
     }
 
-    /// A parameter's error. Where cases have inputs in common it is as certain as these clusters make it.
+    /// A parameter's error, as certain as the number of independent samples makes it.
     fn regressed(&self, residuals: &[f64], derivatives: &[f32]) -> Regressed {
         let regressed = Regressed::new(residuals, derivatives);
-        let (Some(clusters), Some(limit)) = (&self.clusters, limit(derivatives)) else { return regressed };
+        let Some(limit) = limit(derivatives) else { return regressed };
         let moment = |(r, &d): (&f64, &f32)| f64::from(d).clamp(-limit, limit) * r.clamp(-FARTHEST, FARTHEST);
-        let z = clusters.z(residuals.iter().zip(derivatives).map(moment)).abs();
-        Regressed { z: regressed.z.clamp(-z, z), ..regressed }
+        let z_of = |clusters: &Clusters| clusters.z(residuals.iter().zip(derivatives).map(moment)).abs();
+        let most = self.clusters.iter().map(z_of).fold(f64::INFINITY, f64::min);
+        Regressed { certain: regressed.certain.min(most), ..regressed }
     }
 
     /// The error of a parameter that would just be named, were the answers linear in it, beside the residuals of answers that
@@ -287,7 +295,7 @@ impl Design {
     pub(super) fn least_amount(&self, place: usize, right: &[f32]) -> Option<f64> {
         let derivatives = &self.derivatives[place];
         let (residuals, limit) = (self.residuals(right)?, limit(derivatives)?);
-        if self.clusters.as_ref().is_some_and(|clusters| clusters.count < Clusters::LEAST) {
+        if self.clusters.iter().any(|clusters| clusters.count < Clusters::LEAST) {
             return None;
         }
         let (mut shift, mut count, mut variance, mut slopes) = (0.0, 0.0, 0.0, 0.0);
@@ -309,17 +317,19 @@ pub(super) struct Regressed {
     pub(super) amount: f64,
     pub(super) z: f64,
     pub(super) share: f64,
+    /// By how many standard errors it differs from 0 where values that are no independent samples count as one.
+    certain: f64,
 }
 
 impl Regressed {
     fn is_named(&self) -> bool {
-        self.z.abs() >= LEAST_Z && self.share >= LEAST_SHARE
+        self.z.abs() >= LEAST_Z && self.certain >= LEAST_Z && self.share >= LEAST_SHARE
     }
 
     /// Solves Σ ψ(d)·χ(r − δd) = 0, with χ limiting a residual, ψ limiting how much a case can weigh, and White's standard error, which holds though
     /// rounding is greater in some cases than in others.
     fn new(residuals: &[f64], derivatives: &[f32]) -> Self {
-        let none = Self { amount: 0.0, z: 0.0, share: 0.0 };
+        let none = Self { amount: 0.0, z: 0.0, share: 0.0, certain: 0.0 };
         let Some(limit) = limit(derivatives) else { return none };
         let psi = |d: f64| d.clamp(-limit, limit);
         let slopes: f64 = derivatives.iter().map(|&d| psi(d.into()) * f64::from(d)).sum();
@@ -340,7 +350,11 @@ impl Regressed {
             }
         }
         let z = if variance > 0.0 { amount * slopes / variance.sqrt() } else { f64::INFINITY.copysign(amount) };
-        if amount == 0.0 || !amount.is_finite() { none } else { Self { amount, z, share: (shift / count).sqrt() } }
+        if amount == 0.0 || !amount.is_finite() {
+            none
+        } else {
+            Self { amount, z, share: (shift / count).sqrt(), certain: z.abs() }
+        }
     }
 }
 
