@@ -46,6 +46,11 @@ pub const LEAST_Z: f64 = 8.0;
 /// Constants that are rounded to f32, and rounding where few inputs differ (256 bytes), shift the answers of one
 /// implementation all alike, and are legal: by 0.112 of the tolerance at most in the embedded one.
 pub const LEAST_SHARE: f64 = 0.125;
+/// The error of a parameter from which it is named, relative to the parameter: two roundings to binary32.
+///
+/// A constant is rounded, and a division by one may be a multiplication by its reciprocal, which is rounded too: `SwiftShader` computes byte/255 so. All
+/// answers are then off alike, by as much as if a parameter were, and all of it is legal.
+pub const LEAST_ERROR: f64 = 1.0 / 8_388_608.0;
 /// Residuals beyond so many tolerances count as so many: one case far off does not decide.
 const FARTHEST: f64 = 4.0;
 /// Cases that a task of the pool takes at once.
@@ -92,6 +97,8 @@ pub(super) struct Design {
     pub(super) parameters: Vec<Parameter>,
     /// For each parameter the derivative of each output of each case, in tolerances.
     derivatives: Vec<Vec<f32>>,
+    /// For each parameter what its error is measured by: 1 for a scale, its root mean square for an offset.
+    sizes: Vec<f64>,
     /// Values that are no independent samples, by each reason for it.
     clusters: Vec<Clusters>,
 }
@@ -167,6 +174,7 @@ impl Design {
                 derivatives.extend(of_part);
             }
         }
+        design.sizes = design.parameters.iter().map(|parameter| design.size(parameter, &rows)).collect();
         design.clusters.push(Clusters::by_reference(&design));
         design.clusters.extend(Clusters::by_input(&rows, &design));
         design
@@ -183,6 +191,7 @@ impl Design {
             weight: vec![],
             derivatives: vec![vec![]; parameters.len()],
             parameters,
+            sizes: vec![],
             clusters: vec![],
         };
         let mut legal = vec![Accept::ANY; outputs];
@@ -226,6 +235,27 @@ impl Design {
         design
     }
 
+    /// What a parameter's error is measured by.
+    fn size(&self, parameter: &Parameter, rows: &[&[f32]]) -> f64 {
+        if parameter.error == OffBy::Scale {
+            return 1.0;
+        }
+        let root_mean_square = |values: &mut dyn Iterator<Item = f64>| {
+            let (sum, count) =
+                values.filter(|x| x.is_finite()).fold((0.0, 0.0), |(sum, n), x| (x.mul_add(x, sum), n + 1.0));
+            if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
+        };
+        if parameter.is_output {
+            let outputs = |k: usize| parameter.range.contains(&(k % self.outputs));
+            let values = self.reference.iter().enumerate().filter(|(k, _)| outputs(*k));
+            root_mean_square(&mut values.map(|(_, &reference)| reference))
+        } else {
+            root_mean_square(
+                &mut rows.iter().flat_map(|row| row[parameter.range.clone()].iter().map(|&x| f64::from(x))),
+            )
+        }
+    }
+
     /// The residuals of answers, in tolerances; `None` where too few values count.
     fn residuals(&self, values: &[f32]) -> Option<Vec<f64>> {
         let mut counted = 0;
@@ -243,7 +273,7 @@ impl Design {
     pub(super) fn verdict(&self, values: &[f32]) -> Option<Systematic> {
         let residuals = self.residuals(values)?;
         let regressed: Vec<Regressed> =
-            self.derivatives.par_iter().map(|derivatives| self.regressed(&residuals, derivatives)).collect();
+            (0..self.parameters.len()).into_par_iter().map(|place| self.regressed(&residuals, place)).collect();
         let strongest = regressed.iter().filter(|r| r.is_named()).map(|r| r.z.abs()).fold(0.0, f64::max);
         // Of those that show alike a number that is asked for by itself is the likeliest, then a vector as a whole.
         let best = (0..regressed.len())
@@ -277,17 +307,19 @@ impl Design {
 
     /// Whether the answers show that parameter to be off, whether or not another shows as well.
     pub(super) fn names(&self, place: usize, values: &[f32]) -> bool {
-        self.residuals(values).is_some_and(|residuals| self.regressed(&residuals, &self.derivatives[place]).is_named())
+        self.residuals(values).is_some_and(|residuals| self.regressed(&residuals, place).is_named())
     }
 
     /// A parameter's error, as certain as the number of independent samples makes it.
-    fn regressed(&self, residuals: &[f64], derivatives: &[f32]) -> Regressed {
+    fn regressed(&self, residuals: &[f64], place: usize) -> Regressed {
+        let derivatives = &self.derivatives[place];
         let regressed = Regressed::new(residuals, derivatives);
         let Some(limit) = limit(derivatives) else { return regressed };
         let moment = |(r, &d): (&f64, &f32)| f64::from(d).clamp(-limit, limit) * r.clamp(-FARTHEST, FARTHEST);
         let z_of = |clusters: &Clusters| clusters.z(residuals.iter().zip(derivatives).map(moment)).abs();
         let most = self.clusters.iter().map(z_of).fold(f64::INFINITY, f64::min);
-        Regressed { certain: regressed.certain.min(most), ..regressed }
+        let is_rounding = regressed.amount.abs() < LEAST_ERROR * self.sizes[place];
+        Regressed { certain: if is_rounding { 0.0 } else { regressed.certain.min(most) }, ..regressed }
     }
 
     /// The error of a parameter that would just be named, were the answers linear in it, beside the residuals of answers that
@@ -307,7 +339,7 @@ impl Design {
             slopes += psi * d;
         }
         let by_share: f64 = LEAST_SHARE / (shift / count).sqrt();
-        Some(by_share.max(LEAST_Z * variance.sqrt() / slopes))
+        Some(by_share.max(LEAST_Z * variance.sqrt() / slopes).max(LEAST_ERROR * self.sizes[place]))
     }
 }
 
@@ -317,7 +349,7 @@ pub(super) struct Regressed {
     pub(super) amount: f64,
     pub(super) z: f64,
     pub(super) share: f64,
-    /// By how many standard errors it differs from 0 where values that are no independent samples count as one.
+    /// By how many standard errors it differs from 0 where values that are no independent samples count as one; 0 where a rounded constant explains it.
     certain: f64,
 }
 
@@ -445,6 +477,18 @@ mod tests {
         assert!((named.amount - 3e-6).abs() < 3e-7 && named.says.contains("density"), "{named:?}");
         let named = verdict(&answers(&|row| row[4] += 4e-7)).expect("a systematic error");
         assert_eq!(named.parameter, "fog.r", "{named:?}");
+    }
+
+    /// A division by 255 as a multiplication by what 1/255 is rounded to.
+    #[test]
+    fn a_rounded_constant_is_no_parameter_that_is_off() {
+        let member = formulas().iter().find(|member| member.spec.id == "color/from-unorm8").expect("it is a formula");
+        let rows = rows_of(member, 65_536);
+        let values: Vec<[f32; 1]> = rows.iter().map(|row| [row[0] * (1.0 / 255.0)]).collect();
+        let rows = rows.iter().zip(&values);
+        let rows: Vec<Answered<'_>> =
+            rows.map(|(inputs, values)| Answered { inputs, values, is_wrong: false }).collect();
+        assert_eq!(group_verdict(member, &rows, &WGSL), None);
     }
 
     /// Both constants of a state are rounded in a way of their own, and ten thousand cases have one of them.

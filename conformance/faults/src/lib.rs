@@ -25,7 +25,7 @@ pub use catalogue::{concerning, faults};
 pub use diagnose::{Diagnosis, Explanation, diagnose};
 pub use factor::Scaled;
 pub use fault::Fault;
-pub use group::{LEAST_SHARE, LEAST_VALUES, LEAST_Z, group_verdict};
+pub use group::{LEAST_ERROR, LEAST_SHARE, LEAST_VALUES, LEAST_Z, group_verdict};
 pub use mistakes::Mistakes;
 pub use row::Arithmetic;
 pub use variation::Variation;
