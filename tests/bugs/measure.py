@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""Puts the bugs of `bugs.toml` into copies of the files one at a time, and prints what the suite says of each:
+
+    tests/bugs/measure.py [ID…]
+
+It needs the binary, `target/debug/lightmeter` or `$LIGHTMETER`, and for the bugs of the numpy renderer a Python with numpy, which
+`conformance/renderers/numpy/gate` installs.
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+LIGHTMETER = os.environ.get("LIGHTMETER", str(ROOT / "target/debug/lightmeter"))
+PYTHON = ROOT / "conformance/renderers/.build/python/bin/python3"
+SIDES = {"wgsl": ROOT / "gpu/src/shaders", "numpy": ROOT / "conformance/renderers/numpy"}
+
+
+def report(bug: dict[str, Any], copy: Path) -> dict[str, Any]:
+    """The suite's result for the formulas of a bug, with the edit made in a copy of its folder."""
+    shutil.copytree(SIDES[bug["side"]], copy)
+    file = copy / bug["file"]
+    text = file.read_text()
+    assert text.count(bug["find"]) == 1, bug["id"]
+    file.write_text(text.replace(bug["find"], bug["replace"]))
+    result = copy.parent / "result.json"
+    subject = {
+        "wgsl": ["run", "--shaders", str(copy)],
+        "numpy": ["gate", "--exec", f"'{PYTHON}' '{copy / 'renderer.py'}'"],
+    }[bug["side"]]
+    options = ["--cases", "256", "--format", "json", "--out", str(result)]
+    subprocess.run([LIGHTMETER, *subject, *bug["filter"], *options], capture_output=True, check=False)
+    return json.loads(result.read_text())
+
+
+def explanations(result: dict[str, Any]) -> list[str]:
+    """What is said of each formula, once where its stages agree."""
+    said = {}
+    for group in result.get("groups") or result["formulas"]:
+        words = group.get("explanation") or group.get("diagnosis") or group.get("problem")
+        if words:
+            said[f"{group['id']}: {words}"] = None
+    return list(said)
+
+
+def main() -> None:
+    wanted = set(sys.argv[1:])
+    for bug in tomllib.loads((ROOT / "tests/bugs/bugs.toml").read_text())["bug"]:
+        if wanted and bug["id"] not in wanted:
+            continue
+        kind = " (a pair)" if bug.get("pair") else " (unusual)" if bug.get("unusual") else ""
+        print(f"{bug['id']}, {bug['side']}{kind}\n    {bug['says']}", flush=True)
+        with tempfile.TemporaryDirectory() as folder:
+            for line in explanations(report(bug, Path(folder) / "copy")):
+                print(f"  → {line}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
