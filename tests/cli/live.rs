@@ -1,10 +1,10 @@
 //! What a run tells while it goes on, and what is left of one that is told to stop.
 
+use crate::signals::stopped_after;
 use crate::{code, command, edited, json, lightmeter, stderr, stdout};
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::Signal;
 use serde_json::Value;
-use std::process::{Output, Stdio};
-use std::time::Duration;
+use std::process::Stdio;
 
 #[test]
 fn what_fails_is_told_first_with_its_cause_and_counted_once() {
@@ -54,20 +54,14 @@ fn values_that_are_legal_one_by_one_and_wrong_together_fail() {
     assert_eq!(report["totals"]["failed_groups"], 2, "{}", report["totals"]);
 }
 
-/// What a command leaves that is told to stop after a while.
-fn stopped(args: &[&str], signal: Signal) -> Output {
-    let started = command(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the binary starts");
-    std::thread::sleep(Duration::from_secs(5));
-    let pid = i32::try_from(started.id()).ok().and_then(Pid::from_raw).expect("a number");
-    kill_process(pid, signal).expect("it runs");
-    started.wait_with_output().expect("it ends")
-}
+/// Seconds of the processor after which a command is told to stop: it has judged something by then, and is far from its end.
+const A_WHILE: f64 = 2.0;
 
 #[test]
 fn a_run_that_is_told_to_stop_reports_what_was_judged() {
     let args = ["run", "fog/exp", "--adapter", "cpu", "--cases", "1000000000", "--format", "json"];
     for (signal, status) in [(Signal::INT, 130), (Signal::TERM, 143)] {
-        let output = stopped(&args, signal);
+        let output = stopped_after(A_WHILE, &args, signal);
         assert_eq!(code(&output), status, "{}", stderr(&output));
         let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
         assert_eq!(report["interrupted"]["signal"], status - 128, "{report}");
@@ -80,7 +74,7 @@ fn a_run_that_is_told_to_stop_reports_what_was_judged() {
 #[test]
 fn a_sweep_that_is_told_to_stop_reports_what_was_judged() {
     let args = ["sweep", "fog/exp", "--over", "density", "--adapter", "cpu", "--format", "json"];
-    let output = stopped(&args, Signal::INT);
+    let output = stopped_after(A_WHILE, &args, Signal::INT);
     assert_eq!(code(&output), 130, "{}", stderr(&output));
     let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let count = |name: &str| document[name].as_u64().unwrap_or_default();

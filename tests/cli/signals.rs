@@ -29,7 +29,7 @@ fn seconds_of(child: &Child) -> f64 {
 }
 
 /// What a command leaves that gets a signal once it has worked for so many seconds, a small part of what its work takes.
-fn stopped_after(seconds: f64, args: &[&str], signal: Signal) -> Output {
+pub(crate) fn stopped_after(seconds: f64, args: &[&str], signal: Signal) -> Output {
     let mut child = start(args);
     let until = Instant::now() + Duration::from_secs(600);
     while seconds_of(&child) < seconds {
