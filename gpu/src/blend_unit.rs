@@ -95,6 +95,12 @@ const DUAL_SOURCE: &str = "unit_dual_source";
 const INSTANCE_BYTES: usize = 24;
 
 impl BlendUnit {
+    /// The shaders that it is made of.
+    #[must_use]
+    pub fn source(shaders: &Shaders) -> String {
+        [FILE, DUAL_FILE].map(|file| shaders.source(file)).concat()
+    }
+
     /// The unit, on as many devices as compile side by side.
     ///
     /// # Errors

@@ -47,6 +47,12 @@ struct DepthPipelines {
 }
 
 impl DepthUnit {
+    /// The shaders that it is made of.
+    #[must_use]
+    pub fn source(shaders: &Shaders) -> String {
+        shaders.source(FILE)
+    }
+
     /// Compiles what every test needs.
     ///
     /// # Errors

@@ -96,10 +96,10 @@ fn shaders(code: &Code) -> Result<&Shaders, DeviceError> {
 struct GpuDevice {
     name: String,
     gpu: Gpu,
-    /// The blend unit with its pipelines, kept from group to group.
-    blend: Option<BlendUnit>,
-    /// The depth test with its pipelines.
-    depth: Option<DepthUnit>,
+    /// The blend unit with its pipelines, kept from group to group as long as its shaders are the same.
+    blend: Option<(String, BlendUnit)>,
+    /// The depth test with its pipelines, likewise.
+    depth: Option<(String, DepthUnit)>,
 }
 
 /// How a stage evaluates.
@@ -134,10 +134,11 @@ fn taken<T: Any>(own: Own) -> T {
 
 impl GpuDevice {
     fn blend_unit(&mut self, shaders: &Shaders) -> Result<&mut BlendUnit, GpuError> {
-        if self.blend.is_none() {
-            self.blend = Some(BlendUnit::new(&self.gpu, shaders)?);
+        let source = BlendUnit::source(shaders);
+        if self.blend.as_ref().is_none_or(|(made_of, _)| *made_of != source) {
+            self.blend = Some((source, BlendUnit::new(&self.gpu, shaders)?));
         }
-        Ok(self.blend.as_mut().expect("it was just made"))
+        Ok(self.blend.as_mut().map(|(_, unit)| unit).expect("it was just made"))
     }
 
     fn work(
@@ -151,8 +152,9 @@ impl GpuDevice {
             Stage::Compute => lightmeter_gpu::Programmable::Compute,
             Stage::Fragment => lightmeter_gpu::Programmable::Fragment,
             Stage::FixedFunction => {
-                if self.depth.is_none() {
-                    self.depth = Some(DepthUnit::new(&self.gpu, shaders)?);
+                let source = DepthUnit::source(shaders);
+                if self.depth.as_ref().is_none_or(|(made_of, _)| *made_of != source) {
+                    self.depth = Some((source, DepthUnit::new(&self.gpu, shaders)?));
                 }
                 return Ok(Ok(Work::Depth));
             }
@@ -170,7 +172,7 @@ impl GpuDevice {
         match work {
             Work::Arithmetic(pipeline) => Ok(Job::Arithmetic(pipeline.submit(&self.gpu, rows.selected))),
             Work::Depth => {
-                let unit = self.depth.as_mut().expect("the depth test is made before its work");
+                let (_, unit) = self.depth.as_mut().expect("the depth test is made before its work");
                 let tests: Vec<DepthTest> = rows.of.iter().map(|&member| rows.depth_test(member)).collect();
                 Ok(Job::Depth(unit.submit(&self.gpu, &tests, rows.inputs)?))
             }
@@ -274,13 +276,13 @@ impl Device for GpuDevice {
     }
 
     fn forget_pipelines(&mut self) {
-        if let Some(unit) = &mut self.blend {
+        if let Some((_, unit)) = &mut self.blend {
             unit.forget_pipelines();
         }
     }
 
     fn renew_blend_unit(&mut self) {
-        if let Some(unit) = self.blend.take() {
+        if let Some((_, unit)) = self.blend.take() {
             // Closing a device that hangs would hang as well.
             std::mem::forget(unit);
         }

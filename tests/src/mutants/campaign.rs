@@ -206,11 +206,13 @@ impl Campaign {
             Ok(true) => return Ok(MutantClass::Killed),
             Ok(false) => {}
         }
-        match scope {
+        let found = match scope {
             Scope::Formulas(places) => self.survivor(&places, &mutated),
             Scope::Filter(globs) if globs[0].starts_with("scene") => self.scenes(&globs, &mutated),
             Scope::Filter(_) | Scope::Witnesses => Ok(MutantClass::Unshown),
-        }
+        };
+        // What no run composes may be invalid where a technique does.
+        found.or_else(|error| if error.is_of_device() { Err(error) } else { Ok(MutantClass::Invalid) })
     }
 
     /// Whether a default run fails; `None` where the mutant is invalid, or nothing judges it.
