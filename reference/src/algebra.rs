@@ -1,6 +1,6 @@
 //! Vectors, colours and matrices over any arithmetic. glam stands at the boundaries and is converted from here.
 
-use crate::real::{Components, Real};
+use crate::real::{Components, Parts, Real};
 use std::ops::{Add, Index, Mul, Neg, Sub};
 
 /// A vector of `N` components.
@@ -326,3 +326,27 @@ impl<R: approx::UlpsEq<Epsilon: Copy>, const N: usize> approx::UlpsEq for Vector
         self.0.iter().zip(&other.0).all(|(a, b)| a.ulps_eq(b, epsilon, max_ulps))
     }
 }
+
+/// What holds its numbers in a single field.
+macro_rules! wrapped {
+    ($($name:ident<$r:ident $(, $n:ident)?>: $count:expr),+ $(,)?) => {$(
+        impl<$r: Real $(, const $n: usize)?> Parts<$r> for $name<$r $(, $n)?> {
+            const COUNT: usize = $count;
+
+            #[inline]
+            fn each(self, f: impl FnMut($r) -> $r) -> Self {
+                Self(self.0.each(f))
+            }
+
+            fn put(self, to: &mut impl FnMut($r)) {
+                self.0.put(to);
+            }
+
+            fn take(from: &mut impl FnMut() -> $r) -> Self {
+                Self(Parts::take(from))
+            }
+        }
+    )+};
+}
+
+wrapped!(Vector<R, N>: N, Mat3<R>: 9, Mat4<R>: 16);

@@ -5,6 +5,7 @@
 
 use crate::interpolation::frag_depth;
 use crate::real::Real;
+use crate::step::step;
 use lightmeter_scene::depth::{Compare, DepthTest};
 
 /// What a pixel holds after a fragment was drawn over another.
@@ -21,9 +22,9 @@ pub struct Tested<R> {
 pub fn test<R: Real>(by: DepthTest, new: R, old: R) -> Tested<R> {
     let (new, old) = (frag_depth(new), frag_depth(old));
     let passes = passes(by.compare, new, old);
-    let half = R::literal(0.5);
     let written = if by.write { new } else { old };
-    Tested { seen: passes + R::literal(1.0), depth: R::if_ge(passes, half, || written, || old) }
+    let depth = step!("depth left", |passes, written, old| R::if_ge(passes, R::literal(0.5), || written, || old));
+    Tested { seen: passes + R::literal(1.0), depth }
 }
 
 /// 1 where `new` passes against `old`, else 0.
@@ -45,23 +46,23 @@ pub fn passes<R: Real>(compare: Compare, new: R, old: R) -> R {
 /// The depth that a perspective projection stores for an eye-space distance z: `f(z − n)/(z(f − n))`, 0 at the near plane n and 1 at the
 /// far plane f. Source: 000 §6.6; ruling 15.
 pub fn stored<R: Real>(near: R, far: R, z: R) -> R {
-    far * (z - near) / (z * (far - near))
+    step!("depth", |near, far, z| far * (z - near) / (z * (far - near)))
 }
 
 /// The same with depth reversed, `n(f − z)/(z(f − n))`: 1 at the near plane, and 0 at the far plane, where binary32 has its finest steps.
 pub fn stored_reversed<R: Real>(near: R, far: R, z: R) -> R {
-    near * (far - z) / (z * (far - near))
+    step!("reversed depth", |near, far, z| near * (far - z) / (z * (far - near)))
 }
 
 /// An eye-space distance z written as [`stored`] depth and read back as `n·f/(f − depth(f − n))`: z again, but for what the depth has
 /// lost near 1. For n ≤ z ≤ f.
 pub fn recovered<R: Real>(near: R, far: R, z: R) -> R {
-    let depth = stored(near, far, z).named("depth");
-    near * far / (far - depth * (far - near))
+    let depth = stored(near, far, z);
+    step!("z", |near, far, depth| near * far / (far - depth * (far - near)))
 }
 
 /// The same with depth reversed: [`stored_reversed`].
 pub fn recovered_reversed<R: Real>(near: R, far: R, z: R) -> R {
-    let depth = stored_reversed(near, far, z).named("depth");
-    near * far / (near + depth * (far - near))
+    let depth = stored_reversed(near, far, z);
+    step!("z", |near, far, depth| near * far / (near + depth * (far - near)))
 }

@@ -6,15 +6,15 @@
 
 use crate::algebra::{Rgb, Vec3};
 use crate::real::Real;
+use crate::step::step;
 pub use lightmeter_scene::shading::Distance;
 
 /// The distance of a point in eye space.
 pub fn distance<R: Real>(p: Vec3<R>, kind: Distance) -> R {
-    match kind {
+    step!("distance", |p| match kind {
         Distance::Planar => p.z().abs(),
         Distance::Radial => p.length(),
-    }
-    .named("distance")
+    })
 }
 
 /// `f = clamp((dmax − distance) / (dmax − dmin), 0, 1)`.
@@ -23,42 +23,50 @@ pub fn distance<R: Real>(p: Vec3<R>, kind: Distance) -> R {
 /// Source: 000 §6.5; the clamp is in its shader.
 pub fn linear<R: Real>(distance: R, dmin: R, dmax: R) -> R {
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
-    let ramp = || ((dmax - distance) / (dmax - dmin)).named("(dmax − distance)/(dmax − dmin)").clamp(zero, one);
-    let step = || R::if_ge(distance, dmax, || zero, || one);
-    R::if_ge(dmin, dmax, || R::if_ge(dmax, dmin, step, ramp), ramp).named("f")
+    step!("f", |distance, dmin, dmax| {
+        let ramp = || clamped(((dmax - distance) / (dmax - dmin)).named("(dmax − distance)/(dmax − dmin)"));
+        let at_once = || R::if_ge(distance, dmax, || zero, || one);
+        R::if_ge(dmin, dmax, || R::if_ge(dmax, dmin, at_once, ramp), ramp)
+    })
 }
 
 /// `f = clamp(exp(−density·distance), 0, 1)`. Source: 000 §6.5.
 pub fn exp<R: Real>(distance: R, density: R) -> R {
-    factor((-(density * distance)).named("−density·distance").exp())
+    step!("f", |distance, density| power_of_e((-(density * distance)).named("−density·distance")))
 }
 
 /// `f = clamp(exp(−density·distance²), 0, 1)`, as document 000 §6.5 writes it.
 pub fn exp2_document<R: Real>(distance: R, density: R) -> R {
-    factor((-R::product([density, distance, distance])).named("−density·distance²").exp())
+    step!("f", |distance, density| {
+        power_of_e((-R::product([density, distance, distance])).named("−density·distance²"))
+    })
 }
 
 /// `f = clamp(exp(−(density·distance)²), 0, 1)`, as OpenGL's fixed function has it.
 pub fn exp2_opengl<R: Real>(distance: R, density: R) -> R {
-    factor((-R::product([density, distance, density, distance])).named("−(density·distance)²").exp())
+    step!("f", |distance, density| {
+        power_of_e((-R::product([density, distance, density, distance])).named("−(density·distance)²"))
+    })
 }
 
 /// [`linear`] as a multiplication and an addition, `f = distance·scale + offset` with both made beforehand: for a narrow band
 /// far away both are great and nearly cancel, and for none there is no value.
 pub fn linear_multiply_add<R: Real>(distance: R, dmin: R, dmax: R) -> R {
-    let width = dmax - dmin;
-    let (scale, offset) = ((R::literal(-1.0) / width).named("scale"), (dmax / width).named("offset"));
-    factor(distance * scale + offset)
+    step!("f", |distance, dmin, dmax| {
+        let width = dmax - dmin;
+        let (scale, offset) = ((R::literal(-1.0) / width).named("scale"), (dmax / width).named("offset"));
+        clamped(distance * scale + offset)
+    })
 }
 
 /// [`exp2_document`] with the distance squared before the density: too great or too small before it.
 pub fn exp2_document_square<R: Real>(distance: R, density: R) -> R {
-    factor((-(density * (distance * distance))).exp())
+    step!("f", |distance, density| power_of_e(-(density * (distance * distance))))
 }
 
 /// [`exp2_opengl`] with density and distance each squared alone.
 pub fn exp2_opengl_squares<R: Real>(distance: R, density: R) -> R {
-    factor((-((density * density) * (distance * distance))).exp())
+    step!("f", |distance, density| power_of_e(-((density * density) * (distance * distance))))
 }
 
 /// `1 − exp(−density·distance)`: how much of the fog is seen, by a subtraction that cancels in thin fog.
@@ -73,14 +81,18 @@ pub fn opacity_expm1<R: Real>(distance: R, density: R) -> R {
 
 /// |p| that neither overflows nor underflows.
 pub fn radial_distance_scaled<R: Real>(p: Vec3<R>) -> R {
-    p.length_scaled().named("distance")
+    step!("distance", |p| p.length_scaled())
 }
 
-fn factor<R: Real>(f: R) -> R {
-    f.clamp(R::literal(0.0), R::literal(1.0)).named("f")
+fn power_of_e<R: Real>(exponent: R) -> R {
+    clamped(step!("exp", |exponent| exponent.exp()))
+}
+
+fn clamped<R: Real>(f: R) -> R {
+    step!("clamp", |f| f.clamp(R::literal(0.0), R::literal(1.0)))
 }
 
 /// `color = mix(fog, shaded, f)`: the fog where f = 0, the surface where f = 1. Source: 000 §6.5.
 pub fn apply<R: Real>(fog: Rgb<R>, shaded: Rgb<R>, f: R) -> Rgb<R> {
-    fog.mix(shaded, f)
+    step!("color", |fog, shaded, f| fog.mix(shaded, f))
 }

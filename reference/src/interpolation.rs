@@ -6,6 +6,7 @@
 
 use crate::algebra::{Vec2, Vec3, Vec4, Vector};
 use crate::real::Real;
+use crate::step::step;
 use lightmeter_scene::raster::Provoking;
 
 /// `Attr(p) = α·Attr(a) + β·Attr(b)` with α + β = 1. Source: 000 §6.1.
@@ -22,8 +23,17 @@ pub fn triangle<R: Real>([alpha, beta, gamma]: [R; 3], [a, b, c]: [R; 3]) -> R {
 ///
 /// 0 where p lies on the line through a and b. Subtracting a vertex first keeps it exact far from the origin.
 pub fn edge<R: Real>(a: Vec2<R>, b: Vec2<R>, p: Vec2<R>) -> R {
-    let (ab, ap) = (b - a, p - a);
-    ab.x() * ap.y() - ab.y() * ap.x()
+    step!("edge", |a, b, p| area_of(a, b, p))
+}
+
+/// The same of a whole triangle.
+fn area<R: Real>(a: Vec2<R>, b: Vec2<R>, c: Vec2<R>) -> R {
+    area_of(a, b, c).named("2·area")
+}
+
+fn area_of<R: Real>(a: Vec2<R>, b: Vec2<R>, c: Vec2<R>) -> R {
+    let (ab, ac) = (b - a, c - a);
+    ab.x() * ac.y() - ab.y() * ac.x()
 }
 
 /// The same without a vertex subtracted: `a × b + b × p + p × a`, six products as great as the vertices are far.
@@ -39,7 +49,8 @@ pub fn edge_compensated<R: Real>(a: Vec2<R>, b: Vec2<R>, p: Vec2<R>) -> R {
 
 /// The weight of c at p: the area of `a b p` over that of `a b c`.
 pub fn last_weight<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> R {
-    edge(a, b, p) / edge(a, b, c)
+    let (part, whole) = (edge(a, b, p), area(a, b, c));
+    step!("weight", |part, whole| part / whole)
 }
 
 /// The same as what the other two leave of 1: near the edge from a to b it is a small difference of great numbers.
@@ -50,7 +61,7 @@ pub fn last_weight_by_difference<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -
 
 /// `a(1 − t) + b·t`: b to the last bit at t = 1.
 pub fn mix<R: Real>(a: R, b: R, t: R) -> R {
-    a * (R::literal(1.0) - t) + b * t
+    step!("mix", |a, b, t| a * (R::literal(1.0) - t) + b * t)
 }
 
 /// `a + t(b − a)`: one multiplication less; at t = 1 it misses b by the rounding of b − a.
@@ -60,8 +71,8 @@ pub fn mix_incremental<R: Real>(a: R, b: R, t: R) -> R {
 
 /// The barycentric weights of p: each the area opposite its vertex over the whole. No value for a triangle without area.
 pub fn weights<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> [R; 3] {
-    let area = edge(a, b, c).named("2·area");
-    [edge(b, c, p), edge(c, a, p), edge(a, b, p)].map(|e| e / area)
+    let whole = area(a, b, c);
+    [edge(b, c, p), edge(c, a, p), edge(a, b, p)].map(|part| step!("weight", |part, whole| part / whole))
 }
 
 /// The scan-line form: along two edges to the line of the pixel, then along the span between them.
@@ -82,34 +93,47 @@ pub fn scanline<R: Real>(vertices: [Vec2<R>; 3], i: [R; 3], p: Vec2<R>) -> R {
 pub fn forward_differences<R: Real, const N: usize>(a: R, b: R) -> R {
     let steps = u32::try_from(N - 1).map_or(f64::INFINITY, f64::from);
     let step = ((b - a) / R::literal(steps)).named("step");
-    R::sum(std::array::from_fn::<R, N, _>(|k| if k == 0 { a } else { step }))
+    step!("end", |a, step| R::sum(std::array::from_fn::<R, N, _>(|k| if k == 0 { a } else { step })))
 }
 
 /// The last of a span's N pixels by forward differences: `a` and N − 1 times the step `(b − a)/N`. Source: 004.
 pub fn last_by_differences<R: Real, const N: usize>(a: R, b: R) -> R {
     let step = ((b - a) / R::literal(u32::try_from(N).map_or(f64::INFINITY, f64::from))).named("step");
-    R::sum(std::array::from_fn::<R, N, _>(|k| if k == 0 { a } else { step }))
+    step!("end", |a, step| R::sum(std::array::from_fn::<R, N, _>(|k| if k == 0 { a } else { step })))
 }
 
 /// `Attr(p) = Σ λᵢ·Attrᵢ/wᵢ / Σ λᵢ/wᵢ`, λ the weights in screen space: perspective-correct interpolation.
 pub fn perspective<R: Real>(lambda: [R; 3], w: [R; 3], attr: [R; 3]) -> R {
-    let q: [R; 3] = std::array::from_fn(|k| lambda[k] / w[k]);
-    triangle(q, attr).named("Σλa/w") / R::sum(q).named("Σλ/w")
+    step!("perspective", |lambda, w, attr| {
+        let q: [R; 3] = std::array::from_fn(|k| lambda[k] / w[k]);
+        renormalised(triangle(q, attr).named("Σλa/w"), R::sum(q).named("Σλ/w"))
+    })
 }
 
 /// [`perspective`] with weights `λᵢ·(w_min/wᵢ)`, which are at most λᵢ: nothing overflows as a w goes to 0, and where it is 0
 /// the vertex of that w is all that is seen. For w ≥ 0.
 pub fn perspective_scaled<R: Real>(lambda: [R; 3], w: [R; 3], attr: [R; 3]) -> R {
-    let least = w[0].min(w[1]).min(w[2]);
-    let q: [R; 3] =
-        std::array::from_fn(|k| R::if_ge(least, w[k], || lambda[k], || lambda[k] * (least / w[k])).named("λ·w_min/w"));
-    triangle(q, attr) / R::sum(q)
+    step!("perspective", |lambda, w, attr| {
+        let least = w[0].min(w[1]).min(w[2]);
+        let q: [R; 3] = std::array::from_fn(|k| {
+            R::if_ge(least, w[k], || lambda[k], || lambda[k] * (least / w[k])).named("λ·w_min/w")
+        });
+        renormalised(triangle(q, attr), R::sum(q))
+    })
+}
+
+/// What is interpolated over w, times the w there.
+fn renormalised<R: Real>(over_w: R, inverse_w: R) -> R {
+    step!("over the interpolated 1/w", |over_w, inverse_w| over_w / inverse_w)
 }
 
 /// `((1 − t)·a/wa + t·b/wb) / ((1 − t)/wa + t/wb)`: the same along a line.
 pub fn perspective_line<R: Real>(t: R, [wa, wb]: [R; 2], [a, b]: [R; 2]) -> R {
-    let (qa, qb) = ((R::literal(1.0) - t) / wa, t / wb);
-    (qa * a + qb * b) / (qa + qb)
+    let (w, attr) = ([wa, wb], [a, b]);
+    step!("perspective along a line", |t, w, attr| {
+        let (qa, qb) = ((R::literal(1.0) - t) / w[0], t / w[1]);
+        renormalised(qa * attr[0] + qb * attr[1], qa + qb)
+    })
 }
 
 /// The attribute of the provoking vertex. Source: 000 §6.1; ruling 7.
@@ -126,7 +150,7 @@ pub fn flat<R: Copy, const N: usize>(attr: [R; N], provoking: Provoking) -> R {
 pub fn coverage<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> R {
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
     let sides = |a: Vec2<R>, b: Vec2<R>, c: Vec2<R>| owns(a, b, p, || owns(b, c, p, || owns(c, a, p, || one)));
-    let area = edge(a, b, c).named("2·area");
+    let area = area(a, b, c);
     let wound = || R::if_ge(zero, area, || zero, || sides(a, b, c));
     R::if_ge(area, zero, wound, || sides(a, c, b))
 }
@@ -134,13 +158,18 @@ pub fn coverage<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> R {
 /// `inside` where p lies on the inner side of a → b or on it and the edge is a top or left one, 0 elsewhere. The
 /// triangle is wound so that its inside has [`edge`] > 0: clockwise as seen, y being down.
 fn owns<R: Real>(a: Vec2<R>, b: Vec2<R>, p: Vec2<R>, inside: impl Fn() -> R) -> R {
-    let zero = R::literal(0.0);
+    let (zero, one) = (R::literal(0.0), R::literal(1.0));
     let outside = || zero;
     let e = edge(a, b, p);
     let ab = b - a;
     // Clockwise as seen: a left edge goes up (y falls), a top edge is level and goes right.
-    let level = || R::if_ge(ab.y(), zero, || R::if_ge(zero, ab.x(), outside, &inside), &inside);
-    let on_edge = || R::if_ge(zero, ab.y(), level, outside);
+    let owned = || {
+        step!("share of an edge", |ab| {
+            let level = || R::if_ge(ab.y(), zero, || R::if_ge(zero, ab.x(), || zero, || one), || one);
+            R::if_ge(zero, ab.y(), level, || zero)
+        })
+    };
+    let on_edge = || R::if_ge(owned(), one, &inside, outside);
     let not_outside = || R::if_ge(zero, e, on_edge, &inside);
     R::if_ge(e, zero, not_outside, outside)
 }
@@ -161,23 +190,27 @@ pub struct Viewport<R> {
 /// `x = ox + (x/w + 1)·sx/2`, `y = oy + (1 − y/w)·sy/2`, `z = near + z/w·(far − near)`. No value at w = 0.
 pub fn viewport<R: Real>(clip: Vec4<R>, to: &Viewport<R>) -> Vec3<R> {
     let (half, one) = (R::literal(0.5), R::literal(1.0));
-    let ndc = clip.xyz().map(|x| x / clip.w()).named("ndc");
-    Vector([
-        to.origin.x() + R::product([ndc.x() + one, half, to.size.x()]),
-        to.origin.y() + R::product([one - ndc.y(), half, to.size.y()]),
-        to.depth.x() + ndc.z() * (to.depth.y() - to.depth.x()),
-    ])
+    let (ndc, Viewport { origin, size, depth }) = (ndc(clip), *to);
+    step!("window", |ndc, origin, size, depth| Vector([
+        origin.x() + R::product([ndc.x() + one, half, size.x()]),
+        origin.y() + R::product([one - ndc.y(), half, size.y()]),
+        depth.x() + ndc.z() * (depth.y() - depth.x()),
+    ]))
 }
 
 /// Clip → window as OpenGL has it: the origin at the lower left, y up, and z from [−1, 1].
 pub fn viewport_opengl<R: Real>(clip: Vec4<R>, to: &Viewport<R>) -> Vec3<R> {
     let (half, one) = (R::literal(0.5), R::literal(1.0));
-    let ndc = clip.xyz().map(|x| x / clip.w()).named("ndc");
-    Vector([
-        to.origin.x() + R::product([ndc.x() + one, half, to.size.x()]),
-        to.origin.y() + R::product([ndc.y() + one, half, to.size.y()]),
-        to.depth.x() + R::product([ndc.z() + one, half, to.depth.y() - to.depth.x()]),
-    ])
+    let (ndc, Viewport { origin, size, depth }) = (ndc(clip), *to);
+    step!("window from below", |ndc, origin, size, depth| Vector([
+        origin.x() + R::product([ndc.x() + one, half, size.x()]),
+        origin.y() + R::product([ndc.y() + one, half, size.y()]),
+        depth.x() + R::product([ndc.z() + one, half, depth.y() - depth.x()]),
+    ]))
+}
+
+fn ndc<R: Real>(clip: Vec4<R>) -> Vec3<R> {
+    step!("ndc", |clip| clip.xyz().map(|x| x / clip.w()))
 }
 
 /// 1 where a vertex lies within the clip volume of WebGPU, `−w ≤ x, y ≤ w` and `0 ≤ z ≤ w`, and 0 outside.
@@ -192,21 +225,24 @@ pub fn clip_volume_opengl<R: Real>(clip: Vec4<R>) -> R {
 
 fn inside_planes<R: Real>(clip: Vec4<R>, near: R) -> R {
     let [x, y, z, w] = clip.0;
-    let six = [(x, -w), (w, x), (y, -w), (w, y), (z, near), (w, z)];
-    six.into_iter().fold(R::literal(1.0), |inside, (a, b)| R::if_ge(a, b, || inside, || R::literal(0.0)))
+    let (zero, one) = (R::literal(0.0), R::literal(1.0));
+    let five = [(x, -w), (w, x), (y, -w), (w, y), (z, near)];
+    let inside = five.into_iter().fold(one, |inside, (a, b)| R::if_ge(a, b, || inside, || zero));
+    step!("before the far plane", |inside, z, w| R::if_ge(w, z, || inside, || zero))
 }
 
 /// 1 where the triangle is seen from its front, 0 from its back or without area: front is counter-clockwise as seen.
 ///
 /// In window coordinates with y down, counter-clockwise is a negative [`edge`].
 pub fn front_facing<R: Real>([a, b, c]: [Vec2<R>; 3]) -> R {
-    R::if_ge(edge(a, b, c).named("2·area"), R::literal(0.0), || R::literal(0.0), || R::literal(1.0))
+    let area = area(a, b, c);
+    step!("front", |area| R::if_ge(area, R::literal(0.0), || R::literal(0.0), || R::literal(1.0)))
 }
 
 /// The depth that is stored for a fragment that writes its own: clamped to the viewport's range, [0, 1] by default.
 /// Source: 000 §6.1 (`gl_FragDepth`).
 pub fn frag_depth<R: Real>(depth: R) -> R {
-    depth.clamp(R::literal(0.0), R::literal(1.0))
+    step!("depth clamped", |depth| depth.clamp(R::literal(0.0), R::literal(1.0)))
 }
 
 /// A rasterised triangle's window coordinates: [`viewport`] of each vertex.

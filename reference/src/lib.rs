@@ -30,8 +30,9 @@ pub mod interpolation;
 pub mod lighting;
 pub mod real;
 pub mod render;
+mod step;
 pub mod texture;
 pub mod vector;
 
 pub use algebra::{Mat3, Mat4, Rgb, Rgba, Vec2, Vec3, Vec4, Vector};
-pub use real::{Components, Real};
+pub use real::{Components, NamedStep, Parts, Real};

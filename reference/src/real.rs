@@ -137,6 +137,13 @@ pub trait Real:
     fn named(self, _name: &'static str) -> Self {
         self
     }
+
+    /// A step of a formula: what `compute` makes of `from`, for an arithmetic that records steps, or makes mistakes in them.
+    #[inline(always)]
+    #[must_use]
+    fn step<A: Parts<Self>, T: Parts<Self>>(step: &'static NamedStep, from: A, compute: impl Fn(A) -> T) -> T {
+        compute(from).each(|x| x.named(step.name))
+    }
 }
 
 /// A fixed number of `R`s, such as a scalar, a vector or a colour.
@@ -149,6 +156,50 @@ pub trait Components<R>: Sized {
 impl<R: Real> Components<R> for R {
     fn zip(self, other: Self, mut f: impl FnMut(R, R) -> R) -> Self {
         f(self, other)
+    }
+}
+
+/// A named step of a formula, with the names of what it is computed from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NamedStep {
+    /// Its name, mostly the symbol of what it gives.
+    pub name: &'static str,
+    /// The names of what it is given, in order.
+    pub of: &'static [&'static str],
+}
+
+/// What consists of a fixed number of numbers.
+pub trait Parts<R>: Copy {
+    /// How many.
+    const COUNT: usize;
+    /// How many in each part of a tuple.
+    const SIZES: &'static [usize] = &[Self::COUNT];
+
+    /// Changes each number.
+    #[must_use]
+    fn each(self, f: impl FnMut(R) -> R) -> Self;
+
+    /// Gives each number in order.
+    fn put(self, to: &mut impl FnMut(R));
+
+    /// Takes as many numbers as it has.
+    fn take(from: &mut impl FnMut() -> R) -> Self;
+}
+
+impl<R: Real> Parts<R> for R {
+    const COUNT: usize = 1;
+
+    #[inline]
+    fn each(self, mut f: impl FnMut(R) -> R) -> Self {
+        f(self)
+    }
+
+    fn put(self, to: &mut impl FnMut(R)) {
+        to(self);
+    }
+
+    fn take(from: &mut impl FnMut() -> R) -> Self {
+        from()
     }
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Puts the bugs of `bugs.toml` into copies of the files one at a time, and prints what the suite says of each:
 
-    tests/bugs/measure.py [ID…]
+    tests/bugs/measure.py [--set second.toml] [ID…]
 
 It needs the binary, `target/debug/lightmeter` or `$LIGHTMETER`, and for the bugs of the numpy renderer a Python with numpy, which
 `conformance/renderers/numpy/gate` installs.
@@ -50,8 +50,12 @@ def explanations(result: dict[str, Any]) -> list[str]:
 
 
 def main() -> None:
-    wanted = set(sys.argv[1:])
-    for bug in tomllib.loads((ROOT / "tests/bugs/bugs.toml").read_text())["bug"]:
+    arguments = sys.argv[1:]
+    name = "bugs.toml"
+    if arguments[:1] == ["--set"]:
+        name, arguments = arguments[1], arguments[2:]
+    wanted = set(arguments)
+    for bug in tomllib.loads((ROOT / "tests/bugs" / name).read_text())["bug"]:
         if wanted and bug["id"] not in wanted:
             continue
         kind = " (a pair)" if bug.get("pair") else " (unusual)" if bug.get("unusual") else ""

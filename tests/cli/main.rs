@@ -10,6 +10,7 @@ mod gate;
 mod hard;
 mod images;
 mod live;
+mod made;
 mod mistakes;
 mod scene;
 mod selftest;
@@ -280,7 +281,11 @@ fn adapters_are_listed() {
 }
 
 fn eval(lines: &str) -> Output {
-    let mut child = command(&["eval"])
+    eval_with(&[], lines)
+}
+
+fn eval_with(args: &[&str], lines: &str) -> Output {
+    let mut child = command(&[&["eval"], args].concat())
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -4,6 +4,7 @@ pub mod accept;
 pub mod dual;
 pub mod fixed;
 pub mod format;
+pub mod mistaken;
 pub mod paths;
 pub mod profile;
 pub mod random;

@@ -11,6 +11,7 @@ pub mod event;
 pub mod frame;
 pub mod gate;
 pub mod list;
+pub mod mistakes;
 mod number;
 pub mod pack;
 pub mod protocol;
@@ -118,6 +119,7 @@ documents! {
     bench::recommendation::Recommendation: bench::recommendation::SCHEMA, "the JSON of `lightmeter bench --recommend`";
     effects::EffectsDocument: effects::SCHEMA, "the JSON of `lightmeter effects --format json`";
     gate::GateReport: gate::SCHEMA, "the JSON of `lightmeter gate --format json`";
+    mistakes::MistakesDocument: mistakes::SCHEMA, "the JSON of `lightmeter mistakes --format json`";
     list::CasesDocument: list::CASES, "the JSON of `lightmeter list --format json`";
     list::FormulasDocument: list::FORMULAS, "the JSON of `lightmeter list --formulas --format json`";
     pack::Manifest: pack::SCHEMA, "the manifest of `lightmeter pack`";

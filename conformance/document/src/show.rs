@@ -14,7 +14,7 @@ pub const SCHEMA: &str = "lightmeter.show/1";
 #[serde(untagged)]
 pub enum ShowDocument {
     /// A case of a formula.
-    Case(ShownCase),
+    Case(Box<ShownCase>),
     /// A probe of a special value.
     Probe(ShownProbe),
     /// A pixel of a scene.
@@ -53,6 +53,20 @@ pub struct ShownCase {
     pub answers: Vec<ShownAnswer>,
     /// Of a hard case: its stable and its naive form.
     pub forms: Vec<Examined>,
+    /// What a renderer with the mistake that was asked for gives.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mistake: Option<ShownMistake>,
+}
+
+/// What a renderer with a mistake gives.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub struct ShownMistake {
+    /// The mistake's name.
+    pub name: Word,
+    /// What it does, as the end of a sentence.
+    pub says: Word,
+    /// The outputs, each with its value in f64 and what such a renderer may give.
+    pub outputs: Vec<ShownStep>,
 }
 
 /// What an input means.

@@ -4,9 +4,9 @@ use super::change::{After, Before};
 use super::row::{InputRow, put};
 use lightmeter_catalogue::cases::blend::{MOST_LAYERS, Program};
 use lightmeter_catalogue::cases::{Domain, Input, Kind, Spec};
-use lightmeter_reference::blend::{Mode, Operands, Saturate, blend, blend_separate, masked};
+use lightmeter_reference::blend::{Mode, Operands, Saturate, blend, masked};
 use lightmeter_reference::{Real, Vec4, Vector};
-use lightmeter_scene::blend::{Equation, Factor, Separate, State};
+use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
 
 /// A step that goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +49,10 @@ pub(super) enum Twist {
     AlphaKept,
     /// The write mask ignored.
     MaskIgnored,
+    /// Red and blue exchanged in the write mask.
+    MaskRedBlue,
+    /// SRC_ALPHA_SATURATE in alpha too, where it is 1.
+    SaturatedInAlpha,
     /// What is there before ignored.
     NotBlended,
     /// Operands and result limited to [0, 1].
@@ -67,6 +71,8 @@ struct Model {
     saturate: Saturate,
     alpha: Alpha,
     masked: bool,
+    mask_red_blue: bool,
+    saturated_in_alpha: bool,
     clamped: bool,
     last_alone: bool,
     reversed: bool,
@@ -94,6 +100,8 @@ fn right(spec: &Spec) -> Option<Model> {
         saturate: Saturate::SourceAndDestination,
         alpha: Alpha::Right,
         masked: true,
+        mask_red_blue: false,
+        saturated_in_alpha: false,
         clamped: false,
         last_alone: false,
         reversed: false,
@@ -179,17 +187,33 @@ impl Model {
             {
                 self.alpha = Alpha::Destination;
             }
-            Twist::MaskIgnored => {
-                if matches!(self.program, Program::Draw(_, mask) if mask.0 != [true; 4]) {
-                    self.masked = false;
-                }
-            }
+            Twist::MaskIgnored | Twist::MaskRedBlue | Twist::SaturatedInAlpha => self.change_of_alpha_or_mask(twist),
             Twist::NotBlended => {
                 self.each(|_| State { equation: Equation::Add, src: Factor::One, dst: Factor::Zero });
             }
             Twist::Clamped => self.clamped = true,
             Twist::LastLayerAlone => self.last_alone = matches!(self.program, Program::Layers(_)),
             Twist::LayersReversed => self.reversed = matches!(self.program, Program::Layers(_)),
+            _ => {}
+        }
+    }
+
+    /// [`Model::change`] of what is about the mask, or about alpha alone.
+    fn change_of_alpha_or_mask(&mut self, twist: Twist) {
+        match twist {
+            Twist::MaskIgnored => {
+                if matches!(self.program, Program::Draw(_, mask) if mask.0 != [true; 4]) {
+                    self.masked = false;
+                }
+            }
+            Twist::MaskRedBlue => {
+                self.mask_red_blue = matches!(self.program, Program::Draw(_, mask) if mask.0[0] != mask.0[2]);
+            }
+            Twist::SaturatedInAlpha => {
+                let s = self.state.alpha;
+                let reads = s.src == Factor::SrcAlphaSaturate || s.dst == Factor::SrcAlphaSaturate;
+                self.saturated_in_alpha = self.has_alpha() && reads && !s.equation.ignores_factors() && self.writes(3);
+            }
             _ => {}
         }
     }
@@ -230,17 +254,30 @@ impl Model {
                     dst: unit(x.vector("dst")?),
                     constant: unit(x.vector("constant")?),
                 };
-                let blended = unit(blend_separate(self.state, &operands, self.saturate));
+                let blended = unit(self.blended(&operands));
                 let blended = match self.alpha {
                     Alpha::Right => blended,
                     Alpha::Source => blended.xyz().extend(operands.src.w()),
                     Alpha::Destination => blended.xyz().extend(operands.dst.w()),
                 };
+                let [r, g, b, a] = mask.0;
+                let mask = if self.mask_red_blue { WriteMask([b, g, r, a]) } else { mask };
                 put(out, 0, if self.masked { masked(mask, blended, x.vector("dst")?) } else { blended });
             }
             Program::Special(_) => return None,
         }
         Some(())
+    }
+
+    fn blended<R: Real>(&self, operands: &Operands<R>) -> Vec4<R> {
+        let blend_by = |state: State, of: &Operands<R>| blend(state, of, self.saturate);
+        let (color, mut alpha) = (blend_by(self.state.color, operands), blend_by(self.state.alpha, operands).w());
+        if self.saturated_in_alpha {
+            // What is said of a colour, of alpha in each place.
+            let [src, dst, constant] = [operands.src, operands.dst, operands.constant].map(|c| Vector::splat(c.w()));
+            alpha = blend_by(self.state.alpha, &Operands { src, dst, constant }).x();
+        }
+        color.xyz().extend(alpha)
     }
 
     fn layers<R: Real>(&self, modes: &[Mode], x: &InputRow<'_, R>) -> Option<Vec4<R>> {
@@ -403,7 +440,7 @@ pub(super) fn differs(spec: &Spec, before: &[Before], twists: &[Twist], after: &
         let is_known = evaluate(spec, &[], &row, &mut right).is_some();
         before.iter().for_each(|before| before.apply(spec, &mut row));
         let is_known = is_known && evaluate(spec, twists, &row, &mut wrong).is_some();
-        after.iter().for_each(|after| after.apply(spec, &mut wrong));
+        after.iter().for_each(|after| after.apply(spec, &row, &mut wrong));
         !is_known || right.iter().zip(&wrong).any(|(a, b)| (a - b).abs() > LEAST)
     })
 }

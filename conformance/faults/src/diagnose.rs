@@ -1,15 +1,16 @@
 //! Which mistake a renderer made, from its answers: mistakes, pairs of them and wrong parameters are tried as explanations.
 
-use super::catalogue::concerning;
+use super::catalogue::faults;
+use super::common::{in_common, share};
+use super::concerned::concerned;
 use super::factor::{self, Scaled};
-use super::fault::Fault;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::Member;
 use lightmeter_judge::diagnose::Answered;
 use serde::Serialize;
-use std::cmp::Ordering;
+use std::collections::HashSet;
 
 /// What may have been done in a formula's place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,8 +27,9 @@ pub struct Explanation {
     pub open: usize,
     /// Passing cases whose answer would be too.
     pub consistent: usize,
-    /// How much the mistake leaves open: the mean of log₂(1 + the interval's width in ULP).
-    pub openness: f64,
+    /// By how many bits it beats chance: how much it tells of the failing answers that the right formula does not, less what it
+    /// takes to say which of all explanations it is.
+    pub evidence: f64,
 }
 
 /// What a renderer did wrong in a formula.
@@ -37,7 +39,7 @@ pub struct Diagnosis {
     pub failing: usize,
     /// Cases that passed.
     pub passing: usize,
-    /// The best first; only those that explain half of the failing cases or more.
+    /// The best first; only those that explain nearly all of the failing cases.
     pub explanations: Vec<Explanation>,
     /// The outcome as a sentence.
     pub sentence: String,
@@ -56,13 +58,20 @@ impl Diagnosis {
 
 /// Explanations that are kept.
 const MOST_EXPLANATIONS: usize = 5;
-/// The share of the failing cases that makes an explanation of them all; below, it is told as one of a part. Of the passing ones
-/// so many must not contradict it.
+/// The share of the failing cases that an explanation must explain, and of the passing ones that must not contradict it.
 const WHOLE: f64 = 0.9;
-/// The share below which it is told as none.
-const PART: f64 = 0.5;
+/// The bits by which it must beat chance.
+const LEAST_EVIDENCE: f64 = 6.0;
+/// The bits that are told by which cases fail, at most.
+const MOST_FORETOLD: f64 = 24.0;
+/// The bits within which two explanations are equally good.
+const EQUAL: f64 = 8.0;
+/// Explanations beyond the best that are told as equally good.
+const MOST_EQUAL: usize = 2;
 /// The share of failing cases that lie inside, where the mistake promises something, at least.
 const LEAST: f64 = 0.1;
+/// The bits that it takes to say by which factor which parameter is off.
+const FACTOR_BITS: f64 = 24.0;
 /// Failing cases that a mistake is tried on first.
 const PROBES: usize = 24;
 /// Failing cases that a pair of mistakes is tried on first; all but one of them must be explained.
@@ -70,16 +79,17 @@ const PAIR_PROBES: usize = 8;
 
 /// Tries what the catalogue knows as explanations of a renderer's answers to one formula.
 ///
-/// Ranked by the failing cases that are explained, then by the passing ones that are consistent, then by how little is left
-/// open, then single mistakes before pairs and both before wrong parameters, then in the order of the catalogue. Pairs,
-/// parameters, and mistakes with a parameter are tried where no single mistake explains every failing case.
+/// An explanation must explain nearly all failing cases, contradict nearly no passing one, and beat chance. Ranked by their
+/// evidence. Pairs, parameters, and mistakes with a parameter are tried where no single
+/// mistake explains every failing case.
 #[must_use]
 pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Diagnosis {
     let spec = &member.spec;
     let fits = |row: &&Answered<'_>| row.inputs.len() == spec.input_len() && row.values.len() == spec.output_len();
     let failing: Vec<Answered<'_>> = rows.iter().filter(fits).filter(|row| row.is_wrong).copied().collect();
     let passing: Vec<Answered<'_>> = rows.iter().filter(fits).filter(|row| !row.is_wrong).copied().collect();
-    let mut trial = Trial { member, profile, failing: &failing, passing: &passing, found: vec![] };
+    let right = Right::new(member, profile, &failing, &passing);
+    let mut trial = Trial { member, profile, failing: &failing, passing: &passing, right, found: vec![] };
     if !failing.is_empty() {
         trial.singles();
         if !trial.is_explained() {
@@ -91,47 +101,53 @@ pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Di
         }
     }
     let mut explanations = trial.found;
-    explanations.sort_by(better);
-    explanations.truncate(MOST_EXPLANATIONS);
-    Diagnosis {
-        failing: failing.len(),
-        passing: passing.len(),
-        sentence: sentence(failing.len(), &explanations),
-        explanations,
+    rank(&mut explanations);
+    let sentence = match explanations.first() {
+        None if !failing.is_empty() => unexplained(member, profile, &failing, &passing),
+        _ => sentence(failing.len(), &explanations),
+    };
+    Diagnosis { failing: failing.len(), passing: passing.len(), sentence, explanations }
+}
+
+/// That nothing explains the failing cases, with what they have in common.
+fn unexplained(member: &Member, profile: &Profile, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> String {
+    let cases = if failing.len() == 1 { "failing case".into() } else { format!("{} failing cases", failing.len()) };
+    let told = format!("nothing in the catalogue explains the {cases}");
+    match in_common(member, profile, failing, passing) {
+        common if common.is_empty() => told,
+        common => format!("{told}: {}", common.join(", ")),
     }
 }
 
-/// The better of two explanations first.
-fn better(a: &Explanation, b: &Explanation) -> Ordering {
-    let many = |a: usize, b: usize| b.cmp(&a);
-    // Single mistakes, pairs, parameters, mistakes with a parameter.
+/// Puts the best first: those with the most evidence, and of equally good ones the simplest, in the order of the catalogue.
+fn rank(explanations: &mut Vec<Explanation>) {
     let kind = |e: &Explanation| if e.parameter.is_some() { 3 + e.faults.len() } else { e.faults.len() };
-    many(a.explained + a.open, b.explained + b.open)
-        .then(many(a.explained, b.explained))
-        .then(many(a.consistent, b.consistent))
-        .then(a.openness.total_cmp(&b.openness))
-        .then(kind(a).cmp(&kind(b)))
+    let order = |e: &Explanation| -> Vec<usize> {
+        e.faults.iter().filter_map(|name| faults().iter().position(|fault| fault.name == *name)).collect()
+    };
+    explanations.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    let most = explanations.first().map_or(0.0, |best| best.evidence);
+    let equal = explanations.partition_point(|e| most - e.evidence <= EQUAL);
+    explanations[..equal].sort_by(|a, b| kind(a).cmp(&kind(b)).then_with(|| order(a).cmp(&order(b))));
+    explanations.truncate(MOST_EXPLANATIONS);
 }
 
 fn sentence(failing: usize, explanations: &[Explanation]) -> String {
     let cases = if failing == 1 { "case is" } else { "cases are" };
-    match explanations.first() {
-        _ if failing == 0 => "nothing fails".into(),
-        None if failing == 1 => "nothing in the catalogue explains the failing case".into(),
-        None => format!("nothing in the catalogue explains the {failing} failing cases"),
-        Some(best) => {
-            let Explanation { explained, open, .. } = best;
-            let says = together(best, explanations);
-            let told = format!("{explained} of {failing} failing {cases} explained by: {says}");
-            let rest = failing - explained - open;
-            match open {
-                _ if share(explained + open, failing) < WHOLE => {
-                    format!("{told}; nothing in the catalogue explains {rest} others")
-                }
-                0 => told,
-                open => format!("{told}; in {open} it may give anything"),
-            }
-        }
+    let Some(best) = explanations.first() else { return "nothing fails".into() };
+    let Explanation { explained, open, .. } = best;
+    let mut told = format!("{explained} of {failing} failing {cases} explained by: {}", together(best, explanations));
+    let equal = |other: &&Explanation| {
+        other.parameter.is_none()
+            && other.faults.len() <= best.faults.len()
+            && (best.evidence - other.evidence).abs() <= EQUAL
+    };
+    for other in explanations.iter().skip(1).filter(equal).take(MOST_EQUAL) {
+        told = format!("{told}; or just as well by: {}", other.says);
+    }
+    match open {
+        0 => told,
+        open => format!("{told}; in {open} it may give anything"),
     }
 }
 
@@ -151,11 +167,6 @@ fn together(best: &Explanation, explanations: &[Explanation]) -> String {
     format!("{mistake}as if {} (nothing tells which) {phrase}", names.join(" or "))
 }
 
-#[expect(clippy::cast_precision_loss, reason = "counts of cases are far below 2⁵³")]
-pub(super) fn share(part: usize, whole: usize) -> f64 {
-    part as f64 / whole as f64
-}
-
 /// What a row's answer says of the intervals of its outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fit {
@@ -167,23 +178,82 @@ pub(super) enum Fit {
     Outside,
 }
 
-/// Whether an answer is one that these intervals allow, and how much they leave open.
-pub(super) fn fit(values: &[f32], legal: &[Accept]) -> (Fit, f64) {
-    // What counts as the width of an interval that anything lies in.
-    const WIDEST_ULP: f64 = 1e9;
-    let (mut inside, mut bound, mut openness) = (true, false, 0.0);
-    for (&value, legal) in values.iter().zip(legal) {
-        inside &= legal.contains(value.into());
-        bound |= !legal.is_any();
-        let ulps = legal.width() / F32::ulp(f64::from(value)).max(F32::MIN_SUBNORMAL);
-        openness += (1.0 + ulps.min(WIDEST_ULP)).log2();
-    }
-    let fit = match (inside, bound) {
+/// Whether an answer is one that these intervals allow.
+pub(super) fn fit(values: &[f32], legal: &[Accept]) -> Fit {
+    let is_inside = values.iter().zip(legal).all(|(&value, legal)| legal.contains(value.into()));
+    match (is_inside, legal.iter().all(Accept::is_any)) {
         (false, _) => Fit::Outside,
-        (true, false) => Fit::Open,
-        (true, true) => Fit::Inside,
-    };
-    (fit, openness / share(values.len().max(1), 1))
+        (true, true) => Fit::Open,
+        (true, false) => Fit::Inside,
+    }
+}
+
+/// The bits that an interval leaves open of a number in it.
+fn bits_left(value: f32, legal: &Accept) -> f64 {
+    let ulps = legal.width() / F32::ulp(f64::from(value)).max(F32::MIN_SUBNORMAL);
+    if ulps.is_finite() { (1.0 + ulps).log2().min(BITS) } else { BITS }
+}
+
+/// The bits of a number of which nothing is known.
+const BITS: f64 = 28.0;
+/// The bits that an answer costs which an explanation excludes.
+const EXCLUDED: f64 = 100.0;
+
+/// What the right formula says of the answers.
+struct Right {
+    /// What is legal of the failing answers, then of the passing ones.
+    legal: Vec<Accept>,
+    /// The bits that each number of a failing answer takes where nothing but the right formula is known: those that it leaves open
+    /// where the number is right, and all of a wrong one.
+    bits: Vec<f64>,
+}
+
+impl Right {
+    fn new(member: &Member, profile: &Profile, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> Self {
+        let outputs = member.spec.output_len();
+        let mut legal = vec![Accept::ANY; outputs * (failing.len() + passing.len())];
+        for (row, legal) in failing.iter().chain(passing).zip(legal.chunks_mut(outputs)) {
+            member.formula.promised_interval(member.spec.kind, row.inputs, profile, legal);
+        }
+        let mut seen: Vec<HashSet<u32>> = vec![HashSet::new(); outputs];
+        let mut bits = vec![];
+        for (row, legal) in failing.iter().zip(legal.chunks(outputs)) {
+            for ((&value, legal), seen) in row.values.iter().zip(legal).zip(&mut seen) {
+                // What is saturated, or comes again and again, is told by little.
+                let is_plain =
+                    value.to_bits() << 1 == 0 || value.to_bits() == 1.0_f32.to_bits() || !seen.insert(value.to_bits());
+                bits.push(match legal.contains(value.into()) {
+                    true => bits_left(value, legal),
+                    false if is_plain => 1.0,
+                    false => BITS,
+                });
+            }
+        }
+        Self { legal, bits }
+    }
+}
+
+/// Which cases fail, and which would if a mistake were made: counts of cases.
+#[derive(Default)]
+struct Foretold {
+    counts: [[usize; 2]; 2],
+}
+
+impl Foretold {
+    fn take(&mut self, fails: bool, would_fail: bool) {
+        self.counts[usize::from(fails)][usize::from(would_fail)] += 1;
+    }
+
+    /// How many bits of which cases fail are told by which would.
+    fn bits(&self) -> f64 {
+        let [[a, b], [c, d]] = self.counts;
+        let all = a + b + c + d;
+        let cell = |count: usize, line: usize, column: usize| match count {
+            0 => 0.0,
+            _ => share(count, 1) * (share(count, line) * share(all, column)).log2(),
+        };
+        cell(a, a + b, a + c) + cell(b, a + b, b + d) + cell(c, c + d, a + c) + cell(d, c + d, b + d)
+    }
 }
 
 struct Trial<'a> {
@@ -191,6 +261,7 @@ struct Trial<'a> {
     profile: &'a Profile,
     failing: &'a [Answered<'a>],
     passing: &'a [Answered<'a>],
+    right: Right,
     found: Vec<Explanation>,
 }
 
@@ -204,39 +275,49 @@ impl Trial<'_> {
         self.failing.iter().step_by((self.failing.len() / count).max(1)).take(count)
     }
 
-    /// How many of some failing cases lie outside the intervals, and how many are tried.
-    fn contradicted(&self, count: usize, tried: &impl Wrong) -> (usize, usize) {
+    /// Whether so many of some failing cases, at most, lie outside the intervals.
+    fn is_likely(&self, probes: usize, most: usize, tried: &impl Wrong) -> bool {
         let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
-        let (mut outside, mut seen) = (0, 0);
-        for row in self.probes(count) {
+        let mut outside = 0;
+        self.probes(probes).all(|row| {
             tried.interval(row.inputs, self.profile, &mut legal);
-            outside += usize::from(fit(row.values, &legal).0 == Fit::Outside);
-            seen += 1;
-        }
-        (outside, seen)
+            outside += usize::from(fit(row.values, &legal) == Fit::Outside);
+            outside <= most
+        })
     }
 
     fn singles(&mut self) {
-        for fault in concerning(&self.member.spec) {
-            self.try_faults(&[fault], PROBES, |outside, tried| 2 * outside <= tried);
-        }
-    }
-
-    fn pairs(&mut self) {
-        let concerned: Vec<&'static Fault> = concerning(&self.member.spec).collect();
-        for (place, first) in concerned.iter().enumerate() {
-            for second in &concerned[place + 1..] {
-                self.try_faults(&[first, second], PAIR_PROBES, |outside, _| outside <= 1);
+        let concerned = concerned(self.member);
+        let prior = bits_of(concerned.len());
+        for fault in concerned.iter() {
+            let Some(variation) = Variation::of(self.member, &[*fault]) else { continue };
+            if self.is_likely(PROBES, PROBES / 8, &variation) {
+                let says = variation.says();
+                self.take(&variation, says, None, prior);
             }
         }
     }
 
-    fn try_faults(&mut self, faults: &[&'static Fault], probes: usize, is_likely: impl Fn(usize, usize) -> bool) {
-        let Some(variation) = Variation::new(self.member, faults) else { return };
-        let (outside, tried) = self.contradicted(probes, &variation);
-        if is_likely(outside, tried) {
-            let says = variation.says();
-            self.take(&variation, says, None);
+    /// Two mistakes at once. Most are told apart from the answers by their values in f64 already.
+    fn pairs(&mut self) {
+        let concerned = concerned(self.member);
+        let prior = 2.0 * bits_of(concerned.len());
+        let near: Vec<Near> =
+            self.probes(PAIR_PROBES).filter_map(|row| Near::new(self.member, row, self.profile)).collect();
+        let paired: Vec<_> = concerned.iter().filter(|concerned| !concerned.fault.is_rounding).collect();
+        for (place, first) in paired.iter().enumerate() {
+            for second in &paired[place + 1..] {
+                let Some(variation) = Variation::of(self.member, &[**first, **second]) else { continue };
+                let mut far = 0;
+                let is_near = near.iter().all(|row| {
+                    far += usize::from(!row.allows(&variation));
+                    far <= 1
+                });
+                if is_near && self.is_likely(PAIR_PROBES, 1, &variation) {
+                    let says = variation.says();
+                    self.take(&variation, says, None, prior);
+                }
+            }
         }
     }
 
@@ -258,7 +339,7 @@ impl Trial<'_> {
         }
         let (member, profile) = (self.member, self.profile);
         let variations: Vec<Variation<'_>> =
-            concerning(spec).filter_map(|fault| Variation::new(member, &[fault])).collect();
+            concerned(member).iter().filter_map(|fault| Variation::of(member, &[*fault])).collect();
         for (variation, scaled) in factor::nearest(&variations, self.failing, profile) {
             self.try_scaled(variation, scaled);
         }
@@ -266,48 +347,106 @@ impl Trial<'_> {
 
     fn try_scaled(&mut self, variation: &Variation<'_>, scaled: Scaled) {
         let tried = (variation, &scaled);
-        let (outside, probes) = self.contradicted(PROBES, &tried);
-        if 2 * outside <= probes {
+        if self.is_likely(PROBES, PROBES / 4, &tried) {
             let mistake = variation.says();
             let says = if mistake.is_empty() { scaled.says() } else { format!("{mistake}, and {}", scaled.says()) };
-            self.take(&tried, says, Some(scaled.clone()));
+            let prior = FACTOR_BITS + if mistake.is_empty() { 0.0 } else { bits_of(concerned(self.member).len()) };
+            self.take(&tried, says, Some(scaled.clone()), prior);
         }
     }
 
-    fn take(&mut self, tried: &impl Wrong, says: String, parameter: Option<Scaled>) {
+    /// Keeps an explanation that holds for the failing cases. `prior` are the bits that it takes to say which it is.
+    fn take(&mut self, tried: &impl Wrong, says: String, parameter: Option<Scaled>, prior: f64) {
         let outputs = self.member.spec.output_len();
         let (mut legal, mut own) = (vec![Accept::ANY; outputs], vec![0.0; outputs]);
-        let (mut explained, mut open, mut consistent, mut openness) = (0, 0, 0, 0.0);
-        let mut held = |row: &Answered<'_>| {
-            tried.interval(row.inputs, self.profile, &mut legal);
-            let (fit, left_open) = fit(row.values, &legal);
-            openness += left_open;
-            if fit == Fit::Open {
-                // Where nothing is promised, an answer is explained by who computes just that.
-                tried.evaluate(row.inputs, &mut own);
-                let is_same = |(&a, &b): (&f32, &f32)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
-                return if row.values.iter().zip(&own).all(is_same) { Fit::Inside } else { Fit::Open };
-            }
-            fit
+        let (mut explained, mut open, mut consistent, mut evidence) = (0, 0, 0, -prior);
+        let mut foretold = Foretold::default();
+        let mut foretell = |fails: bool, own: &[f32], right: &[Accept]| {
+            foretold.take(fails, own.iter().zip(right).any(|(&own, right)| !right.contains(own.into())));
         };
-        for row in self.failing {
-            match held(row) {
-                Fit::Inside => explained += 1,
-                Fit::Open => open += 1,
-                Fit::Outside => {}
+        let (right, right_of_passing) = self.right.legal.split_at(self.failing.len() * outputs);
+        let of_failing = self.failing.iter().zip(self.right.bits.chunks(outputs)).zip(right.chunks(outputs));
+        for ((row, chance), right) in of_failing {
+            tried.interval(row.inputs, self.profile, &mut legal);
+            tried.evaluate(row.inputs, &mut own);
+            foretell(true, &own, right);
+            let is_own = |place: usize| {
+                let (a, b) = (row.values[place], own[place]);
+                a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
+            };
+            match fit(row.values, &legal) {
+                Fit::Outside => {
+                    evidence -= EXCLUDED;
+                    continue;
+                }
+                // Where nothing is promised, an answer is explained by who computes just that.
+                Fit::Open if !(0..outputs).all(is_own) => {
+                    open += 1;
+                    continue;
+                }
+                Fit::Open | Fit::Inside => explained += 1,
+            }
+            for (place, chance) in chance.iter().enumerate() {
+                let left = if is_own(place) { 0.0 } else { bits_left(row.values[place], &legal[place]) };
+                evidence += (chance - left).max(0.0);
             }
         }
-        for row in self.passing {
-            consistent += usize::from(held(row) != Fit::Outside);
+        for (row, right) in self.passing.iter().zip(right_of_passing.chunks(outputs)) {
+            tried.interval(row.inputs, self.profile, &mut legal);
+            tried.evaluate(row.inputs, &mut own);
+            foretell(false, &own, right);
+            let fits = fit(row.values, &legal) != Fit::Outside;
+            consistent += usize::from(fits);
+            evidence -= if fits { 0.0 } else { EXCLUDED };
         }
+        evidence += foretold.bits().min(MOST_FORETOLD);
         // What may give anything explains nothing by that alone, and what answers that pass contradict is not what was done.
         let (failing, passing) = (self.failing.len(), self.passing.len());
         let is_borne_out = passing == 0 || share(consistent, passing) >= WHOLE;
-        if is_borne_out && share(explained + open, failing) >= PART && share(explained, failing) >= LEAST {
-            let openness = openness / share(failing + passing, 1);
+        let is_whole = share(explained + open, failing) >= WHOLE && share(explained, failing) >= LEAST;
+        if is_borne_out && is_whole && evidence >= LEAST_EVIDENCE {
             let faults = tried.faults();
-            self.found.push(Explanation { faults, says, parameter, explained, open, consistent, openness });
+            self.found.push(Explanation { faults, says, parameter, explained, open, consistent, evidence });
         }
+    }
+}
+
+/// The bits that it takes to say which of so many it is.
+fn bits_of(count: usize) -> f64 {
+    share(count.max(1), 1).log2()
+}
+
+/// An answer, and how far from it a value in f64 may be that is worth a closer look.
+struct Near {
+    inputs: Vec<f64>,
+    values: Vec<f32>,
+    reach: Vec<f64>,
+}
+
+impl Near {
+    fn new(member: &Member, row: &Answered<'_>, profile: &Profile) -> Option<Self> {
+        if matches!(member.spec.kind, Kind::Raster(_)) {
+            return None;
+        }
+        let mut legal = vec![Accept::ANY; row.values.len()];
+        member.formula.interval(row.inputs, profile, &mut legal);
+        let reach = legal.iter().zip(row.values).map(|(legal, &value)| {
+            let reach = 4096.0 * legal.width() + f64::from(value).abs() / 64.0;
+            if reach.is_finite() { reach } else { f64::INFINITY }
+        });
+        let reach = reach.collect();
+        Some(Self { inputs: row.inputs.iter().map(|&x| x.into()).collect(), values: row.values.to_vec(), reach })
+    }
+
+    fn allows(&self, variation: &Variation<'_>) -> bool {
+        let mut row = self.inputs.clone();
+        let mut out = vec![0.0; self.values.len()];
+        variation.evaluate_row(&mut row, &mut out);
+        let is_near = |((&value, out), reach): ((&f32, &f64), &f64)| {
+            let apart = (f64::from(value) - out).abs();
+            apart <= *reach || !apart.is_finite()
+        };
+        self.values.iter().zip(&out).zip(&self.reach).all(is_near)
     }
 }
 
@@ -352,7 +491,7 @@ impl Wrong for (&Variation<'_>, &Scaled) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fault::formulas;
+    use crate::fault::{Fault, formulas};
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_catalogue::select::CaseRef;
     use lightmeter_judge::{Outcome, judge};

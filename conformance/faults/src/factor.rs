@@ -30,11 +30,10 @@ pub struct Scaled {
 const ROWS: usize = 64;
 /// Steps of the refinement.
 const STEPS: usize = 16;
-/// Factors from 2⁻¹⁰ to 2¹⁰ in steps of a sixth of an octave.
-const OCTAVES: i32 = 10;
+/// Factors from 2⁻⁵ to 2⁵ in steps of a sixth of an octave: beyond, what seems to be one is something else.
+const OCTAVES: i32 = 5;
 const STEPS_AN_OCTAVE: i32 = 6;
 /// The same where mistakes are tried with parameters, cases, and how many of those are sought well.
-const ROUGH_OCTAVES: i32 = 5;
 const ROUGH_STEPS: i32 = 2;
 const FEW_ROWS: usize = 6;
 const NEAREST: usize = 12;
@@ -145,7 +144,7 @@ pub(super) fn nearest<'a, 'b>(
     for variation in variations {
         for (name, range) in parameters(&variation.member.spec) {
             let scaled = Scaled::one(name, range, false);
-            if let Some((cost, _)) = roughly(variation, &few, &scaled, ROUGH_OCTAVES, ROUGH_STEPS) {
+            if let Some((cost, _)) = roughly(variation, &few, &scaled, OCTAVES, ROUGH_STEPS) {
                 tried.push((cost, variation, scaled));
             }
         }
@@ -259,7 +258,8 @@ fn search(variation: &Variation<'_>, rows: &[FactorRow], mut scaled: Scaled) -> 
     }
     // Nothing wrong with this parameter.
     let is_one = (factor - 1.0).abs() <= scaled.uncertainty;
-    (!is_one).then_some(Scaled { factor, ..scaled })
+    let is_beyond = factor.log2().abs() > f64::from(OCTAVES);
+    (!is_one && !is_beyond).then_some(Scaled { factor, ..scaled })
 }
 
 #[cfg(test)]

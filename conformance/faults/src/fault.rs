@@ -1,13 +1,13 @@
 //! What a mistake is, and which formulas it concerns.
 
+use super::alteration::At;
 use super::blend;
-use super::body::{self, Body};
 use super::change::{After, Before};
-use super::fog;
-use super::lighting;
+use super::steps::{Seen, steps_of};
 use lightmeter_catalogue::cases::blend::Samples;
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_catalogue::select::{Member, catalogue_of};
+use lightmeter_scene::depth::DepthTest;
 use std::sync::LazyLock;
 
 /// A named mistake that renderers make.
@@ -19,6 +19,8 @@ pub struct Fault {
     pub says: &'static str,
     /// A renderer or a habit that has it, where one is known.
     pub seen_in: Option<&'static str>,
+    /// Whether it computes the same but for its rounding, which leaves too much open to be told beside another mistake.
+    pub(super) is_rounding: bool,
     /// How it is made, the first way that fits a formula.
     pub(super) ways: &'static [&'static [Step]],
     /// Which of the formulas that a way fits it shows in.
@@ -30,14 +32,12 @@ pub struct Fault {
 pub(super) enum Step {
     /// The inputs change.
     Before(Before),
-    /// A step of lighting is wrong.
-    Lighting(lighting::Twist),
-    /// A step of fog.
-    Fog(fog::Twist),
+    /// A named step goes wrong.
+    At(At),
     /// The blend state or its operands.
     Blend(blend::Twist),
-    /// Another body.
-    Body(Body),
+    /// Another depth test.
+    Test(fn(DepthTest) -> DepthTest),
     /// Another formula of the catalogue, by pairs of ids; those that begin with `*` are ends of ids.
     Instead(&'static [(&'static str, &'static str)]),
     /// The form that the formula is the stable one of.
@@ -48,7 +48,7 @@ pub(super) enum Step {
 
 impl Step {
     /// The formula that stands in one's place, which takes and gives the same.
-    pub(super) fn instead(self, spec: &Spec) -> Option<&'static Member> {
+    pub(super) fn instead(&self, spec: &Spec) -> Option<&'static Member> {
         let id = match self {
             Self::Instead(pairs) => {
                 pairs.iter().find_map(|(from, to)| match (from.strip_prefix('*'), to.strip_prefix('*')) {
@@ -57,6 +57,12 @@ impl Step {
                 })?
             }
             Self::Naive => spec.hard.iter().find_map(|hard| hard.naive)?.formula.to_owned(),
+            Self::Test(other) => {
+                let Kind::Depth(test) = spec.kind else { return None };
+                let other = other(test);
+                let is_other = |member: &&Member| matches!(member.spec.kind, Kind::Depth(by) if by == other);
+                return formulas().iter().find(is_other).filter(|_| other != test);
+            }
             _ => return None,
         };
         let fits = |member: &&Member| {
@@ -67,40 +73,43 @@ impl Step {
         formulas().iter().find(fits)
     }
 
-    fn fits(self, spec: &Spec) -> bool {
+    fn fits(&self, spec: &Spec, steps: &[Seen]) -> bool {
         let is_raster = matches!(spec.kind, Kind::Raster(_));
         match self {
             Self::Before(before) => before.fits(spec),
             Self::After(after) => after.fits(spec),
-            Self::Instead(_) | Self::Naive => self.instead(spec).is_some(),
+            Self::Instead(_) | Self::Test(_) | Self::Naive => self.instead(spec).is_some(),
             // A rasteriser's answers follow from changed inputs alone.
-            _ if is_raster => false,
-            Self::Lighting(twist) => lighting::concerns(spec, &[twist]),
-            Self::Fog(twist) => fog::concerns(spec, &[twist]),
-            Self::Blend(twist) => blend::concerns(spec, &[twist]),
-            Self::Body(body) => body::concerns(spec, body),
+            Self::At(_) | Self::Blend(_) if is_raster => false,
+            Self::At(at) => steps.iter().any(|seen| at.fits(seen.step, seen.sizes, seen.out)),
+            Self::Blend(twist) => blend::concerns(spec, &[*twist]),
         }
     }
 }
 
 impl Fault {
-    /// Whether it concerns a formula.
-    #[must_use]
-    pub fn concerns(&self, spec: &Spec) -> bool {
-        self.steps(spec).is_some()
-    }
-
-    /// How it is made in a formula.
-    pub(super) fn steps(&self, spec: &Spec) -> Option<&'static [Step]> {
+    /// How it is made in a formula whose steps are these: the first way that fits.
+    pub(super) fn way(&self, spec: &Spec, steps: &[Seen]) -> Option<&'static [Step]> {
         // NaN and infinity in blending: of what comes out nothing is promised.
         let is_special = matches!(spec.kind, Kind::Blend(program) if program.is_special());
         if is_special || !(self.only)(spec) {
             return None;
         }
-        let way = self.ways.iter().copied().find(|way| way.iter().all(|step| step.fits(spec)))?;
+        let fits = |way: &&'static [Step]| {
+            let other = way.iter().find_map(|step| step.instead(spec)).map(steps_of);
+            way.iter().all(|step| step.fits(spec, other.as_deref().unwrap_or(steps)))
+        };
+        let way = self.ways.iter().copied().find(fits)?;
         let is_blending = matches!(spec.kind, Kind::Blend(_));
         (!is_blending || shows_in_blending(spec, way)).then_some(way)
     }
+}
+
+/// A mistake that concerns a formula, and how it is made there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Concerned {
+    pub(super) fault: &'static Fault,
+    pub(super) way: &'static [Step],
 }
 
 /// Of some of the many states a mistake makes the same function.

@@ -1,36 +1,130 @@
 //! A row of inputs by name, in any arithmetic.
 
-use lightmeter_arithmetic::{Accept, RandomLegal};
-use lightmeter_catalogue::cases::{AnyFormula, Spec, Wanted};
-use lightmeter_reference::{Mat3, Mat4, Real, Vector};
+use lightmeter_arithmetic::mistaken::{Alter, Mistaken};
+use lightmeter_arithmetic::{Accept, F16, F32, Format};
+use lightmeter_catalogue::cases::{AnyFormula, Spec};
+use lightmeter_reference::{Real, Vector};
+use std::cmp::Ordering;
 
-/// An arithmetic that the formulas of the catalogue can be evaluated in once their types are forgotten.
-pub trait Arithmetic: Real {
+/// An arithmetic that the formulas of the catalogue can be evaluated in, steps going wrong, once their types are forgotten.
+pub trait Arithmetic: Alter {
     /// The formula's outputs for a row of inputs.
-    fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]);
+    fn evaluate(formula: &dyn AnyFormula, inputs: &[Mistaken<Self>], out: &mut [Mistaken<Self>]);
+
+    /// In half precision, overflow to infinity, subnormal numbers kept or not.
+    #[must_use]
+    fn in_half(self) -> Self;
+
+    /// In bfloat16.
+    #[must_use]
+    fn in_bfloat(self) -> Self;
+
+    /// 1/√self by half its bits taken from a constant, and one step of Newton's method.
+    #[must_use]
+    fn fast_inverse_sqrt(self) -> Self;
+}
+
+/// bfloat16: the range of binary32, 8 bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Bf16;
+
+impl Format for Bf16 {
+    const FRACTION_BITS: u32 = 7;
+    const EPSILON: f64 = 1.0 / 128.0;
+    const MIN_NORMAL: f64 = F32::MIN_NORMAL;
+    const MIN_SUBNORMAL: f64 = F32::MIN_NORMAL / 128.0;
+    const MAX: f64 = 338_953_138_925_153_547_590_470_800_371_487_866_880.0;
+}
+
+/// The nearest number of a format, the even one at a tie; infinite from half a step beyond the greatest.
+fn nearest<F: Format>(x: f64) -> f64 {
+    if !x.is_finite() {
+        return x;
+    }
+    let step = F::EPSILON * F::MIN_NORMAL;
+    if x.abs() < F::MIN_NORMAL {
+        return (x / step).round_ties_even() * step;
+    }
+    let (low, high) = (F::round_down(x), F::round_up(x));
+    let is_even = |x: f64| x.to_bits() & (1 << (52 - F::FRACTION_BITS)) == 0;
+    let rounded = match (x - low).total_cmp(&(high - x)) {
+        Ordering::Less => low,
+        Ordering::Greater => high,
+        Ordering::Equal if is_even(low) => low,
+        Ordering::Equal => high,
+    };
+    if rounded.abs() > F::MAX { f64::INFINITY.copysign(x) } else { rounded }
+}
+
+/// The nearest numbers of a format to those of an interval.
+fn nearest_to_each<F: Format>(x: Accept) -> Accept {
+    let (low, high) = (nearest::<F>(x.low()), nearest::<F>(x.high()));
+    if x.is_any() || low.is_infinite() || high.is_infinite() {
+        return Accept::ANY;
+    }
+    // What is too small for a normal number may be lost.
+    let (low, high) =
+        if low < F::MIN_NORMAL && high > -F::MIN_NORMAL { (low.min(0.0), high.max(0.0)) } else { (low, high) };
+    Accept::from_bounds(low, high)
 }
 
 impl Arithmetic for f64 {
-    fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_f64(inputs, Wanted::ALL, out);
+    fn evaluate(formula: &dyn AnyFormula, inputs: &[Mistaken<Self>], out: &mut [Mistaken<Self>]) {
+        formula.on_mistaken_f64(inputs, out);
+    }
+
+    fn in_half(self) -> Self {
+        nearest::<F16>(self)
+    }
+
+    fn in_bfloat(self) -> Self {
+        nearest::<Bf16>(self)
+    }
+
+    fn fast_inverse_sqrt(self) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "its bits are those of binary32")]
+        let x = (self as f32).fast_inverse_sqrt();
+        x.into()
     }
 }
 
 impl Arithmetic for f32 {
-    fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_f32(inputs, Wanted::ALL, out);
+    fn evaluate(formula: &dyn AnyFormula, inputs: &[Mistaken<Self>], out: &mut [Mistaken<Self>]) {
+        formula.on_mistaken_f32(inputs, out);
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "a number of half precision is one of f32")]
+    fn in_half(self) -> Self {
+        nearest::<F16>(self.into()) as Self
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "a number of bfloat16 is one of f32")]
+    fn in_bfloat(self) -> Self {
+        nearest::<Bf16>(self.into()) as Self
+    }
+
+    fn fast_inverse_sqrt(self) -> Self {
+        let rough = Self::from_bits(0x5f37_59df_u32.wrapping_sub(self.to_bits() >> 1));
+        rough * (1.5 - 0.5 * self * rough * rough)
     }
 }
 
 impl Arithmetic for Accept {
-    fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_accept(inputs, Wanted::ALL, out);
+    fn evaluate(formula: &dyn AnyFormula, inputs: &[Mistaken<Self>], out: &mut [Mistaken<Self>]) {
+        formula.on_mistaken_accept(inputs, out);
     }
-}
 
-impl Arithmetic for RandomLegal {
-    fn evaluate(formula: &dyn AnyFormula, inputs: &[Self], out: &mut [Self]) {
-        formula.on_draw(inputs, out);
+    fn in_half(self) -> Self {
+        nearest_to_each::<F16>(self)
+    }
+
+    fn in_bfloat(self) -> Self {
+        nearest_to_each::<Bf16>(self)
+    }
+
+    fn fast_inverse_sqrt(self) -> Self {
+        // Below the right one by as much at most.
+        self.inverse_sqrt() * Self::from_bounds(1.0 - 0.001_76, 1.0 + 1e-6)
     }
 }
 
@@ -51,27 +145,12 @@ impl<'a, R: Real> InputRow<'a, R> {
         self.numbers.get(self.spec.place(name)?)?.try_into().ok()
     }
 
-    /// Whether the formula says that it normalises what it gives.
-    pub(super) fn is_normalised(&self) -> bool {
-        self.spec.is_normalised
-    }
-
     pub(super) fn scalar(&self, name: &str) -> Option<R> {
         self.array(name).map(|[x]| x)
     }
 
     pub(super) fn vector<const N: usize>(&self, name: &str) -> Option<Vector<R, N>> {
         self.array(name).map(Vector)
-    }
-
-    pub(super) fn mat3(&self, name: &str) -> Option<Mat3<R>> {
-        let m = self.array::<9>(name)?;
-        Some(Mat3([0, 3, 6].map(|k| Vector([m[k], m[k + 1], m[k + 2]]))))
-    }
-
-    pub(super) fn mat4(&self, name: &str) -> Option<Mat4<R>> {
-        let m = self.array::<16>(name)?;
-        Some(Mat4([0, 4, 8, 12].map(|k| Vector([m[k], m[k + 1], m[k + 2], m[k + 3]]))))
     }
 }
 

@@ -3,7 +3,7 @@
 //! Each mistake is made by the embedded implementation and judged like any renderer; its answers are diagnosed. What is right,
 //! the embedded implementation and legal evaluations drawn at random, must be flagged by no verdict.
 
-use super::catalogue::concerning;
+use super::concerned::concerning;
 use super::diagnose::{Diagnosis, diagnose};
 use super::fault::Fault;
 use super::group::group_verdict;
@@ -63,7 +63,7 @@ fn try_all(member: &Member, options: &SelftestOptions) -> (Vec<Kill>, Option<Cle
     let few = Bench::new(member, options, if is_state { options.cases.div_ceil(4) } else { options.cases });
     let all = LazyCell::new(|| Bench::new(member, options, CASES_OF_A_RUN));
     let mut kills = vec![];
-    for fault in concerning(spec) {
+    for fault in concerning(member) {
         if options.stop.is_set() {
             return (kills, None);
         }
@@ -265,7 +265,8 @@ mod tests {
                 .flat_map_iter(|chosen| {
                     let member = &members[chosen.member];
                     let bench = Bench::new(member, &options, options.cases);
-                    let variations = concerning(&member.spec)
+                    let variations = concerning(member)
+                        .into_iter()
                         .filter_map(|fault| Some((fault, Variation::new(member, &[fault])?)))
                         .map(|(fault, variation)| {
                             let values = bench.answers(|inputs, out| variation.evaluate::<f32>(inputs, out));

@@ -1,11 +1,10 @@
 //! A formula with one mistake or two, in any arithmetic.
 
+use super::alteration::At;
 use super::blend;
-use super::body;
-use super::fault::{Fault, Step};
-use super::fog;
-use super::lighting;
+use super::fault::{Concerned, Fault, Step};
 use super::row::Arithmetic;
+use lightmeter_arithmetic::mistaken::{Alteration, Mistaken, making};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{AnyFormula, Kind, Spec};
 use lightmeter_catalogue::select::Member;
@@ -23,61 +22,52 @@ pub struct Variation<'a> {
     kind: Kind,
 }
 
-/// The steps of all mistakes by what they change.
+/// The parts of all mistakes by what they change.
 #[derive(Default)]
 struct Parts {
     before: Vec<super::change::Before>,
-    lighting: Vec<lighting::Twist>,
-    fog: Vec<fog::Twist>,
+    at: Vec<&'static At>,
     blend: Vec<blend::Twist>,
-    bodies: Vec<body::Body>,
     instead: Vec<&'static Member>,
     after: Vec<super::change::After>,
 }
 
 impl Parts {
-    fn new(spec: &Spec, steps: impl Iterator<Item = Step>) -> Self {
+    fn new(spec: &Spec, steps: impl Iterator<Item = &'static Step>) -> Self {
         let mut parts = Self::default();
         for step in steps {
             match step {
-                Step::Before(before) => parts.before.push(before),
-                Step::Lighting(twist) => parts.lighting.push(twist),
-                Step::Fog(twist) => parts.fog.push(twist),
-                Step::Blend(twist) => parts.blend.push(twist),
-                Step::Body(body) => parts.bodies.push(body),
-                Step::Instead(_) | Step::Naive => parts.instead.extend(step.instead(spec)),
-                Step::After(after) => parts.after.push(after),
+                Step::Before(before) => parts.before.push(*before),
+                Step::At(at) => parts.at.push(at),
+                Step::Blend(twist) => parts.blend.push(*twist),
+                Step::Instead(_) | Step::Test(_) | Step::Naive => parts.instead.extend(step.instead(spec)),
+                Step::After(after) => parts.after.push(*after),
             }
         }
         parts
     }
 
-    /// Whether all of them can be made at once: one body at most, and each step still makes a difference after the others.
+    /// Whether all of them can be made at once: one formula instead at most, no step wrong in two ways, and each part of a blend
+    /// state still makes a difference after the others.
     fn fit_together(&self, spec: &Spec) -> bool {
-        let twisted = usize::from(!self.lighting.is_empty())
-            + usize::from(!self.fog.is_empty())
-            + usize::from(!self.blend.is_empty());
-        let at_once = twisted + self.bodies.len() + self.instead.len() <= 1;
+        let at_once = usize::from(!self.blend.is_empty()) + self.instead.len() <= 1;
+        let is_twice = |(place, at): (usize, &&At)| self.at[..place].iter().any(|other| other.collides(at));
         at_once
-            && (self.lighting.is_empty() || lighting::concerns(spec, &self.lighting))
-            && (self.fog.is_empty() || fog::concerns(spec, &self.fog))
+            && !self.at.iter().enumerate().any(is_twice)
             && (self.blend.is_empty() || blend::concerns(spec, &self.blend))
     }
 }
 
 /// Room for the inputs of any formula.
 const MOST_INPUTS: usize = 80;
+/// Room for its outputs.
+const MOST_OUTPUTS: usize = 16;
 
 impl<'a> Variation<'a> {
-    /// The formula with these mistakes; `None` where one does not concern it, or they cannot be made together.
-    #[must_use]
-    pub fn new(member: &'a Member, faults: &[&'static Fault]) -> Option<Self> {
+    /// The formula with mistakes that are known to concern it; `None` where they cannot be made together.
+    pub(super) fn of(member: &'a Member, faults: &[Concerned]) -> Option<Self> {
         let spec = &member.spec;
-        let mut steps = vec![];
-        for fault in faults {
-            steps.extend_from_slice(fault.steps(spec)?);
-        }
-        let parts = Parts::new(spec, steps.into_iter());
+        let parts = Parts::new(spec, faults.iter().flat_map(|concerned| concerned.way));
         if !parts.fit_together(spec) || spec.input_len() > MOST_INPUTS {
             return None;
         }
@@ -85,7 +75,8 @@ impl<'a> Variation<'a> {
         if let [other] = parts.instead[..] {
             (formula, kind) = (&*other.formula, other.spec.kind);
         }
-        Some(Self { member, faults: faults.to_vec(), parts, formula, kind })
+        let faults = faults.iter().map(|concerned| concerned.fault).collect();
+        Some(Self { member, faults, parts, formula, kind })
     }
 
     /// The formula without a mistake.
@@ -115,22 +106,17 @@ impl<'a> Variation<'a> {
         for before in &parts.before {
             before.apply(spec, row);
         }
-        let wrong = if !parts.lighting.is_empty() {
-            lighting::evaluate(spec, &parts.lighting, row, out)
-        } else if !parts.fog.is_empty() {
-            fog::evaluate(spec, &parts.fog, row, out)
-        } else if !parts.blend.is_empty() {
-            blend::evaluate(spec, &parts.blend, row, out)
-        } else if let Some(&body) = parts.bodies.first() {
-            body::evaluate(spec, body, row, out)
-        } else {
-            None
-        };
-        if wrong.is_none() {
-            R::evaluate(self.formula, row, out);
+        let is_blended = !parts.blend.is_empty() && blend::evaluate(spec, &parts.blend, row, out).is_some();
+        if !is_blended {
+            let zero = Mistaken(R::literal(0.0));
+            let (mut inputs, mut outputs) = ([zero; MOST_INPUTS], [zero; MOST_OUTPUTS]);
+            inputs.iter_mut().zip(&*row).for_each(|(to, &x)| *to = Mistaken(x));
+            let alterations = parts.at.iter().map(|&at| at as &'static dyn Alteration);
+            making(alterations, || R::evaluate(self.formula, &inputs[..row.len()], &mut outputs));
+            out.iter_mut().zip(outputs).for_each(|(to, x)| *to = x.0);
         }
         for after in &parts.after {
-            after.apply(spec, out);
+            after.apply(spec, row, out);
         }
     }
 
@@ -147,8 +133,9 @@ impl<'a> Variation<'a> {
                 before.apply(spec, &mut row);
             }
             self.formula.promised_interval(self.kind, &row, profile, out);
+            let row: Vec<Accept> = row.iter().map(|&x| lightmeter_reference::Real::input(x)).collect();
             for after in &self.parts.after {
-                after.apply(spec, out);
+                after.apply(spec, &row, out);
             }
         });
     }

@@ -188,7 +188,7 @@ mod tests {
                 None => member.formula.embedded(inputs, &mut out),
                 Some((name, _)) => {
                     let fault =
-                        concerning(spec).into_iter().find(|fault| fault.name == name).ok_or("no such mistake")?;
+                        concerning(member).into_iter().find(|fault| fault.name == name).ok_or("no such mistake")?;
                     let variation = Variation::new(member, &[fault]).ok_or("it does not concern the formula")?;
                     variation.evaluate(inputs, &mut out);
                 }

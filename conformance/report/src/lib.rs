@@ -6,6 +6,7 @@ pub mod gate;
 pub mod github;
 pub mod junit;
 pub mod live;
+pub mod mistakes;
 pub mod page;
 pub mod selftest;
 pub mod special;

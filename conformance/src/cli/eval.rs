@@ -1,6 +1,7 @@
 //! `lightmeter eval`.
 
 use super::Status;
+use super::mistakes::by_name;
 use super::options::Choice;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -9,6 +10,7 @@ use lightmeter::cases::Input;
 use lightmeter::cases::blend::{aliases, separate_of};
 use lightmeter::document::Number;
 use lightmeter::document::eval::{EvalAnswer, EvalRequest};
+use lightmeter::faults::{Fault, Variation};
 use lightmeter::select::{Member, catalogue, separate_member};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -23,6 +25,9 @@ pub(crate) struct Eval {
     /// Accuracy rules: wgsl, vulkan or opengl
     #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
     profile: &'static Profile,
+    /// Evaluate as a renderer with this mistake would; `lightmeter mistakes` lists them
+    #[arg(long, value_name = "NAME", value_parser = by_name)]
+    mistake: Option<&'static Fault>,
 }
 
 impl Eval {
@@ -62,9 +67,19 @@ impl Eval {
 
         let outputs = member.spec.output_len();
         let (mut value, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
-        member.formula.reference(&inputs, &mut value);
-        let kind = member.spec.kind;
-        member.formula.promised_interval(kind, &inputs, self.profile, &mut legal);
+        match self.mistake {
+            None => {
+                member.formula.reference(&inputs, &mut value);
+                member.formula.promised_interval(member.spec.kind, &inputs, self.profile, &mut legal);
+            }
+            Some(fault) => {
+                let mistaken = Variation::new(member, &[fault]);
+                let mistaken =
+                    mistaken.with_context(|| format!("`{}` does not concern {}", fault.name, member.spec.id))?;
+                mistaken.evaluate(&inputs, &mut value);
+                mistaken.interval(&inputs, self.profile, &mut legal);
+            }
+        }
         let condition = member
             .formula
             .condition(&inputs)

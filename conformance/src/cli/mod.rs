@@ -9,6 +9,7 @@ mod eval;
 mod gate;
 mod list;
 mod merge;
+mod mistakes;
 mod options;
 mod pack;
 mod page;
@@ -62,6 +63,8 @@ enum Command {
     Merge(merge::Merge),
     /// Show that the suite catches the mistakes that it knows
     Selftest(selftest::Selftest),
+    /// List the mistakes that the suite names: what each does, where it was seen, and which formulas it concerns
+    Mistakes(mistakes::Mistakes),
     /// Show what becomes of NaN, infinity, subnormals and signed zero
     Special(special::Special),
     /// Draw a scene, by the reference or by an adapter
@@ -91,6 +94,7 @@ impl Cli {
             Command::Sweep(sweep) => sweep.run(),
             Command::Merge(merge) => merge.run(),
             Command::Selftest(selftest) => selftest.run(),
+            Command::Mistakes(mistakes) => mistakes.run(),
             Command::Special(special) => special.run(),
             Command::Render(render) => render.run(),
             Command::Pack(pack) => pack.run(),

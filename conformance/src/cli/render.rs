@@ -1,11 +1,13 @@
 //! `lightmeter render`: a scene's image, by the reference or by an adapter.
 
 use super::Status;
+use super::mistakes::of_scenes_by_name;
 use super::options::Choice;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::device::Picture;
+use lightmeter::faults::scene::{SceneFault, draw};
 use lightmeter::image::drawn::drawn;
 use lightmeter::image::file::StoredImage;
 use lightmeter::scene::load;
@@ -36,6 +38,9 @@ pub(crate) struct Render {
     /// Draw by the WGSL in this folder in place of the built-in files of the same names
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
+    /// Draw as a renderer with this mistake would, by the reference; `lightmeter mistakes` lists them
+    #[arg(long, value_name = "NAME", value_parser = of_scenes_by_name)]
+    mistake: Option<&'static SceneFault>,
     /// The image: .png of 8 bits, or .exr of binary32
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -66,8 +71,12 @@ impl Render {
         if self.full && self.stage.is_some() {
             bail!("intermediate results are drawn by composed shaders; leave out `--full` or `--stage`");
         }
+        if self.mistake.is_some() && (self.with == With::Gpu || self.stage.is_some()) {
+            bail!("a mistake is drawn by the reference, as a whole; leave out `--with gpu` and `--stage`");
+        }
         let frame = load::scene(&self.scene)?.frame;
         let image = match self.with {
+            With::Reference if self.mistake.is_some() => draw::<f64>(&frame, self.mistake.as_slice()),
             With::Reference => {
                 let format = self.stage.map_or(frame.target.format, |_| TargetFormat::Rgba32Float);
                 StoredImage::of(&render::<f64>(&frame, None, self.stage), format)

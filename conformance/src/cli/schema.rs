@@ -9,6 +9,7 @@ use lightmeter::document::effects::EffectsDocument;
 use lightmeter::document::frame::FrameDocument;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::list::{CasesDocument, FormulasDocument};
+use lightmeter::document::mistakes::MistakesDocument;
 use lightmeter::document::pack::Manifest;
 use lightmeter::document::run::Report;
 use lightmeter::document::selftest::SelftestDocument;
@@ -57,6 +58,8 @@ enum Of {
     Cases,
     /// The JSON of `list --formulas`
     Formulas,
+    /// The JSON of `mistakes`
+    Mistakes,
     /// The JSON of `show`
     Show,
     /// The JSON of `adapters`
@@ -88,6 +91,7 @@ impl Schema {
             Of::Selftest => SelftestDocument::schema(),
             Of::Cases => CasesDocument::schema(),
             Of::Formulas => FormulasDocument::schema(),
+            Of::Mistakes => MistakesDocument::schema(),
             Of::Show => ShowDocument::schema(),
             Of::Adapters => AdaptersDocument::schema(),
             Of::Effects => EffectsDocument::schema(),

@@ -3,6 +3,7 @@
 use super::rasteriser;
 use super::rows::{Reader, Wanted, Writer};
 use super::spec::{Kind, Spec};
+use lightmeter_arithmetic::mistaken::Mistaken;
 use lightmeter_arithmetic::{Accept, Dual, Profile, RandomLegal, Trace, dual};
 use lightmeter_reference::Real;
 use lightmeter_scene::along::Along;
@@ -46,6 +47,15 @@ pub trait AnyFormula: Send + Sync {
 
     /// In values with their derivatives.
     fn on_dual(&self, inputs: &[Dual], out: &mut [Dual]);
+
+    /// In f64, steps going wrong, inside [`making`](lightmeter_arithmetic::mistaken::making).
+    fn on_mistaken_f64(&self, inputs: &[Mistaken<f64>], out: &mut [Mistaken<f64>]);
+
+    /// The same in f32.
+    fn on_mistaken_f32(&self, inputs: &[Mistaken<f32>], out: &mut [Mistaken<f32>]);
+
+    /// The same in intervals, inside [`Profile::scope`] too.
+    fn on_mistaken_accept(&self, inputs: &[Mistaken<Accept>], out: &mut [Mistaken<Accept>]);
 }
 
 impl<F: Formula> AnyFormula for F {
@@ -74,6 +84,18 @@ impl<F: Formula> AnyFormula for F {
     }
 
     fn on_dual(&self, inputs: &[Dual], out: &mut [Dual]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, Wanted::ALL));
+    }
+
+    fn on_mistaken_f64(&self, inputs: &[Mistaken<f64>], out: &mut [Mistaken<f64>]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, Wanted::ALL));
+    }
+
+    fn on_mistaken_f32(&self, inputs: &[Mistaken<f32>], out: &mut [Mistaken<f32>]) {
+        self.evaluate(&Reader::new(inputs), &mut Writer::new(out, Wanted::ALL));
+    }
+
+    fn on_mistaken_accept(&self, inputs: &[Mistaken<Accept>], out: &mut [Mistaken<Accept>]) {
         self.evaluate(&Reader::new(inputs), &mut Writer::new(out, Wanted::ALL));
     }
 }

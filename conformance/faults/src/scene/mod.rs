@@ -23,9 +23,7 @@ const PROBES: usize = 2048;
 const PAIRED: usize = 3;
 /// With so many others.
 const OTHERS: usize = 24;
-/// The part of failing components that an explanation explains at least.
-const PART: f64 = 0.5;
-/// The part that makes it one of all of them.
+/// The part of the failing components that an explanation explains at least, and of the passing ones that must not contradict it.
 const WHOLE: f64 = 0.9;
 /// How far from a whole step a value may be that is one.
 const STEP_ERROR: f64 = 1e-6;
@@ -127,6 +125,9 @@ impl<'a> Trial<'a> {
     /// Tries what the catalogue knows.
     #[must_use]
     pub fn diagnose(&self) -> SceneDiagnosis {
+        if self.flat().is_some() {
+            return SceneDiagnosis { failing: self.failing.len(), explanations: vec![], sentence: self.sentence(None) };
+        }
         let mut found = self.ranked(SCENE_FAULTS.iter().map(|fault| vec![fault]).collect());
         if self.failing.is_empty() {
             return SceneDiagnosis { failing: 0, explanations: vec![], sentence: "nothing fails".into() };
@@ -143,16 +144,25 @@ impl<'a> Trial<'a> {
         let has = |count: usize, share: f64, all: usize| count as f64 >= share * all as f64;
         // What pixels that pass contradict is not what was done.
         found.retain(|one| {
-            has(one.explained, PART, self.failing.len()) && has(one.consistent, WHOLE, self.passing.len())
+            has(one.explained, WHOLE, self.failing.len()) && has(one.consistent, WHOLE, self.passing.len())
         });
         let sentence = self.sentence(found.first());
         SceneDiagnosis { failing: self.failing.len(), explanations: found, sentence }
     }
 
+    /// The colour of an image that has no other, in units: it says nothing of how it came about.
+    fn flat(&self) -> Option<[f64; 4]> {
+        let (first, rest) = self.image.pixels.split_first()?;
+        let is_same = |pixel: &[f64; 4]| pixel.iter().zip(first).all(|(a, b)| a.to_bits() == b.to_bits());
+        (!rest.is_empty() && rest.iter().all(is_same)).then_some(*first)
+    }
+
     fn sentence(&self, best: Option<&SceneExplanation>) -> String {
         let all = self.failing.len();
         let Some(best) = best else {
-            return format!("nothing in the catalogue explains the {all} failing components of pixels");
+            let told = format!("nothing in the catalogue explains the {all} failing components of pixels");
+            let flat = self.flat().map(|[r, g, b, a]| format!(": the whole image is {r} {g} {b} {a}"));
+            return told + &flat.unwrap_or_default();
         };
         let says: Vec<&str> = best.faults.iter().map(|fault| fault.says).collect();
         format!("{} of {all} failing components of pixels are explained by: {}", best.explained, says.join(", and "))

@@ -1,12 +1,11 @@
 //! Mistakes of attenuation and spotlights.
 
-use super::super::body::Body as Wrong;
-use super::super::change::After as Out;
+use super::super::alteration::Form;
 use super::super::change::Before as In;
 use super::super::fault::Fault;
-use super::super::fault::Step::{After, Before, Body, Instead};
-use super::super::lighting::Twist as Lit;
-use super::{fault, lit};
+use super::super::fault::Step::{Before, Instead};
+use super::super::op::Op;
+use super::{fault, form, given, input, pass, result, times};
 
 pub(super) const FAULTS: &[Fault] = &[
     fault(
@@ -17,19 +16,19 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "attenuation-constant-missing",
         "the constant term of attenuation is missing",
-        &[&[Before(In::Set("kc", 0.0))]],
+        &[&[input("kc", Op::Set(0.0))]],
     ),
-    fault("attenuation-linear-missing", "the linear term of attenuation is missing", &[&[Before(In::Set("kl", 0.0))]]),
+    fault("attenuation-linear-missing", "the linear term of attenuation is missing", &[&[input("kl", Op::Set(0.0))]]),
     fault(
         "attenuation-quadratic-missing",
         "the quadratic term of attenuation is missing",
-        &[&[Before(In::Set("kq", 0.0))]],
+        &[&[input("kq", Op::Set(0.0))]],
     ),
     fault(
         "inverse-square-only",
         "the light falls off as 1/d² whatever the coefficients",
         &[
-            &[Before(In::Set("kc", 0.0)), Before(In::Set("kl", 0.0)), Before(In::Set("kq", 1.0))],
+            &[input("kc", Op::Set(0.0)), input("kl", Op::Set(0.0)), input("kq", Op::Set(1.0))],
             &[Instead(&[("attenuation/linear", "attenuation/square")])],
         ],
     )
@@ -38,83 +37,119 @@ pub(super) const FAULTS: &[Fault] = &[
         "inverse-distance-only",
         "the light falls off as 1/d whatever the coefficients",
         &[
-            &[Before(In::Set("kc", 0.0)), Before(In::Set("kl", 1.0)), Before(In::Set("kq", 0.0))],
+            &[input("kc", Op::Set(0.0)), input("kl", Op::Set(1.0)), input("kq", Op::Set(0.0))],
             &[Instead(&[("attenuation/square", "attenuation/linear")])],
         ],
     ),
     fault(
         "attenuation-by-squared-distance",
         "attenuation is given the squared distance",
-        &[&[lit(Lit::DistanceSquaredTwice)], &[Body(Wrong::DistanceSquared)], &[Before(In::Square("d"))]],
+        &[&[given("atten", "d", Op::Square)]],
     )
     .only(|spec| spec.id != "attenuation/constant")
     .seen_in("dot(d, d) for length(d)"),
     fault(
         "attenuation-not-inverted",
         "the light is multiplied by the polynomial it is to be divided by",
-        &[&[lit(Lit::AttenuationNotInverted)], &[Body(Wrong::NotInverted)], &[After(Out::Reciprocal("atten"))]],
+        &[&[form("atten", Form::NotInverted)]],
     )
     .only(|spec| spec.id != "attenuation/constant"),
-    fault(
-        "attenuation-at-most-one",
-        "attenuation is limited to 1",
-        &[&[lit(Lit::AttenuationAtMostOne)], &[After(Out::AtMostOne("atten"))]],
-    )
-    .only(|spec| spec.id != "attenuation/constant"),
+    fault("attenuation-at-most-one", "attenuation is limited to 1", &[&[result("atten", Op::AtMost(1.0))]])
+        .only(|spec| spec.id != "attenuation/constant"),
     fault(
         "linear-divisor-floored",
         "the distance that light is divided by is held above 0.01",
-        &[&[Before(In::AtLeast("d", 0.01))]],
+        &[&[input("d", Op::AtLeast(0.01))]],
     )
     .only(|spec| spec.id == "attenuation/linear")
     .seen_in("three.js, decay 1"),
     fault(
         "square-divisor-floored",
         "the squared distance that light is divided by is held above 0.01",
-        &[&[Before(In::AtLeast("d", 0.1))]],
+        &[&[input("d", Op::AtLeast(0.1))]],
     )
     .only(|spec| spec.id == "attenuation/square")
     .seen_in("three.js, decay 2"),
-    fault(
-        "not-attenuated",
-        "the light is not attenuated",
-        &[&[lit(Lit::NotAttenuated)], &[After(Out::Set("atten", 1.0))]],
-    )
-    .only(|spec| spec.id != "attenuation/constant"),
+    fault("not-attenuated", "the light is not attenuated", &[&[result("atten", Op::Set(1.0))]])
+        .only(|spec| spec.id != "attenuation/constant"),
     fault(
         "attenuated-all-the-same",
         "a light is attenuated that is not to be",
         &[&[Instead(&[("attenuation/constant", "attenuation/linear")])]],
     ),
-    fault("distance-from-the-eye", "attenuation takes the distance from the eye", &[&[Before(In::Set("light", 0.0))]])
+    fault("distance-from-the-eye", "attenuation takes the distance from the eye", &[&[input("light", Op::Set(0.0))]])
         .only(|spec| spec.family() == "attenuation"),
-    fault("ambient-attenuated", "attenuation is applied to the ambient term", &[&[lit(Lit::AmbientAttenuated)]])
+    fault("ambient-attenuated", "attenuation is applied to the ambient term", &[&[times("CA", "atten")]])
         .seen_in("OpenGL's fixed function"),
-    fault("ambient-not-attenuated", "the ambient term is not attenuated", &[&[lit(Lit::AmbientNotAttenuated)]]),
-    fault("diffuse-not-attenuated", "the diffuse term is not attenuated", &[&[lit(Lit::DiffuseNotAttenuated)]]),
-    fault("specular-not-attenuated", "the highlight is not attenuated", &[&[lit(Lit::SpecularNotAttenuated)]]),
-    fault("cutoff-by-sine", "the spotlight's cutoff is compared by its sine", &[&[Before(In::Sine("cutoff_cosine"))]]),
+    fault("ambient-not-attenuated", "the ambient term is not attenuated", &[&[given("CA", "atten", Op::Set(1.0))]]),
+    fault("diffuse-not-attenuated", "the diffuse term is not attenuated", &[&[given("CD", "atten", Op::Set(1.0))]]),
+    fault("specular-not-attenuated", "the highlight is not attenuated", &[&[given("CS", "atten", Op::Set(1.0))]]),
+    fault("cutoff-by-sine", "the spotlight's cutoff is compared by its sine", &[&[input("cutoff_cosine", Op::Sine)]]),
     fault(
         "cutoff-halved",
         "the spotlight's cutoff is taken as the whole cone's angle",
-        &[&[Before(In::HalfAngle("cutoff_cosine"))]],
+        &[&[input("cutoff_cosine", Op::HalfAngle)]],
     ),
     fault(
         "cutoff-doubled",
         "the spotlight's cutoff is taken as half of what was asked of the angle from the axis",
-        &[&[Before(In::DoubleAngle("cutoff_cosine"))]],
+        &[&[input("cutoff_cosine", Op::DoubleAngle)]],
     ),
-    fault("spot-exponent-ignored", "the spotlight's exponent is ignored", &[&[Before(In::Set("exponent", 0.0))]])
+    fault("spot-exponent-ignored", "the spotlight's exponent is ignored", &[&[input("exponent", Op::Set(0.0))]])
         .only(|spec| spec.place("cutoff_cosine").is_some())
         .seen_in("three.js and most engines"),
-    fault("spot-axis-reversed", "the spotlight's axis is reversed", &[&[Before(In::Negate("axis"))]]),
-    fault("no-cone", "the spotlight shines all round", &[&[lit(Lit::NoCone)], &[After(Out::Set("spot", 1.0))]]),
-    fault("no-cutoff", "the spotlight has no cutoff", &[&[lit(Lit::NoCutoff)], &[Body(Wrong::NoCutoff)]]),
+    fault("spot-axis-reversed", "the spotlight's axis is reversed", &[&[input("axis", Op::Negate)]]),
+    fault("no-cone", "the spotlight shines all round", &[&[result("spot", Op::Set(1.0))]]),
+    fault("no-cutoff", "the spotlight has no cutoff", &[&[given("spot", "cutoff_cosine", Op::Set(-2.0))]]),
+    fault("smooth-cone", "the spotlight's edge is smoothed by smoothstep", &[&[form("spot", Form::SmoothConeAlone)]])
+        .seen_in("three.js, penumbra 1"),
+    fault("specular-not-in-cone", "the highlight is not kept within the cone", &[&[given("CS", "cone", Op::Set(1.0))]]),
+    fault("axis-not-normalised", "the spotlight's axis is not normalised", &[&[pass("axis", "axis")]]),
     fault(
-        "smooth-cone",
-        "the spotlight's edge is smoothed by smoothstep",
-        &[&[lit(Lit::SmoothCone)], &[Body(Wrong::SmoothCone)]],
+        "attenuation-quadratic-of-distance",
+        "the quadratic term is kq·d for kq·d²",
+        &[&[form("atten", Form::QuadraticOfDistance)]],
+    ),
+    fault(
+        "attenuation-quadratic-squared",
+        "the quadratic term is (kq·d)² for kq·d²",
+        &[&[form("atten", Form::QuadraticOfProduct)]],
+    ),
+    fault(
+        "attenuation-plus-one",
+        "1 is added to what attenuation divides by",
+        &[&[given("atten", "kc", Op::Offset(1.0))]],
     )
-    .seen_in("three.js, penumbra 1"),
-    fault("specular-not-in-cone", "the highlight is not kept within the cone", &[&[lit(Lit::SpecularNotInCone)]]),
+    .seen_in("PlayCanvas; (1 + d²) that never divides by 0"),
+    fault("attenuated-twice", "the light is attenuated twice", &[&[result("atten", Op::Square)]]),
+    fault("attenuation-rooted", "attenuation is its own square root", &[&[result("atten", Op::Root)]]),
+    fault(
+        "smooth-cone-with-power",
+        "the spotlight's edge is smoothed by smoothstep, beside its exponent",
+        &[&[form("spot", Form::SmoothCone)]],
+    ),
+    fault(
+        "linear-cone",
+        "the spotlight fades by a straight line from its axis to its edge, beside its exponent",
+        &[&[form("spot", Form::LinearCone)]],
+    )
+    .seen_in("Direct3D's penumbra; Ogre"),
+    fault(
+        "linear-cone-power",
+        "the spotlight's power is of the cosine rescaled from its edge to its axis",
+        &[&[form("spot", Form::RescaledCone)]],
+    )
+    .seen_in("Direct3D's penumbra"),
+    fault(
+        "cosine-clamped-before-the-cutoff",
+        "the spotlight's cosine is clamped before it is compared: a cutoff beyond 90° lights everything",
+        &[&[given("spot", "cosine", Op::AtLeast(0.0))]],
+    )
+    .seen_in("Babylon.js"),
+    fault(
+        "cutoff-at-most-90",
+        "a cutoff beyond 90° is taken for 90°",
+        &[&[given("spot", "cutoff_cosine", Op::AtLeast(0.0))]],
+    ),
+    fault("cutoff-squared", "the cutoff's cosine is squared", &[&[given("spot", "cutoff_cosine", Op::Square)]]),
 ];

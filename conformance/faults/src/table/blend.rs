@@ -4,7 +4,8 @@ use super::super::blend::Twist as Blended;
 use super::super::change::Before as In;
 use super::super::fault::Fault;
 use super::super::fault::Step::Before;
-use super::{blended, fault, where_colors_are_drawn};
+use super::super::op::Op;
+use super::{blended, colors, fault, input, where_colors_are_drawn};
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_scene::blend::{Factor, WriteMask};
@@ -23,7 +24,7 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "blend-always-adds",
         "products are added where they are to be subtracted",
-        &[&[blended(Blended::AlwaysAdd)], &[Before(In::Negate("dst"))]],
+        &[&[blended(Blended::AlwaysAdd)], &[input("dst", Op::Negate)]],
     )
     .only(|spec| {
         spec.id.starts_with("blend/sub") || spec.id.starts_with("blend/rev") || spec.id.starts_with("blend/sep")
@@ -55,6 +56,12 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[blended(Blended::OneMinusForgottenInSource)]],
     ),
     fault(
+        "blended-as-premultiplied",
+        "the source is blended as if it were premultiplied, by ONE for SRC_ALPHA",
+        &[&[blended(Blended::AsPremultiplied)]],
+    )
+    .seen_in("three.js, premultipliedAlpha"),
+    fault(
         "source-for-destination",
         "factors read the source where they are to read the destination",
         &[&[blended(Blended::SourceForDestination)]],
@@ -75,21 +82,15 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[blended(Blended::ColorForAlpha)]],
     ),
     fault(
-        "blended-as-premultiplied",
-        "the source is blended as if it were premultiplied",
-        &[&[blended(Blended::AsPremultiplied)]],
-    )
-    .seen_in("three.js, premultipliedAlpha"),
-    fault(
         "source-premultiplied-too",
         "the source is multiplied by its alpha before it is blended",
-        &[&[Before(In::Premultiply("src"))]],
+        &[&[input("src", Op::Premultiply)]],
     )
     .only(where_source_color_counts),
     fault(
         "multiplied-by-coverage",
         "what is multiplied by shows through as far as the source's alpha is below 1",
-        &[&[Before(In::Premultiply("src")), blended(Blended::MultipliedByCoverage)]],
+        &[&[input("src", Op::Premultiply), blended(Blended::MultipliedByCoverage)]],
     )
     .seen_in("three.js, MultiplyBlending"),
     fault("saturate-not-saturated", "SRC_ALPHA_SATURATE is SRC_ALPHA", &[&[blended(Blended::NotSaturated)]]),
@@ -117,13 +118,40 @@ pub(super) const FAULTS: &[Fault] = &[
     ),
     fault("layers-reversed", "layers are drawn in reverse", &[&[blended(Blended::LayersReversed)]])
         .seen_in("transparent objects sorted front to back"),
-    fault("opacity-not-raised", "many layers hide as one does", &[&[Before(In::Set("layers", 1.0))]]),
+    fault("opacity-not-raised", "many layers hide as one does", &[&[input("layers", Op::Set(1.0))]]),
     fault(
         "unpremultiplied-again",
         "the colour is multiplied by alpha where it is to be divided",
-        &[&[Before(In::Reciprocal("alpha"))]],
+        &[&[input("alpha", Op::Reciprocal)]],
     )
     .only(|spec| spec.id.starts_with("blend/unpremultiply")),
+    fault("write-mask-red-blue", "red and blue are exchanged in the write mask", &[&[blended(Blended::MaskRedBlue)]])
+        .seen_in("Ryujinx, PR 2087"),
+    fault(
+        "saturate-in-alpha-too",
+        "SRC_ALPHA_SATURATE is min(As, 1 − Ad) in alpha too, where it is 1",
+        &[&[blended(Blended::SaturatedInAlpha)]],
+    )
+    .seen_in("bgfx, PR 3891"),
+    fault(
+        "source-in-8-bits",
+        "the source is rounded to whole 255ths before it is blended",
+        &[&[input("src", Op::Bytes)]],
+    )
+    .only(where_source_color_counts)
+    .seen_in("PCSX2, PR 6809"),
+    fault("blend-constant-clamped", "the blend constant is clamped to [0, 1]", &[&[input("constant", Op::Clamp)]])
+        .only(|spec| matches!(spec.kind, Kind::Blend(Program::Draw(..))))
+        .seen_in("Adreno; KhronosGroup/WebGL, PR 3464"),
+    fault(
+        "blended-in-encoded-space",
+        "source and destination are blended as sRGB",
+        &[&[input("src", Op::Rgb(&Op::Encode)), input("dst", Op::Rgb(&Op::Encode)), colors(Op::Rgb(&Op::Decode))]],
+    )
+    .only(|spec| spec.id.starts_with("blend/mode-") || spec.id.starts_with("blend/over"))
+    .seen_in("imgui, issue 578"),
+    fault("blended-and-cut", "what is blended is cut to whole 255ths, and not limited to 1", &[&[colors(Op::Cut)]])
+        .only(|spec| spec.id.starts_with("blend/over") || spec.id.starts_with("blend/mode-")),
 ];
 
 /// Draws whose colour depends on the source's.

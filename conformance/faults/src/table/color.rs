@@ -1,27 +1,48 @@
 //! Mistakes of colours and their storage.
 
-use super::super::body::Body as Wrong;
-use super::super::change::After as Out;
+use super::super::alteration::Form;
 use super::super::fault::Fault;
-use super::super::fault::Step::{After, Body, Instead};
-use super::fault;
+use super::super::fault::Step::Instead;
+use super::super::op::Op;
+use super::{fault, form, output, pass, pass_as, result, sum};
 
 pub(super) const FAULTS: &[Fault] = &[
-    fault("byte-truncated", "8 bits are cut, not rounded", &[&[Body(Wrong::TruncatedByte)]]).seen_in("int(255·c)"),
-    fault("byte-by-256", "8 bits are the whole part of 256·c", &[&[Body(Wrong::By256)]]),
-    fault("byte-unclamped", "8 bits are not clamped", &[&[Body(Wrong::UnclampedByte)]])
+    fault("byte-truncated", "8 bits are cut, not rounded", &[&[form("byte", Form::TruncatedByte)]])
+        .seen_in("int(255·c)"),
+    fault("byte-by-256", "8 bits are the whole part of 256·c", &[&[form("byte", Form::ByteBy256)]]),
+    fault("byte-unclamped", "8 bits are not clamped", &[&[form("byte", Form::UnclampedByte)]])
         .seen_in("bytes that wrap around"),
-    fault("byte-over-256", "8 bits are divided by 256", &[&[Body(Wrong::Over256)]]),
-    fault("one-power-for-srgb", "one power of 2.2 stands for sRGB", &[&[Body(Wrong::OnePower)]]),
-    fault("encoded-for-decoded", "sRGB is encoded where it is to be decoded", &[&[Body(Wrong::Encoded)]]),
-    fault("decoded-for-encoded", "sRGB is decoded where it is to be encoded", &[&[Body(Wrong::Decoded)]]),
-    fault("not-converted", "sRGB is not converted at all", &[&[Body(Wrong::NotConverted)]]),
-    fault("encoded-twice", "sRGB is encoded twice", &[&[Body(Wrong::Twice)]])
+    fault("byte-over-256", "8 bits are divided by 256", &[&[pass_as("byte/255", "byte", Op::Scale(1.0 / 256.0))]]),
+    fault(
+        "one-power-for-srgb",
+        "one power of 2.2 stands for sRGB",
+        &[&[pass_as("encoded", "c", Op::Power(1.0 / 2.2))], &[pass_as("decoded", "e", Op::Power(2.2))]],
+    ),
+    fault(
+        "encoded-for-decoded",
+        "sRGB is encoded where it is to be decoded",
+        &[&[pass_as("decoded", "e", Op::Encode)]],
+    ),
+    fault(
+        "decoded-for-encoded",
+        "sRGB is decoded where it is to be encoded",
+        &[&[pass_as("encoded", "c", Op::Decode)]],
+    ),
+    fault("not-converted", "sRGB is not converted at all", &[&[pass("encoded", "c")], &[pass("decoded", "e")]]),
+    fault("encoded-twice", "sRGB is encoded twice", &[&[result("encoded", Op::Encode)]])
         .seen_in("an sRGB target beneath a shader that encodes"),
-    fault("straight-piece-throughout", "sRGB's straight piece is taken throughout", &[&[Body(Wrong::StraightPiece)]]),
-    fault("alpha-encoded", "alpha is sRGB-encoded too", &[&[Body(Wrong::AlphaToo)]]),
-    fault("sum-not-clamped", "the clamp of the sum is missing", &[&[Body(Wrong::SumNotClamped)]]),
-    fault("texture-added", "the texture is added where it is to modulate", &[&[Body(Wrong::Added)]]),
+    fault(
+        "straight-piece-throughout",
+        "sRGB's straight piece is taken throughout",
+        &[&[pass_as("encoded", "c", Op::Scale(12.92))]],
+    ),
+    fault(
+        "alpha-encoded",
+        "alpha is sRGB-encoded too",
+        &[&[result("alpha of an encoded color", Op::Encode)], &[result("alpha of a decoded color", Op::Decode)]],
+    ),
+    fault("sum-not-clamped", "the clamp of the sum is missing", &[&[pass("clamp", "sum")]]),
+    fault("texture-added", "the texture is added where it is to modulate", &[&[sum("texel·color", "texel", "color")]]),
     fault(
         "texture-replaces",
         "the texture replaces where it is to modulate",
@@ -32,7 +53,36 @@ pub(super) const FAULTS: &[Fault] = &[
         "the texture modulates where it is to replace",
         &[&[Instead(&[("color/replace", "color/modulate")])]],
     ),
-    fault("modulated-twice-as-bright", "a lightmap is twice as bright", &[&[After(Out::Scale("color", 2.0))]])
+    fault("modulated-twice-as-bright", "a lightmap is twice as bright", &[&[output("color", Op::Scale(2.0))]])
         .only(|spec| spec.id == "color/modulate" || spec.id == "blend/mode-mul")
         .seen_in("modulate2x"),
+    fault(
+        "encode-threshold-of-decoding",
+        "sRGB's pieces part at 0.04045 where they are to part at 0.0031308",
+        &[&[form("encoded", Form::EncodeThreshold)]],
+    ),
+    fault(
+        "decode-threshold-of-encoding",
+        "sRGB's pieces part at 0.0031308 where they are to part at 0.04045",
+        &[&[form("decoded", Form::DecodeThreshold)]],
+    )
+    .seen_in("FidelityFX-SPD, issue 6"),
+    fault(
+        "rec709-for-srgb",
+        "Rec. 709's curve stands for sRGB's",
+        &[&[form("encoded", Form::EncodeRec709)], &[form("decoded", Form::DecodeRec709)]],
+    ),
+    fault(
+        "square-root-for-srgb",
+        "a square root, or a square, stands for sRGB",
+        &[&[pass_as("encoded", "c", Op::Root)], &[pass_as("decoded", "e", Op::Square)]],
+    )
+    .seen_in("shaders that spare a pow"),
+    fault(
+        "power-for-the-curve",
+        "a power of 1/2.2 stands for sRGB's curved piece, beside its straight one",
+        &[&[form("encoded", Form::EncodeCurve)]],
+    ),
+    fault("encode-scale-missing", "sRGB's factor of 1.055 is missing", &[&[form("encoded", Form::EncodeWithoutScale)]])
+        .seen_in("three.js, PR 8345"),
 ];

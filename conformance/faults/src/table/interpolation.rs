@@ -1,18 +1,23 @@
 //! Mistakes of interpolation, coverage and the viewport.
 
-use super::super::body::Body as Wrong;
+use super::super::alteration::Form;
 use super::super::change::After as Out;
 use super::super::change::Before as In;
 use super::super::fault::Fault;
-use super::super::fault::Step::{After, Before, Body, Instead};
-use super::fault;
+use super::super::fault::Step::{After, Before, Instead};
+use super::super::op::Op;
+use super::{fault, form, given, input, pass, plus, result};
 use lightmeter_catalogue::cases::{Kind, Spec};
 
 pub(super) const FAULTS: &[Fault] = &[
     fault(
         "linear-for-perspective",
         "attributes are interpolated linearly for perspective",
-        &[&[Body(Wrong::LinearForPerspective)], &[After(Out::Copy("linear", "perspective"))]],
+        &[
+            &[given("perspective", "w", Op::Set(1.0))],
+            &[given("perspective along a line", "w", Op::Set(1.0))],
+            &[After(Out::Copy("linear", "perspective"))],
+        ],
     )
     .seen_in("affine texture mapping; noperspective"),
     fault(
@@ -23,12 +28,12 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "multiplied-by-w",
         "attributes are multiplied by w where they are to be divided",
-        &[&[Body(Wrong::MultipliedByW)]],
+        &[&[given("perspective", "w", Op::Reciprocal)], &[given("perspective along a line", "w", Op::Reciprocal)]],
     ),
     fault(
         "perspective-not-renormalised",
         "a/w is not divided by the interpolated 1/w",
-        &[&[Body(Wrong::NotRenormalised)]],
+        &[&[pass("over the interpolated 1/w", "over_w")]],
     ),
     fault(
         "ends-exchanged",
@@ -51,14 +56,10 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "weights-rotated",
         "weights and vertices do not go together",
-        &[&[Before(In::Rotate("weights"))], &[Before(In::Rotate("lambda"))]],
+        &[&[input("weights", Op::Rotate)], &[input("lambda", Op::Rotate)]],
     ),
-    fault(
-        "weights-unsigned",
-        "the weights of a point are areas without their sign",
-        &[&[Body(Wrong::UnsignedWeights)]],
-    ),
-    fault("weights-twice", "the weights are twice the areas over the whole", &[&[Body(Wrong::WeightsTwice)]]),
+    fault("weights-unsigned", "the weights of a point are areas without their sign", &[&[result("weight", Op::Abs)]]),
+    fault("weights-twice", "the weights are twice the areas over the whole", &[&[result("weight", Op::Scale(2.0))]]),
     fault(
         "provoking-vertex",
         "a flat attribute is taken from the other provoking vertex",
@@ -71,19 +72,32 @@ pub(super) const FAULTS: &[Fault] = &[
     )
     .only(|spec| !spec.id.contains("flat-point"))
     .seen_in("OpenGL's last vertex for Vulkan's first"),
-    fault("every-edge-covers", "points on any edge are covered", &[&[Body(Wrong::EveryEdge)]]),
-    fault("no-edge-covers", "points on edges are not covered", &[&[Body(Wrong::NoEdge)]]),
-    fault("always-front", "every triangle is front facing", &[&[Body(Wrong::FrontAlways)]]),
-    fault("image-upside-down", "the image is upside down", &[&[Body(Wrong::UpsideDown)]])
-        .seen_in("OpenGL's origin for WebGPU's"),
+    fault("every-edge-covers", "points on any edge are covered", &[&[result("share of an edge", Op::Set(1.0))]]),
+    fault("no-edge-covers", "points on edges are not covered", &[&[result("share of an edge", Op::Set(0.0))]]),
+    fault("always-front", "every triangle is front facing", &[&[result("front", Op::Set(1.0))]]),
+    fault(
+        "image-upside-down",
+        "the image is upside down",
+        &[&[form("window", Form::UpsideDown)], &[form("window from below", Form::UpsideDown)]],
+    )
+    .seen_in("OpenGL's origin for WebGPU's"),
     fault("position-from-below", "a fragment's position counts from the lower edge", &[&[After(Out::FromBelow)]])
         .seen_in("gl_FragCoord"),
-    fault("depth-range", "depth is taken from [−1, 1] for [0, 1], or the reverse", &[&[Body(Wrong::DepthRange)]])
-        .seen_in("OpenGL's clip space in WebGPU, and the reverse"),
+    fault(
+        "depth-range",
+        "depth is taken from [−1, 1] for [0, 1], or the reverse",
+        &[
+            &[form("window", Form::DepthRange)],
+            &[form("window from below", Form::DepthRange)],
+            &[input("a", Op::FromMinusOne), input("b", Op::FromMinusOne), input("c", Op::FromMinusOne)],
+        ],
+    )
+    .only(|spec| !matches!(spec.kind, Kind::Raster(_)) || spec.id == "interpolation/raster-clip")
+    .seen_in("OpenGL's clip space in WebGPU, and the reverse"),
     fault(
         "half-pixel-offset",
         "everything is half a pixel off",
-        &[&[Before(In::Offset("p", 0.5))], &[Before(In::Offset("pixel", 0.5))], &[Before(In::Offset("origin", 0.5))]],
+        &[&[input("p", Op::Offset(0.5))], &[input("pixel", Op::Offset(0.5))], &[input("origin", Op::Offset(0.5))]],
     )
     .only(where_half_a_pixel_shows)
     .seen_in("Direct3D 9"),
@@ -95,14 +109,31 @@ pub(super) const FAULTS: &[Fault] = &[
             ("interpolation/clip-volume-opengl", "interpolation/clip-volume"),
         ])]],
     ),
-    fault("no-far-plane", "nothing is clipped at the far plane", &[&[Body(Wrong::NoFarPlane)]])
+    fault("no-far-plane", "nothing is clipped at the far plane", &[&[pass("before the far plane", "inside")]])
         .seen_in("depth clamping left on"),
-    fault("one-step-too-many", "forward differences take a step too many", &[&[Body(Wrong::OneStepTooMany)]]),
+    fault("one-step-too-many", "forward differences take a step too many", &[&[plus("end", "step")]]),
     fault(
         "scanline-of-the-other-edge",
         "the second and the third vertex are exchanged, not their attributes",
         &[&[Before(In::Swap("v2", "v3"))]],
     ),
+    fault(
+        "last-attributes-exchanged",
+        "the last two vertices' attributes are exchanged",
+        &[&[input("attr", Op::SwapLast)]],
+    )
+    .only(|spec| matches!(spec.kind, Kind::Arithmetic)),
+    fault(
+        "culled-by-the-other-winding",
+        "the other side of a triangle is culled",
+        &[&[Instead(&[
+            ("interpolation/cull-back-ccw", "interpolation/cull-back-cw"),
+            ("interpolation/cull-back-cw", "interpolation/cull-back-ccw"),
+            ("interpolation/cull-front-ccw", "interpolation/cull-front-cw"),
+            ("interpolation/cull-front-cw", "interpolation/cull-front-ccw"),
+        ])]],
+    )
+    .seen_in("clockwise front faces; a mirrored projection"),
 ];
 
 /// What a rasteriser covers half a pixel away is mostly the same, as its cases leave room for where it snaps.

@@ -9,13 +9,15 @@ mod interpolation;
 mod lighting;
 mod naive;
 mod output;
+mod precision;
 mod rearranged;
 mod vector;
 
+use super::alteration::{At, Do, Form};
 use super::blend::Twist as Blended;
+use super::change::{After, Before};
 use super::fault::{Fault, Step};
-use super::fog::Twist as Fogged;
-use super::lighting::Twist as Lit;
+use super::op::Op;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_scene::blend::{Factor, WriteMask};
@@ -23,7 +25,6 @@ use lightmeter_scene::blend::{Factor, WriteMask};
 /// All of them, in the order of tables.
 pub(super) fn all() -> impl Iterator<Item = &'static Fault> {
     [
-        naive::FAULTS,
         lighting::FAULTS,
         attenuation::FAULTS,
         fog::FAULTS,
@@ -34,6 +35,8 @@ pub(super) fn all() -> impl Iterator<Item = &'static Fault> {
         color::FAULTS,
         depth::FAULTS,
         blend::FAULTS,
+        precision::FAULTS,
+        naive::FAULTS,
     ]
     .into_iter()
     .flatten()
@@ -42,7 +45,7 @@ pub(super) fn all() -> impl Iterator<Item = &'static Fault> {
 type Ways = &'static [&'static [Step]];
 
 const fn fault(name: &'static str, says: &'static str, ways: Ways) -> Fault {
-    Fault { name, says, seen_in: None, ways, only: everywhere }
+    Fault { name, says, seen_in: None, is_rounding: false, ways, only: everywhere }
 }
 
 impl Fault {
@@ -50,17 +53,69 @@ impl Fault {
         Self { seen_in: Some(seen_in), ..self }
     }
 
+    const fn rounding(self) -> Self {
+        Self { is_rounding: true, ..self }
+    }
+
     const fn only(self, only: fn(&Spec) -> bool) -> Self {
         Self { only, ..self }
     }
 }
 
-const fn lit(twist: Lit) -> Step {
-    Step::Lighting(twist)
+const fn input(name: &'static str, op: Op) -> Step {
+    Step::Before(Before::On(name, op))
 }
 
-const fn fogged(twist: Fogged) -> Step {
-    Step::Fog(twist)
+const fn output(name: &'static str, op: Op) -> Step {
+    Step::After(After::On(name, op))
+}
+
+const fn colors(op: Op) -> Step {
+    Step::After(After::Colors(op))
+}
+
+const fn at(step: &'static str, what: Do) -> Step {
+    Step::At(At { step, what })
+}
+
+const fn result(step: &'static str, op: Op) -> Step {
+    at(step, Do::Result(op))
+}
+
+const fn given(step: &'static str, name: &'static str, op: Op) -> Step {
+    at(step, Do::Given(name, op))
+}
+
+const fn pass(step: &'static str, name: &'static str) -> Step {
+    at(step, Do::Pass(name))
+}
+
+const fn pass_as(step: &'static str, name: &'static str, op: Op) -> Step {
+    at(step, Do::PassAs(name, op))
+}
+
+const fn swap(step: &'static str, a: &'static str, b: &'static str) -> Step {
+    at(step, Do::Swap(a, b))
+}
+
+const fn copy(step: &'static str, from: &'static str, to: &'static str) -> Step {
+    at(step, Do::Copy(from, to))
+}
+
+const fn sum(step: &'static str, a: &'static str, b: &'static str) -> Step {
+    at(step, Do::Sum(a, b))
+}
+
+const fn plus(step: &'static str, name: &'static str) -> Step {
+    at(step, Do::Plus(name))
+}
+
+const fn times(step: &'static str, name: &'static str) -> Step {
+    at(step, Do::Times(name))
+}
+
+const fn form(step: &'static str, form: Form) -> Step {
+    at(step, Do::Form(form))
 }
 
 const fn blended(twist: Blended) -> Step {

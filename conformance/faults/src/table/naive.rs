@@ -7,7 +7,8 @@ use lightmeter_catalogue::cases::Spec;
 
 pub(super) const FAULTS: &[Fault] =
     &[fault("naive-form", "the formula is evaluated in the naive form that it is the stable one of", &[&[Naive]])
-        .only(is_wrong)];
+        .only(is_wrong)
+        .rounding()];
 
 /// Elsewhere the accuracy rules permit what the naive form gives: that the stable one is better is its own claim.
 fn is_wrong(spec: &Spec) -> bool {

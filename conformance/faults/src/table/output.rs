@@ -1,59 +1,62 @@
 //! Mistakes in how a colour is given out, whatever it is of.
 
 use super::super::change::After as Out;
-use super::super::change::Before as In;
 use super::super::fault::Fault;
-use super::super::fault::Step::{After, Before};
-use super::{fault, where_colors_are_drawn};
-use lightmeter_catalogue::cases::Spec;
+use super::super::fault::Step::After;
+use super::super::op::Op;
+use super::{colors, fault, input, where_colors_are_drawn};
+use lightmeter_catalogue::cases::{Kind, Spec};
 
 pub(super) const FAULTS: &[Fault] = &[
-    fault("gamma-encoded", "the output is gamma-encoded, c^(1/2.2)", &[&[After(Out::Gamma)]])
+    fault("gamma-encoded", "the output is gamma-encoded, c^(1/2.2)", &[&[colors(Op::Rgb(&Op::Power(1.0 / 2.2)))]])
         .only(where_colors_are_drawn),
-    fault("srgb-encoded", "the output is sRGB-encoded", &[&[After(Out::Srgb)]])
+    fault("srgb-encoded", "the output is sRGB-encoded", &[&[colors(Op::Rgb(&Op::Encode))]])
         .only(where_colors_are_drawn)
         .seen_in("three.js, the default output colour space"),
-    fault("srgb-decoded", "the output is decoded as if it were sRGB", &[&[After(Out::Decode)]])
+    fault("srgb-decoded", "the output is decoded as if it were sRGB", &[&[colors(Op::Rgb(&Op::Decode))]])
         .only(where_colors_are_drawn),
     fault(
         "materials-decoded",
         "the material's colours are decoded as if they were sRGB",
         &[
-            &[Before(In::Decode("ma")), Before(In::Decode("md")), Before(In::Decode("ms"))],
-            &[Before(In::Decode("ma"))],
-            &[Before(In::Decode("md"))],
-            &[Before(In::Decode("ms"))],
-            &[Before(In::Decode("diffuse")), Before(In::Decode("specular"))],
-            &[Before(In::Decode("surface"))],
-            &[Before(In::Decode("texel"))],
+            &[input("ma", Op::Rgb(&Op::Decode)), input("md", Op::Rgb(&Op::Decode)), input("ms", Op::Rgb(&Op::Decode))],
+            &[input("ma", Op::Rgb(&Op::Decode))],
+            &[input("md", Op::Rgb(&Op::Decode))],
+            &[input("ms", Op::Rgb(&Op::Decode))],
+            &[input("diffuse", Op::Rgb(&Op::Decode)), input("specular", Op::Rgb(&Op::Decode))],
+            &[input("surface", Op::Rgb(&Op::Decode))],
+            &[input("texel", Op::Rgb(&Op::Decode))],
         ],
     )
     .only(|spec| spec.id != "lighting/highlight-plastic")
     .seen_in("three.js, Color.setHex under colour management"),
-    fault("output-clamped", "the sum is clamped to [0, 1] before the target's own clamp", &[&[After(Out::Clamp)]])
+    fault("output-clamped", "the sum is clamped to [0, 1] before the target's own clamp", &[&[colors(Op::Clamp)]])
         .only(where_sums_go_beyond)
         .seen_in("OpenGL's fixed function"),
-    fault("red-and-blue-swapped", "red and blue are swapped", &[&[After(Out::RedBlue)]])
+    fault("red-and-blue-swapped", "red and blue are swapped", &[&[colors(Op::RedBlue)]])
         .only(where_colors_are_drawn)
         .seen_in("BGRA read as RGBA"),
-    fault("truncated-store", "the output is cut to whole 255ths", &[&[After(Out::Truncate)]])
+    fault("truncated-store", "the output is cut to whole 255ths", &[&[colors(Op::Truncate)]])
         .only(where_colors_are_drawn),
-    fault("stored-in-8-bits", "the output is rounded to whole 255ths", &[&[After(Out::Round)]])
+    fault("stored-in-8-bits", "the output is rounded to whole 255ths", &[&[colors(Op::Bytes)]])
         .only(where_colors_are_drawn)
         .seen_in("answers read back from an 8-bit target"),
     fault(
         "all-stored-in-8-bits",
         "every output is rounded to whole 255ths, colours and others",
-        &[&[After(Out::RoundAll)]],
+        &[&[After(Out::All(Op::Bytes))]],
     )
     .only(where_colors_are_drawn)
     .seen_in("answers read back from an 8-bit target"),
-    fault("premultiplied-output", "the output is multiplied by its alpha", &[&[After(Out::Premultiply)]])
+    fault("premultiplied-output", "the output is multiplied by its alpha", &[&[colors(Op::Premultiply)]])
         .only(where_alpha_varies)
         .seen_in("a browser's canvas"),
-    fault("alpha-dropped", "alpha is 1 whatever it is to be", &[&[After(Out::Opaque)]])
+    fault("alpha-dropped", "alpha is 1 whatever it is to be", &[&[colors(Op::Opaque)]])
         .only(where_alpha_varies)
         .seen_in("three.js, materials not marked transparent"),
+    fault("negative-clamped", "colours are held above 0", &[&[colors(Op::AtLeast(0.0))]])
+        .only(where_colors_are_computed),
+    fault("bright-clamped", "colours are limited to 1", &[&[colors(Op::AtMost(1.0))]]).only(where_colors_are_computed),
 ];
 
 /// Whether an alpha comes out that may be other than 1.
@@ -79,4 +82,9 @@ fn where_sums_go_beyond(spec: &Spec) -> bool {
         }
         _ => matches!(spec.id.as_str(), "blend/mode-add" | "blend/unpremultiply" | "blend/unpremultiply-guarded"),
     }
+}
+
+/// Draws with a state have their own mistake of this kind.
+fn where_colors_are_computed(spec: &Spec) -> bool {
+    where_colors_are_drawn(spec) && matches!(spec.kind, Kind::Arithmetic)
 }

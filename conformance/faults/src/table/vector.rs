@@ -1,24 +1,29 @@
 //! Mistakes of vectors and transforms.
 
-use super::super::body::Body as Wrong;
+use super::super::alteration::Form;
 use super::super::change::Before as In;
 use super::super::fault::Fault;
-use super::super::fault::Step::{Before, Body, Instead};
-use super::fault;
+use super::super::fault::Step::{Before, Instead};
+use super::super::op::Op;
+use super::{fault, form, given, input, pass, pass_as, swap};
 
 pub(super) const FAULTS: &[Fault] = &[
     fault(
         "matrix-transposed",
         "columns of a matrix are taken for rows",
         &[
-            &[Before(In::Transpose("view")), Before(In::Transpose("model"))],
-            &[Before(In::Transpose("view"))],
-            &[Before(In::Transpose("modelview"))],
+            &[input("view", Op::Transpose), input("model", Op::Transpose)],
+            &[input("view", Op::Transpose)],
+            &[input("modelview", Op::Transpose)],
         ],
     )
     .seen_in("row-major matrices uploaded as they are"),
-    fault("normals-by-modelview", "normals are transformed by the modelview", &[&[Body(Wrong::NormalByModelview)]])
-        .seen_in("documents 000 and 003"),
+    fault(
+        "normals-by-modelview",
+        "normals are transformed by the modelview",
+        &[&[form("modelview⁻ᵀ·n", Form::NormalByModelview)], &[form("⟨modelview⁻ᵀ·n⟩", Form::NormalByModelview)]],
+    )
+    .seen_in("documents 000 and 003"),
     fault(
         "normals-by-inverse-transpose",
         "normals are transformed by the inverse transpose where the modelview is asked for",
@@ -27,35 +32,39 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "inverse-not-transposed",
         "normals are transformed by the inverse, not transposed",
-        &[&[Body(Wrong::NormalByInverse)]],
+        &[&[form("modelview⁻ᵀ·n", Form::NormalByInverse)], &[form("⟨modelview⁻ᵀ·n⟩", Form::NormalByInverse)]],
     ),
     fault(
         "determinant-forgotten",
         "normals are transformed by the cofactors, not over the determinant",
-        &[&[Body(Wrong::NormalByBareCofactors)]],
+        &[&[form("modelview⁻ᵀ·n", Form::NormalByCofactors)], &[form("⟨modelview⁻ᵀ·n⟩", Form::NormalByCofactors)]],
     )
     .seen_in("mirrored objects lit from behind"),
     fault(
         "w-divide-missing",
         "a position is not divided by its w",
-        &[&[Body(Wrong::NotDivided)], &[Body(Wrong::WindowNotDivided)]],
+        &[&[form("xyz/w", Form::NotDivided)], &[form("ndc", Form::NotDivided)]],
     ),
-    fault("direction-divided", "a light at infinity is divided by its w of 0", &[&[Body(Wrong::DividedAlways)]]),
+    fault(
+        "direction-divided",
+        "a light at infinity is divided by its w of 0",
+        &[&[form("xyz/w", Form::DividedAlways)]],
+    ),
     fault(
         "matrices-exchanged",
         "model and view are multiplied in the wrong order",
-        &[&[Body(Wrong::MatricesExchanged)]],
+        &[&[swap("view·model·position", "view", "model")]],
     ),
     fault(
         "translation-forgotten",
         "a matrix's translation is forgotten",
-        &[&[Before(In::NoTranslation("modelview"))], &[Before(In::NoTranslation("view"))]],
+        &[&[input("modelview", Op::NoTranslation)], &[input("view", Op::NoTranslation)]],
     )
     .only(|spec| spec.id != "vector/light-direction"),
     fault(
         "normals-averaged",
         "averaged normals are divided by their number, not normalised",
-        &[&[Body(Wrong::MeanNormal)]],
+        &[&[pass_as("⟨Σn⟩", "sum", Op::Scale(1.0 / 3.0))]],
     ),
     fault("winding-reversed", "the face's corners are taken in reverse", &[&[Before(In::Swap("b", "c"))]])
         .only(|spec| {
@@ -64,23 +73,67 @@ pub(super) const FAULTS: &[Fault] = &[
                 || matches!(id, "lighting/flat" | "interpolation/front-facing" | "interpolation/raster-facing")
         })
         .seen_in("clockwise meshes; a mirrored projection"),
-    fault("face-normal-not-normalised", "the normal of a face is not normalised", &[&[Body(Wrong::FaceNotNormalised)]])
+    fault("face-normal-not-normalised", "the normal of a face is not normalised", &[&[pass("face's n", "cross")]])
         .seen_in("normals weighted by area"),
     fault(
         "zero-normalised",
         "a vector without length is normalised like any other",
-        &[&[Instead(&[
-            ("vector/normalize", "vector/normalize-unguarded"),
-            ("vector/halfway", "vector/halfway-unguarded"),
-        ])]],
+        &[
+            &[Instead(&[
+                ("vector/normalize", "vector/normalize-unguarded"),
+                ("vector/halfway", "vector/halfway-unguarded"),
+            ])],
+            &[pass_as("l", "to_light", Op::NormalizeAny)],
+        ],
     )
     .seen_in("GLSL's normalize"),
-    fault("normalised-by-sum", "vectors are divided by the sum of their components", &[&[Body(Wrong::NormalizeBySum)]]),
+    fault(
+        "normalised-by-sum",
+        "vectors are divided by the sum of their components",
+        &[&[pass_as("⟨v⟩", "v", Op::OverSum)]],
+    ),
     fault(
         "normalised-by-largest",
         "vectors are divided by their largest component",
-        &[&[Body(Wrong::NormalizeByLargest)]],
+        &[&[pass_as("⟨v⟩", "v", Op::OverLargest)]],
     ),
-    fault("normalised-by-square", "vectors are divided by their squared length", &[&[Body(Wrong::NormalizeBySquare)]]),
-    fault("length-squared", "the length is squared", &[&[Body(Wrong::SquaredLength)]]),
+    fault(
+        "normalised-by-square",
+        "vectors are divided by their squared length",
+        &[&[pass_as("⟨v⟩", "v", Op::OverSquare)]],
+    ),
+    fault("length-squared", "the length is squared", &[&[form("|v|", Form::SquaredLength)]]),
+    fault(
+        "model-matrix-lost",
+        "the model matrix is not applied",
+        &[&[given("view·model·position", "model", Op::Identity)]],
+    ),
+    fault(
+        "view-matrix-lost",
+        "the view matrix is not applied",
+        &[&[given("view·model·position", "view", Op::Identity)], &[given("view·direction", "view", Op::Identity)]],
+    ),
+    fault("modelview-lost", "the modelview matrix is not applied", &[&[input("modelview", Op::Identity)]]),
+    fault(
+        "fast-inverse-square-root",
+        "vectors are normalised by an approximate inverse square root",
+        &[
+            &[pass_as("⟨v⟩", "v", Op::FastNormalize)],
+            &[
+                pass_as("l", "to_light", Op::FastNormalize),
+                pass_as("n", "n", Op::FastNormalize),
+                pass_as("v", "to_eye", Op::FastNormalize),
+            ],
+            &[pass_as("l", "to_light", Op::FastNormalize)],
+            &[pass_as("h", "sum", Op::FastNormalize)],
+            &[pass_as("⟨Σn⟩", "sum", Op::FastNormalize)],
+            &[pass_as("⟨n⟩", "n", Op::FastNormalize)],
+        ],
+    )
+    .seen_in("Quake III's Q_rsqrt"),
+    fault(
+        "normalised-by-sum-to-the-light",
+        "the vector to the light is divided by the sum of its components",
+        &[&[pass_as("l", "to_light", Op::OverSum)]],
+    ),
 ];

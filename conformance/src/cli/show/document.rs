@@ -6,8 +6,7 @@ use lightmeter::arithmetic::{Accept, trace};
 use lightmeter::cases::Input;
 use lightmeter::document::run::Examined;
 use lightmeter::document::show::{
-    SCHEMA, ShowDocument, ShownAnswer, ShownCase, ShownConditioning, ShownMeaning, ShownOutput, ShownStanding,
-    ShownStep, ShownValue,
+    SCHEMA, ShownAnswer, ShownCase, ShownConditioning, ShownMeaning, ShownOutput, ShownStanding, ShownStep, ShownValue,
 };
 use lightmeter::document::{Number, Word};
 use lightmeter::formula::by_name;
@@ -21,7 +20,7 @@ pub(super) fn case(
     answers: &[Answer],
     unit: &[UnitAnswer],
     forms: Vec<Examined>,
-) -> ShowDocument {
+) -> ShownCase {
     let spec = &member.spec;
     let meaning = |one: &Input| ShownMeaning { name: one.name.into(), means: spec.input_means(one).into() };
     let means: Vec<&'static str> =
@@ -34,7 +33,7 @@ pub(super) fn case(
         condition: Number(known.condition[k]),
     };
     let rows = answers.iter().map(|one| answer(member, known, one));
-    ShowDocument::Case(ShownCase {
+    ShownCase {
         schema: SCHEMA.into(),
         id: member.case_id(case),
         formula: member.spec.text.into(),
@@ -48,7 +47,8 @@ pub(super) fn case(
         conditioning: conditioning(&known.conditioning),
         answers: rows.chain(unit.iter().map(unit_answer)).collect(),
         forms,
-    })
+        mistake: None,
+    }
 }
 
 fn bounds(interval: &Accept) -> [Number; 2] {

@@ -5,16 +5,19 @@ mod pixel;
 mod special;
 mod unit;
 
+use super::mistakes::by_name;
 use super::options::{Choice, Format};
 use super::{Status, emit};
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::document::run::Examined;
+use lightmeter::document::show::{ShowDocument, ShownCase, ShownMistake, ShownStep};
 use lightmeter::document::{Document as _, Number};
 use lightmeter::evaluate::Evaluator;
+use lightmeter::faults::{Fault, Variation};
 use lightmeter::filter::Filter;
 use lightmeter::formula::intervals;
 use lightmeter::judge::judge;
@@ -33,6 +36,9 @@ pub(crate) struct Show {
     id: String,
     #[command(flatten)]
     choice: Choice,
+    /// Show what a renderer with this mistake gives, too; `lightmeter mistakes` lists them
+    #[arg(long, value_name = "NAME", value_parser = by_name)]
+    mistake: Option<&'static Fault>,
     /// How the case is written
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -63,6 +69,10 @@ impl Show {
             Format::Junit => bail!("a case is written as text or json"),
             format => format == Format::Json,
         };
+        let others = special::find(&self.id)?.is_some() || pixel::find(&self.id, self.choice.size)?.is_some();
+        if let (Some(fault), true) = (self.mistake, others) {
+            bail!("`{}` is a mistake in formulas, and `{}` is no case of one", fault.name, self.id);
+        }
         if let Some(probe) = special::find(&self.id)? {
             emit(&special::show(probe, &self.choice, &self.subjects()?, as_json)?, self.out.as_deref())?;
             return Ok(Status::Success);
@@ -90,13 +100,32 @@ impl Show {
         let known = Known { inputs, outputs, steps, condition, conditioning };
         let (answers, unit) = self.answers(member, &known.inputs)?;
         let forms = self.forms(member, case)?;
+        let mistake = self.mistake.map(|fault| self.mistaken(fault, member, &known.inputs)).transpose()?;
         let text = if as_json {
-            document::case(member, case, &known, &answers, &unit, forms).to_json()?
+            let case = document::case(member, case, &known, &answers, &unit, forms);
+            ShowDocument::Case(Box::new(ShownCase { mistake, ..case })).to_json()?
         } else {
-            as_text(member, case, &known, &answers)? + &unit_text(&unit)? + &forms_text(&forms)?
+            let mistake = mistake.map_or_else(String::new, |mistake| mistake_text(&mistake, &known.outputs));
+            as_text(member, case, &known, &answers)? + &mistake + &unit_text(&unit)? + &forms_text(&forms)?
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
+    }
+
+    /// What a renderer with a mistake gives.
+    fn mistaken(&self, fault: &'static Fault, member: &Member, inputs: &[f32]) -> anyhow::Result<ShownMistake> {
+        let variation = Variation::new(member, &[fault]);
+        let variation = variation.with_context(|| format!("`{}` does not concern {}", fault.name, member.spec.id))?;
+        let count = member.spec.output_len();
+        let (mut value, mut legal) = (vec![0.0_f64; count], vec![Accept::ANY; count]);
+        variation.evaluate(inputs, &mut value);
+        variation.interval(inputs, self.choice.profile, &mut legal);
+        let output = |k: usize| ShownStep {
+            name: member.spec.output_name(k).into(),
+            value: Number(value[k]),
+            interval: [Number(legal[k].low()), Number(legal[k].high())],
+        };
+        Ok(ShownMistake { name: fault.name.into(), says: fault.says.into(), outputs: (0..count).map(output).collect() })
     }
 
     fn row(&self, member: &Member, case: CaseRef) -> Vec<f32> {
@@ -185,6 +214,17 @@ fn find<'a>(catalogue: &'a [Member], id: &str) -> anyhow::Result<(&'a Member, Ca
         ),
         None => bail!("no case `{id}`; an id is as `fog/linear/random/000017`: see `lightmeter list`"),
     }
+}
+
+/// What a renderer with a mistake gives, and whether it would fail.
+fn mistake_text(mistake: &ShownMistake, outputs: &[Trace]) -> String {
+    let mut text = format!("\nas if {}\n", mistake.says);
+    for (made, right) in mistake.outputs.iter().zip(outputs) {
+        let mark = if right.interval.contains(made.value.0) { " " } else { "✗" };
+        let [low, high] = &made.interval;
+        text += &format!("{mark} {:<22} {:<24} from {low} to {high}\n", made.name, made.value.to_string());
+    }
+    text
 }
 
 fn outcome(bits: u32, reference: f64, legal: &Accept) -> (&'static str, f64) {

@@ -1,0 +1,146 @@
+//! What failing cases have in common, where no mistake explains them.
+
+use super::factor::digits;
+use lightmeter_arithmetic::{Accept, Profile};
+use lightmeter_catalogue::select::Member;
+use lightmeter_judge::diagnose::Answered;
+
+/// The fewest cases of each kind that an input is held against.
+const FEWEST: usize = 8;
+/// The share of failing and of passing cases that an input must tell apart.
+const APART: f64 = 0.97;
+
+/// A part of a whole.
+#[expect(clippy::cast_precision_loss, reason = "counts of cases are far below 2⁵³")]
+pub(super) fn share(part: usize, whole: usize) -> f64 {
+    part as f64 / whole as f64
+}
+
+/// In words: the outputs that fail, on which side, and where in an input's range.
+pub(super) fn in_common(
+    member: &Member,
+    profile: &Profile,
+    failing: &[Answered<'_>],
+    passing: &[Answered<'_>],
+) -> Vec<String> {
+    let mut told = vec![];
+    let wrong = wrong_numbers(member, profile, failing);
+    told.extend(outputs_of(member, &wrong));
+    told.extend(side_of(&wrong));
+    told.extend(range_of(member, failing, passing));
+    told
+}
+
+/// A number of an answer that is not legal.
+struct WrongNumber {
+    place: usize,
+    value: f64,
+    reference: f64,
+}
+
+fn wrong_numbers(member: &Member, profile: &Profile, failing: &[Answered<'_>]) -> Vec<WrongNumber> {
+    let outputs = member.spec.output_len();
+    let (mut legal, mut reference) = (vec![Accept::ANY; outputs], vec![0.0; outputs]);
+    let mut wrong = vec![];
+    for row in failing {
+        member.formula.promised_interval(member.spec.kind, row.inputs, profile, &mut legal);
+        member.formula.reference(row.inputs, &mut reference);
+        for (place, ((&value, legal), &reference)) in row.values.iter().zip(&legal).zip(&reference).enumerate() {
+            if !legal.contains(value.into()) {
+                wrong.push(WrongNumber { place, value: value.into(), reference });
+            }
+        }
+    }
+    wrong
+}
+
+/// The one output that fails alone, where there are several.
+fn outputs_of(member: &Member, wrong: &[WrongNumber]) -> Option<String> {
+    let mut start = 0;
+    let places = member.spec.outputs.iter().map(|output| {
+        let range = start..start + output.shape.components();
+        start = range.end;
+        (output.name, range)
+    });
+    let places: Vec<(&str, std::ops::Range<usize>)> = places.collect();
+    let holds = |range: &std::ops::Range<usize>| wrong.iter().all(|number| range.contains(&number.place));
+    let (name, range) = places.iter().find(|(_, range)| holds(range))?;
+    let first = wrong.first()?.place;
+    let is_one = range.len() > 1 && wrong.iter().all(|number| number.place == first);
+    if is_one {
+        return Some(format!("only component {} of {name} is wrong", first - range.start));
+    }
+    (places.len() > 1).then(|| format!("only {name} is wrong"))
+}
+
+/// On which side of what is right the answers lie, or what all of them are.
+fn side_of(wrong: &[WrongNumber]) -> Option<String> {
+    let first = wrong.first()?.value;
+    if wrong.iter().all(|number| number.value.is_nan()) {
+        return Some("each wrong number is NaN".into());
+    }
+    if wrong.len() > 2 && wrong.iter().all(|number| number.value.to_bits() == first.to_bits()) {
+        return Some(format!("each wrong number is {first}"));
+    }
+    if wrong.iter().all(|number| number.value > number.reference) {
+        return Some("each wrong number is too great".into());
+    }
+    wrong.iter().all(|number| number.value < number.reference).then(|| "each wrong number is too small".into())
+}
+
+/// The input on one side of a bound of which nearly all failing cases lie, and on the other nearly all passing ones.
+fn range_of(member: &Member, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> Option<String> {
+    if failing.len() < FEWEST || passing.len() < FEWEST {
+        return None;
+    }
+    let mut best: Option<(f64, String)> = None;
+    for input in member.spec.inputs {
+        let range = member.spec.place(input.name)?;
+        for place in range.clone() {
+            let of = |rows: &[Answered<'_>]| rows.iter().map(|row| f64::from(row.inputs[place])).collect::<Vec<f64>>();
+            let (apart, bound, is_above) = bound_of(of(failing), of(passing));
+            if apart >= APART && best.as_ref().is_none_or(|(least, _)| apart > *least) {
+                let name = match range.len() {
+                    1 => input.name.to_owned(),
+                    _ => format!("component {} of {}", place - range.start, input.name),
+                };
+                let side = if is_above { "above" } else { "at most" };
+                best = Some((apart, format!("they have {name} {side} {}", digits(bound, 3))));
+            }
+        }
+    }
+    best.map(|(_, says)| says)
+}
+
+/// The bound that tells numbers apart best: the lesser of the shares that lie on their own side of it, and whether the first lie above.
+fn bound_of(mut first: Vec<f64>, mut second: Vec<f64>) -> (f64, f64, bool) {
+    first.sort_by(f64::total_cmp);
+    second.sort_by(f64::total_cmp);
+    let above = |sorted: &[f64], bound: f64| {
+        let at_most = sorted.partition_point(|x| *x <= bound);
+        share(sorted.len() - at_most, sorted.len())
+    };
+    let mut best = (0.0, 0.0, true);
+    for &bound in first.iter().chain(&second) {
+        let (a, b) = (above(&first, bound), above(&second, bound));
+        for (apart, is_above) in [(a.min(1.0 - b), true), (b.min(1.0 - a), false)] {
+            if apart > best.0 {
+                best = (apart, bound, is_above);
+            }
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_tells_numbers_apart() {
+        let (apart, bound, is_above) = bound_of(vec![5.0, 6.0, 7.0], vec![1.0, 2.0, 3.0]);
+        assert_eq!((apart, bound, is_above), (1.0, 3.0, true));
+        let (apart, ..) = bound_of(vec![1.0, 3.0, 5.0], vec![2.0, 4.0, 6.0]);
+        assert!(apart < 0.7, "{apart}");
+    }
+}

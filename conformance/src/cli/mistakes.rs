@@ -1,0 +1,134 @@
+//! `lightmeter mistakes`.
+
+use super::options::Format;
+use super::{Status, emit};
+use anyhow::bail;
+use clap::Args;
+use lightmeter::cases::Kind;
+use lightmeter::document::Document as _;
+use lightmeter::document::mistakes::{KnownMistake, MistakeOf, MistakesDocument, SCHEMA};
+use lightmeter::faults::scene::SCENE_FAULTS;
+use lightmeter::faults::{Fault, concerning, faults, look};
+use lightmeter::filter::Filter;
+use lightmeter::report;
+use lightmeter::select::{Member, catalogue};
+use rayon::prelude::*;
+use std::path::PathBuf;
+
+/// List the mistakes that the suite names: what each does, where it was seen, and which formulas it concerns
+///
+/// `lightmeter mistakes 'fog-*'` tells more of some of them. `eval`, `show` and `render` take `--mistake NAME` to compute as a renderer
+/// that makes it.
+#[derive(Debug, Args)]
+pub(crate) struct Mistakes {
+    /// Names of mistakes, as globs: `fog-radial` or `shininess-*`; without any, all
+    #[arg(value_name = "NAME")]
+    names: Vec<String>,
+    /// Only mistakes that concern one of these formulas: globs of ids, as for `run`
+    #[arg(long, value_name = "FILTER")]
+    formula: Vec<String>,
+    /// How they are written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write them to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Mistakes {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        let (names, formulas) = (Filter::new(&self.names)?, Filter::new(&self.formula)?);
+        let is_known = |name: &str| {
+            let only = Filter::new(&[name.to_owned()]);
+            all_names().any(|known| only.as_ref().is_ok_and(|only| only.selects(known)))
+        };
+        if let Some(name) = self.names.iter().find(|name| !is_known(name)) {
+            bail!(unknown(name));
+        }
+        let members: Vec<Member> = catalogue().into_iter().filter(|member| formulas.selects(&member.spec.id)).collect();
+        if members.is_empty() {
+            bail!("no formula matches `{}`: see `lightmeter list --formulas`", self.formula.join(" "));
+        }
+        let concerned: Vec<Vec<&'static Fault>> = members.par_iter().map(concerning).collect();
+        let selected: Vec<&'static Fault> =
+            faults().iter().copied().filter(|fault| names.selects(fault.name)).collect();
+        let mut mistakes: Vec<KnownMistake> =
+            selected.into_par_iter().map(|fault| known(fault, &members, &concerned)).collect();
+        mistakes.retain(|mistake| !mistake.formulas.is_empty());
+        if self.formula.is_empty() {
+            mistakes.extend(of_scenes(&names));
+        }
+        if mistakes.is_empty() {
+            bail!("no mistake of these names concerns `{}`", self.formula.join(" "));
+        }
+        let document = MistakesDocument { schema: SCHEMA.into(), mistakes };
+        let text = match self.format {
+            Format::Text => report::mistakes::text(&document, !self.names.is_empty()),
+            Format::Json => document.to_json()?,
+            Format::Junit => bail!("mistakes are written as text or json"),
+        };
+        emit(&text, self.out.as_deref())?;
+        Ok(Status::Success)
+    }
+}
+
+fn all_names() -> impl Iterator<Item = &'static str> {
+    faults().iter().map(|fault| fault.name).chain(SCENE_FAULTS.iter().map(|fault| fault.name))
+}
+
+/// What is said of a name that no mistake has.
+fn unknown(name: &str) -> String {
+    let mut near: Vec<(usize, &str)> =
+        all_names().map(|known| (strsim::damerau_levenshtein(known, name), known)).collect();
+    near.sort_unstable();
+    let alike: Vec<String> = near.iter().take(3).map(|(_, known)| format!("`{known}`")).collect();
+    format!("no mistake `{name}`; the nearest are {}: see `lightmeter mistakes`", alike.join(", "))
+}
+
+/// The mistake of a name, which `--mistake` asks for.
+pub(crate) fn by_name(name: &str) -> Result<&'static Fault, String> {
+    Fault::by_name(name).ok_or_else(|| match SCENE_FAULTS.iter().any(|fault| fault.name == name) {
+        true => format!("`{name}` is a mistake in scenes: ask `render` for it"),
+        false => unknown(name),
+    })
+}
+
+/// The mistake in scenes of a name.
+pub(crate) fn of_scenes_by_name(name: &str) -> Result<&'static lightmeter::faults::scene::SceneFault, String> {
+    SCENE_FAULTS.iter().find(|fault| fault.name == name).ok_or_else(|| match Fault::by_name(name) {
+        Some(_) => format!("`{name}` is a mistake in formulas: ask `eval` or `show` for it"),
+        None => unknown(name),
+    })
+}
+
+fn known(fault: &'static Fault, members: &[Member], concerned: &[Vec<&'static Fault>]) -> KnownMistake {
+    let is_made = |of: &&(&Member, &Vec<&'static Fault>)| of.1.iter().any(|one| std::ptr::eq(*one, fault));
+    let pairs: Vec<(&Member, &Vec<&'static Fault>)> = members.iter().zip(concerned).collect();
+    let of: Vec<&Member> = pairs.iter().filter(is_made).map(|(member, _)| *member).collect();
+    let is_one_of_many = |member: &&&Member| matches!(member.spec.kind, Kind::Blend(_)) && !is_mode(member);
+    KnownMistake {
+        name: fault.name.into(),
+        says: fault.says.into(),
+        of: MistakeOf::Formulas,
+        seen_in: fault.seen_in.map(Into::into),
+        formulas: of.iter().map(|member| member.spec.id.clone()).collect(),
+        looks: of.iter().filter(|member| !is_one_of_many(member)).filter_map(|member| look(member, fault)).collect(),
+    }
+}
+
+fn is_mode(member: &Member) -> bool {
+    member.spec.id.starts_with("blend/mode-")
+}
+
+fn of_scenes(names: &Filter) -> Vec<KnownMistake> {
+    let selected = SCENE_FAULTS.iter().filter(|fault| names.selects(fault.name));
+    let known = selected.map(|fault| KnownMistake {
+        name: fault.name.into(),
+        says: fault.says.into(),
+        of: MistakeOf::Scenes,
+        seen_in: None,
+        formulas: vec![],
+        looks: vec![],
+    });
+    known.collect()
+}

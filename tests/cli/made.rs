@@ -1,0 +1,98 @@
+//! `lightmeter mistakes`, and what `--mistake` makes of `eval`, `show` and `render`.
+
+use super::{LINE, code, eval_with, lightmeter, stderr, stdout};
+use lightmeter::document::Document as _;
+use lightmeter::document::mistakes::{MistakeOf, MistakesDocument};
+use lightmeter::faults::faults;
+use serde_json::Value;
+
+#[test]
+fn mistakes_are_listed_with_what_they_concern_and_how_they_look() {
+    let output = lightmeter(&["mistakes", "--format", "json"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let all = MistakesDocument::read(&stdout(&output)).expect("it is read again");
+    let names: Vec<&str> = all.mistakes.iter().map(|mistake| mistake.name.as_ref()).collect();
+    assert!(faults().iter().all(|fault| names.contains(&fault.name)), "none is left out");
+    for mistake in all.mistakes.iter().filter(|mistake| mistake.of == MistakeOf::Formulas) {
+        assert!(!mistake.formulas.is_empty(), "{} concerns something", mistake.name);
+        assert!(mistake.looks.iter().all(|look| look.failing <= look.cases), "{}", mistake.name);
+    }
+    let radial = all.mistakes.iter().find(|mistake| &*mistake.name == "fog-radial").expect("it is known");
+    let exp = radial.looks.iter().find(|look| look.formula == "fog/exp").expect("it concerns fog/exp");
+    assert!(exp.failing > 100 && exp.too_small > 0, "{exp:?}");
+
+    let output = lightmeter(&["mistakes", "fog-radial"]);
+    let text = stdout(&output);
+    assert!(text.starts_with("fog-radial\n  fog uses radial distance\n  seen in: OpenGL drivers"), "{text}");
+    assert!(text.contains("cases fail, in f, color"), "{text}");
+    let output = lightmeter(&["mistakes", "--formula", "fog/exp"]);
+    assert!(stdout(&output).contains("fog-radial") && !stdout(&output).contains("blinn-for-phong"));
+}
+
+#[test]
+fn a_mistake_that_is_unknown_is_told_with_the_nearest() {
+    for args in
+        [&["mistakes", "fog-radail"][..], &["eval", "--mistake", "fog-radail"], &["mistakes", "--formula", "fgo"]]
+    {
+        let output = lightmeter(args);
+        assert_eq!((code(&output), stdout(&output)), (2, String::new()), "{args:?}");
+        assert!(
+            stderr(&output).contains("fog-radial") || stderr(&output).contains("no formula"),
+            "{}",
+            stderr(&output)
+        );
+    }
+    let output = lightmeter(&["render", "phong", "--mistake", "fog-radial", "--out", "x.png"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("a mistake in formulas"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_formula_is_evaluated_as_whoever_makes_a_mistake_would() {
+    let value = |args: &[&str]| -> Value {
+        let output = eval_with(args, &LINE.replace("[0,0,-5]", "[3,0,-4]"));
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        serde_json::from_str(&stdout(&output)).expect("JSON")
+    };
+    let first = |answer: &Value, field: &str| answer[field][0].as_f64().expect("a number");
+    let (right, wrong) = (value(&[]), value(&["--mistake", "fog-radial"]));
+    assert!((first(&right, "value") - 0.6).abs() < 1e-6 && (first(&wrong, "value") - 0.5).abs() < 1e-6);
+    assert!(first(&wrong, "low") <= 0.5 && first(&wrong, "high") >= 0.5 && first(&wrong, "high") < 0.55);
+    let output = eval_with(&["--mistake", "blinn-for-phong"], LINE);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("`blinn-for-phong` does not concern fog/linear"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_case_is_shown_with_a_mistake() {
+    let case = "fog/linear-radial/hard/sideways";
+    let output = lightmeter(&["show", case, "--mistake", "fog-planar", "--adapter", "cpu"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(stdout(&output).contains("\nas if fog uses planar distance\n✗ f  "), "{}", stdout(&output));
+    let output = lightmeter(&["show", case, "--mistake", "fog-planar", "--adapter", "cpu", "--format", "json"]);
+    let shown: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert_eq!(
+        (&shown["mistake"]["name"], &shown["mistake"]["outputs"][0]["value"]),
+        (&"fog-planar".into(), &1.0.into())
+    );
+    let output = lightmeter(&["show", case, "--mistake", "fog-radial", "--adapter", "cpu"]);
+    assert_eq!(code(&output), 2, "it has that by right");
+}
+
+#[test]
+fn a_scene_is_drawn_with_a_mistake() {
+    let folder = std::env::temp_dir().join(format!("lightmeter-made-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let draw = |name: &str, args: &[&str]| {
+        let path = folder.join(name);
+        let file = path.to_str().expect("UTF-8");
+        let output = lightmeter(&[&["render", "phong", "--out", file], args].concat());
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        std::fs::read(path).expect("an image")
+    };
+    let (right, wrong) = (draw("right.png", &[]), draw("wrong.png", &["--mistake", "ambient-left-out"]));
+    assert_ne!(right, wrong);
+    let output = lightmeter(&["render", "phong", "--with", "gpu", "--mistake", "ambient-left-out", "--out", "x.png"]);
+    assert_eq!(code(&output), 2, "the reference alone makes mistakes");
+    std::fs::remove_dir_all(folder).expect("it can be removed");
+}
