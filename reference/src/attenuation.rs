@@ -6,7 +6,7 @@
 use crate::algebra::Vec3;
 use crate::real::Real;
 use crate::step::step;
-use crate::vector::cosine_power_by_chord;
+use crate::vector::power_by_chord;
 
 /// `atten = 1 / (kc + kl·d + kq·d²)`.
 ///
@@ -41,7 +41,7 @@ pub fn point<R: Real>(kc: R, kl: R, kq: R, light: Vec3<R>, p: Vec3<R>) -> R {
 }
 
 fn distance<R: Real>(light: Vec3<R>, p: Vec3<R>) -> R {
-    let between = step!("what d is the length of", |light, p| light - p);
+    let between = step!(quiet "what d is the length of", |light, p| light - p);
     step!("d", |between| between.length())
 }
 
@@ -79,7 +79,7 @@ pub fn polynomial_bounded<R: Real>(kc: R, kl: R, kq: R, d: R) -> R {
 
 /// [`point`] with a distance that neither overflows nor underflows.
 pub fn point_scaled<R: Real>(kc: R, kl: R, kq: R, light: Vec3<R>, p: Vec3<R>) -> R {
-    let between = step!("what d is the length of", |light, p| light - p);
+    let between = step!(quiet "what d is the length of", |light, p| light - p);
     polynomial_bounded(kc, kl, kq, step!("d", |between| between.length_scaled()))
 }
 
@@ -88,7 +88,7 @@ pub fn spot_exponent_by_chord<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine:
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
     let cosine = step!("−l·axis", |l, axis| (-l).dot(axis));
     step!("spot", |cosine, cutoff_cosine, exponent| {
-        let lit = || R::if_ge(zero, exponent, || one, || cosine_power_by_chord(-l, axis, exponent));
+        let lit = || R::if_ge(zero, exponent, || one, || power_by_chord(-l, axis, exponent));
         R::if_ge(cosine, cutoff_cosine, lit, || zero)
     })
 }

@@ -42,24 +42,24 @@ pub fn srgb_decode<R: Real>(e: R) -> R {
 
 /// [`srgb_encode`] without its straight piece: wrong below c = 0.0031308, and without a value below 0.
 pub fn srgb_encode_power<R: Real>(c: R) -> R {
-    step!("encoded", |c| R::literal(1.055) * c.pow(R::literal(1.0 / 2.4)) - R::literal(0.055))
+    step!("encoded by the power alone", |c| R::literal(1.055) * c.pow(R::literal(1.0 / 2.4)) - R::literal(0.055))
 }
 
 /// `e = c^(1/2.2)`: the power that stands in for sRGB's two pieces. For c > 0.
 pub fn gamma_encode<R: Real>(c: R) -> R {
-    step!("encoded", |c| c.pow(R::literal(1.0 / 2.2)))
+    step!("c^(1/2.2)", |c| c.pow(R::literal(1.0 / 2.2)))
 }
 
 /// An sRGB target's encoding of a colour: each of R, G, B by [`srgb_encode`], alpha as it is.
 pub fn srgb_encode_rgba<R: Real>(c: Rgba<R>) -> Rgba<R> {
     let alpha = c.w();
-    c.xyz().map(srgb_encode).extend(step!("alpha of an encoded color", |alpha| alpha))
+    c.xyz().map(srgb_encode).extend(step!(quiet "alpha of an encoded color", |alpha| alpha))
 }
 
 /// An sRGB target's colour read back: each of R, G, B by [`srgb_decode`], alpha as it is.
 pub fn srgb_decode_rgba<R: Real>(e: Rgba<R>) -> Rgba<R> {
     let alpha = e.w();
-    e.xyz().map(srgb_decode).extend(step!("alpha of a decoded color", |alpha| alpha))
+    e.xyz().map(srgb_decode).extend(step!(quiet "alpha of a decoded color", |alpha| alpha))
 }
 
 /// `texel·color`: a texture, or a lightmap, that modulates. Source: 002 (DIFFUSE × LIGHTMAP).
@@ -75,7 +75,7 @@ pub fn replace<R: Real>(texel: Rgba<R>, _color: Rgba<R>) -> Rgba<R> {
 /// `clamp(a + b, 0, 1)`: sums on the colour cube, as red + green = yellow. Source: 004.
 pub fn sum<R: Real>(a: Rgb<R>, b: Rgb<R>) -> Rgb<R> {
     let sum = a + b;
-    step!("clamp", |sum| sum.map(|x| x.clamp(R::literal(0.0), R::literal(1.0))))
+    step!(quiet "clamp", |sum| sum.map(|x| x.clamp(R::literal(0.0), R::literal(1.0))))
 }
 
 /// `(color, 1)`: a fixed or uniform colour is written as it is, with alpha 1. Source: 000 §6.2.

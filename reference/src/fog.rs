@@ -85,11 +85,11 @@ pub fn radial_distance_scaled<R: Real>(p: Vec3<R>) -> R {
 }
 
 fn power_of_e<R: Real>(exponent: R) -> R {
-    clamped(step!("exp", |exponent| exponent.exp()))
+    clamped(step!(quiet "exp", |exponent| exponent.exp()))
 }
 
 fn clamped<R: Real>(f: R) -> R {
-    step!("clamp", |f| f.clamp(R::literal(0.0), R::literal(1.0)))
+    step!(quiet "clamp", |f| f.clamp(R::literal(0.0), R::literal(1.0)))
 }
 
 /// `color = mix(fog, shaded, f)`: the fog where f = 0, the surface where f = 1. Source: 000 §6.5.

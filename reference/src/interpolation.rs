@@ -50,7 +50,7 @@ pub fn edge_compensated<R: Real>(a: Vec2<R>, b: Vec2<R>, p: Vec2<R>) -> R {
 /// The weight of c at p: the area of `a b p` over that of `a b c`.
 pub fn last_weight<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> R {
     let (part, whole) = (edge(a, b, p), area(a, b, c));
-    step!("weight", |part, whole| part / whole)
+    step!(quiet "weight", |part, whole| part / whole)
 }
 
 /// The same as what the other two leave of 1: near the edge from a to b it is a small difference of great numbers.
@@ -72,7 +72,7 @@ pub fn mix_incremental<R: Real>(a: R, b: R, t: R) -> R {
 /// The barycentric weights of p: each the area opposite its vertex over the whole. No value for a triangle without area.
 pub fn weights<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> [R; 3] {
     let whole = area(a, b, c);
-    [edge(b, c, p), edge(c, a, p), edge(a, b, p)].map(|part| step!("weight", |part, whole| part / whole))
+    [edge(b, c, p), edge(c, a, p), edge(a, b, p)].map(|part| step!(quiet "weight", |part, whole| part / whole))
 }
 
 /// The scan-line form: along two edges to the line of the pixel, then along the span between them.
@@ -124,7 +124,7 @@ pub fn perspective_scaled<R: Real>(lambda: [R; 3], w: [R; 3], attr: [R; 3]) -> R
 
 /// What is interpolated over w, times the w there.
 fn renormalised<R: Real>(over_w: R, inverse_w: R) -> R {
-    step!("over the interpolated 1/w", |over_w, inverse_w| over_w / inverse_w)
+    step!(quiet "over the interpolated 1/w", |over_w, inverse_w| over_w / inverse_w)
 }
 
 /// `((1 − t)·a/wa + t·b/wb) / ((1 − t)/wa + t/wb)`: the same along a line.
@@ -164,7 +164,7 @@ fn owns<R: Real>(a: Vec2<R>, b: Vec2<R>, p: Vec2<R>, inside: impl Fn() -> R) -> 
     let ab = b - a;
     // Clockwise as seen: a left edge goes up (y falls), a top edge is level and goes right.
     let owned = || {
-        step!("share of an edge", |ab| {
+        step!(quiet "share of an edge", |ab| {
             let level = || R::if_ge(ab.y(), zero, || R::if_ge(zero, ab.x(), || zero, || one), || one);
             R::if_ge(zero, ab.y(), level, || zero)
         })
@@ -228,7 +228,7 @@ fn inside_planes<R: Real>(clip: Vec4<R>, near: R) -> R {
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
     let five = [(x, -w), (w, x), (y, -w), (w, y), (z, near)];
     let inside = five.into_iter().fold(one, |inside, (a, b)| R::if_ge(a, b, || inside, || zero));
-    step!("before the far plane", |inside, z, w| R::if_ge(w, z, || inside, || zero))
+    step!(quiet "before the far plane", |inside, z, w| R::if_ge(w, z, || inside, || zero))
 }
 
 /// 1 where the triangle is seen from its front, 0 from its back or without area: front is counter-clockwise as seen.
@@ -242,7 +242,7 @@ pub fn front_facing<R: Real>([a, b, c]: [Vec2<R>; 3]) -> R {
 /// The depth that is stored for a fragment that writes its own: clamped to the viewport's range, [0, 1] by default.
 /// Source: 000 §6.1 (`gl_FragDepth`).
 pub fn frag_depth<R: Real>(depth: R) -> R {
-    step!("depth clamped", |depth| depth.clamp(R::literal(0.0), R::literal(1.0)))
+    step!(quiet "depth clamped", |depth| depth.clamp(R::literal(0.0), R::literal(1.0)))
 }
 
 /// A rasterised triangle's window coordinates: [`viewport`] of each vertex.

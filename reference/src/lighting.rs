@@ -205,20 +205,20 @@ fn weighted_terms<R: Real>(
 fn gated<R: Real>(gate: SpecularGate, cosine: R, fs: impl Fn() -> R) -> R {
     let zero = R::literal(0.0);
     match gate {
-        SpecularGate::Documents => step!("FS of either side", |cosine| fs()),
+        SpecularGate::Documents => step!(quiet "FS of either side", |cosine| fs()),
         SpecularGate::OpenGl => step!("FS of the lit side", |cosine| R::if_ge(zero, cosine, || zero, &fs)),
     }
 }
 
 fn to_eye<R: Real>(p: Vec3<R>) -> Vec3<R> {
-    let to_eye = step!("−p", |p| -p);
+    let to_eye = step!(quiet "−p", |p| -p);
     step!("v", |to_eye| to_eye.normalize())
 }
 
 /// The vectors that a surface is lit by, as they are used.
 #[inline]
 fn surface<R: Real>([n, l, v]: [Vec3<R>; 3]) -> [Vec3<R>; 3] {
-    step!("n, l and v", |n, l, v| [n, l, v])
+    step!(quiet "n, l and v", |n, l, v| [n, l, v])
 }
 
 fn normal<R: Real>(n: Vec3<R>) -> Vec3<R> {
@@ -234,7 +234,8 @@ pub fn directional<R: Real>(
     material: &Material<R>,
     [p, n, direction]: [Vec3<R>; 3],
 ) -> Rgba<R> {
-    let l = step!("l", |direction| (-direction).normalize());
+    let to_light = -direction;
+    let l = step!("l", |to_light| to_light.normalize());
     let terms = terms(dialect, light, material, [normal(n), l, to_eye(p)], R::literal(1.0));
     terms.sum().extend(R::literal(1.0))
 }
@@ -349,7 +350,9 @@ pub fn two_lights<R: Real>(
     [p, n, direction, position]: [Vec3<R>; 4],
 ) -> Rgba<R> {
     let (n, v) = (normal(n), to_eye(p));
-    let [d0, s0] = compute_light(colors[0], material, shininess, [n, step!("l", |direction| direction.normalize()), v]);
+    let to_light = direction;
+    let l = step!("l", |to_light| to_light.normalize());
+    let [d0, s0] = compute_light(colors[0], material, shininess, [n, l, v]);
     let [d1, s1] = compute_light(colors[1], material, shininess, [n, toward(position, p), v]);
     step!("CF", |ambient, d0, s0, d1, s1| Vector::sum([ambient, d0, s0, d1, s1]))
 }
@@ -409,15 +412,15 @@ pub fn phong<R: Real>(a: Vertex<R>, b: Vertex<R>, t: R, position: Vec3<R>, mater
 /// point. Source: 003.
 pub fn phong_interpolated<R: Real>(a: Vertex<R>, b: Vertex<R>, t: R, position: Vec3<R>, material: [R; 3]) -> R {
     let to_light = |p: Vec3<R>| {
-        let l = step!("light − p", |position, p| position - p);
-        step!("l at a vertex", |l| l)
+        let l = step!(quiet "light − p", |position, p| position - p);
+        step!(quiet "l at a vertex", |l| l)
     };
     let to_eye = |p: Vec3<R>| {
         let v = -p;
-        step!("v at a vertex", |v| v)
+        step!(quiet "v at a vertex", |v| v)
     };
-    let (l, v) = (to_light(a.p).mix(to_light(b.p), t), to_eye(a.p).mix(to_eye(b.p), t));
-    let (l, v) = (step!("l", |l| l.normalize()), step!("v", |v| v.normalize()));
+    let (to_light, to_eye) = (to_light(a.p).mix(to_light(b.p), t), to_eye(a.p).mix(to_eye(b.p), t));
+    let (l, v) = (step!("l", |to_light| to_light.normalize()), step!("v", |to_eye| to_eye.normalize()));
     let n = normal(at_vertex(a.n).mix(at_vertex(b.n), t));
     intensity([n, l, v], material)
 }
@@ -425,7 +428,7 @@ pub fn phong_interpolated<R: Real>(a: Vertex<R>, b: Vertex<R>, t: R, position: V
 /// Flat shading: one normal for the face, lit at its first vertex. Source: 004.
 pub fn flat<R: Real>(face: [Vec3<R>; 3], position: Vec3<R>, material: [R; 3]) -> R {
     let [a, b, c] = face;
-    let lit = step!("where it is lit", |a, b, c| a);
+    let lit = step!(quiet "where it is lit", |a, b, c| a);
     intensity([face_normal(a, b, c), toward(position, lit), to_eye(lit)], material)
 }
 
@@ -450,8 +453,9 @@ pub fn cosine_power_unguarded<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R
 /// A directional light with Blinn's highlight, stable throughout: every vector normalised at any length, no highlight where
 /// n·l ≤ 0, and its power by the chord. With OpenGL's gate it is [`directional`]'s Blinn.
 pub fn blinn_stable<R: Real>(light: &Light<R>, material: &Material<R>, [p, n, direction]: [Vec3<R>; 3]) -> Rgba<R> {
-    let (n, l) = (step!("n", |n| n.normalize_scaled()), step!("l", |direction| (-direction).normalize_scaled()));
-    let to_eye = step!("−p", |p| -p);
+    let to_light = -direction;
+    let (n, l) = (step!("n", |n| n.normalize_scaled()), step!("l", |to_light| to_light.normalize_scaled()));
+    let to_eye = step!(quiet "−p", |p| -p);
     let v = step!("v", |to_eye| to_eye.normalize_scaled());
     let sum = halfway_unnormalised(v, l);
     let (h, cosine) = (step!("h", |sum| sum.normalize_scaled()), cosine(l, n));

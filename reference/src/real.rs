@@ -17,10 +17,10 @@ pub trait Real:
     /// A constant of a formula, which a shader has as the nearest f32.
     fn literal(x: f64) -> Self;
 
-    /// max(self, other); exact.
+    /// max(self, other); exact. Of two zeros it is the other.
     fn max(self, other: Self) -> Self;
 
-    /// min(self, other); exact.
+    /// min(self, other); exact. Of two zeros it is the other.
     fn min(self, other: Self) -> Self;
 
     /// |self|; exact.
@@ -142,7 +142,8 @@ pub trait Real:
     #[inline(always)]
     #[must_use]
     fn step<A: Parts<Self>, T: Parts<Self>>(step: &'static NamedStep, from: A, compute: impl Fn(A) -> T) -> T {
-        compute(from).each(|x| x.named(step.name))
+        let result = compute(from);
+        if step.is_quiet { result } else { result.each(|x| x.named(step.name)) }
     }
 }
 
@@ -166,6 +167,8 @@ pub struct NamedStep {
     pub name: &'static str,
     /// The names of what it is given, in order.
     pub of: &'static [&'static str],
+    /// Whether it only hands something on, so that whoever reads a formula's steps is spared it.
+    pub is_quiet: bool,
 }
 
 /// What consists of a fixed number of numbers.
@@ -213,10 +216,11 @@ macro_rules! plain_real {
                 $literal(x)
             }
             fn max(self, other: Self) -> Self {
-                $float::max(self, other)
+                // That of the standard library leaves the sign of a zero to the compiler.
+                if self > other || other.is_nan() { self } else { other }
             }
             fn min(self, other: Self) -> Self {
-                $float::min(self, other)
+                if self < other || other.is_nan() { self } else { other }
             }
             fn abs(self) -> Self {
                 $float::abs(self)

@@ -54,11 +54,17 @@ tuples!(
 );
 
 /// A named step of a formula over `R`: `step!("CA", |light, material| light * material)`. What stands between the bars are names
-/// in scope, which the step is computed from and known by.
+/// in scope, which the step is computed from and known by. A `quiet` step only hands something on.
 macro_rules! step {
     ($name:expr, |$($of:ident),+| $compute:expr) => {
+        $crate::step::step!(@ $name, false, |$($of),+| $compute)
+    };
+    (quiet $name:expr, |$($of:ident),+| $compute:expr) => {
+        $crate::step::step!(@ $name, true, |$($of),+| $compute)
+    };
+    (@ $name:expr, $is_quiet:expr, |$($of:ident),+| $compute:expr) => {
         R::step(
-            const { &$crate::NamedStep { name: $name, of: &[$(stringify!($of)),+] } },
+            const { &$crate::NamedStep { name: $name, of: &[$(stringify!($of)),+], is_quiet: $is_quiet } },
             ($($of,)+),
             |($($of,)+)| {
                 let _ = ($(&$of,)+);

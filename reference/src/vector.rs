@@ -88,7 +88,7 @@ pub fn light_with_model<R: Real>(view: &Mat4<R>, model: &Mat4<R>, position: Vec3
 
 /// `⟨light − p⟩`: from the surface point to a positional light. Ruling 2: it points to the light. Source: 000 §6.4, 003.
 pub fn toward<R: Real>(light: Vec3<R>, p: Vec3<R>) -> Vec3<R> {
-    let to_light = step!("light − p", |light, p| light - p);
+    let to_light = step!(quiet "light − p", |light, p| light - p);
     step!("l", |to_light| to_light.normalize())
 }
 
@@ -171,7 +171,7 @@ pub fn face_normal_compensated<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>) -> V
 
 /// A vertex's normal as it is handed to the points between.
 pub(crate) fn at_vertex<R: Real>(n: Vec3<R>) -> Vec3<R> {
-    step!("n at a vertex", |n| n)
+    step!(quiet "n at a vertex", |n| n)
 }
 
 /// `⟨n0(1 − t) + n1·t⟩`: the normal between two vertices.
@@ -198,14 +198,17 @@ pub fn cosine_power<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
 ///
 /// From an exponent of 64 and for angles below 60° by `exp(exponent·ln(1 − q))`; as published elsewhere.
 pub fn cosine_power_by_chord<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
-    step!("FS", |a, b, exponent| {
-        let between = a - b;
-        let half = R::literal(0.5);
-        let q = (half * between.dot(between)).named("q");
-        let published = || a.dot(b).named("a·b").lobe(exponent);
-        let chord = || (exponent * (-q).ln_1p().named("ln(1 − q)")).exp();
-        R::if_ge(R::literal(64.0), exponent, published, || R::if_ge(q, half, published, chord))
-    })
+    step!("FS", |a, b, exponent| power_by_chord(a, b, exponent))
+}
+
+/// The same of whatever the power is of.
+pub(crate) fn power_by_chord<R: Real>(a: Vec3<R>, b: Vec3<R>, exponent: R) -> R {
+    let between = a - b;
+    let half = R::literal(0.5);
+    let q = (half * between.dot(between)).named("q");
+    let published = || a.dot(b).named("a·b").lobe(exponent);
+    let chord = || (exponent * (-q).ln_1p().named("ln(1 − q)")).exp();
+    R::if_ge(R::literal(64.0), exponent, published, || R::if_ge(q, half, published, chord))
 }
 
 /// `FS = max(cosine, 0)^exponent`.

@@ -26,7 +26,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// What `lightmeter schema` prints and `docs/schemas/` has, but for the scene.
-const NAMES: [&str; 18] = [
+const NAMES: [&str; 19] = [
+    "mistakes",
     "run",
     "special",
     "gate",

@@ -94,5 +94,8 @@ fn a_scene_is_drawn_with_a_mistake() {
     assert_ne!(right, wrong);
     let output = lightmeter(&["render", "phong", "--with", "gpu", "--mistake", "ambient-left-out", "--out", "x.png"]);
     assert_eq!(code(&output), 2, "the reference alone makes mistakes");
+    let output = lightmeter(&["render", "phong", "--mistake", "fog-left-out", "--out", "x.png"]);
+    let said = stderr(&output);
+    assert!(code(&output) == 2 && said.contains("`fog-left-out` changes nothing in this scene"), "{said}");
     std::fs::remove_dir_all(folder).expect("it can be removed");
 }

@@ -138,10 +138,10 @@ impl Real for Running {
         if is_short { Self::exactly(x) } else { Self::rounded(x, 0.0) }
     }
     fn max(self, other: Self) -> Self {
-        Self { value: self.value.max(other.value), error: self.error.max(other.error) }
+        Self { value: Real::max(self.value, other.value), error: self.error.max(other.error) }
     }
     fn min(self, other: Self) -> Self {
-        Self { value: self.value.min(other.value), error: self.error.max(other.error) }
+        Self { value: Real::min(self.value, other.value), error: self.error.max(other.error) }
     }
     fn abs(self) -> Self {
         Self { value: self.value.abs(), ..self }

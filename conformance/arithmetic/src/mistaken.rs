@@ -105,10 +105,26 @@ thread_local! {
 /// # Panics
 /// Where it is called inside itself.
 pub fn making<T>(alterations: impl Iterator<Item = &'static dyn Alteration>, f: impl FnOnce() -> T) -> T {
-    ALTERATIONS.with_borrow_mut(|made| made.extend(alterations));
-    let result = f();
-    ALTERATIONS.with_borrow_mut(Vec::clear);
-    result
+    ALTERATIONS.with_borrow_mut(|made| {
+        assert!(made.is_empty(), "alterations are made one evaluation at a time");
+        made.extend(alterations);
+    });
+    let _made = Made;
+    f()
+}
+
+/// Alterations that are being made, until it is dropped.
+struct Made;
+
+impl Drop for Made {
+    fn drop(&mut self) {
+        ALTERATIONS.with(|made| {
+            // An evaluation that panics still has them borrowed.
+            if let Ok(mut made) = made.try_borrow_mut() {
+                made.clear();
+            }
+        });
+    }
 }
 
 /// Room for the numbers that a step is given.
@@ -244,6 +260,7 @@ impl<R: Alter> Real for Mistaken<R> {
         Self(R::difference_of_products([a.0, b.0], [c.0, d.0]))
     }
     fn step<A: Parts<Self>, T: Parts<Self>>(step: &'static NamedStep, from: A, compute: impl Fn(A) -> T) -> T {
+        const { assert!(A::COUNT <= MOST_GIVEN && T::COUNT <= MOST_OUT, "a step has room for its numbers") };
         ALTERATIONS.with_borrow(|alterations| {
             if !alterations.iter().any(|alteration| alteration.concerns(step)) {
                 return compute(from);

@@ -35,6 +35,9 @@ pub struct SelftestDocument {
     /// The mistakes of whole renderers, in the scenes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenes: Option<SceneRecord>,
+    /// The smallest errors that are told, of scenes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scene_calibration: Vec<SceneResolution>,
     /// What was under way when a signal ended the self-test: not every mistake was tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interrupted: Option<Interrupted>,
@@ -226,6 +229,21 @@ impl Resolution {
     pub fn name(&self) -> String {
         if self.is_output { format!("{} (output)", self.parameter) } else { self.parameter.clone() }
     }
+}
+
+/// The smallest errors of a parameter that a scene's image tells, as shares of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SceneResolution {
+    /// The scene.
+    pub scene: String,
+    /// The format of its target.
+    pub target: Word,
+    /// The parameter, of all that the scene draws.
+    pub parameter: Word,
+    /// By a single pixel.
+    pub pixel: Option<f64>,
+    /// By a pixel, or by all pixels of an image of 8 bits together.
+    pub image: Option<f64>,
 }
 
 /// What became of a mistake in the scenes.

@@ -320,7 +320,7 @@ fn of_member<'a>(member: &Member, place: usize, rows: Vec<((usize, CaseRef), &'a
     let row = |((_, case), values)| {
         let mut inputs = Vec::with_capacity(member.spec.input_len());
         member.inputs(case, seed, &mut inputs);
-        (inputs, values, matches!(case, CaseRef::Random(_)))
+        (inputs, values, case)
     };
     // A hard case is one of its own formula alone.
     rows.into_iter().filter(|((of, _), _)| *of == place).map(row).collect()

@@ -12,6 +12,10 @@ use std::f64::consts::FRAC_1_PI;
 
 /// Stands for each step.
 pub(super) const ANY: &str = "*";
+/// Stands for each step that normalises a vector.
+pub(super) const NORMALISED: &str = "⟨*⟩";
+/// Their names.
+const NORMALISED_STEPS: [&str; 9] = ["n", "l", "v", "h", "axis", "face's n", "⟨v⟩", "⟨n⟩", "⟨Σn⟩"];
 
 /// A step that goes wrong, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +35,8 @@ pub(super) enum Do {
     Pass(&'static str),
     /// The same, changed.
     PassAs(&'static str, Op),
+    /// It gives the first that it is given, changed.
+    FirstAs(Op),
     /// It is given one in the place of the other, and the reverse.
     Swap(&'static str, &'static str),
     /// It is given the first twice, the second time for the second.
@@ -98,6 +104,8 @@ pub(super) enum Form {
     LinearCone,
     /// The power of the cosine rescaled from the cutoff to the axis.
     RescaledCone,
+    /// The cone without its edge.
+    ConeWithoutEdge,
     /// |z|.
     Planar,
     /// |p|.
@@ -194,9 +202,11 @@ impl Form {
                 &[&["light", "material", "n", "l", "v", "shininess"], &["ks", "n", "l", "v", "shininess"]]
             }
             Self::NotInverted | Self::QuadraticOfDistance | Self::QuadraticOfProduct => &[&["kc", "kl", "kq", "d"]],
-            Self::SmoothCone | Self::SmoothConeAlone | Self::LinearCone | Self::RescaledCone => {
-                &[&["cosine", "cutoff_cosine", "exponent"]]
-            }
+            Self::SmoothCone
+            | Self::SmoothConeAlone
+            | Self::LinearCone
+            | Self::RescaledCone
+            | Self::ConeWithoutEdge => &[&["cosine", "cutoff_cosine", "exponent"]],
             Self::Planar | Self::Radial | Self::SignedDepth | Self::NegatedDepth => &[&["p"]],
             Self::FogExp | Self::FogExp2Document | Self::FogExp2OpenGl | Self::FogRational => {
                 &[&["distance", "density"]]
@@ -221,16 +231,25 @@ impl Form {
 }
 
 impl At {
+    fn is_at(&self, step: &NamedStep) -> bool {
+        match self.step {
+            ANY => true,
+            NORMALISED => NORMALISED_STEPS.contains(&step.name),
+            name => step.name == name,
+        }
+    }
+
     /// Whether it can be made in a step that is given so many numbers under each name and gives so many.
     pub(super) fn fits(&self, step: &NamedStep, sizes: &[usize], out: usize) -> bool {
         let size = |name: &str| place(step, sizes, name).map(|range| range.len());
         let has = |name: &&'static str| size(name).is_some();
-        (step.name == self.step || self.step == ANY)
+        self.is_at(step)
             && match self.what {
                 Do::Result(op) => op.fits(out),
                 Do::Given(name, op) => size(name).is_some_and(|count| op.fits(count)),
                 Do::Pass(name) | Do::Plus(name) => size(name) == Some(out),
                 Do::PassAs(name, op) => size(name).is_some_and(|count| op.fits(count) && count == out),
+                Do::FirstAs(op) => sizes.first() == Some(&out) && op.fits(out),
                 Do::Swap(a, b) | Do::Copy(a, b) => size(a).is_some() && size(a) == size(b),
                 Do::Times(name) => size(name) == Some(1),
                 Do::Sum(a, b) => size(a) == Some(out) && size(b) == Some(out),
@@ -259,6 +278,10 @@ impl At {
             Do::Pass(name) => pass(taken, name),
             Do::PassAs(name, op) => {
                 pass(taken, name);
+                op.apply(taken.out);
+            }
+            Do::FirstAs(op) => {
+                taken.out.copy_from_slice(&taken.from[..taken.out.len()]);
                 op.apply(taken.out);
             }
             Do::Swap(a, b) => {
@@ -298,7 +321,7 @@ impl At {
 
 impl Alteration for At {
     fn concerns(&self, step: &'static NamedStep) -> bool {
-        step.name == self.step || self.step == ANY
+        self.is_at(step)
     }
     fn on_f64(&self, taken: &mut Taken<'_, f64>) {
         self.make(taken);
@@ -312,7 +335,7 @@ impl Alteration for At {
 }
 
 fn pass<R: Real>(taken: &mut Taken<'_, R>, name: &str) {
-    if let Some(range) = taken.place(name) {
+    if let Some(range) = taken.place(name).filter(|range| range.len() == taken.out.len()) {
         taken.out.copy_from_slice(&taken.from[range]);
     }
 }
@@ -347,7 +370,9 @@ fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::Gated | Form::GateTurned | Form::TimesIncidence | Form::HalfLambert { .. } => incident(form, taken),
         Form::Fresnel { over_pi } => fresnel(over_pi, taken),
         Form::NotInverted | Form::QuadraticOfDistance | Form::QuadraticOfProduct => attenuated(form, taken),
-        Form::SmoothCone | Form::SmoothConeAlone | Form::LinearCone | Form::RescaledCone => cone(form, taken),
+        Form::SmoothCone | Form::SmoothConeAlone | Form::LinearCone | Form::RescaledCone | Form::ConeWithoutEdge => {
+            cone(form, taken)
+        }
         Form::Planar | Form::Radial | Form::SignedDepth | Form::NegatedDepth | Form::SquaredLength => {
             length(form, taken)
         }
@@ -493,7 +518,8 @@ fn cone<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::SmoothCone => smoothstep(cutoff, one, cosine) * power(),
         Form::SmoothConeAlone => smoothstep(cutoff, one, cosine),
         Form::LinearCone => rescaled() * power(),
-        _ => R::if_ge(cutoff, cosine, || zero, || R::if_ge(zero, exponent, || one, || rescaled().lobe(exponent))),
+        Form::ConeWithoutEdge => R::if_ge(cutoff, cosine, || zero, power),
+        _ => R::if_ge(cosine, cutoff, || R::if_ge(zero, exponent, || one, || rescaled().lobe(exponent)), || zero),
     };
     give(taken, [share])
 }

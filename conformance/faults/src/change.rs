@@ -81,7 +81,9 @@ impl After {
             Self::All(Op::Bytes) => is_color(&|_| true) && spec.outputs.iter().any(|output| output.unit != "color"),
             Self::All(_) => true,
             Self::Copy(a, b) => size(a).is_some() && size(a) == size(b),
-            Self::Take(output, input) => size(output).is_some() && spec.place(input).is_some(),
+            Self::Take(output, input) => {
+                size(output) == Some(4) && spec.place(input).is_some_and(|range| range.len() == 4)
+            }
             Self::FromBelow => spec.id == "interpolation/raster-position",
         }
     }

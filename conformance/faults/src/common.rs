@@ -9,6 +9,8 @@ use lightmeter_judge::diagnose::Answered;
 const FEWEST: usize = 8;
 /// The share of failing and of passing cases that an input must tell apart.
 const APART: f64 = 0.97;
+/// The share of the passing cases that lie where all failing ones do, at most.
+const FEW: f64 = 0.25;
 
 /// A part of a whole.
 #[expect(clippy::cast_precision_loss, reason = "counts of cases are far below 2⁵³")]
@@ -88,28 +90,48 @@ fn side_of(wrong: &[WrongNumber]) -> Option<String> {
     wrong.iter().all(|number| number.value < number.reference).then(|| "each wrong number is too small".into())
 }
 
-/// The input on one side of a bound of which nearly all failing cases lie, and on the other nearly all passing ones.
+/// The input on one side of a bound of which nearly all failing cases lie, and on the other nearly all passing ones; or, where
+/// there is none, all failing cases, and few passing ones.
 fn range_of(member: &Member, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> Option<String> {
     if failing.len() < FEWEST || passing.len() < FEWEST {
         return None;
     }
     let mut best: Option<(f64, String)> = None;
+    let mut one_sided: Option<(f64, String)> = None;
     for input in member.spec.inputs {
         let range = member.spec.place(input.name)?;
         for place in range.clone() {
             let of = |rows: &[Answered<'_>]| rows.iter().map(|row| f64::from(row.inputs[place])).collect::<Vec<f64>>();
+            let name = match range.len() {
+                1 => input.name.to_owned(),
+                _ => format!("component {} of {}", place - range.start, input.name),
+            };
+            for (beyond, bound, is_above) in one_sided_bounds(&of(failing), &of(passing)) {
+                if beyond <= FEW && one_sided.as_ref().is_none_or(|(least, _)| beyond < *least) {
+                    let side = if is_above { "at least" } else { "at most" };
+                    let percent = digits(beyond * 100.0, 2);
+                    let says =
+                        format!("all have {name} {side} {}, which {percent} % of the others have", digits(bound, 3));
+                    one_sided = Some((beyond, says));
+                }
+            }
             let (apart, bound, is_above) = bound_of(of(failing), of(passing));
             if apart >= APART && best.as_ref().is_none_or(|(least, _)| apart > *least) {
-                let name = match range.len() {
-                    1 => input.name.to_owned(),
-                    _ => format!("component {} of {}", place - range.start, input.name),
-                };
                 let side = if is_above { "above" } else { "at most" };
                 best = Some((apart, format!("they have {name} {side} {}", digits(bound, 3))));
             }
         }
     }
-    best.map(|(_, says)| says)
+    best.or(one_sided).map(|(_, says)| says)
+}
+
+/// The least and the greatest of the first numbers, each with the share of the second ones that lie on the same side of it.
+fn one_sided_bounds(first: &[f64], second: &[f64]) -> [(f64, f64, bool); 2] {
+    let least = first.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = first.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let share_of =
+        |is_beyond: &dyn Fn(f64) -> bool| share(second.iter().filter(|&&x| is_beyond(x)).count(), second.len());
+    [(share_of(&|x| x >= least), least, true), (share_of(&|x| x <= greatest), greatest, false)]
 }
 
 /// The bound that tells numbers apart best: the lesser of the shares that lie on their own side of it, and whether the first lie above.
@@ -140,6 +162,8 @@ mod tests {
     fn a_bound_tells_numbers_apart() {
         let (apart, bound, is_above) = bound_of(vec![5.0, 6.0, 7.0], vec![1.0, 2.0, 3.0]);
         assert_eq!((apart, bound, is_above), (1.0, 3.0, true));
+        let bounds = one_sided_bounds(&[5.0, 6.0], &[1.0, 2.0, 5.5, 7.0]);
+        assert_eq!(bounds, [(0.5, 5.0, true), (0.75, 6.0, false)]);
         let (apart, ..) = bound_of(vec![1.0, 3.0, 5.0], vec![2.0, 4.0, 6.0]);
         assert!(apart < 0.7, "{apart}");
     }

@@ -4,11 +4,13 @@ use super::catalogue::faults;
 use super::common::{in_common, share};
 use super::concerned::concerned;
 use super::factor::{self, Scaled};
+use super::fault::Concerned;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::Member;
 use lightmeter_judge::diagnose::Answered;
+use lightmeter_judge::telling;
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -41,6 +43,8 @@ pub struct Diagnosis {
     pub passing: usize,
     /// The best first; only those that explain nearly all of the failing cases.
     pub explanations: Vec<Explanation>,
+    /// The simplest case that tells the best from the next that is not as good: the best explains its answer, that one does not.
+    pub telling: Option<String>,
     /// The outcome as a sentence.
     pub sentence: String,
 }
@@ -52,14 +56,22 @@ impl Diagnosis {
         if all == self.failing {
             return self.sentence.clone();
         }
-        format!("in an even sample of the {all} failing cases, {}", self.sentence)
+        format!("{} (of {all} failing cases an even sample was looked at)", self.sentence)
     }
 }
 
 /// Explanations that are kept.
 const MOST_EXPLANATIONS: usize = 5;
-/// The share of the failing cases that an explanation must explain, and of the passing ones that must not contradict it.
-const WHOLE: f64 = 0.9;
+/// The share of the failing cases that an explanation may exclude; and of the random ones that one of two things at once may, which
+/// fit more by themselves.
+const MOST_EXCLUDED: f64 = 0.1;
+const MOST_EXCLUDED_BY_TWO: f64 = 0.02;
+/// The share of the passing cases that may contradict it, and that of the random ones among them: a driver is a little off at
+/// times. Where every answer is 0 or 1, none may.
+const MOST_CONTRADICTED: f64 = 0.1;
+const MOST_OF_RANDOM: f64 = 0.01;
+/// The share of the random passing cases that would fail by it.
+const MOST_MISSING: f64 = 0.1;
 /// The bits by which it must beat chance.
 const LEAST_EVIDENCE: f64 = 6.0;
 /// The bits that are told by which cases fail, at most.
@@ -72,6 +84,8 @@ const MOST_EQUAL: usize = 2;
 const LEAST: f64 = 0.1;
 /// The bits that it takes to say by which factor which parameter is off.
 const FACTOR_BITS: f64 = 24.0;
+/// Failing cases from which on two things are told to be wrong at once: fewer are explained by many pairs.
+const FEWEST_OF_TWO: usize = 16;
 /// Failing cases that a mistake is tried on first.
 const PROBES: usize = 24;
 /// Failing cases that a pair of mistakes is tried on first; all but one of them must be explained.
@@ -92,21 +106,36 @@ pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Di
     let mut trial = Trial { member, profile, failing: &failing, passing: &passing, right, found: vec![] };
     if !failing.is_empty() {
         trial.singles();
+        let is_told_by_two = failing.len() >= FEWEST_OF_TWO;
         if !trial.is_explained() {
-            trial.pairs();
             trial.parameters();
         }
-        if !trial.is_explained() {
+        if !trial.is_explained() && is_told_by_two {
+            trial.pairs();
+        }
+        if !trial.is_explained() && is_told_by_two {
             trial.faults_and_parameters();
         }
     }
-    let mut explanations = trial.found;
+    let mut explanations = std::mem::take(&mut trial.found);
     rank(&mut explanations);
+    let next = explanations.iter().skip(1).find(|other| !is_equal(&explanations[0], other));
+    let telling = next.and_then(|next| trial.telling(&explanations[0], next));
     let sentence = match explanations.first() {
         None if !failing.is_empty() => unexplained(member, profile, &failing, &passing),
         _ => sentence(failing.len(), &explanations),
     };
-    Diagnosis { failing: failing.len(), passing: passing.len(), sentence, explanations }
+    let told = next.zip(telling.as_ref());
+    let sentence = match told {
+        Some((next, case)) => format!("{sentence}; {case} tells it from the next best: {}", next.says),
+        None => sentence,
+    };
+    Diagnosis { failing: failing.len(), passing: passing.len(), sentence, explanations, telling }
+}
+
+/// Whether another explanation is as good as the best.
+fn is_equal(best: &Explanation, other: &Explanation) -> bool {
+    (best.evidence - other.evidence).abs() <= EQUAL
 }
 
 /// That nothing explains the failing cases, with what they have in common.
@@ -138,9 +167,7 @@ fn sentence(failing: usize, explanations: &[Explanation]) -> String {
     let Explanation { explained, open, .. } = best;
     let mut told = format!("{explained} of {failing} failing {cases} explained by: {}", together(best, explanations));
     let equal = |other: &&Explanation| {
-        other.parameter.is_none()
-            && other.faults.len() <= best.faults.len()
-            && (best.evidence - other.evidence).abs() <= EQUAL
+        other.parameter.is_none() && other.faults.len() <= best.faults.len() && is_equal(best, other)
     };
     for other in explanations.iter().skip(1).filter(equal).take(MOST_EQUAL) {
         told = format!("{told}; or just as well by: {}", other.says);
@@ -244,10 +271,13 @@ impl Foretold {
         self.counts[usize::from(fails)][usize::from(would_fail)] += 1;
     }
 
-    /// How many bits of which cases fail are told by which would.
+    /// How many bits of which cases fail are told by which would; none where those that fail would not do so more often.
     fn bits(&self) -> f64 {
         let [[a, b], [c, d]] = self.counts;
         let all = a + b + c + d;
+        if c + d == 0 || a + b > 0 && share(d, c + d) <= share(b, a + b) {
+            return 0.0;
+        }
         let cell = |count: usize, line: usize, column: usize| match count {
             0 => 0.0,
             _ => share(count, 1) * (share(count, line) * share(all, column)).log2(),
@@ -304,10 +334,10 @@ impl Trial<'_> {
         let prior = 2.0 * bits_of(concerned.len());
         let near: Vec<Near> =
             self.probes(PAIR_PROBES).filter_map(|row| Near::new(self.member, row, self.profile)).collect();
-        let paired: Vec<_> = concerned.iter().filter(|concerned| !concerned.fault.is_rounding).collect();
+        let paired = paired(self.member);
         for (place, first) in paired.iter().enumerate() {
             for second in &paired[place + 1..] {
-                let Some(variation) = Variation::of(self.member, &[**first, **second]) else { continue };
+                let Some(variation) = Variation::of(self.member, &[*first, *second]) else { continue };
                 let mut far = 0;
                 let is_near = near.iter().all(|row| {
                     far += usize::from(!row.allows(&variation));
@@ -339,7 +369,7 @@ impl Trial<'_> {
         }
         let (member, profile) = (self.member, self.profile);
         let variations: Vec<Variation<'_>> =
-            concerned(member).iter().filter_map(|fault| Variation::of(member, &[*fault])).collect();
+            paired(member).iter().filter_map(|fault| Variation::of(member, &[*fault])).collect();
         for (variation, scaled) in factor::nearest(&variations, self.failing, profile) {
             self.try_scaled(variation, scaled);
         }
@@ -355,60 +385,149 @@ impl Trial<'_> {
         }
     }
 
+    /// The simplest case whose answer one explanation allows and another does not.
+    fn telling(&self, best: &Explanation, next: &Explanation) -> Option<String> {
+        let variation = |one: &Explanation| -> Option<Variation<'_>> {
+            let find = |name: &&'static str| concerned(self.member).iter().find(|of| of.fault.name == *name).copied();
+            Variation::of(self.member, &one.faults.iter().map(find).collect::<Option<Vec<Concerned>>>()?)
+        };
+        let variations = [variation(best)?, variation(next)?];
+        let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
+        let mut allows = |row: &Answered<'_>, one: usize| {
+            match &[best, next][one].parameter {
+                Some(scaled) => scaled.interval(&variations[one], row.inputs, self.profile, &mut legal),
+                None => variations[one].interval(row.inputs, self.profile, &mut legal),
+            }
+            fit(row.values, &legal) != Fit::Outside
+        };
+        let simple = |row: &&Answered<'_>| telling(row.inputs, row.is_random());
+        let mut rows: Vec<&Answered<'_>> = self.failing.iter().chain(self.passing).collect();
+        rows.sort_by_key(simple);
+        let told = rows.into_iter().find(|row| !allows(row, 1) && allows(row, 0))?;
+        Some(self.member.case_id(told.case))
+    }
+
+    /// Whether every answer is 0 or 1.
+    fn is_of_bits(&self) -> bool {
+        let is_bit = |row: &Answered<'_>| row.values.iter().all(|value| [0.0, 1.0].contains(value));
+        self.failing.iter().chain(self.passing).all(is_bit)
+    }
+
     /// Keeps an explanation that holds for the failing cases. `prior` are the bits that it takes to say which it is.
     fn take(&mut self, tried: &impl Wrong, says: String, parameter: Option<Scaled>, prior: f64) {
+        let Some(Tally { explained, open, mut evidence, foretold }) = self.tally_failing(tried) else { return };
+        let Some((consistent, foretold)) = self.tally_passing(tried, foretold) else { return };
+        evidence += foretold.bits().min(MOST_FORETOLD) - prior;
+        evidence -= part_of(EXCLUDED, self.failing.len() - explained - open + self.passing.len() - consistent);
+        // What may give anything explains nothing by that alone.
+        if share(explained, self.failing.len()) >= LEAST && evidence >= LEAST_EVIDENCE {
+            let faults = tried.faults();
+            self.found.push(Explanation { faults, says, parameter, explained, open, consistent, evidence });
+        }
+    }
+
+    /// What an explanation says of the failing cases; `None` where it excludes too many.
+    fn tally_failing(&self, tried: &impl Wrong) -> Option<Tally> {
         let outputs = self.member.spec.output_len();
         let (mut legal, mut own) = (vec![Accept::ANY; outputs], vec![0.0; outputs]);
-        let (mut explained, mut open, mut consistent, mut evidence) = (0, 0, 0, -prior);
-        let mut foretold = Foretold::default();
-        let mut foretell = |fails: bool, own: &[f32], right: &[Accept]| {
-            foretold.take(fails, own.iter().zip(right).any(|(&own, right)| !right.contains(own.into())));
-        };
-        let (right, right_of_passing) = self.right.legal.split_at(self.failing.len() * outputs);
-        let of_failing = self.failing.iter().zip(self.right.bits.chunks(outputs)).zip(right.chunks(outputs));
-        for ((row, chance), right) in of_failing {
+        let mut tally = Tally::default();
+        let random = self.failing.iter().filter(|row| row.is_random()).count();
+        let most = part(MOST_EXCLUDED, self.failing.len());
+        let most_of_random = if tried.is_of_two() { part(MOST_EXCLUDED_BY_TWO, random) } else { most };
+        let (mut excluded, mut of_random) = (0, 0);
+        let right = self.right.legal.chunks(outputs);
+        for ((row, chance), right) in self.failing.iter().zip(self.right.bits.chunks(outputs)).zip(right) {
             tried.interval(row.inputs, self.profile, &mut legal);
             tried.evaluate(row.inputs, &mut own);
-            foretell(true, &own, right);
+            tally.foretold.take(true, is_wrong(&own, right));
             let is_own = |place: usize| {
                 let (a, b) = (row.values[place], own[place]);
                 a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
             };
             match fit(row.values, &legal) {
                 Fit::Outside => {
-                    evidence -= EXCLUDED;
+                    excluded += 1;
+                    of_random += usize::from(row.is_random());
+                    if excluded > most || of_random > most_of_random {
+                        return None;
+                    }
                     continue;
                 }
                 // Where nothing is promised, an answer is explained by who computes just that.
                 Fit::Open if !(0..outputs).all(is_own) => {
-                    open += 1;
+                    tally.open += 1;
                     continue;
                 }
-                Fit::Open | Fit::Inside => explained += 1,
+                Fit::Open | Fit::Inside => tally.explained += 1,
             }
             for (place, chance) in chance.iter().enumerate() {
                 let left = if is_own(place) { 0.0 } else { bits_left(row.values[place], &legal[place]) };
-                evidence += (chance - left).max(0.0);
+                tally.evidence += (chance - left).max(0.0);
             }
         }
-        for (row, right) in self.passing.iter().zip(right_of_passing.chunks(outputs)) {
+        Some(tally)
+    }
+
+    /// The passing cases that an explanation allows, and which cases would fail by it; `None` where those contradict it: what was
+    /// done would show in them. Random cases decide; at a formula's edges whoever makes a mistake may have another guard.
+    fn tally_passing(&self, tried: &impl Wrong, mut foretold: Foretold) -> Option<(usize, Foretold)> {
+        let outputs = self.member.spec.output_len();
+        let (mut legal, mut own) = (vec![Accept::ANY; outputs], vec![0.0; outputs]);
+        let random = self.passing.iter().filter(|row| row.is_random()).count();
+        let (most, most_of_random) = match self.is_of_bits() {
+            true => (0, 0),
+            false => (part(MOST_CONTRADICTED, self.passing.len()), part(MOST_OF_RANDOM, random)),
+        };
+        let (mut contradicted, mut of_random, mut missing) = (0, 0, 0);
+        let right = self.right.legal.chunks(outputs).skip(self.failing.len());
+        for (row, right) in self.passing.iter().zip(right) {
             tried.interval(row.inputs, self.profile, &mut legal);
             tried.evaluate(row.inputs, &mut own);
-            foretell(false, &own, right);
-            let fits = fit(row.values, &legal) != Fit::Outside;
-            consistent += usize::from(fits);
-            evidence -= if fits { 0.0 } else { EXCLUDED };
+            let (would_fail, is_contradicted) = (is_wrong(&own, right), fit(row.values, &legal) == Fit::Outside);
+            foretold.take(false, would_fail);
+            contradicted += usize::from(is_contradicted);
+            if row.is_random() {
+                of_random += usize::from(is_contradicted);
+                missing += usize::from(would_fail);
+            }
+            if contradicted > most || of_random > most_of_random {
+                return None;
+            }
         }
-        evidence += foretold.bits().min(MOST_FORETOLD);
-        // What may give anything explains nothing by that alone, and what answers that pass contradict is not what was done.
-        let (failing, passing) = (self.failing.len(), self.passing.len());
-        let is_borne_out = passing == 0 || share(consistent, passing) >= WHOLE;
-        let is_whole = share(explained + open, failing) >= WHOLE && share(explained, failing) >= LEAST;
-        if is_borne_out && is_whole && evidence >= LEAST_EVIDENCE {
-            let faults = tried.faults();
-            self.found.push(Explanation { faults, says, parameter, explained, open, consistent, evidence });
-        }
+        // Where rounding alone is wrong, another's may well be lucky.
+        let is_seldom = tried.is_rounding() || missing <= part(MOST_MISSING, random).max(1);
+        is_seldom.then(|| (self.passing.len() - contradicted, foretold))
     }
+}
+
+/// What an explanation says of the failing cases.
+#[derive(Default)]
+struct Tally {
+    explained: usize,
+    open: usize,
+    evidence: f64,
+    foretold: Foretold,
+}
+
+/// Whether a number of an answer is not legal.
+fn is_wrong(answer: &[f32], legal: &[Accept]) -> bool {
+    answer.iter().zip(legal).any(|(&x, legal)| !legal.contains(x.into()))
+}
+
+/// So much of a count, rounded down.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count of cases")]
+fn part(share: f64, count: usize) -> usize {
+    part_of(share, count) as usize
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of cases are far below 2⁵³")]
+fn part_of(each: f64, count: usize) -> f64 {
+    each * count as f64
+}
+
+/// The mistakes that are told beside something else.
+fn paired(member: &Member) -> Vec<Concerned> {
+    concerned(member).iter().filter(|concerned| !concerned.fault.is_rounding).copied().collect()
 }
 
 /// The bits that it takes to say which of so many it is.
@@ -454,6 +573,10 @@ impl Near {
 trait Wrong {
     /// The mistakes' names.
     fn faults(&self) -> Vec<&'static str>;
+    /// Whether one of them is of rounding alone.
+    fn is_rounding(&self) -> bool;
+    /// Whether two things are wrong.
+    fn is_of_two(&self) -> bool;
     /// What it may legally answer.
     fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
     /// What it answers in f32.
@@ -463,6 +586,14 @@ trait Wrong {
 impl Wrong for Variation<'_> {
     fn faults(&self) -> Vec<&'static str> {
         self.faults.iter().map(|fault| fault.name).collect()
+    }
+
+    fn is_rounding(&self) -> bool {
+        self.faults.iter().any(|fault| fault.is_rounding)
+    }
+
+    fn is_of_two(&self) -> bool {
+        self.faults.len() > 1
     }
 
     fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
@@ -477,6 +608,14 @@ impl Wrong for Variation<'_> {
 impl Wrong for (&Variation<'_>, &Scaled) {
     fn faults(&self) -> Vec<&'static str> {
         self.0.faults()
+    }
+
+    fn is_rounding(&self) -> bool {
+        self.0.is_rounding()
+    }
+
+    fn is_of_two(&self) -> bool {
+        !self.0.faults.is_empty()
     }
 
     fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
@@ -513,8 +652,14 @@ mod tests {
             inputs.push(row);
             values.push(out);
         }
-        let rows: Vec<Answered<'_>> =
-            (0..256).map(|k| Answered { inputs: &inputs[k], values: &values[k], is_wrong: wrong[k] }).collect();
+        let rows: Vec<Answered<'_>> = (0..256)
+            .map(|k| Answered {
+                case: CaseRef::Random(k as u64),
+                inputs: &inputs[k],
+                values: &values[k],
+                is_wrong: wrong[k],
+            })
+            .collect();
         (diagnose(member, &rows, &WGSL), inputs)
     }
 
@@ -609,14 +754,57 @@ mod tests {
                 (0..outputs).any(|k| judge(values[k].to_bits(), reference[k], &legal[k]).outcome == Outcome::Fail)
             };
             let rows = inputs.iter().zip(&values);
-            let rows: Vec<Answered<'_>> =
-                rows.map(|(inputs, values)| Answered { inputs, values, is_wrong: is_wrong(inputs, values) }).collect();
+            let rows: Vec<Answered<'_>> = rows
+                .enumerate()
+                .map(|(place, (inputs, values))| {
+                    let is_wrong = is_wrong(inputs, values);
+                    Answered { case: CaseRef::Hard(place), inputs, values, is_wrong }
+                })
+                .collect();
             diagnose(member, &rows, &WGSL)
         };
         let found = diagnosis(&|row, out| naive.formula.embedded(row, out));
         assert!(found.failing > 1 && found.explanations[0].faults == ["naive-form"], "{}", found.sentence);
         let found = diagnosis(&|_, out| out.fill(f32::INFINITY));
         assert!(found.failing > 1 && found.explanations.is_empty(), "{}", found.sentence);
+    }
+
+    #[test]
+    fn what_is_wrong_in_a_part_of_the_cases_is_no_mistake_of_the_catalogue() {
+        for (id, input, component, bound, factor) in [
+            ("lighting/spot", "p", 0, 4.0, 0.999),
+            ("lighting/spot", "p", 2, -4.0, 0.9985),
+            ("lighting/two-lights", "shininess", 0, 40.0, 1.01),
+            ("fog/exp", "density", 0, 0.5, 0.9),
+        ] {
+            let (found, _) = diagnosis(id, |member, inputs, out| {
+                member.formula.embedded(inputs, out);
+                if inputs[member.spec.place(input).expect(input).start + component] > bound {
+                    out.iter_mut().for_each(|x| *x *= factor);
+                }
+            });
+            assert!(
+                found.failing > 8 && found.explanations.is_empty(),
+                "{id}: {} of {}",
+                found.sentence,
+                found.failing
+            );
+            let says = format!("{id}: {}", found.sentence);
+            assert!(says.contains(" have ") && says.contains(input), "{says}");
+        }
+    }
+
+    #[test]
+    fn two_that_explain_most_are_told_apart_by_a_case() {
+        let (found, inputs) = diagnosis("lighting/spot", making(&["cutoff-doubled"]));
+        let case = found.telling.expect("a cone without an edge explains most cases");
+        let says = format!("; {case} tells it from the next best: the spotlight has no cutoff");
+        assert!(found.sentence.ends_with(&says), "{}", found.sentence);
+        // Beyond the doubled cutoff a cone without one still lights.
+        let place = |name: &str| formulas().iter().find(|member| member.spec.id == "lighting/spot")?.spec.place(name);
+        let number: usize = case.rsplit('/').next().and_then(|k| k.parse().ok()).expect("a random case");
+        let cosine = inputs[number][place("cutoff_cosine").expect("its cutoff").start];
+        assert!(cosine > 0.0, "twice {cosine}'s angle is less than all around");
     }
 
     #[test]
@@ -637,7 +825,7 @@ mod tests {
         let (found, _) = diagnosis("lighting/spot", |_, _, out| out.fill(f32::NAN));
         assert!(found.failing == 256 && found.explanations.is_empty(), "{}", found.sentence);
         let member = formulas().iter().find(|member| member.spec.id == "fog/exp").expect("fog/exp");
-        let short = [Answered { inputs: &[1.0], values: &[], is_wrong: true }];
+        let short = [Answered { case: CaseRef::Hard(0), inputs: &[1.0], values: &[], is_wrong: true }];
         assert_eq!(diagnose(member, &short, &WGSL).sentence, "nothing fails");
         assert_eq!(diagnose(member, &[], &WGSL).sentence, "nothing fails");
     }

@@ -30,13 +30,16 @@ pub struct Scaled {
 const ROWS: usize = 64;
 /// Steps of the refinement.
 const STEPS: usize = 16;
-/// Factors from 2⁻⁵ to 2⁵ in steps of a sixth of an octave: beyond, what seems to be one is something else.
+/// Factors from 2⁻⁵ to 2⁵ in steps of a sixth of an octave: at the ends and beyond, what seems to be one is something else.
 const OCTAVES: i32 = 5;
 const STEPS_AN_OCTAVE: i32 = 6;
 /// The same where mistakes are tried with parameters, cases, and how many of those are sought well.
 const ROUGH_STEPS: i32 = 2;
 const FEW_ROWS: usize = 6;
 const NEAREST: usize = 12;
+/// Those few are tried on fewer cases still; of so many one is tried on all of them.
+const FEWER_ROWS: usize = 2;
+const NEAR: usize = 4;
 /// What is left of the cost of the parameter as it was asked, at most.
 const MOST_COST: f64 = 0.9;
 
@@ -94,6 +97,10 @@ pub(super) fn digits(x: f64, significant: i32) -> String {
     }
     #[expect(clippy::cast_possible_truncation, reason = "an exponent of f64 is a small number")]
     let magnitude = x.abs().log10().floor() as i32;
+    if !(-6..=9).contains(&magnitude) {
+        let places = usize::try_from(significant - 1).unwrap_or_default();
+        return format!("{x:.places$e}");
+    }
     let places = usize::try_from(significant - 1 - magnitude).unwrap_or_default();
     format!("{x:.places$}")
 }
@@ -140,18 +147,30 @@ pub(super) fn nearest<'a, 'b>(
     if few.is_empty() {
         return vec![];
     }
-    let mut tried: Vec<(f64, &Variation<'_>, Scaled)> = vec![];
+    let mut tried: Vec<(&Variation<'_>, Scaled)> = vec![];
     for variation in variations {
-        for (name, range) in parameters(&variation.member.spec) {
-            let scaled = Scaled::one(name, range, false);
-            if let Some((cost, _)) = roughly(variation, &few, &scaled, OCTAVES, ROUGH_STEPS) {
-                tried.push((cost, variation, scaled));
-            }
-        }
+        let scaled = parameters(&variation.member.spec).map(|(name, range)| Scaled::one(name, range, false));
+        tried.extend(scaled.map(|scaled| (variation, scaled)));
     }
-    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let sought = tried.into_iter().take(NEAREST);
-    sought.filter_map(|(_, variation, scaled)| Some((variation, search(variation, &all, scaled)?))).collect()
+    // What is far off in two cases is not tried on more.
+    let count = tried.len();
+    let near = cheapest(tried, &few[..few.len().min(FEWER_ROWS)], (count / NEAR).max(NEAREST));
+    let sought = cheapest(near, &few, NEAREST).into_iter();
+    sought.filter_map(|(variation, scaled)| Some((variation, search(variation, &all, scaled)?))).collect()
+}
+
+/// So many of them that come nearest to the answers by rough factors.
+fn cheapest<'a, 'b>(
+    tried: Vec<(&'b Variation<'a>, Scaled)>,
+    rows: &[FactorRow],
+    count: usize,
+) -> Vec<(&'b Variation<'a>, Scaled)> {
+    let cost = |(variation, scaled): &(&Variation<'_>, Scaled)| {
+        roughly(variation, rows, scaled, OCTAVES, ROUGH_STEPS).map_or(f64::INFINITY, |(cost, _)| cost)
+    };
+    let mut costs: Vec<_> = tried.into_iter().map(|one| (cost(&one), one)).collect();
+    costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    costs.into_iter().take(count).map(|(_, one)| one).collect()
 }
 
 /// So many of the failing cases, evenly spread.
@@ -258,7 +277,7 @@ fn search(variation: &Variation<'_>, rows: &[FactorRow], mut scaled: Scaled) -> 
     }
     // Nothing wrong with this parameter.
     let is_one = (factor - 1.0).abs() <= scaled.uncertainty;
-    let is_beyond = factor.log2().abs() > f64::from(OCTAVES);
+    let is_beyond = factor.log2().abs() > f64::from(OCTAVES) - 0.5;
     (!is_one && !is_beyond).then_some(Scaled { factor, ..scaled })
 }
 
@@ -268,8 +287,14 @@ mod tests {
 
     #[test]
     fn numbers_keep_their_significant_digits() {
-        let rows =
-            [(4.0, 3, "4.00"), (0.42, 2, "0.42"), (128.4, 3, "128"), (0.00314, 2, "0.0031"), (12345.0, 3, "12345")];
+        let rows = [
+            (4.0, 3, "4.00"),
+            (0.42, 2, "0.42"),
+            (128.4, 3, "128"),
+            (0.00314, 2, "0.0031"),
+            (12345.0, 3, "12345"),
+            (1.18e-38, 3, "1.18e-38"),
+        ];
         for (x, significant, text) in rows {
             assert_eq!(digits(x, significant), text);
         }

@@ -467,8 +467,11 @@ mod tests {
             rows.iter().map(answer).collect::<Vec<_>>()
         };
         let verdict = |values: &[Vec<f32>]| {
-            let rows: Vec<Answered<'_>> =
-                rows.iter().zip(values).map(|(inputs, values)| Answered { inputs, values, is_wrong: false }).collect();
+            let rows: Vec<Answered<'_>> = rows
+                .iter()
+                .zip(values)
+                .map(|(inputs, values)| Answered { case: CaseRef::Random(0), inputs, values, is_wrong: false })
+                .collect();
             group_verdict(member, &rows, &WGSL)
         };
         assert_eq!(verdict(&answers(&|_| {})), None);
@@ -486,8 +489,9 @@ mod tests {
         let rows = rows_of(member, 65_536);
         let values: Vec<[f32; 1]> = rows.iter().map(|row| [row[0] * (1.0 / 255.0)]).collect();
         let rows = rows.iter().zip(&values);
-        let rows: Vec<Answered<'_>> =
-            rows.map(|(inputs, values)| Answered { inputs, values, is_wrong: false }).collect();
+        let rows: Vec<Answered<'_>> = rows
+            .map(|(inputs, values)| Answered { case: CaseRef::Random(0), inputs, values, is_wrong: false })
+            .collect();
         assert_eq!(group_verdict(member, &rows, &WGSL), None);
     }
 
@@ -506,8 +510,9 @@ mod tests {
                 };
                 let values: Vec<Vec<f32>> = rows.iter().map(answer).collect();
                 let rows = rows.iter().zip(&values);
-                let rows: Vec<Answered<'_>> =
-                    rows.map(|(inputs, values)| Answered { inputs, values, is_wrong: false }).collect();
+                let rows: Vec<Answered<'_>> = rows
+                    .map(|(inputs, values)| Answered { case: CaseRef::Random(0), inputs, values, is_wrong: false })
+                    .collect();
                 assert_eq!(group_verdict(member, &rows, &WGSL), None, "{id}");
             }
         }
@@ -527,8 +532,9 @@ mod tests {
             };
             let values: Vec<Vec<f32>> = rows.iter().map(answer).collect();
             let rows = rows.iter().zip(&values);
-            let rows: Vec<Answered<'_>> =
-                rows.map(|(inputs, values)| Answered { inputs, values, is_wrong: false }).collect();
+            let rows: Vec<Answered<'_>> = rows
+                .map(|(inputs, values)| Answered { case: CaseRef::Random(0), inputs, values, is_wrong: false })
+                .collect();
             assert_eq!(group_verdict(member, &rows, &WGSL), None, "{}", member.spec.id);
         }
     }

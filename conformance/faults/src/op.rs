@@ -1,6 +1,6 @@
 //! What a mistake does to numbers: those of an input, of a step, of what a step is given, or of an output.
 
-use super::row::Arithmetic;
+use super::row::{Arithmetic, Narrowing};
 use lightmeter_reference::Vector;
 use lightmeter_reference::color::{srgb_decode, srgb_encode};
 
@@ -61,8 +61,12 @@ pub(super) enum Op {
     Bytes,
     /// In half precision: 11 bits, from 2⁻¹⁴ to 65504.
     Half,
+    /// The same, the last bits cut off.
+    HalfCut,
     /// In bfloat16: 8 bits.
     BFloat,
+    /// The same, the last bits cut off.
+    BFloatCut,
     /// v → v/|v|.
     Normalize,
     /// v by an inverse square root from the bits of v·v and one step of Newton's, right to 0.18 %.
@@ -201,8 +205,10 @@ impl Op {
             Self::Truncate => (byte * unit(x)).floor_then(|n| R::literal(n) / byte),
             Self::Cut => (byte * x).floor_then(|n| R::literal(n) / byte),
             Self::Bytes => (byte * unit(x)).round() / byte,
-            Self::Half => x.in_half(),
-            Self::BFloat => x.in_bfloat(),
+            Self::Half => x.in_half(Narrowing::Rounded),
+            Self::HalfCut => x.in_half(Narrowing::Cut),
+            Self::BFloat => x.in_bfloat(Narrowing::Rounded),
+            Self::BFloatCut => x.in_bfloat(Narrowing::Cut),
             _ => x,
         }
     }
@@ -274,6 +280,8 @@ mod tests {
         assert_eq!(changed(Op::OverSum, &[1.0, -2.0, 1.0]), [0.25, -0.5, 0.25]);
         assert_eq!(changed(Op::Normalize, &[0.0; 3]), [0.0; 3]);
         assert_eq!(changed(Op::Half, &[1.0 + 1.0 / 4096.0, 70000.0, 1e-9]), [1.0, f64::INFINITY, 0.0]);
+        assert_eq!(changed(Op::HalfCut, &[2.0 - 1.0 / 4096.0, 70000.0]), [2.0 - 1.0 / 1024.0, f64::INFINITY]);
         assert_eq!(changed(Op::BFloat, &[1.0 + 1.0 / 512.0]), [1.0]);
+        assert_eq!(changed(Op::BFloatCut, &[-2.0 + 1.0 / 512.0]), [-2.0 + 1.0 / 128.0]);
     }
 }

@@ -13,15 +13,24 @@ pub trait Arithmetic: Alter {
 
     /// In half precision, overflow to infinity, subnormal numbers kept or not.
     #[must_use]
-    fn in_half(self) -> Self;
+    fn in_half(self, by: Narrowing) -> Self;
 
     /// In bfloat16.
     #[must_use]
-    fn in_bfloat(self) -> Self;
+    fn in_bfloat(self, by: Narrowing) -> Self;
 
     /// 1/√self by half its bits taken from a constant, and one step of Newton's method.
     #[must_use]
     fn fast_inverse_sqrt(self) -> Self;
+}
+
+/// How a number comes to have fewer bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Narrowing {
+    /// It becomes the nearest, the even one at a tie.
+    Rounded,
+    /// Its last bits are cut off.
+    Cut,
 }
 
 /// bfloat16: the range of binary32, 8 bits.
@@ -36,16 +45,24 @@ impl Format for Bf16 {
     const MAX: f64 = 338_953_138_925_153_547_590_470_800_371_487_866_880.0;
 }
 
-/// The nearest number of a format, the even one at a tie; infinite from half a step beyond the greatest.
-fn nearest<F: Format>(x: f64) -> f64 {
+/// A number of a format: the nearest one, infinite from half a step beyond the greatest, or the next one towards 0,
+/// infinite from a step beyond.
+fn narrow<F: Format>(x: f64, by: Narrowing) -> f64 {
     if !x.is_finite() {
         return x;
     }
     let step = F::EPSILON * F::MIN_NORMAL;
     if x.abs() < F::MIN_NORMAL {
-        return (x / step).round_ties_even() * step;
+        return match by {
+            Narrowing::Rounded => (x / step).round_ties_even() * step,
+            Narrowing::Cut => (x / step).trunc() * step,
+        };
     }
     let (low, high) = (F::round_down(x), F::round_up(x));
+    if by == Narrowing::Cut {
+        let cut = if x > 0.0 { low } else { high };
+        return if cut.abs() > F::MAX { f64::INFINITY.copysign(x) } else { cut };
+    }
     let is_even = |x: f64| x.to_bits() & (1 << (52 - F::FRACTION_BITS)) == 0;
     let rounded = match (x - low).total_cmp(&(high - x)) {
         Ordering::Less => low,
@@ -56,9 +73,9 @@ fn nearest<F: Format>(x: f64) -> f64 {
     if rounded.abs() > F::MAX { f64::INFINITY.copysign(x) } else { rounded }
 }
 
-/// The nearest numbers of a format to those of an interval.
-fn nearest_to_each<F: Format>(x: Accept) -> Accept {
-    let (low, high) = (nearest::<F>(x.low()), nearest::<F>(x.high()));
+/// The numbers of a format that those of an interval become.
+fn narrow_each<F: Format>(x: Accept, by: Narrowing) -> Accept {
+    let (low, high) = (narrow::<F>(x.low(), by), narrow::<F>(x.high(), by));
     if x.is_any() || low.is_infinite() || high.is_infinite() {
         return Accept::ANY;
     }
@@ -73,12 +90,12 @@ impl Arithmetic for f64 {
         formula.on_mistaken_f64(inputs, out);
     }
 
-    fn in_half(self) -> Self {
-        nearest::<F16>(self)
+    fn in_half(self, by: Narrowing) -> Self {
+        narrow::<F16>(self, by)
     }
 
-    fn in_bfloat(self) -> Self {
-        nearest::<Bf16>(self)
+    fn in_bfloat(self, by: Narrowing) -> Self {
+        narrow::<Bf16>(self, by)
     }
 
     fn fast_inverse_sqrt(self) -> Self {
@@ -94,13 +111,13 @@ impl Arithmetic for f32 {
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "a number of half precision is one of f32")]
-    fn in_half(self) -> Self {
-        nearest::<F16>(self.into()) as Self
+    fn in_half(self, by: Narrowing) -> Self {
+        narrow::<F16>(self.into(), by) as Self
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "a number of bfloat16 is one of f32")]
-    fn in_bfloat(self) -> Self {
-        nearest::<Bf16>(self.into()) as Self
+    fn in_bfloat(self, by: Narrowing) -> Self {
+        narrow::<Bf16>(self.into(), by) as Self
     }
 
     fn fast_inverse_sqrt(self) -> Self {
@@ -114,17 +131,22 @@ impl Arithmetic for Accept {
         formula.on_mistaken_accept(inputs, out);
     }
 
-    fn in_half(self) -> Self {
-        nearest_to_each::<F16>(self)
+    fn in_half(self, by: Narrowing) -> Self {
+        narrow_each::<F16>(self, by)
     }
 
-    fn in_bfloat(self) -> Self {
-        nearest_to_each::<Bf16>(self)
+    fn in_bfloat(self, by: Narrowing) -> Self {
+        narrow_each::<Bf16>(self, by)
     }
 
     fn fast_inverse_sqrt(self) -> Self {
-        // Below the right one by as much at most.
-        self.inverse_sqrt() * Self::from_bounds(1.0 - 0.001_76, 1.0 + 1e-6)
+        // It falls as its argument grows, but for the rounding of its steps.
+        const ROUNDING: f64 = 1.0 / 2_097_152.0;
+        if self.is_any() || self.low() <= 0.0 {
+            return Self::ANY;
+        }
+        let (least, greatest) = (self.high().fast_inverse_sqrt(), self.low().fast_inverse_sqrt());
+        Self::from_bounds(least.min(greatest) * (1.0 - ROUNDING), least.max(greatest) * (1.0 + ROUNDING))
     }
 }
 

@@ -136,8 +136,11 @@ impl<'a> Bench<'a> {
 
     fn answered<'b>(&'b self, values: &'b [Vec<f32>]) -> Vec<Answered<'b>> {
         let rows = self.inputs.iter().zip(values).enumerate();
-        rows.map(|(case, (inputs, values))| Answered { inputs, values, is_wrong: self.is_wrong(case, values) })
-            .collect()
+        rows.map(|(place, (inputs, values))| {
+            let case = self.cases[place];
+            Answered { case, inputs, values, is_wrong: self.is_wrong(place, values) }
+        })
+        .collect()
     }
 
     fn kill(&self, fault: &'static Fault, variation: &Variation<'_>) -> Kill {

@@ -3,18 +3,28 @@
 use crate::image::LegalPixel;
 use crate::image::file::StoredImage;
 use lightmeter_arithmetic::Profile;
-use lightmeter_catalogue::select::Member;
+use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_scene::frame::Frame;
 
 /// An answer to one case.
 #[derive(Clone, Copy, Debug)]
 pub struct Answered<'a> {
+    /// Which case of the formula it is.
+    pub case: CaseRef,
     /// The case's inputs.
     pub inputs: &'a [f32],
     /// What was answered.
     pub values: &'a [f32],
     /// Whether a verdict on it failed.
     pub is_wrong: bool,
+}
+
+impl Answered<'_> {
+    /// Whether its inputs were drawn, and are none that a formula is hard for.
+    #[must_use]
+    pub const fn is_random(&self) -> bool {
+        matches!(self.case, CaseRef::Random(_))
+    }
 }
 
 /// Knows mistakes, and tells which one explains answers. `lightmeter_faults` has the one that commands use.
@@ -29,8 +39,8 @@ pub trait Diagnose: Sync {
     fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> String;
 }
 
-/// A row that was answered: its inputs, the values, and whether it is a random case.
-pub type Row<'a> = (Vec<f32>, &'a [f32], bool);
+/// A row that was answered: its inputs, the values, and which case it is.
+pub type Row<'a> = (Vec<f32>, &'a [f32], CaseRef);
 
 /// What the diagnosis of all answers to a formula says.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -55,14 +65,14 @@ impl Told {
             // Hard cases are where formulas are steep, and say nothing of a parameter.
             let random: Vec<Answered<'_>> = right
                 .iter()
-                .filter(|(.., is_random)| *is_random)
-                .map(|(inputs, values, _)| Answered { inputs, values, is_wrong: false })
+                .filter(|(.., case)| matches!(case, CaseRef::Random(_)))
+                .map(|(inputs, values, case)| Answered { case: *case, inputs, values, is_wrong: false })
                 .collect();
             return Self { systematic: diagnose.systematic(member, &random, profile), ..Self::default() };
         }
         let all = wrong.iter().map(|row| (row, true)).chain(right.iter().map(|row| (row, false)));
         let answered: Vec<Answered<'_>> =
-            all.map(|((inputs, values, _), is_wrong)| Answered { inputs, values, is_wrong }).collect();
+            all.map(|((inputs, values, case), is_wrong)| Answered { case: *case, inputs, values, is_wrong }).collect();
         Self { explanation: Some(diagnose.formula(member, &answered, failing, profile)), ..Self::default() }
     }
 }

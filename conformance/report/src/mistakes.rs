@@ -52,7 +52,7 @@ fn looks(look: &MistakeLook) -> String {
         (0, 0) => "no wrong number is finite".to_owned(),
         (_, 0) => "each wrong number is too great".to_owned(),
         (0, _) => "each wrong number is too small".to_owned(),
-        (great, small) => format!("{great} wrong numbers are too great, {small} too small"),
+        (great, small) => format!("of the wrong numbers {great} are too great and {small} too small"),
     };
     let outputs: Vec<&str> = outputs.iter().map(AsRef::as_ref).collect();
     format!("  {formula}: {failing} of {cases} cases fail, in {}; {side}", outputs.join(", "))

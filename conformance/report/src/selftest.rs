@@ -1,6 +1,6 @@
 //! The self-test of formulas as text.
 
-use lightmeter_document::selftest::{Clean, Finding, Kill, Mistake, Record, Resolution, family_of};
+use lightmeter_document::selftest::{Clean, Finding, Kill, Mistake, Record, Resolution, SceneResolution, family_of};
 use std::fmt::{Result, Write};
 
 /// The kill matrix by mistake, what went wrong, and the resolution where it was measured.
@@ -80,4 +80,19 @@ pub(super) fn smallest(kills: &[&Kill]) -> (usize, usize) {
 #[expect(clippy::cast_precision_loss, reason = "counts of mistakes")]
 pub(super) fn percent(part: usize, whole: usize) -> f64 {
     if whole == 0 { 100.0 } else { 100.0 * part as f64 / whole as f64 }
+}
+
+/// The smallest errors that scenes tell, by scene and parameter.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn scene_resolutions(resolutions: &[SceneResolution], out: &mut impl Write) -> Result {
+    if !resolutions.is_empty() {
+        writeln!(out, "\n{:<32} {:<22} {:>10} {:>10}", "smallest errors in scenes", "of", "pixel", "image")?;
+    }
+    let percent = |x: Option<f64>| x.map_or("–".into(), |x| format!("{:.4} %", 100.0 * x));
+    for SceneResolution { scene, parameter, pixel, image, .. } in resolutions {
+        writeln!(out, "{scene:<32} {parameter:<22} {:>10} {:>10}", percent(*pixel), percent(*image))?;
+    }
+    Ok(())
 }

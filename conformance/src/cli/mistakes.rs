@@ -78,6 +78,9 @@ fn all_names() -> impl Iterator<Item = &'static str> {
 
 /// What is said of a name that no mistake has.
 fn unknown(name: &str) -> String {
+    if name.contains(['*', '?', '[', '{']) {
+        return format!("no mistake's name matches `{name}`: see `lightmeter mistakes`");
+    }
     let mut near: Vec<(usize, &str)> =
         all_names().map(|known| (strsim::damerau_levenshtein(known, name), known)).collect();
     near.sort_unstable();

@@ -76,7 +76,13 @@ impl Render {
         }
         let frame = load::scene(&self.scene)?.frame;
         let image = match self.with {
-            With::Reference if self.mistake.is_some() => draw::<f64>(&frame, self.mistake.as_slice()),
+            With::Reference if let Some(mistake) = self.mistake => {
+                let image = draw::<f64>(&frame, &[mistake]);
+                if image.pixels == draw::<f64>(&frame, &[]).pixels {
+                    bail!("`{}` changes nothing in this scene: {}", mistake.name, mistake.says);
+                }
+                image
+            }
             With::Reference => {
                 let format = self.stage.map_or(frame.target.format, |_| TargetFormat::Rgba32Float);
                 StoredImage::of(&render::<f64>(&frame, None, self.stage), format)

@@ -11,9 +11,11 @@ use lightmeter::document::Document as _;
 use lightmeter::document::event::Stop;
 use lightmeter::document::run::Interrupted;
 use lightmeter::document::selftest::{
-    Mistake, NamedFrom, Record, Resolution, SCHEMA, SceneRecord, SelftestDocument, UnitFinding, UnitRow,
+    Mistake, NamedFrom, Record, Resolution, SCHEMA, SceneRecord, SceneResolution, SelftestDocument, UnitFinding,
+    UnitRow,
 };
 use lightmeter::faults::calibrate::{CASES, calibrate};
+use lightmeter::faults::scene::calibrate::calibrate as measure;
 use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
 use lightmeter::faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
@@ -53,7 +55,7 @@ pub(crate) struct Selftest {
     /// Legal evaluations of each case, drawn at random, that must not be flagged
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(0..=1024))]
     draws: u64,
-    /// Measure the smallest errors that 4,096 cases name, for each parameter of each formula
+    /// Measure the smallest errors that are told, for each parameter of each formula, by 4,096 cases, and of each scene
     #[arg(long)]
     calibrate: bool,
     /// Accuracy rules, as for `run`
@@ -82,6 +84,7 @@ struct Tested {
     formulas: Option<Record>,
     resolutions: Vec<Resolution>,
     scenes: Option<SceneRecord>,
+    scene_resolutions: Vec<SceneResolution>,
     unit: Option<Vec<UnitRow>>,
     interrupted: Option<Interrupted>,
 }
@@ -127,6 +130,10 @@ impl Selftest {
         if is_asked(Part::Scenes) {
             let mut progress = |id: &str| say(&format!("every mistake in {id}"));
             tested.scenes = Some(scenes::selftest(SCENE_SIZE, self.profile, stop, &mut progress)?);
+            if self.calibrate && !stop.is_set() {
+                let mut progress = |id: &str| say(&format!("the smallest errors in {id}"));
+                tested.scene_resolutions = measure(SCENE_SIZE, self.profile, stop, &mut progress)?;
+            }
         }
         if is_asked(Part::BlendUnit) {
             for &target in targets {
@@ -186,6 +193,7 @@ impl Tested {
             named_from: (!self.resolutions.is_empty()).then_some(NAMED_FROM),
             calibration: self.formulas.is_some().then(|| self.resolutions.clone()),
             scenes: self.scenes.clone(),
+            scene_calibration: self.scene_resolutions.clone(),
             interrupted: self.interrupted.clone(),
         };
         Ok(document.to_json()?)
@@ -202,6 +210,7 @@ impl Tested {
         if let Some(scenes) = &self.scenes {
             let mut text = String::new();
             scenes::text(scenes, &mut text)?;
+            report::scene_resolutions(&self.scene_resolutions, &mut text)?;
             parts.push(text);
         }
         if let Some(rows) = &self.unit {

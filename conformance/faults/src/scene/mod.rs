@@ -1,6 +1,7 @@
 //! Which mistake a renderer made, from an image: a frame that is drawn as if it were another, an image that is written as if it
 //! were, and pairs of these, tried as explanations of the pixels that fail.
 
+pub mod calibrate;
 pub mod selftest;
 mod table;
 

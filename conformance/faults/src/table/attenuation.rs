@@ -80,6 +80,7 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("distance-from-the-eye", "attenuation takes the distance from the eye", &[&[input("light", Op::Set(0.0))]])
         .only(|spec| spec.family() == "attenuation"),
     fault("ambient-attenuated", "attenuation is applied to the ambient term", &[&[times("CA", "atten")]])
+        .only(|spec| spec.id != "lighting/point-opengl")
         .seen_in("OpenGL's fixed function"),
     fault("ambient-not-attenuated", "the ambient term is not attenuated", &[&[given("CA", "atten", Op::Set(1.0))]]),
     fault("diffuse-not-attenuated", "the diffuse term is not attenuated", &[&[given("CD", "atten", Op::Set(1.0))]]),
@@ -87,22 +88,31 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("cutoff-by-sine", "the spotlight's cutoff is compared by its sine", &[&[input("cutoff_cosine", Op::Sine)]]),
     fault(
         "cutoff-halved",
-        "the spotlight's cutoff is taken as the whole cone's angle",
+        "the spotlight's cutoff is taken as the whole cone's angle, and halved",
         &[&[input("cutoff_cosine", Op::HalfAngle)]],
     ),
     fault(
         "cutoff-doubled",
-        "the spotlight's cutoff is taken as half of what was asked of the angle from the axis",
+        "the spotlight's cone is twice as wide as was asked",
         &[&[input("cutoff_cosine", Op::DoubleAngle)]],
     ),
     fault("spot-exponent-ignored", "the spotlight's exponent is ignored", &[&[input("exponent", Op::Set(0.0))]])
         .only(|spec| spec.place("cutoff_cosine").is_some())
         .seen_in("three.js and most engines"),
+    fault(
+        "spot-exponent-at-least-1",
+        "the spotlight's exponent is at least 1",
+        &[&[given("spot", "exponent", Op::AtLeast(1.0))]],
+    ),
     fault("spot-axis-reversed", "the spotlight's axis is reversed", &[&[input("axis", Op::Negate)]]),
     fault("no-cone", "the spotlight shines all round", &[&[result("spot", Op::Set(1.0))]]),
     fault("no-cutoff", "the spotlight has no cutoff", &[&[given("spot", "cutoff_cosine", Op::Set(-2.0))]]),
-    fault("smooth-cone", "the spotlight's edge is smoothed by smoothstep", &[&[form("spot", Form::SmoothConeAlone)]])
-        .seen_in("three.js, penumbra 1"),
+    fault(
+        "smooth-cone",
+        "the spotlight's edge is smoothed by smoothstep, in the place of its exponent",
+        &[&[form("spot", Form::SmoothConeAlone)]],
+    )
+    .seen_in("three.js, penumbra 1"),
     fault("specular-not-in-cone", "the highlight is not kept within the cone", &[&[given("CS", "cone", Op::Set(1.0))]]),
     fault("axis-not-normalised", "the spotlight's axis is not normalised", &[&[pass("axis", "axis")]]),
     fault(
@@ -132,14 +142,14 @@ pub(super) const FAULTS: &[Fault] = &[
         "linear-cone",
         "the spotlight fades by a straight line from its axis to its edge, beside its exponent",
         &[&[form("spot", Form::LinearCone)]],
-    )
-    .seen_in("Direct3D's penumbra; Ogre"),
+    ),
     fault(
         "linear-cone-power",
         "the spotlight's power is of the cosine rescaled from its edge to its axis",
         &[&[form("spot", Form::RescaledCone)]],
     )
-    .seen_in("Direct3D's penumbra"),
+    .only(|spec| spec.id != "attenuation/spot-cutoff")
+    .seen_in("Direct3D's penumbra; Ogre"),
     fault(
         "cosine-clamped-before-the-cutoff",
         "the spotlight's cosine is clamped before it is compared: a cutoff beyond 90° lights everything",
@@ -152,4 +162,10 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[given("spot", "cutoff_cosine", Op::AtLeast(0.0))]],
     ),
     fault("cutoff-squared", "the cutoff's cosine is squared", &[&[given("spot", "cutoff_cosine", Op::Square)]]),
+    fault(
+        "cone-without-its-edge",
+        "what lies on the edge of the spotlight's cone is not lit",
+        &[&[form("spot", Form::ConeWithoutEdge)]],
+    )
+    .seen_in("> for ≥; three.js"),
 ];

@@ -16,7 +16,11 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "one-power-for-srgb",
         "one power of 2.2 stands for sRGB",
-        &[&[pass_as("encoded", "c", Op::Power(1.0 / 2.2))], &[pass_as("decoded", "e", Op::Power(2.2))]],
+        &[
+            &[pass_as("encoded by the power alone", "c", Op::Power(1.0 / 2.2))],
+            &[pass_as("encoded", "c", Op::Power(1.0 / 2.2))],
+            &[pass_as("decoded", "e", Op::Power(2.2))],
+        ],
     ),
     fault(
         "encoded-for-decoded",
@@ -26,15 +30,40 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "decoded-for-encoded",
         "sRGB is decoded where it is to be encoded",
-        &[&[pass_as("encoded", "c", Op::Decode)]],
+        &[
+            &[pass_as("encoded by the power alone", "c", Op::Decode)],
+            &[pass_as("c^(1/2.2)", "c", Op::Decode)],
+            &[pass_as("encoded", "c", Op::Decode)],
+        ],
     ),
-    fault("not-converted", "sRGB is not converted at all", &[&[pass("encoded", "c")], &[pass("decoded", "e")]]),
-    fault("encoded-twice", "sRGB is encoded twice", &[&[result("encoded", Op::Encode)]])
-        .seen_in("an sRGB target beneath a shader that encodes"),
+    fault(
+        "not-converted",
+        "sRGB is not converted at all",
+        &[
+            &[pass("encoded by the power alone", "c")],
+            &[pass("c^(1/2.2)", "c")],
+            &[pass("encoded", "c")],
+            &[pass("decoded", "e")],
+        ],
+    ),
+    fault(
+        "encoded-twice",
+        "sRGB is encoded twice",
+        &[
+            &[result("encoded by the power alone", Op::Encode)],
+            &[result("c^(1/2.2)", Op::Encode)],
+            &[result("encoded", Op::Encode)],
+        ],
+    )
+    .seen_in("an sRGB target beneath a shader that encodes"),
     fault(
         "straight-piece-throughout",
         "sRGB's straight piece is taken throughout",
-        &[&[pass_as("encoded", "c", Op::Scale(12.92))]],
+        &[
+            &[pass_as("encoded by the power alone", "c", Op::Scale(12.92))],
+            &[pass_as("c^(1/2.2)", "c", Op::Scale(12.92))],
+            &[pass_as("encoded", "c", Op::Scale(12.92))],
+        ],
     ),
     fault(
         "alpha-encoded",
@@ -70,12 +99,20 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "rec709-for-srgb",
         "Rec. 709's curve stands for sRGB's",
-        &[&[form("encoded", Form::EncodeRec709)], &[form("decoded", Form::DecodeRec709)]],
+        &[
+            &[form("encoded by the power alone", Form::EncodeRec709)],
+            &[form("encoded", Form::EncodeRec709)],
+            &[form("decoded", Form::DecodeRec709)],
+        ],
     ),
     fault(
         "square-root-for-srgb",
         "a square root, or a square, stands for sRGB",
-        &[&[pass_as("encoded", "c", Op::Root)], &[pass_as("decoded", "e", Op::Square)]],
+        &[
+            &[pass_as("encoded by the power alone", "c", Op::Root)],
+            &[pass_as("encoded", "c", Op::Root)],
+            &[pass_as("decoded", "e", Op::Square)],
+        ],
     )
     .seen_in("shaders that spare a pow"),
     fault(
@@ -85,4 +122,5 @@ pub(super) const FAULTS: &[Fault] = &[
     ),
     fault("encode-scale-missing", "sRGB's factor of 1.055 is missing", &[&[form("encoded", Form::EncodeWithoutScale)]])
         .seen_in("three.js, PR 8345"),
+    fault("srgb-for-a-power", "sRGB stands for a power of 1/2.2", &[&[pass_as("c^(1/2.2)", "c", Op::Encode)]]),
 ];

@@ -46,7 +46,7 @@ pub(super) const FAULTS: &[Fault] = &[
     ),
     fault(
         "planes-exchanged",
-        "near and far are exchanged where depth is read back",
+        "near and far are exchanged",
         &[&[swap("z", "near", "far")], &[swap("depth", "near", "far")], &[swap("reversed depth", "near", "far")]],
     ),
     fault(

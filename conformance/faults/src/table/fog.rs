@@ -59,8 +59,7 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("fog-added", "the fog's colour is added to the surface's", &[&[form("color", Form::FogAdded)]]),
     fault("fog-not-applied", "the fog is not applied to the colour", &[&[pass("color", "shaded")]]),
     fault("fog-rational", "fog is 1/(1 + density·distance) for an exponential", &[&[form("f", Form::FogRational)]]),
-    fault("fog-exp-by-quadratic", "fog's exponential is 1/(1 + x + x²/2)", &[&[form("exp", Form::ExpByQuadratic)]])
-        .seen_in("the constant multipliers of smooth following, Game Programming Gems 4"),
+    fault("fog-exp-by-quadratic", "fog's exponential is 1/(1 + x + x²/2)", &[&[form("exp", Form::ExpByQuadratic)]]),
     fault(
         "fog-exponent-positive",
         "the sign of fog's exponent is lost, so that the factor is 1 throughout",

@@ -96,11 +96,18 @@ pub(super) const FAULTS: &[Fault] = &[
     .seen_in("OpenGL's clip space in WebGPU, and the reverse"),
     fault(
         "half-pixel-offset",
-        "everything is half a pixel off",
+        "everything is half a pixel to the right and down",
         &[&[input("p", Op::Offset(0.5))], &[input("pixel", Op::Offset(0.5))], &[input("origin", Op::Offset(0.5))]],
     )
     .only(where_half_a_pixel_shows)
     .seen_in("Direct3D 9"),
+    fault(
+        "sampled-at-the-pixel-corner",
+        "a pixel is sampled at its upper left corner, not at its middle",
+        &[&[input("p", Op::Offset(-0.5))], &[input("pixel", Op::Offset(-0.5))], &[input("origin", Op::Offset(-0.5))]],
+    )
+    .only(where_half_a_pixel_shows)
+    .seen_in("software rasterisers"),
     fault(
         "other-clip-volume",
         "the clip volume is the other convention's",

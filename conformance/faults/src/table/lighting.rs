@@ -31,17 +31,14 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[input("normal", Op::Negate)], &[input("n", Op::Negate)]],
     )
     .only(|spec| !spec.id.starts_with("vector/reflect")),
-    fault(
-        "light-not-normalised",
-        "the vector to the light is not normalised",
-        &[&[pass("l", "to_light")], &[pass_as("l", "direction", Op::Negate)], &[pass("l", "l")]],
-    )
-    .only(|spec| !matches!(spec.id.as_str(), "lighting/phong-unit-light" | "lighting/phong-nonlocal")),
+    fault("light-not-normalised", "the vector to the light is not normalised", &[&[pass("l", "to_light")]])
+        .only(|spec| !matches!(spec.id.as_str(), "lighting/phong-unit-light" | "lighting/phong-nonlocal")),
     fault(
         "light-reversed",
         "the light vector is reversed",
         &[&[result("l", Op::Negate)], &[input("l", Op::Negate)], &[input("i", Op::Negate)]],
     )
+    .only(|spec| matches!(spec.family(), "lighting" | "vector" | "attenuation"))
     .seen_in("OpenGL's direction to the light for the direction of travel"),
     fault(
         "position-as-direction",
@@ -57,8 +54,9 @@ pub(super) const FAULTS: &[Fault] = &[
         "direction-as-position",
         "a light's direction is taken as a position",
         &[&[Before(In::Plus("direction", "p"))], &[form("view·direction", Form::DirectionAsPosition)]],
-    ),
-    fault("view-not-normalised", "the view vector is not normalised", &[&[pass("v", "to_eye")], &[pass("v", "v")]]),
+    )
+    .only(|spec| spec.id != "lighting/two-lights"),
+    fault("view-not-normalised", "the view vector is not normalised", &[&[pass("v", "to_eye")]]),
     fault("view-reversed", "the view vector is reversed", &[&[result("v", Op::Negate)], &[input("v", Op::Negate)]])
         .only(|spec| spec.family() == "lighting" || spec.id.starts_with("vector/halfway")),
     fault(
@@ -336,6 +334,23 @@ pub(super) const FAULTS: &[Fault] = &[
     )
     .seen_in("copy and paste"),
     fault(
+        "second-light-in-the-first-color",
+        "the second light has the first one's colour",
+        &[&[Before(In::Copy("color0", "color1"))]],
+    )
+    .seen_in("copy and paste"),
+    fault(
+        "first-light-in-the-second-color",
+        "the first light has the second one's colour",
+        &[&[Before(In::Copy("color1", "color0"))]],
+    )
+    .seen_in("a uniform that is written twice"),
+    fault(
+        "colors-of-the-lights-exchanged",
+        "the two lights' colours are exchanged",
+        &[&[Before(In::Swap("color0", "color1"))]],
+    ),
+    fault(
         "clamped-at-the-vertices",
         "colours are clamped at the vertices, before they are interpolated",
         &[&[given("I between the vertices", "a", Op::Clamp), given("I between the vertices", "b", Op::Clamp)]],
@@ -347,7 +362,7 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[form("FI", Form::HalfLambert { squared: false })]],
     ),
     fault("shininess-at-most-128", "the shininess is limited to 128", &[&[given("FS", "exponent", Op::AtMost(128.0))]])
-        .seen_in("OpenGL's GL_SHININESS; pioneer, PR 1914"),
+        .seen_in("OpenGL's GL_SHININESS"),
     fault("shininess-at-least-1", "the shininess is at least 1", &[&[given("FS", "exponent", Op::AtLeast(1.0))]])
         .seen_in("Babylon.js"),
     fault("shininess-rounded", "the shininess is rounded to a whole number", &[&[given("FS", "exponent", Op::Round)]]),
@@ -374,8 +389,7 @@ pub(super) const FAULTS: &[Fault] = &[
         "product-for-power",
         "the highlight is the cosine times the shininess, not its power",
         &[&[form("FS", Form::ProductForPower)]],
-    )
-    .seen_in("DirectXShaderCompiler, PR 1565"),
+    ),
     fault(
         "normalised-phong-lobe",
         "the highlight is multiplied by (shininess + 2)/2π",

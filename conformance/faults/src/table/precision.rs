@@ -27,6 +27,32 @@ pub(super) const FAULTS: &[Fault] = &[
         .only(in_arithmetic),
     fault("outputs-in-bfloat16", "every output is held in bfloat16", &[&[After(Out::All(Op::BFloat))]])
         .only(in_arithmetic),
+    fault(
+        "inputs-in-half-by-truncation",
+        "every input is cut to half precision, not rounded",
+        &[&[Before(In::All(Op::HalfCut))]],
+    )
+    .only(|spec| in_arithmetic(spec) && spec.id != "interpolation/front-facing")
+    .seen_in("half from float by shifts"),
+    fault(
+        "outputs-in-half-by-truncation",
+        "every output is cut to half precision, not rounded",
+        &[&[After(Out::All(Op::HalfCut))]],
+    )
+    .only(in_arithmetic),
+    fault(
+        "inputs-in-bfloat16-by-truncation",
+        "every input is cut to bfloat16, not rounded",
+        &[&[Before(In::All(Op::BFloatCut))]],
+    )
+    .only(in_arithmetic)
+    .seen_in("bfloat16 as the upper half of a float"),
+    fault(
+        "outputs-in-bfloat16-by-truncation",
+        "every output is cut to bfloat16, not rounded",
+        &[&[After(Out::All(Op::BFloatCut))]],
+    )
+    .only(in_arithmetic),
     fault("normal-in-half-precision", "the normal is held in half precision", &[&[result("n", Op::Half)]])
         .only(in_arithmetic),
     fault(
@@ -113,7 +139,7 @@ pub(super) const FAULTS: &[Fault] = &[
     .only(in_arithmetic),
     fault(
         "given-attributes-in-half-precision",
-        "the attributes is given in half precision",
+        "the attributes are given in half precision",
         &[&[input("attr", Op::Half)]],
     )
     .only(in_arithmetic),

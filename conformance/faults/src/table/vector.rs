@@ -1,11 +1,11 @@
 //! Mistakes of vectors and transforms.
 
-use super::super::alteration::Form;
+use super::super::alteration::{Do, Form, NORMALISED};
 use super::super::change::Before as In;
 use super::super::fault::Fault;
 use super::super::fault::Step::{Before, Instead};
 use super::super::op::Op;
-use super::{fault, form, given, input, pass, pass_as, swap};
+use super::{at, fault, form, given, input, pass, pass_as, swap};
 
 pub(super) const FAULTS: &[Fault] = &[
     fault(
@@ -89,7 +89,7 @@ pub(super) const FAULTS: &[Fault] = &[
     .seen_in("GLSL's normalize"),
     fault(
         "normalised-by-sum",
-        "vectors are divided by the sum of their components",
+        "vectors are divided by the sum of their components' magnitudes",
         &[&[pass_as("⟨v⟩", "v", Op::OverSum)]],
     ),
     fault(
@@ -117,23 +117,12 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "fast-inverse-square-root",
         "vectors are normalised by an approximate inverse square root",
-        &[
-            &[pass_as("⟨v⟩", "v", Op::FastNormalize)],
-            &[
-                pass_as("l", "to_light", Op::FastNormalize),
-                pass_as("n", "n", Op::FastNormalize),
-                pass_as("v", "to_eye", Op::FastNormalize),
-            ],
-            &[pass_as("l", "to_light", Op::FastNormalize)],
-            &[pass_as("h", "sum", Op::FastNormalize)],
-            &[pass_as("⟨Σn⟩", "sum", Op::FastNormalize)],
-            &[pass_as("⟨n⟩", "n", Op::FastNormalize)],
-        ],
+        &[&[at(NORMALISED, Do::FirstAs(Op::FastNormalize))]],
     )
     .seen_in("Quake III's Q_rsqrt"),
     fault(
         "normalised-by-sum-to-the-light",
-        "the vector to the light is divided by the sum of its components",
+        "the vector to the light is divided by the sum of its components' magnitudes",
         &[&[pass_as("l", "to_light", Op::OverSum)]],
     ),
 ];

@@ -3,8 +3,8 @@
 use crate::selftest::{percent, smallest};
 use lightmeter_document::Document as _;
 use lightmeter_document::selftest::{
-    Clean, Finding, Kill, Mistake, NamedFrom, OffBy, Record, Resolution, SceneRecord, SelftestDocument, UnitFinding,
-    UnitRow, family_of,
+    Clean, Finding, Kill, Mistake, NamedFrom, OffBy, Record, Resolution, SceneRecord, SceneResolution,
+    SelftestDocument, UnitFinding, UnitRow, family_of,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
@@ -18,6 +18,7 @@ pub struct SelftestRun {
     calibration: Vec<Resolution>,
     rows: Vec<UnitRow>,
     scenes: Option<SceneRecord>,
+    scene_calibration: Vec<SceneResolution>,
 }
 
 impl SelftestRun {
@@ -43,6 +44,7 @@ impl SelftestRun {
             calibration: document.calibration.unwrap_or_default(),
             rows: document.rows,
             scenes: document.scenes,
+            scene_calibration: document.scene_calibration,
         };
         let is_told = |kill: &&Kill| run.mistakes.iter().any(|mistake| mistake.name == kill.fault);
         match run.record.kills.iter().find(|kill| !is_told(kill)) {
@@ -73,7 +75,8 @@ pub fn markdown(run: &SelftestRun, out: &mut impl Write) -> Written {
         drawn(scenes, out)?;
     }
     unit(&run.rows, out)?;
-    resolution(run, out)
+    resolution(run, out)?;
+    scene_resolution(&run.scene_calibration, out)
 }
 
 fn totals(record: &Record, out: &mut impl Write) -> Written {
@@ -263,6 +266,25 @@ fn resolution(SelftestRun { calibration, named_from, .. }: &SelftestRun, out: &m
             write!(out, " {} | {} |", number(single), number(group))?;
         }
         writeln!(out)?;
+    }
+    Ok(())
+}
+
+/// The smallest errors that the images of scenes tell.
+fn scene_resolution(resolutions: &[SceneResolution], out: &mut impl Write) -> Written {
+    if resolutions.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n## Resolution of scenes\n")?;
+    writeln!(
+        out,
+        "The smallest share by which a parameter of a scene may be off and its image, 64 pixels wide, tells it: by a single *pixel*, and by\n\
+         the *image*, a pixel or all pixels of 8 bits together.\n"
+    )?;
+    writeln!(out, "| scene | target | parameter | pixel | image |\n|---|---|---|--:|--:|")?;
+    let number = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.1e}"));
+    for SceneResolution { scene, target, parameter, pixel, image } in resolutions {
+        writeln!(out, "| {scene} | {target} | {parameter} | {} | {} |", number(*pixel), number(*image))?;
     }
     Ok(())
 }
