@@ -6,6 +6,7 @@ pub use lightmeter_catalogue::{cases, filter, scene, select};
 pub use lightmeter_document as document;
 pub use lightmeter_engine::{device, evaluate, merge, options, piece, rows, run, selection, subject, sweep, witness};
 pub use lightmeter_faults as faults;
+pub use lightmeter_files as files;
 pub use lightmeter_gate as gate;
 pub use lightmeter_judge as judge;
 pub use lightmeter_judge::{devices, formula, tally};

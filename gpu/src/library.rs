@@ -3,6 +3,7 @@
 use crate::compose::Composer;
 use crate::error::GpuError;
 use crate::shaders::Shaders;
+use lightmeter_files::read;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -114,6 +115,9 @@ fn every_file() -> impl Iterator<Item = (&'static str, &'static str)> {
     FILES.into_iter().chain(SCENE_FILES).chain(EFFECT_FILES)
 }
 
+/// Bytes that a shader's file may have.
+const MOST_SHADER: u64 = 4 << 20;
+
 /// Puts a folder's files in the place of those of the same name, and says how many.
 fn replace(files: &mut BTreeMap<String, String>, dir: &Path, prefix: &str) -> Result<usize, GpuError> {
     let unreadable = |path: &Path, message: String| GpuError::Unreadable { path: path.into(), message };
@@ -125,7 +129,7 @@ fn replace(files: &mut BTreeMap<String, String>, dir: &Path, prefix: &str) -> Re
             continue;
         }
         let name = path.file_name().map(|name| format!("{prefix}{}", name.to_string_lossy())).unwrap_or_default();
-        let text = std::fs::read_to_string(&path).map_err(|error| unreadable(&path, error.to_string()))?;
+        let text = read::text(&path, MOST_SHADER).map_err(|error| unreadable(&path, error.to_string()))?;
         let Some(file) = files.get_mut(&name) else {
             let known: Vec<&str> = every_file().map(|(name, _)| name).collect();
             return Err(unreadable(&path, format!("no such shader; expected one of {}", known.join(", "))));

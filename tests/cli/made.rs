@@ -60,7 +60,7 @@ fn a_formula_is_evaluated_as_whoever_makes_a_mistake_would() {
     assert!(first(&wrong, "low") <= 0.5 && first(&wrong, "high") >= 0.5 && first(&wrong, "high") < 0.55);
     let output = eval_with(&["--mistake", "blinn-for-phong"], LINE);
     assert_eq!(code(&output), 2);
-    assert!(stderr(&output).contains("`blinn-for-phong` does not concern fog/linear"), "{}", stderr(&output));
+    assert!(stdout(&output).contains("`blinn-for-phong` does not concern fog/linear"), "{}", stdout(&output));
 }
 
 #[test]

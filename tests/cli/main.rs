@@ -8,6 +8,7 @@ mod compared;
 mod documents;
 mod gate;
 mod hard;
+mod hostile;
 mod images;
 mod live;
 mod made;
@@ -339,11 +340,13 @@ fn malformed_lines_are_named() {
         (&LINE.replace("\"dmin\"", "\"near\""), "field `inputs.near`"),
     ];
     for (line, message) in rows {
-        let output = eval(&format!("{LINE}\n{line}\n"));
-        let text = stderr(&output);
-        assert_eq!(code(&output), 2, "{line}: {text}");
+        let output = eval(&format!("{LINE}\n{line}\n{LINE}\n"));
+        assert_eq!(code(&output), 2, "{line}: {}", stderr(&output));
+        let answers: Vec<Value> =
+            stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+        let text = answers[1]["error"].as_str().unwrap_or_default();
         assert!(text.contains("line 2") && text.contains(message), "{line}: {text}");
-        assert_eq!(stdout(&output).lines().count(), 1, "what came before is answered");
+        assert!(answers[0]["value"].is_array() && answers[2] == answers[0], "what stands beside it is answered");
     }
 }
 

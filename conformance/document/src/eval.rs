@@ -2,7 +2,7 @@
 //!
 //! The cases of a pack are such requests, and a renderer's answers may be such answers.
 
-use crate::Number;
+use crate::{Number, Unique};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -35,6 +35,15 @@ pub struct EvalAnswer {
     pub condition: Number,
 }
 
+/// What `eval` writes for a line that it cannot answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct EvalRefusal {
+    /// The id of the line, null where it has none.
+    pub id: Value,
+    /// What is wrong with it, and where.
+    pub error: String,
+}
+
 /// A line of either kind, which the published schema describes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
@@ -43,6 +52,8 @@ pub enum EvalLine {
     Request(EvalRequest),
     /// A line that `eval` writes.
     Answer(EvalAnswer),
+    /// What it writes for a line that it cannot answer.
+    Refusal(EvalRefusal),
 }
 
 /// Why a line is not a request.
@@ -74,7 +85,7 @@ impl EvalRequest {
     /// # Errors
     /// Where the line is not a request; the error names the field.
     pub fn read(line: &str) -> Result<Self, RequestError> {
-        let value = serde_json::from_str(line).map_err(|error| RequestError::Json(error.to_string()))?;
+        let Unique(value) = serde_json::from_str(line).map_err(|error| RequestError::Json(error.to_string()))?;
         let Value::Object(mut fields) = value else { return Err(RequestError::Object) };
         if let Some(name) = fields.keys().find(|name| !["id", "formula", "inputs"].contains(&name.as_str())) {
             return Err(RequestError::Unknown(name.clone()));

@@ -21,6 +21,7 @@ pub mod show;
 pub mod special;
 pub mod stores;
 pub mod sweep;
+mod unique;
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
@@ -28,6 +29,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 pub use number::{Number, is_worse, thousands, worse};
+pub use unique::Unique;
 
 /// A word that is written from a constant and read from a file.
 pub type Word = std::borrow::Cow<'static, str>;

@@ -320,11 +320,11 @@ pub fn id(line: &[u8]) -> Option<Cow<'_, str>> {
 /// Characters of a renderer's words that are told.
 const MOST_TOLD: usize = 300;
 
-/// A renderer's words, as far as they are told: without what moves a terminal's cursor, and not without end.
+/// A renderer's words, as far as they are told: fit to be shown, and not without end.
 #[must_use]
 pub fn clipped(words: &str) -> String {
-    let plain = |c: char| if c.is_control() { ' ' } else { c };
-    let mut told: String = words.trim().chars().take(MOST_TOLD).map(plain).collect();
+    let cut: String = words.trim().chars().take(MOST_TOLD).collect();
+    let mut told = lightmeter_files::shown(&cut).into_owned();
     if words.trim().chars().nth(MOST_TOLD).is_some() {
         told.push('…');
     }

@@ -59,8 +59,8 @@ impl AnswerFile {
     pub fn open(answers: &Path) -> Result<Self, PackError> {
         let path = if answers.is_dir() { answers.join(ANSWERS) } else { answers.to_owned() };
         let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
-        let file =
-            File::open(&path).map_err(|error| PackError::Read { path: path.clone(), message: error.to_string() })?;
+        let file = lightmeter_files::read::open(&path)
+            .map_err(|error| PackError::Read { path: path.clone(), message: error.to_string() })?;
         let stream = BufReader::with_capacity(1 << 20, file);
         let mut opened = Self { path, stream, folder, number: 0, first: vec![], hello: None };
         if let Some(Ok(line)) = opened.next()? {

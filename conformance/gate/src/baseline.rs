@@ -7,7 +7,8 @@ use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::gate::{GateGroup, GateReport, cases};
 use lightmeter_document::pack::Choice;
 use lightmeter_document::run::{Group, Report};
-use lightmeter_judge::cases::expanded;
+use lightmeter_files::read::MOST_TEXT;
+use lightmeter_judge::cases::{count_of, expanded};
 use lightmeter_judge::image::file::whole;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -167,7 +168,8 @@ impl Baseline {
     /// # Errors
     /// Where it is none.
     pub fn of_gate(path: &Path) -> Result<Self, BaselineError> {
-        read(path).map(|report: GateReport| Self(Standard::from(&report)))
+        let report: GateReport = read(path)?;
+        Self::checked(Standard::from(&report), path)
     }
 
     /// Reads the JSON of a run.
@@ -180,7 +182,24 @@ impl Baseline {
             let message = "it does not say what chose its cases; expected the JSON of a later version's run".into();
             return Err(BaselineError::Read { path: path.into(), message });
         }
-        Ok(Self(Standard::from(&report)))
+        Self::checked(Standard::from(&report), path)
+    }
+
+    /// A result that others can be held to: one of something, in which no group has more cases that did not pass than it has.
+    fn checked(standard: Standard, path: &Path) -> Result<Self, BaselineError> {
+        let refused = |message: String| Err(BaselineError::Read { path: path.into(), message });
+        if standard.groups.is_empty() {
+            return refused("it has no group, so that nothing could be worse; expected a result of something".into());
+        }
+        for ComparedGroup { name, counts, .. } in &standard.groups {
+            let named = counts.not_passed.values().flatten().map(|text| count_of(text));
+            let named = named.fold(0, u64::saturating_add);
+            if named > counts.asked {
+                let asked = counts.asked;
+                return refused(format!("{name}: {named} cases did not pass of {asked} that were asked"));
+            }
+        }
+        Ok(Self(standard))
     }
 
     /// What is worse in a result, beyond `factor` where it is an error. A part of the cases, as a shard, is compared with the same part.
@@ -343,7 +362,7 @@ fn cases_of(count: usize) -> String {
 
 fn read<T: Document>(path: &Path) -> Result<T, BaselineError> {
     let failed = |message: String| BaselineError::Read { path: path.into(), message };
-    let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
+    let text = lightmeter_files::read::text(path, MOST_TEXT).map_err(|error| failed(error.to_string()))?;
     T::read(&text).map_err(|error| failed(error.to_string()))
 }
 

@@ -3,6 +3,7 @@
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::gate::KnownFailure;
+use lightmeter_files::read::MOST_TEXT;
 use lightmeter_judge::cases::ExpectedFailure;
 use lightmeter_scene::target::TargetFormat;
 use semver::{Version, VersionReq};
@@ -59,7 +60,7 @@ impl Expectations {
     /// Where it cannot be read, or says what nothing can be made of.
     pub fn read(path: &Path) -> Result<Self, ExpectationError> {
         let refused = |message: String| ExpectationError { path: path.into(), message };
-        let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
+        let text = lightmeter_files::read::text(path, MOST_TEXT).map_err(|error| refused(error.to_string()))?;
         Self::parse(&text).map_err(refused)
     }
 

@@ -9,20 +9,21 @@ use lightmeter_catalogue::special::Probe;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
 use lightmeter_document::protocol::{CaseRequest, LayerRequest, ProbeRequest};
 use lightmeter_document::{Document as _, Number, Word};
+use lightmeter_files::{Whole, read};
 use lightmeter_judge::image::file::{StoredImage, whole};
 use lightmeter_scene::blend::Separate;
 use lightmeter_scene::frame::{Frame, Mesh, Texture};
 use lightmeter_scene::target::TargetFormat;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
-use std::fs::File;
 use std::io::{BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
 
 const MANIFEST: &str = "manifest.json";
 const CASES: &str = "cases.jsonl";
-/// Random cases for each formula, and pixels of a scene's longer side, at most.
-const MOST_CASES: u64 = 1_000_000_000;
+/// Random cases for each formula that a renderer is asked, at most.
+pub const MOST_CASES: u64 = 10_000_000;
+/// Pixels of a scene's longer side, at most.
 const MOST_PIXELS: u32 = 8192;
 
 /// Why a pack was not written or read.
@@ -135,16 +136,23 @@ pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
     };
     std::fs::create_dir_all(folder).map_err(failed(folder))?;
     clear(folder)?;
-    // A pack that is broken off is known as one, and is written over.
+    // A pack that is broken off is known as one, with the files that it may have, and is written over.
     let path = folder.join(MANIFEST);
-    let begun = json!({ "schema": SCHEMA, "is_unfinished": true }).to_string();
+    let mut names = vec![CASES.to_owned()];
+    for scene in 0..plan.scenes.len() {
+        names.extend(PackedDraw::new(plan, scene)?.files().map(|(name, _)| name));
+    }
+    let names: Vec<Value> = names.into_iter().map(|name| json!({ "name": name })).collect();
+    let begun = json!({ "schema": SCHEMA, "is_unfinished": true, "files": names }).to_string();
     whole(&path, begun.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
     let mut files = vec![];
     let path = folder.join(CASES);
     let mut out =
-        Summed { out: BufWriter::new(File::create(&path).map_err(failed(&path))?), sum: Default::default(), bytes: 0 };
-    write_cases(plan, &mut out).and_then(|()| out.flush()).map_err(failed(&path))?;
+        Summed { out: BufWriter::new(Whole::create(&path).map_err(failed(&path))?), sum: Default::default(), bytes: 0 };
+    write_cases(plan, &mut out).map_err(failed(&path))?;
     files.push(out.listed(CASES));
+    let written = out.out.into_inner().map_err(std::io::IntoInnerError::into_error);
+    written.and_then(Whole::finish).map_err(failed(&path))?;
     for scene in 0..plan.scenes.len() {
         for (name, bytes) in PackedDraw::new(plan, scene)?.files() {
             let path = folder.join(&name);
@@ -189,7 +197,7 @@ fn clear(folder: &Path) -> Result<(), PackError> {
     if entries.next().is_none() {
         return Ok(());
     }
-    let manifest = std::fs::read_to_string(folder.join(MANIFEST)).ok();
+    let manifest = read::text(&folder.join(MANIFEST), read::MOST_TEXT).ok();
     let manifest: Option<Value> = manifest.and_then(|text| serde_json::from_str(&text).ok());
     let schema = manifest.as_ref().and_then(|manifest| manifest["schema"].as_str());
     let Some(manifest) = manifest.as_ref().filter(|_| schema.is_some_and(|name| name.starts_with("lightmeter.pack/")))
@@ -200,7 +208,11 @@ fn clear(folder: &Path) -> Result<(), PackError> {
     for file in manifest["files"].as_array().into_iter().flatten() {
         // What leads out of the folder is no file of the pack.
         if let Some(path) = file["name"].as_str().and_then(|name| within(folder, name).ok()) {
-            std::fs::remove_file(&path).map_err(|error| failed(&path, error.to_string()))?;
+            match std::fs::remove_file(&path) {
+                // One that was broken off has not all of its files.
+                Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+                removed => removed.map_err(|error| failed(&path, error.to_string()))?,
+            }
         }
     }
     Ok(())
@@ -283,8 +295,8 @@ impl<W: Write> Write for Summed<W> {
 }
 
 impl<W> Summed<W> {
-    fn listed(self, name: &str) -> Listed {
-        Listed { name: name.into(), bytes: self.bytes, crc32: format!("{:08x}", self.sum.finalize()) }
+    fn listed(&self, name: &str) -> Listed {
+        Listed { name: name.into(), bytes: self.bytes, crc32: format!("{:08x}", self.sum.clone().finalize()) }
     }
 }
 
@@ -332,7 +344,7 @@ fn png(texture: &Texture) -> Vec<u8> {
 /// Where it is damaged, another version's, not what this lightmeter would write, or leads out of its folder.
 pub fn read(folder: &Path) -> Result<GatePlan, PackError> {
     let path = folder.join(MANIFEST);
-    let text = std::fs::read_to_string(&path).map_err(|error| PackError::Read {
+    let text = read::text(&path, read::MOST_TEXT).map_err(|error| PackError::Read {
         path: path.clone(),
         message: format!("{error}; `lightmeter pack DIR` writes a pack"),
     })?;
@@ -411,7 +423,7 @@ fn difference(listed: &Manifest, plan: &GatePlan) -> Result<Option<&'static str>
 }
 
 fn sum(path: &Path) -> std::io::Result<(u64, String)> {
-    let mut file = File::open(path)?;
+    let mut file = read::open(path)?;
     let (mut sum, mut all) = (crc32fast::Hasher::new(), 0);
     let mut part = vec![0; 1 << 16];
     loop {

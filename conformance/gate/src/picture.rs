@@ -50,7 +50,7 @@ pub fn read(folder: &Path, file: &str, frame: &Frame, asked: Option<SystemTime>)
     if bytes > MOST_BYTES {
         return Err(format!("`{file}` has {bytes} bytes; an image has {MOST_BYTES} at most"));
     }
-    let bytes = std::fs::read(&path).map_err(|error| unread(&error))?;
+    let bytes = lightmeter_files::read::bytes(&path, MOST_BYTES).map_err(|error| unread(&error))?;
     let [width, height] = [frame.target.width, frame.target.height];
     let is_npy = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npy"));
     // Nothing of another size is decoded.

@@ -333,6 +333,16 @@ pub fn joined<K: Ord>(texts: Vec<String>, order: impl Fn(&str) -> K) -> Vec<Stri
     rows.into_iter().map(Row::text).collect()
 }
 
+/// How many ids a text such as `random/000003..000017` stands for, which nothing but its reader limits.
+#[must_use]
+pub fn count_of(text: &str) -> u64 {
+    let range = text.split_once("..").and_then(|(first, last)| {
+        let (_, from) = numbered(first)?;
+        Some(last.parse::<u64>().ok()?.saturating_sub(from).saturating_add(1))
+    });
+    range.unwrap_or(1)
+}
+
 /// The ids that a text such as `random/000003..000017` stands for.
 pub fn expanded(text: &str) -> impl Iterator<Item = String> {
     let range = text.split_once("..").and_then(|(first, last)| {
@@ -373,6 +383,14 @@ mod tests {
             tally.add(own);
         }
         tally
+    }
+
+    #[test]
+    fn ids_are_counted_as_they_are_written() {
+        for text in ["hard/on-the-edge", "random/000003", "random/000003..000017", "0003..0003"] {
+            assert_eq!(count_of(text), expanded(text).count() as u64, "{text}");
+        }
+        assert_eq!(count_of("random/0..18446744073709551615"), u64::MAX);
     }
 
     #[test]

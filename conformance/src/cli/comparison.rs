@@ -1,5 +1,6 @@
 //! What a result is held against: known failures, and an earlier result. The same for `run` and `gate`.
 
+use super::say;
 use clap::Args;
 use lightmeter::document::Document;
 use lightmeter::document::pack::Choice;
@@ -68,9 +69,9 @@ impl Comparison {
     {
         let Some(path) = self.baseline.as_ref().filter(|_| self.update_baseline) else { return Ok(()) };
         match baseline::update(report, path) {
-            Ok(()) => eprintln!("the baseline {} is this result now", path.display()),
+            Ok(()) => say(&format!("the baseline {} is this result now", path.display())),
             // The result itself says how the command ends.
-            Err(error @ BaselineError::Unfit { .. }) => eprintln!("{error}"),
+            Err(error @ BaselineError::Unfit { .. }) => say(&format!("{error}")),
             Err(error) => return Err(error),
         }
         Ok(())

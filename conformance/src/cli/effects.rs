@@ -6,6 +6,7 @@ use anyhow::bail;
 use clap::Args;
 use lightmeter::document::Document as _;
 use lightmeter::document::effects::{DrawEffects, EffectReason, EffectsDocument, SCHEMA};
+use lightmeter::files::lines;
 use lightmeter::scene::{Loaded, load};
 use lightmeter_scene::effects::{Called, Reason, ReasonSubject, effects};
 use lightmeter_scene::frame::Frame;
@@ -30,7 +31,7 @@ impl Effects {
         let loaded = load::scene(&self.scene)?;
         let called = effects(&loaded.frame);
         let text = match self.format {
-            Format::Text => in_words(&loaded, &called)?,
+            Format::Text => lines(&in_words(&loaded, &called)?).into_owned(),
             Format::Json => document(&loaded, &called).to_json()?,
             Format::Junit => bail!("effects are written as text or json"),
         };

@@ -9,17 +9,18 @@ use lightmeter::arithmetic::{Accept, Profile};
 use lightmeter::cases::Input;
 use lightmeter::cases::blend::{aliases, separate_of};
 use lightmeter::document::Number;
-use lightmeter::document::eval::{EvalAnswer, EvalRequest};
+use lightmeter::document::eval::{EvalAnswer, EvalRefusal, EvalRequest};
 use lightmeter::faults::{Fault, Variation};
 use lightmeter::select::{Member, catalogue, separate_member};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
-use std::io::{BufRead as _, Write as _};
+use std::io::{BufRead, Read as _, Write as _};
 
 /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out.
 ///
 /// A line is {"id": …, "formula": "fog/linear", "inputs": {"p": [0, 0, -5], "dmin": 1, …}}. Numbers are read as the nearest
-/// f32; NaN, Inf and -Inf are strings. `lightmeter list --formulas` names the inputs.
+/// f32; NaN, Inf and -Inf are strings. `lightmeter list --formulas` names the inputs. A line that cannot be answered gets
+/// {"id": …, "error": …}, and the command ends with 2.
 #[derive(Debug, Args)]
 pub(crate) struct Eval {
     /// Accuracy rules: wgsl, vulkan or opengl
@@ -38,22 +39,36 @@ impl Eval {
             let member = by_id[&canonical];
             by_id.insert(alias, member);
         }
+        match self.answers(&by_id) {
+            // Whoever does not read the answers any more has read enough.
+            Err(error) if is_broken_pipe(&error) => Ok(Status::Success),
+            status => status,
+        }
+    }
+
+    /// Answers each line: one that nothing can be made of by what is wrong with it.
+    fn answers(&self, by_id: &HashMap<String, &Member>) -> anyhow::Result<Status> {
         let mut out = std::io::BufWriter::new(std::io::stdout().lock());
-        for (number, line) in (1..).zip(std::io::stdin().lock().lines()) {
-            let line = line.with_context(|| format!("line {number} cannot be read"))?;
-            if line.trim().is_empty() {
+        let mut status = Status::Success;
+        let (mut stream, mut line, mut number) = (std::io::stdin().lock(), vec![], 0_u64);
+        while next_line(&mut stream, &mut line)? {
+            number += 1;
+            if line.trim_ascii().is_empty() {
                 continue;
             }
-            match self.answer(&line, &by_id) {
+            let answer =
+                line_text(&line).and_then(|line| self.answer(line, by_id).map_err(|error| (id_of(line), error)));
+            match answer {
                 Ok(answer) => writeln!(out, "{}", serde_json::to_string(&answer)?)?,
-                Err(error) => {
-                    out.flush()?;
-                    bail!("line {number}: {error:#}");
+                Err((id, error)) => {
+                    status = Status::BadInput;
+                    let refused = EvalRefusal { id, error: format!("line {number}: {error:#}") };
+                    writeln!(out, "{}", serde_json::to_string(&refused)?)?;
                 }
             }
         }
         out.flush()?;
-        Ok(Status::Success)
+        Ok(status)
     }
 
     fn answer(&self, line: &str, by_id: &HashMap<String, &Member>) -> anyhow::Result<EvalAnswer> {
@@ -94,6 +109,38 @@ impl Eval {
             condition: Number(condition),
         })
     }
+}
+
+/// Bytes of a line, at most: more than any formula's inputs take.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// The next line, of which no more is kept than one byte beyond the most; `false` at the end.
+fn next_line(stream: &mut impl BufRead, line: &mut Vec<u8>) -> std::io::Result<bool> {
+    line.clear();
+    if stream.by_ref().take(MOST_BYTES + 1).read_until(b'\n', line)? == 0 {
+        return Ok(false);
+    }
+    if !line.ends_with(b"\n") && line.len() as u64 > MOST_BYTES {
+        stream.skip_until(b'\n')?;
+    }
+    Ok(true)
+}
+
+/// A line's text, or why it is none.
+fn line_text(line: &[u8]) -> Result<&str, (Value, anyhow::Error)> {
+    if line.len() as u64 > MOST_BYTES {
+        return Err((Value::Null, anyhow::anyhow!("it has more than {MOST_BYTES} bytes")));
+    }
+    std::str::from_utf8(line).map_err(|_| (Value::Null, anyhow::anyhow!("it is not UTF-8")))
+}
+
+/// The id of a line that is refused, as far as it has one.
+fn id_of(line: &str) -> Value {
+    serde_json::from_str::<Value>(line).ok().and_then(|mut value| Some(value.get_mut("id")?.take())).unwrap_or_default()
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.downcast_ref::<std::io::Error>().is_some_and(|error| error.kind() == std::io::ErrorKind::BrokenPipe)
 }
 
 /// The formula of an id such as `blend/separate/add.src-alpha.one/min`.

@@ -4,6 +4,7 @@ use super::comparison::{Comparison, Earlier, matches_something};
 use super::options::{ReportFormat, ShardArgument, Targets};
 use super::pack::{Cases, nothing_to_ask};
 use super::progress::{Bar, Stream};
+use super::say;
 use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit, writable};
 use anyhow::{Context as _, bail};
@@ -17,6 +18,7 @@ use lightmeter::document::event::Stop;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::run::Report;
 use lightmeter::faults::Mistakes;
+use lightmeter::files::lines;
 use lightmeter::filter::Filter;
 use lightmeter::gate::answers::{AnswerFile, FileRenderer};
 use lightmeter::gate::baseline::{Baseline, Standard};
@@ -105,7 +107,7 @@ impl Gate {
         let report = self.judge(plan, answers, &expectations, &images, &stop);
         let mut report = match (report, stop.signal()) {
             (Err(error), Some(signal)) => {
-                eprintln!("error: {error:#}");
+                say(&format!("error: {error:#}"));
                 return Ok(Status::of_signal(signal));
             }
             (report, _) => report?,
@@ -116,9 +118,10 @@ impl Gate {
         let whole = earlier.as_ref().filter(|_| report.signal.is_none());
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), self.is_shard())).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
-        emit(&self.write(&report)?, self.out.as_deref())?;
+        let emitted = emit(&self.write(&report)?, self.out.as_deref());
         regressions?;
         self.comparison.update(&report)?;
+        emitted?;
         Ok(status(&report))
     }
 
@@ -226,7 +229,7 @@ impl Gate {
             ReportFormat::Text => {
                 let mut out = String::new();
                 outputs::text(report, self.is_read_by_people(), &mut out)?;
-                out
+                lines(&out).into_owned()
             }
         })
     }
@@ -259,7 +262,8 @@ impl Drop for Images {
 /// The command, but for where its result goes.
 fn command() -> String {
     let mut words = vec!["lightmeter".to_owned()];
-    let mut given = std::env::args().skip(1);
+    // A path need not be UTF-8.
+    let mut given = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     while let Some(word) = given.next() {
         if word == "--out" {
             given.next();
@@ -285,7 +289,7 @@ pub(crate) fn status(report: &GateReport) -> Status {
         Status::Success
     } else {
         let error = NothingToRun("nothing was judged: the renderer declares or answers none of these cases".into());
-        eprintln!("error: {error}");
+        say(&format!("error: {error}"));
         Status::Nothing
     }
 }

@@ -9,6 +9,7 @@ use lightmeter::document::Document as _;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::run::Report;
 use lightmeter::document::sweep::{ExactFloat, SweepDocument};
+use lightmeter::files::{lines, read};
 use lightmeter::merge::merge;
 use lightmeter::report::{gate as outputs, github, junit, text};
 use lightmeter::sweep::file;
@@ -46,7 +47,7 @@ impl Merge {
 impl Merge {
     /// Joins the shards of a run or of a gate; `None` where the first file is neither.
     fn of_runs(&self) -> anyhow::Result<Option<Status>> {
-        let first = self.results.first().and_then(|path| std::fs::read_to_string(path).ok()).unwrap_or_default();
+        let first = self.results.first().and_then(|path| read::text(path, read::MOST_TEXT).ok()).unwrap_or_default();
         let is_gate = GateReport::read(&first).is_ok();
         if !is_gate && Report::read(&first).is_err() {
             return Ok(None);
@@ -54,7 +55,7 @@ impl Merge {
         let mut parts = vec![];
         for path in &self.results {
             let failed = || format!("cannot read {}", path.display());
-            let text = std::fs::read_to_string(path).with_context(failed)?;
+            let text = read::text(path, read::MOST_TEXT).with_context(failed)?;
             let report = if is_gate {
                 Report::from(GateReport::read(&text).with_context(failed)?)
             } else {
@@ -90,7 +91,7 @@ impl Merge {
             ReportFormat::Text => {
                 let mut out = String::new();
                 outputs::text(gate, false, &mut out)?;
-                out
+                lines(&out).into_owned()
             }
         })
     }
@@ -104,7 +105,7 @@ impl Merge {
                 let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false };
                 let mut out = String::new();
                 text::write(whole, style, &mut out)?;
-                out
+                lines(&out).into_owned()
             }
         })
     }

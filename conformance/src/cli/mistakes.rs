@@ -79,11 +79,20 @@ fn all_names() -> impl Iterator<Item = &'static str> {
 /// What is said of a name that no mistake has.
 fn unknown(name: &str) -> String {
     if name.contains(['*', '?', '[', '{']) {
-        return format!("no mistake's name matches `{name}`: see `lightmeter mistakes`");
+        let matching =
+            Filter::new(&[name.to_owned()]).map(|filter| all_names().filter(|known| filter.selects(known)).count());
+        return match matching {
+            Ok(0) | Err(_) => format!("no mistake's name matches `{name}`: see `lightmeter mistakes`"),
+            Ok(count) => format!("`{name}` matches {count} names; expected the name of one mistake"),
+        };
+    }
+    if name.is_empty() {
+        return "a mistake's name is missing: see `lightmeter mistakes`".into();
     }
     let mut near: Vec<(usize, &str)> =
         all_names().map(|known| (strsim::damerau_levenshtein(known, name), known)).collect();
     near.sort_unstable();
+    near.dedup();
     let alike: Vec<String> = near.iter().take(3).map(|(_, known)| format!("`{known}`")).collect();
     format!("no mistake `{name}`; the nearest are {}: see `lightmeter mistakes`", alike.join(", "))
 }

@@ -26,6 +26,7 @@ mod sweep;
 use clap::{Parser, Subcommand};
 use lightmeter::adapters::AdapterError;
 use lightmeter::device::DeviceError;
+use lightmeter::files::{can_be_written, lines, whole};
 use signal_hook::consts::{SIGHUP, SIGTERM};
 use std::io::Write;
 use std::path::Path;
@@ -174,17 +175,23 @@ impl Status {
 /// Whether a file that is to be written at the end can be, told before the work. What it holds stays until then.
 pub(crate) fn writable(file: Option<&Path>) -> anyhow::Result<()> {
     let Some(path) = file else { return Ok(()) };
-    let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
-    opened.map(drop).map_err(|error| anyhow::anyhow!("cannot write {}: {error}", path.display()))
+    can_be_written(path).map_err(|error| unwritten(path, &error))
+}
+
+fn unwritten(path: &Path, error: &std::io::Error) -> anyhow::Error {
+    anyhow::anyhow!("cannot write {}: {error}", path.display())
+}
+
+/// Tells something beside the result, on standard error. Whoever does not read it is told by the exit code.
+pub(crate) fn say(text: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{}", lines(text));
 }
 
 /// Writes to the file, or to standard output. Whoever does not read that any more has read enough: how the command ends still tells what it
 /// found.
 pub(crate) fn emit(text: &str, file: Option<&Path>) -> anyhow::Result<()> {
     match file {
-        Some(path) => {
-            std::fs::write(path, text).map_err(|error| anyhow::anyhow!("cannot write {}: {error}", path.display()))
-        }
+        Some(path) => whole(path, text.as_bytes()).map_err(|error| unwritten(path, &error)),
         None => match std::io::stdout().lock().write_all(text.as_bytes()) {
             Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
             written => Ok(written?),

@@ -2,11 +2,12 @@
 
 use super::options::Targets;
 use super::run::matching;
+use super::say;
 use super::{NothingToRun, Status};
 use clap::Args;
 use lightmeter::cases::blend::Samples;
 use lightmeter::document::pack::Choice;
-use lightmeter::gate::pack;
+use lightmeter::gate::pack::{self, MOST_CASES};
 use lightmeter::gate::plan::GatePlan;
 use std::path::PathBuf;
 
@@ -14,7 +15,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct Cases {
     /// Random cases for each formula
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u64).range(1..=MOST_CASES))]
     cases: u64,
     /// Seed of the random cases
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -76,7 +77,7 @@ impl Pack {
         let besides = [(on_targets, "on targets"), (manifest.probes as u64, "special values")];
         let besides = besides.into_iter().filter(|(count, _)| *count > 0);
         let besides: String = besides.map(|(count, what)| format!("{count} {what}, ")).collect();
-        eprintln!(
+        say(&format!(
             "{}: {} cases of {} formulas, {besides}{} scenes, {} files; judge the answers by `lightmeter gate {} ANSWERS`",
             self.dir.display(),
             plan.cases(),
@@ -84,7 +85,7 @@ impl Pack {
             manifest.scenes.len(),
             manifest.files.len() + 1,
             self.dir.display()
-        );
+        ));
         Ok(Status::Success)
     }
 }

@@ -6,6 +6,7 @@ use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
 use lightmeter::document::Document as _;
 use lightmeter::document::bench::BenchDocument;
+use lightmeter::files::read;
 use lightmeter::report;
 use lightmeter::report::bench::{page, plot};
 use lightmeter::report::page::scenes::ToldScene;
@@ -59,7 +60,7 @@ impl Page {
             bail!("the page is of one run; expected one file");
         };
         let name = run.display();
-        let json = std::fs::read_to_string(run).with_context(|| format!("cannot read {name}"))?;
+        let json = read::text(run, read::MOST_TEXT).with_context(|| format!("cannot read {name}"))?;
         let text = match self.subject {
             Subject::Bench => self.bench(&json),
             Subject::Blend => self.blend(&json),

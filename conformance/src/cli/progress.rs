@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::document::event::{Event, Observer};
+use lightmeter::files::lines;
 use lightmeter::report::live::Live;
 use std::io::Write as _;
 
@@ -45,7 +46,7 @@ impl Observer for Bar {
             Event::Advanced(work) => self.bar.inc(*work),
             Event::Judged { .. } => {
                 let Some((live, stream)) = &mut self.live else { return };
-                let text = live.text(event);
+                let text = lines(&live.text(event)).into_owned();
                 if text.is_empty() {
                     return;
                 }

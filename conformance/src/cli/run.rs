@@ -3,6 +3,7 @@
 use super::comparison::{Comparison, Earlier, matches_something};
 use super::options::{Amount, Choice, ReportFormat};
 use super::progress::{Bar, Stream};
+use super::say;
 use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit, writable};
 use clap::Args;
@@ -13,6 +14,7 @@ use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::pack::Choice as CaseChoice;
 use lightmeter::document::run::{Identity, Interrupted, Report};
 use lightmeter::faults::Mistakes;
+use lightmeter::files::lines;
 use lightmeter::filter::Filter;
 use lightmeter::gate::baseline::{Baseline, Standard};
 use lightmeter::gate::expectations::Expectations;
@@ -108,12 +110,13 @@ impl Run {
         let is_shard = shard.count.get() > 1;
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), is_shard)).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
-        emit(&self.write(&report)?, self.out.as_deref())?;
+        let emitted = emit(&self.write(&report)?, self.out.as_deref());
         if report.interrupted.is_some() {
             std::mem::forget(subjects);
         }
         regressions?;
         self.comparison.update(&report)?;
+        emitted?;
         Ok(status(&report))
     }
 
@@ -138,7 +141,7 @@ impl Run {
                 let mut out = String::new();
                 let style = text::Style { detail, timing: self.timing, is_told: self.is_read_by_people() };
                 text::write(report, style, &mut out)?;
-                out
+                lines(&out).into_owned()
             }
         })
     }
@@ -160,7 +163,7 @@ fn known_failures(expectations: &Expectations, subjects: &[Subject]) -> Vec<Expe
 /// Nothing ran where every case was skipped, or every verdict permits anything.
 pub(crate) fn status(report: &Report) -> Status {
     if let Some(Interrupted { under_way, message, signal }) = &report.interrupted {
-        eprintln!("error: {message}\n  {under_way} was under way; what was judged before stands in the result");
+        say(&format!("error: {message}\n  {under_way} was under way; what was judged before stands in the result"));
         return signal.map_or(Status::Device, Status::of_signal);
     }
     if !report.is_success() {
@@ -174,7 +177,7 @@ pub(crate) fn status(report: &Report) -> Status {
         } else {
             "every case was skipped or indeterminate"
         };
-        eprintln!("error: nothing was judged: {why}");
+        say(&format!("error: nothing was judged: {why}"));
         return Status::Nothing;
     }
     Status::Success

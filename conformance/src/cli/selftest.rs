@@ -224,7 +224,7 @@ impl Tested {
 /// Says what is under way, where somebody reads it.
 fn say(what: &str) {
     if std::io::stderr().is_terminal() {
-        eprintln!("{what}");
+        super::say(what);
     }
 }
 

@@ -1,6 +1,7 @@
 //! What ends a command before its work is done.
 
 use super::Status;
+use super::say;
 use lightmeter::document::event::Stop;
 use lightmeter::document::run::Interrupted;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -21,6 +22,6 @@ pub(crate) fn stopped_by_signals() -> anyhow::Result<Stop> {
 
 /// Says that a signal ended a command, and how the command ends.
 pub(crate) fn status_of(Interrupted { under_way, message, signal }: &Interrupted) -> Status {
-    eprintln!("error: {message}\n  {under_way} was under way; what was done before stands in the result");
+    say(&format!("error: {message}\n  {under_way} was under way; what was done before stands in the result"));
     signal.map_or(Status::Device, Status::of_signal)
 }

@@ -1,6 +1,7 @@
 //! `lightmeter sweep`.
 
 use super::options::{Choice, Format, ShardArgument};
+use super::say;
 use super::signals::stopped_by_signals;
 use super::{NothingToRun, Status, emit};
 use anyhow::{Context as _, bail};
@@ -117,7 +118,7 @@ impl Sweep {
             Err(SweepError::Device(error)) => {
                 if let Some(path) = self.checkpoint.as_ref().filter(|_| error.is_of_device()) {
                     let (done, blocks) = (document.done, document.blocks);
-                    eprintln!("{done} of {blocks} blocks were done, which are in {}", path.display());
+                    say(&format!("{done} of {blocks} blocks were done, which are in {}", path.display()));
                 }
                 // Closing a device that hangs would hang as well.
                 std::mem::forget(subjects);
@@ -172,7 +173,7 @@ impl Sweep {
         if !document.is_finished()
             && let Some(path) = &self.checkpoint
         {
-            eprintln!("not finished; the same command goes on from {}", path.display());
+            say(&format!("not finished; the same command goes on from {}", path.display()));
         }
         Ok(status(document))
     }

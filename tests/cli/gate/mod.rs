@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
 
 /// A folder of this test's own.
-fn folder(test: &str) -> PathBuf {
+pub(crate) fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gate").join(test);
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder can be made");
@@ -23,7 +23,7 @@ fn text(path: &Path) -> &str {
 }
 
 /// Packs cases and answers them by the reference, as `eval` does.
-fn answered(test: &str, filter: &[&str]) -> (PathBuf, PathBuf) {
+pub(crate) fn answered(test: &str, filter: &[&str]) -> (PathBuf, PathBuf) {
     answered_of(test, filter, 64)
 }
 
@@ -50,7 +50,7 @@ fn report(output: &Output) -> (i32, Value) {
     (code(output), report)
 }
 
-fn edit(answers: &Path, edit: impl Fn(usize, &str) -> String) -> PathBuf {
+pub(crate) fn edit(answers: &Path, edit: impl Fn(usize, &str) -> String) -> PathBuf {
     edit_as(answers, "edited", edit)
 }
 

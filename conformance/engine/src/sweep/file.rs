@@ -7,6 +7,7 @@ use super::span::Span;
 use lightmeter_catalogue::select::Shard;
 use lightmeter_document::Document as _;
 use lightmeter_document::sweep::{Description, SCHEMA, Statistics, SweepDocument};
+use lightmeter_files::read;
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
@@ -110,7 +111,7 @@ fn problem(document: &SweepDocument) -> Option<String> {
 /// # Errors
 /// Where it cannot be read, or is not what was written.
 pub fn read(path: &Path) -> Result<SweepDocument, DocumentError> {
-    let bytes = std::fs::read(path)
+    let bytes = read::bytes(path, read::MOST_TEXT)
         .map_err(|error| DocumentError::Unreadable { path: path.into(), message: error.to_string() })?;
     let text = String::from_utf8(bytes).map_err(|_| "not UTF-8".to_owned());
     text.and_then(|text| parse(&text)).map_err(|message| DocumentError::Damaged { path: path.into(), message })
@@ -141,15 +142,8 @@ pub fn resume(path: &Path, sweep: &Description, shard: Shard) -> Result<Option<S
 /// Where it cannot be written.
 pub fn write(document: &SweepDocument, path: &Path) -> Result<(), DocumentError> {
     let unwritable = |message: String| DocumentError::Unwritable { path: path.into(), message };
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(format!(".{}.tmp", std::process::id()));
-    let beside = PathBuf::from(beside);
     let text = document.to_json().map_err(|error| unwritable(error.to_string()))?;
-    let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
-    written.map_err(|error| {
-        let _ = std::fs::remove_file(&beside);
-        unwritable(error.to_string())
-    })
+    lightmeter_files::whole(path, text.as_bytes()).map_err(|error| unwritable(error.to_string()))
 }
 
 /// The results of every shard as one.

@@ -24,8 +24,12 @@ const PROBES: usize = 2048;
 const PAIRED: usize = 3;
 /// With so many others.
 const OTHERS: usize = 24;
-/// The part of the failing components that an explanation explains at least, and of the passing ones that must not contradict it.
+/// The part of the failing components that an explanation explains at least.
 const WHOLE: f64 = 0.9;
+/// The same of two mistakes at once, which fit more by themselves.
+const WHOLE_OF_TWO: f64 = 0.98;
+/// The passing components that may contradict an explanation, as a part of the failing ones.
+const MOST_CONTRADICTED: f64 = 0.02;
 /// How far from a whole step a value may be that is one.
 const STEP_ERROR: f64 = 1e-6;
 /// Explanations that are tried with all that is legal.
@@ -145,7 +149,10 @@ impl<'a> Trial<'a> {
         let has = |count: usize, share: f64, all: usize| count as f64 >= share * all as f64;
         // What pixels that pass contradict is not what was done.
         found.retain(|one| {
-            has(one.explained, WHOLE, self.failing.len()) && has(one.consistent, WHOLE, self.passing.len())
+            let whole = if one.faults.len() > 1 { WHOLE_OF_TWO } else { WHOLE };
+            let contradicted = self.passing.len() - one.consistent;
+            has(one.explained, whole, self.failing.len())
+                && !has(contradicted, MOST_CONTRADICTED, self.failing.len().max(1))
         });
         let sentence = self.sentence(found.first());
         SceneDiagnosis { failing: self.failing.len(), explanations: found, sentence }

@@ -1,5 +1,6 @@
 //! The mistakes of whole renderers: a frame that is drawn as if it were another, and an image that is written as if it were.
 
+use crate::row::{Arithmetic as _, Narrowing};
 use lightmeter_reference::color;
 use lightmeter_scene::blend::{Factor, State};
 use lightmeter_scene::frame::{Cull, Fog, FogForm, Frame, Light, Material, Place, Shading, TextureFilter, Wrap};
@@ -186,7 +187,7 @@ faults! {
     Frame "vertex-colours-left-out" "the vertices' colours are left out" |frame| each_draw(frame, |draw| draw.vertex_colors = false);
     Frame "cutout-left-out" "nothing is cut out" |frame| each_draw(frame, |draw| draw.cutout = None);
     // Where pixels are.
-    Frame "half-pixel" "all is half a pixel off" |frame| shift(frame, [0.5, 0.5]);
+    Frame "half-pixel" "all is half a pixel to the right and down" |frame| shift(frame, [0.5, 0.5]);
     Frame "mirrored" "the image is mirrored" |frame| scale(frame, 0, -1.0);
     Frame "background-black" "the background is black" |frame| frame.background = [0.0, 0.0, 0.0, frame.background[3]];
     Image "upside-down" "the image is upside down" |pixels, width| {
@@ -202,6 +203,16 @@ faults! {
     Image "premultiplied" "colours are multiplied by their alpha" |pixels, _| pixels.iter_mut().for_each(|pixel| (0..3).for_each(|k| pixel[k] *= pixel[3]));
     Image "alpha-lost" "alpha is 1 everywhere" |pixels, _| pixels.iter_mut().for_each(|pixel| pixel[3] = 1.0);
     Image "truncated" "steps of 8 bits are truncated and not rounded" |pixels, _| pixels.iter_mut().flatten().for_each(|c| *c = ((255.0 * *c + 1e-9).floor() / 255.0).min(*c));
+    Frame "shininess-of-1000-as-128" "the shininess is rescaled from a range of 1000 to one of 128" |frame| each_material(frame, |material| material.shininess *= 0.128);
+    Frame "shininess-ignored" "the shininess is ignored: the highlight is the bare cosine" |frame| each_material(frame, |material| material.shininess = 1.0);
+    Frame "attenuation-plus-one" "the divisor of attenuation has 1 added" |frame| each_falloff(frame, |falloff| if falloff[1] + falloff[2] > 0.0 { falloff[0] += 1.0 });
+    Frame "spot-exponent-fourfold" "a spotlight's exponent is 4 times what was asked" |frame| each_place(frame, |place| if let Place::Spot { exponent, .. } = place { *exponent *= 4.0 });
+    Frame "spot-axis-reversed" "spotlights point the other way" |frame| each_place(frame, |place| if let Place::Spot { axis, .. } = place { negate(axis) });
+    Frame "fog-density-squared" "the fog's density is squared" |frame| each_fog(frame, |fog| if let FogForm::Exp { density } | FogForm::Exp2Document { density } | FogForm::Exp2OpenGl { density } = &mut fog.form { *density *= *density });
+    Frame "sampled-at-the-pixel-corner" "a pixel is sampled at its upper left corner, not at its middle" |frame| shift(frame, [-0.5, -0.5]);
+    Image "in-half-precision" "the image is held in half precision" |pixels, _| each_color(pixels, |c| c.in_half(Narrowing::Rounded));
+    Image "in-8-bits" "the image is held in 8 bits on its way" |pixels, _| each_color(pixels, |c| (255.0 * c.clamp(0.0, 1.0)).round_ties_even() / 255.0);
+    Image "srgb-encoded-twice" "colours are encoded for sRGB twice" |pixels, _| each_color(pixels, |c| color::srgb_encode(color::srgb_encode(c.clamp(0.0, 1.0))));
     Image "half-as-bright" "all is half as bright" |pixels, _| each_color(pixels, |c| 0.5 * c);
 }
 

@@ -16,6 +16,7 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("fog-signed-depth", "fog uses z with its sign", &[&[form("distance", Form::SignedDepth)]])
         .only(|spec| !spec.id.contains("exp2")),
     fault("fog-smoothstep", "linear fog is smoothed by smoothstep", &[&[result("f", Op::Smoothstep)]])
+        .only(|spec| spec.id.starts_with("fog/linear"))
         .seen_in("three.js, Fog"),
     fault("fog-from-the-eye", "linear fog begins at the eye", &[&[given("f", "dmin", Op::Set(0.0))]]),
     fault(

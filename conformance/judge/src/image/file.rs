@@ -137,12 +137,6 @@ impl StoredImage {
 /// # Errors
 /// Where either fails.
 pub fn whole(path: &Path, bytes: &[u8]) -> Result<(), ImageFileError> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    let beside = PathBuf::from(beside);
-    let written = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, path));
-    written.map_err(|error| {
-        let _ = std::fs::remove_file(&beside);
-        ImageFileError::Write { path: path.into(), message: error.to_string() }
-    })
+    lightmeter_files::whole(path, bytes)
+        .map_err(|error| ImageFileError::Write { path: path.into(), message: error.to_string() })
 }

@@ -7,6 +7,7 @@ mod unit;
 
 use super::mistakes::by_name;
 use super::options::{Choice, Format};
+use super::say;
 use super::{Status, emit};
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -147,7 +148,7 @@ impl Show {
     fn subjects(&self) -> anyhow::Result<Vec<Subject>> {
         match self.choice.subjects() {
             Err(error) if self.choice.adapter.is_empty() => {
-                eprintln!("note: {error:#}");
+                say(&format!("note: {error:#}"));
                 Ok(vec![])
             }
             subjects => subjects,

@@ -1,0 +1,273 @@
+//! Files, lines and streams that nobody means well with: each is told with what is wrong with it, and no verdict is lost.
+
+use super::gate::{answered, edit, folder};
+use super::{code, command, eval, lightmeter, stderr, stdout};
+use serde_json::Value;
+use std::fs::File;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// What runs a command line of a shell, in which `$L` is the binary.
+fn shell(line: &str) -> std::process::Output {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", line]).env("L", env!("CARGO_BIN_EXE_lightmeter"));
+    shell.output().expect("there is a shell")
+}
+
+/// Answers of which one is wrong.
+fn wrong(test: &str) -> (String, String) {
+    let (pack, answers) = answered(test, &["fog/exp"]);
+    let spoil =
+        |k: usize, line: &str| if k == 3 { line.replace("\"value\":[", "\"value\":[7") } else { line.into() } + "\n";
+    let wrong = edit(&answers, spoil);
+    (pack.display().to_string(), wrong.display().to_string())
+}
+
+#[test]
+fn whoever_closes_an_output_changes_no_exit_code() {
+    let (pack, answers) = wrong("closed");
+    let given = format!("'{pack}' '{answers}'");
+    for streams in ["| true", ">&-", ">/dev/full 2>&-", "2>/dev/full", ">/dev/full 2>/dev/full"] {
+        let line = match streams {
+            "| true" => format!("{{ $L gate {given}; echo $? >&2; }} 2>&1 >/dev/null {streams}"),
+            _ => format!("$L gate {given} {streams}; echo $?"),
+        };
+        let output = match streams {
+            // The exit code of what stands before a pipe.
+            "| true" => Command::new("bash")
+                .args(["-c", &format!("$L gate {given} | true; echo ${{PIPESTATUS[0]}}")])
+                .env("L", env!("CARGO_BIN_EXE_lightmeter"))
+                .output()
+                .expect("there is a shell"),
+            _ => shell(&line),
+        };
+        let said = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        // What could not be written is an error of its own.
+        let expected: &[&str] = if streams.contains(">/dev/full 2") { &["2"] } else { &["1"] };
+        let code = said.lines().last().unwrap_or_default();
+        assert!(expected.contains(&code), "{streams}: {said}");
+    }
+    let output = shell("$L run frog 2>/dev/full; echo $?");
+    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "3");
+}
+
+#[test]
+fn what_stood_in_a_file_stays_until_a_result_is_whole() {
+    let folder = folder("whole");
+    let file = folder.join("out.json");
+    std::fs::write(&file, "before").expect("it can be written");
+    let out = file.display().to_string();
+    for args in [
+        &["run", "frog", "--out", &out][..],
+        &["gate", "/nowhere", "/nowhere/answers", "--out", &out],
+        &["merge", "/dev/null", "--out", &out],
+        &["page", "selftest", "/nowhere", "--out", &out],
+    ] {
+        assert_ne!(code(&lightmeter(args)), 0, "{args:?}");
+        assert_eq!(std::fs::read_to_string(&file).expect("it is there"), "before", "{args:?}");
+    }
+    let fresh = folder.join("fresh.json");
+    assert_ne!(code(&lightmeter(&["run", "frog", "--out", fresh.to_str().expect("UTF-8")])), 0);
+    assert!(!fresh.exists(), "nothing was written");
+    assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left beside it");
+}
+
+/// Ends within seconds, with 2, and says something of the file.
+fn refused(args: &[&str], says: &str) {
+    let args = [&["20", env!("CARGO_BIN_EXE_lightmeter")], args].concat();
+    let output = Command::new("timeout").args(&args).stdin(Stdio::null()).output().expect("there is timeout");
+    let said = stderr(&output);
+    assert!(code(&output) == 2 && said.contains(says), "{args:?}: {said}");
+}
+
+#[test]
+fn what_is_no_file_is_not_waited_for() {
+    let folder = folder("no-file");
+    let pipe = folder.join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("there is mkfifo").success());
+    let (pack, answers) = answered("no-file-asked", &["fog/exp"]);
+    let (pack, answers) = (pack.display().to_string(), answers.display().to_string());
+    for given in ["/dev/zero", &pipe.display().to_string()] {
+        let says = "it is a pipe or a device; expected a file";
+        refused(&["gate", &pack, &answers, "--baseline", given], says);
+        refused(&["gate", &pack, &answers, "--expect", given], says);
+        refused(&["gate", &pack, given], says);
+        refused(&["run", "fog/exp", "--adapter", "cpu", "--baseline", given], says);
+        refused(&["merge", given], says);
+        refused(&["page", "selftest", given], says);
+        refused(&["effects", given], "cannot read");
+        let shaders = folder.join("shaders");
+        std::fs::create_dir_all(&shaders).expect("a folder can be made");
+        let shader = shaders.join("fog.wgsl");
+        let _ = std::fs::remove_file(&shader);
+        std::os::unix::fs::symlink(given, &shader).expect("a link can be made");
+        refused(&["run", "fog/exp", "--shaders", &shaders.display().to_string()], says);
+    }
+}
+
+#[test]
+fn what_is_too_long_is_not_read() {
+    let folder = folder("long");
+    let long = folder.join("long");
+    // A file that has no blocks takes no room.
+    File::create(&long).and_then(|file| file.set_len(1 << 34)).expect("it can be made");
+    let shader = folder.join("fog.wgsl");
+    File::create(&shader).and_then(|file| file.set_len(1 << 30)).expect("it can be made");
+    let long = long.display().to_string();
+    refused(&["merge", &long], "17179869184 bytes; expected at most 67108864");
+    refused(&["run", "fog/exp", "--adapter", "cpu", "--baseline", &long], "17179869184 bytes; expected at most");
+    refused(&["run", "fog/exp", "--adapter", "cpu", "--expect", &long], "17179869184 bytes; expected at most");
+    let shaders = folder.display().to_string();
+    refused(&["run", "fog/exp", "--shaders", &shaders], "1073741824 bytes; expected at most 4194304");
+    refused(&["gate", "--exec", "cat", "fog/exp", "--cases", "1000000000"], "is not in 1..=10000000");
+}
+
+#[test]
+fn a_baseline_that_says_what_cannot_be_is_refused() {
+    let (pack, answers) = answered("baseline", &["fog/exp"]);
+    let (pack, answers) = (pack.display().to_string(), answers.display().to_string());
+    let output = lightmeter(&["gate", &pack, &answers, "--format", "json"]);
+    let whole: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    let file = folder("baseline-file").join("baseline.json");
+    let with = |edit: &dyn Fn(&mut Value)| {
+        let mut edited = whole.clone();
+        edit(&mut edited);
+        std::fs::write(&file, edited.to_string()).expect("it can be written");
+        file.display().to_string()
+    };
+    for (edit, says) in [
+        (
+            &(|report: &mut Value| {
+                report["groups"][0]["not_passed"]["failed"] = vec!["random/0..18446744073709551615"].into();
+            }) as &dyn Fn(&mut Value),
+            "cases did not pass of",
+        ),
+        (&|report: &mut Value| report["groups"] = Value::Array(vec![]), "it has no group"),
+    ] {
+        let baseline = with(edit);
+        refused(&["gate", &pack, &answers, "--baseline", &baseline], says);
+    }
+    // Words that are not ASCII, and controls, are words like others.
+    let baseline = with(&|report| {
+        report["groups"][0]["not_passed"]["failed"] = vec!["größer\u{1b}[2J..é\u{202e}"].into();
+        report["groups"][0]["id"] = "\n::error::é".into();
+    });
+    let output = lightmeter(&["gate", &pack, &answers, "--baseline", &baseline]);
+    let said = stdout(&output) + &stderr(&output);
+    assert_ne!(code(&output), 0, "{said}");
+    harmless(&said);
+}
+
+/// Nothing that a terminal or a server would obey.
+fn harmless(said: &str) {
+    assert!(!said.contains(['\u{1b}', '\u{202e}']), "{said}");
+    let is_command = |line: &str| ["::", "##["].iter().any(|start| line.trim_start().starts_with(start));
+    assert!(!said.lines().any(is_command), "{said}");
+}
+
+#[test]
+fn words_of_others_command_no_terminal_and_no_server() {
+    let hello = |fields: &str| {
+        let hello = format!(r#"{{"hello": "lightmeter/1", {fields}}}"#);
+        format!("printf '%s\\n' '{hello}'; while read -r line; do :; done")
+    };
+    for fields in [
+        r#""renderer": "::add-mask::x", "formulas": ["fog/exp"]"#,
+        r###""renderer": "##[error]x", "version": "\u001b[31m1\u202e", "formulas": ["fog/exp"]"###,
+        r#""renderer": "a", "formulas": ["fog/exp"], "profile": "x\n::error::y\u001b[2J""#,
+        r#""renderer": "a", "formulas": ["fog/[\n::error::y"]"#,
+        r#""renderer": "a", "formulas": ["fog/exp"], "effects": ["x\n::error::y"]"#,
+        r#""renderer": "a\n::error::y", "formulas": ["\n::error::y"]"#,
+    ] {
+        let output = lightmeter(&["gate", "--exec", &hello(fields), "fog/exp", "--cases", "4", "--timeout", "2"]);
+        let said = stdout(&output) + &stderr(&output);
+        assert_ne!(code(&output), 0, "{fields}: {said}");
+        harmless(&said);
+    }
+    let folder = folder("words");
+    let scene = folder.join("scene.json");
+    std::fs::write(&scene, "{\"title\": \"\\u001b[31m\\n::error::x\", \"\\n::error::y\": 1}")
+        .expect("it can be written");
+    for command in [&["effects"][..], &["render", "--out", "x.png"]] {
+        let path = scene.display().to_string();
+        let output = lightmeter(&[&command[..1], &[path.as_str()], &command[1..]].concat());
+        let said = stdout(&output) + &stderr(&output);
+        assert_eq!(code(&output), 2, "{said}");
+        harmless(&said);
+    }
+}
+
+#[test]
+fn junit_of_hostile_words_is_xml() {
+    let (pack, _) = answered("junit", &["fog/exp"]);
+    let answers = folder("junit-answers").join("answers.jsonl");
+    let text = "{\"renderer\": \"a\\ufffe\\uffff\\u0001\"}\n{\"id\": \"x\\ufffe\\u0007\", \"value\": [1]}\n";
+    std::fs::write(&answers, text).expect("it can be written");
+    let given = answers.display().to_string();
+    let output = lightmeter(&["gate", &pack.display().to_string(), &given, "--format", "junit"]);
+    let xml = stdout(&output);
+    let is_of_xml = |c: char| matches!(c, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..);
+    assert!(xml.starts_with("<?xml") && xml.chars().all(is_of_xml), "{xml}");
+    assert!(!xml.contains("&#1;") && !xml.contains("&#xFFFE;"), "{xml}");
+}
+
+#[test]
+fn a_line_that_cannot_be_answered_ends_nothing() {
+    let line = |id: &str, inputs: &str| format!(r#"{{"id":{id},"formula":"fog/linear","inputs":{inputs}}}"#);
+    let inputs = r#"{"p":[0,0,-5],"dmin":0,"dmax":10,"fog":[0,0,0],"shaded":[1,1,1]}"#;
+    let twice = inputs.replace("\"dmin\":0", "\"dmin\":0,\"dmin\":1");
+    let long = format!("\"{}\"", "x".repeat(2 << 20));
+    let lines = [line("1", inputs), line("\"b\"", &twice), line(&long, inputs), line("4", "{}"), line("5", inputs)];
+    let output = eval(&(lines.join("\n") + "\n"));
+    assert_eq!(code(&output), 2);
+    let answers: Vec<Value> = stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let error = |k: usize| answers[k]["error"].as_str().unwrap_or_default().to_owned();
+    assert_eq!(answers.len(), 5);
+    assert!(answers[0]["value"].is_array() && answers[4]["value"].is_array());
+    assert!(error(1).contains("line 2: not JSON: field `dmin` stands there twice"), "{}", error(1));
+    assert!(error(2).contains("line 3: it has more than 1048576 bytes"), "{}", error(2));
+    assert!(error(3).contains("line 4: field `inputs.p` is missing") && answers[3]["id"] == 4, "{}", error(3));
+}
+
+#[test]
+fn a_pack_that_was_killed_leaves_nothing_in_the_next_one() {
+    let pack = folder("killed").join("pack");
+    let path = pack.display().to_string();
+    for milliseconds in [10, 30, 100, 300] {
+        let mut writing =
+            command(&["pack", &path, "scene/*", "fog/*", "--size", "64"]).spawn().expect("the binary starts");
+        std::thread::sleep(std::time::Duration::from_millis(milliseconds));
+        let _ = writing.kill();
+        writing.wait().expect("it ends");
+        let output = lightmeter(&["pack", &path, "fog/exp", "--cases", "4"]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let entries = std::fs::read_dir(&pack).expect("a folder").map(|entry| entry.expect("an entry"));
+        // A file that was under way goes a minute later.
+        let is_listed = |entry: &std::fs::DirEntry| !entry.file_name().to_string_lossy().starts_with(".lightmeter-");
+        let is_file = |entry: &std::fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
+        let mut names: Vec<_> = entries.filter(is_listed).filter(is_file).map(|entry| entry.file_name()).collect();
+        names.sort();
+        assert_eq!(names, ["cases.jsonl", "manifest.json"]);
+        let in_folders = |folder: &Path| -> usize {
+            let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
+            entries.filter(|entry| !entry.file_name().to_string_lossy().starts_with(".lightmeter-")).count()
+        };
+        let folders = std::fs::read_dir(pack.join("scene")).into_iter().flatten().flatten();
+        assert_eq!(folders.map(|scene| in_folders(&scene.path())).sum::<usize>(), 0, "files of scenes are left");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_path_need_not_be_utf_8() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = folder("path");
+    let out = folder.join(std::ffi::OsStr::from_bytes(b"out-\xff.json"));
+    let (pack, answers) = answered("path-asked", &["fog/exp"]);
+    for flag in ["--out", "--baseline"] {
+        let mut gate = command(&["gate", &pack.display().to_string(), &answers.display().to_string()]);
+        let output = gate.args(["--format", "json", flag]).arg(&out).output().expect("the binary starts");
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+    }
+    assert!(Path::new(&out).metadata().expect("it is there").len() > 100);
+}
