@@ -451,7 +451,7 @@ mod tests {
 
     #[test]
     fn words_are_told_without_end_and_control() {
-        assert_eq!(clipped(" a\u{1b}[2Jb\nc "), "a [2Jb c");
+        assert_eq!(clipped(" a\u{1b}[2Jb\nc "), r"a\u{1b}[2Jb\u{a}c");
         let long = clipped(&"x".repeat(1 << 20));
         assert!(long.chars().count() == MOST_TOLD + 1 && long.ends_with('…'));
     }
