@@ -1,67 +1,18 @@
 //! Which mistake a renderer made, from its answers: mistakes, pairs of them and wrong parameters are tried as explanations.
 
-use super::catalogue::faults;
 use super::common::{in_common, share};
 use super::concerned::concerned;
+use super::evidence::{EXCLUDED, Fit, Foretold, Right, bits_left, fit, is_wrong};
+use super::explanation::{Diagnosis, Explanation, is_equal, rank, sentence};
 use super::factor::{self, Scaled};
 use super::fault::Concerned;
 use super::variation::Variation;
-use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
+use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::Member;
 use lightmeter_judge::diagnose::Answered;
 use lightmeter_judge::telling;
-use serde::Serialize;
-use std::collections::HashSet;
 
-/// What may have been done in a formula's place.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Explanation {
-    /// The mistake's name, or those of a pair; none for a wrong parameter.
-    pub faults: Vec<&'static str>,
-    /// In words, as the end of a sentence.
-    pub says: String,
-    /// The parameter that is wrong, and how many times what was asked it seems to be.
-    pub parameter: Option<Scaled>,
-    /// Failing cases whose answer is legal for who makes the mistake.
-    pub explained: usize,
-    /// Failing cases in which who makes the mistake may answer anything.
-    pub open: usize,
-    /// Passing cases whose answer would be too.
-    pub consistent: usize,
-    /// By how many bits it beats chance: how much it tells of the failing answers that the right formula does not, less what it
-    /// takes to say which of all explanations it is.
-    pub evidence: f64,
-}
-
-/// What a renderer did wrong in a formula.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Diagnosis {
-    /// Cases that failed.
-    pub failing: usize,
-    /// Cases that passed.
-    pub passing: usize,
-    /// The best first; only those that explain nearly all of the failing cases.
-    pub explanations: Vec<Explanation>,
-    /// The simplest case that tells the best from the next that is not as good: the best explains its answer, that one does not.
-    pub telling: Option<String>,
-    /// The outcome as a sentence.
-    pub sentence: String,
-}
-
-impl Diagnosis {
-    /// The outcome where the failing cases are a sample of so many.
-    #[must_use]
-    pub fn sentence_of(&self, all: usize) -> String {
-        if all == self.failing {
-            return self.sentence.clone();
-        }
-        format!("of {all} failing cases {} were looked at: {}", self.failing, self.sentence)
-    }
-}
-
-/// Explanations that are kept.
-const MOST_EXPLANATIONS: usize = 5;
 /// What an explanation may exclude of the failing cases, and what passing ones may contradict it, as shares of the failing cases; the
 /// first is of random cases, since at a formula's edges renderers that make the same mistake have other guards. Where every answer is
 /// 0 or 1, none may contradict it.
@@ -75,10 +26,6 @@ const LEAST_EVIDENCE: f64 = 6.0;
 const MOST_CONSTANT: f64 = 4.0;
 /// The bits that are told by which cases fail, at most.
 const MOST_FORETOLD: f64 = 24.0;
-/// The bits within which two explanations are equally good.
-const EQUAL: f64 = 8.0;
-/// Explanations beyond the best that are told as equally good.
-const MOST_EQUAL: usize = 2;
 /// The share of failing cases that lie inside, where the mistake promises something, at least.
 const LEAST: f64 = 0.1;
 /// The bits that it takes to say by which factor which parameter is off.
@@ -135,11 +82,6 @@ pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Di
     Diagnosis { failing: failing.len(), passing: passing.len(), sentence, explanations, telling }
 }
 
-/// Whether another explanation is as good as the best.
-fn is_equal(best: &Explanation, other: &Explanation) -> bool {
-    (best.evidence - other.evidence).abs() <= EQUAL
-}
-
 /// That nothing explains the failing cases, with what they have in common.
 fn unexplained(member: &Member, profile: &Profile, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> String {
     let cases = if failing.len() == 1 { "failing case".into() } else { format!("{} failing cases", failing.len()) };
@@ -147,151 +89,6 @@ fn unexplained(member: &Member, profile: &Profile, failing: &[Answered<'_>], pas
     match in_common(member, profile, failing, passing) {
         common if common.is_empty() => told,
         common => format!("{told}: {}", common.join(", ")),
-    }
-}
-
-/// Puts the best first: those with the most evidence, and of equally good ones the simplest, in the order of the catalogue.
-fn rank(explanations: &mut Vec<Explanation>) {
-    let kind = |e: &Explanation| if e.parameter.is_some() { 3 + e.faults.len() } else { e.faults.len() };
-    let order = |e: &Explanation| -> Vec<usize> {
-        e.faults.iter().filter_map(|name| faults().iter().position(|fault| fault.name == *name)).collect()
-    };
-    explanations.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    let most = explanations.first().map_or(0.0, |best| best.evidence);
-    let equal = explanations.partition_point(|e| most - e.evidence <= EQUAL);
-    explanations[..equal].sort_by(|a, b| kind(a).cmp(&kind(b)).then_with(|| order(a).cmp(&order(b))));
-    explanations.truncate(MOST_EXPLANATIONS);
-}
-
-fn sentence(failing: usize, explanations: &[Explanation]) -> String {
-    let cases = if failing == 1 { "case is" } else { "cases are" };
-    let Some(best) = explanations.first() else { return "nothing fails".into() };
-    let Explanation { explained, open, .. } = best;
-    let mut told = format!("{explained} of {failing} failing {cases} explained by: {}", together(best, explanations));
-    let equal = |other: &&Explanation| {
-        other.parameter.is_none() && other.faults.len() <= best.faults.len() && is_equal(best, other)
-    };
-    for other in explanations.iter().skip(1).filter(equal).take(MOST_EQUAL) {
-        told = format!("{told}; or just as well by: {}", other.says);
-    }
-    match open {
-        0 => told,
-        open => format!("{told}; in {open} of them whoever makes this mistake may answer anything"),
-    }
-}
-
-/// What the best explanation says, with the parameters that explain just as much by the same factor: nothing tells them apart.
-fn together(best: &Explanation, explanations: &[Explanation]) -> String {
-    let Some(scaled) = &best.parameter else { return best.says.clone() };
-    let is_same = |other: &&Explanation| {
-        let counts = |e: &Explanation| (e.explained, e.open, e.consistent);
-        let factor = other.parameter.as_ref().map_or(f64::NAN, |other| other.factor);
-        counts(other) == counts(best) && other.faults == best.faults && (factor / scaled.factor - 1.0).abs() < 1e-3
-    };
-    let names: Vec<&str> =
-        explanations.iter().filter(is_same).filter_map(|e| Some(e.parameter.as_ref()?.name)).collect();
-    // Before it may stand a mistake.
-    let parts = best.says.split_once(&format!("as if {} ", scaled.name)).filter(|_| names.len() > 1);
-    let Some((mistake, phrase)) = parts else { return best.says.clone() };
-    format!("{mistake}as if {} (nothing tells which) {phrase}", names.join(" or "))
-}
-
-/// What a row's answer says of the intervals of its outputs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Fit {
-    /// Every output lies in its interval, and one of them at least is bound to something.
-    Inside,
-    /// Nothing is promised.
-    Open,
-    /// An output lies outside.
-    Outside,
-}
-
-/// Whether an answer is one that these intervals allow.
-pub(super) fn fit(values: &[f32], legal: &[Accept]) -> Fit {
-    let is_inside = values.iter().zip(legal).all(|(&value, legal)| legal.contains(value.into()));
-    match (is_inside, legal.iter().all(Accept::is_any)) {
-        (false, _) => Fit::Outside,
-        (true, true) => Fit::Open,
-        (true, false) => Fit::Inside,
-    }
-}
-
-/// The bits that an interval leaves open of a number in it.
-fn bits_left(value: f32, legal: &Accept) -> f64 {
-    let ulps = legal.width() / F32::ulp(f64::from(value)).max(F32::MIN_SUBNORMAL);
-    if ulps.is_finite() { (1.0 + ulps).log2().min(BITS) } else { BITS }
-}
-
-/// The bits of a number of which nothing is known.
-const BITS: f64 = 28.0;
-/// The bits that an answer costs which an explanation excludes.
-const EXCLUDED: f64 = 100.0;
-
-/// What the right formula says of the answers.
-struct Right {
-    /// What is legal of the failing answers, then of the passing ones.
-    legal: Vec<Accept>,
-    /// The bits that each number of a failing answer takes where nothing but the right formula is known: those that it leaves open
-    /// where the number is right, and all of a wrong one.
-    bits: Vec<f64>,
-    /// For each output the number that every answer has there, failing or passing: such answers tell nothing of how they came about.
-    constant: Vec<Option<u32>>,
-}
-
-impl Right {
-    fn new(member: &Member, profile: &Profile, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> Self {
-        let outputs = member.spec.output_len();
-        let mut legal = vec![Accept::ANY; outputs * (failing.len() + passing.len())];
-        for (row, legal) in failing.iter().chain(passing).zip(legal.chunks_mut(outputs)) {
-            member.formula.promised_interval(member.spec.kind, row.inputs, profile, legal);
-        }
-        let mut seen: Vec<HashSet<u32>> = vec![HashSet::new(); outputs];
-        let mut bits = vec![];
-        for (row, legal) in failing.iter().zip(legal.chunks(outputs)) {
-            for ((&value, legal), seen) in row.values.iter().zip(legal).zip(&mut seen) {
-                // What is saturated, or comes again and again, is told by little.
-                let is_plain =
-                    value.to_bits() << 1 == 0 || value.to_bits() == 1.0_f32.to_bits() || !seen.insert(value.to_bits());
-                bits.push(match legal.contains(value.into()) {
-                    true => bits_left(value, legal),
-                    false if is_plain => 1.0,
-                    false => BITS,
-                });
-            }
-        }
-        let constant = |place: usize| {
-            let mut all = failing.iter().chain(passing).map(|row| row.values[place].to_bits());
-            let first = all.next()?;
-            all.all(|other| other == first).then_some(first)
-        };
-        Self { legal, bits, constant: (0..outputs).map(constant).collect() }
-    }
-}
-
-/// Which cases fail, and which would if a mistake were made: counts of cases.
-#[derive(Default)]
-struct Foretold {
-    counts: [[usize; 2]; 2],
-}
-
-impl Foretold {
-    fn take(&mut self, fails: bool, would_fail: bool) {
-        self.counts[usize::from(fails)][usize::from(would_fail)] += 1;
-    }
-
-    /// How many bits of which cases fail are told by which would; none where those that fail would not do so more often.
-    fn bits(&self) -> f64 {
-        let [[a, b], [c, d]] = self.counts;
-        let all = a + b + c + d;
-        if c + d == 0 || a + b > 0 && share(d, c + d) <= share(b, a + b) {
-            return 0.0;
-        }
-        let cell = |count: usize, line: usize, column: usize| match count {
-            0 => 0.0,
-            _ => share(count, 1) * (share(count, line) * share(all, column)).log2(),
-        };
-        cell(a, a + b, a + c) + cell(b, a + b, b + d) + cell(c, c + d, a + c) + cell(d, c + d, b + d)
     }
 }
 
@@ -534,11 +331,6 @@ struct Tally {
     /// Whether the mistake's own numbers of an output are others than the answers in some case.
     varies: Vec<bool>,
     foretold: Foretold,
-}
-
-/// Whether a number of an answer is not legal.
-fn is_wrong(answer: &[f32], legal: &[Accept]) -> bool {
-    answer.iter().zip(legal).any(|(&x, legal)| !legal.contains(x.into()))
 }
 
 /// So much of a count, rounded down.

@@ -37,7 +37,7 @@ const STEPS_AN_OCTAVE: i32 = 6;
 const ROUGH_STEPS: i32 = 2;
 const FEW_ROWS: usize = 6;
 const NEAREST: usize = 12;
-/// Those few are tried on fewer cases still; of so many one is tried on all of them.
+/// Cases that every mistake with every parameter is tried on first, and the part that is then tried on more: one in so many.
 const FEWER_ROWS: usize = 2;
 const NEAR: usize = 4;
 /// What is left of the cost of the parameter as it was asked, at most.

@@ -11,6 +11,8 @@ mod change;
 mod common;
 mod concerned;
 mod diagnose;
+mod evidence;
+mod explanation;
 mod factor;
 mod fault;
 mod group;
@@ -26,7 +28,8 @@ mod variation;
 
 pub use catalogue::faults;
 pub use concerned::concerning;
-pub use diagnose::{Diagnosis, Explanation, diagnose};
+pub use diagnose::diagnose;
+pub use explanation::{Diagnosis, Explanation};
 pub use factor::Scaled;
 pub use fault::Fault;
 pub use group::{LEAST_ERROR, LEAST_SHARE, LEAST_VALUES, LEAST_Z, group_verdict};

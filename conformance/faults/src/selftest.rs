@@ -4,7 +4,8 @@
 //! the embedded implementation and legal evaluations drawn at random, must be flagged by no verdict.
 
 use super::concerned::concerning;
-use super::diagnose::{Diagnosis, diagnose};
+use super::diagnose::diagnose;
+use super::explanation::Diagnosis;
 use super::fault::Fault;
 use super::group::group_verdict;
 use super::variation::Variation;

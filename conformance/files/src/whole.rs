@@ -95,7 +95,7 @@ pub fn whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.finish()
 }
 
-/// Whether a file can be written, told before the work that it is the result of. Nothing is changed.
+/// Checks that a file can be written, so that a long computation does not end with a result that has no place. Nothing is changed.
 ///
 /// # Errors
 /// Where it cannot.

@@ -182,7 +182,7 @@ fn unwritten(path: &Path, error: &std::io::Error) -> anyhow::Error {
     anyhow::anyhow!("cannot write {}: {error}", path.display())
 }
 
-/// Tells something beside the result, on standard error. Whoever does not read it is told by the exit code.
+/// Prints a message on standard error. That it cannot be printed changes nothing: the exit code still says how the command ended.
 pub(crate) fn say(text: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{}", lines(text));
 }

@@ -75,8 +75,8 @@ fn each_material(frame: &mut Frame, mut f: impl FnMut(&mut Material)) {
     frame.draws.iter_mut().for_each(|draw| f(&mut draw.material));
 }
 
-/// Measures every parameter of every built-in scene, drawn with so many pixels on its longer side. Once it is told to stop, no other
-/// scene is measured.
+/// Measures every parameter of every built-in scene. `size` is the count of pixels on a scene's longer side. When `stop` is set, the
+/// scene that is being measured is finished, and no other is begun.
 ///
 /// # Errors
 /// Where a scene is refused, which a test rules out.

@@ -1,0 +1,111 @@
+//! How much answers tell of how they came about, in bits.
+
+use super::common::share;
+use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
+use lightmeter_catalogue::select::Member;
+use lightmeter_judge::diagnose::Answered;
+use std::collections::HashSet;
+
+/// What a row's answer says of the intervals of its outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fit {
+    /// Every output lies in its interval, and one of them at least is bound to something.
+    Inside,
+    /// Nothing is promised.
+    Open,
+    /// An output lies outside.
+    Outside,
+}
+
+/// Whether an answer is one that these intervals allow.
+pub(super) fn fit(values: &[f32], legal: &[Accept]) -> Fit {
+    let is_inside = values.iter().zip(legal).all(|(&value, legal)| legal.contains(value.into()));
+    match (is_inside, legal.iter().all(Accept::is_any)) {
+        (false, _) => Fit::Outside,
+        (true, true) => Fit::Open,
+        (true, false) => Fit::Inside,
+    }
+}
+
+/// The bits that an interval leaves open of a number in it.
+pub(super) fn bits_left(value: f32, legal: &Accept) -> f64 {
+    let ulps = legal.width() / F32::ulp(f64::from(value)).max(F32::MIN_SUBNORMAL);
+    if ulps.is_finite() { (1.0 + ulps).log2().min(BITS) } else { BITS }
+}
+
+/// The bits of a number of which nothing is known.
+const BITS: f64 = 28.0;
+/// The bits that an answer costs which an explanation excludes.
+pub(super) const EXCLUDED: f64 = 100.0;
+
+/// What the right formula says of the answers.
+pub(super) struct Right {
+    /// What is legal of the failing answers, then of the passing ones.
+    pub(super) legal: Vec<Accept>,
+    /// The bits that each number of a failing answer takes where nothing but the right formula is known: those that it leaves open
+    /// where the number is right, and all of a wrong one.
+    pub(super) bits: Vec<f64>,
+    /// For each output the number that every answer has there, failing or passing: such answers tell nothing of how they came about.
+    pub(super) constant: Vec<Option<u32>>,
+}
+
+impl Right {
+    pub(super) fn new(member: &Member, profile: &Profile, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> Self {
+        let outputs = member.spec.output_len();
+        let mut legal = vec![Accept::ANY; outputs * (failing.len() + passing.len())];
+        for (row, legal) in failing.iter().chain(passing).zip(legal.chunks_mut(outputs)) {
+            member.formula.promised_interval(member.spec.kind, row.inputs, profile, legal);
+        }
+        let mut seen: Vec<HashSet<u32>> = vec![HashSet::new(); outputs];
+        let mut bits = vec![];
+        for (row, legal) in failing.iter().zip(legal.chunks(outputs)) {
+            for ((&value, legal), seen) in row.values.iter().zip(legal).zip(&mut seen) {
+                // What is saturated, or comes again and again, is told by little.
+                let is_plain =
+                    value.to_bits() << 1 == 0 || value.to_bits() == 1.0_f32.to_bits() || !seen.insert(value.to_bits());
+                bits.push(match legal.contains(value.into()) {
+                    true => bits_left(value, legal),
+                    false if is_plain => 1.0,
+                    false => BITS,
+                });
+            }
+        }
+        let constant = |place: usize| {
+            let mut all = failing.iter().chain(passing).map(|row| row.values[place].to_bits());
+            let first = all.next()?;
+            all.all(|other| other == first).then_some(first)
+        };
+        Self { legal, bits, constant: (0..outputs).map(constant).collect() }
+    }
+}
+
+/// Which cases fail, and which would if a mistake were made: counts of cases.
+#[derive(Default)]
+pub(super) struct Foretold {
+    counts: [[usize; 2]; 2],
+}
+
+impl Foretold {
+    pub(super) fn take(&mut self, fails: bool, would_fail: bool) {
+        self.counts[usize::from(fails)][usize::from(would_fail)] += 1;
+    }
+
+    /// How many bits of which cases fail are told by which would; none where those that fail would not do so more often.
+    pub(super) fn bits(&self) -> f64 {
+        let [[a, b], [c, d]] = self.counts;
+        let all = a + b + c + d;
+        if c + d == 0 || a + b > 0 && share(d, c + d) <= share(b, a + b) {
+            return 0.0;
+        }
+        let cell = |count: usize, line: usize, column: usize| match count {
+            0 => 0.0,
+            _ => share(count, 1) * (share(count, line) * share(all, column)).log2(),
+        };
+        cell(a, a + b, a + c) + cell(b, a + b, b + d) + cell(c, c + d, a + c) + cell(d, c + d, b + d)
+    }
+}
+
+/// Whether a number of an answer is not legal.
+pub(super) fn is_wrong(answer: &[f32], legal: &[Accept]) -> bool {
+    answer.iter().zip(legal).any(|(&x, legal)| !legal.contains(x.into()))
+}
