@@ -1,7 +1,7 @@
 //! The conformance tests themselves: their names, their sum, what they print and how they end, whatever the environment.
 
-#[path = "cli/mistakes.rs"]
-mod mistakes;
+#[path = "cli/shader_bugs.rs"]
+mod shader_bugs;
 
 use lightmeter::adapters;
 use lightmeter::document::event::Silent;
@@ -16,7 +16,7 @@ use lightmeter::subject_gpu::code_of;
 use lightmeter::witness::NamedDeviation;
 use lightmeter_gpu::FILES;
 use lightmeter_tests::harness::{Suite, Variables};
-use mistakes::MISTAKES;
+use shader_bugs::SHADER_BUGS;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -137,7 +137,7 @@ fn mistakes_fail_the_trials_of_the_formulas_that_they_concern() {
     };
     let of_formulas =
         |file: &str| file.strip_suffix(".wgsl").is_some_and(|family| lightmeter::cases::FAMILIES.contains(&family));
-    let mut chosen: Vec<_> = MISTAKES.iter().filter(|(_, file, ..)| of_formulas(file)).collect();
+    let mut chosen: Vec<_> = SHADER_BUGS.iter().filter(|(_, file, ..)| of_formulas(file)).collect();
     // One of each file first.
     let mut seen = BTreeSet::new();
     chosen.sort_by_cached_key(|(_, file, ..)| !seen.insert(*file));

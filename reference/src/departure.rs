@@ -34,6 +34,19 @@ impl<R: Real> FresnelHighlight<R> {
     }
 }
 
+/// A normal on the side of a surface that something is seen from.
+pub fn turned_to<R: Real>(eye: Vec3<R>, n: Vec3<R>) -> Vec3<R> {
+    let side = R::if_ge(eye.dot(n), R::literal(0.0), || R::literal(1.0), || R::literal(-1.0));
+    n.map(|x| x * side)
+}
+
+/// Half-Life's diffuse term, of n·l.
+pub fn half_lambert<R: Real>(cosine: R) -> R {
+    let half = R::literal(0.5);
+    let wrapped = half * cosine + half;
+    wrapped * wrapped
+}
+
 /// The shading languages' smoothstep.
 pub fn smoothstep<R: Real>(low: R, high: R, x: R) -> R {
     let t = ((x - low) / (high - low)).clamp(R::literal(0.0), R::literal(1.0));

@@ -66,6 +66,11 @@ fn what_stood_in_a_file_stays_until_a_result_is_whole() {
         assert_ne!(code(&lightmeter(args)), 0, "{args:?}");
         assert_eq!(std::fs::read_to_string(&file).expect("it is there"), "before", "{args:?}");
     }
+    // What takes long says so before it begins.
+    for command in [&["selftest"][..], &["sweep", "fog/exp"], &["special"], &["bench", "fog/exp"], &["run", "fog/exp"]]
+    {
+        refused(&[command, &["--out", "/nowhere/out.json"]].concat(), "cannot write /nowhere/out.json");
+    }
     let fresh = folder.join("fresh.json");
     assert_ne!(code(&lightmeter(&["run", "frog", "--out", fresh.to_str().expect("UTF-8")])), 0);
     assert!(!fresh.exists(), "nothing was written");

@@ -11,16 +11,16 @@ mod hard;
 mod hostile;
 mod images;
 mod live;
-mod made;
 mod mistakes;
 mod scene;
 mod selftest;
+mod shader_bugs;
 mod signals;
 mod special;
 mod sweep;
 
-use mistakes::MISTAKES;
 use serde_json::Value;
+use shader_bugs::SHADER_BUGS;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -70,7 +70,7 @@ fn edited(test: &str, file: &str, edit: impl Fn(&str) -> String) -> PathBuf {
 
 #[test]
 fn each_mistake_in_a_shader_fails_by_family() {
-    for (place, (mistake, file, right, wrong, filter)) in MISTAKES.iter().enumerate() {
+    for (place, (mistake, file, right, wrong, filter)) in SHADER_BUGS.iter().enumerate() {
         let dir = edited(&format!("mistake-{place}"), file, |text| {
             assert!(text.contains(right), "{mistake}: `{right}` no longer stands in {file}");
             text.replace(right, wrong)
@@ -363,7 +363,7 @@ fn bad_usage_is_told_with_its_code() {
         (&["run", "--target", "rgba8"], 2, "no such format; expected one of rgba32float"),
         (&["run", "blend/separate/add.zero/min"], 3, "no case matches"),
         (&["run", "--separate", "many"], 2, "invalid value"),
-        (&["selftest", "--format", "junit"], 2, "written as text or json"),
+        (&["selftest", "--format", "junit"], 2, "[possible values: text, json]"),
         (&["show", "fog/linear/hard/nothing"], 2, "no case `fog/linear/hard/nothing`; `fog/linear` has cases such as"),
         (&["show", "frog"], 2, "no case `frog`"),
         (

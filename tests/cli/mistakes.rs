@@ -1,95 +1,108 @@
-//! Mistakes in shaders that a run and the conformance tests must find.
+//! `lightmeter mistakes`, and what `--mistake` makes of `eval`, `show` and `render`.
 
-/// A mistake: the file, what stands there, what is put in its place, and the filter of what must fail.
-pub(crate) const MISTAKES: &[(&str, &str, &str, &str, &str)] = &[
-    ("a normalize dropped", "lighting.wgsl", "let n = vector_normalize(normal);", "let n = normal;", "lighting"),
-    ("reflect with its sign flipped", "vector.wgsl", "return i - 2.0", "return i + 2.0", "vector"),
-    ("v + l not normalised", "vector.wgsl", "vector_normalize(v + l)", "(v + l)", "vector"),
-    ("kl and kq swapped", "attenuation.wgsl", "d * (kl + d * kq)", "d * (kq + d * kl)", "attenuation"),
-    ("|z| for length(p)", "fog.wgsl", "return length(p);", "return abs(p.z);", "fog"),
-    (
-        "min(As, 1 − As)",
-        "blend.wgsl",
-        "min(src.a, 1.0 - dst.a)",
-        "min(src.a, 1.0 - src.a)",
-        "blend/add/src-alpha-saturate/one",
-    ),
-    ("1 − As read as As", "blend.wgsl", "vec4f(1.0 - src.a)", "vec4f(src.a)", "blend/add/one-minus-src-alpha/one"),
-    ("max dropped in the diffuse term", "lighting.wgsl", "max(dot(l, n), 0.0)", "dot(l, n)", "lighting"),
-    ("shininess + 1 %", "vector.wgsl", "pow(cosine, exponent)", "pow(cosine, 1.01 * exponent)", "lighting"),
-    ("shininess − 1 %", "vector.wgsl", "pow(cosine, exponent)", "pow(cosine, 0.99 * exponent)", "lighting"),
-    ("a truncated 8-bit conversion", "color.wgsl", "round(255.0", "floor(255.0", "color"),
-    ("provoking vertex first for last", "raster.wgsl", "(drawn + 2u) % 3u", "drawn % 3u", "interpolation"),
-    (
-        "weights α and β swapped",
-        "interpolation.wgsl",
-        "let alpha = weights.x;\n    let beta = weights.y;",
-        "let alpha = weights.y;\n    let beta = weights.x;",
-        "interpolation",
-    ),
-    (
-        "the inverse transpose without shear",
-        "vector.wgsl",
-        "return (mat3x3f(bc, ca, ab) * n) / dot(modelview[0], bc);",
-        "let m = modelview; return m * (n / vec3f(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2])));",
-        "vector",
-    ),
-    (
-        "divided by the untransformed w",
-        "vector.wgsl",
-        "return vector_dehomogenise(modelview * position);",
-        "return (modelview * position).xyz / position.w;",
-        "vector",
-    ),
-    ("a highlight edge on", "lighting.wgsl", "dot(l, n) <= 0.0", "dot(l, n) < 0.0", "lighting"),
-    ("the near plane left out", "interpolation.wgsl", "clip.z >= 0.0", "clip.z > 0.0", "interpolation"),
-    ("a steep ramp as a step", "fog.wgsl", "dmin == dmax", "abs(dmin - dmax) < 1e-5", "fog"),
-    (
-        "exponential fog not clamped",
-        "fog.wgsl",
-        "clamp(exp(-(density * distance)), 0.0, 1.0)",
-        "exp(-(density * distance))",
-        "fog",
-    ),
-    (
-        "nothing drawn by the blend unit",
-        "blend_unit.wgsl",
-        "return colored.color;",
-        "discard; return colored.color;",
-        "blend/mode-*",
-    ),
-    ("equal taken for greater", "depth.wgsl", "if drawn == stored {", "if false {", "depth"),
-    ("less taken for equal", "depth.wgsl", "drawn == stored", "drawn <= stored", "depth"),
-    ("a depth compared unclamped", "depth.wgsl", "saturate(new_depth)", "new_depth", "depth"),
-    (
-        "another depth than was asked for",
-        "depth_unit.wgsl",
-        "Written(2u, in.depth)",
-        "Written(2u, 0.5 * in.depth)",
-        "depth",
-    ),
-    (
-        "a source folded unclamped",
-        "blend_unit.wgsl",
-        "color = saturate(color);",
-        "",
-        "blend/add/constant-color/constant-alpha",
-    ),
-    (
-        "the constant's alpha for its colour",
-        "blend_unit.wgsl",
-        "select(fold.constant.rgb, fold.constant.aaa, fold.factor >= 12u)",
-        "fold.constant.aaa",
-        "blend/add/constant-color/constant-alpha",
-    ),
-    (
-        "a second source that is the first",
-        "blend_unit_dual.wgsl",
-        "TwoColors(colored.color, colored.constant)",
-        "TwoColors(colored.color, colored.color)",
-        "blend/add/constant-color/constant-alpha",
-    ),
-    ("a strip's winding lost", "raster.wgsl", "corner = 1u - corner;", "corner = 0u + corner;", "interpolation"),
-    ("perspective for linear", "raster.wgsl", "@interpolate(linear)", "@interpolate(perspective)", "interpolation"),
-    ("linear for perspective", "raster.wgsl", "@interpolate(perspective)", "@interpolate(linear)", "interpolation"),
-];
+use super::{LINE, code, eval_with, lightmeter, stderr, stdout};
+use lightmeter::document::Document as _;
+use lightmeter::document::mistakes::{MistakeOf, MistakesDocument};
+use lightmeter::faults::faults;
+use serde_json::Value;
+
+#[test]
+fn mistakes_are_listed_with_what_they_concern_and_how_they_look() {
+    let output = lightmeter(&["mistakes", "--format", "json"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let all = MistakesDocument::read(&stdout(&output)).expect("it is read again");
+    let names: Vec<&str> = all.mistakes.iter().map(|mistake| mistake.name.as_ref()).collect();
+    assert!(faults().iter().all(|fault| names.contains(&fault.name)), "none is left out");
+    for mistake in all.mistakes.iter().filter(|mistake| mistake.of == MistakeOf::Formulas) {
+        assert!(!mistake.formulas.is_empty(), "{} concerns something", mistake.name);
+        assert!(mistake.looks.iter().all(|look| look.failing <= look.cases), "{}", mistake.name);
+    }
+    let radial = all.mistakes.iter().find(|mistake| &*mistake.name == "fog-radial").expect("it is known");
+    let exp = radial.looks.iter().find(|look| look.formula == "fog/exp").expect("it concerns fog/exp");
+    assert!(exp.failing > 100 && exp.too_small > 0, "{exp:?}");
+
+    let output = lightmeter(&["mistakes", "fog-radial"]);
+    let text = stdout(&output);
+    assert!(text.starts_with("fog-radial\n  fog uses radial distance\n  seen in: OpenGL drivers"), "{text}");
+    assert!(text.contains("cases fail, in f, color"), "{text}");
+    let output = lightmeter(&["mistakes", "fog-smoothstep", "spot-axis-reversed"]);
+    let text = stdout(&output);
+    assert!(text.contains("\n  scene/fog-linear: ") && text.contains("\n  scene/spotlight: "), "{text}");
+    assert!(text.contains(" of 1600 pixels fail, in red, green, blue; of the wrong numbers "), "{text}");
+    let output = lightmeter(&["mistakes", "--formula", "scene/fog-*"]);
+    let text = stdout(&output);
+    assert!(text.contains("fog-black\n") && !text.contains("cutout-left-out"), "{text}");
+    let output = lightmeter(&["mistakes", "--formula", "fog/exp"]);
+    assert!(stdout(&output).contains("fog-radial") && !stdout(&output).contains("blinn-for-phong"));
+}
+
+#[test]
+fn a_mistake_that_is_unknown_is_told_with_the_nearest() {
+    for args in
+        [&["mistakes", "fog-radail"][..], &["eval", "--mistake", "fog-radail"], &["mistakes", "--formula", "fgo"]]
+    {
+        let output = lightmeter(args);
+        assert_eq!((code(&output), stdout(&output)), (2, String::new()), "{args:?}");
+        assert!(
+            stderr(&output).contains("fog-radial") || stderr(&output).contains("no formula"),
+            "{}",
+            stderr(&output)
+        );
+    }
+    let output = lightmeter(&["render", "phong", "--mistake", "fog-radial", "--out", "x.png"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("a mistake in formulas"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_formula_is_evaluated_as_whoever_makes_a_mistake_would() {
+    let value = |args: &[&str]| -> Value {
+        let output = eval_with(args, &LINE.replace("[0,0,-5]", "[3,0,-4]"));
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        serde_json::from_str(&stdout(&output)).expect("JSON")
+    };
+    let first = |answer: &Value, field: &str| answer[field][0].as_f64().expect("a number");
+    let (right, wrong) = (value(&[]), value(&["--mistake", "fog-radial"]));
+    assert!((first(&right, "value") - 0.6).abs() < 1e-6 && (first(&wrong, "value") - 0.5).abs() < 1e-6);
+    assert!(first(&wrong, "low") <= 0.5 && first(&wrong, "high") >= 0.5 && first(&wrong, "high") < 0.55);
+    let output = eval_with(&["--mistake", "blinn-for-phong"], LINE);
+    assert_eq!(code(&output), 2);
+    assert!(stdout(&output).contains("`blinn-for-phong` does not concern fog/linear"), "{}", stdout(&output));
+}
+
+#[test]
+fn a_case_is_shown_with_a_mistake() {
+    let case = "fog/linear-radial/hard/sideways";
+    let output = lightmeter(&["show", case, "--mistake", "fog-planar", "--adapter", "cpu"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(stdout(&output).contains("\nas if fog uses planar distance\n✗ f  "), "{}", stdout(&output));
+    let output = lightmeter(&["show", case, "--mistake", "fog-planar", "--adapter", "cpu", "--format", "json"]);
+    let shown: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert_eq!(
+        (&shown["mistake"]["name"], &shown["mistake"]["outputs"][0]["value"]),
+        (&"fog-planar".into(), &1.0.into())
+    );
+    let output = lightmeter(&["show", case, "--mistake", "fog-radial", "--adapter", "cpu"]);
+    assert_eq!(code(&output), 2, "it has that by right");
+}
+
+#[test]
+fn a_scene_is_drawn_with_a_mistake() {
+    let folder = std::env::temp_dir().join(format!("lightmeter-made-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let draw = |name: &str, args: &[&str]| {
+        let path = folder.join(name);
+        let file = path.to_str().expect("UTF-8");
+        let output = lightmeter(&[&["render", "phong", "--out", file], args].concat());
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        std::fs::read(path).expect("an image")
+    };
+    let (right, wrong) = (draw("right.png", &[]), draw("wrong.png", &["--mistake", "ambient-left-out"]));
+    assert_ne!(right, wrong);
+    let output = lightmeter(&["render", "phong", "--with", "gpu", "--mistake", "ambient-left-out", "--out", "x.png"]);
+    assert_eq!(code(&output), 2, "the reference alone makes mistakes");
+    let output = lightmeter(&["render", "phong", "--mistake", "fog-left-out", "--out", "x.png"]);
+    let said = stderr(&output);
+    assert!(code(&output) == 2 && said.contains("`fog-left-out` changes nothing in this scene"), "{said}");
+    std::fs::remove_dir_all(folder).expect("it can be removed");
+}

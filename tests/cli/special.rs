@@ -152,7 +152,7 @@ fn probes_are_listed_and_shown_by_their_ids() {
 fn bad_usage_of_special_is_told() {
     let rows: [(&[&str], i32, &str); 3] = [
         (&["special", "--adapter", "cpu"], 3, "nothing could be probed"),
-        (&["special", "--format", "junit"], 2, "written as text or json"),
+        (&["special", "--format", "junit"], 2, "[possible values: text, json]"),
         (&["special", "--adapter", "vodoo"], 2, "no adapter `vodoo`"),
     ];
     for (args, expected, message) in rows {

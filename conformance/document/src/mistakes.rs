@@ -39,19 +39,19 @@ pub struct KnownMistake {
     /// A renderer or a habit that has it, where one is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seen_in: Option<Word>,
-    /// The formulas that it concerns; none of a mistake in scenes.
+    /// The formulas that it concerns; of a mistake in scenes the scenes in which it shows, where some were asked for by name.
     pub formulas: Vec<String>,
     /// How it looks in some of them: in all but the many blend states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub looks: Vec<MistakeLook>,
 }
 
-/// How a mistake looks in a formula, over its hard cases and 256 random ones.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// How a mistake looks: in a formula over its hard cases and 256 random ones, in a scene over the pixels of a small image.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MistakeLook {
-    /// The formula.
+    /// The formula, or the scene.
     pub formula: String,
-    /// How many cases were tried.
+    /// How many cases were tried, or pixels.
     pub cases: usize,
     /// How many of them fail.
     pub failing: usize,

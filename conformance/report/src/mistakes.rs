@@ -15,7 +15,7 @@ pub fn text(document: &MistakesDocument, in_detail: bool) -> String {
         if let Some(seen_in) = &mistake.seen_in {
             push(&mut text, &format!("  seen in: {seen_in}"));
         }
-        push(&mut text, &format!("  concerns: {}", concerned(mistake)));
+        push(&mut text, &format!("  {}", concerned(mistake)));
         if in_detail {
             mistake.looks.iter().for_each(|look| push(&mut text, &looks(look)));
             push(&mut text, "");
@@ -34,14 +34,16 @@ fn push(text: &mut String, line: &str) {
 }
 
 fn concerned(mistake: &KnownMistake) -> String {
-    if mistake.of == MistakeOf::Scenes {
-        return "scenes".into();
-    }
     let all = &mistake.formulas;
+    let of = match mistake.of {
+        MistakeOf::Scenes if all.is_empty() => return "concerns: scenes".into(),
+        MistakeOf::Scenes => "shows in",
+        MistakeOf::Formulas => "concerns",
+    };
     let named = all.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
     match all.len().saturating_sub(MOST_NAMED) {
-        0 => named,
-        more => format!("{named} and {more} more"),
+        0 => format!("{of}: {named}"),
+        more => format!("{of}: {named} and {more} more"),
     }
 }
 
@@ -55,7 +57,8 @@ fn looks(look: &MistakeLook) -> String {
         (great, small) => format!("of the wrong numbers {great} are too great and {small} too small"),
     };
     let outputs: Vec<&str> = outputs.iter().map(AsRef::as_ref).collect();
-    format!("  {formula}: {failing} of {cases} cases fail, in {}; {side}", outputs.join(", "))
+    let what = if formula.starts_with("scene/") { "pixels" } else { "cases" };
+    format!("  {formula}: {failing} of {cases} {what} fail, in {}; {side}", outputs.join(", "))
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use super::options::Format;
 use super::{Status, emit};
-use anyhow::bail;
 use clap::Args;
 use lightmeter::devices::{BlendDeviation, Builtin, Deviation, known};
 use lightmeter::document::Document as _;
@@ -24,7 +23,6 @@ impl Adapters {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let found = lightmeter_gpu::adapters();
         let text = match self.format {
-            Format::Junit => bail!("a list of adapters is written as text or json"),
             Format::Json => {
                 let adapters = found.iter().map(listed).collect();
                 AdaptersDocument { schema: SCHEMA.into(), adapters }.to_json()?

@@ -2,7 +2,6 @@
 
 use super::options::Format;
 use super::{Status, emit};
-use anyhow::bail;
 use clap::Args;
 use lightmeter::document::Document as _;
 use lightmeter::document::effects::{DrawEffects, EffectReason, EffectsDocument, SCHEMA};
@@ -33,7 +32,6 @@ impl Effects {
         let text = match self.format {
             Format::Text => lines(&in_words(&loaded, &called)?).into_owned(),
             Format::Json => document(&loaded, &called).to_json()?,
-            Format::Junit => bail!("effects are written as text or json"),
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)

@@ -78,8 +78,7 @@ impl Merge {
         Ok(match self.format {
             ReportFormat::Text => Format::Text,
             ReportFormat::Json => Format::Json,
-            ReportFormat::Junit => Format::Junit,
-            ReportFormat::Github => bail!("a sweep is written as text or json"),
+            ReportFormat::Junit | ReportFormat::Github => bail!("a sweep is written as text or json"),
         })
     }
 

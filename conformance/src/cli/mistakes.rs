@@ -7,10 +7,12 @@ use clap::Args;
 use lightmeter::cases::Kind;
 use lightmeter::document::Document as _;
 use lightmeter::document::mistakes::{KnownMistake, MistakeOf, MistakesDocument, SCHEMA};
-use lightmeter::faults::scene::SCENE_FAULTS;
+use lightmeter::faults::scene::{SCENE_FAULTS, SceneFault, looks};
 use lightmeter::faults::{Fault, concerning, faults, look};
 use lightmeter::filter::Filter;
 use lightmeter::report;
+use lightmeter::scene::library::SCENES;
+use lightmeter::scene::select::scene_id;
 use lightmeter::select::{Member, catalogue};
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -24,7 +26,7 @@ pub(crate) struct Mistakes {
     /// Names of mistakes, as globs: `fog-radial` or `shininess-*`; without any, all
     #[arg(value_name = "NAME")]
     names: Vec<String>,
-    /// Only mistakes that concern one of these formulas: globs of ids, as for `run`
+    /// Only mistakes that concern one of these formulas, or show in one of these scenes: globs of ids, as for `run`
     #[arg(long, value_name = "FILTER")]
     formula: Vec<String>,
     /// How they are written
@@ -46,8 +48,10 @@ impl Mistakes {
             bail!(unknown(name));
         }
         let members: Vec<Member> = catalogue().into_iter().filter(|member| formulas.selects(&member.spec.id)).collect();
-        if members.is_empty() {
-            bail!("no formula matches `{}`: see `lightmeter list --formulas`", self.formula.join(" "));
+        let is_scene = |id: &str| formulas.selects(id);
+        let has_scenes = (0..SCENES.len()).any(|place| is_scene(&scene_id(place)));
+        if members.is_empty() && !has_scenes {
+            bail!("no formula or scene matches `{}`: see `lightmeter list`", self.formula.join(" "));
         }
         let concerned: Vec<Vec<&'static Fault>> = members.par_iter().map(concerning).collect();
         let selected: Vec<&'static Fault> =
@@ -55,9 +59,11 @@ impl Mistakes {
         let mut mistakes: Vec<KnownMistake> =
             selected.into_par_iter().map(|fault| known(fault, &members, &concerned)).collect();
         mistakes.retain(|mistake| !mistake.formulas.is_empty());
-        if self.formula.is_empty() {
-            mistakes.extend(of_scenes(&names));
+        let mut in_scenes = of_scenes(&names);
+        if !self.names.is_empty() || !self.formula.is_empty() {
+            shown_in(&mut in_scenes, is_scene)?;
         }
+        mistakes.extend(in_scenes);
         if mistakes.is_empty() {
             bail!("no mistake of these names concerns `{}`", self.formula.join(" "));
         }
@@ -65,7 +71,6 @@ impl Mistakes {
         let text = match self.format {
             Format::Text => report::mistakes::text(&document, !self.names.is_empty()),
             Format::Json => document.to_json()?,
-            Format::Junit => bail!("mistakes are written as text or json"),
         };
         emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
@@ -106,7 +111,7 @@ pub(crate) fn by_name(name: &str) -> Result<&'static Fault, String> {
 }
 
 /// The mistake in scenes of a name.
-pub(crate) fn of_scenes_by_name(name: &str) -> Result<&'static lightmeter::faults::scene::SceneFault, String> {
+pub(crate) fn of_scenes_by_name(name: &str) -> Result<&'static SceneFault, String> {
     SCENE_FAULTS.iter().find(|fault| fault.name == name).ok_or_else(|| match Fault::by_name(name) {
         Some(_) => format!("`{name}` is a mistake in formulas: ask `eval` or `show` for it"),
         None => unknown(name),
@@ -130,6 +135,18 @@ fn known(fault: &'static Fault, members: &[Member], concerned: &[Vec<&'static Fa
 
 fn is_mode(member: &Member) -> bool {
     member.spec.id.starts_with("blend/mode-")
+}
+
+/// Draws the scenes that are asked for with each mistake; what shows in none of them is not of them.
+fn shown_in(mistakes: &mut Vec<KnownMistake>, is_scene: impl Fn(&str) -> bool) -> anyhow::Result<()> {
+    let is_of = |fault: &&SceneFault| mistakes.iter().any(|mistake| &*mistake.name == fault.name);
+    let faults: Vec<&'static SceneFault> = SCENE_FAULTS.iter().filter(is_of).collect();
+    for (mistake, looks) in mistakes.iter_mut().zip(looks(&faults, is_scene)?) {
+        mistake.formulas = looks.iter().map(|look| look.formula.clone()).collect();
+        mistake.looks = looks;
+    }
+    mistakes.retain(|mistake| !mistake.formulas.is_empty());
+    Ok(())
 }
 
 fn of_scenes(names: &Filter) -> Vec<KnownMistake> {

@@ -32,7 +32,6 @@ impl Targets {
 pub(crate) enum Format {
     Text,
     Json,
-    Junit,
 }
 
 /// How the result of a run or a gate is written.

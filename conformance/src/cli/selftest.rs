@@ -2,7 +2,7 @@
 
 use super::options::{Choice, Format, Targets};
 use super::signals::{status_of, stopped_by_signals};
-use super::{NothingToRun, Status, emit};
+use super::{NothingToRun, Status, emit, writable};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
@@ -91,17 +91,15 @@ struct Tested {
 
 impl Selftest {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        if self.format == Format::Junit {
-            bail!("the self-test is written as text or json");
-        }
         if !self.wants(Part::Formulas) && !self.filter.is_empty() {
             bail!("a filter selects formulas; expected none beside `--only` of anything else");
         }
         let targets = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
+        writable(self.out.as_deref())?;
         let tested = self.test(&targets, &stopped_by_signals()?)?;
         let text = match self.format {
             Format::Json => tested.json()?,
-            Format::Text | Format::Junit => tested.text(&targets)?,
+            Format::Text => tested.text(&targets)?,
         };
         emit(&text, self.out.as_deref())?;
         Ok(match &tested.interrupted {

@@ -3,8 +3,8 @@
 use super::options::Format;
 use super::progress::Bar;
 use super::signals::{status_of, stopped_by_signals};
-use super::{NothingToRun, Status, emit};
-use anyhow::{Context as _, bail};
+use super::{NothingToRun, Status, emit, writable};
+use anyhow::Context as _;
 use clap::Args;
 use lightmeter::adapters;
 use lightmeter::document::Document as _;
@@ -38,10 +38,8 @@ pub(crate) struct Special {
 
 impl Special {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        if self.format == Format::Junit {
-            bail!("probes are written as text or json");
-        }
         // Before anything is read: a signal ends each command in the same way.
+        writable(self.out.as_deref())?;
         let stop = stopped_by_signals()?;
         let code = code_of(self.shaders.as_deref())?;
         let subjects = adapters::open(&self.adapter)?;

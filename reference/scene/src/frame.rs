@@ -60,6 +60,12 @@ pub struct Departures {
     pub smoothstep_fog: bool,
     /// Normals keep the length that the modelview leaves them, until a fragment normalises them.
     pub normals_at_length: bool,
+    /// Interpolated normals are not normalised again.
+    pub fragment_normals_at_length: bool,
+    /// Normals are turned towards the eye.
+    pub two_sided: bool,
+    /// The diffuse term is half-Lambert: `(0.5 n·l + 0.5)²`, of Valve's Half-Life.
+    pub half_lambert: bool,
     /// Textures and lightmaps multiply what is diffuse, and the highlight is added afterwards.
     pub highlight_over_texture: bool,
 }

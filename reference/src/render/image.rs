@@ -13,6 +13,7 @@ use lightmeter_scene::frame::{Draw, Frame};
 use lightmeter_scene::raster::Provoking;
 use lightmeter_scene::stage::Intermediate;
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 /// Pixels of a tile's side.
 const TILE: usize = 32;
@@ -37,34 +38,70 @@ pub fn render<R>(frame: &Frame, only: Option<&[Called]>, stage: Option<Intermedi
 where
     R: Real + Into<f64> + Send + Sync,
 {
-    let draws: Vec<Prepared<'_, R>> = (0..frame.draws.len())
-        .map(|draw| Prepared::new(frame, draw, only.map(|called| &called[draw]), stage.is_some()))
-        .collect();
     let (width, height) = (frame.target.width as usize, frame.target.height as usize);
-    let columns = width.div_ceil(TILE);
-    let bins = bins(&draws, [width, height]);
-    let tiles: Vec<(Vec<[f64; 4]>, u64)> = bins
-        .par_iter()
-        .enumerate()
-        .map(|(tile, bin)| {
-            let origin = [tile % columns * TILE, tile / columns * TILE];
-            let mut tile = Tile::new(frame, stage, origin, [width, height]);
-            for &(draw, triangle) in bin {
-                tile.draw(&draws[draw], &draws[draw].geometry.triangles[triangle]);
-            }
-            (tile.colors, tile.fragments)
-        })
-        .collect();
+    let tiles = drawn::<R, _>(frame, only, stage, None, |tile| (tile.within, tile.colors, tile.fragments));
     let mut pixels = vec![[0.0; 4]; width * height];
-    for (number, (colors, _)) in tiles.iter().enumerate() {
-        let [left, top] = [number % columns * TILE, number / columns * TILE];
-        let span = TILE.min(width - left);
+    for ([[left, right], [top, _]], colors, _) in &tiles {
+        let span = right - left + 1;
         for (row, colors) in colors.chunks(span).enumerate() {
             let start = (top + row) * width + left;
             pixels[start..start + span].copy_from_slice(colors);
         }
     }
-    Image { width, height, pixels, fragments: tiles.iter().map(|(_, fragments)| fragments).sum() }
+    Image { width, height, pixels, fragments: tiles.iter().map(|(_, _, fragments)| fragments).sum() }
+}
+
+/// The linear colours of some pixels of a frame, by their numbers row after row; no other fragment is shaded.
+///
+/// # Panics
+/// Where the frame has no pixel of that number.
+#[must_use]
+pub fn render_at<R>(frame: &Frame, pixels: &[usize]) -> Vec<[f64; 4]>
+where
+    R: Real + Into<f64> + Send + Sync,
+{
+    let width = frame.target.width as usize;
+    let mut wanted = vec![false; width * frame.target.height as usize];
+    pixels.iter().for_each(|&pixel| wanted[pixel] = true);
+    let tiles = drawn::<R, _>(frame, None, None, Some(&wanted), |tile| {
+        let [[left, right], [top, _]] = tile.within;
+        let number = |place: usize| (top + place / (right - left + 1)) * width + left + place % (right - left + 1);
+        let colors = tile.colors.iter().enumerate().map(|(place, &color)| (number(place), color));
+        colors.filter(|&(number, _)| wanted[number]).collect::<Vec<_>>()
+    });
+    let colors: HashMap<usize, [f64; 4]> = tiles.into_iter().flatten().collect();
+    pixels.iter().map(|pixel| colors[pixel]).collect()
+}
+
+/// The tiles of a frame, or of their pixels those alone that are wanted: what is made of each.
+fn drawn<R, T>(
+    frame: &Frame,
+    only: Option<&[Called]>,
+    stage: Option<Intermediate>,
+    wanted: Option<&[bool]>,
+    of_tile: impl Fn(Tile<'_, R>) -> T + Sync,
+) -> Vec<T>
+where
+    R: Real + Into<f64> + Send + Sync,
+    T: Send,
+{
+    let draws: Vec<Prepared<'_, R>> = (0..frame.draws.len())
+        .map(|draw| Prepared::new(frame, draw, only.map(|called| &called[draw]), stage.is_some()))
+        .collect();
+    let size = [frame.target.width as usize, frame.target.height as usize];
+    let columns = size[0].div_ceil(TILE);
+    bins(&draws, size)
+        .par_iter()
+        .enumerate()
+        .map(|(tile, bin)| {
+            let origin = [tile % columns * TILE, tile / columns * TILE];
+            let mut tile = Tile::new(frame, (stage, wanted), origin, size);
+            for &(draw, triangle) in bin {
+                tile.draw(&draws[draw], &draws[draw].geometry.triangles[triangle]);
+            }
+            of_tile(tile)
+        })
+        .collect()
 }
 
 /// A draw with its triangles in the window.
@@ -125,6 +162,7 @@ fn bins<R>(draws: &[Prepared<'_, R>], size: [usize; 2]) -> Vec<Vec<(usize, usize
 struct Tile<'a, R> {
     frame: &'a Frame,
     stage: Option<Intermediate>,
+    wanted: Option<&'a [bool]>,
     /// First and last pixel of each axis.
     within: [[usize; 2]; 2],
     colors: Vec<[f64; 4]>,
@@ -135,7 +173,12 @@ struct Tile<'a, R> {
 }
 
 impl<'a, R: Real + Into<f64>> Tile<'a, R> {
-    fn new(frame: &'a Frame, stage: Option<Intermediate>, origin: [usize; 2], size: [usize; 2]) -> Self {
+    fn new(
+        frame: &'a Frame,
+        (stage, wanted): (Option<Intermediate>, Option<&'a [bool]>),
+        origin: [usize; 2],
+        size: [usize; 2],
+    ) -> Self {
         let within = std::array::from_fn(|axis| [origin[axis], (origin[axis] + TILE).min(size[axis]) - 1]);
         let [[left, right], [top, bottom]] = within;
         let count = (right - left + 1) * (bottom - top + 1);
@@ -143,6 +186,7 @@ impl<'a, R: Real + Into<f64>> Tile<'a, R> {
         Self {
             frame,
             stage,
+            wanted,
             within,
             colors: vec![if stage.is_some() { [0.0; 4] } else { background }; count],
             depths: vec![frame.clear_depth.into(); count],
@@ -159,6 +203,9 @@ impl<'a, R: Real + Into<f64>> Tile<'a, R> {
         for y in rows[0].max(top)..=rows[1].min(bottom) {
             let row = triangle.row(middle(y));
             for x in columns[0].max(left)..=columns[1].min(right) {
+                if self.wanted.is_some_and(|wanted| !wanted[y * size[0] as usize + x]) {
+                    continue;
+                }
                 let edges = triangle.edges_in(row, middle(x));
                 if triangle.covers(edges) {
                     self.fragment(prepared, triangle, edges, (y - top) * (right - left + 1) + x - left);

@@ -9,6 +9,6 @@ mod raster;
 mod shader;
 
 pub use attributes::Attributes;
-pub use image::{Image, render};
+pub use image::{Image, render, render_at};
 pub use raster::{Geometry, Triangle};
 pub use shader::{Fragment, Scratch, Shader};

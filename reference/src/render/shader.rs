@@ -7,7 +7,7 @@
 
 use super::attributes::{Attributes, LIT};
 use crate::algebra::{Mat4, Rgb, Rgba, Vec3, Vec4, Vector};
-use crate::departure::{FresnelHighlight, smoothstep};
+use crate::departure::{FresnelHighlight, half_lambert, smoothstep, turned_to};
 use crate::lighting::{self, Material};
 use crate::real::Real;
 use crate::{attenuation, color, fog, texture, vector};
@@ -237,6 +237,7 @@ impl<'a, R: Real> Shader<'a, R> {
                 Viewer::Local if self.has(Effect::LocalViewer) => (-p).normalize(),
                 _ => Vector([0.0, 0.0, 1.0].map(R::literal)),
             };
+            let n = if self.frame.departures.two_sided { turned_to(-p, n) } else { n };
             for light in &self.lights {
                 self.add_light(shading, light, [p, n, v], diffuse, specular);
             }
@@ -288,7 +289,11 @@ impl<'a, R: Real> Shader<'a, R> {
         let is_dark = cone.is_at_most(0.0);
         let fi = lighting::incidence(l, n);
         let is_turned_away = fi.is_at_most(0.0);
-        if self.has(Effect::Diffuse) && !is_dark && !is_turned_away {
+        if self.frame.departures.half_lambert {
+            let lit = half_lambert(l.dot(n));
+            let factors = |light: R, material: R| R::product([light, material, lit, cone, atten]);
+            diffuse.push(zip(colors.diffuse, material.diffuse, factors));
+        } else if self.has(Effect::Diffuse) && !is_dark && !is_turned_away {
             let factors = |light: R, material: R| R::product([light, material, fi, cone, atten]);
             diffuse.push(zip(colors.diffuse, material.diffuse, factors));
         }
@@ -328,7 +333,9 @@ impl<'a, R: Real> Shader<'a, R> {
         let lit = match (self.draw.shading.map(|shading| shading.frequency), at.lit) {
             (None, _) => Lit { color: self.material.diffuse, diffuse: self.material.diffuse, specular: dark },
             (Some(Frequency::Phong), _) => {
-                let of_point = at.n.map_or(n, three).normalize();
+                let given = at.n.map_or(n, three);
+                let at_length = self.frame.departures.fragment_normals_at_length;
+                let of_point = if at_length { given } else { given.normalize() };
                 n = if self.has_normals { of_point } else { n };
                 if is_hidden {
                     Lit { color: dark, diffuse: dark, specular: dark }

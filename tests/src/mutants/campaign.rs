@@ -38,9 +38,18 @@ const INPUTS_OF_A_SURVIVOR: u64 = 1_000_000;
 /// As many formulas are blend states.
 const MANY: usize = 200;
 /// Random cases of each blend state.
-const CASES_OF_A_STATE: u64 = 64;
+const CASES_OF_A_STATE: u64 = 1024;
 /// How many of them are evaluated at once.
 const ROWS: usize = 1 << 16;
+
+/// Blend states that take each route to the unit: its own factors, and beside each other the constant's colour and its alpha, which
+/// are folded into the source or come as a second source.
+const BLEND_STATES: &[&str] = &[
+    "blend/mode-*",
+    "blend/min",
+    "blend/add/*constant-color/*constant-alpha",
+    "blend/add/*constant-alpha/*constant-color",
+];
 
 /// Pixels of the longer side of a scene's intermediate results.
 const SIZE_OF_STAGES: u32 = 64;
@@ -160,7 +169,7 @@ impl Campaign {
                 Some(Scope::Filter(ids.map(|spec| spec.id.clone()).collect()))
             }
             "depth_unit.wgsl" => globs(&["depth"]),
-            "blend_unit.wgsl" | "blend_unit_dual.wgsl" => globs(&["blend/mode-*", "blend/min", "blend/add/src1-*"]),
+            "blend_unit.wgsl" | "blend_unit_dual.wgsl" => globs(BLEND_STATES),
             "probe.wgsl" => Some(Scope::Witnesses),
             _ if file.starts_with("effects/") => {
                 let effect = file.trim_start_matches("effects/").trim_end_matches(".wgsl");

@@ -4,6 +4,7 @@ use super::drawn::intermediate;
 use crate::device::{Code, DeviceError};
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
+use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::expect::Expectation;
 use lightmeter_scene::effects::Called;
 use lightmeter_scene::frame::Frame;
@@ -46,12 +47,12 @@ pub fn departure(
     for stage in Intermediate::ALL {
         let Ok(image) = intermediate(subject, code, frame, sets, stage)? else { return Ok(None) };
         let expectation = Expectation::new(frame, None, Some(stage), profile);
-        let departs = |&&pixel: &&usize| {
-            let legal = expectation.pixel(pixel % image.width, pixel / image.width);
+        let legal = expectation.at(pixels);
+        let departs = |&(&pixel, legal): &(&usize, &LegalPixel)| {
             let of_pixel = image.pixels[pixel];
             (0..4).any(|k| !(legal.low[k] <= of_pixel[k] && of_pixel[k] <= legal.high[k]) && legal.low[k].is_finite())
         };
-        let departing = pixels.iter().filter(departs).count();
+        let departing = pixels.iter().zip(&legal).filter(departs).count();
         if departing > 0 {
             return Ok(Some(Departure { stage: stage.name(), pixels: departing, of: pixels.len() }));
         }

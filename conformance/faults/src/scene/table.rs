@@ -23,8 +23,10 @@ pub struct SceneFault {
 pub(super) enum Change {
     /// The frame, before it is drawn.
     Frame(fn(&mut Frame)),
-    /// The image in linear values, row after row from the top, before it is stored. It is monotone in each component.
-    Image(fn(&mut Vec<[f64; 4]>, usize)),
+    /// The pixel whose colour a pixel gets, column and row, in an image of so many of both.
+    Place(fn([usize; 2], [usize; 2]) -> [usize; 2]),
+    /// The colour of every pixel, in linear values before it is stored. It is monotone in each component.
+    Color(fn([f64; 4]) -> [f64; 4]),
 }
 
 macro_rules! faults {
@@ -128,6 +130,25 @@ faults! {
         frame.departures.normals_at_length = true;
     };
     Frame "normals-reversed" "normals point inward" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.normals).for_each(negate);
+    Frame "fragment-normals-not-normalised" "interpolated normals are not normalised again" |frame| if frame.draws.iter().any(is_lit_by_fragments) {
+        frame.departures.fragment_normals_at_length = true;
+    };
+    Frame "two-sided" "normals are turned towards the eye" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) {
+        frame.departures.two_sided = true;
+    };
+    Frame "half-lambert" "the diffuse term is half-Lambert: (0.5 n·l + 0.5)²" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) && !frame.lights.is_empty() {
+        frame.departures.half_lambert = true;
+    };
+    // Which object something is of.
+    Frame "matrix-of-the-first-object" "every object is drawn by the first one's matrix" |frame| if let Some(first) = frame.draws.first().map(|draw| draw.modelview) {
+        each_draw(frame, |draw| draw.modelview = first);
+    };
+    Frame "material-of-the-first-object" "every object has the first one's material" |frame| if let Some(first) = frame.draws.first().map(|draw| draw.material) {
+        each_material(frame, |material| *material = first);
+    };
+    Frame "material-of-the-last-object" "every object has the last one's material" |frame| if let Some(last) = frame.draws.last().map(|draw| draw.material) {
+        each_material(frame, |material| *material = last);
+    };
     // Fog.
     Frame "fog-left-out" "fog is left out" |frame| frame.fog = None;
     Frame "fog-distance" "fog is by the other distance: radial for planar, or planar for radial" |frame| each_fog(frame, |fog| fog.distance = match fog.distance {
@@ -190,19 +211,16 @@ faults! {
     Frame "half-pixel" "all is half a pixel to the right and down" |frame| shift(frame, [0.5, 0.5]);
     Frame "mirrored" "the image is mirrored" |frame| scale(frame, 0, -1.0);
     Frame "background-black" "the background is black" |frame| frame.background = [0.0, 0.0, 0.0, frame.background[3]];
-    Image "upside-down" "the image is upside down" |pixels, width| {
-        let rows: Vec<Vec<[f64; 4]>> = pixels.chunks(width).rev().map(<[_]>::to_vec).collect();
-        *pixels = rows.concat();
-    };
+    Place "upside-down" "the image is upside down" |[x, y], [_, height]| [x, height - 1 - y];
     // How colours are written.
-    Image "red-and-blue-swapped" "red and blue are swapped" |pixels, _| pixels.iter_mut().for_each(|pixel| pixel.swap(0, 2));
-    Image "srgb-encoded" "colours are encoded as sRGB and the target is not" |pixels, _| each_color(pixels, |c| color::srgb_encode(c.clamp(0.0, 1.0)));
-    Image "gamma-encoded" "colours are raised to the power 1/2.2" |pixels, _| each_color(pixels, |c| c.max(0.0).powf(1.0 / 2.2));
-    Image "gamma-decoded" "colours are raised to the power 2.2" |pixels, _| each_color(pixels, |c| c.max(0.0).powf(2.2));
-    Image "clamped" "colours are clamped to 1 and the target is not" |pixels, _| each_color(pixels, |c| c.clamp(0.0, 1.0));
-    Image "premultiplied" "colours are multiplied by their alpha" |pixels, _| pixels.iter_mut().for_each(|pixel| (0..3).for_each(|k| pixel[k] *= pixel[3]));
-    Image "alpha-lost" "alpha is 1 everywhere" |pixels, _| pixels.iter_mut().for_each(|pixel| pixel[3] = 1.0);
-    Image "truncated" "steps of 8 bits are truncated and not rounded" |pixels, _| pixels.iter_mut().flatten().for_each(|c| *c = ((255.0 * *c + 1e-9).floor() / 255.0).min(*c));
+    Color "red-and-blue-swapped" "red and blue are swapped" |[r, g, b, a]| [b, g, r, a];
+    Color "srgb-encoded" "colours are encoded as sRGB and the target is not" |pixel| each_color(pixel, |c| color::srgb_encode(c.clamp(0.0, 1.0)));
+    Color "gamma-encoded" "colours are raised to the power 1/2.2" |pixel| each_color(pixel, |c| c.max(0.0).powf(1.0 / 2.2));
+    Color "gamma-decoded" "colours are raised to the power 2.2" |pixel| each_color(pixel, |c| c.max(0.0).powf(2.2));
+    Color "clamped" "colours are clamped to 1 and the target is not" |pixel| each_color(pixel, |c| c.clamp(0.0, 1.0));
+    Color "premultiplied" "colours are multiplied by their alpha" |[r, g, b, a]| [r * a, g * a, b * a, a];
+    Color "alpha-lost" "alpha is 1 everywhere" |[r, g, b, _]| [r, g, b, 1.0];
+    Color "truncated" "steps of 8 bits are truncated and not rounded" |pixel| pixel.map(|c| ((255.0 * c + 1e-9).floor() / 255.0).min(c));
     Frame "shininess-of-1000-as-128" "the shininess is rescaled from a range of 1000 to one of 128" |frame| each_material(frame, |material| material.shininess *= 0.128);
     Frame "shininess-ignored" "the shininess is ignored: the highlight is the bare cosine" |frame| each_material(frame, |material| material.shininess = 1.0);
     Frame "attenuation-plus-one" "the divisor of attenuation has 1 added" |frame| each_falloff(frame, |falloff| if falloff[1] + falloff[2] > 0.0 { falloff[0] += 1.0 });
@@ -210,10 +228,15 @@ faults! {
     Frame "spot-axis-reversed" "spotlights point the other way" |frame| each_place(frame, |place| if let Place::Spot { axis, .. } = place { negate(axis) });
     Frame "fog-density-squared" "the fog's density is squared" |frame| each_fog(frame, |fog| if let FogForm::Exp { density } | FogForm::Exp2Document { density } | FogForm::Exp2OpenGl { density } = &mut fog.form { *density *= *density });
     Frame "sampled-at-the-pixel-corner" "a pixel is sampled at its upper left corner, not at its middle" |frame| shift(frame, [-0.5, -0.5]);
-    Image "in-half-precision" "the image is held in half precision" |pixels, _| each_color(pixels, |c| c.in_half(Narrowing::Rounded));
-    Image "in-8-bits" "the image is held in 8 bits on its way" |pixels, _| each_color(pixels, |c| (255.0 * c.clamp(0.0, 1.0)).round_ties_even() / 255.0);
-    Image "srgb-encoded-twice" "colours are encoded for sRGB twice" |pixels, _| each_color(pixels, |c| color::srgb_encode(color::srgb_encode(c.clamp(0.0, 1.0))));
-    Image "half-as-bright" "all is half as bright" |pixels, _| each_color(pixels, |c| 0.5 * c);
+    Color "in-half-precision" "the image is held in half precision" |pixel| each_color(pixel, |c| c.in_half(Narrowing::Rounded));
+    Color "in-8-bits" "the image is held in 8 bits on its way" |pixel| each_color(pixel, |c| (255.0 * c.clamp(0.0, 1.0)).round_ties_even() / 255.0);
+    Color "srgb-encoded-twice" "colours are encoded for sRGB twice" |pixel| each_color(pixel, |c| color::srgb_encode(color::srgb_encode(c.clamp(0.0, 1.0))));
+    Color "half-as-bright" "all is half as bright" |pixel| each_color(pixel, |c| 0.5 * c);
+}
+
+/// Whether a draw is lit at its fragments.
+fn is_lit_by_fragments(draw: &lightmeter_scene::frame::Draw) -> bool {
+    draw.shading.is_some_and(|shading| shading.frequency == Frequency::Phong)
 }
 
 fn negate(v: &mut [f32; 3]) {
@@ -261,8 +284,8 @@ fn each_state(frame: &mut Frame, change: impl Fn(&mut State)) {
     });
 }
 
-fn each_color(pixels: &mut [[f64; 4]], change: impl Fn(f64) -> f64) {
-    pixels.iter_mut().for_each(|pixel| (0..3).for_each(|k| pixel[k] = change(pixel[k])));
+fn each_color([r, g, b, a]: [f64; 4], change: impl Fn(f64) -> f64) -> [f64; 4] {
+    [change(r), change(g), change(b), a]
 }
 
 /// Moves all that is drawn by so many pixels, right and down.

@@ -71,6 +71,13 @@ impl<'a> Expectation<'a> {
         pixels
     }
 
+    /// Some pixels, by their numbers row after row.
+    #[must_use]
+    pub fn at(&self, pixels: &[usize]) -> Vec<LegalPixel> {
+        let width = self.frame.target.width as usize;
+        pixels.par_iter().map(|&pixel| self.pixel(pixel % width, pixel / width)).collect()
+    }
+
     /// One pixel.
     #[must_use]
     pub fn pixel(&self, x: usize, y: usize) -> LegalPixel {

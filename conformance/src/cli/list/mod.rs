@@ -56,7 +56,6 @@ impl List {
             );
         }
         let text = match (self.format, self.formulas) {
-            (Format::Junit, _) => bail!("a list is written as text or json"),
             (Format::Json, true) => document::formulas(&catalogue, &selected).to_json()?,
             (Format::Json, false) => {
                 document::cases(&catalogue, &selected, &tables, &scenes, &deviations)?.to_json()?

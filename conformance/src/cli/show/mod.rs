@@ -66,10 +66,7 @@ struct Known {
 
 impl Show {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let as_json = match self.format {
-            Format::Junit => bail!("a case is written as text or json"),
-            format => format == Format::Json,
-        };
+        let as_json = self.format == Format::Json;
         let others = special::find(&self.id)?.is_some() || pixel::find(&self.id, self.choice.size)?.is_some();
         if let (Some(fault), true) = (self.mistake, others) {
             bail!("`{}` is a mistake in formulas, and `{}` is no case of one", fault.name, self.id);

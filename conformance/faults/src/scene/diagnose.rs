@@ -1,0 +1,420 @@
+//! Mistakes tried as explanations of the pixels that fail. Only pixels that are looked at are drawn anew: a part of those that fail
+//! and of those that pass. What explains them is then held against the whole image.
+
+use super::{SCENE_FAULTS, SceneFault, colors, draw, draw_at, places, with};
+use lightmeter_arithmetic::Profile;
+use lightmeter_judge::blend_unit::pixel;
+use lightmeter_judge::image::LegalPixel;
+use lightmeter_judge::image::expect::Expectation;
+use lightmeter_judge::image::file::StoredImage;
+use lightmeter_scene::frame::Frame;
+use lightmeter_scene::target::{Encoding, TargetFormat};
+use rayon::prelude::*;
+use std::cmp::Reverse;
+use std::fmt::Write as _;
+
+/// Pixels that are looked at, of those that fail and of those that do not.
+const LOOKED_AT: usize = 512;
+/// Mistakes that are tried in pairs.
+const PAIRED: usize = 3;
+/// With so many others.
+const OTHERS: usize = 24;
+/// The part of the failing components that an explanation explains at least.
+const WHOLE: f64 = 0.9;
+/// The same of two mistakes at once, which fit more by themselves.
+const WHOLE_OF_TWO: f64 = 0.98;
+/// The passing components that may contradict an explanation, as a part of the failing ones.
+const MOST_CONTRADICTED: f64 = 0.02;
+/// How far from a whole step a value may be that is one.
+const STEP_ERROR: f64 = 1e-6;
+/// Explanations that are tried with all that is legal.
+const MOST_TRIED: usize = 5;
+/// Others that are told beside one that explains no more.
+const MOST_EQUAL: usize = 2;
+/// What failing components have in common is told where so large a part of them has it.
+const COMMON: f64 = 0.95;
+
+/// What may have been drawn in a frame's place.
+#[derive(Clone, Debug)]
+pub struct SceneExplanation {
+    /// The mistakes.
+    pub faults: Vec<&'static SceneFault>,
+    /// Failing components that are legal of it, of those that were looked at.
+    pub explained: usize,
+    /// Passing components that are not, in the whole image: counted where few are, else estimated.
+    pub contradicted: f64,
+    /// How far the failing ones are from what these mistakes draw in f64, together, in units.
+    pub distance: f64,
+    /// The pixels that were looked at, as these mistakes draw them in f64.
+    drawn: Vec<[f64; 4]>,
+}
+
+/// What a renderer did wrong in a scene.
+#[derive(Clone, Debug)]
+pub struct SceneDiagnosis {
+    /// Components that fail.
+    pub failing: usize,
+    /// The best first.
+    pub explanations: Vec<SceneExplanation>,
+    /// The outcome as a sentence.
+    pub sentence: String,
+}
+
+/// An image and all that is known of it.
+pub struct Trial<'a> {
+    frame: &'a Frame,
+    image: &'a StoredImage,
+    expected: &'a [LegalPixel],
+    profile: &'a Profile,
+    /// Components that fail, and those that pass and are not of marked pixels.
+    failing: Vec<usize>,
+    passing: usize,
+    /// The pixels that are looked at, in their order.
+    looked_at: Vec<usize>,
+    /// Their components that fail, and those that pass: the place among those that are looked at, and the component.
+    failing_there: Vec<(usize, usize)>,
+    passing_there: Vec<(usize, usize)>,
+    /// The linear colours of the right image there.
+    right: Vec<[f64; 4]>,
+}
+
+/// How near mistakes come by the middle of what is legal.
+struct Near {
+    misses: usize,
+    distance: f64,
+    faults: Vec<&'static SceneFault>,
+    drawn: Vec<[f64; 4]>,
+}
+
+impl<'a> Trial<'a> {
+    /// An image with what is legal of it.
+    #[must_use]
+    pub fn new(frame: &'a Frame, image: &'a StoredImage, expected: &'a [LegalPixel], profile: &'a Profile) -> Self {
+        let (mut failing, mut passing) = (vec![], 0);
+        let (mut wrong, mut right) = (vec![], vec![]);
+        for (number, (value, legal)) in image.pixels.iter().zip(expected).enumerate() {
+            let before = failing.len();
+            failing.extend((0..4).filter(|&k| !is_within(value, legal, k)).map(|k| 4 * number + k));
+            let found = failing.len() - before;
+            passing += if legal.is_marked { 0 } else { 4 - found };
+            if found > 0 {
+                wrong.push(number);
+            } else {
+                right.push(number);
+            }
+        }
+        let mut looked_at: Vec<usize> = spread(&wrong, LOOKED_AT).chain(spread(&right, LOOKED_AT)).collect();
+        looked_at.sort_unstable();
+        let (mut failing_there, mut passing_there) = (vec![], vec![]);
+        for (place, &number) in looked_at.iter().enumerate() {
+            let (value, legal) = (&image.pixels[number], &expected[number]);
+            for k in 0..4 {
+                if !is_within(value, legal, k) {
+                    failing_there.push((place, k));
+                } else if !legal.is_marked {
+                    passing_there.push((place, k));
+                }
+            }
+        }
+        let right = lightmeter_reference::render::render_at::<f64>(frame, &looked_at);
+        Self { frame, image, expected, profile, failing, passing, looked_at, failing_there, passing_there, right }
+    }
+
+    /// Tries what the catalogue knows.
+    #[must_use]
+    pub fn diagnose(&self) -> SceneDiagnosis {
+        let failing = self.failing.len();
+        let told = |explanations: Vec<_>, sentence| SceneDiagnosis { failing, explanations, sentence };
+        if failing == 0 {
+            return told(vec![], "nothing fails".into());
+        }
+        if self.flat().is_some() {
+            return told(vec![], self.unnamed());
+        }
+        let singles = self.near(SCENE_FAULTS.iter().map(|fault| vec![fault]).collect());
+        let pairs = pairs(&singles);
+        let mut found = self.tried(singles);
+        if found.is_empty() {
+            found = self.tried(self.near(pairs));
+        }
+        let sentence = if found.is_empty() { self.unnamed() } else { self.named(&found) };
+        told(found, sentence)
+    }
+
+    /// The mistakes that change something, the nearest first.
+    fn near(&self, candidates: Vec<Vec<&'static SceneFault>>) -> Vec<Near> {
+        let mut near: Vec<Near> = candidates.into_par_iter().filter_map(|faults| self.probe(faults)).collect();
+        near.sort_by(|a, b| a.misses.cmp(&b.misses).then(a.distance.total_cmp(&b.distance)));
+        near
+    }
+
+    /// How near these mistakes come; `None` where they change nothing.
+    fn probe(&self, faults: Vec<&'static SceneFault>) -> Option<Near> {
+        let format = self.image.format;
+        let drawn = if faults.iter().all(|fault| fault.is_of_color()) {
+            let mut pixels = self.right.clone();
+            colors(&mut pixels, &faults);
+            pixels.into_iter().map(|color| stored(format, color)).collect()
+        } else if faults.iter().any(|fault| fault.is_of_frame()) && with(self.frame, &faults) == *self.frame {
+            return None;
+        } else {
+            draw_at(self.frame, &faults, &self.looked_at)
+        };
+        let value = |&(place, k): &(usize, usize)| (self.image.pixels[self.looked_at[place]][k], drawn[place][k]);
+        let is_far = |of: &&(usize, usize)| {
+            let (value, drawn) = value(of);
+            let near = 2.0 * self.room(self.looked_at[of.0], of.1) + slack(format, drawn) * 4.0;
+            let distance = (value - drawn).abs();
+            // What is no number is far from everything.
+            distance.is_nan() || distance > near
+        };
+        let misses =
+            self.failing_there.iter().filter(is_far).count() + self.passing_there.iter().filter(is_far).count();
+        let distance = self.failing_there.iter().map(value).map(|(value, drawn)| (value - drawn).abs()).sum();
+        Some(Near { misses, distance, faults, drawn })
+    }
+
+    /// How far a value may be from the middle of what is legal, in units.
+    fn room(&self, number: usize, k: usize) -> f64 {
+        let legal = &self.expected[number];
+        (legal.high[k] - legal.low[k]).min(f64::MAX)
+    }
+
+    /// The nearest, each held against all that is legal of it: those that explain what fails, the best first.
+    fn tried(&self, mut near: Vec<Near>) -> Vec<SceneExplanation> {
+        near.retain(|near| 2 * near.misses <= self.failing_there.len());
+        near.truncate(MOST_TRIED);
+        let mut found: Vec<SceneExplanation> = near.into_iter().filter_map(|near| self.explanation(near)).collect();
+        let key = |one: &SceneExplanation| (Reverse(one.explained), one.faults.len());
+        found.sort_by(|a, b| {
+            let by_contradiction = a.contradicted.total_cmp(&b.contradicted);
+            key(a).cmp(&key(b)).then(by_contradiction).then(a.distance.total_cmp(&b.distance))
+        });
+        found
+    }
+
+    /// An explanation, where it explains nearly all that fails and what passes does not contradict it.
+    fn explanation(&self, Near { distance, faults, drawn, .. }: Near) -> Option<SceneExplanation> {
+        let legal = self.legal(&faults, &self.looked_at);
+        let is_legal = |&&(place, k): &&(usize, usize)| {
+            let ([low, high], value) = (legal[place][k], self.image.pixels[self.looked_at[place]][k]);
+            low <= value && value <= high
+        };
+        let explained = self.failing_there.iter().filter(is_legal).count();
+        let whole = if faults.len() > 1 { WHOLE_OF_TWO } else { WHOLE };
+        if real(explained) < whole * real(self.failing_there.len()) {
+            return None;
+        }
+        let passing = self.passing_there.len();
+        let contradicted = passing - self.passing_there.iter().filter(is_legal).count();
+        let estimated = real(contradicted) * real(self.passing) / real(passing.max(1));
+        let contradicted = estimated.max(self.contradicted(&faults));
+        if contradicted >= MOST_CONTRADICTED * real(self.failing.len()) {
+            return None;
+        }
+        Some(SceneExplanation { faults, explained, contradicted, distance, drawn })
+    }
+
+    /// The legal values of some pixels where these mistakes are made: the least and the greatest of each component.
+    fn legal(&self, faults: &[&'static SceneFault], pixels: &[usize]) -> Vec<[[f64; 2]; 4]> {
+        let (frame, format) = (with(self.frame, faults), self.image.format);
+        let legal = Expectation::new(&frame, None, None, self.profile).at(&places(&frame, pixels, faults));
+        let changes_color = faults.iter().any(|fault| fault.is_of_color());
+        let ends = |legal: &LegalPixel| {
+            if !changes_color {
+                return std::array::from_fn(|k| [legal.low[k], legal.high[k]]);
+            }
+            // The legal values of a frame are all that may be stored; those of changed colours were changed before that, and are
+            // stored now: on steps, at either neighbour.
+            let [low, high] = [legal.low, legal.high].map(|units| {
+                let mut pixels = [std::array::from_fn(|k| pixel::linear(format, k, units[k]))];
+                colors(&mut pixels, faults);
+                unrounded(format, pixels[0])
+            });
+            std::array::from_fn(|k| match format.encoding() {
+                Encoding::Unorm8 | Encoding::Srgb8 => [(low[k] + STEP_ERROR).floor(), (high[k] - STEP_ERROR).ceil()],
+                Encoding::Float16 | Encoding::Float32 => {
+                    [low[k] - slack(format, low[k]), high[k] + slack(format, high[k])]
+                }
+            })
+        };
+        legal.iter().map(ends).collect()
+    }
+
+    /// The passing components of the whole image that are far from what these mistakes draw, and that are not legal of them; where
+    /// they are many, a part of them is tried.
+    fn contradicted(&self, faults: &[&'static SceneFault]) -> f64 {
+        let drawn = draw::<f64>(self.frame, faults);
+        let far: Vec<(usize, usize)> = (0..drawn.pixels.len())
+            .filter(|&number| !self.expected[number].is_marked)
+            .flat_map(|number| (0..4).map(move |k| (number, k)))
+            .filter(|&(number, k)| {
+                let (value, there) = (self.image.pixels[number][k], drawn.pixels[number][k]);
+                let is_far = (value - there).abs() > slack(self.image.format, value);
+                is_far && is_within(&self.image.pixels[number], &self.expected[number], k)
+            })
+            .collect();
+        let tried: Vec<(usize, usize)> = spread(&far, LOOKED_AT).collect();
+        let pixels: Vec<usize> = tried.iter().map(|&(number, _)| number).collect();
+        let legal = self.legal(faults, &pixels);
+        let is_legal = |((number, k), legal): (&(usize, usize), &[[f64; 2]; 4])| {
+            let ([low, high], value) = (legal[*k], self.image.pixels[*number][*k]);
+            low <= value && value <= high
+        };
+        let contradicted = tried.iter().zip(&legal).filter(|&of| !is_legal(of)).count();
+        real(contradicted) * real(far.len()) / real(tried.len().max(1))
+    }
+
+    /// The best explanation, those that explain as much, and the pixel that tells it best from the next.
+    fn named(&self, found: &[SceneExplanation]) -> String {
+        let best = &found[0];
+        let (there, all) = (self.failing_there.len(), self.failing.len());
+        let of = if there == all { String::new() } else { format!(" looked at, of {all},") };
+        let mut told =
+            format!("{} of {there} failing components of pixels{of} are explained by: {}", best.explained, says(best));
+        let is_equal = |other: &&SceneExplanation| other.explained == best.explained && other.drawn == best.drawn;
+        for other in found[1..].iter().filter(is_equal).take(MOST_EQUAL) {
+            let _ = write!(told, "; or, which draws the same: {}", says(other));
+        }
+        if let Some(next) = found[1..].iter().find(|other| !is_equal(other)) {
+            told.push_str(&self.telling(best, next).unwrap_or_default());
+        }
+        told
+    }
+
+    /// The failing pixel at which two explanations draw what is least alike.
+    fn telling(&self, best: &SceneExplanation, next: &SceneExplanation) -> Option<String> {
+        let apart = |&(place, k): &(usize, usize)| (best.drawn[place][k] - next.drawn[place][k]).abs();
+        let is_best = |&&(place, k): &&(usize, usize)| {
+            let value = self.image.pixels[self.looked_at[place]][k];
+            (value - best.drawn[place][k]).abs() < (value - next.drawn[place][k]).abs()
+        };
+        let at = self.failing_there.iter().filter(is_best).max_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+        let (number, width) = (self.looked_at[at.0], self.image.width);
+        let shown = |value: f64| if value.fract() == 0.0 { format!("{value}") } else { format!("{value:.4}") };
+        let [value, here, there] =
+            [self.image.pixels[number][at.1], best.drawn[at.0][at.1], next.drawn[at.0][at.1]].map(shown);
+        let says = says(next);
+        if here == there {
+            return Some(format!("; or, which draws nearly the same: {says}"));
+        }
+        Some(format!(
+            "; the next best is: {says}, but {} of pixel {},{} is {value}, where the first draws {here} and the second {there}",
+            NAMES[at.1],
+            number % width,
+            number / width
+        ))
+    }
+
+    /// The colour of an image that has no other, in units: it says nothing of how it came about.
+    fn flat(&self) -> Option<[f64; 4]> {
+        let (first, rest) = self.image.pixels.split_first()?;
+        let is_same = |pixel: &[f64; 4]| pixel.iter().zip(first).all(|(a, b)| a.to_bits() == b.to_bits());
+        (!rest.is_empty() && rest.iter().all(is_same)).then_some(*first)
+    }
+
+    /// What failing components have in common where nothing explains them.
+    fn unnamed(&self) -> String {
+        let told = format!("nothing in the catalogue explains the {} failing components of pixels", self.failing.len());
+        if let Some([r, g, b, a]) = self.flat() {
+            return told + &format!(": the whole image is {r} {g} {b} {a}");
+        }
+        let common: Vec<String> = [self.component(), self.sign(), self.region()].into_iter().flatten().collect();
+        if common.is_empty() { told } else { told + ": " + &common.join(", ") }
+    }
+
+    /// The one component that nearly all failing ones are of.
+    fn component(&self) -> Option<String> {
+        (0..4).find_map(|k| {
+            let how_many = self.share(|number| number % 4 == k)?;
+            Some(format!("{how_many} are {}", NAMES[k]))
+        })
+    }
+
+    /// Whether nearly all are too great, or too small.
+    fn sign(&self) -> Option<String> {
+        let (value, legal) =
+            (|number: usize| self.image.pixels[number / 4][number % 4], |number| &self.expected[number / 4]);
+        let great = self.share(|number| value(number) > legal(number).high[number % 4]);
+        let small = self.share(|number| value(number) < legal(number).low[number % 4]);
+        let no_number = self.share(|number| value(number).is_nan());
+        let told = [(great, "too great"), (small, "too small"), (no_number, "not a number")];
+        told.into_iter().find_map(|(how_many, what)| Some(format!("{} are {what}", how_many?)))
+    }
+
+    /// The rectangle that holds all of them, where it is less than half of the image.
+    fn region(&self) -> Option<String> {
+        let width = self.image.width;
+        let (mut columns, mut rows) = ([usize::MAX, 0], [usize::MAX, 0]);
+        for number in &self.failing {
+            let (x, y) = (number / 4 % width, number / 4 / width);
+            columns = [columns[0].min(x), columns[1].max(x)];
+            rows = [rows[0].min(y), rows[1].max(y)];
+        }
+        let area = (columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1);
+        let [[left, right], [top, bottom]] = [columns, rows];
+        (2 * area < self.image.pixels.len())
+            .then(|| format!("all are in columns {left} to {right} and rows {top} to {bottom}"))
+    }
+
+    /// How many of the failing components have something: `all`, `nearly all`, or else nothing to be told.
+    fn share(&self, has: impl Fn(usize) -> bool) -> Option<&'static str> {
+        let count = self.failing.iter().filter(|&&number| has(number)).count();
+        match count {
+            all if all == self.failing.len() => Some("all"),
+            count if real(count) >= COMMON * real(self.failing.len()) => Some("nearly all"),
+            _ => None,
+        }
+    }
+}
+
+/// The components of a pixel.
+pub(super) const NAMES: [&str; 4] = ["red", "green", "blue", "alpha"];
+
+/// Pairs of those that come nearest, with each of others.
+fn pairs(near: &[Near]) -> Vec<Vec<&'static SceneFault>> {
+    let singles: Vec<&'static SceneFault> = near.iter().map(|near| near.faults[0]).take(OTHERS).collect();
+    let first = &singles[..singles.len().min(PAIRED)];
+    let with_others = |(place, &one): (usize, &&'static SceneFault)| {
+        singles[place + 1..].iter().map(move |&other| vec![one, other]).collect::<Vec<_>>()
+    };
+    first.iter().enumerate().flat_map(with_others).collect()
+}
+
+fn says(explanation: &SceneExplanation) -> String {
+    explanation.faults.iter().map(|fault| fault.says).collect::<Vec<_>>().join(", and ")
+}
+
+fn is_within(value: &[f64; 4], legal: &LegalPixel, k: usize) -> bool {
+    (legal.low[k]..=legal.high[k]).contains(&value[k])
+}
+
+/// So many of them, evenly.
+fn spread<T: Copy>(of: &[T], most: usize) -> impl Iterator<Item = T> {
+    of.iter().copied().step_by(of.len().div_ceil(most).max(1))
+}
+
+/// A linear colour in the target's units.
+fn unrounded(format: TargetFormat, color: [f64; 4]) -> [f64; 4] {
+    std::array::from_fn(|k| pixel::units(format, k, color[k]))
+}
+
+/// The same, rounded to it.
+fn stored(format: TargetFormat, color: [f64; 4]) -> [f64; 4] {
+    let units = unrounded(format, color);
+    if format.is_unorm() { units.map(f64::round_ties_even) } else { units }
+}
+
+/// What the store of a changed image may add, in units.
+fn slack(format: TargetFormat, value: f64) -> f64 {
+    match format.encoding() {
+        Encoding::Unorm8 | Encoding::Srgb8 => 1.0,
+        Encoding::Float16 => (value.abs() / 1024.0).max(1e-7),
+        Encoding::Float32 => (value.abs() * 1e-6).max(1e-9),
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of components")]
+const fn real(count: usize) -> f64 {
+    count as f64
+}
