@@ -89,6 +89,7 @@ impl Renderer<'_> {
             "version": "1.0",
             "formulas": [self.faults.0.get("formulas").map_or("**", String::as_str)],
             "scenes": ["**"],
+            "skips": [{ "id": "special", "reason": "no rasteriser, no numbers of 16 bits and no packing" }],
             "special": self.faults.0.contains_key("special"),
             "targets": if self.faults.0.contains_key("targets") { TargetFormat::ALL.map(TargetFormat::name).to_vec() } else { vec![] },
         })

@@ -276,3 +276,93 @@ fn a_path_need_not_be_utf_8() {
     }
     assert!(Path::new(&out).metadata().expect("it is there").len() > 100);
 }
+
+#[test]
+fn what_is_skipped_is_declared_or_fails() {
+    let (pack, answers) = answered("skips", &["fog/exp", "vector/reflect"]);
+    let skip = |line: &str| -> String {
+        let found: Value = serde_json::from_str(line).expect("JSON");
+        let id = found["id"].as_str().unwrap_or_default();
+        if id.starts_with("fog/") {
+            format!("{{\"id\": \"{id}\", \"skip\": \"no fog\"}}\n")
+        } else {
+            format!("{line}\n")
+        }
+    };
+    let skipping = edit(&answers, |_, line| skip(line));
+    let folder = folder("skips-expected");
+    let file = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("it can be written");
+        path.display().to_string()
+    };
+    let declared = file("declared.toml", "[[skipped]]\nid = \"fog/exp\"\nreason = \"no fog\"\n");
+    let others = file("others.toml", "[[skipped]]\nid = \"fog/linear\"\nreason = \"no fog\"\n");
+    let everything = file("everything.toml", "[[skipped]]\nid = \"**\"\nreason = \"no time\"\n");
+    let may_pass = file("may-pass.toml", "[[expected]]\nid = \"**\"\nreason = \"no time\"\nmay_pass = true\n");
+    let (pack, skipping) = (pack.display().to_string(), skipping.display().to_string());
+    for (options, status, said) in [
+        (&[][..], 1, "skipped without having been declared: no fog"),
+        (&["--expect", &others], 1, "skipped without having been declared"),
+        (&["--expect", &declared, "--require", "0.1"], 0, " excluded"),
+        (&["--expect", &declared, "--require", "0.99"], 1, "less than the part of 0.99 that is required"),
+        (&["--expect", &everything], 2, "skipped[0] `**` matches everything"),
+        (&["--expect", &may_pass], 2, "expected[0] `**` matches everything"),
+        (&["--require", "1.5"], 2, "expected a part of 1"),
+    ] {
+        let output = lightmeter(&[&["gate", &pack, &skipping], options].concat());
+        let told = stdout(&output) + &stderr(&output);
+        assert_eq!(code(&output), status, "{options:?}: {told}");
+        assert!(told.contains(said), "{options:?}: {told}");
+    }
+    // A hello that declares little leaves little to be judged.
+    let hello = edit(&answers, |k, line| match k {
+        0 => format!("{{\"renderer\": \"r\", \"formulas\": [\"fog/none\"]}}\n{line}\n"),
+        _ => format!("{line}\n"),
+    });
+    let output = lightmeter(&["gate", &pack, &hello.display().to_string()]);
+    assert_ne!(code(&output), 0, "{}", stdout(&output));
+}
+
+#[test]
+fn what_would_be_ignored_is_refused() {
+    let (pack, answers) = answered("ignored", &["fog/exp"]);
+    let (pack, answers) = (pack.display().to_string(), answers.display().to_string());
+    for option in ["--seed", "--cases", "--size"] {
+        refused(
+            &["gate", &pack, &answers, option, "7"],
+            &format!("`{option}` chose the cases when the pack was written"),
+        );
+    }
+    let folder = folder("another-renderer");
+    let baseline = folder.join("baseline.json").display().to_string();
+    let made = lightmeter(&["gate", &pack, &answers, "--baseline", &baseline, "--update-baseline"]);
+    assert_eq!(code(&made), 0, "{}", stderr(&made));
+    let text = std::fs::read_to_string(&baseline).expect("it is there");
+    let mut changed: Value = serde_json::from_str(&text).expect("JSON");
+    changed["renderer"]["name"] = "another".into();
+    std::fs::write(&baseline, changed.to_string()).expect("it can be written");
+    refused(&["gate", &pack, &answers, "--baseline", &baseline], "renderer another there, ");
+}
+
+#[test]
+fn an_unfinished_sweep_is_no_success() {
+    let checkpoint = folder("unfinished").join("sweep.json").display().to_string();
+    let sweep = [
+        "sweep",
+        "fog/exp",
+        "--over",
+        "p.z",
+        "--from",
+        "-2",
+        "--to",
+        "-1",
+        "--adapter",
+        "cpu",
+        "--checkpoint",
+        &checkpoint,
+    ];
+    let output = lightmeter(&[&sweep[..], &["--blocks", "2"]].concat());
+    let told = stdout(&output);
+    assert!(!told.contains('✓') && told.contains("so far: 2 of "), "{told}");
+}

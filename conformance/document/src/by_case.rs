@@ -26,6 +26,9 @@ pub struct CaseCounts {
     pub expected_failures: u64,
     /// Skipped.
     pub skipped: u64,
+    /// Of them, those of which nobody declared that they would be.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub undeclared: u64,
     /// Never answered.
     pub missing: u64,
     /// The largest error of a case that passes.
@@ -49,8 +52,37 @@ impl CaseCounts {
     /// Whether something fails that is not expected to, or was not answered.
     #[must_use]
     pub const fn is_failed(&self) -> bool {
-        self.failed > self.expected_failures || self.missing > 0
+        self.failed > self.expected_failures || self.missing > 0 || self.undeclared > 0
     }
+}
+
+/// How much of what was chosen was judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Coverage {
+    /// Cases that were chosen.
+    pub chosen: u64,
+    /// Of them, those that were judged.
+    pub judged: u64,
+    /// Of them, those that were excluded by name or for want of a feature, or skipped.
+    pub excluded: u64,
+}
+
+impl Coverage {
+    /// The part that is required where nothing else is said.
+    pub const REQUIRED: f64 = 0.5;
+
+    /// Whether at least this part of what was chosen was judged.
+    #[must_use]
+    pub fn is_enough(self, required: f64) -> bool {
+        #[expect(clippy::cast_precision_loss, reason = "counts of cases")]
+        let [chosen, judged] = [self.chosen, self.judged].map(|count| count as f64);
+        judged >= required * chosen
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+pub(crate) const fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// An answer to a case that is wrong, with all of its outputs.

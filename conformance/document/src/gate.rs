@@ -1,6 +1,6 @@
 //! What became of a gate: `lightmeter.gate/1`.
 
-use crate::by_case::{CaseCounts, ComparedBy, FailedAnswer, RendererUse};
+use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, RendererUse, is_zero};
 pub use crate::by_case::{KnownFailure, Problems, RendererIdentity};
 use crate::pack::Choice;
 use crate::run::{Failure, Group, Identity, Interrupted, Report, StoresOfShard, Totals};
@@ -93,6 +93,9 @@ pub struct GateTotals {
     pub unexpected_passes: u64,
     /// Skipped by the renderer.
     pub skipped: u64,
+    /// Of them, those of which nobody declared that they would be.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub undeclared: u64,
     /// Never answered.
     pub missing: u64,
     /// Answered in another way when asked once more.
@@ -124,6 +127,9 @@ pub struct GateGroup {
     pub expected_failures: u64,
     /// Skipped.
     pub skipped: u64,
+    /// Of them, those of which nobody declared that they would be.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub undeclared: u64,
     /// Never answered.
     pub missing: u64,
     /// Not asked, since the renderer does not declare it.
@@ -175,7 +181,7 @@ impl GateGroup {
     /// Whether something fails that is not expected to.
     #[must_use]
     pub const fn is_failed(&self) -> bool {
-        self.failed > self.expected_failures || self.missing > 0 || self.problem.is_some()
+        self.failed > self.expected_failures || self.missing > 0 || self.undeclared > 0 || self.problem.is_some()
     }
 }
 
@@ -191,6 +197,7 @@ impl GateGroup {
             broken: counts.broken,
             expected_failures: counts.expected_failures,
             skipped: counts.skipped,
+            undeclared: counts.undeclared,
             missing: counts.missing,
             not_asked: counts.not_asked,
             verdicts: group.totals.verdicts,
@@ -247,6 +254,7 @@ impl GateReport {
             totals.broken += counts.broken;
             totals.expected_failures += counts.expected_failures;
             totals.skipped += counts.skipped;
+            totals.undeclared += counts.undeclared;
             totals.missing += counts.missing;
             totals.not_asked += counts.not_asked;
             totals.verdicts += group.totals.verdicts;
@@ -277,6 +285,17 @@ impl GateReport {
             unstable: report.unstable_cases.clone(),
             expectations: report.expectations.clone(),
             regressions: report.regressions.clone(),
+        }
+    }
+
+    /// How many of the cases that were chosen were judged.
+    #[must_use]
+    pub const fn coverage(&self) -> Coverage {
+        let totals = &self.totals;
+        Coverage {
+            chosen: totals.asked + totals.not_asked,
+            judged: totals.asked - totals.skipped - totals.missing,
+            excluded: totals.not_asked + totals.skipped,
         }
     }
 
@@ -367,6 +386,7 @@ impl GateGroup {
             broken: self.broken,
             expected_failures: self.expected_failures,
             skipped: self.skipped,
+            undeclared: self.undeclared,
             missing: self.missing,
             error_passing: self.error_passing,
             error_mean: self.error_mean,
@@ -424,11 +444,6 @@ fn failures(report: &Report) -> Vec<GateFailure> {
         has_room
     };
     report.failures.iter().filter(has_room).filter_map(GateFailure::of).collect()
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
-const fn is_zero(count: &u64) -> bool {
-    *count == 0
 }
 
 /// A case that failed.

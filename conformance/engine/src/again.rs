@@ -30,7 +30,7 @@ impl Digests {
 pub(crate) const fn number(why: &Unanswered) -> u32 {
     match why {
         Unanswered::Unasked => UNASKED,
-        Unanswered::Skipped(_) => 1,
+        Unanswered::Skipped(_) | Unanswered::Undeclared(_) => 1,
         Unanswered::Unjudged(_) => 2,
         Unanswered::Broken(_) => 3,
         Unanswered::Missing => 4,

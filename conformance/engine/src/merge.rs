@@ -355,6 +355,7 @@ fn counts(a: CaseCounts, b: CaseCounts, group: &str, order: &Order) -> CaseCount
         broken: a.broken + b.broken,
         expected_failures: a.expected_failures + b.expected_failures,
         skipped: a.skipped + b.skipped,
+        undeclared: a.undeclared + b.undeclared,
         missing: a.missing + b.missing,
         error_passing: Number(worse(a.error_passing.0, b.error_passing.0)),
         error_mean: Number(mean),

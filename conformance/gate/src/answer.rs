@@ -36,8 +36,20 @@ pub struct Hello {
     pub profile: Option<String>,
     /// Formats of targets that it blends on, step for step; none where it is asked for blending as arithmetic alone.
     pub targets: Vec<String>,
+    /// Cases that it may skip, by globs, each with the reason.
+    pub skips: Vec<DeclaredSkip>,
     /// Whether it is asked for special values: NaN, infinity, subnormals, signed zero and rounding, an operation at a time.
     pub special: bool,
+}
+
+/// Cases that a renderer may skip.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeclaredSkip {
+    /// A glob of cases, or of an ancestor of theirs.
+    pub id: String,
+    /// Why it skips them.
+    pub reason: String,
 }
 
 impl Hello {

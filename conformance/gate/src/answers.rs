@@ -2,6 +2,7 @@
 
 use super::answer::{self, Hello, Line, Unread, clipped};
 use super::error::ProcessError;
+use super::expectations::Expectations;
 use super::given::{Asks, Declared, Given, given, word};
 use super::pack::PackError;
 use super::picture;
@@ -133,15 +134,22 @@ impl FileRenderer {
     ///
     /// # Panics
     /// Where there is no file.
-    pub fn read(plan: GatePlan, files: Vec<AnswerFile>, stop: Stop) -> Result<Self, FilesError> {
+    pub fn read(
+        plan: GatePlan,
+        files: Vec<AnswerFile>,
+        expectations: &Expectations,
+        stop: Stop,
+    ) -> Result<Self, FilesError> {
         // Answers that do not say what they are to are to all that the pack has.
         let targets = || plan.targets.iter().map(|target| target.name().to_owned()).collect();
         let everything = || Hello { targets: targets(), special: plan.choice.special, ..Hello::everything() };
         let hello = files[0].hello.clone().unwrap_or_else(everything);
         let are_many = files.len() > 1;
+        let mut declared = Declared::new(hello)?;
+        declared.skips.extend(expectations.skips_of(&declared.hello.renderer, &declared.hello.version));
         let mut renderer = Self {
             plan,
-            declared: Declared::new(hello)?,
+            declared,
             files: files.into(),
             are_many,
             contents: Contents::default(),
@@ -261,7 +269,8 @@ impl Read {
         if !is_declared {
             return Self::Problem("unknown", format!("`{id}` is not among what the renderer declares"));
         }
-        Self::Answer(place, given(line, asks))
+        let id = id.to_owned();
+        Self::Answer(place, declared.skips.settled(&id, given(line, asks)))
     }
 }
 

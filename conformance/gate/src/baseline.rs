@@ -8,6 +8,7 @@ use lightmeter_document::gate::{GateGroup, GateReport, cases};
 use lightmeter_document::pack::Choice;
 use lightmeter_document::run::{Group, Report};
 use lightmeter_files::read::MOST_TEXT;
+use lightmeter_files::shown;
 use lightmeter_judge::cases::{count_of, expanded};
 use lightmeter_judge::image::file::whole;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -26,6 +27,8 @@ pub struct Standard {
     choice: Choice,
     generator: u64,
     profile: String,
+    /// Who answered; `None` of a run, whose groups name their adapters.
+    renderer: Option<String>,
     /// Which part of the cases, as `2/8`; none for all.
     shard: Option<String>,
     /// The formats that were asked to be blended on.
@@ -62,6 +65,7 @@ impl From<&GateReport> for Standard {
             choice: report.choice.clone(),
             generator: report.generator,
             profile: report.profile.clone(),
+            renderer: Some(shown(&report.renderer.name).into_owned()),
             shard: compared_by.shard,
             targets: compared_by.targets.iter().map(ToString::to_string).collect(),
             groups: report.groups.iter().map(group).collect(),
@@ -98,6 +102,7 @@ impl From<&Report> for Standard {
             choice: compared_by.choice,
             generator: compared_by.generator,
             profile: report.profile.to_string(),
+            renderer: None,
             shard: compared_by.shard,
             targets: compared_by.targets.iter().map(ToString::to_string).collect(),
             groups: report.groups.iter().map(group).collect(),
@@ -218,6 +223,12 @@ impl Baseline {
         if self.0.shard.is_some() && self.0.shard != now.shard {
             let [before, now] = [&self.0.shard, &now.shard].map(|shard| shard.as_deref().unwrap_or("1/1"));
             let differences = vec![format!("shard {before} there, {now} here")];
+            return Err(BaselineError::Others { path: path.into(), differences });
+        }
+        if let (Some(before), Some(now)) = (&self.0.renderer, &now.renderer)
+            && before != now
+        {
+            let differences = vec![format!("renderer {before} there, {now} here")];
             return Err(BaselineError::Others { path: path.into(), differences });
         }
         let is_part = is_shard || !self.has_filter_of(&now.choice);

@@ -18,6 +18,14 @@ pub enum ProcessError {
     /// What it declares cannot be read.
     #[error("the renderer's hello: {0}")]
     Hello(#[from] lightmeter_catalogue::filter::FilterError),
+    /// It declares that it skips what must not be left out.
+    #[error("the renderer's hello: skips `{id}`: it {why}")]
+    Skip {
+        /// The glob.
+        id: String,
+        /// Why that is refused.
+        why: String,
+    },
     /// It asks for accuracy rules that are unknown.
     #[error("the renderer's hello: no profile `{0}`; expected {profiles}", profiles = lightmeter_arithmetic::profile::PROFILES.map(|profile| profile.name).join(", "))]
     Profile(String),

@@ -1,5 +1,6 @@
 //! Known failures, written down with their reason: they do not fail a gate, and it says so when they pass.
 
+use super::given::refused;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::gate::KnownFailure;
@@ -32,11 +33,27 @@ struct Written {
     may_pass: bool,
 }
 
+/// Cases that a renderer is known to skip, as the file has them.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenSkip {
+    /// A glob of cases, or of an ancestor of theirs.
+    id: String,
+    /// Why it skips them.
+    reason: String,
+    /// The renderer's name; any without it.
+    renderer: Option<String>,
+    /// The renderer's versions, as `>=0.150, <0.170`; any without it.
+    version: Option<String>,
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
     #[serde(default)]
     expected: Vec<Written>,
+    #[serde(default)]
+    skipped: Vec<WrittenSkip>,
 }
 
 /// Why a file of expectations is refused.
@@ -47,10 +64,27 @@ pub struct ExpectationError {
     message: String,
 }
 
-/// A file of known failures.
+/// A file of known failures and skips.
 #[derive(Clone, Debug, Default)]
 pub struct Expectations {
     written: Vec<(Written, Filter, Option<VersionReq>)>,
+    skipped: Vec<(WrittenSkip, Filter, Option<VersionReq>)>,
+}
+
+/// The versions that are meant.
+fn versions(text: Option<&str>, place: &str) -> Result<Option<VersionReq>, String> {
+    let read = |text| {
+        let expected = "expected such as \">=1.2, <2\"";
+        VersionReq::parse(text).map_err(|error| format!("{place}.version `{text}`: {error}; {expected}"))
+    };
+    text.map(read).transpose()
+}
+
+/// Whether something is of a renderer.
+fn is_of(written: (Option<&String>, Option<&VersionReq>), renderer: &str, version: Option<&Version>) -> bool {
+    let (name, range) = written;
+    let is_version = range.is_none_or(|range| version.is_some_and(|own| range.matches(own)));
+    name.is_none_or(|name| name == renderer) && is_version
 }
 
 impl Expectations {
@@ -68,8 +102,12 @@ impl Expectations {
         let file: File = toml::from_str(text).map_err(|error| error.to_string())?;
         let read = |(k, written): (usize, Written)| {
             let filter = Filter::new(std::slice::from_ref(&written.id)).map_err(|error| error.to_string())?;
-            if written.reason.trim().is_empty() {
-                return Err(format!("expected[{k}] `{}` has no reason", written.id));
+            // A known failure fails, whatever it is of: what may pass besides leaves nothing to be judged.
+            match refused(&filter, &written.reason) {
+                Some(why) if written.may_pass || written.reason.trim().is_empty() => {
+                    return Err(format!("expected[{k}] `{}` {why}", written.id));
+                }
+                _ => {}
             }
             if let Some(on) = written.on.as_ref().filter(|on| !places().any(|place| place == on.as_str())) {
                 let places: Vec<&str> = places().collect();
@@ -78,19 +116,26 @@ impl Expectations {
                     places.join(", ")
                 ));
             }
-            let version = written.version.as_ref().map(|text| {
-                let expected = "expected such as \">=1.2, <2\"";
-                VersionReq::parse(text).map_err(|error| format!("expected[{k}].version `{text}`: {error}; {expected}"))
-            });
-            Ok((written, filter, version.transpose()?))
+            let version = versions(written.version.as_deref(), &format!("expected[{k}]"))?;
+            Ok((written, filter, version))
         };
         let written = file.expected.into_iter().enumerate().map(read).collect::<Result<_, String>>()?;
-        Ok(Self { written })
+        let read = |(k, skip): (usize, WrittenSkip)| {
+            let filter = Filter::new(std::slice::from_ref(&skip.id)).map_err(|error| error.to_string())?;
+            if let Some(why) = refused(&filter, &skip.reason) {
+                return Err(format!("skipped[{k}] `{}` {why}", skip.id));
+            }
+            let version = versions(skip.version.as_deref(), &format!("skipped[{k}]"))?;
+            Ok((skip, filter, version))
+        };
+        let skipped = file.skipped.into_iter().enumerate().map(read).collect::<Result<_, String>>()?;
+        Ok(Self { written, skipped })
     }
 
     /// The globs of cases.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
-        self.written.iter().map(|(written, ..)| written.id.as_str())
+        let failures = self.written.iter().map(|(written, ..)| written.id.as_str());
+        failures.chain(self.skipped.iter().map(|(skip, ..)| skip.id.as_str()))
     }
 
     /// Those of a renderer.
@@ -98,8 +143,7 @@ impl Expectations {
     pub fn of(&self, renderer: &str, version: &str) -> Vec<ExpectedFailure> {
         let version = lenient(version);
         let concerns = |(written, _, range): &&(Written, Filter, Option<VersionReq>)| {
-            let is_version = range.as_ref().is_none_or(|range| version.as_ref().is_some_and(|own| range.matches(own)));
-            written.renderer.as_ref().is_none_or(|name| name == renderer) && is_version
+            is_of((written.renderer.as_ref(), range.as_ref()), renderer, version.as_ref())
         };
         let of = |(written, filter, _): &(Written, Filter, _)| ExpectedFailure {
             known: KnownFailure {
@@ -114,6 +158,15 @@ impl Expectations {
             filter: filter.clone(),
         };
         self.written.iter().filter(concerns).map(of).collect()
+    }
+
+    /// The cases that a renderer is known to skip.
+    pub(super) fn skips_of(&self, renderer: &str, version: &str) -> Vec<Filter> {
+        let version = lenient(version);
+        let concerns = |(skip, _, range): &&(WrittenSkip, Filter, Option<VersionReq>)| {
+            is_of((skip.renderer.as_ref(), range.as_ref()), renderer, version.as_ref())
+        };
+        self.skipped.iter().filter(concerns).map(|(_, filter, _)| filter.clone()).collect()
     }
 }
 
@@ -172,6 +225,9 @@ mod tests {
             ("[[expected]]\nid = \"fog\"\nreason = \"r\"\non = \"rgba9\"", "expected compute, fragment"),
             ("[[expect]]\nid = \"fog\"\nreason = \"r\"", "unknown field `expect`"),
             ("[[expected]]\nid = \"[\"\nreason = \"r\"", "["),
+            ("[[expected]]\nid = \"**\"\nreason = \"r\"\nmay_pass = true", "expected[0] `**` matches everything"),
+            ("[[skipped]]\nid = \"*\"\nreason = \"r\"", "skipped[0] `*` matches everything"),
+            ("[[skipped]]\nid = \"fog\"\nreason = \"\"", "skipped[0] `fog` has no reason"),
         ] {
             let error = Expectations::parse(text).expect_err(said);
             assert!(error.contains(said), "{error}");

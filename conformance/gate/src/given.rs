@@ -1,6 +1,6 @@
 //! What a renderer gave to a question, read from a line.
 
-use super::answer::{Hello, Line, clipped};
+use super::answer::{DeclaredSkip, Hello, Line, clipped};
 use super::error::ProcessError;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::filter::Filter;
@@ -89,6 +89,52 @@ pub(super) fn given(line: Line<'_>, asks: Asks<'_>) -> Given {
     }
 }
 
+/// The cases that a renderer may skip: those that its hello declares, and those that are known of it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Skips(Vec<Filter>);
+
+impl Skips {
+    /// Those that a hello declares.
+    pub(super) fn of(hello: &Hello) -> Result<Self, ProcessError> {
+        let read = |skip: &DeclaredSkip| {
+            let filter = Filter::new(std::slice::from_ref(&skip.id))?;
+            match refused(&filter, &skip.reason) {
+                Some(why) => Err(ProcessError::Skip { id: clipped(&skip.id), why }),
+                None => Ok(filter),
+            }
+        };
+        Ok(Self(hello.skips.iter().map(read).collect::<Result<_, _>>()?))
+    }
+
+    /// Adds those that are known.
+    pub(super) fn extend(&mut self, known: impl IntoIterator<Item = Filter>) {
+        self.0.extend(known);
+    }
+
+    /// What was given to a case: a skip that nobody declared is told apart.
+    pub(super) fn settled(&self, id: &str, given: Given) -> Given {
+        match given {
+            Given::Nothing(Unanswered::Skipped(reason)) => Given::Nothing(self.skipped(id, reason)),
+            other => other,
+        }
+    }
+
+    /// A skip of a case, which was declared or not.
+    pub(super) fn skipped(&self, id: &str, reason: String) -> Unanswered {
+        let is_declared = self.0.iter().any(|filter| filter.selects(id));
+        if is_declared { Unanswered::Skipped(reason) } else { Unanswered::Undeclared(reason) }
+    }
+}
+
+/// Why something may not be left out; `None` where it may.
+pub(super) fn refused(filter: &Filter, reason: &str) -> Option<String> {
+    let is_everything = ["color/sum", "vector/reflect", "lighting/phong", "fog/exp", "blend/max", "scene/phong"];
+    if is_everything.iter().all(|id| filter.selects(id)) {
+        return Some("matches everything; expected the formulas or cases that are meant".into());
+    }
+    reason.trim().is_empty().then(|| "has no reason".into())
+}
+
 /// The bits of a result of this type that is given as a number: of a float the nearest f32, else an integer of 32 bits, which may have a
 /// sign.
 fn word_of(gives: Gives, x: f64) -> Result<u32, String> {
@@ -142,6 +188,7 @@ pub(super) struct Declared {
     pub(super) hello: Hello,
     formulas: Option<Filter>,
     scenes: Option<Filter>,
+    pub(super) skips: Skips,
     pub(super) targets: Vec<TargetFormat>,
 }
 
@@ -151,7 +198,8 @@ impl Declared {
         let [formulas, scenes] = hello.filters()?;
         let format = |name: &String| TargetFormat::by_name(name).ok_or_else(|| ProcessError::Target(name.clone()));
         let targets = hello.targets.iter().map(format).collect::<Result<_, _>>()?;
-        Ok(Self { hello, formulas, scenes, targets })
+        let skips = Skips::of(&hello)?;
+        Ok(Self { hello, formulas, scenes, skips, targets })
     }
 
     /// Why a formula or a scene is not asked; `None` where it is.

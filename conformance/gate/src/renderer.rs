@@ -92,15 +92,16 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
     }
 
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
+        let skips = self.declared.skips.clone();
         let renderer = self.renderer();
-        let each = rows.of.iter().zip(rows.inputs.chunks_exact(rows.stride()));
-        let given = each.map(|(&of, inputs)| {
-            let spec = &rows.members[of].spec;
+        let each = rows.of.iter().zip(rows.cases).zip(rows.inputs.chunks_exact(rows.stride()));
+        let given = each.map(|((&of, &case), inputs)| {
+            let (spec, id) = (&rows.members[of].spec, rows.members[of].case_id(case));
             let line = match renderer.evaluate(spec, inputs) {
                 Ok(values) => Line::Value(Cow::Borrowed(""), values.into_iter().map(f64::from).collect()),
                 Err(reason) => Line::Skip(Cow::Borrowed(""), Cow::Owned(reason)),
             };
-            given(line, Asks::Outputs(spec))
+            skips.settled(&id, given(line, Asks::Outputs(spec)))
         });
         let answers = answers(rows, given);
         advanced(rows.of.len() as u64);
@@ -112,9 +113,10 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
     }
 
     fn pixels(&mut self, asked: &AskedPixels<'_>) -> Result<Vec<Result<Units, Unanswered>>, DeviceError> {
-        let blended = |(_, inputs): (CaseRef, &[f32])| {
+        let skips = self.declared.skips.clone();
+        let blended = |(case, inputs): (CaseRef, &[f32])| {
             let pixel = self.renderer().blend(asked.program, asked.target, &asked.program.case(inputs));
-            pixel.map(|pixel| pixel.map(f64::from)).map_err(|reason| Unanswered::Skipped(clipped(&reason)))
+            pixel.map(|pixel| pixel.map(f64::from)).map_err(|reason| skips.skipped(&asked.id(case), clipped(&reason)))
         };
         Ok(asked.rows().map(blended).collect())
     }
@@ -124,9 +126,11 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
     }
 
     fn probes(&mut self, probes: &[&'static Probe]) -> Result<Vec<Result<u32, Unanswered>>, DeviceError> {
+        let skips = self.declared.skips.clone();
         let renderer = self.renderer();
-        let answer =
-            |probe: &&'static Probe| renderer.special(probe).map_err(|reason| Unanswered::Skipped(clipped(&reason)));
+        let answer = |probe: &&'static Probe| {
+            renderer.special(probe).map_err(|reason| skips.skipped(&probe.id(), clipped(&reason)))
+        };
         Ok(probes.iter().map(answer).collect())
     }
 
@@ -134,7 +138,7 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
         let folder = self.folder.clone();
         Ok(match self.renderer().draw(scene.id, scene.frame, &folder) {
             Ok(file) => picture::read(&folder, &file, scene.frame, None).map_err(Unanswered::Unjudged),
-            Err(reason) => Err(Unanswered::Skipped(clipped(&reason))),
+            Err(reason) => Err(self.declared.skips.skipped(scene.id, clipped(&reason))),
         })
     }
 

@@ -27,7 +27,9 @@ impl Unanswered {
     #[must_use]
     pub fn message(&self) -> &str {
         match self {
-            Self::Skipped(message) | Self::Unjudged(message) | Self::Broken(message) => message,
+            Self::Skipped(message) | Self::Undeclared(message) | Self::Unjudged(message) | Self::Broken(message) => {
+                message
+            }
             Self::Missing | Self::Unasked => "never answered",
         }
     }
@@ -42,8 +44,10 @@ impl From<Vec<u32>> for Answers {
 /// Why a case has no value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unanswered {
-    /// The renderer does not do it, and says why.
+    /// The renderer does not do it, says why, and declared before that it would.
     Skipped(String),
+    /// The renderer does not do it and says why, and nobody declared that it would.
+    Undeclared(String),
     /// What was answered cannot be judged.
     Unjudged(String),
     /// The renderer ended or hung at it.
@@ -152,8 +156,9 @@ impl CaseTally {
     pub fn unanswered(&mut self, case: (usize, CaseRef), why: &Unanswered) -> bool {
         self.counts.asked += 1;
         match why {
-            Unanswered::Skipped(reason) => {
+            Unanswered::Skipped(reason) | Unanswered::Undeclared(reason) => {
                 self.counts.skipped += 1;
+                self.counts.undeclared += u64::from(matches!(why, Unanswered::Undeclared(_)));
                 self.push(case, NotPassed::Skipped);
                 if !self.reasons.contains(reason) && self.reasons.len() < KEPT_REASONS {
                     self.reasons.push(reason.clone());
@@ -221,6 +226,7 @@ impl CaseTally {
         own.broken += more.broken;
         own.expected_failures += more.expected_failures;
         own.skipped += more.skipped;
+        own.undeclared += more.undeclared;
         own.missing += more.missing;
         own.error_passing = Number(worse(own.error_passing.0, more.error_passing.0));
         self.errors = (self.errors.0 + other.errors.0, self.errors.1 + other.errors.1);

@@ -124,7 +124,7 @@ impl RowStanding {
         if let Some(why) = answers.unanswered.get(&case) {
             self.tally.totals.cases += 1;
             let totals = &mut self.tally.totals;
-            totals.skipped += u64::from(matches!(why, Unanswered::Skipped(_)));
+            totals.skipped += u64::from(matches!(why, Unanswered::Skipped(_) | Unanswered::Undeclared(_)));
             if self.cases.unanswered(place, why) && !by.expected.is_empty() {
                 self.cases.expect(by.expected, &id(), &[stage.name()], true);
             }

@@ -10,6 +10,16 @@ export const declared = {
   formulas: Object.keys(FORMULAS),
   scenes: ["scene"],
   effects: EFFECTS,
+  skips: [
+    ...[
+      "blend/*/*constant-color/*constant-alpha",
+      "blend/*/*constant-alpha/*constant-color",
+      "blend/separate/*.*constant-color.*constant-alpha",
+      "blend/separate/*.*constant-alpha.*constant-color",
+    ].map((id) => ({ id, reason: "WebGL refuses a constant colour and a constant alpha together" })),
+    { id: "scene/attached-lights", reason: "light falls off by a power of the distance, not by a polynomial" },
+    { id: "scene/viewer", reason: "the viewer is local, but with an orthographic camera" },
+  ],
   formats: ["rgba8unorm", "bgra8unorm", "rgba16float", "rgba32float"],
 };
 

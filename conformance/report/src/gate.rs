@@ -3,6 +3,7 @@
 use crate::against::{self, Against, listed};
 use crate::text::plain;
 use lightmeter_document::Number;
+use lightmeter_document::by_case::Coverage;
 use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, cases};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::fmt::{Result, Write};
@@ -49,13 +50,20 @@ pub fn text(report: &GateReport, is_told: bool, out: &mut impl Write) -> Result 
         (totals.unstable, "are unstable"),
         (totals.missing, "were never answered"),
         (totals.skipped, "were skipped"),
+        (totals.undeclared, "of them without having been declared"),
         (totals.not_asked, "were not asked: the renderer does not declare them"),
     ] {
         if count > 0 {
             write!(out, ", {count} {what}")?;
         }
     }
-    writeln!(out, "; {} verdicts, {} of them where anything is legal", totals.verdicts, totals.indeterminate)
+    writeln!(out, "; {} verdicts, {} of them where anything is legal", totals.verdicts, totals.indeterminate)?;
+    let Coverage { chosen, judged, excluded } = report.coverage();
+    if excluded > 0 {
+        writeln!(out, "of {} chosen {judged} were judged and {excluded} excluded", cases(chosen))
+    } else {
+        Ok(())
+    }
 }
 
 /// A line a family.
@@ -111,6 +119,11 @@ pub fn told(group: &GateGroup, failures: &[GateFailure], out: &mut impl Write) -
     if group.missing > 0 {
         let was = if group.missing == 1 { "was" } else { "were" };
         writeln!(out, "  {} {was} never answered: {}", cases(group.missing), missing(group))?;
+    }
+    if group.undeclared > 0 {
+        let why = group.reason.as_deref().unwrap_or("no reason was given");
+        writeln!(out, "  {} skipped without having been declared: {why}", cases(group.undeclared))?;
+        writeln!(out, "  declare such cases by `skips` in the hello, or by [[skipped]] in a file of expectations")?;
     }
     if group.broken > 0 {
         writeln!(out, "  at {} of them it ended or hung", group.broken)?;

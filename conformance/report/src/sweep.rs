@@ -30,8 +30,13 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
     }
     writeln!(out)?;
     bars(document, out)?;
-    let mark = if found.failed > 0 { "✗" } else { "✓" };
-    writeln!(out, "{mark} {} of {} inputs outside the bound", thousands(found.failed), thousands(found.inputs))
+    let (mark, state) = match (found.failed, document.is_finished()) {
+        (0, true) => ("✓ ", String::new()),
+        (0, false) => ("", format!(" so far: {} of {} blocks are swept", document.done, document.blocks)),
+        (_, true) => ("✗ ", String::new()),
+        (_, false) => ("✗ ", format!(", with {} of {} blocks swept", document.done, document.blocks)),
+    };
+    writeln!(out, "{mark}{} of {} inputs outside the bound{state}", thousands(found.failed), thousands(found.inputs))
 }
 
 /// Over what is swept, and what is fixed.

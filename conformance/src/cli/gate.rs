@@ -1,7 +1,7 @@
 //! `lightmeter gate`.
 
 use super::comparison::{Comparison, Earlier, matches_something};
-use super::options::{ReportFormat, ShardArgument, Targets};
+use super::options::{ReportFormat, Required, ShardArgument, Targets};
 use super::pack::{Cases, nothing_to_ask};
 use super::progress::{Bar, Stream};
 use super::say;
@@ -77,6 +77,8 @@ pub(crate) struct Gate {
     images: Option<PathBuf>,
     #[command(flatten)]
     comparison: Comparison,
+    #[command(flatten)]
+    required: Required,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
     format: ReportFormat,
@@ -122,7 +124,7 @@ impl Gate {
         regressions?;
         self.comparison.update(&report)?;
         emitted?;
-        Ok(status(&report))
+        Ok(status(&report, self.required))
     }
 
     /// The cases, and the files of answers.
@@ -138,6 +140,11 @@ impl Gate {
         };
         if answers.is_empty() {
             bail!("expected PACK ANSWERS: a file of JSON lines, or a folder with answers.jsonl");
+        }
+        if let Some(option) = self.cases.asked() {
+            bail!(
+                "`{option}` chose the cases when the pack was written; expected it of `lightmeter pack`, or with `--exec`"
+            );
         }
         let plan = pack::read(Path::new(folder))?;
         let opened = answers.iter().map(|path| AnswerFile::open(Path::new(path)));
@@ -161,11 +168,11 @@ impl Gate {
             Some(command) => {
                 let mut process = ProcessRenderer::start(self.asking(command, images, stop))?;
                 let hello = process.hello().clone();
-                process.expect(expectations.of(&hello.renderer, &hello.version));
+                process.expect(expectations);
                 (hello, Subject::renderer(process.identity(), Box::new(process)))
             }
             None => {
-                let files = FileRenderer::read(plan, answers, stop.clone())?;
+                let files = FileRenderer::read(plan, answers, expectations, stop.clone())?;
                 (files.hello().clone(), Subject::renderer(files.identity(), Box::new(files)))
             }
         };
@@ -277,7 +284,7 @@ fn command() -> String {
 }
 
 /// A renderer that broke off, or wrote what is no answer, ends with 4 whatever else is right.
-pub(crate) fn status(report: &GateReport) -> Status {
+pub(crate) fn status(report: &GateReport, required: Required) -> Status {
     if let Some(signal) = report.signal {
         return Status::of_signal(signal);
     }
@@ -286,7 +293,7 @@ pub(crate) fn status(report: &GateReport) -> Status {
     } else if report.is_failed() {
         Status::Failed
     } else if report.has_judged() {
-        Status::Success
+        required.status(report.coverage())
     } else {
         let error = NothingToRun("nothing was judged: the renderer declares or answers none of these cases".into());
         say(&format!("error: {error}"));

@@ -1,6 +1,6 @@
 //! `lightmeter merge`.
 
-use super::options::{Format, ReportFormat};
+use super::options::{Format, ReportFormat, Required};
 use super::sweep::{status, written};
 use super::{Status, emit};
 use anyhow::{Context as _, bail};
@@ -21,6 +21,8 @@ pub(crate) struct Merge {
     /// The JSON of each shard, by `lightmeter run … --shard I/N --format json`, or by `gate` or `sweep`, or a sweep's finished checkpoint
     #[arg(required = true)]
     results: Vec<PathBuf>,
+    #[command(flatten)]
+    required: Required,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
     format: ReportFormat,
@@ -67,10 +69,10 @@ impl Merge {
         if is_gate {
             let gate = GateReport::of(&whole, "lightmeter merge".into());
             emit(&self.written_gate(&gate)?, self.out.as_deref())?;
-            return Ok(Some(super::gate::status(&gate)));
+            return Ok(Some(super::gate::status(&gate, self.required)));
         }
         emit(&self.written_run(&whole)?, self.out.as_deref())?;
-        Ok(Some(super::run::status(&whole)))
+        Ok(Some(super::run::status(&whole, self.required)))
     }
 
     /// How the result of a sweep is written.

@@ -1,9 +1,11 @@
 //! Options that several commands share, read into what the library takes.
 
+use super::{Status, say};
 use clap::Args;
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
 use lightmeter::device::Code;
+use lightmeter::document::by_case::Coverage;
 use lightmeter::filter::Filter;
 use lightmeter::options::{DEFAULT_CASES, DEFAULT_TARGETS, MOST_CASES, Options};
 use lightmeter::select::Shard;
@@ -139,5 +141,40 @@ impl Choice {
     /// The subjects that were asked for, opened.
     pub(crate) fn subjects(&self) -> anyhow::Result<Vec<Subject>> {
         Ok(adapters::open(&self.adapter)?)
+    }
+}
+
+/// The part of what is chosen that must be judged.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(crate) struct Required {
+    /// The part of the chosen cases that must be judged, from 0 to 1: with less the command ends with 1
+    #[arg(long, value_name = "SHARE", default_value_t = Coverage::REQUIRED, value_parser = share)]
+    require: f64,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share: Option<f64> = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "expected a part of 1, such as 0.25".to_owned())
+}
+
+impl Default for Required {
+    fn default() -> Self {
+        Self { require: Coverage::REQUIRED }
+    }
+}
+
+impl Required {
+    /// Success where enough was judged.
+    pub(crate) fn status(self, coverage: Coverage) -> Status {
+        let Coverage { chosen, judged, excluded } = coverage;
+        if coverage.is_enough(self.require) {
+            return Status::Success;
+        }
+        say(&format!(
+            "error: of {chosen} chosen cases {judged} were judged and {excluded} excluded, which is less than the part of {} that \
+             is required; choose cases by a filter, or accept it by `--require`",
+            self.require
+        ));
+        Status::Failed
     }
 }

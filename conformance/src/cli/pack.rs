@@ -11,15 +11,18 @@ use lightmeter::gate::pack::{self, MOST_CASES};
 use lightmeter::gate::plan::GatePlan;
 use std::path::PathBuf;
 
+/// Random cases for each formula, where nothing else is asked for.
+const CASES: u64 = 256;
+
 /// Which cases a renderer is asked.
 #[derive(Debug, Args)]
 pub(crate) struct Cases {
-    /// Random cases for each formula
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u64).range(1..=MOST_CASES))]
-    cases: u64,
-    /// Seed of the random cases
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    /// Random cases for each formula; without it: 256
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST_CASES))]
+    cases: Option<u64>,
+    /// Seed of the random cases; without it: 1
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
     /// Pixels of the longer side of every scene; without it: the scenes' own
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8192))]
     size: Option<u32>,
@@ -28,12 +31,23 @@ pub(crate) struct Cases {
 impl Cases {
     /// What chooses the cases of globs.
     pub(crate) fn choice(&self, globs: &[String]) -> Choice {
-        Choice { filter: globs.to_vec(), cases: self.cases, seed: self.seed, size: self.size, ..Choice::default() }
+        let (cases, seed) = (self.cases.unwrap_or(CASES), self.seed.unwrap_or(1));
+        Choice { filter: globs.to_vec(), cases, seed, size: self.size, ..Choice::default() }
+    }
+
+    /// The first of these options that is given.
+    pub(crate) const fn asked(&self) -> Option<&'static str> {
+        match self {
+            Self { cases: Some(_), .. } => Some("--cases"),
+            Self { seed: Some(_), .. } => Some("--seed"),
+            Self { size: Some(_), .. } => Some("--size"),
+            Self { cases: None, seed: None, size: None } => None,
+        }
     }
 
     /// The plan of a choice, each of whose globs must match something.
     pub(crate) fn plan(&self, choice: Choice) -> anyhow::Result<GatePlan> {
-        matching(&choice.filter, self.cases, &Samples::default(), self.size)?;
+        matching(&choice.filter, choice.cases, &Samples::default(), self.size)?;
         Ok(GatePlan::new(choice)?)
     }
 }

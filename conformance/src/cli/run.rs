@@ -1,7 +1,7 @@
 //! `lightmeter run`.
 
 use super::comparison::{Comparison, Earlier, matches_something};
-use super::options::{Amount, Choice, ReportFormat};
+use super::options::{Amount, Choice, ReportFormat, Required};
 use super::progress::{Bar, Stream};
 use super::say;
 use super::signals::stopped_by_signals;
@@ -52,6 +52,8 @@ pub(crate) struct Run {
     runs: u64,
     #[command(flatten)]
     comparison: Comparison,
+    #[command(flatten)]
+    required: Required,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
     format: ReportFormat,
@@ -117,7 +119,7 @@ impl Run {
         regressions?;
         self.comparison.update(&report)?;
         emitted?;
-        Ok(status(&report))
+        Ok(status(&report, self.required))
     }
 
     /// What chooses the cases.
@@ -161,7 +163,7 @@ fn known_failures(expectations: &Expectations, subjects: &[Subject]) -> Vec<Expe
 }
 
 /// Nothing ran where every case was skipped, or every verdict permits anything.
-pub(crate) fn status(report: &Report) -> Status {
+pub(crate) fn status(report: &Report, required: Required) -> Status {
     if let Some(Interrupted { under_way, message, signal }) = &report.interrupted {
         say(&format!("error: {message}\n  {under_way} was under way; what was judged before stands in the result"));
         return signal.map_or(Status::Device, Status::of_signal);
@@ -180,7 +182,7 @@ pub(crate) fn status(report: &Report) -> Status {
         say(&format!("error: nothing was judged: {why}"));
         return Status::Nothing;
     }
-    Status::Success
+    required.status(report.coverage())
 }
 
 /// The filter, each of whose globs must match something.
@@ -215,9 +217,9 @@ mod tests {
         let interrupted =
             |signal| Some(Interrupted { under_way: "blend/max".into(), message: "the device failed".into(), signal });
         report.interrupted = interrupted(Some(signal_hook::consts::SIGTERM));
-        assert_eq!(status(&report), Status::Terminated);
+        assert_eq!(status(&report, Required::default()), Status::Terminated);
         report.interrupted = interrupted(None);
-        assert_eq!(status(&report), Status::Device);
+        assert_eq!(status(&report, Required::default()), Status::Device);
         let mut text = String::new();
         let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false };
         text::write(&report, style, &mut text).expect("a string takes it");

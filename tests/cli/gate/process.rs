@@ -34,9 +34,17 @@ fn gate(filter: &[&str], exec: &str, more: &[&str]) -> Output {
 
 /// Whether a process whose number a file has runs, once it has had time to end.
 fn runs(file: &Path) -> bool {
-    let number = std::fs::read_to_string(file).expect("the process wrote its number");
-    let pid = number.trim().parse().ok().and_then(Pid::from_raw).expect("a number");
-    let state = || std::fs::read_to_string(format!("/proc/{}/stat", number.trim())).unwrap_or_default();
+    let read = || std::fs::read_to_string(file).ok()?.trim().parse::<i32>().ok();
+    let until = Instant::now() + Duration::from_secs(5);
+    let number = loop {
+        match read() {
+            Some(number) => break number,
+            None => assert!(Instant::now() < until, "the process wrote no number"),
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    let pid = Pid::from_raw(number).expect("a number above 0");
+    let state = || std::fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
     let until = Instant::now() + Duration::from_secs(5);
     // One that has ended and whose parent does not ask is a zombie.
     while test_kill_process(pid).is_ok() && !state().contains(") Z") {
@@ -185,7 +193,9 @@ fn nothing_that_a_renderer_started_outlives_it() {
     let orphan = format!("(setsid sh -c 'echo $$ > \"{}\"; exec sleep 600' &)", text(&file));
     for fault in ["", "crash-at=fog/exp/random/000017", "hang-at=fog/exp/random/000017"] {
         let _ = std::fs::remove_file(&file);
-        let exec = format!("{orphan}; {} {fault}", renderer());
+        // Not before it has written its number.
+        let waits = format!("while [ ! -s '{}' ]; do sleep 0.01; done", text(&file));
+        let exec = format!("{orphan}; {waits}; {} {fault}", renderer());
         let output = gate(&["fog/exp"], &exec, &["--case-timeout", "1"]);
         assert_eq!(code(&output), if fault.is_empty() { 0 } else { 4 }, "{}", stderr(&output));
         assert!(!runs(&file), "{fault}: what it started runs on");

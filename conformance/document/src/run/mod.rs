@@ -6,7 +6,7 @@ mod stability;
 pub use blend::{BlendPromise, BlendState, SpecialUse, StoreUse, StoresOfShard, Tiers};
 pub use stability::{Cost, Examined, StableForm};
 
-use crate::by_case::{CaseCounts, ComparedBy, FailedAnswer, KnownFailure, RendererUse};
+use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, KnownFailure, RendererUse};
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -476,6 +476,13 @@ impl Report {
         if let Some(known) = self.deviations.iter_mut().find(is_it) {
             known.excused += verdicts;
         }
+    }
+
+    /// How many of the cases that were chosen were judged.
+    #[must_use]
+    pub const fn coverage(&self) -> Coverage {
+        let Totals { cases, skipped, .. } = self.totals;
+        Coverage { chosen: cases, judged: cases - skipped, excluded: skipped }
     }
 
     /// Whether all went as expected.

@@ -99,8 +99,9 @@ impl Scene<'_> {
         let mut totals = Totals { cases: 1, ..Totals::default() };
         let has_failed = matches!(why, Unanswered::Unjudged(_) | Unanswered::Broken(_));
         match why {
-            Unanswered::Skipped(reason) => {
+            Unanswered::Skipped(reason) | Unanswered::Undeclared(reason) => {
                 (counts.skipped, totals.skipped) = (1, 1);
+                counts.undeclared = u64::from(matches!(why, Unanswered::Undeclared(_)));
                 counts.reason = Some(reason.clone());
                 counts.not_passed = self.not_passed("skipped");
             }

@@ -173,8 +173,9 @@ impl TableStanding<'_> {
         self.counts.asked += 1;
         self.totals.cases += 1;
         match why {
-            Unanswered::Skipped(reason) => {
+            Unanswered::Skipped(reason) | Unanswered::Undeclared(reason) => {
                 self.counts.skipped += 1;
+                self.counts.undeclared += u64::from(matches!(why, Unanswered::Undeclared(_)));
                 self.totals.skipped += 1;
                 self.not_passed("skipped", probe);
                 let reasons = self.counts.reason.get_or_insert_default();

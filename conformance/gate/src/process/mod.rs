@@ -10,6 +10,7 @@ mod session;
 
 use super::answer::Hello;
 use super::error::ProcessError;
+use super::expectations::Expectations;
 use super::given::{Asks, Declared, Given, answers, pixel, word};
 use super::{frame, pack, picture};
 use lightmeter_catalogue::special::Probe;
@@ -22,7 +23,7 @@ use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
 use lightmeter_engine::rows::Rows;
 use lightmeter_judge::blend_unit::pixel::Units;
-use lightmeter_judge::cases::{Answers, ExpectedFailure, Unanswered};
+use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
@@ -84,6 +85,7 @@ impl ProcessRenderer {
         let mut session = Session::new(asking);
         session.start()?;
         let declared = Declared::new(session.hello().clone())?;
+        session.skips = declared.skips.clone();
         Ok(Self { declared, runs, folder, session: Mutex::new(session) })
     }
 
@@ -99,9 +101,12 @@ impl ProcessRenderer {
         self.declared.identity()
     }
 
-    /// Some of its cases are expected to fail, or to end it.
-    pub fn expect(&mut self, expected: Vec<ExpectedFailure>) {
-        self.session().expected = expected;
+    /// Some of its cases are known to fail, to end it, or to be skipped.
+    pub fn expect(&mut self, expectations: &Expectations) {
+        let Hello { renderer, version, .. } = self.declared.hello.clone();
+        let session = self.session();
+        session.expected = expectations.of(&renderer, &version);
+        session.skips.extend(expectations.skips_of(&renderer, &version));
     }
 
     fn session(&mut self) -> &mut Session {

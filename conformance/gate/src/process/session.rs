@@ -2,7 +2,7 @@
 
 use super::super::answer::{self, Hello, Line, Unread, clipped};
 use super::super::error::ProcessError;
-use super::super::given::{Asks, Given, given};
+use super::super::given::{Asks, Given, Skips, given};
 use super::super::problems::note;
 use super::Asking;
 use super::running::{Event, Running};
@@ -125,6 +125,8 @@ pub(super) struct Session {
     pub(super) running: Option<Running>,
     /// What it said first.
     hello: Hello,
+    /// What it may skip.
+    pub(super) skips: Skips,
     pub(super) used: RendererUse,
     /// Lines that it wrote after its hello.
     lines: u64,
@@ -161,6 +163,7 @@ impl Session {
             expected: vec![],
             running: None,
             hello: Hello::default(),
+            skips: Skips::default(),
             used: RendererUse::default(),
             lines: 0,
             number: 0,
@@ -340,7 +343,8 @@ impl Session {
             };
             match questions.places.get(id) {
                 Some(&place) if questions.given[place].is_none() => {
-                    questions.given[place] = Some(given(line, questions.all[place].asks));
+                    let id = &questions.all[place].id;
+                    questions.given[place] = Some(self.skips.settled(id, given(line, questions.all[place].asks)));
                 }
                 None if !self.asked.contains(&hash(id)) => note(&mut self.used.problems, "unknown", || {
                     format!("line {number}: no case `{}` was asked for", clipped(id))
