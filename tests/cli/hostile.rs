@@ -366,3 +366,37 @@ fn an_unfinished_sweep_is_no_success() {
     let told = stdout(&output);
     assert!(!told.contains('✓') && told.contains("so far: 2 of "), "{told}");
 }
+
+#[test]
+fn shaders_that_end_whoever_reads_them_are_refused() {
+    let folder = folder("deep");
+    let right = include_str!("../../gpu/src/shaders/fog.wgsl");
+    let first = "fn fog_exp_factor(";
+    assert!(right.contains(first), "the formula is where it was");
+    let chain: String = (0..20_000).map(|k| format!("else if (x == {k}.0) {{ y = {k}.0; }}\n")).collect();
+    let terms = vec!["x"; 100_000].join(" + ");
+    let rows = [
+        (
+            "chain",
+            format!("fn deep(x: f32) -> f32 {{ var y = 0.0; if (x < 0.0) {{ y = 1.0; }}\n{chain} return y; }}\n"),
+        ),
+        ("terms", format!("fn deep(x: f32) -> f32 {{ return {terms}; }}\n")),
+        ("braces", format!("fn deep(x: f32) -> f32 {{ {} {} return x; }}\n", "{".repeat(50_000), "}".repeat(50_000))),
+    ];
+    for (name, function) in rows {
+        let shaders = folder.join(name);
+        std::fs::create_dir_all(&shaders).expect("a folder can be made");
+        std::fs::write(shaders.join("fog.wgsl"), right.replace(first, &format!("{function}\n{first}")))
+            .expect("it can be written");
+        for command in ["run", "sweep", "show"] {
+            let args = [command, if command == "show" { "fog/exp/random/000001" } else { "fog/exp" }, "--shaders"];
+            let output = lightmeter(&[&args[..], &[&shaders.display().to_string()]].concat());
+            let said = stderr(&output);
+            assert_eq!(code(&output), 2, "{name}: {said}");
+            assert!(
+                said.contains("end the process that reads and compiles them") || said.contains("fog.wgsl"),
+                "{name}: {said}"
+            );
+        }
+    }
+}

@@ -302,7 +302,7 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
     let most = standing.failing.iter().max_by_key(|(member, count)| (**count, Reverse(**member)));
     let (most, failing) = most.map_or((0, 0), |(member, count)| (*member, *count));
     let member = members[most];
-    let profile = subject.known.profile(options.profile);
+    let profile = subject.known.granted(options.profile);
     let rows = [wrong, right].map(|rows| of_member(member, most, rows, options.seed));
     let mut told = Told::of(diagnose, member, [&rows[0], &rows[1]], failing, &profile);
     if members.len() > 1 {

@@ -105,7 +105,20 @@ impl Foretold {
     }
 }
 
-/// Whether a number of an answer is not legal.
+/// Whether a number of an answer is not legal. A subnormal one may have been flushed to 0.
 pub(super) fn is_wrong(answer: &[f32], legal: &[Accept]) -> bool {
-    answer.iter().zip(legal).any(|(&x, legal)| !legal.contains(x.into()))
+    let may_be = |x: f32, legal: &Accept| legal.contains(x.into()) || x.is_subnormal() && legal.contains(0.0);
+    answer.iter().zip(legal).any(|(&x, legal)| !may_be(x, legal))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_subnormal_number_may_have_been_flushed() {
+        let legal = [Accept::exactly(0.0)];
+        assert!(!is_wrong(&[1e-40], &legal) && !is_wrong(&[0.0], &legal));
+        assert!(is_wrong(&[1e-30], &legal) && is_wrong(&[1e-40], &[Accept::exactly(1.0)]));
+    }
 }

@@ -222,6 +222,12 @@ impl Known {
     pub fn profile(&self, profile: &Profile) -> Profile {
         Profile { subpixel_bits: self.subpixel_bits.unwrap_or(profile.subpixel_bits), ..*profile }
     }
+
+    /// The same with all that its deviations are known for: what a mistake gives on it is within that.
+    #[must_use]
+    pub fn granted(&self, profile: &Profile) -> Profile {
+        self.deviations.iter().fold(self.profile(profile), |granted, deviation| deviation.grant(granted))
+    }
 }
 
 /// What is known of an adapter, by the names that its driver gives to its device and to itself.

@@ -3,7 +3,7 @@
 use super::options::Choice;
 use super::progress::Bar;
 use super::signals::{status_of, stopped_by_signals};
-use super::{NothingToRun, Status, emit, writable};
+use super::{NothingToRun, Status, emit, foreign, writable};
 use clap::{Args, ValueEnum};
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
@@ -92,6 +92,9 @@ impl Bench {
             let loaded = load::scene(file).map_err(|error| anyhow::anyhow!("{file}: {error}"))?;
             Ok((name, loaded))
         });
+        if let Some(folder) = &self.shaders {
+            foreign::accept(folder, &self.adapter)?;
+        }
         let options = BenchOptions {
             filter: Filter::new(&globs)?,
             scenes: scenes.collect::<anyhow::Result<_>>()?,

@@ -25,7 +25,7 @@ use lightmeter::gate::baseline::{Baseline, Standard};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::pack;
 use lightmeter::gate::plan::GatePlan;
-use lightmeter::gate::process::{Asking, Limits, ProcessRenderer};
+use lightmeter::gate::process::{Asking, Limits, ProcessRenderer, Starter};
 use lightmeter::options::Options;
 use lightmeter::report::{gate as outputs, github};
 use lightmeter::run::run;
@@ -69,6 +69,9 @@ pub(crate) struct Gate {
     /// Seconds that all may take; without it: as long as it takes
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     timeout: Option<f64>,
+    /// MiB of address space that each process of the renderer may have; without it: as much as there is
+    #[arg(long, value_name = "MIB", requires = "exec", value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
+    memory: Option<u64>,
     /// Ask all of it so often; an answer that changes is unstable. Once, what failed is asked again
     #[arg(long, value_name = "N", default_value_t = 1, requires = "exec", value_parser = clap::value_parser!(u64).range(1..=1000))]
     runs: u64,
@@ -216,7 +219,9 @@ impl Gate {
             ..Limits::default()
         };
         let folder = images.folder.clone();
-        Asking { command: command.to_owned(), folder, limits, runs: self.runs, stop: stop.clone() }
+        // Where the own binary is not found, a shell starts the renderer.
+        let starter = std::env::current_exe().ok().map(|program| Starter { program, memory: self.memory });
+        Asking { command: command.to_owned(), starter, folder, limits, runs: self.runs, stop: stop.clone() }
     }
 
     const fn is_shard(&self) -> bool {

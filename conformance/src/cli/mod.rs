@@ -6,6 +6,7 @@ mod comparison;
 mod contact_sheet;
 mod effects;
 mod eval;
+mod foreign;
 mod gate;
 mod list;
 mod merge;
@@ -21,6 +22,7 @@ mod selftest;
 mod show;
 mod signals;
 mod special;
+mod start;
 mod sweep;
 
 use clap::{Parser, Subcommand};
@@ -82,6 +84,10 @@ enum Command {
     Schema(schema::Schema),
     /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out
     Eval(eval::Eval),
+    #[command(hide = true)]
+    StartRenderer(start::Start),
+    #[command(hide = true)]
+    TryShaders(foreign::Try),
 }
 
 impl Cli {
@@ -104,6 +110,8 @@ impl Cli {
             Command::Effects(effects) => effects.run(),
             Command::Schema(schema) => schema.run(),
             Command::Eval(eval) => eval.run(),
+            Command::StartRenderer(start) => start.run(),
+            Command::TryShaders(shaders) => shaders.run(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Options that several commands share, read into what the library takes.
 
-use super::{Status, say};
+use super::{Status, foreign, say};
 use clap::Args;
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
@@ -129,6 +129,9 @@ impl Choice {
 
     /// The shaders to judge.
     pub(crate) fn code(&self) -> anyhow::Result<Code> {
+        if let Some(folder) = &self.shaders {
+            foreign::accept(folder, &self.adapter)?;
+        }
         Ok(code_of(self.shaders.as_deref())?)
     }
 

@@ -3,7 +3,7 @@
 use super::options::Format;
 use super::progress::Bar;
 use super::signals::{status_of, stopped_by_signals};
-use super::{NothingToRun, Status, emit, writable};
+use super::{NothingToRun, Status, emit, foreign, writable};
 use anyhow::Context as _;
 use clap::Args;
 use lightmeter::adapters;
@@ -41,6 +41,9 @@ impl Special {
         // Before anything is read: a signal ends each command in the same way.
         writable(self.out.as_deref())?;
         let stop = stopped_by_signals()?;
+        if let Some(folder) = &self.shaders {
+            foreign::accept(folder, &self.adapter)?;
+        }
         let code = code_of(self.shaders.as_deref())?;
         let subjects = adapters::open(&self.adapter)?;
         let mut bar = Bar::new(None, "adapters");

@@ -189,8 +189,8 @@ fn a_renderer_that_answers_without_reading_is_told() {
 fn nothing_that_a_renderer_started_outlives_it() {
     let folder = folder("orphans");
     let file = folder.join("pid");
-    // In a session, and so a process group, of its own, and started by a shell that has ended.
-    let orphan = format!("(setsid sh -c 'echo $$ > \"{}\"; exec sleep 600' &)", text(&file));
+    // In a session, and so a process group, of its own, with an environment of its own, and started by a shell that has ended.
+    let orphan = format!("(env -i setsid /bin/sh -c 'echo $$ > \"{}\"; exec sleep 600' &)", text(&file));
     for fault in ["", "crash-at=fog/exp/random/000017", "hang-at=fog/exp/random/000017"] {
         let _ = std::fs::remove_file(&file);
         // Not before it has written its number.
@@ -200,6 +200,34 @@ fn nothing_that_a_renderer_started_outlives_it() {
         assert_eq!(code(&output), if fault.is_empty() { 0 } else { 4 }, "{}", stderr(&output));
         assert!(!runs(&file), "{fault}: what it started runs on");
     }
+}
+
+#[test]
+fn a_renderer_does_not_outlive_a_gate_that_is_killed() {
+    let file = folder("killed").join("pid");
+    let exec = format!("echo $$ > '{}'; exec sleep 600", text(&file));
+    let mut gate = command(&["gate", "fog/exp", "--exec", &exec])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the binary starts");
+    let until = Instant::now() + Duration::from_secs(20);
+    while std::fs::read_to_string(&file).unwrap_or_default().trim().is_empty() {
+        assert!(Instant::now() < until, "the renderer was not started");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    gate.kill().expect("it can be killed");
+    gate.wait().expect("it has ended");
+    assert!(!runs(&file), "the renderer runs on");
+}
+
+#[test]
+fn a_renderer_has_the_memory_that_it_is_given() {
+    let exec = format!("test \"$(ulimit -v)\" = 8388608 && exec {}", renderer());
+    let output = gate(&["fog/exp"], &exec, &["--memory", "8192"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let output = gate(&["fog/exp"], &exec, &["--memory", "8191"]);
+    assert!(code(&output) == 4 && stderr(&output).contains("ended before its hello"), "{}", stderr(&output));
 }
 
 #[test]

@@ -225,8 +225,9 @@ impl<'a> JudgedScene<'a> {
         let command = self.rerun("show", drawn, worst.pixel);
         let clock = Instant::now();
         let expected = self.expected(&drawn.profile);
+        let granted = drawn.subject.known.granted(drawn.options.profile);
         let mistake = drawn.options.diagnose.map_or_else(String::new, |diagnose| {
-            format!("; {}", diagnose.image(self.frame, drawn.image, expected, &drawn.profile))
+            format!("; {}", diagnose.image(self.frame, drawn.image, expected, &granted))
         });
         report.timing.diagnose += clock.elapsed().as_secs_f64();
         Ok(format!("{pixels} pixels{departure}{mistake}; the worst: {command}{}", files_told(&used.files)))

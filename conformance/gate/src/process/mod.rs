@@ -1,6 +1,7 @@
 //! A renderer in a process of its own, which speaks JSON lines on its standard input and output.
 //!
-//! It is started in a process group of its own and with a mark in its environment, so that it ends with its children. What it was asked and has not answered is
+//! The command line starts it by a process of its own that ends all that descends from it (`lightmeter start-renderer`). Besides, it is in a
+//! process group of its own and has a mark in its environment, by which it is ended with its children where that process is not there. What it was asked and has not answered is
 //! known at every moment: where it ends, hangs or floods, it is killed and started again, and asked what is open one case at a
 //! time until the one that it fails at is found; that case fails, and the rest goes on.
 
@@ -57,6 +58,8 @@ impl Default for Limits {
 pub struct Asking {
     /// What starts it, by `sh -c`.
     pub command: String,
+    /// What it is started by, so that nothing of it outlives this process; `None` for a shell alone.
+    pub starter: Option<Starter>,
     /// Where it writes images.
     pub folder: PathBuf,
     /// How long things may take.
@@ -65,6 +68,24 @@ pub struct Asking {
     pub runs: u64,
     /// Whether to stop, which a signal says.
     pub stop: Stop,
+}
+
+/// The program that a renderer is started by: `lightmeter start-renderer`.
+#[derive(Clone, Debug)]
+pub struct Starter {
+    /// The binary.
+    pub program: PathBuf,
+    /// MiB of address space that each process of the renderer may have; `None` for as much as there is.
+    pub memory: Option<u64>,
+}
+
+impl Starter {
+    /// What starts a command.
+    fn arguments(&self, command: &str) -> Vec<String> {
+        let memory = self.memory.map(|memory| vec!["--memory".to_owned(), memory.to_string()]).unwrap_or_default();
+        let own = ["start-renderer".to_owned(), "--parent".to_owned(), std::process::id().to_string()];
+        [&own[..], &memory, &["--".to_owned(), command.to_owned()]].concat()
+    }
 }
 
 /// A renderer in a process of its own.

@@ -1,7 +1,9 @@
 //! A running renderer: its pipes, and its end with all that it started.
 
 use super::super::answer::{self, Unread, clipped};
+use super::Starter;
 use rustix::process::{Pid, Signal, kill_process, kill_process_group};
+use std::ffi::OsStr;
 use std::io::{BufReader, Read as _, Write as _};
 use std::os::unix::process::CommandExt as _;
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -14,6 +16,8 @@ use std::time::{Duration, Instant};
 const UNREAD: usize = 64;
 /// Bytes of standard error that are kept.
 const KEPT: usize = 4096;
+/// How long a starter may take to end all that it started.
+const MOST_OF_END: Duration = Duration::from_secs(2);
 /// The variable that marks a renderer and its descendants.
 const MARK: &str = "LIGHTMETER_GATE";
 
@@ -27,6 +31,8 @@ pub(super) enum Event {
 /// A running renderer.
 pub(super) struct Running {
     child: Child,
+    /// Whether the child ends all that descends from it when it is told to end.
+    ends_all: bool,
     group: Option<Pid>,
     /// Its standard input, but while something is written to it.
     pub(super) input: Option<ChildStdin>,
@@ -40,11 +46,15 @@ pub(super) struct Running {
 }
 
 impl Running {
-    pub(super) fn start(command: &str) -> Result<Self, String> {
+    pub(super) fn start(command: &str, starter: Option<&Starter>) -> Result<Self, String> {
         static STARTED: AtomicU64 = AtomicU64::new(0);
         let mark = format!("{}-{}", std::process::id(), STARTED.fetch_add(1, Ordering::Relaxed));
-        let mut child = Command::new("sh")
-            .args(["-c", command])
+        let (program, arguments) = match starter {
+            Some(starter) => (starter.program.as_os_str(), starter.arguments(command)),
+            None => (OsStr::new("sh"), vec!["-c".to_owned(), command.to_owned()]),
+        };
+        let mut child = Command::new(program)
+            .args(arguments)
             .env(MARK, &mark)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -73,7 +83,8 @@ impl Running {
                 }
             })
         });
-        Ok(Self { child, group, input, events, mark, complaint, listening })
+        let ends_all = starter.is_some();
+        Ok(Self { child, ends_all, group, input, events, mark, complaint, listening })
     }
 
     /// Writes lines in a thread of its own, since a renderer may answer before it has read all.
@@ -88,6 +99,12 @@ impl Running {
     /// Ends it with its children; how it ended, in words.
     pub(super) fn kill(mut self) -> String {
         drop(self.input.take());
+        if self.ends_all
+            && let Some(child) = self.group
+        {
+            let _ = kill_process(child, Signal::TERM);
+            self.ends_within(MOST_OF_END);
+        }
         if let Some(group) = self.group {
             let _ = kill_process_group(group, Signal::KILL);
         }
@@ -133,7 +150,12 @@ impl Running {
     /// Whether it has ended by itself.
     pub(super) fn has_ended(&mut self) -> bool {
         // Its output may close a little before it ends.
-        for _ in 0..50 {
+        self.ends_within(Duration::from_millis(250))
+    }
+
+    fn ends_within(&mut self, limit: Duration) -> bool {
+        let until = Instant::now() + limit;
+        while Instant::now() < until {
             if matches!(self.child.try_wait(), Ok(Some(_))) {
                 return true;
             }

@@ -225,7 +225,7 @@ impl Session {
     /// Starts the process and hears its hello.
     pub(super) fn start(&mut self) -> Result<(), ProcessError> {
         let failed = |message: String| ProcessError::Start { command: self.asking.command.clone(), message };
-        let mut running = Running::start(&self.asking.command).map_err(&failed)?;
+        let mut running = Running::start(&self.asking.command, self.asking.starter.as_ref()).map_err(&failed)?;
         self.used.starts += 1;
         let greeting = Greeting {
             hello: PROTOCOL.into(),
