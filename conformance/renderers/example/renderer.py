@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A renderer of two formulas and no scenes that speaks lightmeter.protocol/1:
 
-    lightmeter gate --exec 'python3 conformance/renderers/example/renderer.py'
+    lightmeter gate --exec 'python3 conformance/renderers/example/renderer.py' fog/exp vector/reflect
 """
 import json
 import math
