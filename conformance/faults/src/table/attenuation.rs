@@ -161,6 +161,11 @@ pub(super) const FAULTS: &[Fault] = &[
         "a cutoff beyond 90° is taken for 90°",
         &[&[given("spot", "cutoff_cosine", Op::AtLeast(0.0))]],
     ),
+    fault(
+        "cutoff-of-90",
+        "the spotlight's cutoff is 90° whatever was asked",
+        &[&[given("spot", "cutoff_cosine", Op::Set(0.0))]],
+    ),
     fault("cutoff-squared", "the cutoff's cosine is squared", &[&[given("spot", "cutoff_cosine", Op::Square)]]),
     fault(
         "cone-without-its-edge",

@@ -61,6 +61,12 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("fog-not-applied", "the fog is not applied to the colour", &[&[pass("color", "shaded")]]),
     fault("fog-rational", "fog is 1/(1 + density·distance) for an exponential", &[&[form("f", Form::FogRational)]]),
     fault("fog-exp-by-quadratic", "fog's exponential is 1/(1 + x + x²/2)", &[&[form("exp", Form::ExpByQuadratic)]]),
+    fault("fog-factor-one", "the fog factor is 1 throughout: there is no fog", &[&[result("f", Op::Set(1.0))]]),
+    fault(
+        "fog-factor-zero",
+        "the fog factor is 0 throughout: there is nothing but fog",
+        &[&[result("f", Op::Set(0.0))]],
+    ),
     fault(
         "fog-exponent-positive",
         "the sign of fog's exponent is lost, so that the factor is 1 throughout",
