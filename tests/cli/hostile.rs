@@ -3,6 +3,7 @@
 use super::gate::{answered, edit, folder};
 use super::{code, command, eval, lightmeter, stderr, stdout};
 use serde_json::Value;
+use std::cell::RefCell;
 use std::fs::File;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -398,5 +399,91 @@ fn shaders_that_end_whoever_reads_them_are_refused() {
                 "{name}: {said}"
             );
         }
+    }
+}
+
+/// Numbers that look random, the same in every run.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from(self.0 >> 33).expect("31 bits") % bound
+    }
+}
+
+#[test]
+fn any_wrong_number_of_an_answer_fails() {
+    let (pack, answers) = answered("any-number", &["fog/linear", "fog/exp", "vector/reflect", "color/modulate"]);
+    let pack = pack.display().to_string();
+    let count = std::fs::read_to_string(&answers).expect("there are answers").lines().count();
+    let mut numbers = Numbers(7);
+    for _ in 0..60 {
+        let (chosen, place) = (numbers.below(count), numbers.below(64));
+        let changed = RefCell::new(String::new());
+        let wrong = edit(&answers, |k, line| {
+            let mut answer: Value = serde_json::from_str(line).expect("JSON");
+            if k == chosen
+                && let Some(values) = answer["value"].as_array_mut()
+            {
+                let place = place % values.len();
+                let before = values[place].as_f64().unwrap_or_default();
+                values[place] = (before + before.abs().max(1.0)).into();
+                changed.replace(answer.to_string());
+            }
+            format!("{answer}\n")
+        });
+        let output = lightmeter(&["gate", &pack, &wrong.display().to_string()]);
+        // Of some hard cases nothing is promised: any number is legal there.
+        let changed = changed.into_inner();
+        let permits_anything = changed.contains("/hard/");
+        assert!(code(&output) == 1 || permits_anything && code(&output) == 0, "{changed}: {}", stdout(&output));
+    }
+}
+
+#[test]
+fn any_cut_of_a_file_is_told() {
+    let (pack, answers) = answered("cut", &["fog/exp"]);
+    let folder = folder("cut-files");
+    let place = |name: &str| folder.join(name).display().to_string();
+    let (pack, answers) = (pack.display().to_string(), answers.display().to_string());
+    let (baseline, checkpoint, scene) = (place("baseline.json"), place("sweep.json"), place("scene.json"));
+    let shards = ["1/2", "2/2"].map(|shard| {
+        let out = place(&format!("{}.json", &shard[..1]));
+        let args = ["run", "fog/exp", "--adapter", "cpu", "--cases", "64", "--format", "json", "--shard", shard];
+        assert_eq!(code(&lightmeter(&[&args[..], &["--out", &out]].concat())), 0);
+        out
+    });
+    assert_eq!(code(&lightmeter(&["gate", &pack, &answers, "--baseline", &baseline, "--update-baseline"])), 0);
+    let sweep = ["sweep", "fog/exp", "--over", "p.z", "--from", "-2", "--to", "-1", "--adapter", "cpu", "--checkpoint"];
+    assert_eq!(code(&lightmeter(&[&sweep[..], &[&checkpoint, "--blocks", "2"]].concat())), 0);
+    let written =
+        lightmeter::scene::library::SCENES.iter().find(|(name, _)| *name == "fixed-color").expect("it is built in");
+    std::fs::write(&scene, written.1).expect("it can be written");
+    let manifest = Path::new(&pack).join("manifest.json").display().to_string();
+    let cases = Path::new(&pack).join("cases.jsonl").display().to_string();
+    let gate = vec!["gate", &pack, &answers];
+    for (file, command) in [
+        (&manifest, gate.clone()),
+        (&cases, gate.clone()),
+        (&answers, gate.clone()),
+        (&baseline, [&gate[..], &["--baseline", &baseline]].concat()),
+        (&shards[0], vec!["merge", &shards[0], &shards[1]]),
+        (&checkpoint, [&sweep[..], &[&checkpoint, "--blocks", "1"]].concat()),
+        (&scene, vec!["effects", &scene]),
+    ] {
+        let whole = std::fs::read(file).expect("it is there");
+        let output = lightmeter(&command);
+        assert_eq!(code(&output), 0, "{command:?}: {}", stderr(&output));
+        // The last byte is the end of a line.
+        for part in 1..=12 {
+            let end = (whole.len() - 2) * part / 12;
+            std::fs::write(file, &whole[..end]).expect("it can be written");
+            let output = lightmeter(&command);
+            assert_ne!(code(&output), 0, "{command:?} with {end} of {} bytes of {file}", whole.len());
+            let said = stdout(&output) + &stderr(&output);
+            assert!(!said.contains("panicked") && !said.trim().is_empty(), "{command:?}: {said}");
+        }
+        std::fs::write(file, &whole).expect("it can be written");
     }
 }
