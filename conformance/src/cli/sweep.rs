@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// How often the checkpoint is written.
-const SAVED_EVERY: Duration = Duration::from_secs(5);
+const SAVED_EVERY: Duration = Duration::from_secs(1);
 
 /// Judge a formula along one of its inputs over every float of a range, or a blend mode over every byte.
 ///

@@ -29,11 +29,7 @@ pub(super) const FAULTS: &[Fault] = &[
     .only(|spec| {
         spec.id.starts_with("blend/sub") || spec.id.starts_with("blend/rev") || spec.id.starts_with("blend/sep")
     }),
-    fault(
-        "blend-min-for-max",
-        "the lesser is taken for the greater, or the reverse",
-        &[&[blended(Blended::MinForMax)]],
-    ),
+    fault("blend-min-for-max", "minimum and maximum are exchanged", &[&[blended(Blended::MinForMax)]]),
     fault(
         "factors-in-min-and-max",
         "MIN and MAX multiply by their factors",
@@ -42,7 +38,7 @@ pub(super) const FAULTS: &[Fault] = &[
     .only(|spec| spec.id.ends_with("-factors-ignored")),
     fault(
         "constant-alpha-for-color",
-        "the constant's alpha stands for its colour, or the reverse",
+        "the constant's colour and its alpha are exchanged",
         &[&[blended(Blended::ConstantAlphaForColor)]],
     ),
     fault(

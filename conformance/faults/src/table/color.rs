@@ -82,9 +82,13 @@ pub(super) const FAULTS: &[Fault] = &[
         "the texture modulates where it is to replace",
         &[&[Instead(&[("color/replace", "color/modulate")])]],
     ),
-    fault("modulated-twice-as-bright", "a lightmap is twice as bright", &[&[output("color", Op::Scale(2.0))]])
-        .only(|spec| spec.id == "color/modulate" || spec.id == "blend/mode-mul")
-        .seen_in("modulate2x"),
+    fault(
+        "modulated-twice-as-bright",
+        "the product of the two colours is doubled",
+        &[&[output("color", Op::Scale(2.0))]],
+    )
+    .only(|spec| spec.id == "color/modulate" || spec.id == "blend/mode-mul")
+    .seen_in("modulate2x"),
     fault(
         "encode-threshold-of-decoding",
         "sRGB's pieces part at 0.04045 where they are to part at 0.0031308",

@@ -10,7 +10,7 @@ use lightmeter_scene::depth::{Compare, DepthTest};
 pub(super) const FAULTS: &[Fault] = &[
     fault(
         "depth-compare-strictness",
-        "equal depths pass where they are not to, or the reverse",
+        "equal depths are treated the other way: they pass where they should fail, or fail where they should pass",
         &[
             &[Test(other_strictness)],
             &[Instead(&[
@@ -28,7 +28,11 @@ pub(super) const FAULTS: &[Fault] = &[
     .seen_in("GL_LESS for GL_LEQUAL"),
     fault("depth-compare-reversed", "the depth test is the other way round", &[&[Test(reversed_compare)]])
         .seen_in("reversed depth without its compare function"),
-    fault("depth-mask-ignored", "depth is written where it is not to be, or the reverse", &[&[Test(other_writing)]]),
+    fault(
+        "depth-mask-ignored",
+        "depth is written where it should not be, or not written where it should be",
+        &[&[Test(other_writing)]],
+    ),
     fault(
         "depth-written-always",
         "depth is written by fragments that fail the test",
@@ -64,7 +68,7 @@ pub(super) const FAULTS: &[Fault] = &[
     ),
     fault(
         "depth-not-reversed",
-        "depth is not reversed where it is to be, or the reverse",
+        "reversed and ordinary depth are confused",
         &[&[Instead(&[("depth/stored", "depth/stored-reversed"), ("depth/stored-reversed", "depth/stored")])]],
     ),
 ];

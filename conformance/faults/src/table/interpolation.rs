@@ -85,7 +85,7 @@ pub(super) const FAULTS: &[Fault] = &[
         .seen_in("gl_FragCoord"),
     fault(
         "depth-range",
-        "depth is taken from [−1, 1] for [0, 1], or the reverse",
+        "the depth ranges [−1, 1] and [0, 1] are confused",
         &[
             &[form("window", Form::DepthRange)],
             &[form("window from below", Form::DepthRange)],
