@@ -115,7 +115,11 @@ fn short(x: f64) -> String {
 /// # Errors
 /// Where the writer fails.
 pub fn told(group: &GateGroup, failures: &[GateFailure], out: &mut impl Write) -> Result {
-    writeln!(out, "\n✗ {}: {} of {} fail", group.name(), group.failed, cases(group.asked))?;
+    let (count, what) = match group.failed {
+        0 if group.undeclared > 0 => (group.undeclared, "were skipped"),
+        failed => (failed, "fail"),
+    };
+    writeln!(out, "\n✗ {}: {count} of {} {what}", group.name(), cases(group.asked))?;
     if group.missing > 0 {
         let was = if group.missing == 1 { "was" } else { "were" };
         writeln!(out, "  {} {was} never answered: {}", cases(group.missing), missing(group))?;

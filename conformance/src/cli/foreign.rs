@@ -35,20 +35,22 @@ pub(crate) struct Try {
 impl Try {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let (shaders, built_in) = (Shaders::from_dir(&self.folder)?, Shaders::built_in()?);
-        let name = self.adapter.first().map(String::as_str);
-        let found = if name == Some("llvmpipe-gl") { adapters() } else { vulkan_adapters() };
-        let Some(adapter) = found.iter().find(|adapter| name.is_none_or(|name| name == adapter.name)) else {
-            // The command that was asked for says so.
-            return Ok(Status::Success);
+        let is_asked = |name: &str| self.adapter.iter().any(|asked| asked == name || asked == "all");
+        // A name that no adapter has is told by the command that was asked for.
+        let found = match self.adapter.is_empty() {
+            true => vulkan_adapters().into_iter().take(1).collect(),
+            false => adapters().into_iter().filter(|adapter| is_asked(&adapter.name)).collect::<Vec<_>>(),
         };
-        let gpu = adapter.open()?;
-        for (file, text) in shaders.texts() {
-            let before = built_in.texts().find(|(name, _)| *name == file).map_or("", |(_, text)| text);
-            for function in changed(before, text) {
-                // What takes other than numbers is part of something that does not, or of a scene.
-                let Ok(kernel) = Kernel::new(&shaders, file, function) else { continue };
-                // An adapter may lack what the stage takes: the command that was asked for says so.
-                let _ = ArithmeticPipeline::new(&gpu, &kernel, Programmable::Compute)?;
+        for adapter in found {
+            let gpu = adapter.open()?;
+            for (file, text) in shaders.texts() {
+                let before = built_in.texts().find(|(name, _)| *name == file).map_or("", |(_, text)| text);
+                for function in changed(before, text) {
+                    // What takes other than numbers is part of something that does not, or of a scene.
+                    let Ok(kernel) = Kernel::new(&shaders, file, function) else { continue };
+                    // An adapter may lack what the stage takes: the command that was asked for says so.
+                    let _ = ArithmeticPipeline::new(&gpu, &kernel, Programmable::Compute)?;
+                }
             }
         }
         Ok(Status::Success)
@@ -63,24 +65,30 @@ fn changed<'a>(before: &str, text: &'a str) -> Vec<&'a str> {
     functions.iter().filter(|function| !is_same(function)).map(|(name, _)| *name).collect()
 }
 
-/// What stands above the functions of a file, and each function's name and text.
+/// What stands above the functions of a file, and each function's name with its text, up to the next one. A comment may name what is no
+/// function.
 fn functions(text: &str) -> (&str, Vec<(&str, &str)>) {
-    let starts: Vec<usize> = std::iter::once(0)
-        .chain(text.match_indices('\n').map(|(place, _)| place + 1))
-        .filter(|&place| text[place..].starts_with("fn "))
+    let is_of_name = |c: char| c.is_alphanumeric() || c == '_';
+    let starts: Vec<usize> = text
+        .match_indices("fn")
+        .map(|(place, _)| place)
+        .filter(|&place| !text[..place].ends_with(is_of_name) && text[place + 2..].starts_with(char::is_whitespace))
         .collect();
     let ends = starts.iter().skip(1).copied().chain([text.len()]);
     let functions = starts.iter().zip(ends).map(|(&start, end)| {
-        let whole = &text[start..end];
-        (whole["fn ".len()..].split('(').next().unwrap_or_default().trim(), whole)
+        let name = text[start + 2..end].trim_start();
+        (name.split(|c| !is_of_name(c)).next().unwrap_or_default(), &text[start..end])
     });
     (&text[..starts.first().copied().unwrap_or(text.len())], functions.collect())
 }
 
 /// Has a process of its own try the shaders of a folder.
 pub(crate) fn accept(folder: &Path, adapters: &[String]) -> anyhow::Result<()> {
+    if !adapters.is_empty() && adapters.iter().all(|name| name == "cpu") {
+        bail!("the embedded implementation has no shaders: leave out `--shaders` or `--adapter cpu`");
+    }
     let program = std::env::current_exe().context("cannot find the own binary")?;
-    let named = adapters.iter().filter(|name| !["cpu", "all"].contains(&name.as_str())).take(1);
+    let named = adapters.iter().filter(|name| *name != "cpu");
     let mut child = Command::new(program)
         .arg("try-shaders")
         .arg(folder)
@@ -158,5 +166,7 @@ mod tests {
         assert_eq!(changed(text, &text.replace("return x", "return -x")), ["one"]);
         assert_eq!(changed(text, &text.replace("A = 1", "A = 2")), ["one", "two"]);
         assert_eq!(changed("", text), ["one", "two"]);
+        let indented = text.replace("fn one", "  @must_use\tfn  one").replace("return x", "return -x");
+        assert_eq!(changed(text, &indented), ["one", "two"]);
     }
 }

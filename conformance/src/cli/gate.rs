@@ -300,7 +300,9 @@ pub(crate) fn status(report: &GateReport, required: Required) -> Status {
     } else if report.has_judged() {
         required.status(report.coverage())
     } else {
-        let error = NothingToRun("nothing was judged: the renderer declares or answers none of these cases".into());
+        let error = NothingToRun(
+            "nothing was judged: the renderer declares or answers none of these cases, or skips them all".into(),
+        );
         say(&format!("error: {error}"));
         Status::Nothing
     }

@@ -3,12 +3,15 @@
 use super::Status;
 use anyhow::Context as _;
 use clap::Args;
-use rustix::process::{Pid, Resource, Rlimit, Signal, getpid, getppid, kill_process, setrlimit};
+use rustix::io::Errno;
+use rustix::process::{
+    Pid, Resource, Rlimit, Signal, WaitOptions, WaitStatus, getpid, getppid, kill_process, setrlimit, wait,
+};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::low_level::emulate_default_handler;
 use std::collections::BTreeMap;
 use std::fs::OpenOptions;
-use std::os::unix::process::ExitStatusExt as _;
-use std::process::{Command, ExitStatus};
+use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -49,30 +52,41 @@ impl Start {
             end_descendants();
             let _ = kill_process(getpid(), Signal::KILL);
         });
-        let limit = |bytes: u64| Rlimit { current: Some(bytes), maximum: Some(bytes) };
-        setrlimit(Resource::Core, limit(0))?;
-        if let Some(memory) = self.memory {
-            setrlimit(Resource::As, limit(memory << 20)).context("cannot limit the memory")?;
-        }
-        let mut child = Command::new("sh").args(["-c", &self.command]).spawn().context("cannot start a shell")?;
+        setrlimit(Resource::Core, Rlimit { current: Some(0), maximum: Some(0) })?;
+        // The shell limits itself, and so what it starts: this process needs more than a renderer may.
+        let limit = self.memory.map(|memory| format!("ulimit -v {} || exit 2\n", memory << 10)).unwrap_or_default();
+        let child =
+            Command::new("sh").args(["-c", &(limit + &self.command)]).spawn().context("cannot start a shell")?;
         // Its pipes are its own: whoever reads or writes them sees when it closes them.
         let nothing = OpenOptions::new().read(true).write(true).open("/dev/null")?;
         rustix::stdio::dup2_stdin(&nothing)?;
         rustix::stdio::dup2_stdout(&nothing)?;
         rustix::stdio::dup2_stderr(&nothing)?;
-        let status = child.wait()?;
+        let status = ended(child.id())?;
         end_descendants();
         end_like(status)
     }
 }
 
-/// Ends as a process has ended.
-fn end_like(status: ExitStatus) -> ! {
-    if let Some(signal) = status.signal().and_then(Signal::from_named_raw) {
-        let _ = kill_process(getpid(), signal);
+/// Waits for a child, and for all that lost its parent and ends before it; how the child ended.
+fn ended(child: u32) -> anyhow::Result<WaitStatus> {
+    loop {
+        match wait(WaitOptions::empty()) {
+            Ok(Some((pid, status))) if u32::try_from(pid.as_raw_nonzero().get()) == Ok(child) => return Ok(status),
+            Ok(_) | Err(Errno::INTR) => {}
+            Err(error) => return Err(error.into()),
+        }
     }
-    // Some signals are handled here.
-    std::process::exit(status.code().unwrap_or_else(|| 128 + status.signal().unwrap_or_default()))
+}
+
+/// Ends as a process has ended: by the same signal, whatever handles it here.
+fn end_like(status: WaitStatus) -> ! {
+    if let Some(signal) = status.terminating_signal() {
+        let _ = emulate_default_handler(signal);
+        // A signal of real time has no default that can be had here.
+        std::process::exit(128 + signal);
+    }
+    std::process::exit(status.exit_status().unwrap_or_default())
 }
 
 /// Kills all that descends from this process, until nothing of it runs. Where there is no /proc, nothing is found.
