@@ -11,7 +11,7 @@ use std::collections::HashSet;
 pub(super) enum Fit {
     /// Every output lies in its interval, and one of them at least is bound to something.
     Inside,
-    /// Nothing is promised.
+    /// The specification promises nothing for this answer, so any value is legal.
     Open,
     /// An output lies outside.
     Outside,
@@ -60,7 +60,7 @@ impl Right {
         let mut bits = vec![];
         for (row, legal) in failing.iter().zip(legal.chunks(outputs)) {
             for ((&value, legal), seen) in row.values.iter().zip(legal).zip(&mut seen) {
-                // What is saturated, or comes again and again, is told by little.
+                // A wrong number that is 0 or 1, or that has occurred before, is weak evidence.
                 let is_plain =
                     value.to_bits() << 1 == 0 || value.to_bits() == 1.0_f32.to_bits() || !seen.insert(value.to_bits());
                 bits.push(match legal.contains(value.into()) {

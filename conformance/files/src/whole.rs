@@ -95,7 +95,7 @@ pub fn whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.finish()
 }
 
-/// Checks that a file can be written, so that a long computation does not end with a result that has no place. Nothing is changed.
+/// Checks that a file can be written, before a long computation whose result goes there. The check changes no file.
 ///
 /// # Errors
 /// Where it cannot.

@@ -36,7 +36,7 @@ impl Try {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let (shaders, built_in) = (Shaders::from_dir(&self.folder)?, Shaders::built_in()?);
         let is_asked = |name: &str| self.adapter.iter().any(|asked| asked == name || asked == "all");
-        // A name that no adapter has is told by the command that was asked for.
+        // The parent command reports an adapter name that does not exist.
         let found = match self.adapter.is_empty() {
             true => vulkan_adapters().into_iter().take(1).collect(),
             false => adapters().into_iter().filter(|adapter| is_asked(&adapter.name)).collect::<Vec<_>>(),

@@ -15,9 +15,9 @@ use std::fmt::Write as _;
 
 /// Pixels that are looked at, of those that fail and of those that do not.
 const LOOKED_AT: usize = 512;
-/// Mistakes that are tried in pairs.
+/// The number of mistakes, the nearest ones, that pairs are made of.
 const PAIRED: usize = 3;
-/// With so many others.
+/// The number of other mistakes that each of them is paired with.
 const OTHERS: usize = 24;
 /// The part of the failing components that an explanation explains at least.
 const WHOLE: f64 = 0.9;

@@ -33,7 +33,7 @@ impl SceneFault {
         if let Change::Color(change) = self.change { change(pixel) } else { pixel }
     }
 
-    /// The pixel whose colour a pixel gets, in an image of so many columns and rows.
+    /// The pixel that a pixel takes its colour from. `size` is the number of columns and rows.
     fn place(&self, pixel: [usize; 2], size: [usize; 2]) -> [usize; 2] {
         if let Change::Place(change) = self.change { change(pixel, size) } else { pixel }
     }

@@ -23,7 +23,7 @@ pub struct SceneFault {
 pub(super) enum Change {
     /// The frame, before it is drawn.
     Frame(fn(&mut Frame)),
-    /// The pixel whose colour a pixel gets, column and row, in an image of so many of both.
+    /// Given a pixel and the image's size, each as column and row: the pixel that it takes its colour from.
     Place(fn([usize; 2], [usize; 2]) -> [usize; 2]),
     /// The colour of every pixel, in linear values before it is stored. It is monotone in each component.
     Color(fn([f64; 4]) -> [f64; 4]),
