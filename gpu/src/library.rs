@@ -58,7 +58,7 @@ impl Shaders {
     /// # Errors
     /// Where one of them is invalid, which a test rules out.
     pub fn built_in() -> Result<Self, GpuError> {
-        Self::validated(every_file().map(|(name, text)| (name.into(), text.into())).collect())
+        Self::validated(every_file().map(|(name, text)| (name.into(), text.into())).collect(), &|_| ())
     }
 
     /// The built-in files, those of the same name in the folder, and in its folder `effects`, put in their place.
@@ -66,6 +66,14 @@ impl Shaders {
     /// # Errors
     /// Where the folder cannot be read, holds no WGSL, holds a file of an unknown name, or one that is invalid.
     pub fn from_dir(dir: &Path) -> Result<Self, GpuError> {
+        Self::from_dir_telling(dir, &|_| ())
+    }
+
+    /// The same, which tells each file before it is parsed.
+    ///
+    /// # Errors
+    /// As [`Shaders::from_dir`].
+    pub fn from_dir_telling(dir: &Path, under_way: &dyn Fn(&str)) -> Result<Self, GpuError> {
         let mut files = Self::built_in()?.files;
         let effects = dir.join("effects");
         let mut replaced = replace(&mut files, dir, "")?;
@@ -76,7 +84,7 @@ impl Shaders {
             let message = "no .wgsl file there; copy gpu/src/shaders and edit the copy";
             return Err(GpuError::Unreadable { path: dir.into(), message: message.into() });
         }
-        Self::validated(files)
+        Self::validated(files, under_way)
     }
 
     /// The names of the files with their texts.
@@ -95,17 +103,19 @@ impl Shaders {
             return Err(GpuError::Unreadable { path: name.into(), message });
         };
         *file = text;
-        Self::validated(files)
+        Self::validated(files, &|_| ())
     }
 
-    fn validated(files: BTreeMap<String, String>) -> Result<Self, GpuError> {
+    fn validated(files: BTreeMap<String, String>, under_way: &dyn Fn(&str)) -> Result<Self, GpuError> {
         let shaders = Self { files };
         // A file is reported before those that require it.
         let mut order: Vec<&str> = FILES.into_iter().map(|(name, _)| name).collect();
         order.sort_by_key(|name| shaders.required(name).len());
         for name in order {
+            under_way(name);
             shaders.parse(name)?;
         }
+        under_way("a composed shader of scenes");
         Composer::new(&shaders)?.check()?;
         Ok(shaders)
     }
@@ -155,7 +165,7 @@ mod tests {
     fn an_error_is_counted_from_the_files_own_start() {
         let mut files: BTreeMap<String, String> = every_file().map(|(n, t)| (n.into(), t.into())).collect();
         files.insert("fog.wgsl".into(), "// a\n// b\nfn f() -> f32 {\n    return nothing;\n}\n".into());
-        let error = Shaders::validated(files).expect_err("the file is invalid").to_string();
+        let error = Shaders::validated(files, &|_| ()).expect_err("the file is invalid").to_string();
         assert!(error.contains("fog.wgsl:4:12"), "{error}");
     }
 }

@@ -42,6 +42,12 @@ struct RasterPipelines {
 }
 
 impl RasterPipeline {
+    /// The shaders that it is made of.
+    #[must_use]
+    pub fn source(shaders: &Shaders) -> String {
+        shaders.source(FILE)
+    }
+
     /// Compiles it. `Ok(Err(reason))` where the adapter lacks what it takes.
     ///
     /// # Errors

@@ -49,7 +49,7 @@ fn a_mistake_that_is_unknown_is_told_with_the_nearest() {
             stderr(&output)
         );
     }
-    let output = lightmeter(&["render", "phong", "--mistake", "fog-radial", "--out", "x.png"]);
+    let output = lightmeter(&["render", "phong", "--mistake", "fog-base-two", "--out", "x.png"]);
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("a mistake in formulas"), "{}", stderr(&output));
 }

@@ -7,6 +7,7 @@ pub mod forms;
 pub mod frames;
 pub mod harness;
 pub mod mutants;
+pub mod readers;
 pub mod running;
 pub mod techniques;
 

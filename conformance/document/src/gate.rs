@@ -294,7 +294,7 @@ impl GateReport {
         let totals = &self.totals;
         Coverage {
             chosen: totals.asked + totals.not_asked,
-            judged: totals.asked - totals.skipped - totals.missing,
+            judged: totals.asked.saturating_sub(totals.skipped).saturating_sub(totals.missing),
             excluded: totals.not_asked + totals.skipped,
         }
     }

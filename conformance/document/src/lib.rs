@@ -53,6 +53,9 @@ pub enum ReadError {
     /// A field is missing, or is not what it should be.
     #[error("not {1}: {0}")]
     Field(String, &'static str),
+    /// A number is so large that nothing was counted that way.
+    #[error("`{0}` is {1}; expected {MOST_COUNT} at most")]
+    Count(String, u64),
     /// It was changed after it was written.
     #[error("its checksum does not hold")]
     Checksum,
@@ -91,7 +94,24 @@ fn read<T: Document + DeserializeOwned>(json: &str) -> Result<T, ReadError> {
         let found = value["schema"].as_str().map_or_else(|| "none".into(), |name| format!("`{name}`"));
         return Err(ReadError::Schema { found, schema: T::SCHEMA, what: T::WHAT });
     }
+    counted(&value, "the whole")?;
     serde_json::from_value(value).map_err(|error| ReadError::Field(error.to_string(), T::WHAT))
+}
+
+/// What is counted, at most: the sum of all counts of a document is a number of 64 bits.
+const MOST_COUNT: u64 = 1 << 48;
+
+/// Holds all counts of a value to what can be counted. A seed is any number of 64 bits.
+fn counted(value: &Value, name: &str) -> Result<(), ReadError> {
+    match value {
+        Value::Number(number) => match number.as_u64() {
+            Some(count) if count > MOST_COUNT && name != "seed" => Err(ReadError::Count(name.into(), count)),
+            _ => Ok(()),
+        },
+        Value::Array(values) => values.iter().try_for_each(|value| counted(value, name)),
+        Value::Object(fields) => fields.iter().try_for_each(|(name, value)| counted(value, name)),
+        Value::Null | Value::Bool(_) | Value::String(_) => Ok(()),
+    }
 }
 
 macro_rules! documents {

@@ -44,7 +44,7 @@ pub struct Hello {
 
 /// Cases that a renderer may skip.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a skip such as {\"id\": \"fog/exp\", \"reason\": \"not built\"}")]
 pub struct DeclaredSkip {
     /// A glob of cases, or of an ancestor of theirs.
     pub id: String,

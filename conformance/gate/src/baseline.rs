@@ -80,7 +80,7 @@ impl From<&Report> for Standard {
         let group = |group: &Group| {
             let totals = &group.totals;
             let of_verdicts = CaseCounts {
-                asked: totals.cases - totals.skipped,
+                asked: totals.cases.saturating_sub(totals.skipped),
                 passed: totals.passed,
                 failed: totals.failed,
                 skipped: totals.skipped,

@@ -2,6 +2,7 @@
 
 use super::answer::{DeclaredSkip, Hello, Line, clipped};
 use super::error::ProcessError;
+use super::plan::unmatched;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::special::{Gives, Probe};
@@ -103,7 +104,13 @@ impl Skips {
                 None => Ok(filter),
             }
         };
-        Ok(Self(hello.skips.iter().map(read).collect::<Result<_, _>>()?))
+        let skips = hello.skips.iter().map(read).collect::<Result<_, _>>()?;
+        match unmatched(hello.skips.iter().map(|skip| skip.id.as_str())) {
+            Some(id) => {
+                Err(ProcessError::Skip { id: clipped(id), why: "matches no case: see `lightmeter list`".into() })
+            }
+            None => Ok(Self(skips)),
+        }
     }
 
     /// Adds those that are known.

@@ -94,7 +94,37 @@ pub enum CasePlace {
     Scene(usize),
 }
 
+/// The first of these globs that matches nothing that a renderer is ever asked.
+#[must_use]
+pub fn unmatched<'a>(ids: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let mut ids = ids.peekable();
+    ids.peek()?;
+    let everything = Choice { filter: vec![], cases: 1, seed: 1, special: true, ..Choice::default() };
+    let all = GatePlan::new(everything).ok()?;
+    ids.find(|id| !all.is_matched(id))
+}
+
 impl GatePlan {
+    /// Whether a glob matches something of all that there is.
+    #[must_use]
+    pub fn is_matched(&self, id: &str) -> bool {
+        let Ok(filter) = Filter::new(&[id]) else { return false };
+        // Any number of a random case may be meant.
+        let path = id.rsplit_once('/').filter(|(_, number)| number.bytes().all(|byte| byte.is_ascii_digit()));
+        let is_random =
+            |member: &str| path.is_some_and(|(path, _)| path.strip_suffix("/random").unwrap_or(path) == member);
+        let has_formula = (0..self.formulas.len()).any(|formula| {
+            let member = &self.member(formula).spec.id;
+            filter.selects(member) || filter.reaches_below(member) || is_random(member) || {
+                let cases = 0..self.formulas[formula].count();
+                let is_below = id.starts_with(member.as_str()) || id.starts_with(self.member(formula).spec.group());
+                is_below && cases.into_iter().any(|case| filter.selects(&self.id(CasePlace::Case { formula, case })))
+            }
+        });
+        let has_scene = || (0..self.scenes.len()).any(|scene| filter.selects(&self.id(CasePlace::Scene(scene))));
+        has_formula || has_scene() || self.probes.iter().any(|probe| filter.selects(&probe.id()))
+    }
+
     /// The cases of a choice. NaN and infinity in blending, of which nothing is promised, are no cases here.
     ///
     /// # Errors

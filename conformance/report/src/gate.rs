@@ -82,7 +82,12 @@ fn families(report: &GateReport, out: &mut impl Write) -> Result {
         let (asked, failed, missing) =
             (sum(|group| group.asked), sum(|group| group.failed), sum(|group| group.missing));
         let failing = of.iter().filter(|group| group.is_failed()).count();
-        let mark = if failing == 0 { '✓' } else { '✗' };
+        let judged = asked.saturating_sub(of.iter().map(|group| group.skipped + group.missing).sum());
+        let mark = match (failing, judged) {
+            (0, 0) => '–',
+            (0, _) => '✓',
+            _ => '✗',
+        };
         let error = of.iter().map(|group| group.error_max.0).fold(0.0, lightmeter_document::worse);
         let margin = of.iter().map(|group| group.margin_max.0).fold(0.0, lightmeter_document::worse);
         let what = match name.as_str() {
@@ -97,7 +102,11 @@ fn families(report: &GateReport, out: &mut impl Write) -> Result {
         if missing > 0 {
             write!(out, ", {missing} never answered")?;
         }
-        writeln!(out, ", errors up to {} ULP, {} of what is legal", short(error), short(margin))?;
+        if judged == 0 {
+            writeln!(out, ", none judged")?;
+        } else {
+            writeln!(out, ", errors up to {} ULP, {} of what is legal", short(error), short(margin))?;
+        }
     }
     Ok(())
 }

@@ -93,7 +93,7 @@ impl Bench {
             Ok((name, loaded))
         });
         if let Some(folder) = &self.shaders {
-            foreign::accept(folder, &self.adapter)?;
+            foreign::accept(folder, &self.adapter, true)?;
         }
         let options = BenchOptions {
             filter: Filter::new(&globs)?,

@@ -1,13 +1,12 @@
 //! What a result is held against: known failures, and an earlier result. The same for `run` and `gate`.
 
 use super::say;
+use anyhow::bail;
 use clap::Args;
 use lightmeter::document::Document;
-use lightmeter::document::pack::Choice;
-use lightmeter::filter::Filter;
 use lightmeter::gate::baseline::{self, Baseline, BaselineError, Standard};
 use lightmeter::gate::expectations::Expectations;
-use lightmeter::gate::plan::{CasePlace, GatePlan};
+use lightmeter::gate::plan::unmatched;
 use std::path::{Path, PathBuf};
 
 /// What a result is held against.
@@ -80,26 +79,8 @@ impl Comparison {
 
 /// An expectation of what no renderer is ever asked is a mistake in its file.
 pub(crate) fn matches_something(expectations: &Expectations) -> anyhow::Result<()> {
-    let all = GatePlan::new(Choice { filter: vec![], cases: 1, seed: 1, special: true, ..Choice::default() })?;
-    for id in expectations.ids() {
-        let filter = Filter::new(&[id])?;
-        // Any number of a random case may be meant.
-        let path = id.rsplit_once('/').filter(|(_, number)| number.bytes().all(|byte| byte.is_ascii_digit()));
-        let is_random =
-            |member: &str| path.is_some_and(|(path, _)| path.strip_suffix("/random").unwrap_or(path) == member);
-        let has_formula = (0..all.formulas.len()).any(|formula| {
-            let member = &all.member(formula).spec.id;
-            filter.selects(member) || filter.reaches_below(member) || is_random(member) || {
-                let cases = 0..all.formulas[formula].count();
-                let is_below = id.starts_with(member.as_str()) || id.starts_with(all.member(formula).spec.group());
-                is_below && cases.into_iter().any(|case| filter.selects(&all.id(CasePlace::Case { formula, case })))
-            }
-        });
-        let has_scene = || (0..all.scenes.len()).any(|scene| filter.selects(&all.id(CasePlace::Scene(scene))));
-        let has_probe = || all.probes.iter().any(|probe| filter.selects(&probe.id()));
-        if !has_formula && !has_scene() && !has_probe() {
-            anyhow::bail!("the expectation `{id}` matches no case of any formula and no scene: see `lightmeter list`");
-        }
+    match unmatched(expectations.ids()) {
+        Some(id) => bail!("the expectation `{id}` matches no case of any formula and no scene: see `lightmeter list`"),
+        None => Ok(()),
     }
-    Ok(())
 }

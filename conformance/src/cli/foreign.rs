@@ -6,11 +6,24 @@
 use super::Status;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use lightmeter::files::lines;
-use lightmeter_gpu::{ArithmeticPipeline, Kernel, Programmable, Shaders, adapters, vulkan_adapters};
-use std::io::Read as _;
+use lightmeter::adapters as named;
+use lightmeter::cases::Kind;
+use lightmeter::files::{lines, shown};
+use lightmeter::scene::library::SCENES;
+use lightmeter::scene::select::{builtin, scene_id};
+use lightmeter::select::catalogue;
+use lightmeter_gpu::compose::{Composer, Recipe, ShaderForm};
+use lightmeter_gpu::scene::SceneRenderer;
+use lightmeter_gpu::{
+    ArithmeticPipeline, BlendUnit, DepthUnit, Gpu, Kernel, Programmable, RasterPipeline, Shaders, adapters,
+    vulkan_adapters,
+};
+use lightmeter_scene::effects::effects;
+use std::collections::BTreeSet;
+use std::io::{Read, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// How long shaders may take to be read and compiled.
@@ -19,6 +32,10 @@ const MOST_TIME: Duration = Duration::from_secs(60);
 const MOST_MEMORY: u64 = 4 << 30;
 /// How often it is looked how much it takes.
 const LOOKS: Duration = Duration::from_millis(5);
+/// Pixels of the longer side of a scene that is drawn to see whether it can be.
+const FEW_PIXELS: u32 = 8;
+/// Characters of a line of a message.
+const MOST_CHARACTERS: usize = 240;
 /// Bytes of a page of memory.
 const PAGE: u64 = 4096;
 
@@ -30,31 +47,101 @@ pub(crate) struct Try {
     /// The adapter to compile them on, as `run` names it
     #[arg(long, value_name = "NAME")]
     adapter: Vec<String>,
+    /// Draw the built-in scenes whose shaders differ, too
+    #[arg(long)]
+    scenes: bool,
 }
 
 impl Try {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let (shaders, built_in) = (Shaders::from_dir(&self.folder)?, Shaders::built_in()?);
+        // What this process dies of is told by the last line.
+        let under_way = |what: &str| drop(writeln!(std::io::stdout(), "{what}"));
+        let shaders = Shaders::from_dir_telling(&self.folder, &|file| under_way(&format!("{file} is read")))?;
+        let built_in = Shaders::built_in()?;
         let is_asked = |name: &str| self.adapter.iter().any(|asked| asked == name || asked == "all");
-        // The parent command reports an adapter name that does not exist.
         let found = match self.adapter.is_empty() {
             true => vulkan_adapters().into_iter().take(1).collect(),
             false => adapters().into_iter().filter(|adapter| is_asked(&adapter.name)).collect::<Vec<_>>(),
         };
         for adapter in found {
             let gpu = adapter.open()?;
-            for (file, text) in shaders.texts() {
-                let before = built_in.texts().find(|(name, _)| *name == file).map_or("", |(_, text)| text);
-                for function in changed(before, text) {
-                    // What takes other than numbers is part of something that does not, or of a scene.
-                    let Ok(kernel) = Kernel::new(&shaders, file, function) else { continue };
-                    // An adapter may lack what the stage takes: the command that was asked for says so.
-                    let _ = ArithmeticPipeline::new(&gpu, &kernel, Programmable::Compute)?;
-                }
+            functions_compile(&gpu, [&built_in, &shaders], &under_way)?;
+            fixed_hardware_compiles(&gpu, [&built_in, &shaders], &under_way)?;
+            if self.scenes {
+                scenes_are_drawn(&gpu, [&built_in, &shaders], &under_way)?;
             }
         }
         Ok(Status::Success)
     }
+}
+
+/// Compiles each function that is not as it was.
+fn functions_compile(gpu: &Gpu, [built_in, shaders]: [&Shaders; 2], under_way: &dyn Fn(&str)) -> anyhow::Result<()> {
+    for (file, text) in shaders.texts() {
+        let before = built_in.texts().find(|(name, _)| *name == file).map_or("", |(_, text)| text);
+        for function in changed(before, text) {
+            under_way(&format!("`{function}` of {file} is compiled"));
+            // What takes other than numbers is part of something that does not, or of a scene.
+            let Ok(kernel) = Kernel::new(shaders, file, function) else { continue };
+            // An adapter may lack what the stage takes: the command that was asked for says so.
+            let _ = ArithmeticPipeline::new(gpu, &kernel, Programmable::Compute)?;
+        }
+    }
+    Ok(())
+}
+
+/// Compiles what drives the rasteriser, the depth test and the blend unit, where it is not as it was.
+fn fixed_hardware_compiles(
+    gpu: &Gpu,
+    [built_in, shaders]: [&Shaders; 2],
+    under_way: &dyn Fn(&str),
+) -> anyhow::Result<()> {
+    if DepthUnit::source(built_in) != DepthUnit::source(shaders) {
+        under_way("depth_unit.wgsl is compiled");
+        DepthUnit::new(gpu, shaders)?;
+    }
+    if BlendUnit::source(built_in) != BlendUnit::source(shaders) {
+        under_way("blend_unit.wgsl is compiled");
+        BlendUnit::new(gpu, shaders)?;
+    }
+    if RasterPipeline::source(built_in) != RasterPipeline::source(shaders) {
+        let mut kinds = BTreeSet::new();
+        for member in catalogue() {
+            if let Kind::Raster(kind) = member.spec.kind
+                && kinds.insert(format!("{kind:?}"))
+            {
+                under_way("raster.wgsl is compiled");
+                let _ = RasterPipeline::new(gpu, shaders, kind)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Draws the built-in scenes, of a few pixels each, whose shaders are not as they were.
+fn scenes_are_drawn(gpu: &Gpu, [built_in, shaders]: [&Shaders; 2], under_way: &dyn Fn(&str)) -> anyhow::Result<()> {
+    let composers = [Composer::new(built_in)?, Composer::new(shaders)?];
+    let recipe = Recipe::of(ShaderForm::Composed);
+    let mut drawn: BTreeSet<String> = BTreeSet::new();
+    for place in 0..SCENES.len() {
+        let loaded = builtin(place, Some(FEW_PIXELS))?;
+        if SceneRenderer::lacks(gpu, &loaded.frame).is_some() {
+            continue;
+        }
+        let sets = effects(&loaded.frame);
+        let mut is_new = false;
+        for called in &sets {
+            let [before, now] = composers.each_ref().map(|composer| composer.compose(called.effects, recipe, 0));
+            let now = now?.source;
+            is_new |= before?.source != now && drawn.insert(now);
+        }
+        if is_new {
+            under_way(&format!("{} is drawn", scene_id(place)));
+            let renderer = SceneRenderer::new(gpu, shaders, &loaded.frame, &sets, recipe)?;
+            SceneRenderer::pixels(gpu, renderer.submit(gpu))?;
+        }
+    }
+    Ok(())
 }
 
 /// The functions of a file that are not as they were; all of them where what stands above them has changed.
@@ -82,48 +169,63 @@ fn functions(text: &str) -> (&str, Vec<(&str, &str)>) {
     (&text[..starts.first().copied().unwrap_or(text.len())], functions.collect())
 }
 
-/// Has a process of its own try the shaders of a folder.
-pub(crate) fn accept(folder: &Path, adapters: &[String]) -> anyhow::Result<()> {
+/// Has a process of its own try the shaders of a folder, those of scenes where they are to be drawn.
+pub(crate) fn accept(folder: &Path, adapters: &[String], has_scenes: bool) -> anyhow::Result<()> {
     if !adapters.is_empty() && adapters.iter().all(|name| name == "cpu") {
         bail!("the embedded implementation has no shaders: leave out `--shaders` or `--adapter cpu`");
     }
+    named::known(adapters)?;
     let program = std::env::current_exe().context("cannot find the own binary")?;
     let named = adapters.iter().filter(|name| *name != "cpu");
     let mut child = Command::new(program)
         .arg("try-shaders")
         .arg(folder)
         .args(named.flat_map(|name| ["--adapter", name]))
+        .args(has_scenes.then_some("--scenes"))
         .stdin(Stdio::null())
-        .stdout(Stdio::null())
+        .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .context("cannot start a process to try the shaders in")?;
-    let mut complaint = child.stderr.take().context("it has no standard error")?;
-    let listening = std::thread::spawn(move || {
-        let mut said = vec![];
-        let _ = complaint.by_ref().take(1 << 20).read_to_end(&mut said);
-        let _ = std::io::copy(&mut complaint, &mut std::io::sink());
-        String::from_utf8_lossy(&said).into_owned()
-    });
+    let complaint = heard(child.stderr.take().context("it has no standard error")?);
+    let under_way = heard(child.stdout.take().context("it has no standard output")?);
     let broken = watched(&mut child)?;
     let status = child.wait()?;
-    let said = listening.join().unwrap_or_default();
-    let said = lines(said.trim()).into_owned();
+    let [said, did] = [complaint, under_way].map(|thread| thread.join().unwrap_or_default());
+    let doing = did.lines().next_back().map(|doing| format!(" while {}", shown(doing))).unwrap_or_default();
+    let of = folder.display();
     if let Some(limit) = broken {
-        bail!("the shaders of {} take more than {limit} to be read and compiled", folder.display());
+        bail!("the shaders of {of} take more than {limit} to be read and compiled; it ended{doing}");
     }
     match status.code() {
         Some(0) => Ok(()),
-        Some(_) => bail!("{}", said.trim_start_matches("error: ")),
+        Some(_) => bail!("{}", clipped(&lines(said.trim().trim_start_matches("error: ")))),
         None => {
+            let said = lines(said.trim()).into_owned();
             let last: Vec<&str> = said.lines().filter(|line| !line.trim().is_empty()).collect();
-            let last = last[last.len().saturating_sub(3)..].join(" / ");
-            bail!(
-                "the shaders of {} end the process that reads and compiles them: {status}; it said: {last}",
-                folder.display()
-            )
+            let last = clipped(&last[last.len().saturating_sub(3)..].join(" / "));
+            bail!("the shaders of {of} end the process that reads and compiles them{doing}: {status}; it said: {last}")
         }
     }
+}
+
+/// What a stream says, its beginning where that is much.
+fn heard(mut stream: impl Read + Send + 'static) -> JoinHandle<String> {
+    std::thread::spawn(move || {
+        let mut said = vec![];
+        let _ = stream.by_ref().take(1 << 20).read_to_end(&mut said);
+        let _ = std::io::copy(&mut stream, &mut std::io::sink());
+        String::from_utf8_lossy(&said).into_owned()
+    })
+}
+
+/// Lines as long as people read them: a shader may be a single one.
+fn clipped(text: &str) -> String {
+    let cut = |line: &str| match line.char_indices().nth(MOST_CHARACTERS) {
+        Some((end, _)) => format!("{} …", &line[..end]),
+        None => line.to_owned(),
+    };
+    text.lines().map(cut).collect::<Vec<_>>().join("\n")
 }
 
 /// Waits for a process, and kills it beyond a limit; which one that is.

@@ -133,6 +133,9 @@ impl Gate {
     /// The cases, and the files of answers.
     fn asked(&self) -> anyhow::Result<(GatePlan, Vec<AnswerFile>)> {
         if self.exec.is_some() {
+            if let Some(file) = self.given.iter().find(|given| Path::new(given).exists()) {
+                bail!("`{file}` is a file or folder: with --exec, what else is given are globs of cases, as `fog/*`");
+            }
             let plan = self.cases.plan(self.cases.choice(&self.given))?;
             // What it declares is not known yet.
             let has_tables = !verdict::select(&Filter::new(&self.given)?, Shard::WHOLE).is_empty();
@@ -150,8 +153,21 @@ impl Gate {
             );
         }
         let plan = pack::read(Path::new(folder))?;
-        let opened = answers.iter().map(|path| AnswerFile::open(Path::new(path)));
-        Ok((plan, opened.collect::<Result<_, _>>()?))
+        let opened = answers.iter().map(|path| {
+            AnswerFile::open(Path::new(path)).map_err(|error| {
+                let is_glob = !Path::new(path).exists() && plan.is_matched(path);
+                let hint =
+                    "of a pack all cases are judged: those of a filter are written by `lightmeter pack DIR FILTER`";
+                let error = anyhow::Error::from(error);
+                if is_glob {
+                    error.context(format!("`{path}` is a filter, and no file of answers; {hint}"))
+                } else {
+                    error
+                }
+            })
+        });
+        let opened = opened.collect::<anyhow::Result<_>>()?;
+        Ok((plan, opened))
     }
 
     /// Has the engine judge what the renderer answers.

@@ -155,7 +155,7 @@ fn of_scenes(names: &Filter) -> Vec<KnownMistake> {
         name: fault.name.into(),
         says: fault.says.into(),
         of: MistakeOf::Scenes,
-        seen_in: None,
+        seen_in: fault.seen_in.map(Into::into),
         formulas: vec![],
         looks: vec![],
     });

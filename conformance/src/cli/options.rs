@@ -8,6 +8,8 @@ use lightmeter::device::Code;
 use lightmeter::document::by_case::Coverage;
 use lightmeter::filter::Filter;
 use lightmeter::options::{DEFAULT_CASES, DEFAULT_TARGETS, MOST_CASES, Options};
+use lightmeter::scene::library::SCENES;
+use lightmeter::scene::select::scene_id;
 use lightmeter::select::Shard;
 use lightmeter::subject::Subject;
 use lightmeter::subject_gpu::code_of;
@@ -127,17 +129,18 @@ impl Choice {
         Targets::asked(&self.target).unwrap_or_else(|| DEFAULT_TARGETS.to_vec())
     }
 
-    /// The shaders to judge.
-    pub(crate) fn code(&self) -> anyhow::Result<Code> {
+    /// The shaders to judge, those of scenes among them or not.
+    pub(crate) fn code(&self, has_scenes: bool) -> anyhow::Result<Code> {
         if let Some(folder) = &self.shaders {
-            foreign::accept(folder, &self.adapter)?;
+            foreign::accept(folder, &self.adapter, has_scenes)?;
         }
         Ok(code_of(self.shaders.as_deref())?)
     }
 
     /// The library's options for a filter.
     pub(crate) fn options(&self, filter: Filter, cases: u64, shard: Shard) -> anyhow::Result<Options> {
-        let options = Options::by(self.code()?, self.shaders.as_deref(), self.seed, self.profile);
+        let has_scenes = (0..SCENES.len()).any(|place| filter.selects(&scene_id(place)));
+        let options = Options::by(self.code(has_scenes)?, self.shaders.as_deref(), self.seed, self.profile);
         Ok(Options { filter, cases, shard, targets: self.targets(), size: self.size, ..options })
     }
 

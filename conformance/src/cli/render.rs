@@ -102,7 +102,7 @@ impl Render {
             seed: 1,
             shaders: self.shaders.clone(),
         };
-        let code = choice.code()?;
+        let code = choice.code(true)?;
         let subjects = choice.subjects()?;
         let [subject] = subjects.as_slice() else { bail!("an image is drawn by one adapter") };
         let (sets, picture) = match self.stage {

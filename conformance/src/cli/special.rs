@@ -42,7 +42,7 @@ impl Special {
         writable(self.out.as_deref())?;
         let stop = stopped_by_signals()?;
         if let Some(folder) = &self.shaders {
-            foreign::accept(folder, &self.adapter)?;
+            foreign::accept(folder, &self.adapter, false)?;
         }
         let code = code_of(self.shaders.as_deref())?;
         let subjects = adapters::open(&self.adapter)?;

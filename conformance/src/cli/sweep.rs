@@ -86,7 +86,7 @@ impl Sweep {
         check_shard(&plan, shard)?;
         self.check_files()?;
         let choice = self.choice();
-        let code = choice.code()?;
+        let code = choice.code(false)?;
         let mut subjects = choice.subjects()?;
         let [subject] = subjects.as_mut_slice() else {
             bail!("a sweep is of one adapter; expected its name");

@@ -76,6 +76,18 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
     Ok(subjects)
 }
 
+/// Whether adapters of those names can be asked for; none stands for the one that is judged without any. No device is opened.
+///
+/// # Errors
+/// Where there is no adapter of a name, or no driver.
+pub fn known(asked: &[String]) -> Result<(), AdapterError> {
+    let mut found = None;
+    for name in asked.iter().filter(|name| ![EMBEDDED, ALL].contains(&name.as_str())) {
+        named(found.get_or_insert_with(lightmeter_gpu::adapters), name)?;
+    }
+    Ok(())
+}
+
 /// The names of all adapters. No device is opened.
 ///
 /// # Errors

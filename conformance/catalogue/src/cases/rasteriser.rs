@@ -38,7 +38,7 @@ pub(super) fn interval(kind: Raster, inputs: &[f32], subpixel_bits: u32, out: &m
         Raster::TrianglePosition => {
             let [_, _, depth, inverse_w] =
                 SnappedTriangle::new(inputs, snap).map_or([Accept::ANY; 4], |drawn| drawn.fragment());
-            let [x, y] = pixel(inputs).0.map(Accept::exactly);
+            let [x, y] = pixel(inputs).0.map(|x| Accept::from_bounds(x, x));
             out.copy_from_slice(&[x, y, depth, inverse_w]);
         }
         Raster::LineAttributes => line(inputs, snap, out),

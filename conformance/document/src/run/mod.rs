@@ -482,7 +482,7 @@ impl Report {
     #[must_use]
     pub const fn coverage(&self) -> Coverage {
         let Totals { cases, skipped, .. } = self.totals;
-        Coverage { chosen: cases, judged: cases - skipped, excluded: skipped }
+        Coverage { chosen: cases, judged: cases.saturating_sub(skipped), excluded: skipped }
     }
 
     /// Whether all went as expected.

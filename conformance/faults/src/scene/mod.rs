@@ -102,6 +102,7 @@ mod tests {
     use lightmeter_catalogue::scene::library::SCENES;
     use lightmeter_catalogue::scene::select::builtin;
     use lightmeter_judge::image::expect;
+    use lightmeter_scene::frame::{Fog, FogForm};
 
     fn frame(scene: &str) -> Frame {
         let place = SCENES.iter().position(|(name, _)| *name == scene).expect("it is built in");
@@ -137,6 +138,49 @@ mod tests {
         }
     }
 
+    /// The diagnosis of a scene that is drawn otherwise.
+    fn of_changed(scene: &str, change: impl Fn(&mut Frame)) -> SceneDiagnosis {
+        let frame = frame(scene);
+        let mut changed = frame.clone();
+        change(&mut changed);
+        let image = draw::<f32>(&changed, &[]);
+        Trial::new(&frame, &image, &expect(&frame, None, None, &WGSL), &WGSL).diagnose()
+    }
+
+    #[test]
+    fn a_wrong_parameter_is_named_with_its_factor() {
+        let shininess = |factor: f32| {
+            move |frame: &mut Frame| frame.draws.iter_mut().for_each(|draw| draw.material.shininess *= factor)
+        };
+        let told = of_changed("phong", shininess(2.0)).sentence;
+        assert!(told.contains("explained by: the shininess is 2 times what was asked"), "{told}");
+        let told = of_changed("teapot", shininess(1.7)).sentence;
+        let factor = told.split("the shininess is ").nth(1).and_then(|rest| rest.split(' ').next());
+        let factor: f64 = factor.and_then(|factor| factor.parse().ok()).expect("a factor is told");
+        assert!((factor - 1.7).abs() < 0.02, "{told}");
+        let told = of_changed("fog-exp", |frame| {
+            if let Some(Fog { form: FogForm::Exp { density }, .. }) = &mut frame.fog {
+                *density *= 1.5;
+            }
+        });
+        assert!(told.sentence.contains("the fog's density is 1.5 times"), "{}", told.sentence);
+    }
+
+    #[test]
+    fn a_pixel_that_is_as_bright_as_can_be_says_nothing() {
+        let frame = frame("phong");
+        let mut image = draw::<f32>(&frame, &[]);
+        let expected = expect(&frame, None, None, &WGSL);
+        let wrong = draw::<f32>(&frame, &[mistake("srgb-encoded")]);
+        let is_bright = |&place: &usize| wrong.pixels[place][0] >= 255.0 && image.pixels[place][0] < 200.0;
+        let bright = (0..image.pixels.len()).find(is_bright);
+        // A component that any of several mistakes would saturate.
+        let place = bright.unwrap_or(64 * 128 / 2 + 64);
+        image.pixels[place][0] = 255.0;
+        let found = Trial::new(&frame, &image, &expected, &WGSL).diagnose();
+        assert!(found.failing > 0 && found.explanations.is_empty(), "{}", found.sentence);
+    }
+
     #[test]
     fn some_pixels_are_drawn_as_they_are_in_the_whole_image() {
         for (scene, names) in [
@@ -166,8 +210,9 @@ mod tests {
         let failing = found.failing;
         assert!((1100..=1200).contains(&failing), "{failing}");
         let told = format!(
-            "nothing in the catalogue explains the {failing} failing components of pixels: all are red, all are too great, \
-             all are in columns 40 to 79 and rows 30 to 59"
+            "nothing in the catalogue explains the {} failing components of pixels: all are red, all are too great, \
+             all are in columns 40 to 79 and rows 30 to 59",
+            lightmeter_document::thousands(failing as u64)
         );
         assert_eq!(found.sentence, told);
     }

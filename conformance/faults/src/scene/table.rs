@@ -3,7 +3,9 @@
 use crate::row::{Arithmetic as _, Narrowing};
 use lightmeter_reference::color;
 use lightmeter_scene::blend::{Factor, State};
-use lightmeter_scene::frame::{Cull, Fog, FogForm, Frame, Light, Material, Place, Shading, TextureFilter, Wrap};
+use lightmeter_scene::frame::{
+    Cull, Fog, FogForm, Frame, Light, Material, Place, Shading, TextureFilter, Textured, Wrap,
+};
 use lightmeter_scene::raster::Provoking;
 use lightmeter_scene::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 
@@ -14,6 +16,8 @@ pub struct SceneFault {
     pub name: &'static str,
     /// In words, as the end of a sentence.
     pub says: &'static str,
+    /// A renderer that made it, or where it comes from.
+    pub seen_in: Option<&'static str>,
     /// What it changes.
     pub(super) change: Change,
 }
@@ -29,17 +33,26 @@ pub(super) enum Change {
     Color(fn([f64; 4]) -> [f64; 4]),
 }
 
+macro_rules! seen_in {
+    () => {
+        None
+    };
+    ($seen_in:literal) => {
+        Some($seen_in)
+    };
+}
+
 macro_rules! faults {
-    ($($kind:ident $name:literal $says:literal $change:expr;)*) => {
+    ($($kind:ident $name:literal $says:literal $(@ $seen_in:literal)? $change:expr;)*) => {
         /// Every mistake.
         pub const SCENE_FAULTS: &[SceneFault] =
-            &[$(SceneFault { name: $name, says: $says, change: Change::$kind($change) }),*];
+            &[$(SceneFault { name: $name, says: $says, seen_in: seen_in!($($seen_in)?), change: Change::$kind($change) }),*];
     };
 }
 
 faults! {
     // Where lights are.
-    Frame "light-reversed" "lights shine from the other side" |frame| each_place(frame, |place| match place {
+    Frame "light-reversed" "lights shine from the other side" @ "OpenGL's direction to the light for the direction of travel" |frame| each_place(frame, |place| match place {
         Place::Directional { toward, .. } => negate(toward),
         Place::Point { position, .. } | Place::Spot { position, .. } => negate(position),
     });
@@ -61,18 +74,18 @@ faults! {
     Frame "attenuation-left-out" "attenuation is left out" |frame| each_falloff(frame, |falloff| *falloff = [1.0, 0.0, 0.0]);
     Frame "attenuation-swapped" "the linear and the quadratic term of attenuation are swapped" |frame| each_falloff(frame, |falloff| falloff.swap(1, 2));
     Frame "attenuation-without-constant" "the constant term of attenuation is left out" |frame| each_falloff(frame, |falloff| if falloff[1] + falloff[2] > 0.0 { falloff[0] = 0.0 });
-    Frame "attenuation-inverse-square" "attenuation is the inverse square of the distance" |frame| each_falloff(frame, |falloff| *falloff = [0.0, 0.0, 1.0]);
+    Frame "attenuation-inverse-square" "attenuation is the inverse square of the distance" @ "three.js, decay 2; Filament" |frame| each_falloff(frame, |falloff| *falloff = [0.0, 0.0, 1.0]);
     Frame "spot-as-point" "spotlights shine all around" |frame| each_place(frame, |place| {
         if let Place::Spot { position, falloff, .. } = *place {
             *place = Place::Point { position, falloff };
         }
     });
-    Frame "spot-exponent-left-out" "a spotlight is as bright at its edge as in its middle" |frame| each_place(frame, |place| {
+    Frame "spot-exponent-left-out" "a spotlight is as bright at its edge as in its middle" @ "OpenGL's GL_SPOT_EXPONENT left at 0" |frame| each_place(frame, |place| {
         if let Place::Spot { exponent, .. } = place {
             *exponent = 0.0;
         }
     });
-    Frame "spot-half-angle" "a spotlight's angle is taken for the whole cone's" |frame| each_place(frame, |place| {
+    Frame "spot-half-angle" "a spotlight's angle is taken for the whole cone's" @ "Babylon.js" |frame| each_place(frame, |place| {
         if let Place::Spot { cutoff_cosine, .. } = place {
             *cutoff_cosine = (0.5 * cutoff_cosine.acos()).cos();
         }
@@ -82,61 +95,71 @@ faults! {
     // Terms.
     Frame "ambient-left-out" "the ambient light is left out" |frame| frame.ambient = [0.0; 3];
     Frame "ambient-twice" "the ambient light is added twice" |frame| frame.ambient = frame.ambient.map(|c| 2.0 * c);
-    Frame "ambient-form" "ambient light and material go together in the other form" |frame| frame.ambient_form = match frame.ambient_form {
-        Ambient::Product => Ambient::Constant,
-        Ambient::Constant => Ambient::Product,
+    Frame "ambient-without-material" "the ambient light is added as it is: the material's ambient colour is left out" @ "document 004's constant ambient term" |frame| if frame.ambient_form == Ambient::Product {
+        frame.ambient_form = Ambient::Constant;
+    };
+    Frame "ambient-times-material" "the material's ambient colour multiplies an ambient term that is a constant" @ "OpenGL's fixed function" |frame| if frame.ambient_form == Ambient::Constant {
+        frame.ambient_form = Ambient::Product;
     };
     Frame "light-ambient-left-out" "the lights' own ambient terms are left out" |frame| each_light(frame, |light| light.ambient = [0.0; 3]);
-    Frame "light-ambient-form" "attenuation weakens ambient terms in the other dialect" |frame| frame.light_ambient = match frame.light_ambient {
-        LightAmbient::Documents => LightAmbient::OpenGl,
-        LightAmbient::OpenGl => LightAmbient::Documents,
+    Frame "ambient-attenuated" "attenuation weakens the lights' own ambient terms" @ "OpenGL's fixed function" |frame| if frame.light_ambient == LightAmbient::Documents {
+        frame.light_ambient = LightAmbient::OpenGl;
     };
-    Frame "emission-left-out" "emission is left out" |frame| each_material(frame, |material| material.emissive = [0.0; 3]);
+    Frame "ambient-not-attenuated" "attenuation does not weaken the lights' own ambient terms" |frame| if frame.light_ambient == LightAmbient::OpenGl {
+        frame.light_ambient = LightAmbient::Documents;
+    };
+    Frame "emission-left-out" "emission is left out" @ "pygfx" |frame| each_material(frame, |material| material.emissive = [0.0; 3]);
     Frame "diffuse-left-out" "the diffuse term is left out" |frame| each_light(frame, |light| light.diffuse = [0.0; 3]);
     Frame "specular-left-out" "the highlight is left out" |frame| each_material(frame, |material| material.specular = [0.0; 3]);
-    Frame "light-specular-ignored" "the highlight has the light's diffuse colour" |frame| each_light(frame, |light| light.specular = light.diffuse);
+    Frame "light-specular-ignored" "the highlight has the light's diffuse colour" @ "engines whose lights have one colour" |frame| each_light(frame, |light| light.specular = light.diffuse);
     Frame "material-specular-ignored" "the highlight is white whatever the material" |frame| each_material(frame, |material| material.specular = [1.0; 3]);
-    Frame "shininess-fourfold" "shininess is 4 times what was asked" |frame| each_material(frame, |material| material.shininess *= 4.0);
-    Frame "shininess-quarter" "shininess is a quarter of what was asked" |frame| each_material(frame, |material| material.shininess *= 0.25);
+    Frame "shininess-fourfold" "shininess is 4 times what was asked" @ "Blinn's exponent converted from Phong's" |frame| each_material(frame, |material| material.shininess *= 4.0);
+    Frame "shininess-quarter" "shininess is a quarter of what was asked" @ "Phong's exponent converted from Blinn's" |frame| each_material(frame, |material| material.shininess *= 0.25);
     Frame "shininess-128ths" "shininess is in 128ths" |frame| each_material(frame, |material| material.shininess /= 128.0);
     // How it is lit.
-    Frame "gouraud-for-phong" "the vertices are lit in the place of the fragments" |frame| each_shading(frame, |shading| if shading.frequency == Frequency::Phong { shading.frequency = Frequency::Gouraud });
+    Frame "gouraud-for-phong" "the vertices are lit in the place of the fragments" @ "OpenGL's fixed function; three.js, MeshLambertMaterial of old" |frame| each_shading(frame, |shading| if shading.frequency == Frequency::Phong { shading.frequency = Frequency::Gouraud });
     Frame "phong-for-gouraud" "the fragments are lit in the place of the vertices" |frame| each_shading(frame, |shading| if shading.frequency == Frequency::Gouraud { shading.frequency = Frequency::Phong });
     Frame "flat-for-smooth" "faces are lit once" |frame| each_shading(frame, |shading| shading.frequency = Frequency::Flat);
     Frame "smooth-for-flat" "flat faces are lit at their vertices" |frame| each_shading(frame, |shading| if shading.frequency == Frequency::Flat { shading.frequency = Frequency::Gouraud });
-    Frame "provoking-vertex" "a flat face has the colour of its other end's vertex" |frame| each_shading(frame, |shading| shading.provoking = match shading.provoking {
-        Provoking::First => Provoking::Last,
-        Provoking::Last => Provoking::First,
+    Frame "last-vertex-for-first" "a flat face has the colour of its last vertex, not of its first" @ "OpenGL's provoking vertex" |frame| each_shading(frame, |shading| if shading.provoking == Provoking::First {
+        shading.provoking = Provoking::Last;
     });
-    Frame "blinn-for-phong" "the highlight is Blinn's in the place of Phong's" |frame| each_shading(frame, |shading| if shading.specular == Specular::Phong { shading.specular = Specular::Blinn });
+    Frame "first-vertex-for-last" "a flat face has the colour of its first vertex, not of its last" @ "Vulkan's and Direct3D's provoking vertex" |frame| each_shading(frame, |shading| if shading.provoking == Provoking::Last {
+        shading.provoking = Provoking::First;
+    });
+    Frame "blinn-for-phong" "the highlight is Blinn's in the place of Phong's" @ "three.js, MeshPhongMaterial" |frame| each_shading(frame, |shading| if shading.specular == Specular::Phong { shading.specular = Specular::Blinn });
     Frame "phong-for-blinn" "the highlight is Phong's in the place of Blinn's" |frame| each_shading(frame, |shading| if shading.specular == Specular::Blinn { shading.specular = Specular::Phong });
     Frame "half-vector-not-normalised" "the half vector is not normalised" |frame| each_shading(frame, |shading| if shading.specular == Specular::Blinn { shading.specular = Specular::BlinnUnnormalised });
-    Frame "normalised-highlight" "the highlight is Blinn's normalised lobe with Schlick's Fresnel term, times n·l" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) {
+    Frame "normalised-highlight" "the highlight is Blinn's normalised lobe with Schlick's Fresnel term, times n·l" @ "three.js, BRDF_BlinnPhong under lights of intensity π" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) {
         frame.departures.fresnel_highlight = true;
     };
     Frame "highlight-over-texture" "a texture multiplies what is diffuse, and the highlight is added afterwards" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some() && (draw.texture.is_some() || draw.lightmap.is_some())) {
         frame.departures.highlight_over_texture = true;
     };
-    Frame "gate" "the highlight on what is turned away from the light is of the other dialect" |frame| each_shading(frame, |shading| shading.gate = match shading.gate {
-        SpecularGate::Documents => SpecularGate::OpenGl,
-        SpecularGate::OpenGl => SpecularGate::Documents,
+    Frame "specular-gated" "the highlight is 0 where the light is behind the surface" @ "OpenGL's fixed function" |frame| each_shading(frame, |shading| if shading.gate == SpecularGate::Documents {
+        shading.gate = SpecularGate::OpenGl;
     });
-    Frame "viewer" "the viewer is taken to be at the other place, at infinity or at the eye" |frame| each_shading(frame, |shading| shading.viewer = match shading.viewer {
-        Viewer::Local => Viewer::NonLocal,
-        Viewer::NonLocal => Viewer::Local,
+    Frame "specular-not-gated" "there is a highlight where the light is behind the surface" @ "document 000's programs" |frame| each_shading(frame, |shading| if shading.gate == SpecularGate::OpenGl {
+        shading.gate = SpecularGate::Documents;
     });
-    Frame "normals-by-modelview" "normals are brought to eye space by the modelview" |frame| each_shading(frame, |shading| shading.normals = Normals::Modelview);
+    Frame "viewer-at-infinity" "the viewer is infinitely far away, not at the eye" @ "OpenGL's GL_LIGHT_MODEL_LOCAL_VIEWER left off" |frame| each_shading(frame, |shading| if shading.viewer == Viewer::Local {
+        shading.viewer = Viewer::NonLocal;
+    });
+    Frame "viewer-at-the-eye" "the viewer is at the eye, not infinitely far away" |frame| each_shading(frame, |shading| if shading.viewer == Viewer::NonLocal {
+        shading.viewer = Viewer::Local;
+    });
+    Frame "normals-by-modelview" "normals are brought to eye space by the modelview" @ "documents 000 and 003" |frame| each_shading(frame, |shading| shading.normals = Normals::Modelview);
     Frame "normals-not-normalised" "normals keep the length that the modelview leaves them" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) {
         frame.departures.normals_at_length = true;
     };
     Frame "normals-reversed" "normals point inward" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.normals).for_each(negate);
-    Frame "fragment-normals-not-normalised" "interpolated normals are not normalised again" |frame| if frame.draws.iter().any(is_lit_by_fragments) {
+    Frame "fragment-normals-not-normalised" "interpolated normals are not normalised again" @ "interpolated normals used as they come" |frame| if frame.draws.iter().any(is_lit_by_fragments) {
         frame.departures.fragment_normals_at_length = true;
     };
-    Frame "two-sided" "normals are turned towards the eye" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) {
+    Frame "two-sided" "normals are turned towards the eye" @ "faceforward; pygfx, issue 105" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) {
         frame.departures.two_sided = true;
     };
-    Frame "half-lambert" "the diffuse term is half-Lambert: (0.5 n·l + 0.5)²" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) && !frame.lights.is_empty() {
+    Frame "half-lambert" "the diffuse term is half-Lambert: (0.5 n·l + 0.5)²" @ "Valve's half Lambert" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) && !frame.lights.is_empty() {
         frame.departures.half_lambert = true;
     };
     // Which object something is of.
@@ -151,22 +174,25 @@ faults! {
     };
     // Fog.
     Frame "fog-left-out" "fog is left out" |frame| frame.fog = None;
-    Frame "fog-distance" "fog is by the other distance: radial for planar, or planar for radial" |frame| each_fog(frame, |fog| fog.distance = match fog.distance {
-        Distance::Planar => Distance::Radial,
-        Distance::Radial => Distance::Planar,
+    Frame "fog-radial" "fog is by the distance from the eye, not by the depth" @ "OpenGL drivers; Unity" |frame| each_fog(frame, |fog| if fog.distance == Distance::Planar {
+        fog.distance = Distance::Radial;
     });
-    Frame "fog-exp2-form" "exponential fog of the square is of the other form" |frame| each_fog(frame, |fog| fog.form = match fog.form {
-        FogForm::Exp2Document { density } => FogForm::Exp2OpenGl { density },
-        FogForm::Exp2OpenGl { density } => FogForm::Exp2Document { density },
-        other => other,
+    Frame "fog-planar" "fog is by the depth, not by the distance from the eye" @ "three.js; OpenGL drivers" |frame| each_fog(frame, |fog| if fog.distance == Distance::Radial {
+        fog.distance = Distance::Planar;
+    });
+    Frame "fog-exp2-opengl-for-document" "exponential fog of the square squares the density, too, as OpenGL does" @ "OpenGL; three.js, FogExp2" |frame| each_fog(frame, |fog| if let FogForm::Exp2Document { density } = fog.form {
+        fog.form = FogForm::Exp2OpenGl { density };
+    });
+    Frame "fog-exp2-document-for-opengl" "exponential fog of the square does not square the density" @ "document 000" |frame| each_fog(frame, |fog| if let FogForm::Exp2OpenGl { density } = fog.form {
+        fog.form = FogForm::Exp2Document { density };
     });
     Frame "fog-exp-for-exp2" "fog is of the distance in the place of its square" |frame| each_fog(frame, |fog| if let FogForm::Exp2Document { density } | FogForm::Exp2OpenGl { density } = fog.form {
         fog.form = FogForm::Exp { density };
     });
-    Frame "fog-exp2-for-exp" "fog is of the distance's square in the place of the distance" |frame| each_fog(frame, |fog| if let FogForm::Exp { density } = fog.form {
+    Frame "fog-exp2-for-exp" "fog is of the distance's square in the place of the distance" @ "three.js, FogExp2" |frame| each_fog(frame, |fog| if let FogForm::Exp { density } = fog.form {
         fog.form = FogForm::Exp2OpenGl { density };
     });
-    Frame "fog-smoothstep" "linear fog follows smoothstep" |frame| if matches!(frame.fog, Some(Fog { form: FogForm::Linear { .. }, .. })) {
+    Frame "fog-smoothstep" "linear fog follows smoothstep" @ "three.js, Fog" |frame| if matches!(frame.fog, Some(Fog { form: FogForm::Linear { .. }, .. })) {
         frame.departures.smoothstep_fog = true;
     };
     Frame "fog-ends-swapped" "where linear fog begins and where it ends are swapped" |frame| each_fog(frame, |fog| if let FogForm::Linear { dmin, dmax } = &mut fog.form {
@@ -175,62 +201,65 @@ faults! {
     Frame "fog-black" "fog is black" |frame| each_fog(frame, |fog| fog.color = [0.0; 3]);
     // Blending, depth, order.
     Frame "blend-left-out" "blending is left out" |frame| each_draw(frame, |draw| draw.blend = None);
-    Frame "blend-premultiplied" "colours are taken as multiplied by their alpha already" |frame| each_state(frame, |state| if state.src == Factor::SrcAlpha { state.src = Factor::One });
+    Frame "blend-premultiplied" "colours are taken as multiplied by their alpha already" @ "three.js, premultipliedAlpha" |frame| each_state(frame, |state| if state.src == Factor::SrcAlpha { state.src = Factor::One });
     Frame "blend-factors-swapped" "the factors of source and destination are swapped" |frame| each_state(frame, |state| std::mem::swap(&mut state.src, &mut state.dst));
     Frame "blend-additive" "colours are added whatever the destination's factor" |frame| each_state(frame, |state| state.dst = Factor::One);
-    Frame "alpha-one" "what is translucent is opaque" |frame| each_draw(frame, |draw| draw.alpha = 1.0);
-    Frame "order-reversed" "objects are drawn in the reverse order" |frame| frame.draws.reverse();
+    Frame "alpha-one" "what is translucent is opaque" @ "three.js, materials not marked transparent" |frame| each_draw(frame, |draw| draw.alpha = 1.0);
+    Frame "order-reversed" "objects are drawn in the reverse order" @ "transparent objects sorted front to back" |frame| frame.draws.reverse();
     Frame "depth-left-out" "the depth test is left out" |frame| each_draw(frame, |draw| draw.depth = None);
     Frame "depth-always-written" "what is blended leaves its depth" |frame| each_draw(frame, |draw| if let Some(test) = &mut draw.depth { test.write = true });
-    Frame "cull-other-face" "the other faces are culled" |frame| each_draw(frame, |draw| draw.cull = match draw.cull {
-        Cull::Back => Cull::Front,
-        Cull::Front => Cull::Back,
-        Cull::None => Cull::None,
+    Frame "front-culled-for-back" "front faces are culled in the place of back faces" @ "clockwise front faces; a mirrored projection" |frame| each_draw(frame, |draw| if draw.cull == Cull::Back {
+        draw.cull = Cull::Front;
     });
     Frame "cull-left-out" "no face is culled" |frame| each_draw(frame, |draw| draw.cull = Cull::None);
     // Textures and colours of vertices.
     Frame "texture-left-out" "textures are left out" |frame| each_draw(frame, |draw| draw.texture = None);
-    Frame "texture-replaces" "a texture takes the colour's place, or multiplies it, wrongly" |frame| each_draw(frame, |draw| if let Some(texture) = &mut draw.texture { texture.replaces = !texture.replaces });
-    Frame "texture-filter" "textures are read by the other filter" |frame| each_draw(frame, |draw| if let Some(texture) = &mut draw.texture {
-        texture.sampled.filter = match texture.sampled.filter {
-            TextureFilter::Nearest => TextureFilter::Bilinear,
-            TextureFilter::Bilinear => TextureFilter::Nearest,
-        };
+    Frame "texture-replaces" "a texture takes the place of the colour that it should multiply" @ "OpenGL's GL_REPLACE" |frame| each_texture(frame, |texture| if !texture.replaces {
+        texture.replaces = true;
     });
-    Frame "texture-wrap" "textures go on in the other way beyond their edges" |frame| each_draw(frame, |draw| if let Some(texture) = &mut draw.texture {
-        texture.sampled.wrap = match texture.sampled.wrap {
-            Wrap::Repeat => Wrap::Clamp,
-            Wrap::Clamp => Wrap::Repeat,
-        };
+    Frame "texture-multiplies" "a texture multiplies the colour whose place it should take" @ "OpenGL's GL_MODULATE" |frame| each_texture(frame, |texture| if texture.replaces {
+        texture.replaces = false;
     });
-    Frame "texture-upside-down" "textures are upside down" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.uvs).for_each(|uv| uv[1] = 1.0 - uv[1]);
+    Frame "texture-filtered" "textures are filtered bilinearly, not read at the nearest texel" |frame| each_texture(frame, |texture| if texture.sampled.filter == TextureFilter::Nearest {
+        texture.sampled.filter = TextureFilter::Bilinear;
+    });
+    Frame "texture-not-filtered" "textures are read at the nearest texel, not filtered bilinearly" |frame| each_texture(frame, |texture| if texture.sampled.filter == TextureFilter::Bilinear {
+        texture.sampled.filter = TextureFilter::Nearest;
+    });
+    Frame "texture-clamped" "textures are clamped at their edges, not repeated" @ "WebGPU's default, clamp-to-edge" |frame| each_texture(frame, |texture| if texture.sampled.wrap == Wrap::Repeat {
+        texture.sampled.wrap = Wrap::Clamp;
+    });
+    Frame "texture-repeated" "textures are repeated beyond their edges, not clamped" @ "OpenGL's default, GL_REPEAT" |frame| each_texture(frame, |texture| if texture.sampled.wrap == Wrap::Clamp {
+        texture.sampled.wrap = Wrap::Repeat;
+    });
+    Frame "texture-upside-down" "textures are upside down" @ "OpenGL's origin of images for WebGPU's" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.uvs).for_each(|uv| uv[1] = 1.0 - uv[1]);
     Frame "lightmap-left-out" "lightmaps are left out" |frame| each_draw(frame, |draw| draw.lightmap = None);
     Frame "vertex-colours-left-out" "the vertices' colours are left out" |frame| each_draw(frame, |draw| draw.vertex_colors = false);
     Frame "cutout-left-out" "nothing is cut out" |frame| each_draw(frame, |draw| draw.cutout = None);
     // Where pixels are.
-    Frame "half-pixel" "all is half a pixel to the right and down" |frame| shift(frame, [0.5, 0.5]);
-    Frame "mirrored" "the image is mirrored" |frame| scale(frame, 0, -1.0);
+    Frame "half-pixel" "all is half a pixel to the right and down" @ "Direct3D 9" |frame| shift(frame, [0.5, 0.5]);
+    Frame "mirrored" "the image is mirrored" @ "a left-handed camera for a right-handed one" |frame| scale(frame, 0, -1.0);
     Frame "background-black" "the background is black" |frame| frame.background = [0.0, 0.0, 0.0, frame.background[3]];
-    Place "upside-down" "the image is upside down" |[x, y], [_, height]| [x, height - 1 - y];
+    Place "upside-down" "the image is upside down" @ "OpenGL's origin for WebGPU's" |[x, y], [_, height]| [x, height - 1 - y];
     // How colours are written.
-    Color "red-and-blue-swapped" "red and blue are swapped" |[r, g, b, a]| [b, g, r, a];
-    Color "srgb-encoded" "colours are encoded as sRGB and the target is not" |pixel| each_color(pixel, |c| color::srgb_encode(c.clamp(0.0, 1.0)));
+    Color "red-and-blue-swapped" "red and blue are swapped" @ "BGRA read as RGBA" |[r, g, b, a]| [b, g, r, a];
+    Color "srgb-encoded" "colours are encoded as sRGB and the target is not" @ "three.js, the default output colour space" |pixel| each_color(pixel, |c| color::srgb_encode(c.clamp(0.0, 1.0)));
     Color "gamma-encoded" "colours are raised to the power 1/2.2" |pixel| each_color(pixel, |c| c.max(0.0).powf(1.0 / 2.2));
     Color "gamma-decoded" "colours are raised to the power 2.2" |pixel| each_color(pixel, |c| c.max(0.0).powf(2.2));
-    Color "clamped" "colours are clamped to 1 and the target is not" |pixel| each_color(pixel, |c| c.clamp(0.0, 1.0));
-    Color "premultiplied" "colours are multiplied by their alpha" |[r, g, b, a]| [r * a, g * a, b * a, a];
+    Color "clamped" "colours are clamped to 1 and the target is not" @ "OpenGL's fixed function" |pixel| each_color(pixel, |c| c.clamp(0.0, 1.0));
+    Color "premultiplied" "colours are multiplied by their alpha" @ "a browser's canvas" |[r, g, b, a]| [r * a, g * a, b * a, a];
     Color "alpha-lost" "alpha is 1 everywhere" |[r, g, b, _]| [r, g, b, 1.0];
-    Color "truncated" "steps of 8 bits are truncated and not rounded" |pixel| pixel.map(|c| ((255.0 * c + 1e-9).floor() / 255.0).min(c));
-    Frame "shininess-of-1000-as-128" "the shininess is rescaled from a range of 1000 to one of 128" |frame| each_material(frame, |material| material.shininess *= 0.128);
+    Color "truncated" "steps of 8 bits are truncated and not rounded" @ "int(255·c)" |pixel| pixel.map(|c| ((255.0 * c + 1e-9).floor() / 255.0).min(c));
+    Frame "shininess-of-1000-as-128" "the shininess is rescaled from a range of 1000 to one of 128" @ "importers of Wavefront materials for OpenGL" |frame| each_material(frame, |material| material.shininess *= 0.128);
     Frame "shininess-ignored" "the shininess is ignored: the highlight is the bare cosine" |frame| each_material(frame, |material| material.shininess = 1.0);
-    Frame "attenuation-plus-one" "the divisor of attenuation has 1 added" |frame| each_falloff(frame, |falloff| if falloff[1] + falloff[2] > 0.0 { falloff[0] += 1.0 });
+    Frame "attenuation-plus-one" "the divisor of attenuation has 1 added" @ "PlayCanvas; (1 + d²) that never divides by 0" |frame| each_falloff(frame, |falloff| if falloff[1] + falloff[2] > 0.0 { falloff[0] += 1.0 });
     Frame "spot-exponent-fourfold" "a spotlight's exponent is 4 times what was asked" |frame| each_place(frame, |place| if let Place::Spot { exponent, .. } = place { *exponent *= 4.0 });
     Frame "spot-axis-reversed" "spotlights point the other way" |frame| each_place(frame, |place| if let Place::Spot { axis, .. } = place { negate(axis) });
     Frame "fog-density-squared" "the fog's density is squared" |frame| each_fog(frame, |fog| if let FogForm::Exp { density } | FogForm::Exp2Document { density } | FogForm::Exp2OpenGl { density } = &mut fog.form { *density *= *density });
-    Frame "sampled-at-the-pixel-corner" "a pixel is sampled at its upper left corner, not at its middle" |frame| shift(frame, [-0.5, -0.5]);
-    Color "in-half-precision" "the image is held in half precision" |pixel| each_color(pixel, |c| c.in_half(Narrowing::Rounded));
-    Color "in-8-bits" "the image is held in 8 bits on its way" |pixel| each_color(pixel, |c| (255.0 * c.clamp(0.0, 1.0)).round_ties_even() / 255.0);
-    Color "srgb-encoded-twice" "colours are encoded for sRGB twice" |pixel| each_color(pixel, |c| color::srgb_encode(color::srgb_encode(c.clamp(0.0, 1.0))));
+    Frame "sampled-at-the-pixel-corner" "a pixel is sampled at its upper left corner, not at its middle" @ "Direct3D 9" |frame| shift(frame, [-0.5, -0.5]);
+    Color "in-half-precision" "the image is held in half precision" @ "mediump; rgba16float targets" |pixel| each_color(pixel, |c| c.in_half(Narrowing::Rounded));
+    Color "in-8-bits" "the image is held in 8 bits on its way" @ "intermediate targets of 8 bits" |pixel| each_color(pixel, |c| (255.0 * c.clamp(0.0, 1.0)).round_ties_even() / 255.0);
+    Color "srgb-encoded-twice" "colours are encoded for sRGB twice" @ "an sRGB target beneath a shader that encodes" |pixel| each_color(pixel, |c| color::srgb_encode(color::srgb_encode(c.clamp(0.0, 1.0))));
     Color "half-as-bright" "all is half as bright" |pixel| each_color(pixel, |c| 0.5 * c);
 }
 
@@ -269,6 +298,10 @@ fn each_material(frame: &mut Frame, change: impl Fn(&mut Material)) {
 
 fn each_shading(frame: &mut Frame, change: impl Fn(&mut Shading)) {
     each_draw(frame, |draw| draw.shading.iter_mut().for_each(&change));
+}
+
+fn each_texture(frame: &mut Frame, change: impl Fn(&mut Textured)) {
+    each_draw(frame, |draw| draw.texture.iter_mut().for_each(&change));
 }
 
 fn each_fog(frame: &mut Frame, change: impl Fn(&mut Fog)) {

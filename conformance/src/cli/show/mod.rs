@@ -154,7 +154,7 @@ impl Show {
 
     /// Without an adapter that was asked for, a machine without a driver still shows the case.
     fn answers(&self, member: &Member, inputs: &[f32]) -> anyhow::Result<(Vec<Answer>, Vec<UnitAnswer>)> {
-        let (code, subjects) = (self.choice.code()?, self.subjects()?);
+        let (code, subjects) = (self.choice.code(false)?, self.subjects()?);
         let (mut answers, mut unit, members) = (vec![], vec![], [member]);
         for mut subject in subjects {
             if let Kind::Blend(program) = member.spec.kind {

@@ -96,7 +96,7 @@ pub(super) fn show(
     as_json: bool,
 ) -> anyhow::Result<String> {
     let frame = &loaded.frame;
-    let rows = rows(frame, *pixel, choice.profile, subjects, &choice.code()?)?;
+    let rows = rows(frame, *pixel, choice.profile, subjects, &choice.code(true)?)?;
     let width = frame.target.width as usize;
     if as_json {
         let shown = ShownPixel {

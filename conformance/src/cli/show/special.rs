@@ -27,7 +27,7 @@ pub(super) fn show(
     subjects: &[Subject],
     as_json: bool,
 ) -> anyhow::Result<String> {
-    let code = choice.code()?;
+    let code = choice.code(false)?;
     let mut results = vec![];
     for subject in subjects {
         let found = evaluate(subject, &code, &[probe])?.unwrap_or_else(|| Results {

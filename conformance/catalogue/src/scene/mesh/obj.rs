@@ -32,6 +32,10 @@ pub(super) fn parts(
             *missing.borrow_mut() = Some(unreadable(&path, &error));
             tobj::LoadError::OpenFileFailed
         })?;
+        if let Some(problem) = broken_color(&bytes) {
+            *missing.borrow_mut() = Some(unreadable(&path, &problem));
+            return Err(tobj::LoadError::MaterialParseError);
+        }
         tobj::load_mtl_buf(&mut BufReader::new(bytes.as_slice()))
     };
     let (models, materials) = tobj::load_obj_buf(&mut BufReader::new(bytes.as_slice()), &options, library)
@@ -55,6 +59,18 @@ pub(super) fn parts(
             Ok(Part { name: model.name, mesh: mesh(at, &model.mesh)?, surface })
         })
         .collect()
+}
+
+/// What is wrong with the first colour of an MTL that has too few numbers, at which the library that reads it panics.
+fn broken_color(mtl: &[u8]) -> Option<String> {
+    let text = String::from_utf8_lossy(mtl);
+    let broken = |(number, line): (usize, &str)| {
+        let mut words = line.split_whitespace();
+        let keyword = words.next().filter(|word| ["Ka", "Kd", "Ks", "Ke"].contains(word))?;
+        let numbers = words.count();
+        (numbers < 3).then(|| format!("line {} has {numbers} numbers after {keyword}; expected 3", number + 1))
+    };
+    text.lines().enumerate().find_map(broken)
 }
 
 fn mesh(at: &At<'_>, from: &tobj::Mesh) -> Result<Mesh, SceneError> {

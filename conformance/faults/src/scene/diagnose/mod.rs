@@ -1,15 +1,22 @@
 //! Mistakes tried as explanations of the pixels that fail. Only pixels that are looked at are drawn anew: a part of those that fail
 //! and of those that pass. What explains them is then held against the whole image.
 
+mod chance;
+mod common;
+mod parameter;
+
 use super::{SCENE_FAULTS, SceneFault, colors, draw, draw_at, places, with};
 use lightmeter_arithmetic::Profile;
+use lightmeter_document::thousands;
 use lightmeter_judge::blend_unit::pixel;
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::expect::Expectation;
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::{Encoding, TargetFormat};
+use parameter::{FACTORS, PARAMETERS, Scaled};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::cmp::Reverse;
 use std::fmt::Write as _;
 
@@ -29,16 +36,18 @@ const MOST_CONTRADICTED: f64 = 0.02;
 const STEP_ERROR: f64 = 1e-6;
 /// Explanations that are tried with all that is legal.
 const MOST_TRIED: usize = 5;
+/// How unlikely chance must be, in bits, beyond the number of mistakes that are tried.
+const BEYOND_CHANCE: f64 = 10.0;
 /// Others that are told beside one that explains no more.
 const MOST_EQUAL: usize = 2;
-/// What failing components have in common is told where so large a part of them has it.
-const COMMON: f64 = 0.95;
 
 /// What may have been drawn in a frame's place.
 #[derive(Clone, Debug)]
 pub struct SceneExplanation {
     /// The mistakes.
     pub faults: Vec<&'static SceneFault>,
+    /// A parameter that is wrong.
+    scaled: Option<Scaled>,
     /// Failing components that are legal of it, of those that were looked at.
     pub explained: usize,
     /// Passing components that are not, in the whole image: counted where few are, else estimated.
@@ -82,8 +91,22 @@ pub struct Trial<'a> {
 struct Near {
     misses: usize,
     distance: f64,
-    faults: Vec<&'static SceneFault>,
+    made: Made,
     drawn: Vec<[f64; 4]>,
+}
+
+/// What may have been done wrong.
+#[derive(Clone, Debug)]
+struct Made {
+    faults: Vec<&'static SceneFault>,
+    scaled: Option<Scaled>,
+}
+
+impl Made {
+    /// The frame with the wrong parameter, without the mistakes.
+    fn base<'f>(&self, frame: &'f Frame) -> Cow<'f, Frame> {
+        self.scaled.map_or(Cow::Borrowed(frame), |scaled| Cow::Owned(scaled.frame(frame)))
+    }
 }
 
 impl<'a> Trial<'a> {
@@ -133,9 +156,13 @@ impl<'a> Trial<'a> {
         }
         let singles = self.near(SCENE_FAULTS.iter().map(|fault| vec![fault]).collect());
         let pairs = pairs(&singles);
-        let mut found = self.tried(singles);
+        let mut found = self.tried(singles, SCENE_FAULTS.len());
         if found.is_empty() {
-            found = self.tried(self.near(pairs));
+            found = self.tried(self.scaled(), SCENE_FAULTS.len() + PARAMETERS.len() * FACTORS.len());
+        }
+        if found.is_empty() {
+            let count = SCENE_FAULTS.len() + pairs.len();
+            found = self.tried(self.near(pairs), count);
         }
         let sentence = if found.is_empty() { self.unnamed() } else { self.named(&found) };
         told(found, sentence)
@@ -143,22 +170,22 @@ impl<'a> Trial<'a> {
 
     /// The mistakes that change something, the nearest first.
     fn near(&self, candidates: Vec<Vec<&'static SceneFault>>) -> Vec<Near> {
-        let mut near: Vec<Near> = candidates.into_par_iter().filter_map(|faults| self.probe(faults)).collect();
-        near.sort_by(|a, b| a.misses.cmp(&b.misses).then(a.distance.total_cmp(&b.distance)));
-        near
+        let made = |faults| Made { faults, scaled: None };
+        nearest_first(candidates.into_par_iter().filter_map(|faults| self.probe(made(faults))).collect())
     }
 
     /// How near these mistakes come; `None` where they change nothing.
-    fn probe(&self, faults: Vec<&'static SceneFault>) -> Option<Near> {
+    fn probe(&self, made: Made) -> Option<Near> {
         let format = self.image.format;
-        let drawn = if faults.iter().all(|fault| fault.is_of_color()) {
+        let faults = &made.faults;
+        let drawn = if made.scaled.is_none() && faults.iter().all(|fault| fault.is_of_color()) {
             let mut pixels = self.right.clone();
-            colors(&mut pixels, &faults);
+            colors(&mut pixels, faults);
             pixels.into_iter().map(|color| stored(format, color)).collect()
-        } else if faults.iter().any(|fault| fault.is_of_frame()) && with(self.frame, &faults) == *self.frame {
+        } else if faults.iter().any(|fault| fault.is_of_frame()) && with(self.frame, faults) == *self.frame {
             return None;
         } else {
-            draw_at(self.frame, &faults, &self.looked_at)
+            draw_at(&made.base(self.frame), faults, &self.looked_at)
         };
         let value = |&(place, k): &(usize, usize)| (self.image.pixels[self.looked_at[place]][k], drawn[place][k]);
         let is_far = |of: &&(usize, usize)| {
@@ -171,7 +198,7 @@ impl<'a> Trial<'a> {
         let misses =
             self.failing_there.iter().filter(is_far).count() + self.passing_there.iter().filter(is_far).count();
         let distance = self.failing_there.iter().map(value).map(|(value, drawn)| (value - drawn).abs()).sum();
-        Some(Near { misses, distance, faults, drawn })
+        Some(Near { misses, distance, made, drawn })
     }
 
     /// How far a value may be from the middle of what is legal, in units.
@@ -181,10 +208,11 @@ impl<'a> Trial<'a> {
     }
 
     /// The nearest, each held against all that is legal of it: those that explain what fails, the best first.
-    fn tried(&self, mut near: Vec<Near>) -> Vec<SceneExplanation> {
+    fn tried(&self, mut near: Vec<Near>, candidates: usize) -> Vec<SceneExplanation> {
         near.retain(|near| 2 * near.misses <= self.failing_there.len());
         near.truncate(MOST_TRIED);
-        let mut found: Vec<SceneExplanation> = near.into_iter().filter_map(|near| self.explanation(near)).collect();
+        let mut found: Vec<SceneExplanation> =
+            near.into_iter().filter_map(|near| self.explanation(near, candidates)).collect();
         let key = |one: &SceneExplanation| (Reverse(one.explained), one.faults.len());
         found.sort_by(|a, b| {
             let by_contradiction = a.contradicted.total_cmp(&b.contradicted);
@@ -194,30 +222,35 @@ impl<'a> Trial<'a> {
     }
 
     /// An explanation, where it explains nearly all that fails and what passes does not contradict it.
-    fn explanation(&self, Near { distance, faults, drawn, .. }: Near) -> Option<SceneExplanation> {
-        let legal = self.legal(&faults, &self.looked_at);
+    fn explanation(&self, Near { distance, made, drawn, .. }: Near, candidates: usize) -> Option<SceneExplanation> {
+        let legal = self.legal(&made, &self.looked_at);
         let is_legal = |&&(place, k): &&(usize, usize)| {
             let ([low, high], value) = (legal[place][k], self.image.pixels[self.looked_at[place]][k]);
             low <= value && value <= high
         };
         let explained = self.failing_there.iter().filter(is_legal).count();
-        let whole = if faults.len() > 1 { WHOLE_OF_TWO } else { WHOLE };
+        let whole = if made.faults.len() > 1 { WHOLE_OF_TWO } else { WHOLE };
         if real(explained) < whole * real(self.failing_there.len()) {
+            return None;
+        }
+        if self.bits(&legal) < real(candidates).log2() + BEYOND_CHANCE {
             return None;
         }
         let passing = self.passing_there.len();
         let contradicted = passing - self.passing_there.iter().filter(is_legal).count();
         let estimated = real(contradicted) * real(self.passing) / real(passing.max(1));
-        let contradicted = estimated.max(self.contradicted(&faults));
+        let contradicted = estimated.max(self.contradicted(&made));
         if contradicted >= MOST_CONTRADICTED * real(self.failing.len()) {
             return None;
         }
-        Some(SceneExplanation { faults, explained, contradicted, distance, drawn })
+        let Made { faults, scaled } = made;
+        Some(SceneExplanation { faults, scaled, explained, contradicted, distance, drawn })
     }
 
     /// The legal values of some pixels where these mistakes are made: the least and the greatest of each component.
-    fn legal(&self, faults: &[&'static SceneFault], pixels: &[usize]) -> Vec<[[f64; 2]; 4]> {
-        let (frame, format) = (with(self.frame, faults), self.image.format);
+    fn legal(&self, made: &Made, pixels: &[usize]) -> Vec<[[f64; 2]; 4]> {
+        let faults = &made.faults;
+        let (frame, format) = (with(&made.base(self.frame), faults), self.image.format);
         let legal = Expectation::new(&frame, None, None, self.profile).at(&places(&frame, pixels, faults));
         let changes_color = faults.iter().any(|fault| fault.is_of_color());
         let ends = |legal: &LegalPixel| {
@@ -243,8 +276,8 @@ impl<'a> Trial<'a> {
 
     /// The passing components of the whole image that are far from what these mistakes draw, and that are not legal of them; where
     /// they are many, a part of them is tried.
-    fn contradicted(&self, faults: &[&'static SceneFault]) -> f64 {
-        let drawn = draw::<f64>(self.frame, faults);
+    fn contradicted(&self, made: &Made) -> f64 {
+        let drawn = draw::<f64>(&made.base(self.frame), &made.faults);
         let far: Vec<(usize, usize)> = (0..drawn.pixels.len())
             .filter(|&number| !self.expected[number].is_marked)
             .flat_map(|number| (0..4).map(move |k| (number, k)))
@@ -256,7 +289,7 @@ impl<'a> Trial<'a> {
             .collect();
         let tried: Vec<(usize, usize)> = spread(&far, LOOKED_AT).collect();
         let pixels: Vec<usize> = tried.iter().map(|&(number, _)| number).collect();
-        let legal = self.legal(faults, &pixels);
+        let legal = self.legal(made, &pixels);
         let is_legal = |((number, k), legal): (&(usize, usize), &[[f64; 2]; 4])| {
             let ([low, high], value) = (legal[*k], self.image.pixels[*number][*k]);
             low <= value && value <= high
@@ -269,9 +302,10 @@ impl<'a> Trial<'a> {
     fn named(&self, found: &[SceneExplanation]) -> String {
         let best = &found[0];
         let (there, all) = (self.failing_there.len(), self.failing.len());
-        let of = if there == all { String::new() } else { format!(" looked at, of {all},") };
+        let of = if there == all { String::new() } else { format!(" looked at, of {},", thousands(all as u64)) };
+        let [explained, there] = [best.explained, there].map(|count| thousands(count as u64));
         let mut told =
-            format!("{} of {there} failing components of pixels{of} are explained by: {}", best.explained, says(best));
+            format!("{explained} of {there} failing components of pixels{of} are explained by: {}", says(best));
         let is_equal = |other: &&SceneExplanation| other.explained == best.explained && other.drawn == best.drawn;
         for other in found[1..].iter().filter(is_equal).take(MOST_EQUAL) {
             let _ = write!(told, "; or, which draws the same: {}", says(other));
@@ -305,67 +339,6 @@ impl<'a> Trial<'a> {
             number / width
         ))
     }
-
-    /// The colour of an image that has no other, in units: it says nothing of how it came about.
-    fn flat(&self) -> Option<[f64; 4]> {
-        let (first, rest) = self.image.pixels.split_first()?;
-        let is_same = |pixel: &[f64; 4]| pixel.iter().zip(first).all(|(a, b)| a.to_bits() == b.to_bits());
-        (!rest.is_empty() && rest.iter().all(is_same)).then_some(*first)
-    }
-
-    /// What failing components have in common where nothing explains them.
-    fn unnamed(&self) -> String {
-        let told = format!("nothing in the catalogue explains the {} failing components of pixels", self.failing.len());
-        if let Some([r, g, b, a]) = self.flat() {
-            return told + &format!(": the whole image is {r} {g} {b} {a}");
-        }
-        let common: Vec<String> = [self.component(), self.sign(), self.region()].into_iter().flatten().collect();
-        if common.is_empty() { told } else { told + ": " + &common.join(", ") }
-    }
-
-    /// The one component that nearly all failing ones are of.
-    fn component(&self) -> Option<String> {
-        (0..4).find_map(|k| {
-            let how_many = self.share(|number| number % 4 == k)?;
-            Some(format!("{how_many} are {}", NAMES[k]))
-        })
-    }
-
-    /// Whether nearly all are too great, or too small.
-    fn sign(&self) -> Option<String> {
-        let (value, legal) =
-            (|number: usize| self.image.pixels[number / 4][number % 4], |number| &self.expected[number / 4]);
-        let great = self.share(|number| value(number) > legal(number).high[number % 4]);
-        let small = self.share(|number| value(number) < legal(number).low[number % 4]);
-        let no_number = self.share(|number| value(number).is_nan());
-        let told = [(great, "too great"), (small, "too small"), (no_number, "not a number")];
-        told.into_iter().find_map(|(how_many, what)| Some(format!("{} are {what}", how_many?)))
-    }
-
-    /// The rectangle that holds all of them, where it is less than half of the image.
-    fn region(&self) -> Option<String> {
-        let width = self.image.width;
-        let (mut columns, mut rows) = ([usize::MAX, 0], [usize::MAX, 0]);
-        for number in &self.failing {
-            let (x, y) = (number / 4 % width, number / 4 / width);
-            columns = [columns[0].min(x), columns[1].max(x)];
-            rows = [rows[0].min(y), rows[1].max(y)];
-        }
-        let area = (columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1);
-        let [[left, right], [top, bottom]] = [columns, rows];
-        (2 * area < self.image.pixels.len())
-            .then(|| format!("all are in columns {left} to {right} and rows {top} to {bottom}"))
-    }
-
-    /// How many of the failing components have something: `all`, `nearly all`, or else nothing to be told.
-    fn share(&self, has: impl Fn(usize) -> bool) -> Option<&'static str> {
-        let count = self.failing.iter().filter(|&&number| has(number)).count();
-        match count {
-            all if all == self.failing.len() => Some("all"),
-            count if real(count) >= COMMON * real(self.failing.len()) => Some("nearly all"),
-            _ => None,
-        }
-    }
 }
 
 /// The components of a pixel.
@@ -373,7 +346,7 @@ pub(super) const NAMES: [&str; 4] = ["red", "green", "blue", "alpha"];
 
 /// Pairs of those that come nearest, with each of others.
 fn pairs(near: &[Near]) -> Vec<Vec<&'static SceneFault>> {
-    let singles: Vec<&'static SceneFault> = near.iter().map(|near| near.faults[0]).take(OTHERS).collect();
+    let singles: Vec<&'static SceneFault> = near.iter().map(|near| near.made.faults[0]).take(OTHERS).collect();
     let first = &singles[..singles.len().min(PAIRED)];
     let with_others = |(place, &one): (usize, &&'static SceneFault)| {
         singles[place + 1..].iter().map(move |&other| vec![one, other]).collect::<Vec<_>>()
@@ -382,7 +355,15 @@ fn pairs(near: &[Near]) -> Vec<Vec<&'static SceneFault>> {
 }
 
 fn says(explanation: &SceneExplanation) -> String {
-    explanation.faults.iter().map(|fault| fault.says).collect::<Vec<_>>().join(", and ")
+    let scaled = explanation.scaled.map(Scaled::says);
+    let faults = explanation.faults.iter().map(|fault| fault.says.to_owned());
+    scaled.into_iter().chain(faults).collect::<Vec<_>>().join(", and ")
+}
+
+/// The nearest first.
+fn nearest_first(mut near: Vec<Near>) -> Vec<Near> {
+    near.sort_by(|a, b| a.misses.cmp(&b.misses).then(a.distance.total_cmp(&b.distance)));
+    near
 }
 
 fn is_within(value: &[f64; 4], legal: &LegalPixel, k: usize) -> bool {

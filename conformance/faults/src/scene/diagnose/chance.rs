@@ -1,0 +1,40 @@
+//! Whether an explanation says more than chance would.
+
+use super::{Trial, real, slack};
+use std::collections::HashSet;
+
+/// Bits that a component tells at most, and that it tells where it is as dark or as bright as can be: then only which way it errs.
+const BITS: [f64; 2] = [8.0, 1.0];
+/// Bits that may be told at most by where pixels fail, and as many by where they pass.
+const PLACES: f64 = 9.0;
+
+impl Trial<'_> {
+    /// How unlikely it is that chance would explain as much, in bits. A component that is explained tells the more, the narrower what is
+    /// legal of it, and one like another tells nothing more. What fails and what passes tells something by where it is.
+    pub(super) fn bits(&self, legal: &[[[f64; 2]; 4]]) -> f64 {
+        let format = self.image.format;
+        let is_unorm = format.is_unorm();
+        let ends = |k: usize| {
+            let values = self.image.pixels.iter().map(|pixel| pixel[k]).filter(|value| value.is_finite());
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+        };
+        let ranges: [[f64; 2]; 4] = std::array::from_fn(|k| if is_unorm { [0.0, 255.0] } else { ends(k) });
+        let mut told = HashSet::new();
+        let mut bits = 0.0;
+        for &(place, k) in &self.failing_there {
+            let ([low, high], value) = (legal[place][k], self.image.pixels[self.looked_at[place]][k]);
+            let is_legal = low <= value && value <= high;
+            if !is_legal || !told.insert((k, value.to_bits(), low.to_bits(), high.to_bits())) {
+                continue;
+            }
+            let [darkest, brightest] = ranges[k];
+            let is_at_an_end = is_unorm && (value <= darkest || value >= brightest);
+            let step = if is_unorm { 1.0 } else { slack(format, value) };
+            let specific = ((brightest - darkest).max(step) / (high - low + step)).log2();
+            bits += if is_at_an_end { BITS[1] } else { specific.clamp(0.0, BITS[0]) };
+        }
+        let wrong: HashSet<usize> = self.failing_there.iter().map(|&(place, _)| place).collect();
+        let right = self.looked_at.len() - wrong.len();
+        bits + [wrong.len(), right].map(|count| real(count + 1).log2().min(PLACES)).iter().sum::<f64>()
+    }
+}
