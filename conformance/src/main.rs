@@ -4,15 +4,29 @@
 
 mod cli;
 
-use clap::Parser as _;
+use clap::FromArgMatches as _;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match cli::Cli::parse().run() {
-        Ok(status) => status.into(),
-        Err(error) => {
-            cli::say(&format!("error: {error:#}"));
-            cli::Status::of(&error).into()
+    let status = command().unwrap_or_else(|error| {
+        cli::say(&format!("error: {error:#}"));
+        cli::Status::of(&error)
+    });
+    status.into()
+}
+
+/// Reads the command line, with what the project's file says, and does as it asks.
+fn command() -> anyhow::Result<cli::Status> {
+    let mut told = cli::Cli::told();
+    let words = cli::config::arguments(&told)?;
+    let parsed = told.try_get_matches_from_mut(words).and_then(|matches| cli::Cli::from_arg_matches(&matches));
+    match parsed {
+        Ok(command) => command.run(),
+        Err(error) if error.use_stderr() => {
+            cli::say(error.render().to_string().trim_end());
+            Ok(cli::Status::BadInput)
         }
+        // What is asked for by --help and --version.
+        Err(error) => error.exit(),
     }
 }

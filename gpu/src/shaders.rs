@@ -11,6 +11,16 @@ pub struct Shaders {
 }
 
 impl Shaders {
+    /// A function's text with the comment above it; `None` where the file has no such function.
+    #[must_use]
+    pub fn function(&self, file: &str, name: &str) -> Option<String> {
+        let lines: Vec<&str> = self.files.get(file)?.lines().collect();
+        let place = lines.iter().position(|line| line.starts_with(&format!("fn {name}(")))?;
+        let comment = lines[..place].iter().rev().take_while(|line| line.starts_with("//")).count();
+        let end = lines[place..].iter().position(|line| line.starts_with('}'))?;
+        Some(lines[place - comment..=place + end].join("\n"))
+    }
+
     /// The files that one requires, by its `// requires:` line, and those that they require in turn.
     pub(crate) fn required(&self, file: &str) -> Vec<String> {
         let mut found: Vec<String> = vec![];

@@ -98,7 +98,7 @@ fn the_cheapest_below_an_error_is_recommended() {
 #[test]
 fn bad_input_is_refused_with_what_would_be_right() {
     for (arguments, status, says) in [
-        (&["bench", "nothing/there"][..], 3, "no group matches"),
+        (&["bench", "nothing/there"][..], 2, "no group matches"),
         (&["bench", "fog/[", "--quick"], 2, "fog/["),
         (&["bench", "fog/exp", "--recommend", "small"], 2, "1e-4"),
         (&["bench", "fog/exp", "--recommend", "-1"], 2, "error"),

@@ -22,7 +22,7 @@ use lightmeter::gate::pack;
 use lightmeter::gate::picture;
 use lightmeter::gate::plan::GatePlan;
 use lightmeter::merge::merge;
-use lightmeter::report::{self, bench, github, junit, text};
+use lightmeter::report::{self, Level, bench, github, junit, text};
 use lightmeter::scene::library::asset;
 use lightmeter::scene::load;
 use lightmeter::select::{Member, catalogue};
@@ -148,7 +148,7 @@ fn baseline_gate(bytes: &[u8]) {
     in_file("baseline-gate.json", bytes, |path| accepted(Baseline::of_gate(path)));
     if let Some(report) = utf8(bytes).and_then(|text| accepted(GateReport::read(text))) {
         let mut out = String::new();
-        report::gate::text(&report, false, &mut out).expect("a string takes all");
+        report::gate::text(&report, false, Level::Verbose, &mut out).expect("a string takes all");
         said(out);
         report::gate::junit(&report).expect("any report is XML");
         commands(&github::of_gate(&report));
@@ -172,7 +172,8 @@ fn runs(bytes: &[u8]) {
     let Some(report) = utf8(bytes).and_then(|text| accepted(Report::read(text))) else { return };
     let detail = text::Detail::Families;
     let mut out = String::new();
-    text::write(&report, text::Style { detail, timing: true, is_told: false }, &mut out).expect("a string takes all");
+    text::write(&report, text::Style { detail, timing: true, is_told: false, level: Level::Verbose }, &mut out)
+        .expect("a string takes all");
     said(out);
     junit::to_string(&report).expect("any report is XML");
     commands(&github::of_run(&report));

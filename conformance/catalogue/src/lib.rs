@@ -2,6 +2,7 @@
 
 pub mod cases;
 pub mod filter;
+pub mod rulings;
 pub mod scene;
 pub mod select;
 pub mod special;

@@ -40,6 +40,9 @@ impl Observer for Silent {
     fn see(&mut self, _event: &Event<'_>) {}
 }
 
+/// Put in the place of a signal's number where a failure ends the work.
+const FIRST_FAILURE: usize = 1 << 16;
+
 /// Set once somebody wants work to end: it then ends as soon as it can, and what was judged is reported.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Arc<AtomicUsize>);
@@ -54,20 +57,36 @@ impl Stop {
     /// The signal that ends the work; `None` as long as it goes on.
     #[must_use]
     pub fn signal(&self) -> Option<i32> {
-        i32::try_from(self.0.load(Ordering::Relaxed)).ok().filter(|signal| *signal > 0)
+        let number = self.0.load(Ordering::Relaxed);
+        i32::try_from(number).ok().filter(|signal| *signal > 0 && number != FIRST_FAILURE)
     }
 
     /// Whether to end.
     #[must_use]
     pub fn is_set(&self) -> bool {
-        self.signal().is_some()
+        self.0.load(Ordering::Relaxed) != 0
     }
 
-    /// What a report says of `work` that a signal ended, such as `the bench`; `None` where no signal did.
+    /// Ends the work since something failed, unless a signal does already.
+    pub fn at_first_failure(&self) {
+        let _ = self.0.compare_exchange(0, FIRST_FAILURE, Ordering::Relaxed, Ordering::Relaxed);
+    }
+
+    /// Whether a failure ended it.
+    #[must_use]
+    pub fn is_at_first_failure(&self) -> bool {
+        self.0.load(Ordering::Relaxed) == FIRST_FAILURE
+    }
+
+    /// What a report says of `work` that was ended before its time, such as `the bench`; `None` where it was not.
     #[must_use]
     pub fn interrupted(&self, work: &str, under_way: &str) -> Option<Interrupted> {
-        let signal = self.signal()?;
-        let message = format!("a signal ended {work}");
-        Some(Interrupted { under_way: under_way.into(), message, signal: Some(signal) })
+        let signal = self.signal();
+        let what = match signal {
+            Some(_) => "a signal",
+            None if self.is_at_first_failure() => "the first failure",
+            None => return None,
+        };
+        Some(Interrupted { under_way: under_way.into(), message: format!("{what} ended {work}"), signal })
     }
 }

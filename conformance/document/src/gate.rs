@@ -3,7 +3,7 @@
 use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, RendererUse, is_zero};
 pub use crate::by_case::{KnownFailure, Problems, RendererIdentity};
 use crate::pack::Choice;
-use crate::run::{Failure, Group, Identity, Interrupted, Report, StoresOfShard, Totals};
+use crate::run::{ConfigUse, Failure, Group, Identity, Interrupted, Report, StoresOfShard, Totals};
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -73,6 +73,9 @@ pub struct GateReport {
     /// What is worse than in the baseline.
     #[serde(default)]
     pub regressions: Vec<String>,
+    /// What a project's `lightmeter.toml` said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub config: Option<ConfigUse>,
 }
 
 /// Counts of cases, but for the verdicts, which are of scalars.
@@ -285,6 +288,7 @@ impl GateReport {
             unstable: report.unstable_cases.clone(),
             expectations: report.expectations.clone(),
             regressions: report.regressions.clone(),
+            config: report.config.clone(),
         }
     }
 

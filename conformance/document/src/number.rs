@@ -8,6 +8,21 @@ use std::borrow::Cow;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Number(pub f64);
 
+impl Number {
+    /// The number as f32 has it, with the digits that tell it from its neighbours there, where it is one of f32; else all digits.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, clippy::float_cmp, reason = "whether it is one is what is asked")]
+    pub fn narrow(self) -> String {
+        let narrow = self.0 as f32;
+        match narrow.abs() {
+            _ if f64::from(narrow) != self.0 => self.to_string(),
+            size if size == 0.0 || (1e-4..1e7).contains(&size) => format!("{narrow}"),
+            _ if narrow.is_finite() => format!("{narrow:e}"),
+            _ => self.to_string(),
+        }
+    }
+}
+
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if self.0.is_finite() { serializer.serialize_f64(self.0) } else { serializer.serialize_str(&self.to_string()) }
@@ -94,6 +109,13 @@ mod tests {
     #[test]
     fn numbers_are_grouped() {
         assert_eq!([0, 999, 1000, 1_234_567].map(thousands), ["0", "999", "1,000", "1,234,567"]);
+    }
+
+    #[test]
+    fn numbers_of_f32_have_the_digits_of_f32() {
+        let shown = [0.1, f64::from(0.1_f32), 1e-40, f64::from(1e-40_f32), f64::INFINITY, -0.5, 3e9]
+            .map(|x| Number(x).narrow());
+        assert_eq!(shown, ["0.1", "0.1", "1e-40", "1e-40", "Inf", "-0.5", "3e9"]);
     }
 
     #[test]

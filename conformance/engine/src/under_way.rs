@@ -26,17 +26,16 @@ pub(crate) fn is_over(
     options: &Options,
     report: &mut Report,
 ) -> Result<bool, DeviceError> {
-    let under_way = under_way.to_owned();
-    match (judged, options.stop.signal()) {
+    match (judged, options.stop.interrupted("the run", under_way)) {
         (Err(error), _) if error.is_of_device() => {
+            let under_way = under_way.to_owned();
             report.interrupted.get_or_insert(Interrupted { under_way, message: error.to_string(), signal: None });
             Ok(true)
         }
         (Err(error), _) => Err(error),
         (Ok(()), None) => Ok(false),
-        (Ok(()), Some(signal)) => {
-            let message = "a signal ended the run".into();
-            report.interrupted.get_or_insert(Interrupted { under_way, message, signal: Some(signal) });
+        (Ok(()), Some(interrupted)) => {
+            report.interrupted.get_or_insert(interrupted);
             Ok(true)
         }
     }

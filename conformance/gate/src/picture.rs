@@ -125,7 +125,33 @@ fn decoded(bytes: &[u8], file: &str, fits: Fits<'_>) -> Result<Values, String> {
 }
 
 /// NumPy's format: an array (height, width, 3 or 4) of u8, f32 or f64, in C's order.
+/// Levels of brackets in an array's header. The length of the header, before it, may have a byte that looks like one.
+const MOST_NESTED: i32 = 3;
+
+/// Whether the header of an array nests more than an array of numbers needs: a dictionary with a tuple. What parses it takes a time that
+/// doubles with each further level.
+fn is_nested(bytes: &[u8]) -> bool {
+    let header = bytes.iter().take(1 << 16).take_while(|&&byte| byte != b'\n');
+    let mut depth = 0_i32;
+    header
+        .map(|byte| match byte {
+            b'{' | b'(' | b'[' => {
+                depth += 1;
+                depth
+            }
+            b'}' | b')' | b']' => {
+                depth -= 1;
+                depth
+            }
+            _ => depth,
+        })
+        .any(|depth| depth > MOST_NESTED)
+}
+
 fn npy(bytes: &[u8], name: &str, fits: Fits<'_>) -> Result<Values, String> {
+    if is_nested(bytes) {
+        return Err(format!("cannot read `{name}`: its header nests brackets; expected that of an array of numbers"));
+    }
     let file = npyz::NpyFile::new(bytes).map_err(|error| format!("cannot read `{name}`: {error}"))?;
     let shape = file.shape().to_vec();
     let [height, width, components @ (3 | 4)] = shape[..] else {

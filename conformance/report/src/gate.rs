@@ -1,5 +1,6 @@
 //! A gate's result for people, for CI servers and for GitHub.
 
+use crate::Level;
 use crate::against::{self, Against, listed};
 use crate::text::plain;
 use lightmeter_document::Number;
@@ -17,10 +18,16 @@ pub const MOST_TOLD: usize = 24;
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn text(report: &GateReport, is_told: bool, out: &mut impl Write) -> Result {
+pub fn text(report: &GateReport, is_told: bool, level: Level, out: &mut impl Write) -> Result {
     let renderer = &report.renderer;
-    writeln!(out, "{} {} · profile {} · {:.1} s", renderer.name, renderer.version, report.profile, report.seconds)?;
-    families(report, out)?;
+    if level > Level::Quiet {
+        if let Some(config) = &report.config {
+            writeln!(out, "{config}")?;
+        }
+        let version = if renderer.version.is_empty() { String::new() } else { format!(" {}", renderer.version) };
+        writeln!(out, "{}{version} · profile {} · {:.1} s", renderer.name, report.profile, report.seconds)?;
+        families(report, level, out)?;
+    }
     let failed: Vec<&GateGroup> = report.groups.iter().filter(|group| group.is_failed()).collect();
     for group in failed.iter().take(MOST_TOLD).filter(|_| !is_told) {
         told(group, &report.failures, out)?;
@@ -57,7 +64,11 @@ pub fn text(report: &GateReport, is_told: bool, out: &mut impl Write) -> Result 
             write!(out, ", {count} {what}")?;
         }
     }
-    writeln!(out, "; {} verdicts, {} of them where anything is legal", totals.verdicts, totals.indeterminate)?;
+    write!(out, "; {} verdicts", totals.verdicts)?;
+    match totals.indeterminate {
+        0 => writeln!(out)?,
+        undecided => writeln!(out, ", {undecided} of them undecided: there the accuracy rules permit any value")?,
+    }
     let Coverage { chosen, judged, excluded } = report.coverage();
     if excluded > 0 {
         writeln!(out, "of {} chosen {judged} were judged and {excluded} excluded", cases(chosen))
@@ -67,7 +78,7 @@ pub fn text(report: &GateReport, is_told: bool, out: &mut impl Write) -> Result 
 }
 
 /// A line a family.
-fn families(report: &GateReport, out: &mut impl Write) -> Result {
+fn families(report: &GateReport, level: Level, out: &mut impl Write) -> Result {
     let family = |group: &GateGroup| group.id.split('/').next().unwrap_or_default().to_owned();
     let mut names: Vec<String> = vec![];
     for group in report.groups.iter().filter(|group| group.asked > 0) {
@@ -90,22 +101,26 @@ fn families(report: &GateReport, out: &mut impl Write) -> Result {
         };
         let error = of.iter().map(|group| group.error_max.0).fold(0.0, lightmeter_document::worse);
         let margin = of.iter().map(|group| group.margin_max.0).fold(0.0, lightmeter_document::worse);
-        let what = match name.as_str() {
-            "scene" => "scenes",
-            "special" => "tables",
-            _ => "formulas",
+        let whats = match name.as_str() {
+            "scene" => ["scene", "scenes"],
+            "special" => ["table", "tables"],
+            _ => ["formula", "formulas"],
         };
+        let what = whats[usize::from(of.len() != 1)];
         write!(out, "{mark} {name:<14} {:>4} {what:<9} {asked:>9} cases", of.len())?;
         if failing > 0 {
-            write!(out, ", {failed} fail in {failing} {what}")?;
+            let fail = if failed == 1 { "fails" } else { "fail" };
+            write!(out, ", {failed} {fail} in {failing} {}", whats[usize::from(failing != 1)])?;
         }
         if missing > 0 {
             write!(out, ", {missing} never answered")?;
         }
         if judged == 0 {
             writeln!(out, ", none judged")?;
+        } else if level == Level::Verbose {
+            writeln!(out, ", errors up to {} ULP, {} % of what is legal", short(error), short(100.0 * margin))?;
         } else {
-            writeln!(out, ", errors up to {} ULP, {} of what is legal", short(error), short(margin))?;
+            writeln!(out)?;
         }
     }
     Ok(())
@@ -187,7 +202,8 @@ fn failure(failure: &GateFailure, out: &mut impl Write) -> Result {
         let name = failure.outputs.get(k).map_or("value", String::as_str);
         let is_legal = low.0 <= value.0 && value.0 <= high.0;
         let mark = if is_legal { ' ' } else { '✗' };
-        writeln!(out, "  {mark} {name:<14} {value}, legal from {low} to {high}, reference {reference}")?;
+        let (value, [low, high]) = (value.narrow(), [low, high].map(|end| end.narrow()));
+        writeln!(out, "  {mark} {name:<14} {value}, legal from {low} to {high}, reference {}", reference.narrow())?;
     }
     let target = failure.target.as_ref().map(|target| format!(" --target {target}")).unwrap_or_default();
     writeln!(out, "    lightmeter show {}{target}", failure.id)

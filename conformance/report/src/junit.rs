@@ -1,5 +1,6 @@
 //! A run's result as JUnit XML: a suite for each adapter, a test for each group and stage.
 
+use super::Level;
 use super::against::Against;
 use super::text;
 use lightmeter_document::run::{Group, Report};
@@ -72,7 +73,7 @@ fn status(group: &Group, report: &Report) -> TestCaseStatus {
         .filter(|f| f.adapter == group.adapter && f.stage == group.stage && f.target == group.target && of_group(&f.id))
     {
         // Writing to a string does not fail.
-        let _ = text::failure(failure, &mut description);
+        let _ = text::failure(failure, Level::Verbose, &mut description);
     }
     status.set_description(description);
     status

@@ -12,3 +12,15 @@ pub mod selftest;
 pub mod special;
 pub mod sweep;
 pub mod text;
+
+/// How much is said to people.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// What fails, and the verdict.
+    Quiet,
+    /// What was judged besides, and what is out of the ordinary.
+    #[default]
+    Normal,
+    /// All that is known: how near each family comes to its limits, hard cases, bits, what deviations excuse.
+    Verbose,
+}

@@ -1,5 +1,6 @@
 //! What fails, as text, as soon as it is judged.
 
+use crate::Level;
 use crate::gate::{MOST_TOLD, told};
 use crate::text::{failing_group, failure, formula_of};
 use lightmeter_document::event::Event;
@@ -11,6 +12,7 @@ use std::fmt::{Result, Write};
 /// Tells each group that fails once, and of each formula on an adapter one failing case.
 #[derive(Debug, Default)]
 pub struct Live {
+    level: Level,
     groups: BTreeSet<(String, String, String)>,
     formulas: BTreeSet<(String, String)>,
     /// Groups of a renderer that were told.
@@ -18,6 +20,12 @@ pub struct Live {
 }
 
 impl Live {
+    /// One that says so much.
+    #[must_use]
+    pub fn new(level: Level) -> Self {
+        Self { level, ..Self::default() }
+    }
+
     /// What there is to say of an event; nothing of most.
     #[must_use]
     pub fn text(&mut self, event: &Event<'_>) -> String {
@@ -51,7 +59,7 @@ impl Live {
         let mut told = is_new;
         for one in failures {
             if self.formulas.insert((formula_of(one).to_owned(), one.adapter.clone())) {
-                failure(one, out)?;
+                failure(one, self.level, out)?;
                 told = true;
             }
         }
@@ -74,8 +82,8 @@ mod tests {
             said += &live.text(&Event::Judged { group: &group, failures: vec![], is_scouted });
         }
         let lines: Vec<&str> = said.lines().filter(|line| !line.is_empty()).collect();
-        assert_eq!(lines.len(), 1, "{said}");
-        assert!(lines[0].contains("2 of the first 20") && lines[0].contains("it clamps"), "{said}");
+        assert_eq!(lines.len(), 2, "{said}");
+        assert!(lines[0].contains("2 of the first 20") && lines[1].contains("it clamps"), "{said}");
         assert_eq!(live.text(&Event::Group("fog/linear")), "");
     }
 }

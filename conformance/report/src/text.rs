@@ -1,10 +1,12 @@
 //! A run's result for people to read.
 
+use crate::Level;
 use crate::against::{self, Against};
 use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, ImageUse, Report, Tiers, Totals};
 use lightmeter_document::{Number, Word, is_worse, thousands, worse};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
+use std::collections::BTreeMap;
 use std::fmt::{Result, Write};
 
 /// How much is told.
@@ -25,6 +27,8 @@ pub struct Style {
     pub timing: bool,
     /// Whether failing cases were told already, as they were judged.
     pub is_told: bool,
+    /// How much is said.
+    pub level: Level,
 }
 
 /// Writes the report.
@@ -32,22 +36,31 @@ pub struct Style {
 /// # Errors
 /// Where the writer fails.
 pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
-    for adapter in &report.adapters {
-        writeln!(out, "{:<14} {} · {} · {}", adapter.name, adapter.device, adapter.backend, adapter.driver)?;
+    if style.level > Level::Quiet {
+        if let Some(config) = &report.config {
+            writeln!(out, "{config}")?;
+        }
+        for adapter in &report.adapters {
+            writeln!(out, "{}: {}, {}, {}", adapter.name, adapter.device, adapter.backend, adapter.driver)?;
+        }
+        writeln!(out)?;
+        let rows = match style.detail {
+            Detail::Families => families(&report.groups),
+            Detail::Groups => report.groups.iter().map(TableRow::of).collect(),
+        };
+        if !rows.is_empty() {
+            table(&rows, report.adapters.len() > 1, style.level, out)?;
+        }
     }
-    writeln!(out)?;
-    let rows = match style.detail {
-        Detail::Families => families(&report.groups),
-        Detail::Groups => report.groups.iter().map(TableRow::of).collect(),
-    };
-    table(&rows, out)?;
     if style.is_told {
         failing_groups(report, out)?;
     } else {
-        failures(report, out)?;
+        failures(report, style.level, out)?;
     }
-    writeln!(out)?;
-    notes(report, out)?;
+    if style.level > Level::Quiet {
+        writeln!(out)?;
+    }
+    notes(report, style.level, out)?;
     against::text(Against::of_run(report), out)?;
     if style.timing {
         let t = report.timing;
@@ -62,14 +75,14 @@ pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
     if let Some(interrupted) = &report.interrupted {
         writeln!(out, "interrupted: {} was under way: {}", interrupted.under_way, interrupted.message)?;
     }
-    verdict(report, out)
+    totals(&report.totals, report.is_success(), report.seconds, out)
 }
 
 /// Writes each group that fails, with what explains it, and of each formula on an adapter one failing case.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn failures(report: &Report, out: &mut impl Write) -> Result {
+pub fn failures(report: &Report, level: Level, out: &mut impl Write) -> Result {
     failing_groups(report, out)?;
     // One failure a formula and adapter explains more than many; the JSON has the first of every stage.
     let mut told: Vec<(&str, &str)> = vec![];
@@ -86,7 +99,7 @@ pub fn failures(report: &Report, out: &mut impl Write) -> Result {
         if !told.contains(&(formula, &failure.adapter)) {
             told.push((formula, &failure.adapter));
             writeln!(out)?;
-            self::failure(failure, out)?;
+            self::failure(failure, level, out)?;
         }
     }
     Ok(())
@@ -103,17 +116,15 @@ fn failing_groups(report: &Report, out: &mut impl Write) -> Result {
     Ok(())
 }
 
-/// Writes a line on a group that fails, whose counts are of some of its verdicts.
+/// Writes that a group fails, with what explains it. Its counts are of some of its verdicts.
 pub(crate) fn failing_group(group: &Group, of: &str, out: &mut impl Write) -> Result {
     let (failed, verdicts) = (thousands(group.totals.failed), thousands(group.totals.verdicts));
     write!(out, "✗ {} on {}, {}: {failed}{of} {verdicts} failed", group.id, group.adapter, group.place())?;
-    if let Some(explanation) = &group.explanation {
-        write!(out, "; {explanation}")?;
+    writeln!(out)?;
+    for what in group.explanation.iter().chain(&group.problem) {
+        writeln!(out, "  {what}")?;
     }
-    if let Some(problem) = &group.problem {
-        write!(out, "; {problem}")?;
-    }
-    writeln!(out)
+    Ok(())
 }
 
 /// The formula, or the scene, that a failure is of.
@@ -178,15 +189,75 @@ fn stability(report: &Report, out: &mut impl Write) -> Result {
     Ok(())
 }
 
-fn notes(report: &Report, out: &mut impl Write) -> Result {
-    for deviation in &report.deviations {
-        self::deviation(deviation, out)?;
+fn notes(report: &Report, level: Level, out: &mut impl Write) -> Result {
+    deviations(report, level, out)?;
+    skips(report, out)?;
+    if level == Level::Verbose {
+        stores(report, out)?;
+        images(report, out)?;
+        stability(report, out)?;
     }
-    for group in report.groups.iter().filter(|group| group.skip_reason.is_some()) {
-        let reason = group.skip_reason.as_deref().unwrap_or_default();
-        writeln!(out, "skipped {} on {}, {}: {reason}", group.id, group.adapter, group.place())?;
+    for special in report.special.iter().filter(|special| !special.is_as_recorded()) {
+        let (seen, recorded) = (&special.seen, special.recorded.as_deref().unwrap_or_default());
+        writeln!(
+            out,
+            "{} on {}, {}: {seen}, where {recorded} is on record",
+            special.id, special.adapter, special.target
+        )?;
     }
-    let mut routes = std::collections::BTreeMap::<_, u64>::new();
+    if level == Level::Verbose && !report.routes.is_empty() {
+        let states: u64 = report.routes.values().filter_map(serde_json::Value::as_u64).sum();
+        // They went another way before.
+        let dual = report.routes.get(Route::DualSource.name()).and_then(serde_json::Value::as_u64).unwrap_or(0);
+        let routes: Vec<String> = report.routes.iter().map(|(route, states)| format!("{states} {route}")).collect();
+        writeln!(
+            out,
+            "blend states: {} judged ({}), {} more are aliases of those",
+            thousands(states.saturating_sub(dual)),
+            routes.join(", "),
+            thousands(report.aliases)
+        )?;
+    }
+    Ok(())
+}
+
+/// The known deviations of each adapter: those that are still needed on one line, unless all is to be told.
+fn deviations(report: &Report, level: Level, out: &mut impl Write) -> Result {
+    for adapter in &report.adapters {
+        let is_of = |deviation: &&DeviationUse| deviation.adapter == adapter.name;
+        let (needed, not_needed): (Vec<_>, Vec<_>) =
+            report.deviations.iter().filter(is_of).partition(|deviation| deviation.still_needed);
+        if level == Level::Verbose {
+            needed.iter().try_for_each(|deviation| self::deviation(deviation, out))?;
+        } else if level == Level::Normal && !needed.is_empty() {
+            let names: Vec<&str> = needed.iter().map(|deviation| deviation.name.as_ref()).collect();
+            let excused: u64 = needed.iter().map(|deviation| deviation.excused).sum();
+            let excuse =
+                if excused > 0 { format!("; they excuse {} verdicts", thousands(excused)) } else { String::new() };
+            writeln!(out, "known deviations of {}, seen again: {}{excuse}", adapter.name, names.join(", "))?;
+        }
+        not_needed.iter().try_for_each(|deviation| self::deviation(deviation, out))?;
+    }
+    Ok(())
+}
+
+/// What was skipped, with the reason that several groups have in common.
+fn skips(report: &Report, out: &mut impl Write) -> Result {
+    let mut groups = BTreeMap::<_, Vec<&str>>::new();
+    for group in report.groups.iter() {
+        if let Some(reason) = &group.skip_reason {
+            groups.entry((&group.adapter, group.place(), reason)).or_default().push(&group.id);
+        }
+    }
+    for ((adapter, place, reason), ids) in groups {
+        let which = match ids.as_slice() {
+            [one] => (*one).to_owned(),
+            [first, .., last] => format!("{} groups, from {first} to {last},", ids.len()),
+            [] => continue,
+        };
+        writeln!(out, "skipped {which} on {adapter}, {place}: {reason}")?;
+    }
+    let mut routes = BTreeMap::<_, u64>::new();
     let on_targets = |state: &&BlendState| {
         let group = report
             .groups
@@ -202,30 +273,6 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
     for ((adapter, target, route, reason), states) in routes {
         writeln!(out, "skipped {states} states by {route} on {adapter}, {target}: {reason}")?;
     }
-    stores(report, out)?;
-    images(report, out)?;
-    stability(report, out)?;
-    for special in report.special.iter().filter(|special| !special.is_as_recorded()) {
-        let (seen, recorded) = (&special.seen, special.recorded.as_deref().unwrap_or_default());
-        writeln!(
-            out,
-            "{} on {}, {}: {seen}, where {recorded} is on record",
-            special.id, special.adapter, special.target
-        )?;
-    }
-    if !report.routes.is_empty() {
-        let states: u64 = report.routes.values().filter_map(serde_json::Value::as_u64).sum();
-        // They went another way before.
-        let dual = report.routes.get(Route::DualSource.name()).and_then(serde_json::Value::as_u64).unwrap_or(0);
-        let routes: Vec<String> = report.routes.iter().map(|(route, states)| format!("{states} {route}")).collect();
-        writeln!(
-            out,
-            "blend states: {} judged ({}), {} more are aliases of those",
-            thousands(states - dual),
-            routes.join(", "),
-            thousands(report.aliases)
-        )?;
-    }
     Ok(())
 }
 
@@ -236,11 +283,16 @@ fn notes(report: &Report, out: &mut impl Write) -> Result {
 pub fn deviation(deviation: &DeviationUse, out: &mut impl Write) -> Result {
     let DeviationUse { name, adapter, reason, .. } = deviation;
     let state = if deviation.still_needed {
-        "still seen, so it is granted".to_owned()
+        "seen again, so it is granted".to_owned()
     } else {
         format!("no longer seen: take it out ({reason})")
     };
-    writeln!(out, "deviation {name} on {adapter}: {state}; {} verdicts excused", thousands(deviation.excused))
+    write!(out, "known deviation {name} of {adapter}: {state}")?;
+    match deviation.excused {
+        0 => writeln!(out, "; no verdict needed it"),
+        1 => writeln!(out, "; it excuses 1 verdict"),
+        more => writeln!(out, "; it excuses {} verdicts", thousands(more)),
+    }
 }
 
 /// Of scenes, by adapter: how many pixels are marked, whether both kinds of shader draw alike, and what all effects cost.
@@ -305,31 +357,37 @@ fn stores(report: &Report, out: &mut impl Write) -> Result {
     Ok(())
 }
 
-fn verdict(report: &Report, out: &mut impl Write) -> Result {
-    totals(&report.totals, report.is_success(), report.seconds, out)
-}
-
 /// Writes the last line of a run: how many verdicts there are of which outcome.
 ///
 /// # Errors
 /// Where the writer fails.
 pub fn totals(t: &Totals, is_success: bool, seconds: f64, out: &mut impl Write) -> Result {
+    let [verdicts, cases, failed] = [t.verdicts, t.cases, t.failed].map(thousands);
+    let mark = match is_success {
+        true if t.verdicts == 0 && t.skipped > 0 => '–',
+        true => '✓',
+        false => '✗',
+    };
+    write!(out, "{mark} {verdicts} verdicts on {cases} cases in {seconds:.1} s: {failed} failed")?;
+    for (count, what) in [
+        (t.expected_failures, "expected failures"),
+        (t.unexpected_passes, "passed unexpectedly"),
+        (t.skipped, "cases skipped"),
+    ] {
+        if count > 0 {
+            write!(out, ", {} {what}", thousands(count))?;
+        }
+    }
+    writeln!(out)?;
+    if t.indeterminate == 0 {
+        return Ok(());
+    }
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     let share = 100.0 * t.indeterminate as f64 / t.verdicts.max(1) as f64;
     writeln!(
         out,
-        "{} {} verdicts on {} cases: {} passed, {} failed, {} indeterminate ({share:.3} %), {} expected failures, \
-         {} unexpected passes, {} cases skipped, in {:.1} s",
-        if is_success { "✓" } else { "✗" },
-        thousands(t.verdicts),
-        thousands(t.cases),
-        thousands(t.passed),
-        thousands(t.failed),
-        thousands(t.indeterminate),
-        thousands(t.expected_failures),
-        thousands(t.unexpected_passes),
-        thousands(t.skipped),
-        seconds
+        "  {} verdicts ({share:.2} %) are undecided: there the accuracy rules permit any value",
+        thousands(t.indeterminate)
     )
 }
 
@@ -387,29 +445,40 @@ fn families(groups: &[Group]) -> Vec<TableRow> {
     rows
 }
 
-fn table(rows: &[TableRow], out: &mut impl Write) -> Result {
-    let id = rows.iter().map(|row| row.id.len()).max().unwrap_or(0).max(13);
-    let adapter = rows.iter().map(|row| row.adapter.len()).max().unwrap_or(0).max(8);
+fn table(rows: &[TableRow], has_adapters: bool, level: Level, out: &mut impl Write) -> Result {
+    let widest = |of: fn(&TableRow) -> usize, least: usize| rows.iter().map(of).max().unwrap_or(0).max(least);
+    let id = widest(|row| row.id.chars().count(), 13);
+    let adapter = if has_adapters { widest(|row| row.adapter.chars().count(), 8) + 2 } else { 0 };
+    let name = |row: &TableRow| if has_adapters { row.adapter.clone() } else { String::new() };
+    let heading = if has_adapters { "adapter" } else { "" };
     writeln!(
         out,
-        "{:<id$}  {:<adapter$}  {:<15} {:>8} {:>11} {:>7} {:>7} {:>9} {:>7}  nearest to its limit",
-        "", "adapter", "stage", "formulas", "verdicts", "failed", "indet.", "max ULP", "margin"
+        "  {:<id$}  {heading:<adapter$}{:<15} {:>8} {:>13} {:>9}",
+        "family", "stage", "formulas", "verdicts", "failed"
     )?;
     for row in rows {
+        let (verdicts, failed) = (row.totals.verdicts, row.totals.failed);
+        let mark = match (failed + row.totals.failed_groups, verdicts) {
+            (0, 0) => '–',
+            (0, _) => '✓',
+            _ => '✗',
+        };
         writeln!(
             out,
-            "{:<id$}  {:<adapter$}  {:<15} {:>8} {:>11} {:>7} {:>7} {:>9} {:>7.3}  {}",
+            "{mark} {:<id$}  {:<adapter$}{:<15} {:>8} {:>13} {:>9}",
             row.id,
-            row.adapter,
+            name(row),
             row.stage,
             row.groups,
-            thousands(row.totals.verdicts),
-            thousands(row.totals.failed),
-            thousands(row.totals.indeterminate),
-            short(row.error_ulp_max),
-            row.margin_max,
-            row.worst.as_deref().unwrap_or("—")
+            thousands(verdicts),
+            thousands(failed),
         )?;
+        if level == Level::Verbose
+            && let Some(worst) = &row.worst
+        {
+            let (margin, error) = (short(100.0 * row.margin_max), short(row.error_ulp_max));
+            writeln!(out, "    {worst} takes {margin} % of its tolerance, the largest error is {error} ULP")?;
+        }
     }
     Ok(())
 }
@@ -418,39 +487,51 @@ fn table(rows: &[TableRow], out: &mut impl Write) -> Result {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn failure(failure: &Failure, out: &mut impl Write) -> Result {
+pub fn failure(failure: &Failure, level: Level, out: &mut impl Write) -> Result {
     let Failure { id, adapter, stage, output, .. } = failure;
     let is_unorm = failure.target.as_deref().and_then(TargetFormat::by_name).is_some_and(TargetFormat::is_unorm);
     let unit = if is_unorm { "steps" } else { "ULP" };
     let target = failure.target.as_ref().map(|target| format!(" on {target}")).unwrap_or_default();
     writeln!(out, "FAIL {id} on {adapter}, {stage}{target}: {output}")?;
+    // A NaN is told by its bits.
+    let has_bits = level == Level::Verbose || failure.promise.is_some() || failure.value.0.is_nan();
     for ((name, value), bits) in failure.inputs.iter().zip(failure.inputs_hex.values()) {
         let unit = failure.units.get(name).map(|unit| format!("  {unit}")).unwrap_or_default();
-        writeln!(out, "  {name:<14} {}  {}{unit}", plain(value), plain(bits))?;
+        let bits = if has_bits { format!("  {}", plain(bits)) } else { String::new() };
+        writeln!(out, "  {name:<14} {}{bits}{unit}", plain(value))?;
     }
     match &failure.promise {
         Some(promise) => writeln!(out, "  {:<14} {promise}", "legal")?,
         None => {
+            let [low, high] = failure.interval.map(Number::narrow);
             writeln!(out, "  {:<14} {}", "reference", failure.reference)?;
-            writeln!(out, "  {:<14} {} to {}", "legal", failure.interval[0], failure.interval[1])?;
+            writeln!(out, "  {:<14} {low} to {high}", "legal")?;
         }
     }
     if failure.unwritten {
         writeln!(out, "  {:<14} never written", "value")?;
-    } else if failure.promise.is_some() {
+    } else if failure.promise.is_some() || failure.value.0.is_nan() {
         writeln!(out, "  {:<14} {}  {}", "value", failure.value, failure.value_hex)?;
     } else {
-        let (value, bits, error) = (failure.value, &failure.value_hex, short(failure.error_ulp.0));
-        writeln!(out, "  {:<14} {value}  {bits}, {error} {unit} from the reference", "value")?;
+        let bits = if has_bits { format!("  {}", failure.value_hex) } else { String::new() };
+        let off = match failure.error_ulp.0 {
+            error if error < MOST_ULP => format!("{} {unit} from the reference", short(error)),
+            _ => format!("off by {}", Number(failure.value.0 - failure.reference.0)),
+        };
+        writeln!(out, "  {:<14} {}{bits}, {off}", "value", failure.value.narrow())?;
     }
     writeln!(out, "  {:<14} {}", "again", failure.rerun)
 }
+
+/// Errors beyond are told as differences: so many ULP say nothing more.
+const MOST_ULP: f64 = 1e6;
 
 /// JSON without quotes and commas: `[0.5 1]`.
 pub(crate) fn plain(value: &serde_json::Value) -> String {
     match value {
         serde_json::Value::Array(values) => format!("[{}]", values.iter().map(plain).collect::<Vec<_>>().join(" ")),
         serde_json::Value::String(text) => text.clone(),
+        serde_json::Value::Number(number) => number.as_f64().map_or_else(|| number.to_string(), |x| Number(x).narrow()),
         other => other.to_string(),
     }
 }

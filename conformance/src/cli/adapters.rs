@@ -1,7 +1,7 @@
 //! `lightmeter adapters`.
 
+use super::Status;
 use super::options::Format;
-use super::{Status, emit};
 use clap::Args;
 use lightmeter::devices::{BlendDeviation, Builtin, Deviation, known};
 use lightmeter::document::Document as _;
@@ -45,7 +45,7 @@ impl Adapters {
                 text
             }
         };
-        emit(&text, None)?;
+        self.format.emit(&text, None)?;
         Ok(Status::Success)
     }
 }

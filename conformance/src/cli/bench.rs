@@ -135,7 +135,7 @@ impl Bench {
         {
             let message =
                 "no group matches; there are the formulas, as fog/exp, technique/*, stable/**, scene/* and scaling/*";
-            return Err(NothingToRun(message.into()).into());
+            anyhow::bail!(message);
         }
         emit(&self.write(&document)?, self.out.as_deref())?;
         Ok(document.interrupted.as_ref().map_or(Status::Success, status_of))

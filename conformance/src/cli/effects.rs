@@ -1,7 +1,7 @@
 //! `lightmeter effects`.
 
+use super::Status;
 use super::options::Format;
-use super::{Status, emit};
 use clap::Args;
 use lightmeter::document::Document as _;
 use lightmeter::document::effects::{DrawEffects, EffectReason, EffectsDocument, SCHEMA};
@@ -33,7 +33,7 @@ impl Effects {
             Format::Text => lines(&in_words(&loaded, &called)?).into_owned(),
             Format::Json => document(&loaded, &called).to_json()?,
         };
-        emit(&text, self.out.as_deref())?;
+        self.format.emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
     }
 }

@@ -1,12 +1,14 @@
 //! `lightmeter gate`.
 
 use super::comparison::{Comparison, Earlier, matches_something};
+use super::config::used;
 use super::options::{ReportFormat, Required, ShardArgument, Targets};
 use super::pack::{Cases, nothing_to_ask};
 use super::progress::{Bar, Stream};
 use super::say;
 use super::signals::stopped_by_signals;
-use super::{NothingToRun, Status, emit, writable};
+use super::terminal::level;
+use super::{NothingToRun, Status, writable};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::Profile;
@@ -78,6 +80,9 @@ pub(crate) struct Gate {
     /// Keep the images of a process in this folder
     #[arg(long, value_name = "DIR", requires = "exec")]
     images: Option<PathBuf>,
+    /// End with the first formula or scene that fails
+    #[arg(long)]
+    fail_fast: bool,
     #[command(flatten)]
     comparison: Comparison,
     #[command(flatten)]
@@ -123,7 +128,7 @@ impl Gate {
         let whole = earlier.as_ref().filter(|_| report.signal.is_none());
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), self.is_shard())).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
-        let emitted = emit(&self.write(&report)?, self.out.as_deref());
+        let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
         regressions?;
         self.comparison.update(&report)?;
         emitted?;
@@ -208,7 +213,7 @@ impl Gate {
             runs,
             ..Options::by(Code::default(), None, choice.seed, hello.profile(self.profile)?)
         };
-        let mut bar = Bar::new(None, "cases");
+        let mut bar = Bar::new(None, "cases").fail_fast(self.fail_fast.then(|| stop.clone()));
         if self.is_read_by_people() {
             bar = bar.live(Stream::Output);
         }
@@ -223,7 +228,7 @@ impl Gate {
             separate: None,
             shard,
         };
-        Ok(GateReport::of(&Report { compared_by: Some(compared_by), ..report? }, command()))
+        Ok(GateReport::of(&Report { compared_by: Some(compared_by), config: used(), ..report? }, command()))
     }
 
     fn asking(&self, command: &str, images: &Images, stop: &Stop) -> Asking {
@@ -256,7 +261,7 @@ impl Gate {
             ReportFormat::Github => github::of_gate(report),
             ReportFormat::Text => {
                 let mut out = String::new();
-                outputs::text(report, self.is_read_by_people(), &mut out)?;
+                outputs::text(report, self.is_read_by_people(), level(), &mut out)?;
                 lines(&out).into_owned()
             }
         })

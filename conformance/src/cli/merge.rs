@@ -1,8 +1,9 @@
 //! `lightmeter merge`.
 
+use super::Status;
 use super::options::{Format, ReportFormat, Required};
 use super::sweep::{status, written};
-use super::{Status, emit};
+use super::terminal::level;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::document::Document as _;
@@ -41,7 +42,7 @@ impl Merge {
             parts.push((path.clone(), file::read(path)?));
         }
         let whole = file::merge(&parts)?;
-        emit(&written(&whole, self.of_sweep()?, &rerun(&whole))?, self.out.as_deref())?;
+        self.format.emit(&written(&whole, self.of_sweep()?, &rerun(&whole))?, self.out.as_deref())?;
         Ok(status(&whole))
     }
 }
@@ -68,10 +69,10 @@ impl Merge {
         let whole = merge(parts)?;
         if is_gate {
             let gate = GateReport::of(&whole, "lightmeter merge".into());
-            emit(&self.written_gate(&gate)?, self.out.as_deref())?;
+            self.format.emit(&self.written_gate(&gate)?, self.out.as_deref())?;
             return Ok(Some(super::gate::status(&gate, self.required)));
         }
-        emit(&self.written_run(&whole)?, self.out.as_deref())?;
+        self.format.emit(&self.written_run(&whole)?, self.out.as_deref())?;
         Ok(Some(super::run::status(&whole, self.required)))
     }
 
@@ -91,7 +92,7 @@ impl Merge {
             ReportFormat::Github => github::of_gate(gate),
             ReportFormat::Text => {
                 let mut out = String::new();
-                outputs::text(gate, false, &mut out)?;
+                outputs::text(gate, false, level(), &mut out)?;
                 lines(&out).into_owned()
             }
         })
@@ -103,7 +104,8 @@ impl Merge {
             ReportFormat::Junit => junit::to_string(whole)?,
             ReportFormat::Github => github::of_run(whole),
             ReportFormat::Text => {
-                let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false };
+                let style =
+                    text::Style { detail: text::Detail::Families, timing: false, is_told: false, level: level() };
                 let mut out = String::new();
                 text::write(whole, style, &mut out)?;
                 lines(&out).into_owned()

@@ -1,7 +1,8 @@
 //! `lightmeter mistakes`.
 
+use super::Status;
+use super::nearest::did_you_mean;
 use super::options::Format;
-use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
 use lightmeter::cases::Kind;
@@ -39,45 +40,51 @@ pub(crate) struct Mistakes {
 
 impl Mistakes {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let (names, formulas) = (Filter::new(&self.names)?, Filter::new(&self.formula)?);
-        let is_known = |name: &str| {
-            let only = Filter::new(&[name.to_owned()]);
-            all_names().any(|known| only.as_ref().is_ok_and(|only| only.selects(known)))
-        };
-        if let Some(name) = self.names.iter().find(|name| !is_known(name)) {
-            bail!(unknown(name));
-        }
-        let members: Vec<Member> = catalogue().into_iter().filter(|member| formulas.selects(&member.spec.id)).collect();
-        let is_scene = |id: &str| formulas.selects(id);
-        let has_scenes = (0..SCENES.len()).any(|place| is_scene(&scene_id(place)));
-        if members.is_empty() && !has_scenes {
-            bail!("no formula or scene matches `{}`: see `lightmeter list`", self.formula.join(" "));
-        }
-        let concerned: Vec<Vec<&'static Fault>> = members.par_iter().map(concerning).collect();
-        let selected: Vec<&'static Fault> =
-            faults().iter().copied().filter(|fault| names.selects(fault.name)).collect();
-        let mut mistakes: Vec<KnownMistake> =
-            selected.into_par_iter().map(|fault| known(fault, &members, &concerned)).collect();
-        mistakes.retain(|mistake| !mistake.formulas.is_empty());
-        let mut in_scenes = of_scenes(&names);
-        if !self.names.is_empty() || !self.formula.is_empty() {
-            shown_in(&mut in_scenes, is_scene)?;
-        }
-        mistakes.extend(in_scenes);
-        if mistakes.is_empty() {
-            bail!("no mistake of these names concerns `{}`", self.formula.join(" "));
-        }
-        let document = MistakesDocument { schema: SCHEMA.into(), mistakes };
+        let document = document(&self.names, &self.formula)?;
         let text = match self.format {
             Format::Text => report::mistakes::text(&document, !self.names.is_empty()),
             Format::Json => document.to_json()?,
         };
-        emit(&text, self.out.as_deref())?;
+        self.format.emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
     }
 }
 
-fn all_names() -> impl Iterator<Item = &'static str> {
+/// The mistakes of these names that concern one of these formulas; without any, all.
+pub(crate) fn document(names: &[String], formulas: &[String]) -> anyhow::Result<MistakesDocument> {
+    let is_known = |name: &str| {
+        let only = Filter::new(&[name.to_owned()]);
+        all_names().any(|known| only.as_ref().is_ok_and(|only| only.selects(known)))
+    };
+    if let Some(name) = names.iter().find(|name| !is_known(name)) {
+        bail!(unknown(name));
+    }
+    let is_about_some = !names.is_empty() || !formulas.is_empty();
+    let (asked, named) = (formulas, Filter::new(names)?);
+    let formulas = Filter::new(formulas)?;
+    let members: Vec<Member> = catalogue().into_iter().filter(|member| formulas.selects(&member.spec.id)).collect();
+    let is_scene = |id: &str| formulas.selects(id);
+    let has_scenes = (0..SCENES.len()).any(|place| is_scene(&scene_id(place)));
+    if members.is_empty() && !has_scenes {
+        bail!("no formula or scene matches `{}`: see `lightmeter list`", asked.join(" "));
+    }
+    let concerned: Vec<Vec<&'static Fault>> = members.par_iter().map(concerning).collect();
+    let selected: Vec<&'static Fault> = faults().iter().copied().filter(|fault| named.selects(fault.name)).collect();
+    let mut mistakes: Vec<KnownMistake> =
+        selected.into_par_iter().map(|fault| known(fault, &members, &concerned)).collect();
+    mistakes.retain(|mistake| !mistake.formulas.is_empty());
+    let mut in_scenes = of_scenes(&named);
+    if is_about_some {
+        shown_in(&mut in_scenes, is_scene)?;
+    }
+    mistakes.extend(in_scenes);
+    if mistakes.is_empty() {
+        bail!("no mistake of these names concerns `{}`", asked.join(" "));
+    }
+    Ok(MistakesDocument { schema: SCHEMA.into(), mistakes })
+}
+
+pub(crate) fn all_names() -> impl Iterator<Item = &'static str> {
     faults().iter().map(|fault| fault.name).chain(SCENE_FAULTS.iter().map(|fault| fault.name))
 }
 
@@ -94,12 +101,7 @@ fn unknown(name: &str) -> String {
     if name.is_empty() {
         return "a mistake's name is missing: see `lightmeter mistakes`".into();
     }
-    let mut near: Vec<(usize, &str)> =
-        all_names().map(|known| (strsim::damerau_levenshtein(known, name), known)).collect();
-    near.sort_unstable();
-    near.dedup();
-    let alike: Vec<String> = near.iter().take(3).map(|(_, known)| format!("`{known}`")).collect();
-    format!("no mistake `{name}`; the nearest are {}: see `lightmeter mistakes`", alike.join(", "))
+    format!("no mistake `{name}`{} `lightmeter mistakes` lists them", did_you_mean(name, all_names()))
 }
 
 /// The mistake of a name, which `--mistake` asks for.

@@ -3,14 +3,17 @@
 mod adapters;
 mod bench;
 mod comparison;
+pub(crate) mod config;
 mod contact_sheet;
 mod effects;
 mod eval;
 mod foreign;
 mod gate;
 mod list;
+mod manual;
 mod merge;
 mod mistakes;
+mod nearest;
 mod options;
 mod pack;
 mod page;
@@ -24,8 +27,9 @@ mod signals;
 mod special;
 mod start;
 mod sweep;
+mod terminal;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 use lightmeter::adapters::AdapterError;
 use lightmeter::device::DeviceError;
 use lightmeter::files::{can_be_written, lines, whole};
@@ -39,36 +43,73 @@ use std::process::ExitCode;
 #[command(
     name = "lightmeter",
     version,
-    after_help = "Exit codes: 0 all as expected · 1 something failed or passed unexpectedly · 2 bad usage or input · \
-    3 nothing could run · 4 the device failed or was lost, or the renderer under test crashed, hung or broke the protocol · \
-    130 and 143 interrupted by SIGINT and SIGTERM: what was judged is reported"
+    max_term_width = 100,
+    after_help = "Exit codes:\n  0    all as expected\n  1    something failed or passed unexpectedly\n  2    bad usage or input\n  \
+    3    nothing could run\n  4    the device failed or was lost, or the renderer under test crashed, hung or broke the protocol\n  \
+    130  interrupted by SIGINT, 143 by SIGTERM: what was judged is reported"
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
     command: Command,
+    #[command(flatten)]
+    shown: terminal::Shown,
+    /// Leave out what a `lightmeter.toml` in this folder, or above it, says
+    #[arg(long, global = true)]
+    no_config: bool,
+}
+
+/// The commands by what they are for.
+const PURPOSES: &[(&str, &[&str])] = &[
+    ("Judge", &["run", "gate", "pack", "sweep", "special"]),
+    ("Look up", &["list", "show", "mistakes", "effects", "eval", "render"]),
+    ("Measure", &["bench", "adapters", "selftest"]),
+    ("Results", &["merge", "page", "schema", "completions", "man", "help"]),
+];
+
+impl Cli {
+    /// The command line as clap has it, its commands told by what they are for.
+    pub(crate) fn told() -> clap::Command {
+        let command = Self::command();
+        let about = |name: &str| {
+            let found = command.get_subcommands().find(|one| one.get_name() == name);
+            let words = found.and_then(|one| one.get_about().map(ToString::to_string));
+            words.unwrap_or_else(|| "Print this, or what there is to say of a command".into())
+        };
+        let mut commands = String::new();
+        for (purpose, names) in PURPOSES {
+            commands += &format!("{purpose}:\n");
+            for name in *names {
+                commands += &format!("  {name:<12} {}\n", about(name));
+            }
+            commands.push('\n');
+        }
+        let template =
+            format!("{{about}}\n\n{{usage-heading}} {{usage}}\n\n{commands}Options:\n{{options}}{{after-help}}");
+        command.help_template(template)
+    }
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Judge the wgpu implementation on an adapter
+    /// Judge an adapter, or shaders of your own on it
     Run(run::Run),
-    /// List the cases as a tree, or the formulas with their inputs and outputs
+    /// List the cases as a tree, or the formulas
     List(list::List),
-    /// Show one case: formula, inputs, each step, the interval, and what the adapter gives
+    /// Show a case step by step, or what is known of a name
     Show(show::Show),
-    /// Measure what accuracy costs in time: each technique and rung, its error and its time
+    /// Measure what accuracy costs in time
     Bench(bench::Bench),
     /// List what can be run on
     Adapters(adapters::Adapters),
-    /// Judge a formula along one of its inputs over every float of a range, or a blend mode over every byte
+    /// Judge a formula over every float of a range
     Sweep(sweep::Sweep),
-    /// Join the results of a sweep's shards
+    /// Join the results of shards
     Merge(merge::Merge),
     /// Show that the suite catches the mistakes that it knows
     Selftest(selftest::Selftest),
-    /// List the mistakes that the suite names: what each does, where it was seen, and which formulas it concerns
+    /// List the mistakes that the diagnosis names
     Mistakes(mistakes::Mistakes),
-    /// Show what becomes of NaN, infinity, subnormals and signed zero
+    /// Judge NaN, infinity, subnormals and signed zero
     Special(special::Special),
     /// Draw a scene, by the reference or by an adapter
     Render(render::Render),
@@ -78,12 +119,16 @@ enum Command {
     Gate(gate::Gate),
     /// Write a page of the docs from a run's JSON
     Page(page::Page),
-    /// Print what a scene calls for, draw by draw and light by light, and why
+    /// Tell what a scene calls for, and why
     Effects(effects::Effects),
-    /// Print the JSON Schema of a file that lightmeter reads or writes
+    /// Print the JSON Schema of a file
     Schema(schema::Schema),
-    /// Evaluate formulas: JSON lines in, JSON lines with value, interval and condition out
+    /// Evaluate formulas: JSON lines in and out
     Eval(eval::Eval),
+    /// Print what completes this command's words in a shell
+    Completions(manual::Completions),
+    /// Write the manual as man pages, one a command
+    Man(manual::Man),
     #[command(hide = true)]
     StartRenderer(start::Start),
     #[command(hide = true)]
@@ -92,6 +137,7 @@ enum Command {
 
 impl Cli {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        terminal::settle(self.shown);
         match self.command {
             Command::Run(run) => run.run(),
             Command::List(list) => list.run(),
@@ -110,6 +156,8 @@ impl Cli {
             Command::Effects(effects) => effects.run(),
             Command::Schema(schema) => schema.run(),
             Command::Eval(eval) => eval.run(),
+            Command::Completions(completions) => completions.run(),
+            Command::Man(man) => man.run(),
             Command::StartRenderer(start) => start.run(),
             Command::TryShaders(shaders) => shaders.run(),
         }
@@ -192,7 +240,15 @@ fn unwritten(path: &Path, error: &std::io::Error) -> anyhow::Error {
 
 /// Prints a message on standard error. That it cannot be printed changes nothing: the exit code still says how the command ended.
 pub(crate) fn say(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{}", lines(text));
+    let _ = terminal::write(&(lines(text).into_owned() + "\n"), &mut std::io::stderr().lock());
+}
+
+/// Shows text for people: in a file as it is, on a terminal wrapped to its width and in colours.
+pub(crate) fn show(text: &str, file: Option<&Path>) -> anyhow::Result<()> {
+    match file {
+        Some(_) => emit(text, file),
+        None => emit(&terminal::dressed(text, &std::io::stdout()), None),
+    }
 }
 
 /// Writes to the file, or to standard output. Whoever does not read that any more has read enough: how the command ends still tells what it
@@ -212,6 +268,19 @@ mod tests {
     use super::*;
     use lightmeter::subject_gpu::device_error;
     use lightmeter_gpu::GpuError;
+
+    #[test]
+    fn every_command_is_told_under_a_purpose() {
+        let told: Vec<&str> = PURPOSES.iter().flat_map(|(_, names)| names.iter().copied()).collect();
+        let command = Cli::command();
+        let all: Vec<&str> =
+            command.get_subcommands().filter(|one| !one.is_hide_set()).map(clap::Command::get_name).collect();
+        for name in &all {
+            assert!(told.contains(name), "`{name}` is under no purpose");
+        }
+        assert_eq!(told.len(), all.len() + 1, "`help` besides: {told:?}");
+        Cli::told().debug_assert();
+    }
 
     #[test]
     fn what_went_wrong_decides_how_a_command_ends() {

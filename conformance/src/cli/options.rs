@@ -1,6 +1,6 @@
 //! Options that several commands share, read into what the library takes.
 
-use super::{Status, foreign, say};
+use super::{Status, emit, foreign, say, show};
 use clap::Args;
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
@@ -15,7 +15,7 @@ use lightmeter::subject::Subject;
 use lightmeter::subject_gpu::code_of;
 use lightmeter_scene::target::TargetFormat;
 use std::num::NonZeroU64;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// What `--target` names: one format, or all.
@@ -46,6 +46,20 @@ pub(crate) enum ReportFormat {
     Junit,
     /// Lines that GitHub Actions shows as annotations
     Github,
+}
+
+impl Format {
+    /// Writes the result to a file, or shows it.
+    pub(crate) fn emit(self, text: &str, file: Option<&Path>) -> anyhow::Result<()> {
+        if self == Self::Text { show(text, file) } else { emit(text, file) }
+    }
+}
+
+impl ReportFormat {
+    /// Writes the result to a file, or shows it.
+    pub(crate) fn emit(self, text: &str, file: Option<&Path>) -> anyhow::Result<()> {
+        if self == Self::Text { show(text, file) } else { emit(text, file) }
+    }
 }
 
 /// Which cases, on what, by which rules.

@@ -12,6 +12,7 @@ use lightmeter::report::bench::{page, plot};
 use lightmeter::report::page::scenes::ToldScene;
 use lightmeter::report::page::sweep::Swept;
 use lightmeter::report::page::{BlendRun, markdown, scenes, selftest, special, stability, svg};
+use lightmeter::rulings;
 use lightmeter::select::catalogue;
 use lightmeter::sweep::{Asked, PRESETS, SweepPlan, file, is_over_inputs_of};
 use std::path::PathBuf;
@@ -23,6 +24,8 @@ enum Subject {
     Bench,
     /// Blend states against routes and drivers.
     Blend,
+    /// Where formulas are from, what is ruled where the documents are wrong, and words with a meaning of their own; of no run.
+    Rulings,
     /// The built-in scenes, with a contact sheet.
     Scenes,
     /// What the suite catches and how small an error it names, from the JSON of `selftest`.
@@ -42,7 +45,6 @@ pub(crate) struct Page {
     #[arg(value_enum)]
     subject: Subject,
     /// The JSON of `lightmeter run --format json`, or of `special`, `selftest` or `bench` with the same; of sweeps, that of each
-    #[arg(required = true)]
     runs: Vec<PathBuf>,
     /// Write the page to a file, and its picture to one of the same name that ends in .svg or .png; those of a bench to a folder of
     /// that name
@@ -53,7 +55,17 @@ pub(crate) struct Page {
 impl Page {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         if self.subject == Subject::Sweep {
+            if self.runs.is_empty() {
+                bail!("the page is of one sweep at least; expected its JSON");
+            }
             emit(&self.sweeps()?, self.out.as_deref())?;
+            return Ok(Status::Success);
+        }
+        if self.subject == Subject::Rulings {
+            if let Some(run) = self.runs.first() {
+                bail!("the page of rulings is of no run; leave out {}", run.display());
+            }
+            emit(&rulings::markdown(), self.out.as_deref())?;
             return Ok(Status::Success);
         }
         let [run] = self.runs.as_slice() else {
@@ -64,7 +76,7 @@ impl Page {
         let text = match self.subject {
             Subject::Bench => self.bench(&json),
             Subject::Blend => self.blend(&json),
-            Subject::Scenes | Subject::Sweep => self.scenes(&json),
+            Subject::Scenes | Subject::Sweep | Subject::Rulings => self.scenes(&json),
             Subject::Selftest => caught(&json),
             Subject::Special => special(&json),
             Subject::Stability => self.stability(&json),

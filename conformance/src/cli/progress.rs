@@ -1,16 +1,19 @@
 //! How far long work has come, on standard error where that is a terminal.
 
+use super::terminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use lightmeter::document::event::{Event, Observer};
+use lightmeter::document::event::{Event, Observer, Stop};
 use lightmeter::files::lines;
 use lightmeter::report::live::Live;
-use std::io::Write as _;
 
 /// A bar for work that is counted in these units.
 pub(crate) struct Bar {
     pub(crate) bar: ProgressBar,
     /// Tells what fails as soon as it is judged, and where.
     live: Option<(Live, Stream)>,
+    /// Told once something fails.
+    fail_fast: Option<Stop>,
+    failed: u64,
 }
 
 /// Where results are told while work goes on.
@@ -25,16 +28,22 @@ pub(crate) enum Stream {
 impl Bar {
     pub(crate) fn new(length: Option<u64>, unit: &str) -> Self {
         let bar = ProgressBar::with_draw_target(length, ProgressDrawTarget::stderr());
-        let template = format!("{{bar:30}} {{human_pos}}/{{human_len}} {unit}  {{elapsed}}  {{msg}}");
+        let template =
+            format!("{{bar:24}} {{percent:>3}} % of {{human_len}} {unit}, {{eta}} left  {{prefix}}{{wide_msg}}");
         if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
         }
-        Self { bar, live: None }
+        Self { bar, live: None, fail_fast: None, failed: 0 }
     }
 
     /// The same, that tells what fails as soon as it is judged.
     pub(crate) fn live(self, stream: Stream) -> Self {
-        Self { live: Some((Live::default(), stream)), ..self }
+        Self { live: Some((Live::new(terminal::level()), stream)), ..self }
+    }
+
+    /// The same, that ends the work once something fails.
+    pub(crate) fn fail_fast(self, stop: Option<Stop>) -> Self {
+        Self { fail_fast: stop, ..self }
     }
 }
 
@@ -44,7 +53,16 @@ impl Observer for Bar {
             Event::Begun(work) => self.bar.set_length(*work),
             Event::Group(id) => self.bar.set_message((*id).to_owned()),
             Event::Advanced(work) => self.bar.inc(*work),
-            Event::Judged { .. } => {
+            Event::Judged { group, is_scouted, .. } => {
+                let is_failed = group.totals.failed > 0 || group.problem.is_some();
+                if is_failed && !is_scouted {
+                    self.failed += 1;
+                    let groups = if self.failed == 1 { "group fails" } else { "groups fail" };
+                    self.bar.set_prefix(format!("{} {groups}  ", self.failed));
+                }
+                if let Some(stop) = self.fail_fast.as_ref().filter(|_| is_failed) {
+                    stop.at_first_failure();
+                }
                 let Some((live, stream)) = &mut self.live else { return };
                 let text = lines(&live.text(event)).into_owned();
                 if text.is_empty() {
@@ -52,8 +70,8 @@ impl Observer for Bar {
                 }
                 // Whoever does not read them any more reads the result's exit code.
                 let _ = self.bar.suspend(|| match stream {
-                    Stream::Output => std::io::stdout().lock().write_all(text.as_bytes()),
-                    Stream::Error => std::io::stderr().lock().write_all(text.as_bytes()),
+                    Stream::Output => terminal::write(&text, &mut std::io::stdout().lock()),
+                    Stream::Error => terminal::write(&text, &mut std::io::stderr().lock()),
                 });
             }
         }

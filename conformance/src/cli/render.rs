@@ -11,6 +11,7 @@ use lightmeter::faults::scene::{SceneFault, draw};
 use lightmeter::image::drawn::drawn;
 use lightmeter::image::file::StoredImage;
 use lightmeter::scene::load;
+use lightmeter::scene::select::resize;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
@@ -38,6 +39,9 @@ pub(crate) struct Render {
     /// Draw by the WGSL in this folder in place of the built-in files of the same names
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
+    /// Pixels of the longer side; without it: the scene's own
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8192))]
+    size: Option<u32>,
     /// Draw as a renderer with this mistake would, by the reference; `lightmeter mistakes` lists them
     #[arg(long, value_name = "NAME", value_parser = of_scenes_by_name)]
     mistake: Option<&'static SceneFault>,
@@ -74,7 +78,10 @@ impl Render {
         if self.mistake.is_some() && (self.with == With::Gpu || self.stage.is_some()) {
             bail!("a mistake is drawn by the reference, as a whole; leave out `--with gpu` and `--stage`");
         }
-        let frame = load::scene(&self.scene)?.frame;
+        let mut frame = load::scene(&self.scene)?.frame;
+        if let Some(size) = self.size {
+            resize(&mut frame, size);
+        }
         let image = match self.with {
             With::Reference if let Some(mistake) = self.mistake => {
                 let image = draw::<f64>(&frame, &[mistake]);

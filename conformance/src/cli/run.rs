@@ -1,11 +1,14 @@
 //! `lightmeter run`.
 
 use super::comparison::{Comparison, Earlier, matches_something};
+use super::config::used;
+use super::nearest::did_you_mean;
 use super::options::{Amount, Choice, ReportFormat, Required};
 use super::progress::{Bar, Stream};
 use super::say;
 use super::signals::stopped_by_signals;
-use super::{NothingToRun, Status, emit, writable};
+use super::terminal::level;
+use super::{Status, writable};
 use clap::Args;
 use lightmeter::cases::GENERATOR_VERSION;
 use lightmeter::cases::blend::{Samples, separate_of};
@@ -21,6 +24,8 @@ use lightmeter::gate::expectations::Expectations;
 use lightmeter::judge::cases::ExpectedFailure;
 use lightmeter::report::{github, junit, text};
 use lightmeter::run::run;
+use lightmeter::scene::library::SCENES;
+use lightmeter::scene::select::scene_id;
 use lightmeter::select::{catalogue_of, select};
 use lightmeter::subject::Subject;
 use lightmeter::witness::NamedDeviation;
@@ -50,6 +55,9 @@ pub(crate) struct Run {
     /// Ask all of it so often; a result that changes is unstable
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=1000))]
     runs: u64,
+    /// End with the first formula, state or scene that fails
+    #[arg(long)]
+    fail_fast: bool,
     #[command(flatten)]
     comparison: Comparison,
     #[command(flatten)]
@@ -94,8 +102,9 @@ impl Run {
         }
         let mut subjects = self.choice.subjects()?;
         options.expected = known_failures(&expectations, &subjects);
-        let mut bar =
-            Bar::new(None, "cases").live(if self.is_read_by_people() { Stream::Output } else { Stream::Error });
+        let stream = if self.is_read_by_people() { Stream::Output } else { Stream::Error };
+        let fail_fast = self.fail_fast.then(|| options.stop.clone());
+        let mut bar = Bar::new(None, "cases").live(stream).fail_fast(fail_fast);
         let report = run(&mut subjects, &options, &mut bar);
         bar.bar.finish_and_clear();
         let report = match report {
@@ -106,19 +115,22 @@ impl Run {
             }
             report => report?,
         };
-        let mut report = Report { compared_by: Some(compared_by), ..report };
+        let mut report = Report { compared_by: Some(compared_by), config: used(), ..report };
         // What was not judged for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
         let is_shard = shard.count.get() > 1;
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), is_shard)).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
-        let emitted = emit(&self.write(&report)?, self.out.as_deref());
+        let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
         if report.interrupted.is_some() {
             std::mem::forget(subjects);
         }
         regressions?;
         self.comparison.update(&report)?;
         emitted?;
+        if options.stop.is_at_first_failure() {
+            return Ok(Status::Failed);
+        }
         Ok(status(&report, self.required))
     }
 
@@ -141,7 +153,8 @@ impl Run {
             ReportFormat::Text => {
                 let detail = if self.groups { text::Detail::Groups } else { text::Detail::Families };
                 let mut out = String::new();
-                let style = text::Style { detail, timing: self.timing, is_told: self.is_read_by_people() };
+                let style =
+                    text::Style { detail, timing: self.timing, is_told: self.is_read_by_people(), level: level() };
                 text::write(report, style, &mut out)?;
                 lines(&out).into_owned()
             }
@@ -196,11 +209,14 @@ pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples, size: Op
         let others = scenes.is_empty() && tables.is_empty() && NamedDeviation::named(&filter).is_empty();
         if others && select(&catalogue, &filter, cases, whole).is_empty() {
             let families = lightmeter::cases::FAMILIES.join(", ") + ", special, scene, deviation";
-            return Err(NothingToRun(format!(
-                "no case matches `{glob}`; ids begin with a family ({families}), as `fog/linear/random/000017`: see \
+            let ids = catalogue.iter().map(|member| member.spec.id.clone());
+            let scenes = (0..SCENES.len()).map(scene_id);
+            let names: Vec<String> = ids.chain(scenes).collect();
+            let meant = did_you_mean(glob, names.iter().map(String::as_str));
+            anyhow::bail!(
+                "no case matches `{glob}`{meant} Ids begin with a family ({families}), as `fog/linear/random/000017`: see \
                  `lightmeter list`"
-            ))
-            .into());
+            );
         }
     }
     Ok(Filter::new(globs)?)
@@ -221,7 +237,7 @@ mod tests {
         report.interrupted = interrupted(None);
         assert_eq!(status(&report, Required::default()), Status::Device);
         let mut text = String::new();
-        let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false };
+        let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false, level: level() };
         text::write(&report, style, &mut text).expect("a string takes it");
         assert!(text.contains("interrupted: ") && text.contains("✗ "), "{text}");
     }

@@ -2,7 +2,7 @@
 
 use super::options::{Choice, Format, Targets};
 use super::signals::{status_of, stopped_by_signals};
-use super::{NothingToRun, Status, emit, writable};
+use super::{Status, writable};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::Profile;
@@ -101,7 +101,7 @@ impl Selftest {
             Format::Json => tested.json()?,
             Format::Text => tested.text(&targets)?,
         };
-        emit(&text, self.out.as_deref())?;
+        self.format.emit(&text, self.out.as_deref())?;
         Ok(match &tested.interrupted {
             Some(interrupted) => status_of(interrupted),
             None if tested.is_good() => Status::Success,
@@ -162,7 +162,7 @@ impl Selftest {
         };
         let record = formulas::selftest(&options);
         if record.clean.is_empty() && !stop.is_set() {
-            return Err(NothingToRun("no formula matches the filter".into()).into());
+            bail!("no formula matches `{}`: see `lightmeter list`", self.filter.join(" "));
         }
         tested.formulas = Some(record);
         if self.calibrate && !stop.is_set() {

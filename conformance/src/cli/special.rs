@@ -64,7 +64,7 @@ impl Special {
             special::write(&report, &mut text)?;
             text
         };
-        emit(&text, self.out.as_deref())?;
+        self.format.emit(&text, self.out.as_deref())?;
         Ok(match &report.interrupted {
             Some(interrupted) => status_of(interrupted),
             None if report.is_success() => Status::Success,

@@ -3,7 +3,7 @@
 use super::options::{Choice, Format, ShardArgument};
 use super::say;
 use super::signals::stopped_by_signals;
-use super::{NothingToRun, Status, emit, writable};
+use super::{NothingToRun, Status, writable};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
@@ -132,7 +132,7 @@ impl Sweep {
         if self.asked() != Asked::default() || self.checkpoint.is_some() || self.shard.0 != Shard::WHOLE {
             bail!("a formula is missing; expected one such as fog/exp: `lightmeter sweep` alone lists the ready-made");
         }
-        emit(&presets(self.format)?, self.out.as_deref())?;
+        self.format.emit(&presets(self.format)?, self.out.as_deref())?;
         Ok(Status::Success)
     }
 
@@ -167,7 +167,7 @@ impl Sweep {
 
     /// Writes the result.
     fn finish(&self, document: &SweepDocument, plan: &SweepPlan<'_>) -> anyhow::Result<Status> {
-        emit(&written(document, self.format, &self.rerun(plan))?, self.out.as_deref())?;
+        self.format.emit(&written(document, self.format, &self.rerun(plan))?, self.out.as_deref())?;
         if !document.is_finished()
             && let Some(path) = &self.checkpoint
         {

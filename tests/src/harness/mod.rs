@@ -16,7 +16,7 @@ use lightmeter::device::Code;
 use lightmeter::document::run::{Report, Totals};
 use lightmeter::document::thousands;
 use lightmeter::options::{DEFAULT_CASES, Options};
-use lightmeter::report::text;
+use lightmeter::report::{Level, text};
 use lightmeter::selection::{Selection, SelectionPart};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -184,7 +184,7 @@ fn verdict(part: &SelectionPart, report: &Report, options: &Options) -> Result<C
 fn message(part: &SelectionPart, report: &Report, options: &Options) -> String {
     let mut text = String::new();
     // Writing to a string does not fail.
-    let _ = text::failures(report, &mut text);
+    let _ = text::failures(report, Level::Normal, &mut text);
     for deviation in report.deviations.iter().filter(|deviation| !deviation.still_needed) {
         let _ = text.write_str("\n✗ unexpected pass: ").and_then(|()| text::deviation(deviation, &mut text));
     }

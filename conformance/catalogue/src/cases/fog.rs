@@ -240,6 +240,7 @@ formula!(
             .naive("fog/opacity", "one bit is left", 1e6),
         Hard::new("one-in-1e12", "the thinnest fog", &[("distance", &[1e-6]), ("density", &[1e-6])])
             .naive("fog/opacity", "none", 1e7),
+        Hard::new("half", "the thickest fog of the series", &[("distance", &[1.0]), ("density", &[0.5])]),
     ],
 );
 

@@ -139,7 +139,7 @@ impl SnappedTriangle {
             let low = around.iter().map(|values| values[k]).fold(f64::INFINITY, f64::min);
             let high = around.iter().map(|values| values[k]).fold(f64::NEG_INFINITY, f64::max);
             let rounded: Accept = rounded[k];
-            if rounded.is_any() {
+            if rounded.is_any() || around.iter().any(|values| values[k].is_nan()) {
                 return Accept::ANY;
             }
             Accept::from_bounds(low - (exact[k] - rounded.low()).max(0.0), high + (rounded.high() - exact[k]).max(0.0))
@@ -187,6 +187,11 @@ fn line(inputs: &[f32], snap: f64, out: &mut [Accept]) {
         Vector(p.0.map(number)),
     );
     for (k, out) in out.iter_mut().enumerate() {
+        // A line without a length has no value of its own.
+        if rounded[k].is_any() || around.iter().any(|values| values[k].is_nan()) {
+            *out = Accept::ANY;
+            continue;
+        }
         let low = around.iter().map(|values| values[k]).fold(f64::INFINITY, f64::min);
         let high = around.iter().map(|values| values[k]).fold(f64::NEG_INFINITY, f64::max);
         *out = Accept::from_bounds(

@@ -123,6 +123,25 @@ pub enum Domain {
     Pixel,
 }
 
+/// What random cases are drawn from, in words.
+impl std::fmt::Display for Domain {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Uniform(low, high) => write!(f, "{low} to {high}"),
+            Self::LogUniform(low, high) => write!(f, "{low} to {high}, evenly in the logarithm"),
+            Self::Unit => f.write_str("0 to 1"),
+            Self::Direction => f.write_str("a unit vector"),
+            Self::Vector(low, high) => write!(f, "of length {low} to {high}"),
+            Self::Weights => f.write_str("weights that sum to 1"),
+            Self::Whole(low, high) => write!(f, "whole, {low} to {high}"),
+            Self::Halves(low, high) => write!(f, "halves, {low} to {high}"),
+            Self::Transform(low, high) => write!(f, "a transform with scales of {low} to {high}"),
+            Self::Around => f.write_str("a vertex around the pixel"),
+            Self::Pixel => f.write_str("a pixel"),
+        }
+    }
+}
+
 /// One input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Input {

@@ -51,13 +51,18 @@ pub fn pixel_of(id: &str, scene: &str, frame: &Frame) -> Option<usize> {
 pub fn builtin(place: usize, size: Option<u32>) -> Result<Loaded, crate::scene::SceneError> {
     let mut loaded = load::builtin(SCENES[place].0)?;
     if let Some(size) = size {
-        let target = &mut loaded.frame.target;
-        let longer = target.width.max(target.height);
-        let scaled = |side: u32| (u64::from(side) * u64::from(size)).div_ceil(u64::from(longer));
-        let [width, height] = [target.width, target.height].map(|side| u32::try_from(scaled(side)).unwrap_or(side));
-        (target.width, target.height) = (width, height);
+        resize(&mut loaded.frame, size);
     }
     Ok(loaded)
+}
+
+/// Gives a frame so many pixels on its longer side, and as many on the other as keep its shape.
+pub fn resize(frame: &mut Frame, size: u32) {
+    let target = &mut frame.target;
+    let longer = target.width.max(target.height);
+    let scaled = |side: u32| (u64::from(side) * u64::from(size)).div_ceil(u64::from(longer));
+    let [width, height] = [target.width, target.height].map(|side| u32::try_from(scaled(side)).unwrap_or(side));
+    (target.width, target.height) = (width, height);
 }
 
 /// Pixels of the longer side of every scene in a run of everything, which is to end within a minute. Scenes that are asked

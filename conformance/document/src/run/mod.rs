@@ -349,6 +349,26 @@ impl Display for Interrupted {
     }
 }
 
+/// What a project's `lightmeter.toml` said, in the place of options that were not given.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct ConfigUse {
+    /// The file, as it is called from the folder of the command.
+    pub file: String,
+    /// The options with their values.
+    pub settings: serde_json::Map<String, serde_json::Value>,
+}
+
+impl std::fmt::Display for ConfigUse {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let settings: Vec<String> = self
+            .settings
+            .iter()
+            .map(|(name, value)| format!("{name} {}", value.as_str().unwrap_or_default()))
+            .collect();
+        write!(f, "{}: {}", self.file, settings.join(", "))
+    }
+}
+
 /// The JSON of `run`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
@@ -422,6 +442,9 @@ pub struct Report {
     /// What chose the cases, and the version of what draws them, where a later run may be compared with this one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compared_by: Option<ComparedBy>,
+    /// What a project's `lightmeter.toml` said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub config: Option<ConfigUse>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
@@ -461,6 +484,7 @@ impl Report {
             expectations: vec![],
             regressions: vec![],
             compared_by: None,
+            config: None,
         }
     }
 

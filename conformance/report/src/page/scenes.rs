@@ -70,7 +70,7 @@ pub fn markdown(run: &SceneRun, scenes: &[ToldScene], picture: Option<&str>, out
     }
     writeln!(out, "\n## What each shows\n\n| scene | shows | called for |\n|---|---|---|")?;
     for ToldScene { name, shows, effects } in scenes {
-        writeln!(out, "| {name} | {shows} | {effects} |")?;
+        writeln!(out, "| {name} | {} | {effects} |", linked(shows))?;
     }
     judged(run, scenes, out)?;
     costs(run, scenes, out)
@@ -139,4 +139,20 @@ fn costs(run: &SceneRun, scenes: &[ToldScene], out: &mut impl Write) -> Result {
         let EffectsCost { composed_ms, full_ms, ratio, .. } = group.image.as_ref()?.cost?;
         Some(format!("{composed_ms:.2} ms, {full_ms:.2} ms: {ratio:.2} ×"))
     })
+}
+
+/// The words, with each `ruling N` leading to what it says.
+fn linked(words: &str) -> String {
+    let mut parts = words.split("ruling ");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let number: String = part.chars().take_while(char::is_ascii_digit).collect();
+        let rest = &part[number.len()..];
+        if number.is_empty() {
+            out += &format!("ruling {rest}");
+        } else {
+            out += &format!("[ruling {number}](rulings.md#ruling-{number}){rest}");
+        }
+    }
+    out
 }

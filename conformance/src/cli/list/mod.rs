@@ -2,9 +2,9 @@
 
 mod document;
 
+use super::Status;
 use super::options::{Amount, Format};
 use super::run::matching;
-use super::{Status, emit};
 use anyhow::bail;
 use clap::Args;
 use lightmeter::cases::Kind;
@@ -63,7 +63,7 @@ impl List {
             (Format::Text, true) => signatures(&catalogue, &selected)?,
             (Format::Text, false) => tree(&catalogue, &selected, &tables, &scenes, &deviations)?,
         };
-        emit(&text, self.out.as_deref())?;
+        self.format.emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
     }
 }
@@ -74,6 +74,11 @@ fn condition(member: &Member, place: usize) -> Option<f64> {
     member.inputs(CaseRef::Hard(place), 1, &mut inputs);
     let has_one = !matches!(member.spec.kind, Kind::Blend(_));
     has_one.then(|| stability::condition(member.formula.as_ref(), &inputs, stability::size(&member.spec)))
+}
+
+/// A condition number in few digits.
+fn conditioned(x: f64) -> String {
+    if x.is_finite() && x < 1e4 { format!("{x:.1}") } else { format!("{x:.1e}") }
 }
 
 fn signatures(catalogue: &[Member], selected: &[Selected]) -> anyhow::Result<String> {
@@ -140,7 +145,8 @@ fn tree(
             let member = &catalogue[chosen.member];
             for &place in &chosen.hard {
                 let hard = &member.spec.hard[place];
-                let condition = condition(member, place).map_or(String::new(), |x| format!("; condition {x:.1e}"));
+                let condition =
+                    condition(member, place).map_or(String::new(), |x| format!("; condition {}", conditioned(x)));
                 writeln!(text, "    hard/{:<28} {}{condition}", hard.name, hard.pins)?;
                 if let Some(naive) = hard.naive {
                     writeln!(text, "    {:<33} fails: {}, {}", "", naive.formula, naive.fails)?;

@@ -1,14 +1,16 @@
 //! `lightmeter show`.
 
+mod about;
 mod document;
 mod pixel;
 mod special;
 mod unit;
 
 use super::mistakes::by_name;
+use super::nearest::did_you_mean;
 use super::options::{Choice, Format};
-use super::say;
-use super::{Status, emit};
+use super::terminal::level;
+use super::{Status, emit, say};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
@@ -22,6 +24,7 @@ use lightmeter::faults::{Fault, Variation};
 use lightmeter::filter::Filter;
 use lightmeter::formula::intervals;
 use lightmeter::judge::judge;
+use lightmeter::report::Level;
 use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
 use lightmeter::stability;
 use lightmeter::stability::{Conditioning, FormStanding};
@@ -30,11 +33,19 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use unit::{UnitAnswer, drawn, unit_text};
 
-/// Show one case: formula, inputs, each step, the interval, and what the adapter gives.
+/// Show a case with each step, its interval and what the adapter gives; or what is known of any other name.
+///
+/// A case is as `fog/linear/hard/dmin-equals-dmax`, `lighting/phong/random/000017` or, of a scene, `scene/phong/120-96`. Any other name
+/// may be a formula's (`lighting/blinn`), a family's (`fog`), a scene's (`scene/phong`), a mistake's (`fog-radial`), a deviation's
+/// (`deviation/llvmpipe-exp`), a ruling's (`ruling/9`) or a source document's (`004`).
 #[derive(Debug, Args)]
 pub(crate) struct Show {
-    /// The case, as `fog/linear/hard/dmin-equals-dmax` or `lighting/phong/random/000017`
+    /// The case, or another name
+    #[arg(value_name = "NAME")]
     id: String,
+    /// Print the WGSL instead: a formula's function, or the shaders that a scene's objects are drawn by
+    #[arg(long)]
+    wgsl: bool,
     #[command(flatten)]
     choice: Choice,
     /// Show what a renderer with this mistake gives, too; `lightmeter mistakes` lists them
@@ -67,21 +78,35 @@ struct Known {
 impl Show {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let as_json = self.format == Format::Json;
+        let named = separate_of(&self.id).into_iter().collect();
+        let catalogue = catalogue_of(&Samples { seed: self.choice.seed, named, ..Samples::default() });
+        if self.wgsl {
+            emit(&about::wgsl(&self.id, &catalogue)?, self.out.as_deref())?;
+            return Ok(Status::Success);
+        }
+        if let Some(text) = about::about(&self.id, &catalogue)? {
+            if as_json {
+                bail!(
+                    "`{}` is no case: `list --formulas --format json` describes formulas, and `mistakes NAME --format json` mistakes",
+                    self.id
+                );
+            }
+            self.format.emit(&text, self.out.as_deref())?;
+            return Ok(Status::Success);
+        }
         let others = special::find(&self.id)?.is_some() || pixel::find(&self.id, self.choice.size)?.is_some();
         if let (Some(fault), true) = (self.mistake, others) {
             bail!("`{}` is a mistake in formulas, and `{}` is no case of one", fault.name, self.id);
         }
         if let Some(probe) = special::find(&self.id)? {
-            emit(&special::show(probe, &self.choice, &self.subjects()?, as_json)?, self.out.as_deref())?;
+            self.format.emit(&special::show(probe, &self.choice, &self.subjects()?, as_json)?, self.out.as_deref())?;
             return Ok(Status::Success);
         }
         if let Some(found) = pixel::find(&self.id, self.choice.size)? {
             let text = pixel::show(&self.id, &found, &self.choice, &self.subjects()?, as_json)?;
-            emit(&text, self.out.as_deref())?;
+            self.format.emit(&text, self.out.as_deref())?;
             return Ok(Status::Success);
         }
-        let named = separate_of(&self.id).into_iter().collect();
-        let catalogue = catalogue_of(&Samples { seed: self.choice.seed, named, ..Samples::default() });
         let (member, case) = find(&catalogue, &self.id)?;
         let mut inputs = vec![];
         member.inputs(case, self.choice.seed, &mut inputs);
@@ -106,7 +131,7 @@ impl Show {
             let mistake = mistake.map_or_else(String::new, |mistake| mistake_text(&mistake, &known.outputs));
             as_text(member, case, &known, &answers)? + &mistake + &unit_text(&unit)? + &forms_text(&forms)?
         };
-        emit(&text, self.out.as_deref())?;
+        self.format.emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
     }
 
@@ -210,7 +235,13 @@ fn find<'a>(catalogue: &'a [Member], id: &str) -> anyhow::Result<(&'a Member, Ca
             member.case_id(CaseRef::Random(0)),
             member.spec.group()
         ),
-        None => bail!("no case `{id}`; an id is as `fog/linear/random/000017`: see `lightmeter list`"),
+        None => {
+            let names = about::names(catalogue);
+            let meant = did_you_mean(id, names.iter().map(String::as_str));
+            bail!(
+                "there is no `{id}`{meant} `lightmeter list` lists formulas and cases, `lightmeter mistakes` mistakes"
+            )
+        }
     }
 }
 
@@ -244,18 +275,18 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
         writeln!(text, "  rule: {rule}")?;
     }
     text += &inputs_text(member, known)?;
-    writeln!(text, "\nsteps                    f64                      legal")?;
+    writeln!(text, "\nsteps              f64                    legal")?;
     for (step, name) in known.steps.iter().zip(step_names(&known.steps)) {
-        writeln!(text, "  {name:<22} {:<24} {}", Number(step.result.value).to_string(), range(&step.result.interval))?;
+        writeln!(text, "  {name:<16} {:<22} {}", Number(step.result.value).narrow(), range(&step.result.interval))?;
     }
-    writeln!(text, "\noutputs                  reference                legal")?;
+    writeln!(text, "\noutputs            reference              legal")?;
     for (k, output) in known.outputs.iter().enumerate() {
         let condition = Number(known.condition[k]);
         writeln!(
             text,
-            "  {:<22} {:<24} {}  condition {condition}",
+            "  {:<16} {:<22} {}  condition {condition}",
             spec.output_name(k),
-            Number(output.value).to_string(),
+            Number(output.value).narrow(),
             range(&output.interval)
         )?;
     }
@@ -285,10 +316,13 @@ fn inputs_text(member: &Member, known: &Known) -> anyhow::Result<String> {
     for input in member.spec.inputs {
         let (these, others) = rest.split_at(input.shape.components());
         rest = others;
-        let decimal: Vec<String> = these.iter().map(|&x| Number(x.into()).to_string()).collect();
-        let hex: Vec<String> = these.iter().map(|x| format!("0x{:08x}", x.to_bits())).collect();
+        let decimal: Vec<String> = these.iter().map(|&x| Number(x.into()).narrow()).collect();
+        let is_nan = these.iter().any(|x| x.is_nan());
+        let hex = |x: &f32| format!(" 0x{:08x}", x.to_bits());
+        let hex: String =
+            if is_nan || level() == Level::Verbose { these.iter().map(hex).collect() } else { String::new() };
         let means = member.spec.input_means(input);
-        writeln!(text, "  {:<22} {}  {}  {}  {means}", input.name, decimal.join(" "), hex.join(" "), input.unit)?;
+        writeln!(text, "  {:<18} {}{hex}  {}: {means}", input.name, decimal.join(" "), input.unit)?;
     }
     Ok(text)
 }
@@ -300,12 +334,12 @@ fn answer_text(member: &Member, known: &Known, answer: &Answer) -> anyhow::Resul
         Err(reason) => writeln!(text, "  skipped: {reason}")?,
         Ok(values) => {
             for (k, (bits, legal)) in values.iter().enumerate() {
-                let value = Number(f32::from_bits(*bits).into()).to_string();
+                let value = Number(f32::from_bits(*bits).into()).narrow();
                 let (outcome, error) = outcome(*bits, known.outputs[k].value, legal);
                 let name = member.spec.output_name(k);
                 writeln!(
                     text,
-                    "  {name:<22} {value:<24} 0x{bits:08x}  {outcome}, {} ULP; legal here {}",
+                    "  {name:<18} {value:<14} 0x{bits:08x}  {outcome}, {} ULP; legal {}",
                     Number(error),
                     range(legal)
                 )?;
@@ -351,6 +385,6 @@ fn range(interval: &Accept) -> String {
     if interval.is_any() {
         "anything".into()
     } else {
-        format!("{} to {}", Number(interval.low()), Number(interval.high()))
+        format!("{} to {}", Number(interval.low()).narrow(), Number(interval.high()).narrow())
     }
 }

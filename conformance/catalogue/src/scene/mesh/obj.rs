@@ -84,6 +84,15 @@ fn mesh(at: &At<'_>, from: &tobj::Mesh) -> Result<Mesh, SceneError> {
         colors: colors.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect(),
         triangles: from.indices.as_chunks().0.to_vec(),
     };
+    let vertices = mesh.positions.len();
+    for (what, count) in
+        [("normals", mesh.normals.len()), ("texture coordinates", mesh.uvs.len()), ("colours", mesh.colors.len())]
+    {
+        if count != 0 && count != vertices {
+            let holds = format_args!("has {count} {what} at {vertices} vertices");
+            return Err(at.refuse(holds, "faces all of which have them, or none"));
+        }
+    }
     if mesh.normals.contains(&[0.0; 3]) {
         return Err(at.refuse("has a normal that is 0", "normals of any other length"));
     }

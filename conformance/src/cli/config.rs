@@ -1,0 +1,120 @@
+//! `lightmeter.toml`: what a project always says, so that nobody has to type it.
+//!
+//! Its settings stand for options of the same names. They are put behind the command's name before the command line is read, so that an
+//! option that is given wins, and a wrong value is told like a wrong option.
+
+use anyhow::{Context as _, bail};
+use clap::Command;
+use lightmeter::document::run::ConfigUse;
+use lightmeter::files::read;
+use serde::Deserialize;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// The file's name.
+const FILE: &str = "lightmeter.toml";
+/// The option that leaves it out.
+const LEFT_OUT: &str = "--no-config";
+
+/// What a project says.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Config {
+    /// The adapters that `run` and other commands take.
+    #[serde(default)]
+    adapter: Vec<String>,
+    profile: Option<String>,
+    baseline: Option<PathBuf>,
+    growth: Option<f64>,
+    expect: Option<PathBuf>,
+    require: Option<f64>,
+}
+
+static USED: OnceLock<ConfigUse> = OnceLock::new();
+
+/// What was taken from a file, for reports; `None` where nothing was.
+pub(crate) fn used() -> Option<ConfigUse> {
+    USED.get().cloned()
+}
+
+/// The words of the command line, with those that the project's file says.
+pub(crate) fn arguments(command: &Command) -> anyhow::Result<Vec<OsString>> {
+    let given: Vec<OsString> = std::env::args_os().collect();
+    let is_command = |word: &OsString| {
+        word.to_str().and_then(|word| command.find_subcommand(word)).is_some_and(|found| !found.is_hide_set())
+    };
+    let Some(place) = given.iter().position(is_command).filter(|&place| place > 0) else { return Ok(given) };
+    let is_left_out = given.iter().any(|word| word == LEFT_OUT || word == "--help" || word == "-h");
+    let Some((path, file)) = found().filter(|_| !is_left_out) else { return Ok(given) };
+    let config = parsed(&path, &file)?;
+    let named = given[place].to_str().and_then(|word| command.find_subcommand(word));
+    let takes = |name: &str| named.is_some_and(|one| one.get_arguments().any(|arg| arg.get_long() == Some(name)));
+    let (mut words, mut settings) = (vec![], serde_json::Map::new());
+    for (name, values) in options(&config, path.parent().unwrap_or(Path::new("."))) {
+        // Without a baseline nothing grows.
+        let is_of_baseline = name == "growth" && config.baseline.is_none() && !is_given(&given, "baseline");
+        if !takes(name) || is_given(&given, name) || is_of_baseline {
+            continue;
+        }
+        for value in values {
+            let text = value.to_string_lossy().into_owned();
+            let settings = settings.entry(name).or_insert_with(|| serde_json::Value::String(String::new()));
+            let before = settings.as_str().filter(|before| !before.is_empty()).map(|before| format!("{before}, "));
+            *settings = (before.unwrap_or_default() + &text).into();
+            let mut word = OsString::from(format!("--{name}="));
+            word.push(value);
+            words.push(word);
+        }
+    }
+    if !words.is_empty() {
+        let _ = USED.set(ConfigUse { file, settings });
+    }
+    let (before, after) = given.split_at(place + 1);
+    Ok([before, &words, after].concat())
+}
+
+/// The file of this folder, or of the nearest one above that has one, and how it is called from here.
+fn found() -> Option<(PathBuf, String)> {
+    let folder = std::env::current_dir().ok()?;
+    let files = folder.ancestors().enumerate().map(|(above, folder)| (folder.join(FILE), "../".repeat(above) + FILE));
+    files.into_iter().find(|(path, _)| path.is_file())
+}
+
+fn parsed(path: &Path, file: &str) -> anyhow::Result<Config> {
+    let of = || format!("cannot read {file}");
+    let text = read::text(path, read::MOST_TEXT).with_context(of)?;
+    let config: Config = toml::from_str(&text).map_err(|error| {
+        let what = "expected adapter, profile, baseline, growth, expect and require; a command to start is no setting";
+        anyhow::anyhow!("{file}: {}; {what}", error.to_string().trim_end())
+    })?;
+    if let Some(require) = config.require.filter(|share| !(0.0..=1.0).contains(share)) {
+        bail!("{file}: require is {require}; expected a part of 1, such as 0.25");
+    }
+    Ok(config)
+}
+
+/// The options that it says, by their names. Files lie beside it.
+fn options(config: &Config, folder: &Path) -> Vec<(&'static str, Vec<OsString>)> {
+    let beside = |path: &Option<PathBuf>| path.iter().map(|path| folder.join(path).into_os_string()).collect();
+    let number = |number: &Option<f64>| number.iter().map(|number| number.to_string().into()).collect();
+    let all: [(&'static str, Vec<OsString>); 6] = [
+        ("adapter", config.adapter.iter().map(OsString::from).collect()),
+        ("profile", config.profile.iter().map(OsString::from).collect()),
+        ("baseline", beside(&config.baseline)),
+        ("growth", number(&config.growth)),
+        ("expect", beside(&config.expect)),
+        ("require", number(&config.require)),
+    ];
+    all.into_iter().filter(|(_, values)| !values.is_empty()).collect()
+}
+
+/// Whether an option is among the words.
+fn is_given(words: &[OsString], name: &str) -> bool {
+    let option = format!("--{name}");
+    let is_it = |word: &OsStr| {
+        let word = word.to_string_lossy();
+        word == option || word.starts_with(&format!("{option}="))
+    };
+    words.iter().any(|word| is_it(word))
+}

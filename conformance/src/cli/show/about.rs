@@ -1,0 +1,200 @@
+//! What is known of a name that is no case: of a formula, a family, a scene, a deviation, a mistake, a ruling or a source.
+
+use crate::cli::mistakes::{all_names, document as mistakes};
+use crate::cli::nearest::did_you_mean;
+use anyhow::bail;
+use lightmeter::cases::Kind;
+use lightmeter::cases::blend::aliases;
+use lightmeter::faults::concerning;
+use lightmeter::filter::Filter;
+use lightmeter::report;
+use lightmeter::rulings::{RULINGS, Ruling, SOURCES};
+use lightmeter::scene::library::SCENES;
+use lightmeter::scene::load::{self, Loaded};
+use lightmeter::select::Member;
+use lightmeter::witness::NamedDeviation;
+use lightmeter_gpu::Shaders;
+use lightmeter_gpu::compose::{Composer, Recipe, ShaderForm};
+use lightmeter_scene::effects::effects;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+/// What there is to say of a name; `None` where it may be a case.
+pub(super) fn about(name: &str, catalogue: &[Member]) -> anyhow::Result<Option<String>> {
+    let id = canonical(name);
+    if let Some(member) = catalogue.iter().find(|member| member.spec.id == id) {
+        return formula(name, member).map(Some);
+    }
+    if let Some(scene) = name.strip_prefix("scene/").filter(|scene| !scene.contains('/')) {
+        if SCENES.iter().any(|(own, _)| *own == scene) {
+            return of_scene(&load::builtin(scene)?).map(Some);
+        }
+        bail!("no scene `{scene}`{}", did_you_mean(scene, SCENES.iter().map(|(own, _)| *own)));
+    }
+    if let Some(number) = name.strip_prefix("ruling/") {
+        let found = RULINGS.iter().find(|ruling| ruling.number.to_string() == number);
+        let Some(ruling) = found else { bail!("no ruling {number}; there are 1 to {}", RULINGS.len()) };
+        return Ok(Some(of_ruling(ruling)?));
+    }
+    if let Some(source) = SOURCES.iter().find(|source| source.name == name) {
+        return Ok(Some(format!("document {}: {}\n", source.name, source.what)));
+    }
+    if all_names().any(|known| known == name) {
+        let document = mistakes(&[name.to_owned()], &[])?;
+        return Ok(Some(report::mistakes::text(&document, true)));
+    }
+    let deviations = NamedDeviation::named(&Filter::new(&[name])?);
+    if name.starts_with("deviation/") && !deviations.is_empty() {
+        return Ok(Some(deviations.iter().map(|one| format!("{}\n  {}\n", one.name(), one.reason())).collect()));
+    }
+    let below = |member: &&Member| member.spec.family() == name || member.spec.group() == name;
+    let members: Vec<&Member> = catalogue.iter().filter(below).collect();
+    if members.is_empty() { Ok(None) } else { family(name, &members).map(Some) }
+}
+
+/// The id of a formula that may be named by an alias.
+fn canonical(name: &str) -> String {
+    aliases().find_map(|(alias, id)| (alias == name).then_some(id)).unwrap_or_else(|| name.to_owned())
+}
+
+/// What `show` can be asked for besides cases, to tell somebody who typed another name.
+pub(super) fn names(catalogue: &[Member]) -> Vec<String> {
+    let mut names: Vec<String> = catalogue.iter().map(|member| member.spec.id.clone()).collect();
+    names.extend(SCENES.iter().map(|(name, _)| format!("scene/{name}")));
+    names.extend(all_names().map(str::to_owned));
+    names
+}
+
+/// A formula: what it computes of what, where it is from, at which inputs it is hard, and how it is got wrong.
+fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
+    let spec = &member.spec;
+    let mut text = format!("{}\n", spec.id);
+    if name != spec.id {
+        text = format!("{name}, which is the same as {}\n", spec.id);
+    }
+    writeln!(text, "  {}", spec.text)?;
+    writeln!(text, "  source: {}{}", spec.source, explained(spec.source))?;
+    for rule in spec.rules() {
+        writeln!(text, "  rule: {rule}")?;
+    }
+    writeln!(text, "\ninputs")?;
+    for input in spec.inputs {
+        let (shape, domain, means) = (input.shape.name(), input.domain, spec.input_means(input));
+        let unit = if input.unit.is_empty() { String::new() } else { format!(", {}", input.unit) };
+        writeln!(text, "  {:<14} {shape}{unit}: {means}; {domain}", input.name)?;
+    }
+    writeln!(text, "outputs")?;
+    for output in spec.outputs {
+        let unit = if output.unit.is_empty() { String::new() } else { format!(", {}", output.unit) };
+        writeln!(text, "  {:<14} {}{unit}: {}", output.name, output.shape.name(), spec.output_means(output))?;
+    }
+    if !spec.hard.is_empty() {
+        writeln!(text, "hard cases")?;
+    }
+    for hard in spec.hard.iter() {
+        let naive =
+            hard.naive.map(|naive| format!("; {} fails there: {}", naive.formula, naive.fails)).unwrap_or_default();
+        writeln!(text, "  {:<26} {}{naive}", hard.name, hard.pins)?;
+    }
+    let mistakes: Vec<&str> = concerning(member).iter().map(|fault| fault.name).collect();
+    if !mistakes.is_empty() {
+        writeln!(text, "mistakes that are known by name\n  {}", mistakes.join(", "))?;
+    }
+    if !spec.function.is_empty() {
+        writeln!(
+            text,
+            "in WGSL: {}.wgsl, `{}`; the reference: reference/src/{}.rs",
+            spec.family(),
+            spec.function,
+            spec.family()
+        )?;
+    }
+    let case = spec.hard.first().map_or_else(|| "random/000000".into(), |hard| format!("hard/{}", hard.name));
+    if matches!(spec.kind, Kind::Arithmetic) {
+        writeln!(text, "\nlightmeter show {} --wgsl", spec.id)?;
+    }
+    writeln!(text, "lightmeter show {}/{case}\nlightmeter run {}", spec.id, spec.id)?;
+    Ok(text)
+}
+
+/// What a source's name stands for.
+fn explained(source: &str) -> String {
+    let of: Vec<&str> = SOURCES.iter().filter(|one| source.contains(one.name)).map(|one| one.name).collect();
+    if of.is_empty() { String::new() } else { format!(" (`lightmeter show {}` says what that is)", of[0]) }
+}
+
+/// A family: its formulas, a line each.
+fn family(name: &str, members: &[&Member]) -> anyhow::Result<String> {
+    const MOST: usize = 60;
+    let mut text = format!("{name}: {} formulas\n", members.len());
+    for member in members.iter().take(MOST) {
+        writeln!(text, "  {:<30} {}", member.spec.id, member.spec.text)?;
+    }
+    if members.len() > MOST {
+        writeln!(text, "  … `lightmeter list {name}` lists all of them")?;
+    }
+    Ok(text)
+}
+
+/// A scene: what it shows, what it calls for, and how to draw and judge it.
+fn of_scene(scene: &Loaded) -> anyhow::Result<String> {
+    let name = &scene.name;
+    let mut text = format!("scene/{name}: {}\n  {}\n", scene.title, scene.shows);
+    let target = &scene.frame.target;
+    writeln!(text, "  {} × {} pixels, {}", target.width, target.height, target.format.name())?;
+    let called: BTreeSet<String> = effects(&scene.frame)
+        .iter()
+        .flat_map(|called| called.effects.iter().map(|effect| effect.name().to_owned()))
+        .collect();
+    let called: Vec<String> = called.into_iter().collect();
+    writeln!(
+        text,
+        "  effects that it calls for: {}",
+        if called.is_empty() { "none".into() } else { called.join(", ") }
+    )?;
+    writeln!(
+        text,
+        "\nlightmeter effects {name}\nlightmeter render {name} --out {name}.png\nlightmeter show scene/{name} --wgsl\nlightmeter run scene/{name}"
+    )?;
+    Ok(text)
+}
+
+fn of_ruling(ruling: &Ruling) -> anyhow::Result<String> {
+    let Ruling { number, title, document, right, why, forms } = ruling;
+    let mut text = format!("ruling {number}: {title}\n");
+    for (what, words) in [("documents", document), ("right", right), ("why", why), ("forms", forms)] {
+        writeln!(text, "  {what:<10} {words}")?;
+    }
+    Ok(text)
+}
+
+/// The WGSL of a formula's function, or the composed shaders of a scene.
+pub(super) fn wgsl(name: &str, catalogue: &[Member]) -> anyhow::Result<String> {
+    let shaders = Shaders::built_in()?;
+    let id = canonical(name);
+    if let Some(member) = catalogue.iter().find(|member| member.spec.id == id) {
+        let spec = &member.spec;
+        let file = format!("{}.wgsl", spec.family());
+        let text = shaders.function(&file, spec.function);
+        let Some(text) = text else { bail!("`{name}` is drawn by fixed hardware: no function computes it") };
+        return Ok(format!("// {file}\n{text}\n"));
+    }
+    let Some(scene) = name.strip_prefix("scene/") else {
+        bail!("`--wgsl` is of a formula or a scene, as `lighting/blinn` or `scene/phong`");
+    };
+    let loaded = load::builtin(scene)?;
+    let composer = Composer::new(&shaders)?;
+    let recipe = Recipe::of(ShaderForm::Composed);
+    let (mut text, mut told) = (String::new(), BTreeSet::new());
+    for (called, draw) in effects(&loaded.frame).iter().zip(&loaded.frame.draws) {
+        let composition = composer.compose(called.effects, recipe, 0)?;
+        if told.insert(composition.source.clone()) {
+            writeln!(
+                text,
+                "// {}, and whatever else calls for: {}\n{}",
+                draw.name, composition.effects, composition.source
+            )?;
+        }
+    }
+    Ok(text)
+}
