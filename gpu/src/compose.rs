@@ -16,7 +16,7 @@
 //! | `//@ at slot` | what follows, to the next such line, is for the slot |
 //!
 //! Conditions are of effects' names, `stage_<name>`, `has_normals`, the techniques `fog_at_vertex`, `vectors_interpolated`
-//! and `unit_vectors`, `toward_1` to `toward_4` where at least so many lights' vectors are interpolated, `!`, `&`, `|` and
+//! and `unit_vectors`, `toward_1` to `toward_4` where at least that number of lights' vectors are interpolated, `!`, `&`, `|` and
 //! parentheses.
 
 mod condition;

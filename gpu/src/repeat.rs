@@ -87,7 +87,7 @@ impl RepeatPipeline {
         Ok(words.chunks_exact(self.words + 1).flat_map(|row| &row[..self.words]).copied().collect())
     }
 
-    /// How long so many workgroups take, of [`Self::EVALUATIONS`] each.
+    /// How long `groups` workgroups take, of [`Self::EVALUATIONS`] each.
     ///
     /// # Errors
     /// Where the device fails.

@@ -89,7 +89,7 @@ impl SceneRenderer {
         pending.map(gpu, |words| bytemuck::cast_slice(&words).to_vec())
     }
 
-    /// How long it takes to draw the frame so many times in one submission. A driver compiles at the first draw: draw once
+    /// How long it takes to draw the frame `repeats` times in one submission. A driver compiles at the first draw: draw once
     /// before.
     ///
     /// # Errors

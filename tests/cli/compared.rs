@@ -223,7 +223,7 @@ fn how_values_are_stored_is_told_of_all_shards_together() {
     let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
     let merged = lightmeter(&[&["merge"], &parts[..]].concat());
     assert!(code(&merged) == 1 && stdout(&merged).contains("×256 for ×255"), "{}", stdout(&merged));
-    // A shard that was asked on another target is none of the same run.
+    // A shard that was asked on another target does not belong to the same run.
     let other = shard("6/6", &["--target", "rgba32float", "--seed", "1"]);
     let output = lightmeter(&[&["merge"], &parts[..5], &[&other]].concat());
     assert!(code(&output) == 2 && stderr(&output).contains("different runs"), "{}", stderr(&output));

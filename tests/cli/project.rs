@@ -117,11 +117,16 @@ fn any_name_can_be_shown() {
         ("004", "lecture notes"),
         ("deviation/llvmpipe-exp", "exp2(x · log2 e)"),
         ("blend/mode-alpha", "blend/mode-alpha"),
+        ("spot-cutoff", "attenuation/spot-cutoff"),
+        ("blinn", "lighting/blinn-stable"),
     ] {
         let output = command(&["show", name]).output().expect("the binary starts");
         assert_eq!(code(&output), 0, "{name}: {}", stderr(&output));
         assert!(stdout(&output).contains(said), "{name}: {}", stdout(&output));
     }
+    let listed = command(&["list", "blinn"]).output().expect("the binary starts");
+    assert!(code(&listed) == 0 && stdout(&listed).contains("point-blinn"), "{}", stderr(&listed));
+    assert!(stderr(&listed).contains("no case matches `blinn`: these have it in their names"));
     for (name, said) in [("fog/exp", "fn fog_exp("), ("scene/phong", "fn scene_fragment(")] {
         let output = command(&["show", name, "--wgsl"]).output().expect("the binary starts");
         assert!(stdout(&output).contains(said), "{name}: {}", stdout(&output));

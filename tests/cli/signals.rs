@@ -29,7 +29,7 @@ fn seconds_of(child: &Child) -> f64 {
     fields.split(' ').skip(11).take(2).filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / 100.0
 }
 
-/// What a command leaves that gets a signal once it has worked for so many seconds, a small part of what its work takes.
+/// What a command leaves that gets a signal after some seconds, a small part of what its work takes.
 pub(crate) fn stopped_after(seconds: f64, args: &[&str], signal: Signal) -> Output {
     let mut child = start(args);
     let until = Instant::now() + Duration::from_secs(600);

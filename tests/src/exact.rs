@@ -95,7 +95,7 @@ impl Number {
         Self { value, error: None }
     }
 
-    /// A result rounded to so many bits, of operands whose errors come to `carried`.
+    /// A result rounded to `bits` bits, of operands whose errors come to `carried`.
     fn rounded(result: Result<Rounded<Float>, FpError>, bits: usize, carried: Option<i64>) -> Option<Self> {
         let bits = i64::try_from(bits).unwrap_or(i64::MAX / 4);
         let (value, inexact) = match result.ok()? {

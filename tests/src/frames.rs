@@ -47,7 +47,7 @@ impl Numbers {
         choices[self.below(choices.len())]
     }
 
-    /// True once in so many times.
+    /// True once in `count` times on average.
     pub fn once_in(&mut self, count: usize) -> bool {
         self.below(count) == 0
     }

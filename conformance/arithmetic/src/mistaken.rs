@@ -81,7 +81,7 @@ impl<R: Real> Taken<'_, R> {
         self.from.get(self.place(name)?)
     }
 
-    /// The same as so many numbers.
+    /// The same as a list of numbers.
     #[must_use]
     pub fn array<const N: usize>(&self, name: &str) -> Option<[R; N]> {
         self.given(name)?.try_into().ok()

@@ -45,7 +45,7 @@ pub fn each<T>(mut evaluate: impl FnMut() -> T, mut take: impl FnMut(T)) {
     }
 }
 
-/// The side to take of so many; `None` where the hull is to be taken.
+/// The side to take of `of` sides; `None` where the hull is to be taken.
 fn side(of: u8) -> Option<u8> {
     let mut way = WAY.get()?;
     if way.met == MOST {

@@ -57,7 +57,7 @@ impl Gathered {
     }
 }
 
-/// Of errors, and of so many infinite ones.
+/// Of errors, and of a number of infinite ones.
 fn spread(errors: &mut [f64], lost: u64) -> Spread {
     errors.sort_by(f64::total_cmp);
     let lost = usize::try_from(lost).unwrap_or(usize::MAX);

@@ -35,7 +35,7 @@ pub struct Effort {
 }
 
 impl<'a> Entry<'a> {
-    /// Something that `run` times: so much of it at once, at most `most`, each of so many units.
+    /// Something that `run` times: an amount of it at once, `most` at most, each of a number of units.
     pub fn new(
         clock: &'static str,
         units: f64,

@@ -80,7 +80,7 @@ impl Filter {
         self.globs.iter().any(|glob| glob.reaches_below(path))
     }
 
-    /// Whether some glob is long enough to match an id of so many segments other than by an ancestor of it.
+    /// Whether some glob is long enough to match an id of `segments` segments other than by an ancestor of it.
     #[must_use]
     pub fn is_as_deep_as(&self, segments: usize) -> bool {
         self.globs.iter().any(|glob| glob.text.contains("**") || glob.text.matches('/').count() + 1 >= segments)

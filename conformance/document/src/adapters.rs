@@ -13,7 +13,7 @@ pub struct AdaptersDocument {
     /// `lightmeter.adapters/1`.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
-    /// The adapters; the embedded implementation, `cpu`, is none.
+    /// The adapters; the embedded implementation, `cpu`, is not among them.
     pub adapters: Vec<ListedAdapter>,
 }
 

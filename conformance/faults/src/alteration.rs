@@ -239,7 +239,7 @@ impl At {
         }
     }
 
-    /// Whether it can be made in a step that is given so many numbers under each name and gives so many.
+    /// Whether it can be made in a step that is given these numbers of numbers under its names, and gives this number of them.
     pub(super) fn fits(&self, step: &NamedStep, sizes: &[usize], out: usize) -> bool {
         let size = |name: &str| place(step, sizes, name).map(|range| range.len());
         let has = |name: &&'static str| size(name).is_some();

@@ -59,7 +59,7 @@ struct Sample<'a> {
 impl<'a> Sample<'a> {
     /// Random cases, besides the hard ones and those near them.
     const RANDOM: u64 = 1024;
-    /// Of the random ones a mistake shows in one of so many, unless in another.
+    /// Of the random ones a mistake shows in one of this number, unless in another kind of case.
     const SHARE: usize = 40;
 
     fn new(member: &'a Member) -> Self {

@@ -111,7 +111,7 @@ impl Trial<'_> {
         self.failing.iter().step_by((self.failing.len() / count).max(1)).take(count)
     }
 
-    /// Whether so many of some failing cases, at most, lie outside the intervals.
+    /// Whether at most `most` of some failing cases lie outside the intervals.
     fn is_likely(&self, probes: usize, most: usize, tried: &impl Wrong) -> bool {
         let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
         let mut outside = 0;
@@ -349,7 +349,7 @@ fn paired(member: &Member) -> Vec<Concerned> {
     concerned(member).iter().filter(|concerned| !concerned.fault.is_rounding).copied().collect()
 }
 
-/// The bits that it takes to say which of so many it is.
+/// The bits that it takes to say which one of a number of things is meant.
 fn bits_of(count: usize) -> f64 {
     share(count.max(1), 1).log2()
 }

@@ -40,7 +40,7 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// The outcome where the failing cases are a sample of so many.
+    /// The outcome where the failing cases are a sample of `all`.
     #[must_use]
     pub fn sentence_of(&self, all: usize) -> String {
         if all == self.failing {

@@ -37,7 +37,7 @@ const STEPS_AN_OCTAVE: i32 = 6;
 const ROUGH_STEPS: i32 = 2;
 const FEW_ROWS: usize = 6;
 const NEAREST: usize = 12;
-/// Cases that every mistake with every parameter is tried on first, and the part that is then tried on more: one in so many.
+/// Cases that every mistake with every parameter is tried on first, and the part that is then tried on more: one in this number.
 const FEWER_ROWS: usize = 2;
 const NEAR: usize = 4;
 /// What is left of the cost of the parameter as it was asked, at most.
@@ -90,7 +90,7 @@ impl Scaled {
     }
 }
 
-/// A number to so many significant digits.
+/// A number to `digits` significant digits.
 pub(super) fn digits(x: f64, significant: i32) -> String {
     if x == 0.0 || !x.is_finite() {
         return x.to_string();

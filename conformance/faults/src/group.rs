@@ -51,7 +51,7 @@ pub const LEAST_SHARE: f64 = 0.125;
 /// A constant is rounded, and a division by one may be a multiplication by its reciprocal, which is rounded too: `SwiftShader` computes byte/255 so. All
 /// answers are then off alike, by as much as if a parameter were, and all of it is legal.
 pub const LEAST_ERROR: f64 = 1.0 / 8_388_608.0;
-/// Residuals beyond so many tolerances count as so many: one case far off does not decide.
+/// Residuals are cut to this number of tolerances, so that one case far off does not decide.
 const FARTHEST: f64 = 4.0;
 /// Cases that a task of the pool takes at once.
 const TASK: usize = 256;

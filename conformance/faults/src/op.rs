@@ -104,7 +104,7 @@ pub(super) enum Op {
 }
 
 impl Op {
-    /// Whether so many numbers can be changed so.
+    /// Whether `count` numbers can be changed in this way.
     pub(super) const fn fits(self, count: usize) -> bool {
         match self {
             Self::Rotate | Self::SwapLast => count > 1,

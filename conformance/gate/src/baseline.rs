@@ -171,7 +171,7 @@ impl Baseline {
     /// Reads the JSON of a gate.
     ///
     /// # Errors
-    /// Where it is none.
+    /// Where it is not the JSON of a gate.
     pub fn of_gate(path: &Path) -> Result<Self, BaselineError> {
         let report: GateReport = read(path)?;
         Self::checked(Standard::from(&report), path)
@@ -180,7 +180,7 @@ impl Baseline {
     /// Reads the JSON of a run.
     ///
     /// # Errors
-    /// Where it is none, or an older one, which does not say what chose its cases.
+    /// Where it is not the JSON of a run, or of an older version, which does not say what chose its cases.
     pub fn of_run(path: &Path) -> Result<Self, BaselineError> {
         let report: Report = read(path)?;
         if report.compared_by.is_none() {

@@ -1,4 +1,4 @@
-//! Lines that are no answers: counted by kind, the first of them in words.
+//! Lines that cannot be read as answers: counted by kind, the first of them in words.
 
 use super::answer::clipped;
 use lightmeter_document::gate::Problems;

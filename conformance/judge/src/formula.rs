@@ -384,7 +384,7 @@ mod tests {
         standing(chunk, words).failures(chunk.members, Stage::Compute, &judging(&Known::default()))
     }
 
-    /// The first, a middle and the last of so many.
+    /// The first, a middle and the last of `of` places.
     fn places(of: usize) -> [usize; 3] {
         [0, of / 2, of - 1]
     }

@@ -42,7 +42,7 @@ pub fn text(report: &GateReport, is_told: bool, level: Level, out: &mut impl Wri
     if !report.problems.is_empty() {
         let counts: Vec<String> =
             report.problems.counts.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-        writeln!(out, "\nlines that are no answers: {}", counts.join(", "))?;
+        writeln!(out, "\nlines that cannot be read as answers: {}", counts.join(", "))?;
         report.problems.first.iter().take(20).try_for_each(|what| writeln!(out, "  {what}"))?;
     }
     if let Some(signal) = report.signal {

@@ -523,7 +523,7 @@ pub fn failure(failure: &Failure, level: Level, out: &mut impl Write) -> Result 
     writeln!(out, "  {:<14} {}", "again", failure.rerun)
 }
 
-/// Errors beyond are told as differences: so many ULP say nothing more.
+/// Errors beyond are told as differences, since such a number of ULP says nothing more.
 const MOST_ULP: f64 = 1e6;
 
 /// JSON without quotes and commas: `[0.5 1]`.

@@ -126,7 +126,7 @@ fn next_line(stream: &mut impl BufRead, line: &mut Vec<u8>) -> std::io::Result<b
     Ok(true)
 }
 
-/// A line's text, or why it is none.
+/// A line's text, or why it is not text.
 fn line_text(line: &[u8]) -> Result<&str, (Value, anyhow::Error)> {
     if line.len() as u64 > MOST_BYTES {
         return Err((Value::Null, anyhow::anyhow!("it has more than {MOST_BYTES} bytes")));

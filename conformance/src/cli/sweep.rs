@@ -66,7 +66,7 @@ pub(crate) struct Sweep {
     /// Where the state is kept, so that the same command goes on where an interrupted one was
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
-    /// Do so many blocks now and leave the rest for another time
+    /// Do this number of blocks now and leave the rest for another time
     #[arg(long, value_name = "N", requires = "checkpoint", value_parser = clap::value_parser!(u64).range(1..))]
     blocks: Option<u64>,
     /// How the result is written
@@ -301,7 +301,7 @@ fn bar(document: &SweepDocument, shard: Shard) -> ProgressBar {
                 reason = "a rate that is read by people"
             )]
             let rate = state.per_sec() as u64;
-            // A bar that cannot be written is none.
+            // A bar that cannot be written is left out.
             let _ = out.write_str(&thousands(rate));
         }));
     }

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 /// Columns of a terminal that does not say how many it has.
 const COLUMNS: usize = 80;
-/// Beyond so many columns a line is no longer read with ease.
+/// The columns of the longest line that is read with ease.
 const MOST_COLUMNS: usize = 120;
 
 /// How results for people are shown.
@@ -86,7 +86,7 @@ fn columns(stream: &impl IsTerminal) -> Option<usize> {
     columns.map(|columns| columns.clamp(COLUMNS / 2, MOST_COLUMNS))
 }
 
-/// Lines of at most so many columns. What a line continues with stands two columns further in; a command to copy stays whole.
+/// Lines of at most `columns` columns. What a line continues with stands two columns further in; a command to copy stays whole.
 fn wrapped(text: &str, columns: usize) -> String {
     let mut out = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {

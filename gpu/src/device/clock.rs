@@ -48,7 +48,7 @@ impl ClockReading {
         }
     }
 
-    /// What two timestamps say, in ticks of so many seconds, of work that took no more than `wall` seconds.
+    /// What two timestamps say, in ticks of `period` seconds, of work that took no more than `wall` seconds.
     #[must_use]
     pub fn of_ticks([start, end]: [u64; 2], period: f64, wall: f64) -> Self {
         // Drivers leave 0 where nothing was written.

@@ -48,7 +48,7 @@ impl Executor {
         Pending::new(gpu.queue.submit([encoder.finish()]), through, layout)
     }
 
-    /// How long the steps of the work take, so many times over. Nothing comes back.
+    /// How long the steps of the work take, repeated `repeats` times. Nothing comes back.
     ///
     /// # Errors
     /// Where the device fails.

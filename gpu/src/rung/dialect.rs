@@ -21,9 +21,9 @@ pub(crate) enum Dialect {
 pub(crate) enum Shape {
     /// One.
     Scalar,
-    /// A vector of so many.
+    /// A vector, by the number of its components.
     Vector(u8),
-    /// A matrix of so many columns and rows.
+    /// A matrix, by the numbers of its columns and rows.
     Matrix(u8, u8),
 }
 
@@ -38,7 +38,7 @@ impl Shape {
     }
 }
 
-/// The f32 vector of so many components.
+/// The f32 vector of `size` components.
 pub(crate) fn plain_vector(size: u8) -> String {
     if size == 1 { "f32".into() } else { format!("vec{size}f") }
 }

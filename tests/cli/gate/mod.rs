@@ -27,7 +27,7 @@ pub(crate) fn answered(test: &str, filter: &[&str]) -> (PathBuf, PathBuf) {
     answered_of(test, filter, 64)
 }
 
-/// The same of so many random cases.
+/// The same with `cases` random cases.
 fn answered_of(test: &str, filter: &[&str], cases: u32) -> (PathBuf, PathBuf) {
     let folder = folder(test);
     let (pack, answers) = (folder.join("pack"), folder.join("answers.jsonl"));

@@ -20,7 +20,7 @@ use lightmeter_tests::frames::frame;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// Configuration of a law over so many random frames, the same ones at each run.
+/// How a law is tried: on `cases` random frames, the same ones at each run.
 fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() }
 }

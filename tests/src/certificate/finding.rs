@@ -160,7 +160,7 @@ fn terms_cancel(id: &str) -> bool {
 /// Digits to which an exact value must be known.
 const DIGITS: u32 = 50;
 
-/// Everything that does not hold of so many formulas.
+/// Everything that does not hold, and how many formulas were tried.
 #[must_use]
 pub fn problems(findings: &[FormulaFinding]) -> Vec<String> {
     let mut problems: Vec<String> = findings.iter().flat_map(|finding| finding.broken.clone()).collect();

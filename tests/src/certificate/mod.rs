@@ -91,7 +91,7 @@ fn evaluate<F: Formula, R: Real>(formula: &F, inputs: impl Iterator<Item = R>, o
     out
 }
 
-/// Certifies every formula of the catalogue, each on so many random cases and all hard and edge inputs.
+/// Certifies every formula of the catalogue, each on a number of random cases and on all hard and edge inputs.
 ///
 /// # Panics
 /// Where the catalogue and the formulas that a visitor is shown are not the same.

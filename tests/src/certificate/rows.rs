@@ -38,7 +38,7 @@ type Made = (&'static str, fn(f32) -> f32);
 /// What a number is set to beside another.
 const BESIDE: [Made; 4] = [("", |x| x), ("just above ", f32::next_up), ("just below ", f32::next_down), ("−", |x| -x)];
 
-/// The rows of a formula with so many random cases.
+/// The rows of a formula: its random cases, and all others.
 pub(super) fn rows(member: &Member, cases: u64) -> Vec<Row> {
     let spec = &member.spec;
     let near = |place| (0..member.near()).map(move |k| CaseRef::Near(place, k));

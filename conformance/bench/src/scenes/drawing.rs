@@ -265,7 +265,7 @@ pub(super) fn errors(image: &StoredImage, ideal: &Standard, all: &[&Standard]) -
     gathered.errors()
 }
 
-/// The frame with so many pixels on its longer side.
+/// The frame with `side` pixels on its longer side.
 pub(super) fn sized(mut frame: Frame, side: u32) -> Frame {
     let target = &mut frame.target;
     let longer = target.width.max(target.height);

@@ -17,7 +17,7 @@ pub(super) fn builtin(name: &str) -> Frame {
     load::builtin(name).unwrap_or_else(|error| panic!("{error}")).frame
 }
 
-/// A ball of so many rings under a point light, shiny, lit at a frequency.
+/// A ball of `rings` rings under a point light, shiny, lit at a frequency.
 pub(super) fn ball(frequency: &str, rings: u32) -> Frame {
     let segments = rings * 3 / 2;
     frame(&format!(
@@ -87,7 +87,7 @@ pub(super) fn layers() -> Frame {
     )
 }
 
-/// A ball under so many point lights, lit at its fragments.
+/// A ball under `count` point lights, lit at its fragments.
 pub(super) fn lights(count: u32) -> Frame {
     let mut lights = String::new();
     for k in 0..count {

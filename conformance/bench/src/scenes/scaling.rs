@@ -16,7 +16,7 @@ use std::time::Instant;
 
 /// Frames of a measurement, at most.
 const MOST_FRAMES: u32 = 1024;
-/// Frames that take so many seconds are drawn few times.
+/// Frames that take this number of seconds are drawn few times.
 const SLOW: f64 = 0.1;
 /// How often such a frame is drawn.
 const FEW: usize = 3;

@@ -412,7 +412,7 @@ impl Spec {
     }
 }
 
-/// The name of one number among values of so many components each; empty where there are fewer.
+/// The name of one number among values of these numbers of components; empty where there are fewer.
 fn number_name(values: impl Iterator<Item = (&'static str, ValueShape, &'static str)>, mut number: usize) -> String {
     for (name, shape, unit) in values {
         if number < shape.components() {

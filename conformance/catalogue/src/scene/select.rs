@@ -44,7 +44,7 @@ pub fn pixel_of(id: &str, scene: &str, frame: &Frame) -> Option<usize> {
     (x < width && y < height).then_some(y * width + x)
 }
 
-/// A built-in scene, drawn with its longer side of so many pixels rather than its own.
+/// A built-in scene, drawn with `size` pixels on its longer side rather than its own number.
 ///
 /// # Errors
 /// Where it is refused, which a test rules out.
@@ -56,7 +56,7 @@ pub fn builtin(place: usize, size: Option<u32>) -> Result<Loaded, crate::scene::
     Ok(loaded)
 }
 
-/// Gives a frame so many pixels on its longer side, and as many on the other as keep its shape.
+/// Gives a frame `size` pixels on its longer side, and as many on the other as keep its shape.
 pub fn resize(frame: &mut Frame, size: u32) {
     let target = &mut frame.target;
     let longer = target.width.max(target.height);

@@ -24,7 +24,7 @@ pub enum Inputs {
 
 /// The error for an unknown name of inputs.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
-#[error("inputs `{0}` are none; expected random, hard or all")]
+#[error("unknown inputs `{0}`; expected random, hard or all")]
 pub struct InputsError(String);
 
 impl FromStr for Inputs {

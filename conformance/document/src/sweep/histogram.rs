@@ -34,7 +34,7 @@ impl Histogram {
         self.counts[bin(error)] += 1;
     }
 
-    /// Counts a value that is NaN where the reference is none.
+    /// Counts a value that is NaN where the reference is a number.
     pub fn count_nan(&mut self) {
         self.counts[NAN] += 1;
     }

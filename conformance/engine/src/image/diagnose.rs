@@ -21,7 +21,7 @@ pub struct Departure {
     pub stage: &'static str,
     /// Pixels that depart there.
     pub pixels: usize,
-    /// Of so many that were looked at.
+    /// Of how many that were looked at.
     pub of: usize,
 }
 

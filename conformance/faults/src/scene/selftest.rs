@@ -37,7 +37,7 @@ pub fn text(record: &SceneRecord, out: &mut impl Write) -> Result {
     Ok(())
 }
 
-/// What the scenes catch, drawn with so many pixels on their longer side; and the scenes in which nothing is wrong and
+/// What the scenes catch, drawn with `size` pixels on their longer side; and the scenes in which nothing is wrong and
 /// something fails all the same. A scene that is under way when it is told to stop is left out.
 ///
 /// # Errors

@@ -321,7 +321,7 @@ fn each_color([r, g, b, a]: [f64; 4], change: impl Fn(f64) -> f64) -> [f64; 4] {
     [change(r), change(g), change(b), a]
 }
 
-/// Moves all that is drawn by so many pixels, right and down.
+/// Moves all that is drawn by a number of pixels, right and down.
 #[expect(clippy::cast_precision_loss, reason = "a target's size")]
 fn shift(frame: &mut Frame, by: [f32; 2]) {
     let size = [frame.target.width as f32, -(frame.target.height as f32)];

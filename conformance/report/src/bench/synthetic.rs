@@ -36,7 +36,7 @@ impl SyntheticDraw {
     }
 }
 
-/// Errors whose largest is so many ULP.
+/// Errors whose largest is `ulp` ULP.
 pub(crate) fn errors(ulp: f64) -> Errors {
     let spread = |max: f64| Spread { max: Number(max), p99: Number(max / 3.0), mean: Number(max / 20.0) };
     let lost = if ulp.is_finite() { 0 } else { 3 };

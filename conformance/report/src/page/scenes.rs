@@ -25,7 +25,7 @@ impl SceneRun {
     /// Reads a run's JSON.
     ///
     /// # Errors
-    /// Where it is none, or has no scene.
+    /// Where it is not the JSON of a run, or has no scene.
     pub fn read(json: &str) -> std::result::Result<Self, String> {
         let run = Self(Report::read(json).map_err(|error| error.to_string())?);
         if run.groups.iter().any(|group| group.image.is_some()) {

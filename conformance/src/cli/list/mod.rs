@@ -2,7 +2,7 @@
 
 mod document;
 
-use super::Status;
+use super::{Status, say};
 use super::options::{Amount, Format};
 use super::run::matching;
 use anyhow::bail;
@@ -43,7 +43,18 @@ impl List {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let named = self.filter.iter().filter_map(|glob| separate_of(glob)).collect();
         let samples = Samples { named, ..Samples::default() };
-        let filter = matching(&self.filter, self.amount.cases, &samples, None)?;
+        let filter = match matching(&self.filter, self.amount.cases, &samples, None) {
+            Ok(filter) => filter,
+            Err(error) => {
+                // A part of a name finds whatever has it.
+                let wider: Vec<String> = self.filter.iter().map(|part| format!("*/*{}*", part.trim_matches('*'))).collect();
+                let is_part = self.filter.iter().all(|part| part.len() >= 3 && !part.contains('/'));
+                let wider = is_part.then(|| matching(&wider, self.amount.cases, &samples, None).ok()).flatten();
+                let Some(wider) = wider else { return Err(error) };
+                say(&format!("note: no case matches `{}`: these have it in their names", self.filter.join(" ")));
+                wider
+            }
+        };
         let catalogue = catalogue_of(&samples);
         let selected = select(&catalogue, &filter, self.amount.cases, self.amount.shard.0);
         let shard = self.amount.shard.0;

@@ -52,6 +52,28 @@ pub(super) fn about(name: &str, catalogue: &[Member]) -> anyhow::Result<Option<S
     if members.is_empty() { Ok(None) } else { family(name, &members).map(Some) }
 }
 
+/// What there is to say of a part of a name: of the one name that has it, or which names do; `None` where none has it.
+pub(super) fn containing(part: &str, catalogue: &[Member]) -> anyhow::Result<Option<String>> {
+    const LEAST: usize = 3;
+    const MOST: usize = 40;
+    let part = part.to_lowercase();
+    let mut names = names(catalogue);
+    names.retain(|name| part.len() >= LEAST && name.to_lowercase().contains(&part));
+    names.dedup();
+    match names.as_slice() {
+        [] => Ok(None),
+        [one] => about(one, catalogue),
+        several => {
+            let mut text = format!("{} names have `{part}` in them\n", several.len());
+            several.iter().take(MOST).try_for_each(|name| writeln!(text, "  {name}"))?;
+            if several.len() > MOST {
+                writeln!(text, "  …")?;
+            }
+            Ok(Some(text))
+        }
+    }
+}
+
 /// The id of a formula that may be named by an alias.
 fn canonical(name: &str) -> String {
     aliases().find_map(|(alias, id)| (alias == name).then_some(id)).unwrap_or_else(|| name.to_owned())

@@ -84,7 +84,11 @@ impl Show {
             emit(&about::wgsl(&self.id, &catalogue)?, self.out.as_deref())?;
             return Ok(Status::Success);
         }
-        if let Some(text) = about::about(&self.id, &catalogue)? {
+        let found = match about::about(&self.id, &catalogue)? {
+            None if !self.id.contains('/') => about::containing(&self.id, &catalogue)?,
+            found => found,
+        };
+        if let Some(text) = found {
             if as_json {
                 bail!(
                     "`{}` is no case: `list --formulas --format json` describes formulas, and `mistakes NAME --format json` mistakes",

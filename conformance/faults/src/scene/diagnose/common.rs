@@ -17,7 +17,10 @@ impl Trial<'_> {
     /// What failing components have in common where nothing explains them.
     pub(super) fn unnamed(&self) -> String {
         let failing = thousands(self.failing.len() as u64);
-        let told = format!("nothing in the catalogue explains the {failing} failing components of pixels");
+        let told = match self.failing.len() {
+            1 => "nothing in the catalogue explains the failing component of a pixel".into(),
+            _ => format!("nothing in the catalogue explains the {failing} failing components of pixels"),
+        };
         if let Some([r, g, b, a]) = self.flat() {
             return told + &format!(": the whole image is {r} {g} {b} {a}");
         }

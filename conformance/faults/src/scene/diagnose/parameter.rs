@@ -1,4 +1,4 @@
-//! Wrong parameters of a frame: a number that is so many times what it should be.
+//! Wrong parameters of a frame: a number that is some factor times what it should be.
 
 use super::super::draw_at;
 use super::{Made, Near, Trial, nearest_first, spread};
@@ -17,7 +17,7 @@ const FITTED: usize = 96;
 pub(super) struct Parameter {
     /// What it is, as the beginning of a sentence.
     says: &'static str,
-    /// Makes it so many times as large.
+    /// Multiplies it by a factor.
     scale: fn(&mut Frame, f32),
 }
 

@@ -52,7 +52,7 @@ pub(super) fn style(name: &str, place: usize) -> Style {
     Style { shape, colour }
 }
 
-/// Draws a marker of so many pixels from its middle to its side; hollow, it is one that is wrong in value.
+/// Draws a marker, `r` pixels from its middle to its side; hollow, it is one that is wrong in value.
 pub(super) fn mark(style: Style, [x, y]: [f64; 2], r: f64, is_hollow: bool, out: &mut impl Write) -> Result {
     let Style { shape, colour } = style;
     let path = outline(shape, r);
