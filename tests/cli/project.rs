@@ -60,16 +60,55 @@ fn settings_that_nothing_can_be_made_of_are_told() {
     let folder = folder("config-wrong");
     for (config, said) in [
         ("exec = \"rm -rf x\"", "a command to start is no setting"),
-        ("adapter = \"cpu\"", "lightmeter.toml: "),
+        ("adapter = \"cpu\"", "lightmeter.toml, line 1: "),
         ("require = 2.0", "require is 2; expected a part of 1"),
         ("profile = \"metal\"", "no such profile"),
-        ("adapter = [", "lightmeter.toml: "),
+        ("adapter = [", "lightmeter.toml, line 1: "),
         ("expect = \"nowhere.toml\"", "nowhere.toml"),
     ] {
         let output = within(&folder, config, &["run", "fog/exp", "--cases", "8"]);
         assert_eq!(code(&output), 2, "{config}: {}", stdout(&output));
         assert!(stderr(&output).contains(said), "{config}: {}", stderr(&output));
     }
+}
+
+#[test]
+fn commands_that_take_no_setting_are_left_alone() {
+    let folder = folder("config-alone");
+    // Of two adapters, and of a file that nothing can be made of, whoever takes neither is not told.
+    let image = folder.join("x.png").display().to_string();
+    for config in ["adapter = [\"cpu\", \"all\"]", "nonsense = 1"] {
+        for args in [&["list", "fog/exp"][..], &["help", "run"], &["render", "phong", "--size", "16", "--out", &image]]
+        {
+            let output = within(&folder, config, args);
+            assert_eq!(code(&output), 0, "{config} {args:?}: {}", stderr(&output));
+        }
+    }
+    let output = within(&folder, "adapter = [\"cpu\", \"all\"]", &["sweep", "fog/exp"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("takes one adapter, and there are 2"), "{}", stderr(&output));
+    // A folder of that name is no file without settings.
+    std::fs::remove_file(folder.join("lightmeter.toml")).expect("it is there");
+    std::fs::create_dir(folder.join("lightmeter.toml")).expect("a folder can be made");
+    let output = command(&["run", "fog/exp"]).current_dir(&folder).output().expect("the binary starts");
+    assert_eq!(code(&output), 2, "{}", stderr(&output));
+    assert!(stderr(&output).contains("cannot read lightmeter.toml"), "{}", stderr(&output));
+    std::fs::remove_dir(folder.join("lightmeter.toml")).expect("it is empty");
+}
+
+#[test]
+fn a_gate_that_ends_with_the_first_failure_writes_no_baseline() {
+    let (pack, answers) = super::gate::answered("fail-fast-gate", &["fog/exp", "vector/reflect"]);
+    let spoil =
+        |k: usize, line: &str| (if k == 3 { line.replace("\"value\":[", "\"value\":[7") } else { line.into() }) + "\n";
+    let wrong = super::gate::edit(&answers, spoil).display().to_string();
+    let (pack, baseline) = (pack.display().to_string(), folder("fail-fast-baseline").join("b.json"));
+    let kept = baseline.display().to_string();
+    let args = ["gate", &pack, &wrong, "--fail-fast", "--baseline", &kept, "--update-baseline"];
+    let output = command(&args).output().expect("the binary starts");
+    assert_eq!(code(&output), 1, "{}", stderr(&output));
+    assert!(stderr(&output).contains("ended at the first failure, as asked"), "{}", stderr(&output));
+    assert!(!baseline.exists(), "half a result is no baseline");
 }
 
 #[test]

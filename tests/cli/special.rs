@@ -110,7 +110,11 @@ fn a_run_judges_the_tables() {
     assert_eq!(code(&lightmeter(&["run", "special/signed-zero/no-such-probe"])), 2);
     // The embedded implementation has no shading language.
     let embedded = lightmeter(&["run", "special", "--adapter", "cpu"]);
-    assert!(code(&embedded) == 3 && stdout(&embedded).contains("skipped 5 groups, from special/nan"), "{}", stdout(&embedded));
+    assert!(
+        code(&embedded) == 3 && stdout(&embedded).contains("skipped 5 groups, from special/nan"),
+        "{}",
+        stdout(&embedded)
+    );
 }
 
 #[test]

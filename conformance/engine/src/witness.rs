@@ -12,6 +12,7 @@ use crate::device::{Code, DeviceError};
 use crate::special;
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
+use lightmeter_arithmetic::profile::WGSL;
 use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected};
 use lightmeter_catalogue::special as special_values;
 use lightmeter_catalogue::special::Probe;
@@ -120,7 +121,10 @@ pub fn accuracy(
     }
     let Some(device) = subject.device() else { return Ok(None) };
     let Some(bits) = device.probe(code, deviation.builtin.probe(), deviation.witness)? else { return Ok(None) };
-    Ok(Some(shows(deviation, bits, profile)))
+    let is_shown = shows(deviation, bits, profile);
+    // Rules that allow what the driver gives know of no deviation.
+    let is_allowed = !is_shown && shows(deviation, bits, &WGSL);
+    Ok((!is_allowed).then_some(is_shown))
 }
 
 /// The case that is the witness, on the target that the deviation is of.

@@ -124,30 +124,32 @@ fn decoded(bytes: &[u8], file: &str, fits: Fits<'_>) -> Result<Values, String> {
     Ok(values)
 }
 
-/// NumPy's format: an array (height, width, 3 or 4) of u8, f32 or f64, in C's order.
-/// Levels of brackets in an array's header. The length of the header, before it, may have a byte that looks like one.
-const MOST_NESTED: i32 = 3;
+/// Levels of brackets in the header of an array of numbers: a dictionary with a tuple.
+const MOST_NESTED: i32 = 2;
+/// Bytes before a header, the last two of which are its length, of version 1; of the later ones the last four.
+const PROLOGUES: [usize; 2] = [10, 12];
 
-/// Whether the header of an array nests more than an array of numbers needs: a dictionary with a tuple. What parses it takes a time that
-/// doubles with each further level.
+/// Whether the header of an array nests more than an array of numbers needs. What parses it takes a time that doubles with each further
+/// level.
 fn is_nested(bytes: &[u8]) -> bool {
-    let header = bytes.iter().take(1 << 16).take_while(|&&byte| byte != b'\n');
+    let start = PROLOGUES[usize::from(bytes.get(6).is_some_and(|&version| version > 1))];
+    let length =
+        bytes.get(8..start).unwrap_or_default().iter().rev().fold(0, |sum, &byte| sum << 8 | usize::from(byte));
+    let header = bytes.iter().skip(start).take(length);
     let mut depth = 0_i32;
-    header
-        .map(|byte| match byte {
-            b'{' | b'(' | b'[' => {
-                depth += 1;
-                depth
-            }
-            b'}' | b')' | b']' => {
-                depth -= 1;
-                depth
-            }
-            _ => depth,
-        })
-        .any(|depth| depth > MOST_NESTED)
+    let mut deepest = 0;
+    for byte in header {
+        depth += match byte {
+            b'{' | b'(' | b'[' => 1,
+            b'}' | b')' | b']' => -1,
+            _ => 0,
+        };
+        deepest = deepest.max(depth);
+    }
+    deepest > MOST_NESTED
 }
 
+/// NumPy's format: an array (height, width, 3 or 4) of u8, f32 or f64, in C's order.
 fn npy(bytes: &[u8], name: &str, fits: Fits<'_>) -> Result<Values, String> {
     if is_nested(bytes) {
         return Err(format!("cannot read `{name}`: its header nests brackets; expected that of an array of numbers"));

@@ -20,10 +20,11 @@ pub const MOST_TOLD: usize = 24;
 /// Where the writer fails.
 pub fn text(report: &GateReport, is_told: bool, level: Level, out: &mut impl Write) -> Result {
     let renderer = &report.renderer;
+    // What a file says may be why something passes.
+    if let Some(config) = &report.config {
+        writeln!(out, "{config}")?;
+    }
     if level > Level::Quiet {
-        if let Some(config) = &report.config {
-            writeln!(out, "{config}")?;
-        }
         let version = if renderer.version.is_empty() { String::new() } else { format!(" {}", renderer.version) };
         writeln!(out, "{}{version} · profile {} · {:.1} s", renderer.name, report.profile, report.seconds)?;
         families(report, level, out)?;
@@ -141,6 +142,8 @@ fn short(x: f64) -> String {
 pub fn told(group: &GateGroup, failures: &[GateFailure], out: &mut impl Write) -> Result {
     let (count, what) = match group.failed {
         0 if group.undeclared > 0 => (group.undeclared, "were skipped"),
+        0 if group.missing > 0 => (group.missing, "were never answered"),
+        1 => (1, "fails"),
         failed => (failed, "fail"),
     };
     writeln!(out, "\n✗ {}: {count} of {} {what}", group.name(), cases(group.asked))?;

@@ -22,6 +22,9 @@ fn annotation(kind: &str, title: &str, text: &str) -> String {
 #[must_use]
 pub fn of_gate(report: &GateReport) -> String {
     let mut out = String::new();
+    if let Some(config) = &report.config {
+        out += &annotation("notice", "settings", &config.to_string());
+    }
     for group in report.groups.iter().filter(|group| group.is_failed()) {
         let case = smallest(group, report).map_or_else(String::new, |case| format!("\nsmallest failing case {case}"));
         out += &annotation("error", &group.name(), &(sentence(group) + &case));
@@ -39,6 +42,9 @@ pub fn of_gate(report: &GateReport) -> String {
 #[must_use]
 pub fn of_run(report: &Report) -> String {
     let mut out = String::new();
+    if let Some(config) = &report.config {
+        out += &annotation("notice", "settings", &config.to_string());
+    }
     for group in report.groups.iter().filter(|group| group.totals.failed > 0 || group.problem.is_some()) {
         let mut said = String::new();
         let Ok(()) = failing_group(group, " of", &mut said) else { unreachable!("a string takes all") };

@@ -36,10 +36,11 @@ pub struct Style {
 /// # Errors
 /// Where the writer fails.
 pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
+    // What a file says may be why something passes.
+    if let Some(config) = &report.config {
+        writeln!(out, "{config}")?;
+    }
     if style.level > Level::Quiet {
-        if let Some(config) = &report.config {
-            writeln!(out, "{config}")?;
-        }
         for adapter in &report.adapters {
             writeln!(out, "{}: {}, {}, {}", adapter.name, adapter.device, adapter.backend, adapter.driver)?;
         }

@@ -14,12 +14,14 @@ use std::sync::OnceLock;
 
 /// The file's name.
 const FILE: &str = "lightmeter.toml";
+/// The settings, which are the names of options.
+const NAMES: [&str; 6] = ["adapter", "profile", "baseline", "growth", "expect", "require"];
 /// The option that leaves it out.
 const LEFT_OUT: &str = "--no-config";
 
 /// What a project says.
 #[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "settings")]
 struct Config {
     /// The adapters that `run` and other commands take.
     #[serde(default)]
@@ -45,17 +47,29 @@ pub(crate) fn arguments(command: &Command) -> anyhow::Result<Vec<OsString>> {
         word.to_str().and_then(|word| command.find_subcommand(word)).is_some_and(|found| !found.is_hide_set())
     };
     let Some(place) = given.iter().position(is_command).filter(|&place| place > 0) else { return Ok(given) };
-    let is_left_out = given.iter().any(|word| word == LEFT_OUT || word == "--help" || word == "-h");
-    let Some((path, file)) = found().filter(|_| !is_left_out) else { return Ok(given) };
-    let config = parsed(&path, &file)?;
+    if given[..place].iter().any(|word| word == "help") {
+        return Ok(given);
+    }
+    // What stands behind `--` is no option.
+    let end = given.iter().position(|word| word == "--").unwrap_or(given.len());
+    let options_given = &given[..end];
+    let is_left_out = options_given.iter().any(|word| word == LEFT_OUT || word == "--help" || word == "-h");
     let named = given[place].to_str().and_then(|word| command.find_subcommand(word));
-    let takes = |name: &str| named.is_some_and(|one| one.get_arguments().any(|arg| arg.get_long() == Some(name)));
+    let taken = |name: &str| named.and_then(|one| one.get_arguments().find(|arg| arg.get_long() == Some(name)));
+    // The reference draws where no adapter is asked for, whatever a project's adapter is.
+    let draws = named.is_some_and(|one| one.get_name() == "render");
+    if is_left_out || draws || !NAMES.iter().any(|name| taken(name).is_some()) {
+        return Ok(given);
+    }
+    let Some((path, file)) = found() else { return Ok(given) };
+    let config = parsed(&path, &file)?;
     let (mut words, mut settings) = (vec![], serde_json::Map::new());
     for (name, values) in options(&config, path.parent().unwrap_or(Path::new("."))) {
         // Without a baseline nothing grows.
-        let is_of_baseline = name == "growth" && config.baseline.is_none() && !is_given(&given, "baseline");
-        if !takes(name) || is_given(&given, name) || is_of_baseline {
-            continue;
+        let is_of_baseline = name == "growth" && config.baseline.is_none() && !is_given(options_given, "baseline");
+        let Some(option) = taken(name).filter(|_| !is_given(options_given, name) && !is_of_baseline) else { continue };
+        if values.len() > 1 && !matches!(option.get_action(), clap::ArgAction::Append) {
+            bail!("{file}: this command takes one {name}, and there are {}: ask for one by `--{name}`", values.len());
         }
         for value in values {
             let text = value.to_string_lossy().into_owned();
@@ -74,19 +88,31 @@ pub(crate) fn arguments(command: &Command) -> anyhow::Result<Vec<OsString>> {
     Ok([before, &words, after].concat())
 }
 
-/// The file of this folder, or of the nearest one above that has one, and how it is called from here.
+/// The file of this folder, or of the nearest one above that has one, and how it is called from here. Beyond the root of a repository nothing
+/// belongs to the project.
 fn found() -> Option<(PathBuf, String)> {
     let folder = std::env::current_dir().ok()?;
-    let files = folder.ancestors().enumerate().map(|(above, folder)| (folder.join(FILE), "../".repeat(above) + FILE));
-    files.into_iter().find(|(path, _)| path.is_file())
+    for (above, folder) in folder.ancestors().enumerate() {
+        let path = folder.join(FILE);
+        // A link that leads nowhere is there as well, and is told.
+        if path.symlink_metadata().is_ok() {
+            return Some((path, "../".repeat(above) + FILE));
+        }
+        if folder.join(".git").exists() {
+            return None;
+        }
+    }
+    None
 }
 
 fn parsed(path: &Path, file: &str) -> anyhow::Result<Config> {
     let of = || format!("cannot read {file}");
     let text = read::text(path, read::MOST_TEXT).with_context(of)?;
     let config: Config = toml::from_str(&text).map_err(|error| {
-        let what = "expected adapter, profile, baseline, growth, expect and require; a command to start is no setting";
-        anyhow::anyhow!("{file}: {}; {what}", error.to_string().trim_end())
+        let line = error.span().map_or(1, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
+        let says = error.message().lines().next().unwrap_or_default().to_owned();
+        let expected = "expected settings such as adapter = [\"cpu\"]; a command to start is no setting";
+        anyhow::anyhow!("{file}, line {line}: {says}; {expected}")
     })?;
     if let Some(require) = config.require.filter(|share| !(0.0..=1.0).contains(share)) {
         bail!("{file}: require is {require}; expected a part of 1, such as 0.25");

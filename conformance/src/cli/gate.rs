@@ -26,7 +26,7 @@ use lightmeter::gate::answers::{AnswerFile, FileRenderer};
 use lightmeter::gate::baseline::{Baseline, Standard};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::pack;
-use lightmeter::gate::plan::GatePlan;
+use lightmeter::gate::plan::{GatePlan, unmatched};
 use lightmeter::gate::process::{Asking, Limits, ProcessRenderer, Starter};
 use lightmeter::options::Options;
 use lightmeter::report::{gate as outputs, github};
@@ -125,11 +125,19 @@ impl Gate {
         report.seconds = start.elapsed().as_secs_f64();
         // What was asked is told, even where the baseline turns out to be of other accuracy rules.
         // What was not asked for want of time is no regression.
-        let whole = earlier.as_ref().filter(|_| report.signal.is_none());
+        let is_whole = report.signal.is_none() && !stop.is_at_first_failure();
+        let whole = earlier.as_ref().filter(|_| is_whole);
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), self.is_shard())).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
         regressions?;
+        if stop.is_at_first_failure() {
+            say(
+                "the gate ended at the first failure, as asked: what was not asked counts as never answered, and no baseline is compared or written",
+            );
+            emitted?;
+            return Ok(if report.is_broken() { Status::Device } else { Status::Failed });
+        }
         self.comparison.update(&report)?;
         emitted?;
         Ok(status(&report, self.required))
@@ -138,7 +146,9 @@ impl Gate {
     /// The cases, and the files of answers.
     fn asked(&self) -> anyhow::Result<(GatePlan, Vec<AnswerFile>)> {
         if self.exec.is_some() {
-            if let Some(file) = self.given.iter().find(|given| Path::new(given).exists()) {
+            let is_file =
+                |given: &&String| Path::new(given).exists() && unmatched(std::iter::once(given.as_str())).is_some();
+            if let Some(file) = self.given.iter().find(is_file) {
                 bail!("`{file}` is a file or folder: with --exec, what else is given are globs of cases, as `fog/*`");
             }
             let plan = self.cases.plan(self.cases.choice(&self.given))?;

@@ -111,13 +111,14 @@ const YELLOW: anstyle::Style = anstyle::AnsiColor::Yellow.on_default();
 const CYAN: anstyle::Style = anstyle::AnsiColor::Cyan.on_default();
 
 /// Beginnings of lines with their colours.
-const BEGINNINGS: [(&str, anstyle::Style); 8] = [
+const BEGINNINGS: [(&str, anstyle::Style); 9] = [
     ("✗", RED),
     ("FAIL", RED),
     ("error:", RED),
     ("FALSE ALARM", RED),
     ("✓", GREEN),
     ("warning:", YELLOW),
+    ("known deviations", YELLOW),
     ("known deviation", YELLOW),
     ("skipped", YELLOW),
 ];
@@ -129,7 +130,7 @@ fn painted(text: &str) -> String {
         let content = line.trim_start_matches(' ');
         let (indent, rest) = line.split_at(line.len() - content.len());
         out.push_str(indent);
-        if let Some((word, style)) = BEGINNINGS.iter().find(|(word, _)| rest.starts_with(word)) {
+        if let Some((word, style)) = BEGINNINGS.iter().find(|(word, _)| begins(rest, word)) {
             out.push_str(&format!("{style}{word}{style:#}{}", &rest[word.len()..]));
         } else if let Some(place) = rest.find("lightmeter ").filter(|_| is_command(rest)) {
             let (before, command) = rest.split_at(place);
@@ -140,6 +141,11 @@ fn painted(text: &str) -> String {
         }
     }
     out
+}
+
+/// Whether a line begins with a word, and not with a longer one.
+fn begins(line: &str, word: &str) -> bool {
+    line.strip_prefix(word).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
 }
 
 /// Whether a line is a command that may be copied.

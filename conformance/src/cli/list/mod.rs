@@ -2,9 +2,9 @@
 
 mod document;
 
-use super::{Status, say};
 use super::options::{Amount, Format};
 use super::run::matching;
+use super::{Status, say};
 use anyhow::bail;
 use clap::Args;
 use lightmeter::cases::Kind;
@@ -47,7 +47,8 @@ impl List {
             Ok(filter) => filter,
             Err(error) => {
                 // A part of a name finds whatever has it.
-                let wider: Vec<String> = self.filter.iter().map(|part| format!("*/*{}*", part.trim_matches('*'))).collect();
+                let wider: Vec<String> =
+                    self.filter.iter().map(|part| format!("*/*{}*", part.trim_matches('*'))).collect();
                 let is_part = self.filter.iter().all(|part| part.len() >= 3 && !part.contains('/'));
                 let wider = is_part.then(|| matching(&wider, self.amount.cases, &samples, None).ok()).flatten();
                 let Some(wider) = wider else { return Err(error) };
@@ -102,7 +103,7 @@ fn signatures(catalogue: &[Member], selected: &[Selected]) -> anyhow::Result<Str
         }
         for input in spec.inputs {
             let (shape, means) = (input.shape.name(), spec.input_means(input));
-            let domain = format!("{:?}", input.domain);
+            let domain = input.domain.to_string();
             writeln!(text, "  in   {:<16} {shape:<7} {:<8} {domain:<26} {means}", input.name, input.unit)?;
         }
         for output in spec.outputs {

@@ -80,22 +80,7 @@ impl Show {
         let as_json = self.format == Format::Json;
         let named = separate_of(&self.id).into_iter().collect();
         let catalogue = catalogue_of(&Samples { seed: self.choice.seed, named, ..Samples::default() });
-        if self.wgsl {
-            emit(&about::wgsl(&self.id, &catalogue)?, self.out.as_deref())?;
-            return Ok(Status::Success);
-        }
-        let found = match about::about(&self.id, &catalogue)? {
-            None if !self.id.contains('/') => about::containing(&self.id, &catalogue)?,
-            found => found,
-        };
-        if let Some(text) = found {
-            if as_json {
-                bail!(
-                    "`{}` is no case: `list --formulas --format json` describes formulas, and `mistakes NAME --format json` mistakes",
-                    self.id
-                );
-            }
-            self.format.emit(&text, self.out.as_deref())?;
+        if self.is_shown_by_name(&catalogue)? {
             return Ok(Status::Success);
         }
         let others = special::find(&self.id)?.is_some() || pixel::find(&self.id, self.choice.size)?.is_some();
@@ -137,6 +122,32 @@ impl Show {
         };
         self.format.emit(&text, self.out.as_deref())?;
         Ok(Status::Success)
+    }
+
+    /// Shows what is known of a name that is no case, or its code where that is asked for; whether it is such a name.
+    fn is_shown_by_name(&self, catalogue: &[Member]) -> anyhow::Result<bool> {
+        if self.wgsl {
+            emit(&about::wgsl(&self.id, catalogue)?, self.out.as_deref())?;
+            return Ok(true);
+        }
+        let found = match about::about(&self.id, catalogue)? {
+            None if !self.id.contains('/') => about::containing(&self.id, catalogue)?,
+            found => found,
+        };
+        if let Some(text) = found {
+            if let Some(fault) = self.mistake {
+                bail!("`{}` is no case, so that nothing is computed with `{}`", self.id, fault.name);
+            }
+            if self.format == Format::Json {
+                bail!(
+                    "`{}` is no case: `list --formulas --format json` describes formulas, and `mistakes NAME --format json` mistakes",
+                    self.id
+                );
+            }
+            self.format.emit(&text, self.out.as_deref())?;
+            return Ok(true);
+        }
+        Ok(false)
     }
 
     /// What a renderer with a mistake gives.
@@ -279,16 +290,16 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
         writeln!(text, "  rule: {rule}")?;
     }
     text += &inputs_text(member, known)?;
-    writeln!(text, "\nsteps              f64                    legal")?;
+    writeln!(text, "\nsteps                f64                    legal")?;
     for (step, name) in known.steps.iter().zip(step_names(&known.steps)) {
-        writeln!(text, "  {name:<16} {:<22} {}", Number(step.result.value).narrow(), range(&step.result.interval))?;
+        writeln!(text, "  {name:<18} {:<22} {}", Number(step.result.value).narrow(), range(&step.result.interval))?;
     }
-    writeln!(text, "\noutputs            reference              legal")?;
+    writeln!(text, "\noutputs              reference              legal")?;
     for (k, output) in known.outputs.iter().enumerate() {
-        let condition = Number(known.condition[k]);
+        let condition = three_digits(known.condition[k]);
         writeln!(
             text,
-            "  {:<16} {:<22} {}  condition {condition}",
+            "  {:<18} {:<22} {}  condition {condition}",
             spec.output_name(k),
             Number(output.value).narrow(),
             range(&output.interval)
@@ -383,6 +394,18 @@ fn step_names(steps: &[trace::TraceStep]) -> Vec<String> {
         }
     }
     names
+}
+
+/// A number to three digits.
+fn three_digits(x: f64) -> String {
+    match x.abs() {
+        size if size == 0.0 || (0.01..1e4).contains(&size) => {
+            let text = format!("{x:.2}");
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        }
+        _ if x.is_finite() => format!("{x:.2e}"),
+        _ => Number(x).to_string(),
+    }
 }
 
 fn range(interval: &Accept) -> String {

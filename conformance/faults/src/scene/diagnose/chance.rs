@@ -1,17 +1,17 @@
 //! Whether an explanation says more than chance would.
 
-use super::{Trial, real, slack};
+use super::{Trial, real, slack, stored};
 use std::collections::HashSet;
 
 /// Bits that a component tells at most, and that it tells where it is as dark or as bright as can be: then only which way it errs.
 const BITS: [f64; 2] = [8.0, 1.0];
-/// Bits that may be told at most by where pixels fail, and as many by where they pass.
-const PLACES: f64 = 9.0;
+/// Bits that where pixels fail may tell at most.
+const PLACES: f64 = 18.0;
 
 impl Trial<'_> {
     /// How unlikely it is that chance would explain as much, in bits. A component that is explained tells the more, the narrower what is
-    /// legal of it, and one like another tells nothing more. What fails and what passes tells something by where it is.
-    pub(super) fn bits(&self, legal: &[[[f64; 2]; 4]]) -> f64 {
+    /// legal of it, and one like another tells nothing more. That a mistake changes what fails and leaves what passes tells something, too.
+    pub(super) fn bits(&self, legal: &[[[f64; 2]; 4]], drawn: &[[f64; 4]]) -> f64 {
         let format = self.image.format;
         let is_unorm = format.is_unorm();
         let ends = |k: usize| {
@@ -31,10 +31,16 @@ impl Trial<'_> {
             let is_at_an_end = is_unorm && (value <= darkest || value >= brightest);
             let step = if is_unorm { 1.0 } else { slack(format, value) };
             let specific = ((brightest - darkest).max(step) / (high - low + step)).log2();
-            bits += if is_at_an_end { BITS[1] } else { specific.clamp(0.0, BITS[0]) };
+            bits += specific.clamp(0.0, BITS[usize::from(is_at_an_end)]);
         }
+        // A pixel that a mistake would change, and that passes, tells nothing of where it is made.
+        let is_changed = |place: usize| {
+            let right = stored(format, self.right[place]);
+            (0..4).any(|k| (right[k] - drawn[place][k]).abs() > slack(format, right[k]))
+        };
         let wrong: HashSet<usize> = self.failing_there.iter().map(|&(place, _)| place).collect();
-        let right = self.looked_at.len() - wrong.len();
-        bits + [wrong.len(), right].map(|count| real(count + 1).log2().min(PLACES)).iter().sum::<f64>()
+        let changed = wrong.iter().filter(|&&place| is_changed(place)).count();
+        let left = (0..self.looked_at.len()).filter(|place| !wrong.contains(place) && !is_changed(*place)).count();
+        bits + (2.0 * real(changed.min(left) + 1).log2()).min(PLACES)
     }
 }

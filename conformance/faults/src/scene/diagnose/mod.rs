@@ -14,7 +14,7 @@ use lightmeter_judge::image::expect::Expectation;
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::{Encoding, TargetFormat};
-use parameter::{FACTORS, PARAMETERS, Scaled};
+use parameter::{FACTORS, PARAMETERS, STEPS, Scaled};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::cmp::Reverse;
@@ -48,6 +48,8 @@ pub struct SceneExplanation {
     pub faults: Vec<&'static SceneFault>,
     /// A parameter that is wrong.
     scaled: Option<Scaled>,
+    /// How unlikely it is that chance explains as much, in bits.
+    evidence: f64,
     /// Failing components that are legal of it, of those that were looked at.
     pub explained: usize,
     /// Passing components that are not, in the whole image: counted where few are, else estimated.
@@ -156,14 +158,17 @@ impl<'a> Trial<'a> {
         }
         let singles = self.near(SCENE_FAULTS.iter().map(|fault| vec![fault]).collect());
         let pairs = pairs(&singles);
-        let mut found = self.tried(singles, SCENE_FAULTS.len());
+        let (mut found, mut candidates) = (self.tried(singles), SCENE_FAULTS.len());
         if found.is_empty() {
-            found = self.tried(self.scaled(), SCENE_FAULTS.len() + PARAMETERS.len() * FACTORS.len());
+            candidates += PARAMETERS.len() * FACTORS.len() * STEPS;
+            found = self.tried(self.scaled());
         }
         if found.is_empty() {
-            let count = SCENE_FAULTS.len() + pairs.len();
-            found = self.tried(self.near(pairs), count);
+            candidates = SCENE_FAULTS.len() + pairs.len();
+            found = self.tried(self.near(pairs));
         }
+        // What explains it, and so may chance, has no name; and nothing that explains it less simply has one.
+        found.retain(|one| one.evidence >= real(candidates).log2() + BEYOND_CHANCE);
         let sentence = if found.is_empty() { self.unnamed() } else { self.named(&found) };
         told(found, sentence)
     }
@@ -208,11 +213,10 @@ impl<'a> Trial<'a> {
     }
 
     /// The nearest, each held against all that is legal of it: those that explain what fails, the best first.
-    fn tried(&self, mut near: Vec<Near>, candidates: usize) -> Vec<SceneExplanation> {
+    fn tried(&self, mut near: Vec<Near>) -> Vec<SceneExplanation> {
         near.retain(|near| 2 * near.misses <= self.failing_there.len());
         near.truncate(MOST_TRIED);
-        let mut found: Vec<SceneExplanation> =
-            near.into_iter().filter_map(|near| self.explanation(near, candidates)).collect();
+        let mut found: Vec<SceneExplanation> = near.into_iter().filter_map(|near| self.explanation(near)).collect();
         let key = |one: &SceneExplanation| (Reverse(one.explained), one.faults.len());
         found.sort_by(|a, b| {
             let by_contradiction = a.contradicted.total_cmp(&b.contradicted);
@@ -222,7 +226,7 @@ impl<'a> Trial<'a> {
     }
 
     /// An explanation, where it explains nearly all that fails and what passes does not contradict it.
-    fn explanation(&self, Near { distance, made, drawn, .. }: Near, candidates: usize) -> Option<SceneExplanation> {
+    fn explanation(&self, Near { distance, made, drawn, .. }: Near) -> Option<SceneExplanation> {
         let legal = self.legal(&made, &self.looked_at);
         let is_legal = |&&(place, k): &&(usize, usize)| {
             let ([low, high], value) = (legal[place][k], self.image.pixels[self.looked_at[place]][k]);
@@ -233,9 +237,6 @@ impl<'a> Trial<'a> {
         if real(explained) < whole * real(self.failing_there.len()) {
             return None;
         }
-        if self.bits(&legal) < real(candidates).log2() + BEYOND_CHANCE {
-            return None;
-        }
         let passing = self.passing_there.len();
         let contradicted = passing - self.passing_there.iter().filter(is_legal).count();
         let estimated = real(contradicted) * real(self.passing) / real(passing.max(1));
@@ -243,8 +244,9 @@ impl<'a> Trial<'a> {
         if contradicted >= MOST_CONTRADICTED * real(self.failing.len()) {
             return None;
         }
+        let evidence = self.bits(&legal, &drawn);
         let Made { faults, scaled } = made;
-        Some(SceneExplanation { faults, scaled, explained, contradicted, distance, drawn })
+        Some(SceneExplanation { faults, scaled, evidence, explained, contradicted, distance, drawn })
     }
 
     /// The legal values of some pixels where these mistakes are made: the least and the greatest of each component.

@@ -21,6 +21,11 @@ pub(super) struct Parameter {
     scale: fn(&mut Frame, f32),
 }
 
+/// Per cent below which a factor is told as a difference.
+const LITTLE: f64 = 10.0;
+/// Factors between two that are tried, which the search for the nearest one may end at.
+pub(super) const STEPS: usize = 256;
+
 /// A parameter with the factor that it is wrong by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scaled {
@@ -38,6 +43,11 @@ impl Scaled {
 
     /// It in words.
     pub(super) fn says(self) -> String {
+        let more = 100.0 * (f64::from(self.factor) - 1.0);
+        if more.abs() < LITTLE {
+            let (size, which) = (more.abs(), if more < 0.0 { "smaller" } else { "larger" });
+            return format!("{} {size:.2} % {which} than what was asked", self.parameter.says);
+        }
         let digits = match self.factor {
             factor if factor < 0.1 => 4,
             factor if factor < 10.0 => 3,
@@ -99,6 +109,8 @@ impl Trial<'_> {
             .zip(&pixels)
             .zip(&drawn)
             .map(|((&(_, k), &number), drawn)| (self.image.pixels[number][k] - drawn[k]).abs())
+            // What is no number is far from everything alike.
+            .filter(|apart| apart.is_finite())
             .sum()
     }
 
