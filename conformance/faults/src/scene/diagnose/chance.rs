@@ -23,14 +23,16 @@ impl Trial<'_> {
         let mut bits = 0.0;
         for &(place, k) in &self.failing_there {
             let ([low, high], value) = (legal[place][k], self.image.pixels[self.looked_at[place]][k]);
-            let is_legal = low <= value && value <= high;
+            let is_legal = low <= value && value <= high && value.is_finite();
             if !is_legal || !told.insert((k, value.to_bits(), low.to_bits(), high.to_bits())) {
                 continue;
             }
             let [darkest, brightest] = ranges[k];
             let is_at_an_end = is_unorm && (value <= darkest || value >= brightest);
             let step = if is_unorm { 1.0 } else { slack(format, value) };
-            let specific = ((brightest - darkest).max(step) / (high - low + step)).log2();
+            // What comes near to the value that the mistake draws tells as much as narrow bounds do.
+            let apart = 2.0 * (value - drawn[place][k]).abs() + step;
+            let specific = ((brightest - darkest).max(step) / ((high - low).min(apart) + step)).log2();
             bits += specific.clamp(0.0, BITS[usize::from(is_at_an_end)]);
         }
         // A pixel that a mistake would change, and that passes, tells nothing of where it is made.
