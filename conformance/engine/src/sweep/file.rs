@@ -269,7 +269,7 @@ mod tests {
             ("cannot be done", |d| d.done += 1),
             ("cannot be done", |d| d.blocks += 1),
             ("cannot be done", |d| d.sweep.block = 0),
-            ("cannot be done", |d| d.sweep.block = u64::MAX),
+            ("`block` is 18446744073709551615; expected", |d| d.sweep.block = u64::MAX),
             ("is no shard", |d| d.shard = "3/2".into()),
         ];
         for (says, change) in change {
