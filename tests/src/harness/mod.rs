@@ -229,7 +229,10 @@ mod tests {
         report.totals.unexpected_passes = 1;
         let failed = verdict(&part, &report, &options).err().expect("an unexpected pass fails");
         let message = failed.message().expect("a message");
-        assert!(message.contains("unexpected pass: known deviation llvmpipe-exp of lavapipe: no longer seen"), "{message}");
+        assert!(
+            message.contains("unexpected pass: known deviation llvmpipe-exp of lavapipe: no longer seen"),
+            "{message}"
+        );
     }
 
     #[test]
