@@ -19,7 +19,7 @@ pub struct Ruling {
 
 /// A source document.
 #[derive(Clone, Copy, Debug)]
-pub struct Source {
+pub struct SourceDocument {
     /// The number by which formulas name it, as in "000 §6.5".
     pub name: &'static str,
     /// What it is.
@@ -27,21 +27,21 @@ pub struct Source {
 }
 
 /// The source documents.
-pub const SOURCES: &[Source] = &[
-    Source {
+pub const SOURCES: &[SourceDocument] = &[
+    SourceDocument {
         name: "000",
         what: "lecture notes, in Spanish: \"Color e iluminación\", unit 6 of a course on virtual reality: colour, Phong's lighting, fog, \
                blending and depth, with programs in GLSL",
     },
-    Source {
+    SourceDocument {
         name: "002",
         what: "lecture notes, in Spanish: \"Mezclado de colores\", unit 6 of a course on 3D programming: blending, cutouts and lightmaps",
     },
-    Source {
+    SourceDocument {
         name: "003",
         what: "a tutorial, in Spanish: \"Modelo de iluminación Phong\" in OpenGL, with programs for Phong's and Gouraud's shading",
     },
-    Source {
+    SourceDocument {
         name: "004",
         what: "lecture notes, in English: \"OpenGL Shading\", lecture 7 of Foundations of Computer Graphics: Blinn's highlight, attenuation, two lights",
     },
@@ -189,7 +189,7 @@ pub fn markdown() -> String {
          wrong, or differ, a ruling says what the suite holds renderers to; formulas, scenes and pages name it by its number. `lightmeter \
          show ruling/9` prints one.\n\n## Sources\n\n| name | what it is |\n|---|---|\n",
     );
-    for Source { name, what } in SOURCES {
+    for SourceDocument { name, what } in SOURCES {
         page += &format!("| {name} | {what} |\n");
     }
     page +=
