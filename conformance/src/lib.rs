@@ -1,8 +1,8 @@
-//! Lightmeter as a library: the rooms of the suite under one roof, each by the name of its subject.
+//! Lightmeter as a library: the crates of the suite in one library, each module named by its subject.
 
 pub use lightmeter_arithmetic as arithmetic;
 pub use lightmeter_bench as bench;
-pub use lightmeter_catalogue::{cases, filter, rulings, scene, select};
+pub use lightmeter_catalogue::{cases, filter, nearest, rulings, scene, select};
 pub use lightmeter_document as document;
 pub use lightmeter_engine::{device, evaluate, merge, options, piece, rows, run, selection, subject, sweep, witness};
 pub use lightmeter_faults as faults;
@@ -23,7 +23,7 @@ pub mod blend_unit {
 /// Images: what is legal of them, and how they are drawn and judged.
 pub mod image {
     pub use lightmeter_engine::image::{diagnose, drawn, run, verdict};
-    pub use lightmeter_judge::image::{LegalPixel, expect, file, judge};
+    pub use lightmeter_judge::image::{LegalPixel, expect, file, judge, map};
 }
 
 /// Special values: what is asked and promised, what is on record, and how they are run.

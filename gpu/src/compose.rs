@@ -338,7 +338,16 @@ impl Composer {
     /// # Errors
     /// The first mistake.
     pub fn check(&self) -> Result<(), GpuError> {
-        for effects in covering() {
+        self.check_those(|_| true)
+    }
+
+    /// The same of the shaders alone that hold an effect.
+    pub(crate) fn check_with(&self, effect: Effect) -> Result<(), GpuError> {
+        self.check_those(|effects| effects.has(effect))
+    }
+
+    fn check_those(&self, chosen: impl Fn(Effects) -> bool) -> Result<(), GpuError> {
+        for effects in covering().filter(|effects| chosen(*effects)) {
             for technique in Technique::ALL.into_iter().filter(|technique| technique.concerns(live(effects, None))) {
                 let recipe = Recipe { technique, ..Recipe::of(ShaderForm::Composed) };
                 self.compose(effects, recipe, toward(effects))?.validate()?;

@@ -2,8 +2,9 @@
 
 use crate::compose::Composer;
 use crate::error::GpuError;
-use crate::shaders::Shaders;
+use crate::shaders::{Shaders, effect_file};
 use lightmeter_files::read;
+use lightmeter_scene::effects::Effect;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -103,21 +104,35 @@ impl Shaders {
             return Err(GpuError::Unreadable { path: name.into(), message });
         };
         *file = text;
-        Self::validated(files, &|_| ())
+        let shaders = Self { files };
+        // What does not have the file in it is as valid as it was.
+        let dependent = |other: &str| other == name || shaders.required(other).iter().any(|required| required == name);
+        shaders.parse_all(&dependent, &|_| ())?;
+        let composer = Composer::new(&shaders)?;
+        match Effect::ALL.into_iter().find(|effect| effect_file(*effect) == name) {
+            Some(effect) => composer.check_with(effect)?,
+            None => composer.check()?,
+        }
+        Ok(shaders)
     }
 
     fn validated(files: BTreeMap<String, String>, under_way: &dyn Fn(&str)) -> Result<Self, GpuError> {
         let shaders = Self { files };
-        // A file is reported before those that require it.
-        let mut order: Vec<&str> = FILES.into_iter().map(|(name, _)| name).collect();
-        order.sort_by_key(|name| shaders.required(name).len());
-        for name in order {
-            under_way(name);
-            shaders.parse(name)?;
-        }
+        shaders.parse_all(&|_| true, under_way)?;
         under_way("a composed shader of scenes");
         Composer::new(&shaders)?.check()?;
         Ok(shaders)
+    }
+
+    /// Validates those of the files that are chosen, each after those that it requires.
+    fn parse_all(&self, chosen: &dyn Fn(&str) -> bool, under_way: &dyn Fn(&str)) -> Result<(), GpuError> {
+        let mut order: Vec<&str> = FILES.into_iter().map(|(name, _)| name).filter(|name| chosen(name)).collect();
+        order.sort_by_key(|name| self.required(name).len());
+        for name in order {
+            under_way(name);
+            self.parse(name)?;
+        }
+        Ok(())
     }
 }
 

@@ -1,6 +1,7 @@
 //! A set of WGSL files: their texts, what each requires, and whether it is valid.
 
 use crate::error::GpuError;
+use lightmeter_scene::effects::Effect;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 
@@ -91,6 +92,11 @@ impl Shaders {
         }
         Ok(module)
     }
+}
+
+/// The file with an effect's part of the scenes' shader.
+pub(crate) fn effect_file(effect: Effect) -> String {
+    format!("effects/{}.wgsl", effect.name())
 }
 
 /// The entry points that fixed hardware is driven by.

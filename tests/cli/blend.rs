@@ -67,7 +67,8 @@ fn a_page_is_made_of_a_run() {
     assert!(text.contains(state) && text.contains("| min-of-nan-source |") && text.contains("(page.svg)"), "{text}");
     assert!(text.contains("FD "), "a mixed state has two routes: {text}");
     let picture = std::fs::read_to_string(dir.join("page.svg")).expect("the picture was written");
-    assert_eq!(picture.matches("stroke=\"#ffffff\"").count(), 3 * 225);
+    // The background, a cell for each state, and the legend.
+    assert_eq!(picture.matches("<rect").count(), 1 + 3 * 225 + 7);
     std::fs::write(run, "{\"schema\": \"lightmeter.list/1\"}").expect("a file can be written");
     for (file, message) in
         [(run, "schema is `lightmeter.list/1`; expected lightmeter.run/1"), ("/nowhere", "cannot read /nowhere")]

@@ -148,7 +148,7 @@ fn a_baseline_that_says_what_cannot_be_is_refused() {
             }) as &dyn Fn(&mut Value),
             "cases did not pass of",
         ),
-        (&|report: &mut Value| report["groups"] = Value::Array(vec![]), "it has no group"),
+        (&|report: &mut Value| report["groups"] = Value::Array(vec![]), "it contains no results to compare with"),
     ] {
         let baseline = with(edit);
         refused(&["gate", &pack, &answers, "--baseline", &baseline], says);
@@ -345,7 +345,7 @@ fn a_skip_that_nothing_can_be_made_of_is_told() {
     // A filter beside a pack, and a pack beside a command, are told as what they are.
     for (args, said) in [
         (&["gate", &pack, "fog/exp"][..], "`fog/exp` is a filter, and no file of answers"),
-        (&["gate", &pack, &all, "--exec", "true"], "with --exec, what else is given are globs of cases"),
+        (&["gate", &pack, &all, "--exec", "true"], "with --exec, all other arguments must be globs"),
     ] {
         let output = lightmeter(args);
         assert_eq!(code(&output), 2, "{args:?}");
@@ -358,10 +358,7 @@ fn what_would_be_ignored_is_refused() {
     let (pack, answers) = answered("ignored", &["fog/exp"]);
     let (pack, answers) = (pack.display().to_string(), answers.display().to_string());
     for option in ["--seed", "--cases", "--size"] {
-        refused(
-            &["gate", &pack, &answers, option, "7"],
-            &format!("`{option}` chose the cases when the pack was written"),
-        );
+        refused(&["gate", &pack, &answers, option, "7"], &format!("`{option}` has no effect here"));
     }
     let folder = folder("another-renderer");
     let baseline = folder.join("baseline.json").display().to_string();

@@ -18,14 +18,16 @@ fn what_fails_is_told_first_with_its_cause_and_counted_once() {
     let first = text.lines().next().unwrap_or_default();
     assert!(first.starts_with("✗ fog/linear on ") && first.contains(" of the first "), "{text}");
     let second = text.lines().nth(1).unwrap_or_default();
-    assert!(second.starts_with("  ") && second.contains("linear fog begins at the eye"), "{text}");
+    assert!(second.starts_with("  ") && second.contains("linear fog begins at the eye (fog-from-the-eye)"), "{text}");
     assert_eq!(text.matches("FAIL fog/linear/").count(), 1, "one failing case of a formula is told: {text}");
     let fails = text.find("FAIL fog/linear/random/").expect("an ordinary case");
-    assert!(fails < text.find("family         stage").expect("the table comes at the end"), "{text}");
+    assert!(fails < text.find("   family  ").expect("the table comes at the end"), "{text}");
     // For programs the result is alone on standard output, and what fails is told beside it.
     let output = lightmeter(&[&args[..], &["--format", "json"]].concat());
     let report: Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
     assert!(stderr(&output).contains("✗ fog/linear on "), "{}", stderr(&output));
+    let named = |group: &Value| group["id"] == "fog/linear" && group["mistakes"][0] == "fog-from-the-eye";
+    assert!(report["groups"].as_array().is_some_and(|groups| groups.iter().any(named)), "{report}");
     let group = |report: &Value| {
         let groups = report["groups"].as_array().expect("an array").clone();
         groups

@@ -178,6 +178,11 @@ fn the_witness_of_a_deviation_is_asked_by_its_name() {
     assert_eq!(code(&output), if concerns { 0 } else { 3 }, "{text}");
     assert_eq!(text.matches("seen again: llvmpipe-exp\n").count(), usize::from(concerns), "{text}");
     assert!(!text.contains("llvmpipe-exp2"), "{text}");
+    // Rules that allow what the driver gives know of no deviation from them, and so none that is missing.
+    let output = lightmeter(&["run", "fog/exp", "--cases", "8", "--profile", "opengl"]);
+    assert_eq!(code(&output), 0, "{}", stdout(&output));
+    // Results name it without the word before it, and so it can be asked for.
+    assert!(stdout(&lightmeter(&["show", "llvmpipe-exp"])).contains("exp2(x · log2 e)"));
     let embedded = lightmeter(&["run", "deviation", "--adapter", "cpu"]);
     assert!(
         code(&embedded) == 3 && stderr(&embedded).contains("no deviation concerns the adapter"),

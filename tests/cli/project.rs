@@ -60,11 +60,11 @@ fn settings_that_nothing_can_be_made_of_are_told() {
     let folder = folder("config-wrong");
     for (config, said) in [
         ("exec = \"rm -rf x\"", "a command to start is no setting"),
-        ("adapter = \"cpu\"", "lightmeter.toml, line 1: "),
-        ("require = 2.0", "require is 2; expected a part of 1"),
-        ("profile = \"metal\"", "no such profile"),
+        ("adapter = 5", "expected a name such as \"lavapipe\", or a list of names"),
+        ("require = 2.0", "`require` is 2; expected a fraction from 0 to 1"),
+        ("profile = \"metal\"", "lightmeter.toml: profile is `metal`; expected one of"),
         ("adapter = [", "lightmeter.toml, line 1: "),
-        ("expect = \"nowhere.toml\"", "nowhere.toml"),
+        ("expect = \"nowhere.toml\"", "lightmeter.toml: expect is `nowhere.toml`, and there is no such file"),
     ] {
         let output = within(&folder, config, &["run", "fog/exp", "--cases", "8"]);
         assert_eq!(code(&output), 2, "{config}: {}", stdout(&output));
@@ -86,7 +86,11 @@ fn commands_that_take_no_setting_are_left_alone() {
     }
     let output = within(&folder, "adapter = [\"cpu\", \"all\"]", &["sweep", "fog/exp"]);
     assert_eq!(code(&output), 2);
-    assert!(stderr(&output).contains("takes one adapter, and there are 2"), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("this command takes only one; choose one with `--adapter`"),
+        "{}",
+        stderr(&output)
+    );
     // A folder of that name is no file without settings.
     std::fs::remove_file(folder.join("lightmeter.toml")).expect("it is there");
     std::fs::create_dir(folder.join("lightmeter.toml")).expect("a folder can be made");
@@ -107,8 +111,12 @@ fn a_gate_that_ends_with_the_first_failure_writes_no_baseline() {
     let args = ["gate", &pack, &wrong, "--fail-fast", "--baseline", &kept, "--update-baseline"];
     let output = command(&args).output().expect("the binary starts");
     assert_eq!(code(&output), 1, "{}", stderr(&output));
-    assert!(stderr(&output).contains("ended at the first failure, as asked"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the first failure ended the run, as --fail-fast asks"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the gate was interrupted"), "{}", stderr(&output));
     assert!(!baseline.exists(), "half a result is no baseline");
+    let output = command(&[&args[..4], &["--format", "json"]].concat()).output().expect("the binary starts");
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(report["interrupted"]["at_first_failure"], true, "{report}");
 }
 
 #[test]
@@ -155,6 +163,9 @@ fn any_name_can_be_shown() {
         ("ruling/4", "fog/exp2-document"),
         ("004", "lecture notes"),
         ("deviation/llvmpipe-exp", "exp2(x · log2 e)"),
+        ("llvmpipe-exp", "exp2(x · log2 e)"),
+        ("special/nan", "special values"),
+        ("margin", "how much of its tolerance"),
         ("blend/mode-alpha", "blend/mode-alpha"),
         ("spot-cutoff", "attenuation/spot-cutoff"),
         ("blinn", "lighting/blinn-stable"),

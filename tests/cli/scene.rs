@@ -289,7 +289,7 @@ fn a_scene_that_is_refused_ends_with_2() {
     std::fs::write(&file, with("/lights/1/cutoff_deg", "91")).expect("a scene can be written");
     for (scene, says) in [
         (file.to_str().expect("UTF-8"), "field `lights[1].cutoff_deg` is 91"),
-        ("no-such-scene", "built in are attached-lights"),
+        ("tea-pot", "no built-in scene `tea-pot`; did you mean `teapot`"),
         ("/nowhere/scene.json", "cannot read /nowhere/scene.json"),
         (folder.to_str().expect("UTF-8"), "cannot read"),
     ] {

@@ -1,4 +1,5 @@
-//! Techniques of drawing that only `bench` composes, in scenes where each gives what the plain shader gives: the f64 reference judges them there.
+//! Tests the drawing techniques that only `bench` uses. Each scene is changed so that the technique must give the same image as the plain
+//! shader, so it can be judged by the f64 reference.
 
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::image::expect::expect;

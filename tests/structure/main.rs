@@ -1,4 +1,4 @@
-//! The house's rules that can be checked: rooms and files import each other one way, no two public types share a name, a formula
+//! The house's rules that can be checked: crates and files import each other one way, no two public types share a name, a formula
 //! family has its four files, every shader function of the catalogue is there with the right signature, and no formula lacks hard data.
 //! None of this needs a GPU.
 
@@ -40,7 +40,7 @@ fn packages() -> Vec<Value> {
     metadata["packages"].as_array().expect("packages").clone()
 }
 
-/// The rooms and what each depends upon: of the workspace alone; with what its tests need, or without.
+/// The crates and what each depends upon: of the workspace alone; with what its tests need, or without.
 fn dependencies(with_tests: bool) -> BTreeMap<String, BTreeSet<String>> {
     let folder = |package: &Value| {
         let manifest = Path::new(package["manifest_path"].as_str().expect("a path"));
@@ -52,9 +52,9 @@ fn dependencies(with_tests: bool) -> BTreeMap<String, BTreeSet<String>> {
         packages.iter().map(|package| (package["name"].as_str().expect("a name"), folder(package))).collect();
     let needs = |package: &Value| {
         let all = package["dependencies"].as_array().expect("dependencies").iter();
-        let rooms =
+        let crates =
             all.filter(|one| with_tests || one["kind"] != "dev").filter_map(|one| of_name.get(one["name"].as_str()?));
-        rooms.cloned().collect()
+        crates.cloned().collect()
     };
     packages.iter().map(|package| (folder(package), needs(package))).collect()
 }
@@ -63,25 +63,25 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace's root")
 }
 
-/// A room's name in the table of ARCHITECTURE.
-fn short(room: &str) -> &str {
-    room.strip_prefix("conformance/").or(room.strip_prefix("reference/")).unwrap_or(room)
+/// A crate's name in the table of ARCHITECTURE.
+fn short(package: &str) -> &str {
+    package.strip_prefix("conformance/").or(package.strip_prefix("reference/")).unwrap_or(package)
 }
 
-/// Every room that a path of dependencies leads to.
-fn reached<'a>(rooms: &'a BTreeMap<String, BTreeSet<String>>, from: &'a str) -> BTreeSet<&'a str> {
+/// Every crate that a path of dependencies leads to.
+fn reached<'a>(crates: &'a BTreeMap<String, BTreeSet<String>>, from: &'a str) -> BTreeSet<&'a str> {
     let (mut found, mut open) = (BTreeSet::new(), vec![from]);
-    while let Some(room) = open.pop() {
-        open.extend(rooms[room].iter().map(String::as_str).filter(|next| found.insert(*next)));
+    while let Some(package) = open.pop() {
+        open.extend(crates[package].iter().map(String::as_str).filter(|next| found.insert(*next)));
     }
     found
 }
 
 #[test]
-fn rooms_depend_one_way_as_the_architecture_says() {
-    let rooms = dependencies(false);
+fn crates_depend_one_way_as_the_architecture_says() {
+    let crates = dependencies(false);
     let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).expect("it is there");
-    let (_, text) = text.split_once("## The rooms").expect("the section is there");
+    let (_, text) = text.split_once("## The crates").expect("the section is there");
     let (text, _) = text.split_once("\n## ").expect("another section follows");
     let mut told = BTreeMap::new();
     for line in text.lines().filter(|line| line.starts_with("| `")) {
@@ -89,20 +89,20 @@ fn rooms_depend_one_way_as_the_architecture_says() {
         let needs = cells[2].split(", ").filter(|name| !name.is_empty());
         told.insert(cells[0].trim_matches('`').to_owned(), needs.map(str::to_owned).collect::<BTreeSet<String>>());
     }
-    assert_eq!(told.keys().collect::<Vec<_>>(), rooms.keys().collect::<Vec<_>>(), "ARCHITECTURE names every room");
-    for (room, needs) in &rooms {
-        let needs: BTreeSet<String> = needs.iter().map(|room| short(room).to_owned()).collect();
-        if !told[room].contains("all of them") {
-            assert_eq!(needs, told[room], "what {room} depends upon, and what ARCHITECTURE says");
+    assert_eq!(told.keys().collect::<Vec<_>>(), crates.keys().collect::<Vec<_>>(), "ARCHITECTURE names every crate");
+    for (package, needs) in &crates {
+        let needs: BTreeSet<String> = needs.iter().map(|package| short(package).to_owned()).collect();
+        if !told[package].contains("all of them") {
+            assert_eq!(needs, told[package], "what {package} depends upon, and what ARCHITECTURE says");
         }
-        assert!(!reached(&rooms, room).contains(room.as_str()), "{room} depends upon itself");
+        assert!(!reached(&crates, package).contains(package.as_str()), "{package} depends upon itself");
     }
-    let rooms = dependencies(true);
-    for room in ["engine", "faults", "gate", "report", "judge", "catalogue"] {
-        let room = format!("conformance/{room}");
-        assert!(!reached(&rooms, &room).contains("gpu"), "{room} reaches the GPU");
+    let crates = dependencies(true);
+    for package in ["engine", "faults", "gate", "report", "judge", "catalogue"] {
+        let package = format!("conformance/{package}");
+        assert!(!reached(&crates, &package).contains("gpu"), "{package} reaches the GPU");
     }
-    assert!(!reached(&rooms, "gpu").contains("reference") && !reached(&rooms, "reference").contains("gpu"));
+    assert!(!reached(&crates, "gpu").contains("reference") && !reached(&crates, "reference").contains("gpu"));
 }
 
 /// Files, each with those that it imports from.

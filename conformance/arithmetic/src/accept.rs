@@ -259,7 +259,7 @@ fn add_down(a: f64, b: f64) -> f64 {
     if error < 0.0 { sum.next_down() } else { sum }
 }
 
-/// Greater only for rounding at the last bits of f64 than the true ((1 + ε)ⁿ⁻¹ − 1).
+/// An upper bound of (1 + ε)ⁿ⁻¹ − 1 that exceeds it by no more than f64 rounding errors in the last bits.
 fn chain_error<F: Format>(n: usize) -> f64 {
     let epsilon = epsilon::<F>();
     (1..n).fold(1.0, |growth, _| growth * (1.0 + epsilon)) - 1.0 + F64_SLACK
@@ -482,7 +482,7 @@ impl<F: Format> Real for Accept<F> {
     }
 
     fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T {
-        // More texels than this lie within no interval that is of use.
+        // An interval that covers more whole numbers (texels) than this is too wide to be useful, so anything is allowed.
         const MOST: f64 = 64.0;
         let (first, last) = (self.low.floor(), self.high.floor());
         if last - first <= MOST {
@@ -505,7 +505,7 @@ impl<F: Format> Real for Accept<F> {
         if F::IS_HARDWARE {
             return Self::sum_of_hardware(terms);
         }
-        // Adding an exact 0 rounds nothing; what remains of two terms is one addition.
+        // Adding an exact 0 causes no rounding, so such terms are skipped. If two terms remain, the sum is a single addition.
         let (mut low, mut high, mut magnitude, mut count) = (0.0, 0.0, 0.0, 0);
         let mut last_two = [Self::exactly(0.0); 2];
         for term in terms {

@@ -14,13 +14,13 @@ pub struct Dual {
 }
 
 impl Dual {
-    /// The input that is differentiated by.
+    /// The input with respect to which the derivative is taken.
     #[must_use]
     pub const fn variable(value: f64) -> Self {
         Self { value, slope: 1.0 }
     }
 
-    /// An input that is held.
+    /// An input that is held constant.
     #[must_use]
     pub const fn constant(value: f64) -> Self {
         Self { value, slope: 0.0 }

@@ -110,7 +110,7 @@ impl Real for Trace {
         }
     }
     fn floor_then<T: Components<Self>>(self, then: impl Fn(f64) -> T) -> T {
-        // The value is of its own whole number; the interval is of each.
+        // The value uses the floor of the value itself; the interval also covers the floors of both ends of the interval.
         let own = then(self.value.floor());
         let (first, last) = (self.interval.low().floor(), self.interval.high().floor());
         let beyond = |x: Self, y: Self| Self { value: x.value, interval: x.interval.hull(y.interval) };

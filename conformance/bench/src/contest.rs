@@ -56,7 +56,7 @@ impl<'a> Sample<'a> {
         Self { of, inputs, random, stride }
     }
 
-    /// The same rows, more than one function of which are timed.
+    /// The rows, each with the formula that it belongs to.
     pub(super) fn rows(&self) -> impl Iterator<Item = (&'a Member, &[f32])> {
         self.of.iter().copied().zip(self.inputs.chunks_exact(self.stride))
     }
@@ -177,8 +177,8 @@ struct Compiled {
     milliseconds: f64,
 }
 
-/// The rows of a group, measured against a baseline by its name, those of the processor against its own f32; and what errors and
-/// times are over.
+/// Judges and times all contenders of a group. Times on the device are compared with the contender named `baseline`, times on the processor
+/// with the processor's own f32. Also returns a description of the rows that errors and times were taken over.
 pub(super) fn contest(
     bench: &Bench<'_>,
     sample: &Sample<'_>,
@@ -337,8 +337,8 @@ fn judge_row(
 }
 
 impl<'a> Bench<'a> {
-    /// The formula that a stable form is by itself, where one stands in for a contender's function: what is legal of the
-    /// published form may leave no room for it.
+    /// Where a stable form is used in place of a contender's function, the catalogue's own formula for that stable form, against which it
+    /// must be judged: the legal values of the published formula may not include the stable form's results.
     fn judged_by<'b>(&self, contender: &Contender<'_>, of: &'b Member) -> Option<&'b Member>
     where
         'a: 'b,

@@ -8,7 +8,7 @@ use lightmeter_document::bench::{Fit, ScalingPoint};
 
 /// Fixed parts that are tried, as equal shares of the least time.
 const SHARES: u32 = 200;
-/// Gauss and Newton's steps; each squares what is missing.
+/// The number of Gauss–Newton steps. Convergence is quadratic: each step roughly squares the remaining relative error.
 const STEPS: usize = 12;
 /// Times that the interval around the best share is cut by a third.
 const THIRDS: usize = 50;

@@ -1,13 +1,13 @@
-//! Sittings of the same, together: what one process finds of a ratio lies farther from what the next one does than its own turns
-//! lie apart, since machine code and memory lie elsewhere; so every sitting has devices and pipelines of its own.
+//! Combines repeated sittings of the same benchmark. A measured ratio differs more from one sitting to the next than between the turns of
+//! one sitting, because machine code and memory end up at different addresses; so every sitting creates its own devices and pipelines.
 
 use super::Sitting;
 use super::fit::fit;
 use super::turns::{median, standing};
 use lightmeter_document::bench::{Rank, ScalingPoint, Time};
 
-/// The first sitting, which has the errors, with the times of all. One that was stopped lacks the groups at the end, whose times are
-/// those of the others.
+/// Returns the first sitting, which alone holds the errors, with times combined from all sittings. A sitting that was stopped early lacks
+/// the last groups; the times of those groups come from the other sittings.
 ///
 /// # Panics
 /// Where there is none.

@@ -2,6 +2,7 @@
 
 pub mod cases;
 pub mod filter;
+pub mod nearest;
 pub mod rulings;
 pub mod scene;
 pub mod select;

@@ -75,7 +75,7 @@ pub const RULINGS: &[Ruling] = &[
     },
     Ruling {
         number: 4,
-        title: "Exponential fog of the square",
+        title: "Squared exponential fog",
         document: "000 computes exp(−d·z²).",
         right: "Both that and exp(−(d·z)²), each under its own name.",
         why: "OpenGL squares the density, too. Neither is an error: they give their density different units.",
@@ -117,7 +117,7 @@ pub const RULINGS: &[Ruling] = &[
     Ruling {
         number: 9,
         title: "A highlight where the light is behind the surface",
-        document: "000, 003 and 004 compute it without asking for the sign of n·l.",
+        document: "000, 003 and 004 compute the highlight whatever the sign of n·l.",
         right: "Both that and the gated one, each by its name.",
         why: "OpenGL's fixed function sets it to 0 where n·l ≤ 0.",
         forms: "`lighting/phong-gated`, `lighting/point-opengl`; in scenes `specular_gate: documents` and `opengl`",
@@ -134,7 +134,7 @@ pub const RULINGS: &[Ruling] = &[
         number: 11,
         title: "What attenuation and spotlights weaken",
         document: "004 multiplies the diffuse and the specular term.",
-        right: "So it is; that OpenGL's fixed function weakens the light's ambient term as well is a form of its own.",
+        right: "Attenuation and spotlights weaken the diffuse and the specular term. OpenGL's fixed function also weakens the light's ambient term, which is a separate formula.",
         why: "Both are in use.",
         forms: "`lighting/point-opengl`; in scenes `light_ambient: documents` and `opengl`",
     },
@@ -177,7 +177,7 @@ pub const RULINGS: &[Ruling] = &[
         document: "000 has max(…, 0) in its shaders and not in its text.",
         right: "With max, in the diffuse and in the specular term.",
         why: "A light behind a surface takes no light away.",
-        forms: "none: without it is a mistake that the diagnosis names",
+        forms: "none: leaving out the max is a mistake, which the diagnosis names",
     },
 ];
 
@@ -217,7 +217,7 @@ pub const GLOSSARY: &[(&str, &str)] = &[
     ),
     ("margin", "how much of its tolerance a value takes: 1 is all of it, and more fails"),
     ("profile", "the accuracy rules that a renderer is held to: WGSL's, Vulkan's or OpenGL's"),
-    ("hard case", "an input at which a formula is easily computed wrongly, named after why"),
+    ("hard case", "an input at which a formula is easily computed wrongly; its name says what makes it hard"),
     (
         "stable form, naive form",
         "two ways to compute the same: one that keeps its accuracy at hard cases, and the one that loses it there",
@@ -230,7 +230,10 @@ pub const GLOSSARY: &[(&str, &str)] = &[
         "deviation",
         "a departure of a driver from the rules that is known, named and granted as long as its witness still shows it",
     ),
-    ("witness", "a fixed case that shows a deviation, so that one that was mended is noticed"),
+    (
+        "witness",
+        "a fixed case in which a deviation shows; once it no longer does, the driver has been fixed and the deviation can be removed",
+    ),
     ("dialect", "one of several forms in use, such as OpenGL's and the documents' exponential fog"),
     ("mistake", "a way to compute a formula or a scene wrongly that the diagnosis knows by name"),
     (

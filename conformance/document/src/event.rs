@@ -72,21 +72,17 @@ impl Stop {
         let _ = self.0.compare_exchange(0, FIRST_FAILURE, Ordering::Relaxed, Ordering::Relaxed);
     }
 
-    /// Whether a failure ended it.
-    #[must_use]
-    pub fn is_at_first_failure(&self) -> bool {
-        self.0.load(Ordering::Relaxed) == FIRST_FAILURE
-    }
-
     /// What a report says of `work` that was ended before its time, such as `the bench`; `None` where it was not.
     #[must_use]
     pub fn interrupted(&self, work: &str, under_way: &str) -> Option<Interrupted> {
         let signal = self.signal();
+        let at_first_failure = self.0.load(Ordering::Relaxed) == FIRST_FAILURE;
         let what = match signal {
             Some(_) => "a signal",
-            None if self.is_at_first_failure() => "the first failure",
+            None if at_first_failure => "the first failure",
             None => return None,
         };
-        Some(Interrupted { under_way: under_way.into(), message: format!("{what} ended {work}"), signal })
+        let message = format!("{what} ended {work}");
+        Some(Interrupted { under_way: under_way.into(), message, signal, at_first_failure })
     }
 }

@@ -4,7 +4,7 @@ use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, RendererUse
 pub use crate::by_case::{KnownFailure, Problems, RendererIdentity};
 use crate::pack::Choice;
 use crate::run::{ConfigUse, Failure, Group, Identity, Interrupted, Report, StoresOfShard, Totals};
-use crate::{Number, Word};
+use crate::{Number, Word, thousands};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashSet};
@@ -59,6 +59,9 @@ pub struct GateReport {
     /// The number of the signal that ended the gate before its time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub signal: Option<i32>,
+    /// Why the gate ended before its time. What was not answered until then counts as missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interrupted: Option<Interrupted>,
     /// Formulas and scenes.
     pub groups: Vec<GateGroup>,
     /// The first failures of each.
@@ -170,6 +173,9 @@ pub struct GateGroup {
     pub expected_problem: Option<String>,
     /// What explains its failures.
     pub diagnosis: Option<String>,
+    /// The names of the mistakes that explain them together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mistakes: Vec<String>,
     /// The failing case with the simplest inputs.
     pub smallest: Option<String>,
 }
@@ -217,6 +223,7 @@ impl GateGroup {
             problem: group.problem.clone(),
             expected_problem: group.expected_problem.clone(),
             diagnosis: group.explanation.clone(),
+            mistakes: group.mistakes.clone(),
             smallest: counts.smallest.clone(),
         }
     }
@@ -283,6 +290,7 @@ impl GateReport {
             expected_incidents: renderer.expected_incidents,
             starts: renderer.starts,
             signal: report.interrupted.as_ref().and_then(|interrupted| interrupted.signal),
+            interrupted: report.interrupted.clone(),
             groups,
             failures: failures(report),
             unstable: report.unstable_cases.clone(),
@@ -334,12 +342,14 @@ impl From<GateReport> for Report {
             backend: "renderer".into(),
             driver: gate.renderer.version.clone(),
         };
-        let signal = gate.signal;
-        let interrupted = signal.map(|_| Interrupted {
+        // Earlier versions wrote the signal alone.
+        let by_signal = gate.signal.map(|signal| Interrupted {
             under_way: "the gate".into(),
             message: "a signal ended the gate".into(),
-            signal,
+            signal: Some(signal),
+            at_first_failure: false,
         });
+        let interrupted = gate.interrupted.or(by_signal);
         let compared_by = gate.compared_by.unwrap_or_else(|| ComparedBy {
             choice: gate.choice.clone(),
             generator: gate.generator,
@@ -407,6 +417,7 @@ impl GateGroup {
             margin_max: self.margin_max,
             worst: self.worst,
             explanation: self.diagnosis,
+            mistakes: self.mistakes,
             problem: self.problem,
             expected_problem: self.expected_problem,
             by_case: Some(counts),
@@ -484,5 +495,5 @@ pub struct GateFailure {
 /// `1 case`, `12 cases`.
 #[must_use]
 pub fn cases(count: u64) -> String {
-    if count == 1 { "1 case".into() } else { format!("{count} cases") }
+    if count == 1 { "1 case".into() } else { format!("{} cases", thousands(count)) }
 }

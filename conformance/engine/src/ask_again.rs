@@ -32,8 +32,8 @@ pub(crate) enum Noted {
     Images(Vec<(u32, bool)>),
 }
 
-/// Asks all once more, as often as the options say; of renderers that want it, what failed. The report lists each case whose answer is
-/// another one than the first.
+/// Asks all cases again, as many times as the options say; if they ask for no repetition, asks renderers that want it only the cases that
+/// failed. The report lists each case whose answer differs from the first.
 pub(crate) fn ask_again(
     selection: &Selection,
     noted: &[(Turn<'_>, Noted)],
@@ -51,7 +51,7 @@ pub(crate) fn ask_again(
         if is_over(subjects) {
             break;
         }
-        // Where only what failed is asked, the renderer goes on as it is.
+        // A renderer process is restarted only if everything is asked again; to repeat only failed cases the running process is used.
         for renderer in subjects.iter_mut().filter(|_| options.runs > 1).filter_map(Subject::asked_mut) {
             renderer.begin_again()?;
         }

@@ -14,7 +14,7 @@ use lightmeter_document::gate::cases;
 use lightmeter_document::run::{Group, Report, Totals};
 use lightmeter_judge::cases::Unanswered;
 use lightmeter_judge::chunk::{self, Chunk};
-use lightmeter_judge::diagnose::{Row, Told};
+use lightmeter_judge::diagnose::{Cause, Row, Told};
 use lightmeter_judge::formula::{Judging, RowPlace, RowSample, RowStanding};
 use lightmeter_judge::tally::KEPT_FAILURES;
 use std::cmp::Reverse;
@@ -165,7 +165,7 @@ impl<'a> RowRun<'a> {
         self.standings.iter().map(|stages| stages.iter().map(of_stage).collect()).collect()
     }
 
-    /// Counts cases that were not asked, since nobody answers any more.
+    /// Counts cases as not asked because the subject no longer answers.
     pub(crate) fn leave_out(&mut self, cases: &[(usize, CaseRef)]) {
         for (standing, _) in self.standings.iter_mut().flatten() {
             for &case in cases {
@@ -270,14 +270,19 @@ impl<'a> RowRun<'a> {
         let id = group_id(&self.members[0].spec, stage);
         let counts = by.counts_cases.then(|| standing.cases.told(self.members, id));
         let unjudged = counts.as_ref().map_or(0, |counts| counts.unjudged);
-        let besides = |says: String| format!("{says}; besides, {} were not answered by values", cases(unjudged));
-        let explanation = if unjudged > 0 { told.explanation.map(besides) } else { told.explanation };
+        let mut cause = told.explanation;
+        if let Some(Cause { says, .. }) = cause.as_mut().filter(|_| unjudged > 0) {
+            *says += &format!("; besides, {} were not answered by values", cases(unjudged));
+        }
+        let (explanation, mistakes) =
+            cause.map_or_else(Default::default, |Cause { says, mistakes }| (Some(says), mistakes));
         Group {
             totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
             error_ulp_max: Number(tally.error_max),
             margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
             worst: tally.worst.as_ref().map(|(_, place)| name_of(place)),
             explanation,
+            mistakes,
             problem,
             by_case: counts,
             ..Group::new(id.into(), by.adapter.to_owned(), stage.name())
@@ -290,12 +295,12 @@ pub(crate) fn group_id(spec: &Spec, stage: Stage) -> &str {
     if stage == Stage::Answer { &spec.id } else { spec.group() }
 }
 
-/// What explains the rows of a stage that fail; where none does, what is wrong with all of them together. Of several formulas it is
-/// told of the one that fails most often.
+/// The mistake that explains the failing rows of a stage; if none does, the systematic error that all rows show together. In a group of
+/// several formulas, the one that fails most often is diagnosed.
 fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Subject, options: &Options) -> Told {
     let (wrong, right) = (standing.wrong.rows(), standing.right.rows());
     let Some(diagnose) = options.diagnose else { return Told::default() };
-    // What a rasteriser or a depth test does is no arithmetic with a parameter that may be off.
+    // A rasteriser or a depth test has no parameters that could be slightly off, so a systematic error is only looked for in shaders.
     if wrong.is_empty() && (members.len() > 1 || !is_shader(stage)) {
         return Told::default();
     }
@@ -305,8 +310,8 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
     let profile = subject.known.granted(options.profile);
     let rows = [wrong, right].map(|rows| of_member(member, most, rows, options.seed));
     let mut told = Told::of(diagnose, member, [&rows[0], &rows[1]], failing, &profile);
-    if members.len() > 1 {
-        told.explanation = told.explanation.map(|says| format!("{}: {says}", member.spec.id));
+    if let Some(Cause { says, .. }) = told.explanation.as_mut().filter(|_| members.len() > 1) {
+        *says = format!("{}: {says}", member.spec.id);
     }
     told
 }

@@ -18,7 +18,7 @@ use std::collections::VecDeque;
 const SCOUTED: usize = 32;
 /// Groups that subjects are at work on at once: a driver compiles one while others are judged.
 const AT_ONCE: usize = 4;
-/// In a selection of fewer groups everything is judged as soon.
+/// A selection with fewer groups than this has no scouts, since judging all of it takes no longer.
 const LEAST_GROUPS: usize = 8;
 
 /// A group whose cases subjects are at work on.

@@ -28,8 +28,8 @@ pub(crate) fn is_over(
 ) -> Result<bool, DeviceError> {
     match (judged, options.stop.interrupted("the run", under_way)) {
         (Err(error), _) if error.is_of_device() => {
-            let under_way = under_way.to_owned();
-            report.interrupted.get_or_insert(Interrupted { under_way, message: error.to_string(), signal: None });
+            let interrupted = Interrupted::by_device(under_way, &error);
+            report.interrupted.get_or_insert(interrupted);
             Ok(true)
         }
         (Err(error), _) => Err(error),

@@ -122,7 +122,7 @@ pub fn accuracy(
     let Some(device) = subject.device() else { return Ok(None) };
     let Some(bits) = device.probe(code, deviation.builtin.probe(), deviation.witness)? else { return Ok(None) };
     let is_shown = shows(deviation, bits, profile);
-    // Rules that allow what the driver gives know of no deviation.
+    // If the rules of the chosen profile allow the driver's value, it is no deviation under that profile, so there is nothing to report.
     let is_allowed = !is_shown && shows(deviation, bits, &WGSL);
     Ok((!is_allowed).then_some(is_shown))
 }
@@ -153,8 +153,8 @@ fn blend(
     Ok(is_drawn.then_some(totals.expected_failures > 0 && totals.failed == 0))
 }
 
-/// Each result that breaks its promise on record, which must be as it is on record. The witness is asked for where a record binds the driver: elsewhere the deviation is
-/// granted, not required.
+/// Whether every probe whose recorded result breaks its promise still gives exactly the recorded result. This is only checked for drivers
+/// for which a recorded result is binding; for other drivers the deviation is permitted but not required.
 fn special(
     deviation: &special_values::SpecialDeviation,
     subject: &Subject,

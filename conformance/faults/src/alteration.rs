@@ -35,11 +35,11 @@ pub(super) enum Do {
     Pass(&'static str),
     /// The same, changed.
     PassAs(&'static str, Op),
-    /// It gives the first that it is given, changed.
+    /// The step returns its first operand, with the operation applied to it, instead of computing its result.
     FirstAs(Op),
     /// It is given one in the place of the other, and the reverse.
     Swap(&'static str, &'static str),
-    /// It is given the first twice, the second time for the second.
+    /// The first named operand is also used in place of the second.
     Copy(&'static str, &'static str),
     /// It gives the sum of the two.
     Sum(&'static str, &'static str),
@@ -124,7 +124,7 @@ pub(super) enum Form {
     FogRational,
     /// 1/(1 − x + x²/2) for e^x.
     ExpByQuadratic,
-    /// The surface's colour and the fog's share of its own.
+    /// The full surface colour plus the fog's colour times 1 − f: the surface's colour is not multiplied by f.
     FogAdded,
     /// The surface's colour as far as the fog leaves it.
     FogToBlack,
@@ -134,7 +134,7 @@ pub(super) enum Form {
     NormalByInverse,
     /// The modelview as such.
     NormalByModelview,
-    /// The cofactors, whose sign is lost.
+    /// The cofactor matrix, not divided by the determinant: where the determinant is negative, the normal points the wrong way.
     NormalByCofactors,
     /// A direction moved by the view's translation.
     DirectionAsPosition,
@@ -166,7 +166,7 @@ pub(super) enum Form {
     LinearDepth,
     /// Depth read back as if it grew evenly.
     LinearDepthRead,
-    /// sRGB's pieces apart at another place.
+    /// sRGB encoding that switches from the linear piece to the curved piece at the threshold of decoding, 0.04045.
     EncodeThreshold,
     /// The same, decoded.
     DecodeThreshold,
@@ -183,7 +183,7 @@ pub(super) enum Form {
 }
 
 impl Form {
-    /// The names of what it needs to be given; one of them where several are for choice.
+    /// The operands that this form needs, as alternative sets of names: a step must have every operand of at least one set.
     const fn needs(self) -> &'static [&'static [&'static str]] {
         match self {
             Self::ReflectWithPlus | Self::ReflectOnce => &[&["i", "n"], &["l", "n"]],
@@ -239,7 +239,8 @@ impl At {
         }
     }
 
-    /// Whether it can be made in a step that is given these numbers of numbers under its names, and gives this number of them.
+    /// Whether this mistake can be made in a step. `sizes` says how many numbers each of the step's operands has, and `out` how many
+    /// numbers the step returns.
     pub(super) fn fits(&self, step: &NamedStep, sizes: &[usize], out: usize) -> bool {
         let size = |name: &str| place(step, sizes, name).map(|range| range.len());
         let has = |name: &&'static str| size(name).is_some();
@@ -257,7 +258,7 @@ impl At {
             }
     }
 
-    /// Whether two of them cannot be made of a step at once: both say how it is computed.
+    /// Whether two mistakes cannot be combined: they are the same one, or both replace the computation of the same step.
     pub(super) fn collides(&self, other: &Self) -> bool {
         let replaces = |at: &Self| matches!(at.what, Do::Pass(_) | Do::PassAs(..) | Do::Sum(..) | Do::Form(_));
         self.step == other.step && (self.what == other.what || (replaces(self) && replaces(other)))
@@ -461,7 +462,7 @@ fn incident<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         return give(taken, [if squared { wrapped * wrapped } else { wrapped }]);
     }
     if form == Form::GateTurned {
-        // A light straight above shows what the gate lets through.
+        // With a cosine of 1 the gate is open, so the step computes the value that the gate would otherwise have cut to 0.
         let range = taken.place("cosine")?;
         taken.from[range].fill(R::literal(1.0));
     }

@@ -26,11 +26,55 @@ pub(super) fn in_common(
     passing: &[Answered<'_>],
 ) -> Vec<String> {
     let mut told = vec![];
+    if let Some(order) = order_of(member, profile, failing) {
+        return vec![order];
+    }
     let wrong = wrong_numbers(member, profile, failing);
     told.extend(outputs_of(member, &wrong));
     told.extend(side_of(&wrong));
     told.extend(range_of(member, failing, passing));
     told
+}
+
+/// The order of the outputs in which every failing answer is legal: whoever answers has them in that one.
+fn order_of(member: &Member, profile: &Profile, failing: &[Answered<'_>]) -> Option<String> {
+    /// Answers that are legal in another order by chance are fewer.
+    const LEAST: usize = 4;
+    let outputs = member.spec.outputs;
+    let mut starts = vec![0];
+    starts.extend(outputs.iter().scan(0, |end, output| {
+        *end += output.shape.components();
+        Some(*end)
+    }));
+    let mut legal = vec![Accept::ANY; member.spec.output_len()];
+    let mut is_legal = |order: &[usize], row: &Answered<'_>| {
+        member.formula.promised_interval(member.spec.kind, row.inputs, profile, &mut legal);
+        let places = order.iter().flat_map(|&output| starts[output]..starts[output + 1]);
+        let decided = legal.iter().any(|interval| !interval.contains(f64::INFINITY));
+        decided && places.zip(row.values).all(|(place, &value)| legal[place].contains(value.into()))
+    };
+    let mut orders = orders(outputs.len()).into_iter().filter(|order| !order.is_sorted());
+    let found =
+        orders.find(|order| failing.len() >= LEAST && failing.iter().all(|row| is_legal(order.as_slice(), row)))?;
+    let names = |order: &mut dyn Iterator<Item = usize>| order.map(|k| outputs[k].name).collect::<Vec<_>>().join(", ");
+    let (given, expected) = (names(&mut found.into_iter()), names(&mut (0..outputs.len())));
+    Some(format!("the outputs are answered in the order {given}; expected {expected}"))
+}
+
+/// All orders of a few things.
+fn orders(count: usize) -> Vec<Vec<usize>> {
+    const MOST: usize = 4;
+    if count == 0 || count > MOST {
+        return vec![vec![]];
+    }
+    let with = |order: Vec<usize>| {
+        (0..count).map(move |place| {
+            let mut order = order.clone();
+            order.insert(place, count - 1);
+            order
+        })
+    };
+    orders(count - 1).into_iter().flat_map(with).collect()
 }
 
 /// A number of an answer that is not legal.

@@ -13,16 +13,18 @@ use lightmeter_catalogue::select::Member;
 use lightmeter_judge::diagnose::Answered;
 use lightmeter_judge::telling;
 
-/// What an explanation may exclude of the failing cases, and what passing ones may contradict it, as shares of the failing cases; the
-/// first is of random cases, since at a formula's edges renderers that make the same mistake have other guards. Where every answer is
-/// 0 or 1, none may contradict it.
+/// The largest share of cases that may speak against an explanation: failing cases whose answer it does not allow, and passing cases whose
+/// answer it does not allow. Both are counted relative to the number of failing cases. The first constant counts random cases only and is
+/// stricter, because at a formula's edges two renderers that make the same mistake may guard against special inputs differently. Where
+/// every answer is 0 or 1, no passing case may contradict an explanation.
 const MOST_OFF_OF_RANDOM: f64 = 0.015;
 const MOST_OFF: f64 = 0.1;
 /// The share of the random passing cases that would fail by it.
 const MOST_MISSING: f64 = 0.1;
 /// The bits by which it must beat chance.
 const LEAST_EVIDENCE: f64 = 6.0;
-/// The bits that an output tells whose answers are all the same number, where a mistake would give others in some case.
+/// The most bits of evidence that an output contributes where all answers to it are the same number although the mistake would have given
+/// another number in some case.
 const MOST_CONSTANT: f64 = 4.0;
 /// The bits that are told by which cases fail, at most.
 const MOST_FORETOLD: f64 = 24.0;
@@ -30,7 +32,7 @@ const MOST_FORETOLD: f64 = 24.0;
 const LEAST: f64 = 0.1;
 /// The bits that it takes to say by which factor which parameter is off.
 const FACTOR_BITS: f64 = 24.0;
-/// Failing cases from which on two things are told to be wrong at once: fewer are explained by many pairs.
+/// The fewest failing cases for which two mistakes at once are tried. Fewer cases could be explained by too many different pairs.
 const FEWEST_OF_TWO: usize = 16;
 /// Failing cases that a mistake is tried on first.
 const PROBES: usize = 24;
@@ -134,7 +136,7 @@ impl Trial<'_> {
         }
     }
 
-    /// Two mistakes at once. Most are told apart from the answers by their values in f64 already.
+    /// Tries two mistakes at once. Most pairs are ruled out cheaply, because their values in f64 are already too far from the answers.
     fn pairs(&mut self) {
         let concerned = concerned(self.member);
         let prior = 2.0 * bits_of(concerned.len());
@@ -237,7 +239,8 @@ impl Trial<'_> {
         let mut evidence = (0..by_output.len()).map(of_output).sum::<f64>();
         evidence += foretold.bits().min(MOST_FORETOLD) - prior;
         evidence -= part_of(EXCLUDED, self.failing.len() - explained - open + self.passing.len() - consistent);
-        // What may give anything explains nothing by that alone.
+        // A mistake that permits any answer explains nothing by permitting it, so a minimum share of the failing cases must lie inside a
+        // real interval.
         if share(explained, self.failing.len()) >= LEAST && evidence >= LEAST_EVIDENCE {
             let faults = tried.faults();
             self.found.push(Explanation { faults, says, parameter, explained, open, consistent, evidence });
@@ -271,7 +274,7 @@ impl Trial<'_> {
                     }
                     continue;
                 }
-                // Where nothing is promised, an answer is explained by who computes just that.
+                // Where the mistake permits any answer, it explains an answer only if it computes exactly that answer in f32.
                 Fit::Open if !(0..outputs).all(is_own) => {
                     tally.open += 1;
                     continue;
@@ -287,7 +290,9 @@ impl Trial<'_> {
         Some(tally)
     }
 
-    /// The passing cases that an explanation allows; `None` where they contradict it: what was done would show in them. Random cases decide; at a formula's edges whoever makes a mistake may have another guard.
+    /// The number of passing cases that the explanation allows, or `None` where the passing cases contradict it, because the mistake would
+    /// have made them fail. Random cases decide: at a formula's edges, a renderer that makes this mistake may guard against special inputs
+    /// differently.
     fn tally_passing(&self, tried: &impl Wrong, tally: &mut Tally) -> Option<usize> {
         let outputs = self.member.spec.output_len();
         let (mut legal, mut own) = (vec![Accept::ANY; outputs], vec![0.0; outputs]);
@@ -315,7 +320,8 @@ impl Trial<'_> {
                 return None;
             }
         }
-        // Where rounding alone is wrong, another's may well be lucky.
+        // A mistake that only concerns rounding need not make a case fail: the renderer's own roundings may happen to be legal where ours
+        // are not.
         let is_seldom = tried.is_rounding() || missing <= part(MOST_MISSING, random).max(1);
         is_seldom.then(|| self.passing.len() - contradicted)
     }
@@ -344,7 +350,7 @@ fn part_of(each: f64, count: usize) -> f64 {
     each * count as f64
 }
 
-/// The mistakes that are told beside something else.
+/// The mistakes that are tried in combination with another mistake or with a wrong parameter: all but those of rounding alone.
 fn paired(member: &Member) -> Vec<Concerned> {
     concerned(member).iter().filter(|concerned| !concerned.fault.is_rounding).copied().collect()
 }
@@ -482,7 +488,10 @@ mod tests {
         let (found, inputs) = diagnosis("fog/exp", making(&["fog-radial"]));
         let n = found.failing;
         assert!(n > 100, "{n}");
-        assert_eq!(found.sentence, format!("{n} of {n} failing cases are explained by: fog uses radial distance"));
+        assert_eq!(
+            found.sentence,
+            format!("{n} of {n} failing cases are explained by: fog uses radial distance (fog-radial)")
+        );
         assert_eq!(found.failing + found.passing, inputs.len());
     }
 
@@ -509,6 +518,15 @@ mod tests {
     }
 
     #[test]
+    fn outputs_in_another_order_are_told() {
+        let (found, _) = diagnosis("fog/exp", |member, inputs, out| {
+            member.formula.embedded(inputs, out);
+            out.rotate_left(1);
+        });
+        assert!(found.sentence.ends_with("in the order color, f; expected f, color"), "{}", found.sentence);
+    }
+
+    #[test]
     fn a_mistake_and_a_wrong_parameter_are_told_together() {
         let (found, _) = diagnosis("fog/exp", |member, inputs, out| {
             let mut row = inputs.to_vec();
@@ -522,7 +540,7 @@ mod tests {
         };
         let told = ["density or p", "p or density"]
             .map(says)
-            .map(|says| format!("{n} of {n} failing cases are explained by: {says}"));
+            .map(|says| format!("{n} of {n} failing cases are explained by: {says} (fog-radial)"));
         assert!(told.contains(&found.sentence), "{}", found.sentence);
     }
 

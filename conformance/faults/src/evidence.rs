@@ -42,8 +42,8 @@ pub(super) const EXCLUDED: f64 = 100.0;
 pub(super) struct Right {
     /// What is legal of the failing answers, then of the passing ones.
     pub(super) legal: Vec<Accept>,
-    /// The bits that each number of a failing answer takes where nothing but the right formula is known: those that it leaves open
-    /// where the number is right, and all of a wrong one.
+    /// How many bits it takes to state each number of a failing answer when only the right formula is known: where the number is right, the
+    /// bits that its interval leaves open; where it is wrong, all of its bits.
     pub(super) bits: Vec<f64>,
     /// For each output the number that every answer has there, failing or passing: such answers tell nothing of how they came about.
     pub(super) constant: Vec<Option<u32>>,
@@ -90,7 +90,8 @@ impl Foretold {
         self.counts[usize::from(fails)][usize::from(would_fail)] += 1;
     }
 
-    /// How many bits of which cases fail are told by which would; none where those that fail would not do so more often.
+    /// How many bits knowing which cases the mistake would make fail tells about which cases do fail. 0 if cases that fail are no more
+    /// likely to be predicted to fail than cases that pass.
     pub(super) fn bits(&self) -> f64 {
         let [[a, b], [c, d]] = self.counts;
         let all = a + b + c + d;

@@ -78,17 +78,26 @@ pub(super) fn sentence(failing: usize, explanations: &[Explanation]) -> String {
     let cases = if failing == 1 { "case is" } else { "cases are" };
     let Some(best) = explanations.first() else { return "nothing fails".into() };
     let Explanation { explained, open, .. } = best;
-    let mut told = format!("{explained} of {failing} failing {cases} explained by: {}", together(best, explanations));
+    let mut told = format!(
+        "{explained} of {failing} failing {cases} explained by: {}{}",
+        together(best, explanations),
+        called(&best.faults)
+    );
     let equal = |other: &&Explanation| {
         other.parameter.is_none() && other.faults.len() <= best.faults.len() && is_equal(best, other)
     };
     for other in explanations.iter().skip(1).filter(equal).take(MOST_EQUAL) {
-        told = format!("{told}; or just as well by: {}", other.says);
+        told = format!("{told}; or just as well by: {}{}", other.says, called(&other.faults));
     }
     match open {
         0 => told,
         open => format!("{told}; in {open} of them whoever makes this mistake may answer anything"),
     }
+}
+
+/// The names under which `lightmeter mistakes` and `--mistake` know what explains answers.
+pub(super) fn called(names: &[&str]) -> String {
+    if names.is_empty() { String::new() } else { format!(" ({})", names.join(" and ")) }
 }
 
 /// What the best explanation says, with the parameters that explain just as much by the same factor: nothing tells them apart.

@@ -55,7 +55,7 @@ pub const LEAST_ERROR: f64 = 1.0 / 8_388_608.0;
 const FARTHEST: f64 = 4.0;
 /// Cases that a task of the pool takes at once.
 const TASK: usize = 256;
-/// How often what is left of the residuals is regressed again.
+/// The number of iterations of the regression; each one is done on the residuals that the previous one left.
 const ROUNDS: usize = 4;
 
 /// The parameters of a formula: each input as a whole and each of its numbers, each output as a whole, scaled and moved.
@@ -111,9 +111,9 @@ pub(super) struct Clusters {
 }
 
 impl Clusters {
-    /// Cases for each value of an input, on average, from which it is one that many have in common.
+    /// An input counts as shared by many cases if, on average, at least this many cases have each of its values.
     const MANY: usize = 8;
-    /// Clusters that all say the same differ from 0 by the root of their number, in standard errors: fewer than these never by [`LEAST_Z`].
+    /// The fewest clusters that can reach [`LEAST_Z`]: if n clusters all show the same error, it differs from 0 by √n standard errors.
     const LEAST: usize = 64;
 
     /// Those that have a key in common.
@@ -131,8 +131,8 @@ impl Clusters {
         Self::by(design.reference.iter().map(|reference| reference.to_bits()))
     }
 
-    /// Cases with an input in common of which there are few values, such as the constant of a blend state, of which there are two: what is computed of
-    /// it alone is rounded alike in all of them. `None` where the outputs depend on no such input.
+    /// Clusters of cases that have the same value of an input with few different values, such as a blend state's constant, which has two.
+    /// Whatever is computed from that input alone is rounded identically in all of them. `None` if the outputs depend on no such input.
     fn by_input(rows: &[&[f32]], design: &Design) -> Option<Self> {
         let is_used = |number: usize| {
             let is_of = |parameter: &Parameter| !parameter.is_output && parameter.range.contains(&number);
@@ -275,7 +275,8 @@ impl Design {
         let regressed: Vec<Regressed> =
             (0..self.parameters.len()).into_par_iter().map(|place| self.regressed(&residuals, place)).collect();
         let strongest = regressed.iter().filter(|r| r.is_named()).map(|r| r.z.abs()).fold(0.0, f64::max);
-        // Of those that show alike a number that is asked for by itself is the likeliest, then a vector as a whole.
+        // Among parameters that explain the residuals about equally well, prefer an input that is a single number, then an input that is a
+        // vector.
         let best = (0..regressed.len())
             .filter(|&place| regressed[place].is_named() && regressed[place].z.abs() >= 0.99 * strongest)
             .min_by(|&a, &b| {
@@ -305,7 +306,7 @@ impl Design {
         &self.derivatives[place]
     }
 
-    /// Whether the answers show that parameter to be off, whether or not another shows as well.
+    /// Whether the answers show that the parameter is off, even if another parameter would be reported instead of it.
     pub(super) fn names(&self, place: usize, values: &[f32]) -> bool {
         self.residuals(values).is_some_and(|residuals| self.regressed(&residuals, place).is_named())
     }
@@ -322,8 +323,8 @@ impl Design {
         Regressed { certain: if is_rounding { 0.0 } else { regressed.certain.min(most) }, ..regressed }
     }
 
-    /// The error of a parameter that would just be named, were the answers linear in it, beside the residuals of answers that
-    /// are right.
+    /// The smallest error of a parameter that would still be named, given the residuals of correct answers and supposing that the answers
+    /// are linear in the parameter.
     pub(super) fn least_amount(&self, place: usize, right: &[f32]) -> Option<f64> {
         let derivatives = &self.derivatives[place];
         let (residuals, limit) = (self.residuals(right)?, limit(derivatives)?);

@@ -212,6 +212,12 @@ pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
                     return told(raw).map(Line::into_owned);
                 }
             }
+            let begins_as_one = text.trim_start().starts_with('{');
+            let error = if begins_as_one {
+                error.to_string()
+            } else {
+                format!("`{}` is no JSON object", clipped_to(text, MOST_QUOTED))
+            };
             Err(format!("{error}; expected {EXPECTED}"))
         }
     }
@@ -293,18 +299,20 @@ fn hello(text: &str) -> Result<Line<'_>, String> {
         #[serde(flatten)]
         rest: serde_json::Map<String, serde_json::Value>,
     }
-    let wrong = |error: serde_json::Error| format!("its hello: {error}");
+    let wrong = |error: serde_json::Error| format!("said a hello that cannot be read: {error}");
     let Greeting { hello, renderer, rest } = serde_json::from_str(text).map_err(wrong)?;
     if let Some(protocol) = hello.filter(|protocol| protocol != PROTOCOL) {
-        return Err(format!("its hello is of `{}`; expected `{PROTOCOL}`", clipped(&protocol)));
+        return Err(format!("said a hello of `{}`; expected `{PROTOCOL}`", clipped(&protocol)));
     }
     for (name, value) in &rest {
         let is_list = matches!(name.as_str(), "formulas" | "scenes" | "formats" | "effects" | "targets");
         if is_list && !value.is_array() && !value.is_null() {
-            return Err(format!("its hello: `{name}` is no list; expected such as [\"fog/*\", \"lighting/blinn\"]"));
+            return Err(format!(
+                "said a hello in which `{name}` is no list; expected such as [\"fog/*\", \"lighting/blinn\"]"
+            ));
         }
         if name == "version" && !value.is_string() {
-            return Err("its hello: `version` is no string; expected such as \"1.2\"".into());
+            return Err("said a hello in which `version` is no string; expected such as \"1.2\"".into());
         }
     }
     let hello: Hello = serde_json::from_value(rest.into()).map_err(wrong)?;
@@ -332,12 +340,19 @@ pub fn id(line: &[u8]) -> Option<Cow<'_, str>> {
 /// Characters of a renderer's words that are told.
 const MOST_TOLD: usize = 300;
 
+/// Characters of a line that is no answer.
+const MOST_QUOTED: usize = 60;
+
 /// A renderer's words, as far as they are told: fit to be shown, and not without end.
 #[must_use]
 pub fn clipped(words: &str) -> String {
-    let cut: String = words.trim().chars().take(MOST_TOLD).collect();
+    clipped_to(words, MOST_TOLD)
+}
+
+fn clipped_to(words: &str, most: usize) -> String {
+    let cut: String = words.trim().chars().take(most).collect();
     let mut told = lightmeter_files::shown(&cut).into_owned();
-    if words.trim().chars().nth(MOST_TOLD).is_some() {
+    if words.trim().chars().nth(most).is_some() {
         told.push('…');
     }
     told

@@ -29,6 +29,7 @@ use std::collections::{HashMap, VecDeque};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The name of a folder's answers.
 pub const ANSWERS: &str = "answers.jsonl";
@@ -116,7 +117,7 @@ struct Contents {
 
 /// A renderer whose answers lie in files. The answers of one file are in memory at a time: some 4 bytes for each output of a case.
 pub struct FileRenderer {
-    plan: GatePlan,
+    plan: Arc<GatePlan>,
     declared: Declared,
     files: VecDeque<AnswerFile>,
     /// Whether there is more than one, so that lines are told with their file.
@@ -135,11 +136,12 @@ impl FileRenderer {
     /// # Panics
     /// Where there is no file.
     pub fn read(
-        plan: GatePlan,
+        plan: impl Into<Arc<GatePlan>>,
         files: Vec<AnswerFile>,
         expectations: &Expectations,
         stop: Stop,
     ) -> Result<Self, FilesError> {
+        let plan = plan.into();
         // Answers that do not say what they are to are to all that the pack has.
         let targets = || plan.targets.iter().map(|target| target.name().to_owned()).collect();
         let everything = || Hello { targets: targets(), special: plan.choice.special, ..Hello::everything() };

@@ -55,7 +55,7 @@ impl From<&GateReport> for Standard {
     fn from(report: &GateReport) -> Self {
         let group = |group: &GateGroup| ComparedGroup { name: group.name(), counts: group.clone(), is_by_case: true };
         let why = [
-            (report.signal.is_some(), "a signal ended the gate"),
+            (report.signal.is_some() || report.interrupted.is_some(), "the gate was interrupted"),
             (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
             (report.totals.unstable > 0, "answers changed when they were asked once more"),
             (!report.has_judged(), "nothing was judged"),
@@ -194,7 +194,10 @@ impl Baseline {
     fn checked(standard: Standard, path: &Path) -> Result<Self, BaselineError> {
         let refused = |message: String| Err(BaselineError::Read { path: path.into(), message });
         if standard.groups.is_empty() {
-            return refused("it has no group, so that nothing could be worse; expected a result of something".into());
+            return refused(
+                "it contains no results to compare with; expected the JSON of a run that judged at least one case"
+                    .into(),
+            );
         }
         for ComparedGroup { name, counts, .. } in &standard.groups {
             let named = counts.not_passed.values().flatten().map(|text| count_of(text));
@@ -342,7 +345,10 @@ impl Comparison {
         ] {
             // A NaN is worse than any number.
             if is_alike && lightmeter_judge::is_worse(now.0, self.factor * before.0.max(floor)) {
-                worse.push(format!("{id}: {what} {now}, by {before} before: more than {} times that", self.factor));
+                worse.push(format!(
+                    "{id}: {what} {now}; in the baseline it was {before}, and more than {} times that counts as worse",
+                    self.factor
+                ));
             }
         }
         worse
@@ -363,7 +369,7 @@ impl Comparison {
             cases.filter(|case| !known.contains(case)).filter(|case| what != "failed" || !is_expected(case)).collect();
         let named = new.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
         let more = if new.len() > MOST_NAMED { ", …" } else { "" };
-        (!new.is_empty()).then(|| format!("{name}: {} {what} and did not before: {named}{more}", cases_of(new.len())))
+        (!new.is_empty()).then(|| format!("{name}: {} newly {what}: {named}{more}", cases_of(new.len())))
     }
 }
 

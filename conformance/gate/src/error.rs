@@ -18,6 +18,16 @@ pub enum ProcessError {
     /// What it declares cannot be read.
     #[error("the renderer's hello: {0}")]
     Hello(#[from] lightmeter_catalogue::filter::FilterError),
+    /// It declares what there is not.
+    #[error("the renderer's hello: `{glob}` matches no {what}{meant} `lightmeter list` lists them all")]
+    Unmatched {
+        /// The glob.
+        glob: String,
+        /// What it should match: `formula`, `scene`.
+        what: &'static str,
+        /// The names that are nearest to it, as the end of a sentence.
+        meant: String,
+    },
     /// It declares that it skips what must not be left out.
     #[error("the renderer's hello: skips `{id}`: it {why}")]
     Skip {

@@ -4,8 +4,13 @@ use super::answer::{DeclaredSkip, Hello, Line, clipped};
 use super::error::ProcessError;
 use super::plan::unmatched;
 use lightmeter_catalogue::cases::Spec;
+use lightmeter_catalogue::cases::blend::aliases;
 use lightmeter_catalogue::filter::Filter;
-use lightmeter_catalogue::special::{Gives, Probe};
+use lightmeter_catalogue::nearest::did_you_mean;
+use lightmeter_catalogue::scene::library::SCENES;
+use lightmeter_catalogue::scene::select::scene_id;
+use lightmeter_catalogue::select::catalogue;
+use lightmeter_catalogue::special::{Gives, PROBES, Probe};
 use lightmeter_document::Number;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::gate::RendererIdentity;
@@ -25,7 +30,7 @@ pub(super) enum Given {
     Word(u32),
     /// The file of a scene's image.
     Image(String),
-    /// Neither.
+    /// None of these: why there is no usable answer.
     Nothing(Unanswered),
 }
 
@@ -86,7 +91,7 @@ pub(super) fn given(line: Line<'_>, asks: Asks<'_>) -> Given {
         }
         (Line::Hex(..), _) => unjudged("only a special value is answered by `hex`".into()),
         (Line::Image(..), _) => unjudged("a formula is answered by `value`".into()),
-        (Line::Hello(_), _) => unjudged("a hello is no answer".into()),
+        (Line::Hello(_), _) => unjudged("a `hello` line was sent where an answer was expected".into()),
     }
 }
 
@@ -199,10 +204,36 @@ pub(super) struct Declared {
     pub(super) targets: Vec<TargetFormat>,
 }
 
+/// A name that is misspelt would leave out what it was to declare, and nobody would see it.
+fn matches_something(hello: &Hello) -> Result<(), ProcessError> {
+    if hello.formulas.is_empty() && hello.scenes.is_empty() {
+        return Ok(());
+    }
+    let members = catalogue();
+    let formulas: Vec<String> = members
+        .iter()
+        .map(|member| member.spec.id.clone())
+        .chain(aliases().map(|(alias, _)| alias))
+        .chain(PROBES.iter().map(Probe::id))
+        .collect();
+    let scenes: Vec<String> = (0..SCENES.len()).map(scene_id).collect();
+    for (what, globs, ids) in [("formula", &hello.formulas, &formulas), ("scene", &hello.scenes, &scenes)] {
+        for glob in globs {
+            let filter = Filter::new(std::slice::from_ref(glob))?;
+            if !ids.iter().any(|id| filter.selects(id)) {
+                let meant = did_you_mean(glob, ids.iter().map(String::as_str));
+                return Err(ProcessError::Unmatched { glob: clipped(glob), what, meant });
+            }
+        }
+    }
+    Ok(())
+}
+
 impl Declared {
     /// Reads what a hello declares.
     pub(super) fn new(hello: Hello) -> Result<Self, ProcessError> {
         let [formulas, scenes] = hello.filters()?;
+        matches_something(&hello)?;
         let format = |name: &String| TargetFormat::by_name(name).ok_or_else(|| ProcessError::Target(name.clone()));
         let targets = hello.targets.iter().map(format).collect::<Result<_, _>>()?;
         let skips = Skips::of(&hello)?;

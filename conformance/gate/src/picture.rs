@@ -126,7 +126,8 @@ fn decoded(bytes: &[u8], file: &str, fits: Fits<'_>) -> Result<Values, String> {
 
 /// Levels of brackets in the header of an array of numbers: a dictionary with a tuple.
 const MOST_NESTED: i32 = 2;
-/// Bytes before a header, the last two of which are its length, of version 1; of the later ones the last four.
+/// Bytes before the header of an NPY file: of version 1, and of later versions. The last two of them, or the last four, are the header's
+/// length.
 const PROLOGUES: [usize; 2] = [10, 12];
 
 /// Whether the header of an array nests more than an array of numbers needs. What parses it takes a time that doubles with each further

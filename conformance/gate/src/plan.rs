@@ -48,14 +48,14 @@ pub enum PlanError {
     Target(String),
 }
 
-/// The places of formulas and of their cases by ids.
+/// Looks up a formula or a case of the plan by its id.
 #[derive(Default)]
 struct Index {
-    /// The formula of a path of random cases.
+    /// For the common prefix of random cases' ids, the formula's index.
     random: HashMap<String, usize>,
-    /// The formula and the case of an id with a name.
+    /// For the id of a hard case or of one near it, the formula's index and the case.
     named: HashMap<String, (usize, CaseRef)>,
-    /// The formula of an id.
+    /// For a formula's id, its index.
     places: HashMap<String, usize>,
 }
 
@@ -63,7 +63,7 @@ struct Index {
 pub struct PlannedFormula {
     /// What is chosen.
     pub selected: Selected,
-    /// Hard cases and those near them come first, and how many those are.
+    /// How many hard cases, and cases near hard ones, there are. They come before the random cases.
     named: usize,
     /// The places of the named cases.
     places: HashMap<CaseRef, usize>,

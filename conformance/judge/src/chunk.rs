@@ -16,7 +16,8 @@ pub struct Chunk<'a> {
     pub of: Vec<usize>,
     /// The inputs, row after row.
     pub inputs: Vec<f32>,
-    /// The same with selectors before each row, for the shaders.
+    /// The same inputs as the shaders take them: each row is preceded by the selector words that say which formula of the group is to be
+    /// evaluated.
     pub selected: Vec<f32>,
     /// The f64 reference of each output.
     pub references: Vec<f64>,

@@ -27,16 +27,26 @@ impl Answered<'_> {
     }
 }
 
+/// What explains wrong answers.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Cause {
+    /// As a sentence.
+    pub says: String,
+    /// The names of the mistakes that explain them together, as `lightmeter mistakes` lists them. Empty where none does, and of a parameter
+    /// that is wrong.
+    pub mistakes: Vec<String>,
+}
+
 /// Knows mistakes, and tells which one explains answers. `lightmeter_faults` has the one that commands use.
 pub trait Diagnose: Sync {
-    /// What explains the wrong ones of the answers to a formula, as a sentence. They are a sample of `failing` ones that are wrong.
-    fn formula(&self, member: &Member, answered: &[Answered<'_>], failing: u64, profile: &Profile) -> String;
+    /// What explains the wrong ones of the answers to a formula. They are a sample of `failing` ones that are wrong.
+    fn formula(&self, member: &Member, answered: &[Answered<'_>], failing: u64, profile: &Profile) -> Cause;
 
     /// What is wrong with answers of which each is legal: a parameter that is a little off. `None` where nothing is found.
     fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<String>;
 
-    /// What explains a wrong image of a frame, as a sentence.
-    fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> String;
+    /// What explains a wrong image of a frame.
+    fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> Cause;
 }
 
 /// A row that was answered: its inputs, the values, and which case it is.
@@ -46,7 +56,7 @@ pub type Row<'a> = (Vec<f32>, &'a [f32], CaseRef);
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Told {
     /// What explains those that are wrong.
-    pub explanation: Option<String>,
+    pub explanation: Option<Cause>,
     /// What is wrong with all of them together, where none is wrong by itself.
     pub systematic: Option<String>,
 }

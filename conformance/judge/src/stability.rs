@@ -19,7 +19,8 @@ pub fn roundings(values: &[f64], exact: &[f64], size: Size) -> f64 {
     if off == 0.0 { 0.0 } else { off / (ROUNDING * size_of(exact, size)) }
 }
 
-/// What a formula's errors are relative to: as it claims, or, where it claims nothing, 1 for a colour, a share of what is seen.
+/// What a formula's errors are measured relative to: the measure that its claim of stability names; without a claim, at least 1 for
+/// colours, because a colour is a fraction of full brightness, and the result's own size otherwise.
 #[must_use]
 pub fn size(spec: &Spec) -> Size {
     let is_color = spec.outputs.iter().all(|output| output.unit == "color");
@@ -60,14 +61,14 @@ pub fn condition(formula: &dyn AnyFormula, inputs: &[f32], size: Size) -> f64 {
 pub enum FormStanding {
     /// The result moves by no more than a few roundings, and so do the legal values.
     Stable,
-    /// The inputs' own roundings move the result by more than [`ILL_CONDITIONED`] of its roundings: with inputs that were
-    /// rounded before no method can do better.
+    /// A rounding of each input moves the result by more than [`ILL_CONDITIONED`] roundings of the result, so if the inputs have been
+    /// rounded beforehand no method can do better.
     IllConditioned,
     /// The legal values reach farther than [`UNSTABLE`] times what the condition explains: the fault of the form.
     Unstable,
     /// The rules permit anything, though the result is a number: the fault of the form.
     NothingPromised,
-    /// There is no value, or the least change of an input makes another of it.
+    /// The formula has no value here, or the smallest change of an input changes its value completely.
     Singular,
 }
 
@@ -105,7 +106,8 @@ impl Conditioning {
         let farthest = norm(farthest);
         let reach = if farthest == 0.0 { 0.0 } else { farthest / (ROUNDING * size_of(&exact, size)) };
         let is_number = exact.iter().all(|x| x.is_finite());
-        // A derivative sees no jump: a few ULP of each input explain no more than some tens of roundings times the condition.
+        // Derivatives do not show jumps, so nearby inputs are evaluated too: a change of a few ULP in each input should move the result by
+        // at most some tens of roundings times the condition.
         let jumps = near.iter().any(|row| {
             let mut there = vec![0.0; exact.len()];
             member.formula.reference(row, &mut there);

@@ -2,10 +2,12 @@
 
 use crate::Level;
 use crate::against::{self, Against, listed};
+use crate::table::{Align, TextTable};
 use crate::text::plain;
-use lightmeter_document::Number;
 use lightmeter_document::by_case::Coverage;
-use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, cases};
+use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, Problems, cases};
+use lightmeter_document::run::Interrupted;
+use lightmeter_document::{Number, thousands};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::fmt::{Result, Write};
 
@@ -14,68 +16,113 @@ const MOST_NAMED: usize = 8;
 /// Groups that fail, of which all is told.
 pub const MOST_TOLD: usize = 24;
 
-/// Writes it for people. Where the groups that fail were told as they were judged, they are not told again.
+/// How a gate's result is written for people.
+#[derive(Clone, Debug, Default)]
+pub struct GateStyle {
+    /// How much is said.
+    pub level: Level,
+    /// Whether the renderer, and the groups that fail, were told as they were judged.
+    pub is_told: bool,
+    /// The command that asks the renderer for the case whose id is put behind it; nothing where answers are read from files.
+    pub again: Option<String>,
+}
+
+/// The first line: who is judged, and by which accuracy rules.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn text(report: &GateReport, is_told: bool, level: Level, out: &mut impl Write) -> Result {
+pub fn begun(name: &str, version: &str, profile: &str, out: &mut impl Write) -> Result {
+    let version = if version.is_empty() { String::new() } else { format!(" {version}") };
+    writeln!(out, "{name}{version} · profile {profile}")
+}
+
+/// Writes it for people.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn text(report: &GateReport, style: &GateStyle, out: &mut impl Write) -> Result {
     let renderer = &report.renderer;
     // What a file says may be why something passes.
     if let Some(config) = &report.config {
         writeln!(out, "{config}")?;
     }
-    if level > Level::Quiet {
-        let version = if renderer.version.is_empty() { String::new() } else { format!(" {}", renderer.version) };
-        writeln!(out, "{}{version} · profile {} · {:.1} s", renderer.name, report.profile, report.seconds)?;
-        families(report, level, out)?;
+    if style.level > Level::Quiet && !style.is_told {
+        begun(&renderer.name, &renderer.version, &report.profile, out)?;
     }
     let failed: Vec<&GateGroup> = report.groups.iter().filter(|group| group.is_failed()).collect();
-    for group in failed.iter().take(MOST_TOLD).filter(|_| !is_told) {
-        told(group, &report.failures, out)?;
+    for group in failed.iter().take(MOST_TOLD).filter(|_| !style.is_told) {
+        told(group, &report.failures, style, out)?;
     }
     if failed.len() > MOST_TOLD {
         let more: Vec<String> = failed[MOST_TOLD..].iter().map(|group| group.name()).take(200).collect();
         writeln!(out, "\n{} more fail: {}", failed.len() - MOST_TOLD, more.join(", "))?;
     }
+    if style.level > Level::Quiet {
+        if !failed.is_empty() {
+            writeln!(out)?;
+        }
+        families(report, style.level, out)?;
+    }
     against::text(Against::of_gate(report), out)?;
     listed("crashes and hangs are expected", &report.expected_incidents, out)?;
     listed("went wrong with the process", &report.incidents, out)?;
-    if !report.problems.is_empty() {
-        let counts: Vec<String> =
-            report.problems.counts.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-        writeln!(out, "\nlines that cannot be read as answers: {}", counts.join(", "))?;
-        report.problems.first.iter().take(20).try_for_each(|what| writeln!(out, "  {what}"))?;
+    problems(&report.problems, out)?;
+    if let Some(why) = &report.interrupted {
+        writeln!(out, "\n{}", interrupted(why))?;
     }
-    if let Some(signal) = report.signal {
-        writeln!(out, "\n{}", interrupted(signal))?;
+    verdict(report, style.level, out)
+}
+
+/// Lines that are no answers.
+fn problems(problems: &Problems, out: &mut impl Write) -> Result {
+    const MOST: usize = 4;
+    if problems.is_empty() {
+        return Ok(());
     }
+    let counts: Vec<String> =
+        problems.counts.iter().map(|(kind, count)| format!("{} {kind}", thousands(*count))).collect();
+    writeln!(out, "\nlines that cannot be read as answers: {}", counts.join(", "))?;
+    problems.first.iter().take(MOST).try_for_each(|what| writeln!(out, "  {what}"))?;
+    if problems.first.len() > MOST { writeln!(out, "  …") } else { Ok(()) }
+}
+
+/// How many pass and fail, and what else there is to count, each on a line of its own.
+fn verdict(report: &GateReport, level: Level, out: &mut impl Write) -> Result {
     let totals = &report.totals;
-    write!(out, "\n{} of {} pass, {} fail", totals.passed, cases(totals.asked), totals.failed)?;
+    if level > Level::Quiet {
+        writeln!(out)?;
+    }
+    let [passed, failed] = [totals.passed, totals.failed].map(thousands);
+    writeln!(out, "{passed} of {} pass, {failed} fail, in {:.1} s", cases(totals.asked), report.seconds)?;
     for (count, what) in [
-        (totals.broken, "of them by ending or hanging"),
-        (totals.expected_failures, "of them as expected"),
-        (totals.unexpected_passes, "expected failures pass"),
-        (totals.unstable, "are unstable"),
+        (totals.broken, "fail because the renderer ended or hung"),
+        (totals.expected_failures, "fail as expected"),
+        (totals.unexpected_passes, "are expected to fail, and pass"),
+        (totals.unstable, "are unstable: the renderer answers them differently when it is asked again"),
         (totals.missing, "were never answered"),
         (totals.skipped, "were skipped"),
-        (totals.undeclared, "of them without having been declared"),
-        (totals.not_asked, "were not asked: the renderer does not declare them"),
+        (totals.undeclared, "of those without having been declared"),
     ] {
         if count > 0 {
-            write!(out, ", {count} {what}")?;
+            writeln!(out, "  {} {what}", thousands(count))?;
         }
-    }
-    write!(out, "; {} verdicts", totals.verdicts)?;
-    match totals.indeterminate {
-        0 => writeln!(out)?,
-        undecided => writeln!(out, ", {undecided} of them undecided: there the accuracy rules permit any value")?,
     }
     let Coverage { chosen, judged, excluded } = report.coverage();
     if excluded > 0 {
-        writeln!(out, "of {} chosen {judged} were judged and {excluded} excluded", cases(chosen))
-    } else {
-        Ok(())
+        let why = match totals.not_asked {
+            0 => String::new(),
+            all if all == excluded => ", which the renderer does not declare".into(),
+            some => format!(", {} of which the renderer does not declare", thousands(some)),
+        };
+        let [chosen, judged, excluded] = [chosen, judged, excluded].map(thousands);
+        writeln!(out, "of {chosen} chosen cases {judged} were judged and {excluded} excluded{why}")?;
     }
+    let undecided = totals.indeterminate;
+    if level == Level::Verbose && undecided > 0 {
+        let (undecided, all) = (thousands(undecided), thousands(totals.verdicts));
+        writeln!(out, "  {undecided} of {all} numbers could be anything: there the accuracy rules promise nothing")?;
+    }
+    Ok(())
 }
 
 /// A line a family.
@@ -87,6 +134,8 @@ fn families(report: &GateReport, level: Level, out: &mut impl Write) -> Result {
             names.push(family(group));
         }
     }
+    let (left, right) = (Align::Left, Align::Right);
+    let mut table = TextTable::new(&[("", left), ("", left), ("", right), ("", left), ("", right), ("", left)]);
     for name in names {
         let of: Vec<&GateGroup> =
             report.groups.iter().filter(|group| group.asked > 0 && family(group) == name).collect();
@@ -96,35 +145,34 @@ fn families(report: &GateReport, level: Level, out: &mut impl Write) -> Result {
         let failing = of.iter().filter(|group| group.is_failed()).count();
         let judged = asked.saturating_sub(of.iter().map(|group| group.skipped + group.missing).sum());
         let mark = match (failing, judged) {
-            (0, 0) => '–',
-            (0, _) => '✓',
-            _ => '✗',
+            (0, 0) => "–",
+            (0, _) => "✓",
+            _ => "✗",
         };
-        let error = of.iter().map(|group| group.error_max.0).fold(0.0, lightmeter_document::worse);
-        let margin = of.iter().map(|group| group.margin_max.0).fold(0.0, lightmeter_document::worse);
         let whats = match name.as_str() {
             "scene" => ["scene", "scenes"],
             "special" => ["table", "tables"],
             _ => ["formula", "formulas"],
         };
-        let what = whats[usize::from(of.len() != 1)];
-        write!(out, "{mark} {name:<14} {:>4} {what:<9} {asked:>9} cases", of.len())?;
+        let mut notes = vec![];
         if failing > 0 {
             let fail = if failed == 1 { "fails" } else { "fail" };
-            write!(out, ", {failed} {fail} in {failing} {}", whats[usize::from(failing != 1)])?;
+            notes.push(format!("{} {fail} in {failing} {}", thousands(failed), whats[usize::from(failing != 1)]));
         }
         if missing > 0 {
-            write!(out, ", {missing} never answered")?;
+            notes.push(format!("{} never answered", thousands(missing)));
         }
         if judged == 0 {
-            writeln!(out, ", none judged")?;
-        } else if level == Level::Verbose {
-            writeln!(out, ", errors up to {} ULP, {} % of what is legal", short(error), short(100.0 * margin))?;
-        } else {
-            writeln!(out)?;
+            notes.push("none judged".into());
+        } else if level == Level::Verbose && failing == 0 {
+            let error = of.iter().map(|group| group.error_max.0).fold(0.0, lightmeter_document::worse);
+            let margin = of.iter().map(|group| group.margin_max.0).fold(0.0, lightmeter_document::worse);
+            notes.push(format!("errors up to {} ULP, {} % of what is legal", short(error), short(100.0 * margin)));
         }
+        let count = format!("{} {}", of.len(), whats[usize::from(of.len() != 1)]);
+        table.row([mark.into(), name, thousands(asked), "cases".into(), count, notes.join(", ")]);
     }
-    Ok(())
+    out.write_str(&table.text(""))
 }
 
 fn short(x: f64) -> String {
@@ -139,7 +187,7 @@ fn short(x: f64) -> String {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn told(group: &GateGroup, failures: &[GateFailure], out: &mut impl Write) -> Result {
+pub fn told(group: &GateGroup, failures: &[GateFailure], style: &GateStyle, out: &mut impl Write) -> Result {
     let (count, what) = match group.failed {
         0 if group.undeclared > 0 => (group.undeclared, "were skipped"),
         0 if group.missing > 0 => (group.missing, "were never answered"),
@@ -171,13 +219,26 @@ pub fn told(group: &GateGroup, failures: &[GateFailure], out: &mut impl Write) -
     };
     let of: Vec<&GateFailure> = failures.iter().filter(is_of).collect();
     let smallest = of.iter().find(|failure| group.smallest.as_ref() == Some(&failure.id));
-    if let Some(smallest) = smallest {
+    if smallest.is_some() {
         writeln!(out, "  the smallest failing case:")?;
-        failure(smallest, out)?;
-    } else if let Some(first) = of.first() {
-        failure(first, out)?;
     }
-    Ok(())
+    let Some(told) = smallest.or(of.first()) else { return Ok(()) };
+    failure(told, out)?;
+    commands(told, group, style, out)
+}
+
+/// The commands that explain a failing case, and ask for it once more.
+fn commands(failure: &GateFailure, group: &GateGroup, style: &GateStyle, out: &mut impl Write) -> Result {
+    let target = failure.target.as_ref().map(|target| format!(" --target {target}")).unwrap_or_default();
+    let mistake = match group.mistakes.as_slice() {
+        [one] => format!(" --mistake {one}"),
+        _ => String::new(),
+    };
+    writeln!(out, "    explained  lightmeter show {}{target}{mistake}", failure.id)?;
+    match &style.again {
+        Some(again) => writeln!(out, "    again      {again}{target} {}", failure.id),
+        None => Ok(()),
+    }
 }
 
 /// The cases of a group that were never answered: the first of them, by the end of their ids.
@@ -200,16 +261,23 @@ fn failure(failure: &GateFailure, out: &mut impl Write) -> Result {
     if failure.value.is_empty() {
         return Ok(());
     }
+    let columns = ["", "", "value", "legal from", "to", "reference"].map(|heading| (heading, Align::Left));
+    let mut table = TextTable::new(&columns);
     for (k, [low, high]) in failure.interval.iter().enumerate() {
         let (Some(value), Some(reference)) = (failure.value.get(k), failure.reference.get(k)) else { break };
         let name = failure.outputs.get(k).map_or("value", String::as_str);
         let is_legal = low.0 <= value.0 && value.0 <= high.0;
-        let mark = if is_legal { ' ' } else { '✗' };
-        let (value, [low, high]) = (value.narrow(), [low, high].map(|end| end.narrow()));
-        writeln!(out, "  {mark} {name:<14} {value}, legal from {low} to {high}, reference {}", reference.narrow())?;
+        let [value, low, high] = [value, low, high].map(|number| number.narrow().to_string());
+        let mark = if is_legal { "" } else { "✗" };
+        table.row([mark.into(), name.into(), value, low, high, brief(reference.0)]);
     }
-    let target = failure.target.as_ref().map(|target| format!(" --target {target}")).unwrap_or_default();
-    writeln!(out, "    lightmeter show {}{target}", failure.id)
+    out.write_str(&table.text("  "))
+}
+
+/// Nine digits, which tell any two numbers of f32 apart.
+fn brief(x: f64) -> String {
+    let rounded: f64 = format!("{x:.8e}").parse().unwrap_or(x);
+    Number(rounded).to_string()
 }
 
 /// What is wrong with a group, on one line.
@@ -239,15 +307,15 @@ pub(crate) fn smallest(group: &GateGroup, report: &GateReport) -> Option<String>
     Some(format!("{id}: {}{of}; legal: {}", list(&failure.value), legal.join(", ")))
 }
 
-/// That a signal ended the gate.
-fn interrupted(signal: i32) -> String {
-    format!("signal {signal} ended the gate before its time: what was not answered until then counts as missing")
+/// Why the gate ended before its time.
+fn interrupted(why: &Interrupted) -> String {
+    format!("{why}; what was not answered until then counts as never answered")
 }
 
 /// What is wrong with all of it, each on a line with its title.
 pub(crate) fn whole(report: &GateReport) -> Vec<(String, String)> {
     let mut said = vec![];
-    said.extend(report.signal.map(|signal| ("interrupted".to_owned(), interrupted(signal))));
+    said.extend(report.interrupted.as_ref().map(|why| ("interrupted".to_owned(), interrupted(why))));
     said.extend(report.incidents.iter().map(|what| ("process".to_owned(), what.clone())));
     said.extend(report.problems.first.iter().map(|what| ("answers".to_owned(), what.clone())));
     said.extend(Against::of_gate(report).lines());
@@ -268,7 +336,7 @@ pub fn junit(report: &GateReport) -> std::result::Result<String, SerializeError>
             status.set_message(sentence(group));
             let mut description = String::new();
             // Writing to a string does not fail.
-            let _ = told(group, &report.failures, &mut description);
+            let _ = told(group, &report.failures, &GateStyle::default(), &mut description);
             status.set_description(description);
         } else if group.asked == group.skipped {
             status = TestCaseStatus::skipped();

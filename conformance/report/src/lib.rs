@@ -8,9 +8,11 @@ pub mod junit;
 pub mod live;
 pub mod mistakes;
 pub mod page;
+mod plot;
 pub mod selftest;
 pub mod special;
 pub mod sweep;
+pub mod table;
 pub mod text;
 
 /// How much is said to people.

@@ -1,7 +1,6 @@
 //! What fails, as text, as soon as it is judged.
 
-use crate::Level;
-use crate::gate::{MOST_TOLD, told};
+use crate::gate::{GateStyle, MOST_TOLD, told};
 use crate::text::{failing_group, failure, formula_of};
 use lightmeter_document::event::Event;
 use lightmeter_document::gate::{GateFailure, GateGroup};
@@ -12,7 +11,7 @@ use std::fmt::{Result, Write};
 /// Tells each group that fails once, and of each formula on an adapter one failing case.
 #[derive(Debug, Default)]
 pub struct Live {
-    level: Level,
+    style: GateStyle,
     groups: BTreeSet<(String, String, String)>,
     formulas: BTreeSet<(String, String)>,
     /// Groups of a renderer that were told.
@@ -20,10 +19,10 @@ pub struct Live {
 }
 
 impl Live {
-    /// One that says so much.
+    /// One that tells in this style.
     #[must_use]
-    pub fn new(level: Level) -> Self {
-        Self { level, ..Self::default() }
+    pub fn new(style: GateStyle) -> Self {
+        Self { style, ..Self::default() }
     }
 
     /// What there is to say of an event; nothing of most.
@@ -38,7 +37,7 @@ impl Live {
             if group.is_failed() && self.asked < MOST_TOLD {
                 self.asked += 1;
                 let failures: Vec<GateFailure> = failures.iter().filter_map(|one| GateFailure::of(one)).collect();
-                let Ok(()) = told(&group, &failures, &mut out) else { unreachable!("a string takes all") };
+                let Ok(()) = told(&group, &failures, &self.style, &mut out) else { unreachable!("a string takes all") };
             }
             return out;
         }
@@ -59,7 +58,7 @@ impl Live {
         let mut told = is_new;
         for one in failures {
             if self.formulas.insert((formula_of(one).to_owned(), one.adapter.clone())) {
-                failure(one, self.level, out)?;
+                failure(one, self.style.level, out)?;
                 told = true;
             }
         }

@@ -1,5 +1,6 @@
 //! The self-test of formulas as text.
 
+use crate::table::{Align, TextTable};
 use lightmeter_document::selftest::{Clean, Finding, Kill, Mistake, Record, Resolution, SceneResolution, family_of};
 use std::fmt::{Result, Write};
 
@@ -8,11 +9,8 @@ use std::fmt::{Result, Write};
 /// # Errors
 /// Where the writer fails.
 pub fn text(record: &Record, mistakes: &[Mistake], resolutions: &[Resolution], out: &mut impl Write) -> Result {
-    writeln!(
-        out,
-        "{:<34} {:>8} {:>8} {:>8} {:>10} {:>10}",
-        "mistake", "formulas", "caught", "named", "cases", "at most"
-    )?;
+    let numbers = ["formulas", "caught", "named", "cases", "at most"].map(|heading| (heading, Align::Right));
+    let mut table = TextTable::new(&[&[("mistake", Align::Left)], &numbers[..]].concat());
     for fault in mistakes {
         let kills: Vec<&Kill> = record.kills.iter().filter(|kill| kill.fault == fault.name).collect();
         if kills.is_empty() {
@@ -21,8 +19,10 @@ pub fn text(record: &Record, mistakes: &[Mistake], resolutions: &[Resolution], o
         let caught = kills.iter().filter(|kill| kill.finding != Finding::Survived).count();
         let named = kills.iter().filter(|kill| kill.finding == Finding::Named).count();
         let (median, most) = smallest(&kills);
-        writeln!(out, "{:<34} {:>8} {caught:>8} {named:>8} {median:>10} {most:>10}", fault.name, kills.len())?;
+        let numbers = [kills.len(), caught, named, median, most].map(|number| number.to_string());
+        table.row(std::iter::once(fault.name.to_string()).chain(numbers));
     }
+    out.write_str(&table.text(""))?;
     let total = record.kills.len();
     let aliases = record.kills.iter().filter(|kill| kill.alias).count();
     writeln!(
@@ -47,22 +47,20 @@ pub fn text(record: &Record, mistakes: &[Mistake], resolutions: &[Resolution], o
         let named = clean.systematic.as_ref().map_or("", |systematic| systematic.says.as_str());
         writeln!(out, "FALSE ALARM in {}: {} failed {named}", clean.formula, clean.failed)?;
     }
-    if !resolutions.is_empty() {
-        writeln!(out, "\n{:<32} {:<22} {:<8} {:>12} {:>12}", "formula", "parameter", "error", "single", "group")?;
-    }
+    let (left, right) = (Align::Left, Align::Right);
+    let columns = [("formula", left), ("parameter", left), ("error", left), ("single", right), ("group", right)];
+    let mut table = TextTable::new(&columns);
     for resolution in resolutions {
         let number = |x: Option<f64>| x.map_or("—".into(), |x| format!("{x:.2e}"));
-        writeln!(
-            out,
-            "{:<32} {:<22} {:<8} {:>12} {:>12}",
-            resolution.formula,
-            resolution.name(),
-            resolution.error.name(),
+        table.row([
+            resolution.formula.clone(),
+            resolution.name().to_string(),
+            resolution.error.name().to_string(),
             number(resolution.single),
-            number(resolution.group)
-        )?;
+            number(resolution.group),
+        ]);
     }
-    Ok(())
+    if resolutions.is_empty() { Ok(()) } else { write!(out, "\n{}", table.text("")) }
 }
 
 fn of_family<'a>(record: &'a Record, family: &'a str) -> impl Iterator<Item = &'a Clean> {
@@ -87,12 +85,12 @@ pub(super) fn percent(part: usize, whole: usize) -> f64 {
 /// # Errors
 /// Where the writer fails.
 pub fn scene_resolutions(resolutions: &[SceneResolution], out: &mut impl Write) -> Result {
-    if !resolutions.is_empty() {
-        writeln!(out, "\n{:<32} {:<22} {:>10} {:>10}", "smallest errors in scenes", "of", "pixel", "image")?;
-    }
+    let (left, right) = (Align::Left, Align::Right);
+    let mut table =
+        TextTable::new(&[("smallest errors in scenes", left), ("of", left), ("pixel", right), ("image", right)]);
     let percent = |x: Option<f64>| x.map_or("–".into(), |x| format!("{:.4} %", 100.0 * x));
     for SceneResolution { scene, parameter, pixel, image, .. } in resolutions {
-        writeln!(out, "{scene:<32} {parameter:<22} {:>10} {:>10}", percent(*pixel), percent(*image))?;
+        table.row([scene.to_string(), parameter.to_string(), percent(*pixel), percent(*image)]);
     }
-    Ok(())
+    if resolutions.is_empty() { Ok(()) } else { write!(out, "\n{}", table.text("")) }
 }

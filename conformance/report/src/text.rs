@@ -2,6 +2,7 @@
 
 use crate::Level;
 use crate::against::{self, Against};
+use crate::table::{Align, TextTable};
 use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, ImageUse, Report, Tiers, Totals};
 use lightmeter_document::{Number, Word, is_worse, thousands, worse};
 use lightmeter_scene::blend::Route;
@@ -447,16 +448,13 @@ fn families(groups: &[Group]) -> Vec<TableRow> {
 }
 
 fn table(rows: &[TableRow], has_adapters: bool, level: Level, out: &mut impl Write) -> Result {
-    let widest = |of: fn(&TableRow) -> usize, least: usize| rows.iter().map(of).max().unwrap_or(0).max(least);
-    let id = widest(|row| row.id.chars().count(), 13);
-    let adapter = if has_adapters { widest(|row| row.adapter.chars().count(), 8) + 2 } else { 0 };
-    let name = |row: &TableRow| if has_adapters { row.adapter.clone() } else { String::new() };
-    let heading = if has_adapters { "adapter" } else { "" };
-    writeln!(
-        out,
-        "  {:<id$}  {heading:<adapter$}{:<15} {:>8} {:>13} {:>9}",
-        "family", "stage", "formulas", "verdicts", "failed"
-    )?;
+    let (left, right) = (Align::Left, Align::Right);
+    let mut columns = vec![("", left), ("family", left), ("adapter", left), ("stage", left)];
+    columns.extend([("formulas", right), ("verdicts", right), ("failed", right)]);
+    if !has_adapters {
+        columns.remove(2);
+    }
+    let mut table = TextTable::new(&columns);
     for row in rows {
         let (verdicts, failed) = (row.totals.verdicts, row.totals.failed);
         let mark = match (failed + row.totals.failed_groups, verdicts) {
@@ -464,16 +462,17 @@ fn table(rows: &[TableRow], has_adapters: bool, level: Level, out: &mut impl Wri
             (0, _) => '✓',
             _ => '✗',
         };
-        writeln!(
-            out,
-            "{mark} {:<id$}  {:<adapter$}{:<15} {:>8} {:>13} {:>9}",
-            row.id,
-            name(row),
-            row.stage,
-            row.groups,
-            thousands(verdicts),
-            thousands(failed),
-        )?;
+        let mut cells = vec![mark.to_string(), row.id.clone(), row.adapter.clone(), row.stage.to_string()];
+        cells.extend([row.groups.to_string(), thousands(verdicts), thousands(failed)]);
+        if !has_adapters {
+            cells.remove(2);
+        }
+        table.row(cells);
+    }
+    let mut lines = table.lines().into_iter();
+    lines.next().map_or(Ok(()), |heading| writeln!(out, "{heading}"))?;
+    for (row, line) in rows.iter().zip(lines) {
+        writeln!(out, "{line}")?;
         if level == Level::Verbose
             && let Some(worst) = &row.worst
         {
@@ -494,7 +493,7 @@ pub fn failure(failure: &Failure, level: Level, out: &mut impl Write) -> Result 
     let unit = if is_unorm { "steps" } else { "ULP" };
     let target = failure.target.as_ref().map(|target| format!(" on {target}")).unwrap_or_default();
     writeln!(out, "FAIL {id} on {adapter}, {stage}{target}: {output}")?;
-    // A NaN is told by its bits.
+    // NaNs differ only in their bits, so the bits are shown.
     let has_bits = level == Level::Verbose || failure.promise.is_some() || failure.value.0.is_nan();
     for ((name, value), bits) in failure.inputs.iter().zip(failure.inputs_hex.values()) {
         let unit = failure.units.get(name).map(|unit| format!("  {unit}")).unwrap_or_default();

@@ -3,7 +3,8 @@
 use super::options::Choice;
 use super::progress::Bar;
 use super::signals::{status_of, stopped_by_signals};
-use super::{NothingToRun, Status, emit, foreign, writable};
+use super::terminal::level;
+use super::{NothingToRun, Status, emit, foreign, show, writable};
 use clap::{Args, ValueEnum};
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
@@ -12,9 +13,12 @@ use lightmeter::document::Document as _;
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::document::bench::recommendation::Inputs;
 use lightmeter::filter::Filter;
+use lightmeter::nearest::did_you_mean;
 use lightmeter::report::bench::recommend::{self, Limit, recommend};
 use lightmeter::report::bench::{page, text};
+use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load;
+use lightmeter::scene::select::scene_id;
 use lightmeter::select::catalogue;
 use lightmeter::subject_gpu::device_error;
 use lightmeter_gpu::ClockKind;
@@ -133,11 +137,20 @@ impl Bench {
         let is_whole = document.interrupted.is_none();
         if is_whole && document.adapters.iter().all(|adapter| adapter.groups.is_empty() && adapter.scalings.is_empty())
         {
-            let message =
-                "no group matches; there are the formulas, as fog/exp, technique/*, stable/**, scene/* and scaling/*";
-            anyhow::bail!(message);
+            let formulas = catalogue().into_iter().map(|member| member.spec.id);
+            let names: Vec<String> = formulas.chain((0..SCENES.len()).map(scene_id)).collect();
+            let glob = self.filter.first().map_or("", String::as_str);
+            let meant = did_you_mean(glob, names.iter().map(String::as_str));
+            anyhow::bail!(
+                "no group matches `{glob}`{meant} There are the formulas, as fog/exp, technique/*, stable/**, scene/* and scaling/*"
+            );
         }
-        emit(&self.write(&document)?, self.out.as_deref())?;
+        let (text, file) = (self.write(&document)?, self.out.as_deref());
+        if self.format == Format::Text {
+            show(&text, file)?
+        } else {
+            emit(&text, file)?
+        }
         Ok(document.interrupted.as_ref().map_or(Status::Success, status_of))
     }
 
@@ -145,7 +158,7 @@ impl Bench {
         let mut out = String::new();
         match (self.recommend, self.format) {
             (None, Format::Json) => out = document.to_json()?,
-            (None, Format::Text) => text::write(document, self.details, &mut out)?,
+            (None, Format::Text) => text::write(document, self.details, level(), &mut out)?,
             (None, Format::Markdown) => page::readme(document, &mut out)?,
             (Some(limit), format) => {
                 let recommendation = recommend(document, limit, self.inputs);

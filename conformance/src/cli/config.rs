@@ -5,9 +5,11 @@
 
 use anyhow::{Context as _, bail};
 use clap::Command;
+use lightmeter::arithmetic::Profile;
+use lightmeter::arithmetic::profile::PROFILES;
 use lightmeter::document::run::ConfigUse;
 use lightmeter::files::read;
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -24,13 +26,27 @@ const LEFT_OUT: &str = "--no-config";
 #[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "settings")]
 struct Config {
     /// The adapters that `run` and other commands take.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "one_or_several")]
     adapter: Vec<String>,
     profile: Option<String>,
     baseline: Option<PathBuf>,
     growth: Option<f64>,
     expect: Option<PathBuf>,
     require: Option<f64>,
+}
+
+/// A name, or a list of names.
+fn one_or_several<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<String>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a name such as \"lavapipe\", or a list of names")]
+    enum Names {
+        One(String),
+        Several(Vec<String>),
+    }
+    Ok(match Names::deserialize(deserializer)? {
+        Names::One(name) => vec![name],
+        Names::Several(names) => names,
+    })
 }
 
 static USED: OnceLock<ConfigUse> = OnceLock::new();
@@ -69,7 +85,10 @@ pub(crate) fn arguments(command: &Command) -> anyhow::Result<Vec<OsString>> {
         let is_of_baseline = name == "growth" && config.baseline.is_none() && !is_given(options_given, "baseline");
         let Some(option) = taken(name).filter(|_| !is_given(options_given, name) && !is_of_baseline) else { continue };
         if values.len() > 1 && !matches!(option.get_action(), clap::ArgAction::Append) {
-            bail!("{file}: this command takes one {name}, and there are {}: ask for one by `--{name}`", values.len());
+            bail!(
+                "{file} sets {name} to a list of {} values, but this command takes only one; choose one with `--{name}`",
+                values.len()
+            );
         }
         for value in values {
             let text = value.to_string_lossy().into_owned();
@@ -114,8 +133,16 @@ fn parsed(path: &Path, file: &str) -> anyhow::Result<Config> {
         let expected = "expected settings such as adapter = [\"cpu\"]; a command to start is no setting";
         anyhow::anyhow!("{file}, line {line}: {says}; {expected}")
     })?;
+    if let Some(profile) = config.profile.as_ref().filter(|name| Profile::by_name(name).is_none()) {
+        let known = PROFILES.map(|profile| profile.name).join(", ");
+        bail!("{file}: profile is `{profile}`; expected one of {known}");
+    }
+    let beside = path.parent().unwrap_or(Path::new("."));
+    if let Some(expect) = config.expect.as_ref().filter(|expect| !beside.join(expect).exists()) {
+        bail!("{file}: expect is `{}`, and there is no such file beside it", expect.display());
+    }
     if let Some(require) = config.require.filter(|share| !(0.0..=1.0).contains(share)) {
-        bail!("{file}: require is {require}; expected a part of 1, such as 0.25");
+        bail!("{file}: `require` is {require}; expected a fraction from 0 to 1, such as 0.25");
     }
     Ok(config)
 }

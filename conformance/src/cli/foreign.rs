@@ -54,7 +54,7 @@ pub(crate) struct Try {
 
 impl Try {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        // What this process dies of is told by the last line.
+        // If this process is killed, its parent reports the last of these lines as what was being compiled.
         let under_way = |what: &str| drop(writeln!(std::io::stdout(), "{what}"));
         let shaders = Shaders::from_dir_telling(&self.folder, &|file| under_way(&format!("{file} is read")))?;
         let built_in = Shaders::built_in()?;

@@ -6,9 +6,9 @@ use super::options::{ReportFormat, Required, ShardArgument, Targets};
 use super::pack::{Cases, nothing_to_ask};
 use super::progress::{Bar, Stream};
 use super::say;
-use super::signals::stopped_by_signals;
+use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
-use super::{NothingToRun, Status, writable};
+use super::{NothingToRun, Status, show, writable};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::Profile;
@@ -18,6 +18,7 @@ use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::event::Stop;
 use lightmeter::document::gate::GateReport;
+use lightmeter::document::pack::Choice;
 use lightmeter::document::run::Report;
 use lightmeter::faults::Mistakes;
 use lightmeter::files::lines;
@@ -29,7 +30,7 @@ use lightmeter::gate::pack;
 use lightmeter::gate::plan::{GatePlan, unmatched};
 use lightmeter::gate::process::{Asking, Limits, ProcessRenderer, Starter};
 use lightmeter::options::Options;
-use lightmeter::report::{gate as outputs, github};
+use lightmeter::report::{Level, gate as outputs, github};
 use lightmeter::run::run;
 use lightmeter::select::Shard;
 use lightmeter::special::verdict;
@@ -125,19 +126,11 @@ impl Gate {
         report.seconds = start.elapsed().as_secs_f64();
         // What was asked is told, even where the baseline turns out to be of other accuracy rules.
         // What was not asked for want of time is no regression.
-        let is_whole = report.signal.is_none() && !stop.is_at_first_failure();
-        let whole = earlier.as_ref().filter(|_| is_whole);
+        let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), self.is_shard())).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
         regressions?;
-        if stop.is_at_first_failure() {
-            say(
-                "the gate ended at the first failure, as asked: what was not asked counts as never answered, and no baseline is compared or written",
-            );
-            emitted?;
-            return Ok(if report.is_broken() { Status::Device } else { Status::Failed });
-        }
         self.comparison.update(&report)?;
         emitted?;
         Ok(status(&report, self.required))
@@ -149,7 +142,9 @@ impl Gate {
             let is_file =
                 |given: &&String| Path::new(given).exists() && unmatched(std::iter::once(given.as_str())).is_some();
             if let Some(file) = self.given.iter().find(is_file) {
-                bail!("`{file}` is a file or folder: with --exec, what else is given are globs of cases, as `fog/*`");
+                bail!(
+                    "`{file}` is a file or folder; with --exec, all other arguments must be globs that select cases, such as `fog/*`"
+                );
             }
             let plan = self.cases.plan(self.cases.choice(&self.given))?;
             // What it declares is not known yet.
@@ -164,7 +159,7 @@ impl Gate {
         }
         if let Some(option) = self.cases.asked() {
             bail!(
-                "`{option}` chose the cases when the pack was written; expected it of `lightmeter pack`, or with `--exec`"
+                "the cases of a pack are fixed when it is written, so `{option}` has no effect here; give it to `lightmeter pack`, or use `--exec`"
             );
         }
         let plan = pack::read(Path::new(folder))?;
@@ -225,7 +220,12 @@ impl Gate {
         };
         let mut bar = Bar::new(None, "cases").fail_fast(self.fail_fast.then(|| stop.clone()));
         if self.is_read_by_people() {
-            bar = bar.live(Stream::Output);
+            if level() > Level::Quiet {
+                let mut line = String::new();
+                outputs::begun(&hello.renderer, &hello.version, options.profile.name, &mut line)?;
+                show(&lines(&line), None)?;
+            }
+            bar = bar.live(Stream::Output, self.again());
         }
         let report = run(&mut [subject], &options, &mut bar);
         bar.bar.finish_and_clear();
@@ -255,6 +255,23 @@ impl Gate {
         Asking { command: command.to_owned(), starter, folder, limits, runs: self.runs, stop: stop.clone() }
     }
 
+    /// The command that asks for one case again, but for the case's id; nothing of answers in files.
+    fn again(&self) -> Option<String> {
+        let exec = self.exec.as_ref()?;
+        let mut words = format!("lightmeter gate --exec {}", quoted(exec));
+        let Choice { seed, size, .. } = self.cases.choice(&[]);
+        if seed != 1 {
+            words += &format!(" --seed {seed}");
+        }
+        if let Some(size) = size {
+            words += &format!(" --size {size}");
+        }
+        if let Some(profile) = self.profile {
+            words += &format!(" --profile {}", profile.name);
+        }
+        Some(words)
+    }
+
     const fn is_shard(&self) -> bool {
         self.shard.0.count.get() > 1
     }
@@ -271,7 +288,9 @@ impl Gate {
             ReportFormat::Github => github::of_gate(report),
             ReportFormat::Text => {
                 let mut out = String::new();
-                outputs::text(report, self.is_read_by_people(), level(), &mut out)?;
+                let style =
+                    outputs::GateStyle { level: level(), is_told: self.is_read_by_people(), again: self.again() };
+                outputs::text(report, &style, &mut out)?;
                 lines(&out).into_owned()
             }
         })
@@ -311,18 +330,23 @@ fn command() -> String {
         if word == "--out" {
             given.next();
         } else if !word.starts_with("--out=") {
-            let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:".contains(c);
-            let quoted = || format!("'{}'", word.replace('\'', r"'\''"));
-            words.push(if word.chars().all(is_plain) { word.clone() } else { quoted() });
+            words.push(quoted(&word));
         }
     }
     words.join(" ")
 }
 
+/// A word as a shell reads it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:".contains(c);
+    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
 /// A renderer that broke off, or wrote what is no answer, ends with 4 whatever else is right.
 pub(crate) fn status(report: &GateReport, required: Required) -> Status {
-    if let Some(signal) = report.signal {
-        return Status::of_signal(signal);
+    match &report.interrupted {
+        Some(interrupted) if !(interrupted.at_first_failure && report.is_broken()) => return status_of(interrupted),
+        _ => {}
     }
     if report.is_broken() {
         Status::Device

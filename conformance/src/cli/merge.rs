@@ -92,7 +92,8 @@ impl Merge {
             ReportFormat::Github => github::of_gate(gate),
             ReportFormat::Text => {
                 let mut out = String::new();
-                outputs::text(gate, false, level(), &mut out)?;
+                let style = outputs::GateStyle { level: level(), ..outputs::GateStyle::default() };
+                outputs::text(gate, &style, &mut out)?;
                 lines(&out).into_owned()
             }
         })

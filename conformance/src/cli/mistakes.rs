@@ -1,7 +1,6 @@
 //! `lightmeter mistakes`.
 
 use super::Status;
-use super::nearest::did_you_mean;
 use super::options::Format;
 use anyhow::bail;
 use clap::Args;
@@ -11,6 +10,7 @@ use lightmeter::document::mistakes::{KnownMistake, MistakeOf, MistakesDocument, 
 use lightmeter::faults::scene::{SCENE_FAULTS, SceneFault, looks};
 use lightmeter::faults::{Fault, concerning, faults, look};
 use lightmeter::filter::Filter;
+use lightmeter::nearest::did_you_mean;
 use lightmeter::report;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::select::scene_id;

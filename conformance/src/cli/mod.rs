@@ -13,7 +13,6 @@ mod list;
 mod manual;
 mod merge;
 mod mistakes;
-mod nearest;
 mod options;
 mod pack;
 mod page;

@@ -6,6 +6,7 @@ use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
 use lightmeter::device::Code;
 use lightmeter::document::by_case::Coverage;
+use lightmeter::document::thousands;
 use lightmeter::filter::Filter;
 use lightmeter::options::{DEFAULT_CASES, DEFAULT_TARGETS, MOST_CASES, Options};
 use lightmeter::scene::library::SCENES;
@@ -190,9 +191,15 @@ impl Required {
         if coverage.is_enough(self.require) {
             return Status::Success;
         }
+        #[expect(clippy::cast_precision_loss, reason = "counts of cases")]
+        let share = judged as f64 / chosen.max(1) as f64;
+        // Two digits, rounded downwards, so that what is accepted is what there was.
+        let digits = 10_f64.powf(1.0 - share.log10().floor());
+        let accepted = if share > 0.0 { (share * digits).floor() / digits } else { 0.0 };
+        let [chosen, judged, excluded] = [chosen, judged, excluded].map(thousands);
         say(&format!(
-            "error: of {chosen} chosen cases {judged} were judged and {excluded} excluded, which is less than the part of {} that \
-             is required; choose cases by a filter, or accept it by `--require`",
+            "error: of {chosen} chosen cases {judged} were judged and {excluded} excluded, which is less than the part of {} that is \
+             required\n  choose what can be judged by a filter such as 'fog/*', or accept so few by `--require {accepted}`",
             self.require
         ));
         Status::Failed

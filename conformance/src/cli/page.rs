@@ -56,20 +56,20 @@ impl Page {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         if self.subject == Subject::Sweep {
             if self.runs.is_empty() {
-                bail!("the page is of one sweep at least; expected its JSON");
+                bail!("a sweep page needs the JSON results of at least one sweep");
             }
             emit(&self.sweeps()?, self.out.as_deref())?;
             return Ok(Status::Success);
         }
         if self.subject == Subject::Rulings {
             if let Some(run) = self.runs.first() {
-                bail!("the page of rulings is of no run; leave out {}", run.display());
+                bail!("the page of rulings takes no run; remove {}", run.display());
             }
             emit(&rulings::markdown(), self.out.as_deref())?;
             return Ok(Status::Success);
         }
         let [run] = self.runs.as_slice() else {
-            bail!("the page is of one run; expected one file");
+            bail!("this page needs the JSON result of exactly one run");
         };
         let name = run.display();
         let json = read::text(run, read::MOST_TEXT).with_context(|| format!("cannot read {name}"))?;
@@ -91,7 +91,10 @@ impl Page {
         for path in &self.runs {
             let result = file::read(path)?;
             if !result.is_finished() {
-                bail!("{} is not finished; give it as --checkpoint to its command again", path.display());
+                bail!(
+                    "{} is unfinished; to finish it, run the same `lightmeter sweep` command again with `--checkpoint` set to this file",
+                    path.display()
+                );
             }
             let formula = &result.sweep.formula;
             let preset = PRESETS.iter().find(|preset| preset.formula == formula);
@@ -116,7 +119,7 @@ impl Page {
             let dir = out.with_extension("");
             folder = format!("{}/", dir.file_name().unwrap_or_default().to_string_lossy());
             std::fs::create_dir_all(&dir).with_context(|| format!("cannot make the folder {}", dir.display()))?;
-            pictures = plot::pictures(&document)?;
+            pictures = plot::pictures(&document).map_err(anyhow::Error::from_boxed)?;
             for picture in &pictures {
                 emit(&picture.svg, Some(&dir.join(picture.stem()).with_extension("svg")))?;
             }
@@ -130,9 +133,7 @@ impl Page {
         let run = BlendRun::read(json)?;
         let picture = self.picture("svg");
         if let Some((path, _)) = &picture {
-            let mut text = String::new();
-            svg(&run, &mut text)?;
-            emit(&text, Some(path))?;
+            emit(&svg(&run).map_err(anyhow::Error::from_boxed)?, Some(path))?;
         }
         let mut text = String::new();
         markdown(&run, picture.as_ref().map(|(_, name)| name.as_str()), &mut text)?;
@@ -143,9 +144,7 @@ impl Page {
         let run = stability::StabilityRun::read(json).map_err(|message| anyhow!(message))?;
         let picture = self.picture("svg");
         if let Some((path, _)) = &picture {
-            let mut text = String::new();
-            stability::svg(&run, &mut text)?;
-            emit(&text, Some(path))?;
+            emit(&stability::svg(&run).map_err(anyhow::Error::from_boxed)?, Some(path))?;
         }
         let mut text = String::new();
         stability::markdown(&run, picture.as_ref().map(|(_, name)| name.as_str()), &mut text)?;

@@ -4,6 +4,8 @@ use super::terminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::document::event::{Event, Observer, Stop};
 use lightmeter::files::lines;
+use lightmeter::report::Level;
+use lightmeter::report::gate::GateStyle;
 use lightmeter::report::live::Live;
 
 /// A bar for work that is counted in these units.
@@ -14,6 +16,8 @@ pub(crate) struct Bar {
     /// Told once something fails.
     fail_fast: Option<Stop>,
     failed: u64,
+    /// Whether nothing was told yet.
+    is_silent: bool,
 }
 
 /// Where results are told while work goes on.
@@ -33,12 +37,13 @@ impl Bar {
         if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
         }
-        Self { bar, live: None, fail_fast: None, failed: 0 }
+        Self { bar, live: None, fail_fast: None, failed: 0, is_silent: true }
     }
 
-    /// The same, that tells what fails as soon as it is judged.
-    pub(crate) fn live(self, stream: Stream) -> Self {
-        Self { live: Some((Live::new(terminal::level()), stream)), ..self }
+    /// The same, that tells what fails as soon as it is judged; of a renderer, with the command that asks for a case again.
+    pub(crate) fn live(self, stream: Stream, again: Option<String>) -> Self {
+        let style = GateStyle { level: terminal::level(), is_told: true, again };
+        Self { live: Some((Live::new(style), stream)), ..self }
     }
 
     /// The same, that ends the work once something fails.
@@ -68,10 +73,13 @@ impl Observer for Bar {
                 if text.is_empty() {
                     return;
                 }
+                // An empty line parts a failure from what stands above it, and here nothing does.
+                let is_first = std::mem::take(&mut self.is_silent) && terminal::level() == Level::Quiet;
+                let text = if is_first { text.trim_start_matches('\n') } else { &text };
                 // Whoever does not read them any more reads the result's exit code.
                 let _ = self.bar.suspend(|| match stream {
-                    Stream::Output => terminal::write(&text, &mut std::io::stdout().lock()),
-                    Stream::Error => terminal::write(&text, &mut std::io::stderr().lock()),
+                    Stream::Output => terminal::write(text, &mut std::io::stdout().lock()),
+                    Stream::Error => terminal::write(text, &mut std::io::stderr().lock()),
                 });
             }
         }

@@ -70,7 +70,7 @@ impl Render {
         StoredImage::check_name(&self.out)?;
         let of_adapters = self.adapter.is_some() || self.full || self.shaders.is_some();
         if self.with == With::Reference && of_adapters {
-            bail!("`--adapter`, `--full` and `--shaders` are of adapters; ask for one with `--with gpu`");
+            bail!("`--adapter`, `--full` and `--shaders` only apply to drawing on an adapter; add `--with gpu`");
         }
         if self.full && self.stage.is_some() {
             bail!("intermediate results are drawn by composed shaders; leave out `--full` or `--stage`");

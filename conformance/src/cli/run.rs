@@ -2,11 +2,10 @@
 
 use super::comparison::{Comparison, Earlier, matches_something};
 use super::config::used;
-use super::nearest::did_you_mean;
 use super::options::{Amount, Choice, ReportFormat, Required};
 use super::progress::{Bar, Stream};
 use super::say;
-use super::signals::stopped_by_signals;
+use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
 use super::{Status, writable};
 use clap::Args;
@@ -15,13 +14,14 @@ use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::pack::Choice as CaseChoice;
-use lightmeter::document::run::{Identity, Interrupted, Report};
+use lightmeter::document::run::{Identity, Report};
 use lightmeter::faults::Mistakes;
 use lightmeter::files::lines;
 use lightmeter::filter::Filter;
 use lightmeter::gate::baseline::{Baseline, Standard};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::judge::cases::ExpectedFailure;
+use lightmeter::nearest::did_you_mean;
 use lightmeter::report::{github, junit, text};
 use lightmeter::run::run;
 use lightmeter::scene::library::SCENES;
@@ -104,7 +104,7 @@ impl Run {
         options.expected = known_failures(&expectations, &subjects);
         let stream = if self.is_read_by_people() { Stream::Output } else { Stream::Error };
         let fail_fast = self.fail_fast.then(|| options.stop.clone());
-        let mut bar = Bar::new(None, "cases").live(stream).fail_fast(fail_fast);
+        let mut bar = Bar::new(None, "cases").live(stream, None).fail_fast(fail_fast);
         let report = run(&mut subjects, &options, &mut bar);
         bar.bar.finish_and_clear();
         let report = match report {
@@ -128,9 +128,6 @@ impl Run {
         regressions?;
         self.comparison.update(&report)?;
         emitted?;
-        if options.stop.is_at_first_failure() {
-            return Ok(Status::Failed);
-        }
         Ok(status(&report, self.required))
     }
 
@@ -177,9 +174,8 @@ fn known_failures(expectations: &Expectations, subjects: &[Subject]) -> Vec<Expe
 
 /// Nothing ran where every case was skipped, or every verdict permits anything.
 pub(crate) fn status(report: &Report, required: Required) -> Status {
-    if let Some(Interrupted { under_way, message, signal }) = &report.interrupted {
-        say(&format!("error: {message}\n  {under_way} was under way; what was judged before stands in the result"));
-        return signal.map_or(Status::Device, Status::of_signal);
+    if let Some(interrupted) = &report.interrupted {
+        return status_of(interrupted);
     }
     if !report.is_success() {
         return Status::Failed;
@@ -231,7 +227,7 @@ mod tests {
     fn a_run_that_a_device_ended_says_so_and_ends_with_4() {
         let mut report = Report::empty(1, "wgsl".into(), vec![], vec![]);
         let interrupted =
-            |signal| Some(Interrupted { under_way: "blend/max".into(), message: "the device failed".into(), signal });
+            |signal| Some(Interrupted { signal, ..Interrupted::by_device("blend/max", &"the device failed") });
         report.interrupted = interrupted(Some(signal_hook::consts::SIGTERM));
         assert_eq!(status(&report, Required::default()), Status::Terminated);
         report.interrupted = interrupted(None);

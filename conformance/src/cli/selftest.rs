@@ -21,6 +21,7 @@ use lightmeter::faults::selftest as formulas;
 use lightmeter::faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
 use lightmeter::filter::Filter;
 use lightmeter::report::selftest as report;
+use lightmeter::report::table::{Align, TextTable};
 use lightmeter_scene::target::TargetFormat;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
@@ -92,7 +93,7 @@ struct Tested {
 impl Selftest {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         if !self.wants(Part::Formulas) && !self.filter.is_empty() {
-            bail!("a filter selects formulas; expected none beside `--only` of anything else");
+            bail!("a filter selects formulas; remove it, or remove the `--only` that leaves formulas out");
         }
         let targets = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
         writable(self.out.as_deref())?;
@@ -254,19 +255,14 @@ fn table(targets: &[TargetFormat], rows: &[UnitRow]) -> anyhow::Result<String> {
     let mut text = String::new();
     let targets: Vec<&TargetFormat> =
         targets.iter().filter(|target| rows.iter().any(|row| row.target == target.name())).collect();
-    write!(text, "{:<30}", "blend unit")?;
-    for target in &targets {
-        write!(text, " {:<17}", target.name())?;
-    }
-    writeln!(text)?;
+    let names = targets.iter().map(|target| (target.name(), Align::Left));
+    let mut table = TextTable::new(&std::iter::once(("blend unit", Align::Left)).chain(names).collect::<Vec<_>>());
     let first = targets.first().map(|target| target.name()).unwrap_or_default();
     for name in rows.iter().filter(|row| row.target == first).map(|row| &row.fault) {
-        write!(text, "{name:<30}")?;
-        for row in rows.iter().filter(|row| row.fault == *name) {
-            write!(text, " {:<17}", word(row.finding))?;
-        }
-        writeln!(text)?;
+        let words = rows.iter().filter(|row| row.fault == *name).map(|row| word(row.finding).to_owned());
+        table.row(std::iter::once(name.to_string()).chain(words));
     }
+    text.push_str(&table.text(""));
     for row in rows.iter().filter(|row| !row.finding.is_good()) {
         writeln!(text, "\n{} on {}: {}", row.fault, row.target, word(row.finding))?;
         for said in &row.said {

@@ -20,8 +20,15 @@ pub(crate) fn stopped_by_signals() -> anyhow::Result<Stop> {
     Ok(stop)
 }
 
-/// Says that a signal ended a command, and how the command ends.
-pub(crate) fn status_of(Interrupted { under_way, message, signal }: &Interrupted) -> Status {
+/// Says what ended a command before its time, and how the command ends.
+pub(crate) fn status_of(interrupted: &Interrupted) -> Status {
+    let Interrupted { under_way, message, signal, at_first_failure } = interrupted;
+    if *at_first_failure {
+        say(&format!(
+            "{message}, as --fail-fast asks: {under_way} was under way, and what comes after it was not judged"
+        ));
+        return Status::Failed;
+    }
     say(&format!("error: {message}\n  {under_way} was under way; what was done before stands in the result"));
     signal.map_or(Status::Device, Status::of_signal)
 }

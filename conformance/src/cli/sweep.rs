@@ -89,7 +89,7 @@ impl Sweep {
         let code = choice.code(false)?;
         let mut subjects = choice.subjects()?;
         let [subject] = subjects.as_mut_slice() else {
-            bail!("a sweep is of one adapter; expected its name");
+            bail!("a sweep runs on exactly one adapter; name it with --adapter");
         };
         let mut document = self.start(describe(&plan, subject, self.profile, &code))?;
 
@@ -130,7 +130,9 @@ impl Sweep {
     /// Lists the ready-made sweeps.
     fn list(&self) -> anyhow::Result<Status> {
         if self.asked() != Asked::default() || self.checkpoint.is_some() || self.shard.0 != Shard::WHOLE {
-            bail!("a formula is missing; expected one such as fog/exp: `lightmeter sweep` alone lists the ready-made");
+            bail!(
+                "no formula was given; name one, such as fog/exp. `lightmeter sweep` without options lists the ready-made sweeps"
+            );
         }
         self.format.emit(&presets(self.format)?, self.out.as_deref())?;
         Ok(Status::Success)

@@ -91,8 +91,7 @@ fn wrapped(text: &str, columns: usize) -> String {
     let mut out = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
         let content = line.trim_end_matches('\n');
-        let is_command = content.trim_start().starts_with("lightmeter ") || content.trim_start().starts_with("again ");
-        if is_command || textwrap::core::display_width(content) <= columns {
+        if is_command(content.trim_start()) || textwrap::core::display_width(content) <= columns {
             out.push_str(line);
             continue;
         }
@@ -105,6 +104,7 @@ fn wrapped(text: &str, columns: usize) -> String {
     out
 }
 
+const BOLD: anstyle::Style = anstyle::Style::new().bold();
 const RED: anstyle::Style = anstyle::AnsiColor::Red.on_default().bold();
 const GREEN: anstyle::Style = anstyle::AnsiColor::Green.on_default().bold();
 const YELLOW: anstyle::Style = anstyle::AnsiColor::Yellow.on_default();
@@ -132,6 +132,9 @@ fn painted(text: &str) -> String {
         out.push_str(indent);
         if let Some((word, style)) = BEGINNINGS.iter().find(|(word, _)| begins(rest, word)) {
             out.push_str(&format!("{style}{word}{style:#}{}", &rest[word.len()..]));
+        } else if let Some((before, cause)) = rest.split_once("explained by: ") {
+            let end = cause.trim_end_matches('\n');
+            out.push_str(&format!("{before}explained by: {BOLD}{end}{BOLD:#}{}", &cause[end.len()..]));
         } else if let Some(place) = rest.find("lightmeter ").filter(|_| is_command(rest)) {
             let (before, command) = rest.split_at(place);
             let end = command.trim_end_matches('\n');
@@ -150,7 +153,7 @@ fn begins(line: &str, word: &str) -> bool {
 
 /// Whether a line is a command that may be copied.
 fn is_command(line: &str) -> bool {
-    line.starts_with("lightmeter ") || line.starts_with("again ")
+    ["lightmeter ", "again ", "explained  "].iter().any(|word| line.starts_with(word))
 }
 
 /// Writes text for people to a stream.

@@ -3,7 +3,7 @@
 use super::condition::{Condition, Named, Truth};
 use super::{Intermediate, MOST_TOWARD, Technique};
 use crate::error::GpuError;
-use crate::shaders::Shaders;
+use crate::shaders::{Shaders, effect_file};
 use lightmeter_scene::effects::{Effect, Effects};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -91,7 +91,7 @@ impl Template {
         let skeleton = SKELETON.into_iter().map(&mut read).collect::<Result<Vec<_>, _>>()?;
         let effects = Effect::ALL
             .into_iter()
-            .map(|effect| Ok((effect, read(&format!("effects/{}.wgsl", effect.name()))?)))
+            .map(|effect| Ok((effect, read(&effect_file(effect))?)))
             .collect::<Result<Vec<_>, GpuError>>()?;
         let template = Self { named, skeleton, effects };
         template.check_slots()?;

@@ -451,7 +451,7 @@ fn every_effect_has_its_file_and_every_file_its_effect() {
         entries.map(|entry| entry.expect("it can be read").file_name().to_string_lossy().into_owned()).collect();
     assert_eq!(files, Effect::ALL.into_iter().map(|effect| format!("{}.wgsl", effect.name())).collect());
     let built_in: Vec<&str> = crate::library::EFFECT_FILES.into_iter().map(|(name, _)| name).collect();
-    let wanted: Vec<String> = Effect::ALL.into_iter().map(|effect| format!("effects/{}.wgsl", effect.name())).collect();
+    let wanted: Vec<String> = Effect::ALL.into_iter().map(crate::shaders::effect_file).collect();
     assert_eq!(built_in, wanted);
     assert_eq!(covering().count(), Effect::ALL.len(), "each is met when files are read");
 }

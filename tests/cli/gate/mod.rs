@@ -316,17 +316,17 @@ fn another_failing_case_is_a_regression_though_they_are_as_many() {
     assert_eq!((status, report["regressions"].as_array().map(Vec::len)), (1, Some(0)), "{report}");
     let (_, report) = judged(&pack, &spoiled(41), &["--baseline", text(&file)]);
     let regressions = report["regressions"].to_string();
-    assert!(regressions.contains("1 case failed and did not before: "), "{regressions}");
+    assert!(regressions.contains("1 case newly failed: "), "{regressions}");
     // One that was answered and is not; what is skipped in its place.
     let missing = edit(&answers, |k, line| if k == 40 { String::new() } else { line.to_owned() + "\n" });
     let (_, report) = judged(&pack, &missing, &["--baseline", text(&file)]);
-    assert!(report["regressions"].to_string().contains("1 case missing and did not before"), "{report}");
+    assert!(report["regressions"].to_string().contains("1 case newly missing"), "{report}");
     let skipped = edit(&answers, |k, line| match k {
         41 => line.split_once("\"value\"").map_or(String::new(), |(id, _)| format!("{id}\"skip\":\"no\"}}\n")),
         _ => line.to_owned() + "\n",
     });
     let (_, report) = judged(&pack, &skipped, &["--baseline", text(&file)]);
-    assert!(report["regressions"].to_string().contains("1 case skipped and did not before"), "{report}");
+    assert!(report["regressions"].to_string().contains("1 case newly skipped"), "{report}");
 }
 
 #[test]
@@ -387,7 +387,7 @@ fn a_fix_is_no_regression_and_an_expected_failure_is_none() {
     assert_eq!(status, 0);
     let one = edit(&answers, |k, line| if k == 5 { wrong(line) } else { line.to_owned() + "\n" });
     let (status, report) = judged(&pack, &one, &["--baseline", text(&file)]);
-    assert!(status == 1 && report["regressions"].to_string().contains("did not before"), "{report}");
+    assert!(status == 1 && report["regressions"].to_string().contains("newly failed"), "{report}");
     let id = report["failures"][0]["id"].as_str().expect("an id").to_owned();
     let expected = pack.with_file_name("expected.toml");
     std::fs::write(&expected, format!("[[expected]]\nid = \"{id}\"\nreason = \"known\"\n")).expect("written");

@@ -130,7 +130,8 @@ fn a_failure_names_inputs_outputs_and_units() {
     assert_eq!((&failure["outputs"][0], &failure["units"]["dmax"]), (&"f".into(), &"unit".into()), "{failure}");
     let exec = format!("{} nan-at=fog/linear/random/000017", renderer());
     let told = crate::stdout(&lightmeter(&["gate", "--exec", &exec, "--cases", "64", "fog/linear"]));
-    assert!(told.contains("dmin ") && told.contains("✗ f  ") && told.contains("legal from"), "{told}");
+    assert!(told.contains("dmin ") && told.contains("✗  f  ") && told.contains("legal from"), "{told}");
+    assert!(told.contains("again      lightmeter gate --exec '"), "{told}");
 }
 
 #[test]
@@ -142,6 +143,9 @@ fn scenes_are_drawn_and_judged() {
         let (status, found) = report(&process(&["scene/flat"], &format!("{fault}=scene/flat"), &[]));
         assert_eq!((status, count(&found, "failed")), (1, 1), "{found}");
         assert!(found.to_string().contains(said), "{found}");
+        let exec = format!("{} {fault}=scene/flat", renderer());
+        let told = crate::stdout(&lightmeter(&["gate", "--exec", &exec, "scene/flat"]));
+        assert!(told.contains(said), "people are told, too: {told}");
     }
 }
 
@@ -402,12 +406,23 @@ fn a_process_that_says_another_hello_is_given_up() {
     std::fs::write(&script, named).expect("it can be written");
     let (status, found) = report(&gate(&["fog/exp"], &exec, &["--runs", "2"]));
     assert!(status == 4 && found["incidents"].to_string().contains("says another hello"), "{found}");
-    for (hello, said) in [
-        ("{\"hello\":\"lightmeter.protocol/2\",\"renderer\":\"r\"}", "expected `lightmeter.protocol/1`"),
-        ("{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"r\",\"formulas\":\"fog\"}", "`formulas` is no list"),
+    for (hello, status, said) in [
+        ("{\"hello\":\"lightmeter.protocol/2\",\"renderer\":\"r\"}", 4, "expected `lightmeter.protocol/1`"),
+        (
+            "{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"r\",\"formulas\":[\"fog/exp\", \"lighting/phnog\"]}",
+            2,
+            "`lighting/phnog` matches no formula; did you mean `lighting/phong`,",
+        ),
+        (
+            "{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"r\",\"scenes\":[\"scene/teapto\"]}",
+            2,
+            "`scene/teapto` matches no scene; did you mean `scene/teapot`",
+        ),
+        ("{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"r\",\"formulas\":\"fog\"}", 4, "`formulas` is no list"),
     ] {
         let output = lightmeter(&["gate", "fog", "--exec", &format!("echo '{hello}'; sleep 600")]);
-        assert!(code(&output) == 4 && stderr(&output).contains(said), "{}", stderr(&output));
+        assert_eq!(code(&output), status, "{}", stderr(&output));
+        assert!(stderr(&output).contains(said), "{}", stderr(&output));
     }
 }
 

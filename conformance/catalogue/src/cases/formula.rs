@@ -166,7 +166,7 @@ impl dyn AnyFormula + '_ {
     pub fn raster_interval(&self, kind: Raster, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
         match kind {
             Raster::Flat { .. } | Raster::SameDepth(_) => self.interval(inputs, profile, out),
-            // Nothing is promised of a vertex that is nowhere, or of an attribute that is no number.
+            // If a vertex or an attribute is NaN or infinite, any result is legal.
             _ if inputs.iter().any(|x| !x.is_finite()) => out.fill(Accept::ANY),
             _ => profile.scope(|| rasteriser::interval(kind, inputs, profile.subpixel_bits, out)),
         }

@@ -14,12 +14,12 @@ pub enum SceneError {
         error: std::io::Error,
     },
     /// No scene of that name is built in.
-    #[error("no file and no built-in scene `{name}`; built in are {known}")]
+    #[error("no file and no built-in scene `{name}`{meant} `lightmeter list scene` lists those that are built in")]
     Unknown {
         /// The name.
         name: String,
-        /// Those that there are.
-        known: String,
+        /// The names that are nearest to it, as the end of a sentence.
+        meant: String,
     },
     /// A field that holds what it may not.
     #[error("field `{path}` {holds}; expected {allowed}")]

@@ -4,6 +4,7 @@ use super::field::{At, SceneError};
 use super::files::{Files, read};
 use super::objects::{self, KnownObjects, Parts};
 use super::{camera, library, lights, mesh, texture};
+use crate::nearest::did_you_mean;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::model::Scene;
 use std::io;
@@ -69,7 +70,8 @@ pub fn builtin(name: &str) -> Result<Loaded, SceneError> {
 }
 
 fn unknown(name: &str) -> SceneError {
-    SceneError::Unknown { name: name.to_owned(), known: library::SCENES.map(|(own, _)| own).join(", ") }
+    let typed = name.strip_prefix("scene/").unwrap_or(name);
+    SceneError::Unknown { name: name.to_owned(), meant: did_you_mean(typed, library::SCENES.map(|(own, _)| own)) }
 }
 
 /// Loads a scene from JSON. `files` gives the bytes of the files that it names.

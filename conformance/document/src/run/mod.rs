@@ -110,6 +110,9 @@ pub struct Group {
     /// The mistake that explains what failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explanation: Option<String>,
+    /// The names of the mistakes that explain what failed together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mistakes: Vec<String>,
     /// Why the group fails as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
@@ -185,6 +188,7 @@ impl Group {
             worst: None,
             skip_reason: None,
             explanation: None,
+            mistakes: vec![],
             problem: None,
             expected_problem: None,
             image: None,
@@ -341,6 +345,17 @@ pub struct Interrupted {
     /// The number of the signal that stopped it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub signal: Option<i32>,
+    /// Whether the first failure ended it, as was asked.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub at_first_failure: bool,
+}
+
+impl Interrupted {
+    /// A device failed.
+    #[must_use]
+    pub fn by_device(under_way: &str, error: &impl Display) -> Self {
+        Self { under_way: under_way.into(), message: error.to_string(), signal: None, at_first_failure: false }
+    }
 }
 
 impl Display for Interrupted {

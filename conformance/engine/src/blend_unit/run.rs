@@ -39,11 +39,8 @@ pub(crate) fn run_group(
         for (subject, standings) in subjects.iter_mut().zip(&mut standings) {
             for standing in standings {
                 if let Err(error) = standing.judge(subject, &chunk, options, members, report) {
-                    report.interrupted = Some(Interrupted {
-                        under_way: under_way(&chunk, subject, standing.target, &options.code, &error),
-                        message: error.to_string(),
-                        signal: None,
-                    });
+                    let under_way = under_way(&chunk, subject, standing.target, &options.code, &error);
+                    report.interrupted = Some(Interrupted::by_device(&under_way, &error));
                     result = Err(error);
                     break 'chunks;
                 }

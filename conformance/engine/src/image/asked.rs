@@ -15,6 +15,7 @@ use lightmeter_document::by_case::{CaseCounts, FailedAnswer};
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
 use lightmeter_judge::cases::{Unanswered, ending};
+use lightmeter_judge::diagnose::Cause;
 use lightmeter_judge::formula::unjudged;
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_judge::image::judge::Judged;
@@ -115,7 +116,9 @@ impl Scene<'_> {
                 counts.expected_failures = self.expected(true);
                 counts.not_passed = self.not_passed("failed");
                 counts.smallest = Some(self.id.clone());
-                self.report.failures.push(unjudged(self.id.clone(), message, STAGE, &self.subject.identity.name));
+                let failure = unjudged(self.id.clone(), message, STAGE, &self.subject.identity.name);
+                let target = Some(self.loaded.frame.target.format.name().into());
+                self.report.failures.push(Failure { target, ..failure });
             }
         }
         self.report.groups.push(Group { totals, by_case: Some(counts), ..self.group() });
@@ -137,11 +140,13 @@ impl Scene<'_> {
         if !has_failed {
             counts.error_passing = Number(verdicts.error_max);
         }
-        let explanation = self
+        let cause = self
             .options
             .diagnose
             .filter(|_| has_failed)
             .map(|diagnose| diagnose.image(&self.loaded.frame, image, scene.expected(&profile), &profile));
+        let (explanation, mistakes) =
+            cause.map_or_else(Default::default, |Cause { says, mistakes }| (Some(says), mistakes));
         if has_failed {
             let failure = self.failure(&scene, image, &judged, &profile);
             counts.smallest = Some(failure.id.clone());
@@ -158,6 +163,7 @@ impl Scene<'_> {
             margin_max: Number(margin),
             worst: Some(self.id.clone()),
             explanation,
+            mistakes,
             problem,
             image: Some(ImageUse {
                 width: image.width,

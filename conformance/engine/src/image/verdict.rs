@@ -12,11 +12,13 @@ use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::run::{Failure, Group, ImageBias, ImageUse, Report, Totals};
 use lightmeter_judge::cases::ending;
 use lightmeter_judge::devices::Deviation;
+use lightmeter_judge::diagnose::Cause;
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::bias::Bias;
 use lightmeter_judge::image::expect::{Expectation, expect};
 use lightmeter_judge::image::file::{ImageFileError, StoredImage};
-use lightmeter_judge::image::judge::{Judged, Miss, error, error_map, judge};
+use lightmeter_judge::image::judge::{Judged, Miss, error, judge};
+use lightmeter_judge::image::map::{error_map, with_legend};
 use lightmeter_judge::is_worse;
 use lightmeter_judge::tally::KEPT_FAILURES;
 use lightmeter_reference::render::render;
@@ -149,15 +151,19 @@ impl<'a> JudgedScene<'a> {
         }
         let by_case = drawn.options.counts_cases.then(|| self.counts(has_failed, totals.failed == 0));
         let mut used = ImageUse { bias, ..self.image_use(drawn.image, expected) };
-        let explanation = match worst(&judged) {
-            Some(worst) => Some(self.explain(drawn, named, (&judged, worst), &mut used, report)?),
-            None => None,
+        let (explanation, mistakes) = match worst(&judged) {
+            Some(worst) => {
+                let Cause { says, mistakes } = self.explain(drawn, named, (&judged, worst), &mut used, report)?;
+                (Some(says), mistakes)
+            }
+            None => (None, vec![]),
         };
         Ok(Group {
             error_ulp_max: Number(judged.verdicts.error_max),
             margin_max: Number(judged.worst().map_or(0.0, |worst| worst.margin)),
             worst: judged.worst().map(|worst| pixel_id(&self.id, drawn.image.width, worst.pixel)),
             explanation,
+            mistakes,
             problem,
             image: Some(used),
             by_case,
@@ -212,7 +218,7 @@ impl<'a> JudgedScene<'a> {
         (judged, worst): (&Judged, Miss),
         used: &mut ImageUse,
         report: &mut Report,
-    ) -> Result<String, DeviceError> {
+    ) -> Result<Cause, DeviceError> {
         let departure = self.departure(drawn, named, judged)?;
         used.departs_in = departure.map(|departure| departure.stage.into());
         let departure = departure.map_or_else(String::new, |departure| format!("; {departure}"));
@@ -226,11 +232,12 @@ impl<'a> JudgedScene<'a> {
         let clock = Instant::now();
         let expected = self.expected(&drawn.profile);
         let granted = drawn.subject.known.granted(drawn.options.profile);
-        let mistake = drawn.options.diagnose.map_or_else(String::new, |diagnose| {
-            format!("; {}", diagnose.image(self.frame, drawn.image, expected, &granted))
-        });
+        let cause = drawn.options.diagnose.map(|diagnose| diagnose.image(self.frame, drawn.image, expected, &granted));
+        let (mistake, mistakes) =
+            cause.map_or_else(Default::default, |Cause { says, mistakes }| (format!("; {says}"), mistakes));
         report.timing.diagnose += clock.elapsed().as_secs_f64();
-        Ok(format!("{pixels} pixels{departure}{mistake}; the worst: {command}{}", files_told(&used.files)))
+        let says = format!("{pixels} pixels{departure}{mistake}; the worst: {command}{}", files_told(&used.files));
+        Ok(Cause { says, mistakes })
     }
 
     fn departure(
@@ -248,7 +255,7 @@ impl<'a> JudgedScene<'a> {
     fn write(&self, drawn: &Drawn<'_>) -> Vec<String> {
         let Some(folder) = &drawn.options.images else { return vec![] };
         let rounded = StoredImage::of(&render::<f64>(self.frame, None, None), self.frame.target.format);
-        let map = error_map(drawn.image, &self.reference, self.expected(&drawn.profile));
+        let map = with_legend(&error_map(drawn.image, &self.reference, self.expected(&drawn.profile)));
         let name = self.id.replace('/', "-");
         let place = format!("{name}-{}-{}", drawn.subject.identity.name, stage(drawn.picture));
         let _ = std::fs::create_dir_all(folder);

@@ -171,11 +171,12 @@ mod tests {
         let frame = frame("phong");
         let mut image = draw::<f32>(&frame, &[]);
         let expected = expect(&frame, None, None, &WGSL);
-        let wrong = draw::<f32>(&frame, &[mistake("srgb-encoded")]);
-        let is_bright = |&place: &usize| wrong.pixels[place][0] >= 255.0 && image.pixels[place][0] < 200.0;
-        let bright = (0..image.pixels.len()).find(is_bright);
-        // A component that any of several mistakes would saturate.
-        let place = bright.unwrap_or(64 * 128 / 2 + 64);
+        // A component that a mistake would saturate, and that is far from it where the scene is drawn rightly.
+        let saturated = |fault: &'static SceneFault| {
+            let wrong = draw::<f32>(&frame, &[fault]);
+            (0..image.pixels.len()).find(|&place| wrong.pixels[place][0] >= 255.0 && image.pixels[place][0] < 200.0)
+        };
+        let place = SCENE_FAULTS.iter().find_map(saturated).expect("a mistake saturates a pixel");
         image.pixels[place][0] = 255.0;
         let found = Trial::new(&frame, &image, &expected, &WGSL).diagnose();
         assert!(found.failing > 0 && found.explanations.is_empty(), "{}", found.sentence);

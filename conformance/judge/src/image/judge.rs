@@ -3,7 +3,7 @@
 use super::file::StoredImage;
 use super::pixel::LegalPixel;
 use crate::tally::Tally;
-use crate::{Outcome, margin, worse};
+use crate::{Outcome, margin};
 use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{F16, F32};
 use lightmeter_scene::target::{Encoding, TargetFormat};
@@ -134,32 +134,9 @@ pub fn error(format: TargetFormat, value: f64, exact: f64) -> f64 {
     }
 }
 
-/// An image of each pixel's distance from the reference in units of its tolerance: black for none, blue to the tolerance's
-/// end, yellow at the double of it and red at eight times; marked pixels are grey where they are legal.
-#[must_use]
-pub fn error_map(image: &StoredImage, reference: &StoredImage, expected: &[LegalPixel]) -> StoredImage {
-    let pixels = (0..image.pixels.len()).map(|pixel| {
-        let of = |k: usize| {
-            let (value, exact) = (image.pixels[pixel][k], reference.pixels[pixel][k]);
-            margin(value, exact, expected[pixel].low[k], expected[pixel].high[k])
-        };
-        let outside = (0..4).any(|k| {
-            let value = image.pixels[pixel][k];
-            !(expected[pixel].low[k] <= value && value <= expected[pixel].high[k])
-        });
-        let most = (0..4).map(of).fold(0.0, worse);
-        let color = match most {
-            _ if !outside && expected[pixel].is_marked => [60.0, 60.0, 60.0],
-            margin if !outside => [0.0, 0.0, 40.0 + 140.0 * margin.min(1.0)],
-            margin => [255.0, 220.0 * (1.0 - ((margin - 1.0) / 7.0).clamp(0.0, 1.0)), 0.0],
-        };
-        [color[0], color[1], color[2], 255.0]
-    });
-    StoredImage { width: image.width, format: TargetFormat::Rgba8Unorm, pixels: pixels.collect() }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::map::error_map;
     use super::*;
 
     /// More than two of the pool's tasks.
@@ -196,8 +173,8 @@ mod tests {
                     assert_eq!(judged.verdicts.totals.passed, 4 * PIXELS as u64 - 1);
                     assert!(is_marked || judged.verdicts.error_max == f64::INFINITY);
                     let map = error_map(&wrong, &reference, &expected);
-                    let red = [255.0_f64, 0.0, 0.0, 255.0].map(f64::to_bits);
-                    assert_eq!(map.pixels[pixel].map(f64::to_bits), red, "a NaN is as red as can be");
+                    let violet = [190.0_f64, 0.0, 190.0, 255.0].map(f64::to_bits);
+                    assert_eq!(map.pixels[pixel].map(f64::to_bits), violet, "a NaN is as far off as can be");
                 }
                 expected[pixel].is_marked = false;
             }

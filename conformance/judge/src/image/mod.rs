@@ -8,6 +8,7 @@ mod bound;
 pub mod expect;
 pub mod file;
 pub mod judge;
+pub mod map;
 mod pixel;
 mod prepared;
 

@@ -1,7 +1,7 @@
 //! The page on what accuracy costs, and the README's part of it, in Markdown.
 
 use super::figures::{compilation, count, digits, error, holding, spread, standing, time};
-use super::plot::Plot;
+use super::plot::{Plot, subject};
 use super::text::{is_stable_form, law, steps};
 use lightmeter_document::bench::ladder::{RungSummary, rungs};
 use lightmeter_document::bench::pareto::is_processor;
@@ -13,26 +13,25 @@ use std::fmt::{Result, Write};
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(document: &BenchDocument, pictures: &[Plot], folder: &str, out: &mut impl Write) -> Result {
+pub fn markdown<W: Write>(document: &BenchDocument, pictures: &[Plot], folder: &str, out: &mut W) -> Result {
     writeln!(out, "# What accuracy costs: techniques and the ladder of precision\n")?;
     made(document, out)?;
     reading(out)?;
     claims(document, out)?;
     for measured in &document.adapters {
-        let picture = |subject: &str, out: &mut _| {
+        let picture = |subject: &str, out: &mut W| {
             let of = |one: &&Plot| one.adapter == measured.adapter && one.subject == subject;
             pictures.iter().filter(of).try_for_each(|one| embed(one, folder, out))
         };
         writeln!(out, "\n## {}", measured.adapter)?;
         ladder(measured, out)?;
         measured.families.iter().try_for_each(|family| picture(&family.id, out))?;
-        techniques(measured, out)?;
-        picture("techniques", out)?;
+        techniques(measured, &picture, out)?;
         stable_forms(measured, out)?;
         scenes(measured, out)?;
         picture("scenes", out)?;
         growth(measured, out)?;
-        picture("growth", out)?;
+        measured.scalings.iter().try_for_each(|scaling| picture(&subject(&scaling.id), out))?;
         left_out(measured, out)?;
         formulas(measured, out)?;
     }
@@ -178,7 +177,7 @@ fn marked(cell: Option<String>, is_on_front: bool) -> String {
     }
 }
 
-fn techniques(measured: &Measured, out: &mut impl Write) -> Result {
+fn techniques<W: Write>(measured: &Measured, picture: &impl Fn(&str, &mut W) -> Result, out: &mut W) -> Result {
     let techniques =
         measured.groups.iter().filter(|group| group.kind == GroupKind::Technique && !is_stable_form(group));
     let techniques: Vec<&BenchGroup> = techniques.collect();
@@ -204,6 +203,7 @@ fn techniques(measured: &Measured, out: &mut impl Write) -> Result {
         for row in &group.rows {
             technique(group, row, out)?;
         }
+        picture(&subject(&group.id), out)?;
     }
     Ok(())
 }
@@ -538,7 +538,7 @@ mod tests {
                 columns = None;
             }
         }
-        for stem in ["lavapipe-fog", "lavapipe-techniques", "h100-scenes", "h100-growth"] {
+        for stem in ["lavapipe-fog", "lavapipe-technique-viewer", "h100-scenes"] {
             assert!(page.contains(&format!("](bench/{stem}.svg)")), "{stem}");
         }
         let claims = page.find("## What is claimed").expect("claims");

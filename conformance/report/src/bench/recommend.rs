@@ -1,7 +1,8 @@
 //! The cheapest row of each group whose largest error is at most a limit: how it is chosen, and how it is written for people.
 
 use super::figures::{digits, error, time};
-use super::text::wrapped;
+use super::text::told;
+use crate::table::{Align, TextTable};
 use lightmeter_document::bench::pareto::refusal;
 use lightmeter_document::bench::recommendation::{Advice, Candidate, Inputs, Recommendation, SCHEMA};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Errors};
@@ -151,25 +152,29 @@ pub fn write(recommendation: &Recommendation, out: &mut impl Write) -> Written {
     let unit = recommendation.limit.parse().map_or("", Limit::unit);
     writeln!(out, "the cheapest whose largest error on {inputs} is at most {}", recommendation.limit)?;
     if let Some(interrupted) = &recommendation.interrupted {
-        wrapped("interrupted: ", "  ", &interrupted.to_string(), out)?;
+        told("interrupted: ", &interrupted.to_string(), out)?;
     }
-    let width = recommendation.groups.iter().map(|one| one.group.chars().count()).max().unwrap_or(0).min(44);
-    let mut adapter = "";
-    for one in &recommendation.groups {
-        if one.adapter != adapter {
-            adapter = &one.adapter;
-            writeln!(out, "\n{adapter}")?;
+    for of_adapter in recommendation.groups.chunk_by(|a, b| a.adapter == b.adapter) {
+        writeln!(out, "\n{}", of_adapter.first().map_or("", |one| &one.adapter))?;
+        let (left, right) = (Align::Left, Align::Right);
+        let columns = [("", left), ("", left), ("time", right), ("over the baseline", right), ("error", left)];
+        let mut table = TextTable::new(&columns);
+        for one in of_adapter {
+            table.row(match (&one.chosen, &one.reason) {
+                (Some(chosen), _) => [
+                    one.group.clone(),
+                    chosen.row.clone(),
+                    time(chosen.ns),
+                    format!("{} ×", digits(chosen.ratio)),
+                    format!("{}{unit}", error(chosen.error.0)),
+                ],
+                (None, reason) => {
+                    let reason = reason.as_deref().unwrap_or_default();
+                    [one.group.clone(), "none".into(), String::new(), String::new(), reason.into()]
+                }
+            });
         }
-        let (mut head, indent) = (format!("  {:<width$}  ", one.group), " ".repeat(width + 4));
-        let text = match (&one.chosen, &one.reason) {
-            (Some(chosen), _) => {
-                let (took, ratio) = (time(chosen.ns), digits(chosen.ratio));
-                write!(head, "{:<22} {took:>9} {ratio:>7} × baseline   ", chosen.row)?;
-                format!("errs by {}{unit}", error(chosen.error.0))
-            }
-            (None, reason) => format!("none: {}", reason.as_deref().unwrap_or_default()),
-        };
-        wrapped(&head, &indent, &text, out)?;
+        out.write_str(&table.text("  "))?;
     }
     Ok(())
 }

@@ -1,53 +1,57 @@
-//! A bench for people to read on a terminal, 120 columns wide.
+//! A bench for people to read on a terminal. Tables have room in 80 columns, but for those with all figures.
 
 use super::figures::{compilation, count, digits, error, spread, standing, time};
+use crate::Level;
+use crate::table::{Align, TABLE_WIDTH, TextTable};
 use lightmeter_document::bench::ladder::{RungSummary, rungs};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, BenchRow, Family, GroupKind, Measured, Scaling};
 use lightmeter_document::thousands;
 use std::fmt::{Result, Write};
 
-/// Columns of the terminal.
-const WIDTH: usize = 120;
-/// Columns of a row's name; a longer one has a line of its own.
-const NAME: usize = 22;
-
 /// Writes the document: families, techniques and scenes as a whole, or with `details` every row of every group.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn write(document: &BenchDocument, details: bool, out: &mut impl Write) -> Result {
+pub fn write(document: &BenchDocument, details: bool, level: Level, out: &mut impl Write) -> Result {
     let BenchDocument { command, version, seed, seconds, cores, .. } = document;
     let quick = if document.quick { "quick: fewer formulas and turns; " } else { "" };
     let head = format!("{command}: {quick}version {version}, seed {seed}, {}, {seconds:.0} s", count(*cores, "core"));
-    wrapped("", "  ", &head, out)?;
+    told("", &head, out)?;
     if let Some(interrupted) = &document.interrupted {
-        wrapped("interrupted: ", "  ", &interrupted.to_string(), out)?;
+        told("interrupted: ", &interrupted.to_string(), out)?;
     }
     for measured in &document.adapters {
-        adapter(measured, out)?;
+        if level > Level::Quiet {
+            adapter(measured, out)?;
+        }
         claims(measured, out)?;
+        if level == Level::Quiet {
+            continue;
+        }
         families(measured, out)?;
         let has_families = !measured.families.is_empty();
         if details || !has_families {
             let formulas = measured.groups.iter().filter(|group| group.kind == GroupKind::Formula);
-            formulas.into_iter().try_for_each(|group| block(group, out))?;
+            formulas.into_iter().try_for_each(|group| block(group, level, out))?;
         }
         let techniques = || measured.groups.iter().filter(|group| group.kind == GroupKind::Technique);
-        techniques().filter(|group| details || !is_stable_form(group)).try_for_each(|group| block(group, out))?;
+        techniques()
+            .filter(|group| details || !is_stable_form(group))
+            .try_for_each(|group| block(group, level, out))?;
         if !details {
             stable_forms(techniques().filter(|group| is_stable_form(group)), out)?;
         }
         scenes(measured, out)?;
         if details {
             let scenes = measured.groups.iter().filter(|group| group.kind == GroupKind::Scene);
-            scenes.into_iter().try_for_each(|group| block(group, out))?;
+            scenes.into_iter().try_for_each(|group| block(group, level, out))?;
         }
         scalings(measured, details, out)?;
         if !details {
             left_out(measured, out)?;
         }
     }
-    legend(out)
+    if level == Level::Quiet { Ok(()) } else { legend(out) }
 }
 
 /// Whether a group holds a published form against its stable one.
@@ -59,20 +63,20 @@ fn adapter(measured: &Measured, out: &mut impl Write) -> Result {
     let Measured { adapter, device, backend, driver, clock, .. } = measured;
     writeln!(out)?;
     let processor = if measured.is_cpu { " · computes on the processor" } else { "" };
-    wrapped(&format!("{adapter:<14} "), &" ".repeat(15), &format!("{device} · {backend} · {driver}{processor}"), out)?;
+    told(&format!("{adapter:<14} "), &format!("{device} · {backend} · {driver}{processor}"), out)?;
     let note = clock.note.as_ref().map(|note| format!(": {note}")).unwrap_or_default();
     let rejected = match clock.rejected {
         0 => "none rejected".to_owned(),
         n => format!("{} could not be true and are in no figure", thousands(n)),
     };
     let clock = format!("{}{note}; {} readings, {rejected}", clock.kind, thousands(clock.readings));
-    wrapped("  clock        ", &" ".repeat(15), &clock, out)?;
-    if let Some(told) = compilation(measured) {
-        wrapped("  compilation  ", &" ".repeat(15), &told, out)?;
+    told("  clock        ", &clock, out)?;
+    if let Some(taken) = compilation(measured) {
+        told("  compilation  ", &taken, out)?;
     }
     for rung in &measured.rungs {
         let why = rung.unavailable.as_ref().map(|why| format!(" — unavailable: {why}")).unwrap_or_default();
-        wrapped(&format!("  {:<12} ", rung.name), &" ".repeat(15), &format!("{}{why}", rung.what), out)?;
+        told(&format!("  {:<12} ", rung.name), &format!("{}{why}", rung.what), out)?;
     }
     Ok(())
 }
@@ -88,7 +92,7 @@ fn claims(measured: &Measured, out: &mut impl Write) -> Result {
             None => '?',
         };
         let text = format!("{} [{}]", claim.sentence, claim.source);
-        wrapped(&format!("  {mark} "), "    ", &text, out)?;
+        told(&format!("  {mark} "), &text, out)?;
     }
     Ok(())
 }
@@ -112,26 +116,23 @@ fn families(measured: &Measured, out: &mut impl Write) -> Result {
     for (place, title) in titles.into_iter().enumerate() {
         let figure = |rung: &RungSummary| if place == 0 { digits(rung.ratio) } else { error(rung.error) };
         for names in in_width(&names) {
-            writeln!(out, "\n{title}")?;
-            write!(out, "{:<14}", "")?;
-            names.iter().try_for_each(|name| write!(out, "{name:>width$}", width = column(name)))?;
-            writeln!(out)?;
+            let rungs = names.iter().map(|name| (*name, Align::Right));
+            let mut table = TextTable::new(&std::iter::once(("", Align::Left)).chain(rungs).collect::<Vec<_>>());
             for (id, rungs, front) in &rows {
-                write!(out, "{id:<14}")?;
-                for name in names {
+                let cells = names.iter().map(|name| {
                     let rung = rungs.iter().find(|rung| rung.name == *name && rung.groups > 0);
                     let mark = if front.iter().any(|on_front| on_front == name) { "●" } else { "" };
-                    let cell = rung.map_or_else(|| "—".into(), |rung| format!("{mark}{}", figure(rung)));
-                    write!(out, "{cell:>width$}", width = column(name))?;
-                }
-                writeln!(out)?;
+                    rung.map_or_else(|| "—".into(), |rung| format!("{mark}{}", figure(rung)))
+                });
+                table.row(std::iter::once((*id).clone()).chain(cells));
             }
+            write!(out, "\n{title}\n{}", table.text(""))?;
         }
     }
     for (id, rungs, _) in &rows {
         let parts: Vec<String> = rungs.iter().filter_map(shortfall).collect();
         if !parts.is_empty() {
-            wrapped(&format!("  {id:<14}"), &" ".repeat(16), &parts.join("; "), out)?;
+            told(&format!("  {id:<14}"), &parts.join("; "), out)?;
         }
     }
     Ok(())
@@ -154,7 +155,7 @@ fn in_width<'a, 'b>(names: &'b [&'a str]) -> Vec<&'b [&'a str]> {
     let mut parts = vec![];
     let (mut start, mut width) = (0, 14);
     for (place, name) in names.iter().enumerate() {
-        if width + column(name) > WIDTH {
+        if width + column(name) > TABLE_WIDTH {
             parts.push(&names[start..place]);
             (start, width) = (place, 14);
         }
@@ -164,55 +165,70 @@ fn in_width<'a, 'b>(names: &'b [&'a str]) -> Vec<&'b [&'a str]> {
     parts
 }
 
-/// A group with all of its rows.
-fn block(group: &BenchGroup, out: &mut impl Write) -> Result {
+/// A group with all of its rows: what they are compared by, or with more said all figures.
+fn block(group: &BenchGroup, level: Level, out: &mut impl Write) -> Result {
     writeln!(out)?;
-    wrapped("", "  ", &format!("{}: {}", group.id, group.title), out)?;
+    told("", &format!("{}: {}", group.id, group.title), out)?;
     let over =
         format!("over {}, for one {}; {}; errors against {}", group.baseline, group.unit, group.work, group.ideal);
-    wrapped("  ", "  ", &over, out)?;
-    writeln!(
-        out,
-        "  {:<NAME$} {:>8} {:>7} {:>13} {:<8} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8}",
-        "", "time", "ratio", "spread", "", "ULP max", "p99", "mean", "absolute", "1/255", "hard ULP"
-    )?;
-    group.rows.iter().try_for_each(|row| line(group, row, out))
+    told("  ", &over, out)?;
+    let is_verbose = level == Level::Verbose;
+    let columns: &[&str] = if is_verbose {
+        &["time", "ratio", "spread", "", "ULP max", "p99", "mean", "absolute", "1/255", "hard ULP"]
+    } else {
+        &["time", "ratio", "", "ULP max", "1/255", "hard ULP"]
+    };
+    let names = [("", Align::Left), ("", Align::Left)];
+    let mut table = TextTable::new(
+        &names
+            .into_iter()
+            .chain(columns.iter().map(|name| (*name, if name.is_empty() { Align::Left } else { Align::Right })))
+            .collect::<Vec<_>>(),
+    );
+    for row in &group.rows {
+        table.row(cells(group, row, is_verbose));
+    }
+    let mut lines = table.lines().into_iter();
+    lines.next().map_or(Ok(()), |heading| writeln!(out, "{heading}"))?;
+    for (row, line) in group.rows.iter().zip(lines) {
+        match &row.unavailable {
+            Some(why) => told(&format!("— {} ", row.name), &format!("unavailable: {why}"), out)?,
+            None => writeln!(out, "{line}")?,
+        }
+        remarks(row).iter().try_for_each(|remark| told("      ", remark, out))?;
+    }
+    Ok(())
 }
 
-fn line(group: &BenchGroup, row: &BenchRow, out: &mut impl Write) -> Result {
-    let is_on_front = group.front.contains(&row.name);
+/// The cells of a row, the mark and the name first.
+fn cells(group: &BenchGroup, row: &BenchRow, is_verbose: bool) -> Vec<String> {
+    let none = || "—".to_owned();
     let mark = match row {
-        BenchRow { unavailable: Some(_), .. } => '—',
-        BenchRow { disqualified: Some(_), .. } => '✗',
-        _ if is_on_front => '●',
-        _ => ' ',
+        // It has a line of its own.
+        BenchRow { unavailable: Some(_), .. } => return vec![none()],
+        BenchRow { disqualified: Some(_), .. } => "✗",
+        _ if group.front.contains(&row.name) => "●",
+        _ => "",
     };
-    if let Some(why) = &row.unavailable {
-        return wrapped(&format!("{mark} {:<NAME$} ", row.name), "      ", &format!("unavailable: {why}"), out);
-    }
-    if row.name.chars().count() > NAME {
-        writeln!(out, "{mark} {}", row.name)?;
-        write!(out, "  {:<NAME$}", "")?;
-    } else {
-        write!(out, "{mark} {:<NAME$}", row.name)?;
-    }
+    let mut cells = vec![mark.to_owned(), row.name.clone()];
     match &row.time {
         Some(taken) => {
-            let (ns, ratio, from_to) = (time(taken.ns), digits(taken.ratio), spread(taken.spread));
-            write!(out, " {ns:>8} {ratio:>7} {from_to:>13} {:<8}", standing(taken))?;
+            cells.extend([time(taken.ns), digits(taken.ratio)]);
+            cells.extend(is_verbose.then(|| spread(taken.spread)));
+            cells.push(standing(taken).to_owned());
         }
-        None => write!(out, " {:>8} {:>7} {:>13} {:<8}", "—", "", "", "")?,
+        None => cells.extend(std::iter::once(none()).chain(vec![String::new(); if is_verbose { 3 } else { 2 }])),
     }
     match &row.random {
-        Some(errors) => {
-            let ulp = [errors.ulp.max, errors.ulp.p99, errors.ulp.mean, errors.absolute.max].map(|of| error(of.0));
-            ulp.iter().try_for_each(|figure| write!(out, " {figure:>8}"))?;
-            write!(out, " {:>7}", error(errors.steps.max.0))?;
+        Some(errors) if is_verbose => {
+            let of = [&errors.ulp.max, &errors.ulp.p99, &errors.ulp.mean, &errors.absolute.max, &errors.steps.max];
+            cells.extend(of.map(|figure| error(figure.0)));
         }
-        None => write!(out, " {:>8} {:>8} {:>8} {:>8} {:>7}", "—", "", "", "", "")?,
+        Some(errors) => cells.extend([error(errors.ulp.max.0), error(errors.steps.max.0)]),
+        None => cells.extend(std::iter::once(none()).chain(vec![String::new(); if is_verbose { 4 } else { 1 }])),
     }
-    writeln!(out, " {:>8}", row.hard.as_ref().map_or_else(|| "—".into(), |errors| error(errors.ulp.max.0)))?;
-    remarks(row).iter().try_for_each(|remark| wrapped("      ", "      ", remark, out))
+    cells.push(row.hard.as_ref().map_or_else(none, |errors| error(errors.ulp.max.0)));
+    cells
 }
 
 /// What else is to be said of a row.
@@ -243,31 +259,40 @@ fn stable_forms<'a>(groups: impl Iterator<Item = &'a BenchGroup>, out: &mut impl
         return Ok(());
     }
     writeln!(out, "\nforms of hard cases, largest errors in ULP")?;
-    writeln!(out, "{:<57} {:>8} {:>7} {:>13} {:<8} {:>9} {:>9}", "", "time", "ratio", "spread", "", "random", "hard")?;
-    for group in groups {
-        for (place, row) in group.rows.iter().enumerate() {
-            let id = if place == 0 { &group.id } else { "" };
-            if let Some(why) = &row.unavailable {
-                wrapped(
-                    &format!("  {id:<28} {:<26} ", row.name),
-                    &" ".repeat(31),
-                    &format!("unavailable: {why}"),
-                    out,
-                )?;
-                continue;
+    let (left, right) = (Align::Left, Align::Right);
+    let mut table = TextTable::new(&[
+        ("", left),
+        ("time", right),
+        ("ratio", right),
+        ("", left),
+        ("random", right),
+        ("hard", right),
+    ]);
+    let rows: Vec<(&BenchGroup, &BenchRow)> =
+        groups.iter().flat_map(|group| group.rows.iter().map(move |row| (*group, row))).collect();
+    for (_, row) in &rows {
+        let [random, hard] = [&row.random, &row.hard].map(|of| of.as_ref().map(|errors| error(errors.ulp.max.0)));
+        let [random, hard] = [random, hard].map(|of| of.unwrap_or_else(|| "—".into()));
+        let [ns, ratio, says] = row
+            .time
+            .as_ref()
+            .map_or_else(Default::default, |taken| [time(taken.ns), digits(taken.ratio), standing(taken).to_owned()]);
+        table.row([row.name.clone(), ns, ratio, says, random, hard]);
+    }
+    let mut lines = table.lines().into_iter();
+    lines.next().map_or(Ok(()), |heading| writeln!(out, "    {heading}"))?;
+    let mut told_of = "";
+    for ((group, row), line) in rows.into_iter().zip(lines) {
+        if group.id != told_of {
+            told_of = &group.id;
+            writeln!(out, "  {}", group.id)?;
+        }
+        match (&row.unavailable, &row.disqualified) {
+            (Some(why), _) => told("    ", &format!("{}, unavailable: {why}", row.name), out)?,
+            (None, wrong) => {
+                writeln!(out, "    {line}")?;
+                wrong.as_ref().map_or(Ok(()), |why| told("      ✗ ", why, out))?;
             }
-            let [random, hard] = [&row.random, &row.hard].map(|of| of.as_ref().map(|errors| error(errors.ulp.max.0)));
-            let [random, hard] = [random, hard].map(|of| of.unwrap_or_else(|| "—".into()));
-            let [ns, ratio, from_to, says] = row.time.as_ref().map_or_else(Default::default, |taken| {
-                [time(taken.ns), digits(taken.ratio), spread(taken.spread), standing(taken).to_owned()]
-            });
-            let wrong = row.disqualified.as_ref().map(|why| format!("✗ {why}"));
-            writeln!(
-                out,
-                "  {id:<28} {:<26} {ns:>8} {ratio:>7} {from_to:>13} {says:<8} {random:>9} {hard:>9}",
-                row.name
-            )?;
-            wrong.map_or(Ok(()), |wrong| wrapped(&" ".repeat(31), &" ".repeat(33), &wrong, out))?;
         }
     }
     Ok(())
@@ -280,36 +305,32 @@ fn scenes(measured: &Measured, out: &mut impl Write) -> Result {
         return Ok(());
     }
     writeln!(out, "\n{}, a frame each; errors of pixels in 1/255", count(scenes.count(), "scene"))?;
-    writeln!(
-        out,
-        "  {:<14} {:>7} {:>9} {:>9} {:>13} {:>13} {:>13}  worst scene",
-        "", "scenes", "time", "ratio", "from–to", "median error", "largest"
-    )?;
-    for rung in rungs {
+    let (left, right) = (Align::Left, Align::Right);
+    let columns = ["scenes", "time", "ratio", "from–to", "median", "largest"].map(|name| (name, right));
+    let mut table = TextTable::new(&[&[("", left)], &columns[..], &[("worst scene", left)]].concat());
+    let mut lacking = vec![];
+    for rung in &rungs {
         let worst = rung.points.iter().max_by(|a, b| a.2.total_cmp(&b.2));
         let ratios = || rung.points.iter().map(|point| point.1);
         let (from, to) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(0.0, f64::max));
-        let Some((id, _, largest)) = worst else {
-            wrapped(&format!("— {:<14} ", rung.name), "  ", &shortfall_of_scenes(&rung), out)?;
-            continue;
-        };
-        writeln!(
-            out,
-            "  {:<14} {:>7} {:>9} {:>9} {:>13} {:>13} {:>13}  {}",
-            rung.name,
-            rung.groups,
-            time(rung.ns),
-            digits(rung.ratio),
-            spread([from, to]),
-            error(rung.error),
-            error(*largest),
-            id.trim_start_matches("scene/")
-        )?;
-        if rung.disqualified + rung.unavailable > 0 {
-            wrapped("      ", "      ", &shortfall_of_scenes(&rung), out)?;
+        if let Some((id, _, largest)) = worst {
+            table.row([
+                rung.name.clone(),
+                rung.groups.to_string(),
+                time(rung.ns),
+                digits(rung.ratio),
+                spread([from, to]),
+                error(rung.error),
+                error(*largest),
+                id.trim_start_matches("scene/").to_owned(),
+            ]);
+        }
+        if worst.is_none() || rung.disqualified + rung.unavailable > 0 {
+            lacking.push(format!("{}: {}", rung.name, shortfall_of_scenes(rung)));
         }
     }
-    Ok(())
+    out.write_str(&table.text("  "))?;
+    lacking.iter().try_for_each(|rung| told("  — ", rung, out))
 }
 
 fn shortfall_of_scenes(rung: &RungSummary) -> String {
@@ -322,9 +343,9 @@ fn scalings(measured: &Measured, details: bool, out: &mut impl Write) -> Result 
     }
     for scaling in &measured.scalings {
         let text = format!("{}, {} by {}: {}", scaling.what, steps(scaling), scaling.clock, law(scaling));
-        wrapped(&format!("  {:<12} ", scaling.id), &" ".repeat(15), &text, out)?;
+        told(&format!("  {:<12} ", scaling.id), &text, out)?;
         for (work, why) in &scaling.unavailable {
-            wrapped(&" ".repeat(15), &" ".repeat(17), &format!("{} not reached: {why}", thousands(*work)), out)?;
+            told(&" ".repeat(15), &format!("{} not reached: {why}", thousands(*work)), out)?;
         }
         if details {
             for point in &scaling.points {
@@ -383,40 +404,20 @@ fn left_out(measured: &Measured, out: &mut impl Write) -> Result {
     for (reason, groups) in reasons {
         let first = groups.iter().take(3).copied().collect::<Vec<_>>().join(", ");
         let more = if groups.len() > 3 { format!(" and {} more", groups.len() - 3) } else { String::new() };
-        wrapped("  ", "    ", &format!("{reason}; {first}{more}"), out)?;
+        told("  ", &format!("{reason}; {first}{more}"), out)?;
     }
     Ok(())
 }
 
 fn legend(out: &mut impl Write) -> Result {
-    writeln!(out, "\n● nothing else is both faster and closer · ✗ wrong in value, in no mean · — not measured here")?;
+    writeln!(out, "\n● nothing else is both faster and closer")?;
+    writeln!(out, "✗ wrong in value, and in no mean · — not measured here")?;
     writeln!(out, "tie: 1 lies within the spread, which is the range of all turns of all sittings")
 }
 
-/// Writes words in lines no longer than the terminal is wide: `head` before the first line, `indent` before the others.
-pub(super) fn wrapped(head: &str, indent: &str, text: &str, out: &mut impl Write) -> Result {
-    let mut line = head.to_owned();
-    let mut is_begun = false;
-    for word in text.split_whitespace() {
-        let room = WIDTH.saturating_sub(line.chars().count() + usize::from(is_begun));
-        if word.chars().count() > room && is_begun {
-            writeln!(out, "{}", line.trim_end())?;
-            indent.clone_into(&mut line);
-            is_begun = false;
-        }
-        if is_begun {
-            line.push(' ');
-        }
-        for letter in word.chars() {
-            if line.chars().count() == WIDTH {
-                writeln!(out, "{line}")?;
-                indent.clone_into(&mut line);
-            }
-            line.push(letter);
-        }
-        is_begun = true;
-    }
-    writeln!(out, "{}", line.trim_end())
+/// A line: on a terminal it is wrapped where it is shown.
+pub(super) fn told(head: &str, text: &str, out: &mut impl Write) -> Result {
+    writeln!(out, "{head}{text}")
 }
 
 #[cfg(test)]
@@ -426,23 +427,20 @@ mod tests {
 
     fn text(details: bool) -> String {
         let mut text = String::new();
-        write(&document(), details, &mut text).expect("a string takes all");
+        write(&document(), details, Level::Normal, &mut text).expect("a string takes all");
         text
     }
 
     #[test]
-    fn lines_are_no_wider_than_the_terminal() {
+    fn tables_have_room_on_a_terminal() {
         for details in [false, true] {
             let text = text(details);
-            let widest = text.lines().max_by_key(|line| line.chars().count()).expect("there are lines");
-            assert!(widest.chars().count() <= WIDTH, "{} columns: {widest}", widest.chars().count());
+            // A line of a table has several columns; words are wrapped where they are shown.
+            let columns = |line: &str| line.split("  ").filter(|cell| !cell.trim().is_empty()).count();
+            let rows = text.lines().filter(|line| columns(line) >= 4);
+            let widest = rows.max_by_key(|line| line.chars().count()).expect("there are tables");
+            assert!(widest.chars().count() <= TABLE_WIDTH, "{} columns: {widest}", widest.chars().count());
         }
-        let mut long = String::new();
-        wrapped("head ", "  ", &format!("{} {}", "x".repeat(300), "some words ".repeat(40)), &mut long)
-            .expect("a string");
-        assert!(long.lines().all(|line| line.chars().count() <= WIDTH), "{long}");
-        assert_eq!(long.matches('x').count(), 300);
-        assert_eq!(long.split_whitespace().filter(|word| *word == "words").count(), 40);
     }
 
     #[test]
@@ -458,8 +456,10 @@ mod tests {
                 let end = rest[1..].find("\n\n").unwrap_or(rest.len() - 1) + 1;
                 let lines: Vec<&str> = rest[..end].lines().collect();
                 for row in &group.rows {
-                    let name =
-                        |line: &str| line.chars().skip(2).collect::<String>().split(' ').next() == Some(&row.name);
+                    let name = |line: &str| {
+                        let name: String = line.chars().skip(1).collect();
+                        name.trim_start().split(' ').next() == Some(&row.name)
+                    };
                     let found = lines.iter().find(|line| name(line));
                     let line = found.unwrap_or_else(|| panic!("no {} in {}", row.name, group.id));
                     let mark = line.chars().next().expect("a mark");

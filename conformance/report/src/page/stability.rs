@@ -1,6 +1,7 @@
 //! The page on hard cases, made from a run's JSON: naive against stable error with condition numbers, what stable forms
 //! claim and cost, and a picture of both errors against the condition.
 
+use crate::plot::{Chart, Quantity, Series, Undrawn, marker};
 use lightmeter_document::Document as _;
 use lightmeter_document::run::{Examined, Report, StableForm};
 use std::collections::{BTreeMap, BTreeSet};
@@ -113,12 +114,12 @@ pub fn markdown(run: &StabilityRun, picture: Option<&str>, out: &mut impl Write)
         "Errors are in *roundings*: the distance from the exact value over 2⁻²⁴ of its size, or of 1 where the result is a \
          share of what is seen. One operation that rounds to nearest errs by at most one. The *condition* is how many \
          roundings of the result come of one rounding of each input. A naive form is *unstable* where it errs by more than \
-         {} times what the condition explains. Where it errs by no more than that, inputs that were rounded before lose as \
-         much in any form, and only inputs that are exact are done a favour. It computes *another function* where nine tenths \
-         of its error are there in exact arithmetic too: a model that is wrong there, or a cosine of vectors that are not quite \
-         unit for the angle between them.\n\nA bound holds at the hard cases and within 3 ULP of them. It covers all that \
-         WGSL permits there, with directed rounding of sums and products and its bounds of the rest, which a test holds; but for \
-         five forms whose bounds hold for the operations as they are written, since the language lets a compiler reassociate \
+         {} times what the condition explains. Where its error is smaller than that, inputs that were already rounded lose \
+         just as much accuracy in any form, so that the stable form only helps if the inputs are exact. It is said to compute *another \
+         function* if at least nine tenths of its error remain in exact arithmetic: a model that is wrong there, or a cosine of vectors \
+         that are not quite unit for the angle between them.\n\nA bound holds at the hard cases and within 3 ULP of them. It covers all that \
+         WGSL permits there, with directed rounding of sums and products and its bounds of the rest, which a test holds. Five forms are an \
+         exception: their bounds hold only if the operations are executed as written, and the language allows a compiler to reassociate \
          them: `interpolation/edge-compensated`, `vector/face-normal-compensated`, `blend/subtract-compensated`, \
          `fog/exp2-document` and `fog/exp2-opengl`. Of those the intervals promise little or nothing.\n",
         run.unstable_beyond.unwrap_or_default()
@@ -204,105 +205,32 @@ fn short(x: f64) -> String {
     }
 }
 
-/// The picture's frame in pixels.
-const LEFT: f64 = 76.0;
-const TOP: f64 = 24.0;
-const WIDTH: f64 = 600.0;
-const HEIGHT: f64 = 440.0;
-/// Powers of ten from the left end to the right one, and from the bottom to the top, where what is no number stands.
-const CONDITIONS: (i32, i32) = (-1, 9);
-const ERRORS: (i32, i32) = (-1, 14);
-
-fn x_of(condition: f64) -> f64 {
-    LEFT + WIDTH * share(condition, CONDITIONS)
-}
-
-fn y_of(error: f64) -> f64 {
-    TOP + HEIGHT * (1.0 - share(error, ERRORS))
-}
-
-fn share(x: f64, (from, to): (i32, i32)) -> f64 {
-    let (from, to) = (f64::from(from), f64::from(to));
-    if x <= 0.0 { 0.0 } else { ((x.log10() - from) / (to - from)).clamp(0.0, 1.0) }
-}
-
 /// The error of each hard case's two forms against its condition, on logarithmic axes.
 ///
 /// # Errors
-/// Where the writer fails.
-pub fn svg(run: &StabilityRun, out: &mut impl Write) -> Written {
-    let (width, height) = (LEFT + WIDTH + 24.0, TOP + HEIGHT + 92.0);
-    writeln!(
-        out,
-        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">
-<rect width="100%" height="100%" fill="#ffffff"/>"##
-    )?;
-    for power in CONDITIONS.0..=CONDITIONS.1 {
-        let x = x_of(10_f64.powi(power));
-        let (bottom, name) = (TOP + HEIGHT, TOP + HEIGHT + 16.0);
-        writeln!(out, r##"<path d="M{x:.1} {TOP}V{bottom}" stroke="#e4e4e4"/>"##)?;
-        writeln!(out, r#"<text x="{x:.1}" y="{name}" text-anchor="middle">{}</text>"#, axis(power))?;
-    }
-    for power in ERRORS.0..=ERRORS.1 {
-        let (y, right) = (y_of(10_f64.powi(power)), LEFT + WIDTH);
-        writeln!(out, r##"<path d="M{LEFT} {y:.1}H{right}" stroke="#e4e4e4"/>"##)?;
-        let name = if power == ERRORS.1 { "no number".into() } else { axis(power) };
-        writeln!(out, r#"<text x="{}" y="{:.1}" text-anchor="end">{name}</text>"#, LEFT - 6.0, y + 4.0)?;
-    }
-    explained(out)?;
-    for case in run.cases() {
-        let (x, name) = (x_of(case.row.condition.0), &case.row.id);
-        let (naive, stable) = (y_of(case.least_naive()), y_of(case.stable));
-        writeln!(
-            out,
-            r##"<g><title>{name}: naive {}, stable {}</title><path d="M{x:.1} {naive:.1}V{stable:.1}" stroke="#cccccc" stroke-width="0.6"/><path d="M{x:.1} {:.1}l4.5 7.8h-9z" fill="#d95f02" fill-opacity="0.75"/><circle cx="{x:.1}" cy="{stable:.1}" r="3.6" fill="#1f5fa8" fill-opacity="0.75"/></g>"##,
-            short(case.least_naive()),
-            short(case.stable),
-            naive - 5.2
-        )?;
-    }
-    let legend = TOP + HEIGHT + 58.0;
-    let middle = LEFT + WIDTH / 2.0;
-    writeln!(
-        out,
-        r##"<text x="{middle}" y="{}" text-anchor="middle">condition: roundings of the result for one of each input</text>"##,
-        TOP + HEIGHT + 36.0
-    )?;
-    writeln!(
-        out,
-        r##"<path d="M{LEFT} {:.1}l4.5 7.8h-9z" fill="#d95f02"/><text x="{}" y="{legend}">naive form, at its best on any adapter</text>
-<circle cx="{}" cy="{:.1}" r="3.6" fill="#1f5fa8"/><text x="{}" y="{legend}">stable form, at its worst</text>
-<text x="{}" y="{}">error in roundings, 2⁻²⁴ of the result; at the left end conditions of 0.1 and less</text>
-</svg>"##,
-        legend - 9.0,
-        LEFT + 10.0,
-        LEFT + 290.0,
-        legend - 4.0,
-        LEFT + 300.0,
-        LEFT - 4.0,
-        legend + 20.0
-    )
-}
-
-/// Where errors lie that the condition explains.
-fn explained(out: &mut impl Write) -> Written {
-    let mut path = String::new();
-    for step in 0..=50 {
-        let (from, to) = (f64::from(CONDITIONS.0), f64::from(CONDITIONS.1));
-        let condition = 10_f64.powf(from + (to - from) * f64::from(step) / 50.0);
-        let command = if step == 0 { 'M' } else { 'L' };
-        write!(path, "{command}{:.1} {:.1}", x_of(condition), y_of(1.0 + condition))?;
-    }
-    writeln!(out, r##"<path d="{path}" fill="none" stroke="#666666" stroke-dasharray="5 4"/>"##)?;
-    let (x, y) = (x_of(1e6), y_of(3e4));
-    writeln!(out, r##"<text x="{x:.1}" y="{y:.1}" fill="#444444">what the condition explains</text>"##)
-}
-
-fn axis(power: i32) -> String {
-    const SUPERSCRIPT: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let raised = |digit: char| match digit.to_digit(10) {
-        Some(digit) => SUPERSCRIPT[digit as usize],
-        None => '⁻',
+/// Where the library that draws it fails.
+pub fn svg(run: &StabilityRun) -> Result<String, Undrawn> {
+    let cases = run.cases();
+    let series = |name: &str, like: &str, error: fn(&Case<'_>) -> f64| Series {
+        // What has lost less than a tenth of a rounding has lost nothing.
+        large: cases.iter().map(|case| [case.row.condition.0.max(0.1), error(case).max(0.1)]).collect(),
+        ..Series::new(name, marker(like, 0))
     };
-    format!("10{}", power.to_string().chars().map(raised).collect::<String>())
+    let explained = (0..=50).map(|step| {
+        let condition = 10_f64.powf(f64::from(step) / 5.0 - 1.0);
+        [condition, 1.0 + condition]
+    });
+    let chart = Chart {
+        title: "Errors of naive and stable forms at hard cases".into(),
+        below: "a mark for each hard case; the least and the worst of all adapters; 0.1 stands for all below it".into(),
+        across: Quantity::new("condition: roundings of the result for one rounding of each input"),
+        upwards: Quantity::new("error in roundings, 2⁻²⁴ of the result"),
+        series: vec![
+            series("naive form, at its best", "f64", |case| case.least_naive()),
+            series("stable form, at its worst", "f32", |case| case.stable),
+        ],
+        line: Some(("what the condition explains".into(), explained.collect())),
+        notes: vec![],
+    };
+    chart.svg()
 }

@@ -1,17 +1,19 @@
 //! What is known of a name that is no case: of a formula, a family, a scene, a deviation, a mistake, a ruling or a source.
 
 use crate::cli::mistakes::{all_names, document as mistakes};
-use crate::cli::nearest::did_you_mean;
 use anyhow::bail;
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::aliases;
 use lightmeter::faults::concerning;
 use lightmeter::filter::Filter;
+use lightmeter::nearest::did_you_mean;
 use lightmeter::report;
-use lightmeter::rulings::{RULINGS, Ruling, SOURCES};
+use lightmeter::report::table::{Align, TextTable};
+use lightmeter::rulings::{GLOSSARY, RULINGS, Ruling, SOURCES};
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load::{self, Loaded};
 use lightmeter::select::Member;
+use lightmeter::special::{PROBES, Probe};
 use lightmeter::witness::NamedDeviation;
 use lightmeter_gpu::Shaders;
 use lightmeter_gpu::compose::{Composer, Recipe, ShaderForm};
@@ -43,13 +45,34 @@ pub(super) fn about(name: &str, catalogue: &[Member]) -> anyhow::Result<Option<S
         let document = mistakes(&[name.to_owned()], &[])?;
         return Ok(Some(report::mistakes::text(&document, true)));
     }
-    let deviations = NamedDeviation::named(&Filter::new(&[name])?);
-    if name.starts_with("deviation/") && !deviations.is_empty() {
+    // Results name a deviation without the word before it.
+    let of_deviation = if name.starts_with("deviation/") { name.to_owned() } else { format!("deviation/{name}") };
+    let deviations = NamedDeviation::named(&Filter::new(&[of_deviation])?);
+    if !name.contains('*') && !deviations.is_empty() {
         return Ok(Some(deviations.iter().map(|one| format!("{}\n  {}\n", one.name(), one.reason())).collect()));
+    }
+    if let Some((words, means)) = GLOSSARY.iter().find(|(words, _)| words.split(", ").any(|word| word == name)) {
+        return Ok(Some(format!("{words}: {means}\n")));
+    }
+    let probes: Vec<&Probe> = PROBES.iter().filter(|probe| probe.id().starts_with(&format!("{name}/"))).collect();
+    if !probes.is_empty() {
+        return of_probes(name, &probes).map(Some);
     }
     let below = |member: &&Member| member.spec.family() == name || member.spec.group() == name;
     let members: Vec<&Member> = catalogue.iter().filter(below).collect();
     if members.is_empty() { Ok(None) } else { family(name, &members).map(Some) }
+}
+
+/// A table of special values: what is asked, and what is promised of it.
+fn of_probes(name: &str, probes: &[&Probe]) -> anyhow::Result<String> {
+    let mut text = format!("{name}: {} special values\n", probes.len());
+    let mut table = TextTable::new(&[("", Align::Left), ("", Align::Left), ("promised", Align::Left)]);
+    for probe in probes {
+        table.row([probe.name.to_string(), probe.what.to_string(), probe.promise.words(probe.gives).to_string()]);
+    }
+    write!(text, "{}", table.text("  "))?;
+    writeln!(text, "\n  lightmeter special    shows what each adapter gives")?;
+    Ok(text)
 }
 
 /// What there is to say of a part of a name: of the one name that has it, or which names do; `None` where none has it.
@@ -58,8 +81,8 @@ pub(super) fn containing(part: &str, catalogue: &[Member]) -> anyhow::Result<Opt
     const MOST: usize = 40;
     let part = part.to_lowercase();
     let mut names = names(catalogue);
-    names.retain(|name| part.len() >= LEAST && name.to_lowercase().contains(&part));
-    names.dedup();
+    let mut seen = BTreeSet::new();
+    names.retain(|name| part.len() >= LEAST && name.to_lowercase().contains(&part) && seen.insert(name.clone()));
     match names.as_slice() {
         [] => Ok(None),
         [one] => about(one, catalogue),
@@ -84,6 +107,12 @@ pub(super) fn names(catalogue: &[Member]) -> Vec<String> {
     let mut names: Vec<String> = catalogue.iter().map(|member| member.spec.id.clone()).collect();
     names.extend(SCENES.iter().map(|(name, _)| format!("scene/{name}")));
     names.extend(all_names().map(str::to_owned));
+    names.extend(NamedDeviation::named(&Filter::default()).iter().map(|one| one.name().to_owned()));
+    let classes: BTreeSet<String> =
+        PROBES.iter().filter_map(|probe| Some(probe.id().rsplit_once('/')?.0.to_owned())).collect();
+    names.extend(classes);
+    names.extend(GLOSSARY.iter().flat_map(|(words, _)| words.split(", ")).map(str::to_owned));
+    names.extend(RULINGS.iter().map(|ruling| format!("ruling/{}", ruling.number)));
     names
 }
 

@@ -7,7 +7,6 @@ mod special;
 mod unit;
 
 use super::mistakes::by_name;
-use super::nearest::did_you_mean;
 use super::options::{Choice, Format};
 use super::terminal::level;
 use super::{Status, emit, say};
@@ -24,6 +23,7 @@ use lightmeter::faults::{Fault, Variation};
 use lightmeter::filter::Filter;
 use lightmeter::formula::intervals;
 use lightmeter::judge::judge;
+use lightmeter::nearest::did_you_mean;
 use lightmeter::report::Level;
 use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
 use lightmeter::stability;
@@ -136,7 +136,11 @@ impl Show {
         };
         if let Some(text) = found {
             if let Some(fault) = self.mistake {
-                bail!("`{}` is no case, so that nothing is computed with `{}`", self.id, fault.name);
+                bail!(
+                    "`{}` is not a case, so there is nothing to compute with the mistake `{}`; name a case, such as `fog/exp/random/000017`",
+                    self.id,
+                    fault.name
+                );
             }
             if self.format == Format::Json {
                 bail!(

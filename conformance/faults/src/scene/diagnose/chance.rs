@@ -3,7 +3,8 @@
 use super::{Trial, real, slack, stored};
 use std::collections::HashSet;
 
-/// Bits that a component tells at most, and that it tells where it is as dark or as bright as can be: then only which way it errs.
+/// The most bits that a component can contribute: the first number in general, the second where its value is the darkest or the brightest
+/// that can be stored, since such a value only tells the direction of the error.
 const BITS: [f64; 2] = [8.0, 1.0];
 /// Bits that where pixels fail may tell at most.
 const PLACES: f64 = 18.0;

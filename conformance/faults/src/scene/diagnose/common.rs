@@ -7,7 +7,8 @@ use lightmeter_document::thousands;
 const COMMON: f64 = 0.95;
 
 impl Trial<'_> {
-    /// The colour of an image that has no other, in units: it says nothing of how it came about.
+    /// The colour of an image whose pixels are all the same, in the target's units; `None` for any other image. Such an image shows nothing
+    /// about which mistake was made.
     pub(super) fn flat(&self) -> Option<[f64; 4]> {
         let (first, rest) = self.image.pixels.split_first()?;
         let is_same = |pixel: &[f64; 4]| pixel.iter().zip(first).all(|(a, b)| a.to_bits() == b.to_bits());

@@ -6,6 +6,7 @@ mod common;
 mod parameter;
 
 use super::{SCENE_FAULTS, SceneFault, colors, draw, draw_at, places, with};
+use crate::explanation::called;
 use lightmeter_arithmetic::Profile;
 use lightmeter_document::thousands;
 use lightmeter_judge::blend_unit::pixel;
@@ -32,13 +33,13 @@ const WHOLE: f64 = 0.9;
 const WHOLE_OF_TWO: f64 = 0.98;
 /// The passing components that may contradict an explanation, as a part of the failing ones.
 const MOST_CONTRADICTED: f64 = 0.02;
-/// How far from a whole step a value may be that is one.
+/// The tolerance within which a value counts as a whole step of the target.
 const STEP_ERROR: f64 = 1e-6;
 /// Explanations that are tried with all that is legal.
 const MOST_TRIED: usize = 5;
 /// How unlikely chance must be, in bits, beyond the number of mistakes that are tried.
 const BEYOND_CHANCE: f64 = 10.0;
-/// Others that are told beside one that explains no more.
+/// The most explanations that are reported beside the best one although they explain exactly as much.
 const MOST_EQUAL: usize = 2;
 
 /// What may have been drawn in a frame's place.
@@ -89,7 +90,7 @@ pub struct Trial<'a> {
     right: Vec<[f64; 4]>,
 }
 
-/// How near mistakes come by the middle of what is legal.
+/// How close the image that these mistakes draw in f64 comes to the given image: a cheap test before legal bounds are computed.
 struct Near {
     misses: usize,
     distance: f64,
@@ -167,7 +168,7 @@ impl<'a> Trial<'a> {
             candidates = SCENE_FAULTS.len() + pairs.len();
             found = self.tried(self.near(pairs));
         }
-        // What explains it, and so may chance, has no name; and nothing that explains it less simply has one.
+        // An explanation that is no better than chance is dropped, and no more complicated explanation is tried in its place.
         found.retain(|one| one.evidence >= real(candidates).log2() + BEYOND_CHANCE);
         let sentence = if found.is_empty() { self.unnamed() } else { self.named(&found) };
         told(found, sentence)
@@ -259,8 +260,8 @@ impl<'a> Trial<'a> {
             if !changes_color {
                 return std::array::from_fn(|k| [legal.low[k], legal.high[k]]);
             }
-            // The legal values of a frame are all that may be stored; those of changed colours were changed before that, and are
-            // stored now: on steps, at either neighbour.
+            // The bounds of a frame already include the rounding of the store. A mistake that changes colours acts before the store, so the
+            // changed bounds have to be rounded once more: on an 8-bit target, outward to the neighbouring steps.
             let [low, high] = [legal.low, legal.high].map(|units| {
                 let mut pixels = [std::array::from_fn(|k| pixel::linear(format, k, units[k]))];
                 colors(&mut pixels, faults);
@@ -359,7 +360,8 @@ fn pairs(near: &[Near]) -> Vec<Vec<&'static SceneFault>> {
 fn says(explanation: &SceneExplanation) -> String {
     let scaled = explanation.scaled.map(Scaled::says);
     let faults = explanation.faults.iter().map(|fault| fault.says.to_owned());
-    scaled.into_iter().chain(faults).collect::<Vec<_>>().join(", and ")
+    let names: Vec<&str> = explanation.faults.iter().map(|fault| fault.name).collect();
+    scaled.into_iter().chain(faults).collect::<Vec<_>>().join(", and ") + &called(&names)
 }
 
 /// The nearest first.

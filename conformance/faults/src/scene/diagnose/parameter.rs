@@ -21,9 +21,10 @@ pub(super) struct Parameter {
     scale: fn(&mut Frame, f32),
 }
 
-/// Per cent below which a factor is told as a difference.
+/// Factors that differ from 1 by less than this many per cent are reported as a difference ("0.3 % larger") rather than as a factor.
 const LITTLE: f64 = 10.0;
-/// Factors between two that are tried, which the search for the nearest one may end at.
+/// The number of distinguishable factors, for each tried factor, at which the search around it may end. It counts toward the number of
+/// candidates that evidence has to beat.
 pub(super) const STEPS: usize = 256;
 
 /// A parameter with the factor that it is wrong by.

@@ -1,4 +1,4 @@
-//! What somebody may have meant who typed a name that there is not.
+//! What somebody may have meant who wrote a name that does not exist.
 
 /// Names that are told at most.
 const MOST_TOLD: usize = 3;
@@ -7,7 +7,8 @@ const MOST_WRONG: f64 = 0.4;
 
 /// The names nearest to what was typed, the nearest first: those that contain it, and those that differ in few letters. Of an id the last
 /// part may be typed alone.
-pub(crate) fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+#[must_use]
+pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let typed = typed.to_lowercase();
     let is_path = typed.contains('/');
     let mut found: Vec<(f64, &str)> = names
@@ -30,7 +31,8 @@ pub(crate) fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>)
 }
 
 /// The same as the end of a sentence: `; did you mean …?`, or a full stop.
-pub(crate) fn did_you_mean<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+#[must_use]
+pub fn did_you_mean<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let quoted: Vec<String> = nearest(typed, names).into_iter().map(|name| format!("`{name}`")).collect();
     match quoted.as_slice() {
         [] => ".".to_owned(),
