@@ -106,3 +106,17 @@ fn a_scene_is_drawn_with_a_mistake() {
     assert!(code(&output) == 2 && said.contains("`fog-left-out` changes nothing in this scene"), "{said}");
     std::fs::remove_dir_all(folder).expect("it can be removed");
 }
+
+#[test]
+fn a_group_of_blend_states_is_told_by_the_mistake_that_most_of_them_show() {
+    let from = "case 6u: { return vec4f(src.a); }";
+    let folder = super::edited("blend-group", "blend.wgsl", |text| text.replace(from, "case 6u: { return src; }"));
+    let folder = folder.to_str().expect("UTF-8");
+    let output = super::lightmeter(&["run", "blend/add", "--cases", "64", "--shaders", folder, "--format", "json"]);
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let groups = report["groups"].as_array().expect("groups");
+    // The state that fails most often is one of few cases, which tell nothing by themselves.
+    let group = groups.iter().find(|group| group["stage"] == "compute" && group["id"] == "blend/add").expect("one");
+    assert_eq!(group["mistakes"], serde_json::json!(["color-for-alpha"]), "{group}");
+    assert!(group["explanation"].to_string().contains("others that fail and were looked at"), "{group}");
+}

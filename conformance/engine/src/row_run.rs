@@ -295,8 +295,11 @@ pub(crate) fn group_id(spec: &Spec, stage: Stage) -> &str {
     if stage == Stage::Answer { &spec.id } else { spec.group() }
 }
 
+/// Failing formulas of a group that are diagnosed: those that fail most often.
+const MOST_DIAGNOSED: usize = 16;
+
 /// The mistake that explains the failing rows of a stage; if none does, the systematic error that all rows show together. In a group of
-/// several formulas, the one that fails most often is diagnosed.
+/// several formulas, those that fail most often are diagnosed one by one, and the mistake that explains most of them is told.
 fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Subject, options: &Options) -> Told {
     let (wrong, right) = (standing.wrong.rows(), standing.right.rows());
     let Some(diagnose) = options.diagnose else { return Told::default() };
@@ -304,16 +307,33 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
     if wrong.is_empty() && (members.len() > 1 || !is_shader(stage)) {
         return Told::default();
     }
-    let most = standing.failing.iter().max_by_key(|(member, count)| (**count, Reverse(**member)));
-    let (most, failing) = most.map_or((0, 0), |(member, count)| (*member, *count));
-    let member = members[most];
+    let mut failing: Vec<(usize, u64)> = standing.failing.iter().map(|(member, count)| (*member, *count)).collect();
+    failing.sort_unstable_by_key(|(member, count)| (Reverse(*count), *member));
     let profile = subject.known.granted(options.profile);
-    let rows = [wrong, right].map(|rows| of_member(member, most, rows, options.seed));
-    let mut told = Told::of(diagnose, member, [&rows[0], &rows[1]], failing, &profile);
-    if let Some(Cause { says, .. }) = told.explanation.as_mut().filter(|_| members.len() > 1) {
-        *says = format!("{}: {says}", member.spec.id);
+    let told_of = |(place, count): (usize, u64)| {
+        let member = members[place];
+        let rows = [&wrong, &right].map(|rows| of_member(member, place, rows, options.seed));
+        Told::of(diagnose, member, [&rows[0], &rows[1]], count, &profile)
+    };
+    if members.len() == 1 || failing.is_empty() {
+        return told_of(failing.first().copied().unwrap_or_default());
     }
-    told
+    failing.truncate(MOST_DIAGNOSED);
+    let mut causes: Vec<Cause> = failing.iter().map(|of| told_of(*of).explanation.unwrap_or_default()).collect();
+    let alike = |cause: &Cause| {
+        let same = causes.iter().filter(|other| !cause.mistakes.is_empty() && other.mistakes == cause.mistakes);
+        same.count()
+    };
+    // Of those that explain as many, the first: it fails most often.
+    let shared: Vec<usize> = causes.iter().map(alike).collect();
+    let best = (0..causes.len()).max_by_key(|&place| (shared[place], Reverse(place))).unwrap_or_default();
+    let Cause { says, mistakes } = causes.swap_remove(best);
+    let mut says = format!("{}: {says}", members[failing[best].0].spec.id);
+    if shared[best] > 0 && shared.len() > 1 {
+        let (same, others) = (shared[best] - 1, shared.len() - 1);
+        says += &format!("; of {others} others that fail and were looked at {same} show the same mistake");
+    }
+    Told { explanation: Some(Cause { says, mistakes }), ..Told::default() }
 }
 
 const fn is_shader(stage: Stage) -> bool {
@@ -321,14 +341,14 @@ const fn is_shader(stage: Stage) -> bool {
 }
 
 /// The rows of one formula, by its place among the group's, with their inputs.
-fn of_member<'a>(member: &Member, place: usize, rows: Vec<((usize, CaseRef), &'a [f32])>, seed: u64) -> Vec<Row<'a>> {
-    let row = |((_, case), values)| {
+fn of_member<'a>(member: &Member, place: usize, rows: &[((usize, CaseRef), &'a [f32])], seed: u64) -> Vec<Row<'a>> {
+    let row = |&((_, case), values): &((usize, CaseRef), &'a [f32])| {
         let mut inputs = Vec::with_capacity(member.spec.input_len());
         member.inputs(case, seed, &mut inputs);
         (inputs, values, case)
     };
     // A hard case is one of its own formula alone.
-    rows.into_iter().filter(|((of, _), _)| *of == place).map(row).collect()
+    rows.iter().filter(|((of, _), _)| *of == place).map(row).collect()
 }
 
 /// The rows of a chunk, as a stage takes them.

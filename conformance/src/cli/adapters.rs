@@ -2,12 +2,14 @@
 
 use super::Status;
 use super::options::Format;
+use super::terminal::level;
 use clap::Args;
 use lightmeter::devices::{BlendDeviation, Builtin, Deviation, known};
 use lightmeter::document::Document as _;
 use lightmeter::document::adapters::{
     AccuracyDeviation, AdaptersDocument, BlendUnitDeviation, BuiltinFunction, ListedAdapter, SCHEMA,
 };
+use lightmeter::report::Level;
 use lightmeter_gpu::Adapter;
 use std::fmt::Write as _;
 
@@ -29,6 +31,11 @@ impl Adapters {
             }
             Format::Text => {
                 let mut text = String::new();
+                if level() == Level::Quiet {
+                    let names = found.iter().map(|adapter| adapter.name.as_str()).chain(["cpu"]);
+                    names.for_each(|name| text += &format!("{name}\n"));
+                    return self.format.emit(&text, None).map(|()| Status::Success);
+                }
                 for a in &found {
                     writeln!(text, "{:<14} {:<7} {}  {}", a.name, a.backend, a.device, a.driver)?;
                     let known = known(&a.device, &a.driver);

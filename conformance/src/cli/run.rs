@@ -207,7 +207,8 @@ pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples, size: Op
             let families = lightmeter::cases::FAMILIES.join(", ") + ", special, scene, deviation";
             let ids = catalogue.iter().map(|member| member.spec.id.clone());
             let scenes = (0..SCENES.len()).map(scene_id);
-            let names: Vec<String> = ids.chain(scenes).collect();
+            let own = lightmeter::cases::FAMILIES.iter().map(ToString::to_string);
+            let names: Vec<String> = ids.chain(scenes).chain(own).collect();
             let meant = did_you_mean(glob, names.iter().map(String::as_str));
             anyhow::bail!(
                 "no case matches `{glob}`{meant} Ids begin with a family ({families}), as `fog/linear/random/000017`: see \

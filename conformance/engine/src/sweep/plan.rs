@@ -3,6 +3,7 @@
 use super::preset::{Free, PRESETS, Preset};
 use super::span::Span;
 use lightmeter_catalogue::cases::{Domain, Kind, Spec, Stage};
+use lightmeter_catalogue::nearest::did_you_mean;
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::sweep::ExactFloat;
 use lightmeter_scene::along::{float_of, key_of};
@@ -70,10 +71,9 @@ impl<'a> SweepPlan<'a> {
     /// Where the formula or a name is unknown, or the range has no float.
     pub fn new(catalogue: &'a [Member], formula: &str, asked: &Asked) -> Result<Self, Refused> {
         let Some(member) = catalogue.iter().find(|member| member.spec.id == formula) else {
-            let presets: Vec<&str> = PRESETS.iter().map(|preset| preset.formula).collect();
+            let meant = did_you_mean(formula, catalogue.iter().map(|member| member.spec.id.as_str()));
             return refuse(format!(
-                "no formula `{formula}`; ready-made sweeps are {}; `lightmeter list --formulas` names every formula",
-                presets.join(", ")
+                "no formula `{formula}`{meant} `lightmeter sweep` lists ready-made sweeps, `lightmeter list --formulas` every formula"
             ));
         };
         let preset = Preset::of(formula).map(|preset| preset.free);

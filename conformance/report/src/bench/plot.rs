@@ -96,6 +96,16 @@ fn cloud(title: String, rungs: &[RungSummary], on_front: &[String], [of, error]:
     })
 }
 
+/// As many words as have room below a title, and a mark where some have not.
+fn shortened(words: &str) -> String {
+    const MOST: usize = 120;
+    if words.chars().count() <= MOST {
+        return words.to_owned();
+    }
+    let cut: String = words.chars().take(MOST).collect();
+    cut.rsplit_once(' ').map_or("", |(kept, _)| kept).trim_end_matches([',', ';', ':']).to_owned() + " …"
+}
+
 fn pareto(points: Vec<[f64; 2]>) -> Option<(String, Vec<[f64; 2]>)> {
     (points.len() > 1).then(|| ("none faster and closer".into(), points))
 }
@@ -132,13 +142,16 @@ fn technique(group: &BenchGroup, adapter: &str) -> Option<Chart> {
     let lacking = group.rows.iter().filter(|row| row.unavailable.is_some() && !is_processor(&row.name));
     let on_front = group.front.iter().filter_map(|name| rows.iter().find(|(row, _)| row.name == *name));
     (!rows.is_empty()).then(|| Chart {
-        title: format!("{} on {adapter}: {}", group.id, group.title),
-        below: "lines: the middle half of the turns; hollow: wrong in value".into(),
+        title: format!("{} on {adapter}", group.id),
+        below: shortened(&group.title),
         across: Quantity { name: format!("time for one {}", group.unit), written: duration },
         upwards: Quantity::new("largest absolute error on random inputs"),
         series: rows.iter().map(series).collect(),
         line: pareto(on_front.map(|(_, point)| *point).collect()),
-        notes: lacking.map(|row| format!("not measured: {}", row.name)).collect(),
+        notes: lacking
+            .map(|row| format!("not measured: {}", row.name))
+            .chain(["lines: the middle half".into(), "hollow: wrong in value".into()])
+            .collect(),
     })
 }
 
@@ -205,6 +218,7 @@ mod tests {
         for Plot { title, svg, adapter, .. } in &pictures {
             assert!(title.contains(adapter.as_str()), "{title}");
             assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{title}");
+            assert!(title.chars().count() <= 90, "{title} is cut off");
             // Between quotes are the places and paths.
             let is_number = |value: &str| !value.contains("NaN") && !value.contains("inf");
             assert!(svg.split('"').skip(1).step_by(2).all(is_number), "{title} has a place that is no number");
