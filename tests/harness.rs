@@ -170,7 +170,7 @@ fn a_bad_variable_fails_every_selected_trial_and_says_what_is_right() {
         ("LIGHTMETER_CASES", "many", "`many` is not a whole number from 1 to 1000000000000"),
         ("LIGHTMETER_CASES", "0", "`0` is not a whole number"),
         ("LIGHTMETER_SEED", "-1", "`-1` is not a whole number from 0"),
-        ("LIGHTMETER_PROFILE", "exact", "no such profile; expected one of wgsl, vulkan, opengl"),
+        ("LIGHTMETER_PROFILE", "exact", "no profile `exact`; expected one of wgsl, vulkan, opengl"),
         ("LIGHTMETER_SHADERS", "/nowhere", "cannot read shaders from /nowhere"),
         ("LIGHTMETER_ADAPTOR", "cpu", "is no variable of the conformance tests; there are LIGHTMETER_ADAPTER"),
     ];

@@ -127,7 +127,7 @@ fn a_wrong_image_names_its_stage_and_leaves_pictures() {
     assert_eq!(code(&output), 1, "{}", stderr(&output));
     let text = stdout(&output);
     assert!(text.contains("first departs in: specular"), "{text}");
-    assert!(text.contains("the worst: lightmeter show 'scene/phong/"), "{text}");
+    assert!(text.contains("  worst pixel\n    lightmeter show 'scene/phong/"), "{text}");
     for what in ["reference", "result", "error"] {
         let end = format!("-image-{what}.png");
         let files = std::fs::read_dir(&out).expect("the folder is there").flatten();

@@ -364,7 +364,7 @@ fn bad_usage_is_told_with_its_code() {
         (&["run", "frog"], 2, "no case matches `frog`"),
         (&["run", "fog", "frog"], 2, "no case matches `frog`"),
         (&["run", "fog/[", "--adapter", "cpu"], 2, "is not a glob"),
-        (&["run", "--profile", "exact"], 2, "no such profile"),
+        (&["run", "--profile", "exact"], 2, "no profile `exact`"),
         (&["run", "--shaders", "/nowhere"], 2, "cannot read shaders from /nowhere"),
         (&["run", "--cases", "0"], 2, "0 is not in"),
         (&["run", "--target", "rgba8"], 2, "no such format; expected one of rgba32float"),

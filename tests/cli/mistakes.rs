@@ -75,13 +75,16 @@ fn a_case_is_shown_with_a_mistake() {
     let case = "fog/linear-radial/hard/sideways";
     let output = lightmeter(&["show", case, "--mistake", "fog-planar", "--adapter", "cpu"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
-    assert!(stdout(&output).contains("\nas if fog uses planar distance\n✗ f  "), "{}", stdout(&output));
+    let text = stdout(&output);
+    assert!(text.contains("\nas if fog uses planar distance\n  steps at which it shows  "), "{text}");
+    assert!(text.contains("\n  distance  ") && text.contains("\n✗  f  "), "{text}");
     let output = lightmeter(&["show", case, "--mistake", "fog-planar", "--adapter", "cpu", "--format", "json"]);
     let shown: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
     assert_eq!(
         (&shown["mistake"]["name"], &shown["mistake"]["outputs"][0]["value"]),
         (&"fog-planar".into(), &1.0.into())
     );
+    assert_eq!(shown["mistake"]["steps"][0]["name"], "distance", "{shown}");
     let output = lightmeter(&["show", case, "--mistake", "fog-radial", "--adapter", "cpu"]);
     assert_eq!(code(&output), 2, "it has that by right");
 }
@@ -118,5 +121,5 @@ fn a_group_of_blend_states_is_told_by_the_mistake_that_most_of_them_show() {
     // The state that fails most often is one of few cases, which tell nothing by themselves.
     let group = groups.iter().find(|group| group["stage"] == "compute" && group["id"] == "blend/add").expect("one");
     assert_eq!(group["mistakes"], serde_json::json!(["color-for-alpha"]), "{group}");
-    assert!(group["explanation"].to_string().contains("others that fail and were looked at"), "{group}");
+    assert!(group["explanation"].to_string().contains("; it also explains "), "{group}");
 }

@@ -166,6 +166,8 @@ fn any_name_can_be_shown() {
         ("llvmpipe-exp", "exp2(x · log2 e)"),
         ("special/nan", "special values"),
         ("margin", "how much of its tolerance"),
+        ("ruling 9", "by its name"),
+        ("glossary", "how much of its tolerance"),
         ("blend/mode-alpha", "blend/mode-alpha"),
         ("spot-cutoff", "attenuation/spot-cutoff"),
         ("blinn", "lighting/blinn-stable"),

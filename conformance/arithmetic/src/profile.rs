@@ -108,7 +108,7 @@ impl Profile {
     /// Where there is none: says which there are.
     pub fn named(name: &str) -> Result<&'static Self, String> {
         let names: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
-        Self::by_name(name).ok_or_else(|| format!("no such profile; expected one of {}", names.join(", ")))
+        Self::by_name(name).ok_or_else(|| format!("no profile `{name}`; expected one of {}", names.join(", ")))
     }
 
     /// Evaluates `f` by the figures of this profile: the one way in which a profile reaches the operators of

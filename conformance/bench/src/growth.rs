@@ -39,7 +39,7 @@ pub(super) fn cases(bench: &Bench<'_>) -> Result<Vec<Scaling>, BenchError> {
         .collect();
     Ok(vec![Scaling {
         id: "cases".into(),
-        what: format!("{FORMULA} in f32, so many evaluations in one dispatch"),
+        what: format!("{FORMULA} in f32, by the number of evaluations in a dispatch"),
         unit: "evaluations".into(),
         clock: bench.clock.kind().name().into(),
         fit: fit::fit(&points),

@@ -67,6 +67,20 @@ pub struct ShownMistake {
     pub says: Word,
     /// The outputs, each with its value in f64 and what such a renderer may give.
     pub outputs: Vec<ShownStep>,
+    /// The steps at which it shows, in the order in which they are computed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub steps: Vec<MistakenStep>,
+}
+
+/// A number of a step that is another one with a mistake.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MistakenStep {
+    /// The step's name.
+    pub name: Word,
+    /// As the published formula has it.
+    pub right: Number,
+    /// With the mistake.
+    pub made: Number,
 }
 
 /// What an input means.

@@ -331,7 +331,11 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
     let mut says = format!("{}: {says}", members[failing[best].0].spec.id);
     if shared[best] > 0 && shared.len() > 1 {
         let (same, others) = (shared[best] - 1, shared.len() - 1);
-        says += &format!("; of {others} others that fail and were looked at {same} show the same mistake");
+        says += &match (same, others) {
+            (0, 1) => "; it does not explain the other formula that fails".to_owned(),
+            (1, 1) => "; it also explains the other formula that fails".to_owned(),
+            _ => format!("; it also explains {same} of the {others} formulas that fail next most often"),
+        };
     }
     Told { explanation: Some(Cause { says, mistakes }), ..Told::default() }
 }

@@ -109,7 +109,7 @@ impl Scouts<'_> {
         let (groups, failures) = (self.report.groups.len(), self.report.failures.len());
         self.compiled.insert(id.to_owned(), run.finish(subjects, self.options, &mut self.report));
         for group in &mut self.report.groups[groups..] {
-            // Of so few cases nothing but a single wrong value tells anything.
+            // With this few cases only a single wrong value tells anything.
             group.problem = None;
             group.totals.failed_groups = 0;
         }

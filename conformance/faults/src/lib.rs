@@ -21,6 +21,7 @@ mod mistakes;
 mod op;
 mod row;
 pub mod scene;
+mod seen;
 pub mod selftest;
 mod steps;
 mod table;
@@ -36,6 +37,7 @@ pub use group::{LEAST_ERROR, LEAST_SHARE, LEAST_VALUES, LEAST_Z, group_verdict};
 pub use look::look;
 pub use mistakes::Mistakes;
 pub use row::Arithmetic;
+pub use seen::SeenStep;
 pub use variation::Variation;
 
 /// A share in percent; 100 of nothing.

@@ -100,8 +100,18 @@ impl<'a> Variation<'a> {
         self.evaluate_row(&mut row[..inputs.len().min(MOST_INPUTS)], out);
     }
 
+    /// The same in f64, while something observes the steps.
+    pub(super) fn observed(&self, observer: &'static dyn Alteration, inputs: &[f32], out: &mut [f64]) {
+        let mut row: Vec<f64> = inputs.iter().map(|&x| x.into()).collect();
+        self.evaluate_around(Some(observer), &mut row, out);
+    }
+
     /// The same of a row that is changed already.
     pub(super) fn evaluate_row<R: Arithmetic>(&self, row: &mut [R], out: &mut [R]) {
+        self.evaluate_around(None, row, out);
+    }
+
+    fn evaluate_around<R: Arithmetic>(&self, observer: Option<&'static dyn Alteration>, row: &mut [R], out: &mut [R]) {
         let (spec, parts) = (&self.member.spec, &self.parts);
         for before in &parts.before {
             before.apply(spec, row);
@@ -112,7 +122,9 @@ impl<'a> Variation<'a> {
             let (mut inputs, mut outputs) = ([zero; MOST_INPUTS], [zero; MOST_OUTPUTS]);
             inputs.iter_mut().zip(&*row).for_each(|(to, &x)| *to = Mistaken(x));
             let alterations = parts.at.iter().map(|&at| at as &'static dyn Alteration);
-            making(alterations, || R::evaluate(self.formula, &inputs[..row.len()], &mut outputs));
+            making(observer.into_iter().chain(alterations), || {
+                R::evaluate(self.formula, &inputs[..row.len()], &mut outputs)
+            });
             out.iter_mut().zip(outputs).for_each(|(to, x)| *to = x.0);
         }
         for after in &parts.after {

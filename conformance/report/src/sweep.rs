@@ -119,7 +119,10 @@ pub fn likeliest(counts: &StoreCounts) -> (&'static str, f64) {
 /// A verdict, under what it is.
 fn write_seen(document: &SweepDocument, what: &str, seen: &SweepVerdict, rerun: &str, out: &mut impl Write) -> Result {
     let sweep = &document.sweep;
-    writeln!(out, "\n{what} {} {}, margin {}", error(seen.error), sweep.unit, margin(seen.margin))?;
+    // An error of many ULP is legal where, for instance, a subnormal number may be flushed to 0.
+    let is_legal = if seen.margin.0 <= 1.0 { "legal there" } else { "not legal" };
+    let share = margin(seen.margin);
+    writeln!(out, "\n{what} {} {}: {is_legal}, {share} of the tolerance", error(seen.error), sweep.unit)?;
     let ExactFloat(value) = seen.value;
     let unwritten = if value.to_bits() == lightmeter_scene::target::SENTINEL { ", never written" } else { "" };
     writeln!(out, "  input      {}", place(&sweep.over, seen.input))?;

@@ -124,9 +124,22 @@ pub(crate) fn failing_group(group: &Group, of: &str, out: &mut impl Write) -> Re
     write!(out, "✗ {} on {}, {}: {failed}{of} {verdicts} failed", group.id, group.adapter, group.place())?;
     writeln!(out)?;
     for what in group.explanation.iter().chain(&group.problem) {
-        writeln!(out, "  {what}")?;
+        facts(what, out)?;
     }
     Ok(())
+}
+
+/// What is said of a group: of an image, the command that shows its worst pixel and its files stand on lines of their own.
+fn facts(what: &str, out: &mut impl Write) -> Result {
+    let Some((says, rest)) = what.split_once("; the worst: ") else { return writeln!(out, "  {what}") };
+    let (command, files) = rest.split_once("; see ").map_or((rest, None), |(command, files)| (command, Some(files)));
+    says.split("; ").try_for_each(|fact| writeln!(out, "  {fact}"))?;
+    writeln!(out, "  worst pixel")?;
+    writeln!(out, "    {command}")?;
+    match files {
+        Some(files) => files.split(", ").try_for_each(|file| writeln!(out, "    {file}")),
+        None => Ok(()),
+    }
 }
 
 /// The formula, or the scene, that a failure is of.

@@ -75,7 +75,7 @@ pub(crate) struct Gate {
     /// MiB of address space that each process of the renderer may have; without it: as much as there is
     #[arg(long, value_name = "MIB", requires = "exec", value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
     memory: Option<u64>,
-    /// Ask all of it so often; an answer that changes is unstable. Once, what failed is asked again
+    /// How many times to ask everything; an answer that changes is unstable. With 1, what failed is asked once more
     #[arg(long, value_name = "N", default_value_t = 1, requires = "exec", value_parser = clap::value_parser!(u64).range(1..=1000))]
     runs: u64,
     /// Keep the images of a process in this folder

@@ -199,7 +199,7 @@ impl Required {
         let [chosen, judged, excluded] = [chosen, judged, excluded].map(thousands);
         say(&format!(
             "error: of {chosen} chosen cases {judged} were judged and {excluded} excluded, which is less than the part of {} that is \
-             required\n  choose what can be judged by a filter such as 'fog/*', or accept so few by `--require {accepted}`",
+             required\n  choose what can be judged by a filter such as 'fog/*', or accept this share by `--require {accepted}`",
             self.require
         ));
         Status::Failed

@@ -91,13 +91,14 @@ impl Pack {
         let besides = [(on_targets, "on targets"), (manifest.probes as u64, "special values")];
         let besides = besides.into_iter().filter(|(count, _)| *count > 0);
         let besides: String = besides.map(|(count, what)| format!("{count} {what}, ")).collect();
+        let counted = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
         say(&format!(
-            "{}: {} cases of {} formulas, {besides}{} scenes, {} files; judge the answers by `lightmeter gate {} ANSWERS`",
+            "{}: {}, {}, {besides}{}, {}; judge the answers by `lightmeter gate {} ANSWERS`",
             self.dir.display(),
-            plan.cases(),
-            manifest.formulas.len(),
-            manifest.scenes.len(),
-            manifest.files.len() + 1,
+            counted(plan.cases(), "case"),
+            counted(manifest.formulas.len() as u64, "formula"),
+            counted(manifest.scenes.len() as u64, "scene"),
+            counted(manifest.files.len() as u64 + 1, "file"),
             self.dir.display()
         ));
         Ok(Status::Success)

@@ -52,7 +52,7 @@ pub(crate) struct Run {
     /// Where reference, result and error map of a scene that fails are written
     #[arg(long, value_name = "DIR", default_value = "lightmeter-failures")]
     images: PathBuf,
-    /// Ask all of it so often; a result that changes is unstable
+    /// How many times to ask everything; a result that changes is unstable
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=1000))]
     runs: u64,
     /// End with the first formula, state or scene that fails

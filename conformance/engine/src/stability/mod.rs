@@ -2,7 +2,7 @@
 //!
 //! Errors are told in *roundings*: |value − exact| over 2⁻²⁴ of the result's size, the outputs of a case taken together as one
 //! vector. `exact` is the stable formula's f64 reference, which the certificate holds against many digits. What no method can
-//! do better than is the *condition*: so many roundings of the result come of one rounding of each input.
+//! do better than is the *condition*: how many roundings of the result one rounding of each input causes.
 
 use lightmeter_judge::stability::{condition, roundings};
 

@@ -298,7 +298,7 @@ mod tests {
     #[test]
     fn what_cannot_be_swept_is_refused_with_what_can() {
         let asked = Asked::default;
-        assert!(refusal("fog/none", &asked()).contains("ready-made sweeps are fog/linear"));
+        assert!(refusal("fog/exq", &asked()).contains("no formula `fog/exq`; did you mean `fog/exp`"));
         assert!(refusal("vector/reflect", &asked()).contains("expected --over with one of i.x"));
         let over = |over: &str| Asked { over: Some(over.into()), ..asked() };
         assert!(refusal("fog/exp", &over("z")).contains("expected one of p.x p.y p.z density"));

@@ -2,7 +2,7 @@
 
 use lightmeter_catalogue::select::Shard;
 
-/// The most inputs of a block: with so many a device has a fifth of a second to do.
+/// The most inputs of a block, which take a device about a fifth of a second.
 const MOST: u64 = 1 << 22;
 /// The fewest, but for the last block.
 const FEWEST: u64 = 1 << 12;

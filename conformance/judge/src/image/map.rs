@@ -55,7 +55,7 @@ const STRIP: usize = 10;
 const LINE: usize = 12;
 /// Pixels beside the legend, and what it says below the strip.
 const MARGIN: usize = 24;
-const SAYS: &str = "error / tolerance; grey: marked";
+const SAYS: &str = "error/tolerance; grey: edges";
 
 /// The map with a legend below it.
 #[must_use]

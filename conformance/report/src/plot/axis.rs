@@ -110,7 +110,7 @@ impl Axis {
         }
     }
 
-    /// The axis, marked at round values, at most so many beside the bands.
+    /// The axis, marked at round values, at most `most` of them, and in its bands.
     pub(super) fn ticked(&self, most: usize) -> Ticked {
         let [low, high] = self.ends();
         let bands = self.bands().into_iter().map(|band| f64::midpoint(band.ends[0], band.ends[1]));

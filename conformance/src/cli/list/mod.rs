@@ -102,16 +102,21 @@ fn signatures(catalogue: &[Member], selected: &[Selected]) -> anyhow::Result<Str
             writeln!(text, "  rule {rule}")?;
         }
         for input in spec.inputs {
-            let (shape, means) = (input.shape.name(), spec.input_means(input));
-            let domain = input.domain.to_string();
-            writeln!(text, "  in   {:<16} {shape:<7} {:<8} {domain:<26} {means}", input.name, input.unit)?;
+            let (shape, means, domain) = (input.shape.name(), spec.input_means(input), input.domain);
+            let unit = with_unit(input.unit);
+            writeln!(text, "  in   {:<14} {shape}{unit}: {means}; {domain}", input.name)?;
         }
         for output in spec.outputs {
             let (shape, means) = (output.shape.name(), spec.output_means(output));
-            writeln!(text, "  out  {:<16} {shape:<7} {:<8} {:26} {means}", output.name, output.unit, "")?;
+            writeln!(text, "  out  {:<14} {shape}{}: {means}", output.name, with_unit(output.unit))?;
         }
     }
     Ok(text)
+}
+
+/// A unit as it stands behind a shape.
+pub(super) fn with_unit(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(", {unit}") }
 }
 
 /// The number of selected pixels of a scene, each of which is a case.

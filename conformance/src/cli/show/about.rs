@@ -1,5 +1,6 @@
 //! What is known of a name that is no case: of a formula, a family, a scene, a deviation, a mistake, a ruling or a source.
 
+use crate::cli::list::with_unit;
 use crate::cli::mistakes::{all_names, document as mistakes};
 use anyhow::bail;
 use lightmeter::cases::Kind;
@@ -23,6 +24,18 @@ use std::fmt::Write as _;
 
 /// What there is to say of a name; `None` where it may be a case.
 pub(super) fn about(name: &str, catalogue: &[Member]) -> anyhow::Result<Option<String>> {
+    if name.trim().is_empty() {
+        bail!("an empty name shows nothing; expected such as `fog/exp`, `scene/phong` or `ruling/9`");
+    }
+    let spelt = ruling_of(name);
+    let name = spelt.as_deref().unwrap_or(name);
+    if name == "rulings" {
+        let lines = RULINGS.iter().map(|ruling| format!("ruling/{:<3} {}\n", ruling.number, ruling.title));
+        return Ok(Some(lines.collect()));
+    }
+    if name == "glossary" {
+        return Ok(Some(GLOSSARY.iter().map(|(words, means)| format!("{words}: {means}\n")).collect()));
+    }
     let id = canonical(name);
     if let Some(member) = catalogue.iter().find(|member| member.spec.id == id) {
         return formula(name, member).map(Some);
@@ -73,6 +86,12 @@ fn of_probes(name: &str, probes: &[&Probe]) -> anyhow::Result<String> {
     write!(text, "{}", table.text("  "))?;
     writeln!(text, "\n  lightmeter special    shows what each adapter gives")?;
     Ok(text)
+}
+
+/// How results write a ruling, `ruling 9`, as the name that it has here.
+fn ruling_of(name: &str) -> Option<String> {
+    let number = name.strip_prefix("ruling")?.trim_start_matches([' ', '-']);
+    (!number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())).then(|| format!("ruling/{number}"))
 }
 
 /// What there is to say of a part of a name: of the one name that has it, or which names do; `None` where none has it.
@@ -131,12 +150,12 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
     writeln!(text, "\ninputs")?;
     for input in spec.inputs {
         let (shape, domain, means) = (input.shape.name(), input.domain, spec.input_means(input));
-        let unit = if input.unit.is_empty() { String::new() } else { format!(", {}", input.unit) };
+        let unit = with_unit(input.unit);
         writeln!(text, "  {:<14} {shape}{unit}: {means}; {domain}", input.name)?;
     }
     writeln!(text, "outputs")?;
     for output in spec.outputs {
-        let unit = if output.unit.is_empty() { String::new() } else { format!(", {}", output.unit) };
+        let unit = with_unit(output.unit);
         writeln!(text, "  {:<14} {}{unit}: {}", output.name, output.shape.name(), spec.output_means(output))?;
     }
     if !spec.hard.is_empty() {

@@ -16,15 +16,16 @@ use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::{Samples, separate_of};
 use lightmeter::document::run::Examined;
-use lightmeter::document::show::{ShowDocument, ShownCase, ShownMistake, ShownStep};
+use lightmeter::document::show::{MistakenStep, ShowDocument, ShownCase, ShownMistake, ShownStep};
 use lightmeter::document::{Document as _, Number};
 use lightmeter::evaluate::Evaluator;
-use lightmeter::faults::{Fault, Variation};
+use lightmeter::faults::{Fault, SeenStep, Variation};
 use lightmeter::filter::Filter;
 use lightmeter::formula::intervals;
 use lightmeter::judge::judge;
 use lightmeter::nearest::did_you_mean;
 use lightmeter::report::Level;
+use lightmeter::report::table::{Align, TextTable};
 use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
 use lightmeter::stability;
 use lightmeter::stability::{Conditioning, FormStanding};
@@ -167,7 +168,17 @@ impl Show {
             value: Number(value[k]),
             interval: [Number(legal[k].low()), Number(legal[k].high())],
         };
-        Ok(ShownMistake { name: fault.name.into(), says: fault.says.into(), outputs: (0..count).map(output).collect() })
+        let step = |SeenStep { name, right, made }| MistakenStep {
+            name: name.into(),
+            right: Number(right),
+            made: Number(made),
+        };
+        Ok(ShownMistake {
+            name: fault.name.into(),
+            says: fault.says.into(),
+            outputs: (0..count).map(output).collect(),
+            steps: variation.steps(inputs).into_iter().map(step).collect(),
+        })
     }
 
     fn row(&self, member: &Member, case: CaseRef) -> Vec<f32> {
@@ -267,12 +278,23 @@ fn find<'a>(catalogue: &'a [Member], id: &str) -> anyhow::Result<(&'a Member, Ca
 /// What a renderer with a mistake gives, and whether it would fail.
 fn mistake_text(mistake: &ShownMistake, outputs: &[Trace]) -> String {
     let mut text = format!("\nas if {}\n", mistake.says);
-    for (made, right) in mistake.outputs.iter().zip(outputs) {
-        let mark = if right.interval.contains(made.value.0) { " " } else { "✗" };
-        let [low, high] = &made.interval;
-        text += &format!("{mark} {:<22} {:<24} from {low} to {high}\n", made.name, made.value.to_string());
+    let left = Align::Left;
+    if !mistake.steps.is_empty() {
+        let mut table = TextTable::new(&[("steps at which it shows", left), ("right", left), ("mistaken", left)]);
+        for step in &mistake.steps {
+            table.row([step.name.to_string(), step.right.narrow().to_string(), step.made.narrow().to_string()]);
+        }
+        text += &table.text("  ");
+        text.push('\n');
     }
-    text
+    let headings = ["", "outputs", "value", "such a renderer gives from", "to"].map(|heading| (heading, left));
+    let mut table = TextTable::new(&headings);
+    for (made, right) in mistake.outputs.iter().zip(outputs) {
+        let mark = if right.interval.contains(made.value.0) { "" } else { "✗" };
+        let [value, low, high] = [&made.value, &made.interval[0], &made.interval[1]].map(|x| x.narrow().to_string());
+        table.row([mark.to_owned(), made.name.to_string(), value, low, high]);
+    }
+    text + &table.text("")
 }
 
 fn outcome(bits: u32, reference: f64, legal: &Accept) -> (&'static str, f64) {
