@@ -236,6 +236,27 @@ fn a_line_that_cannot_be_answered_ends_nothing() {
 }
 
 #[test]
+#[cfg(unix)]
+fn lines_are_refused_though_nobody_reads_that_and_a_line_without_end_ends() {
+    let binary = env!("CARGO_BIN_EXE_lightmeter");
+    let in_shell = |script: &str| {
+        let output = std::process::Command::new("sh").args(["-c", script]).output().expect("a shell");
+        stderr(&output)
+    };
+    // The output is closed before the first answer.
+    let told = in_shell(&format!(
+        "(sleep 0.3; echo bad; echo bad) | {{ '{binary}' eval; echo \"ends with $?\" >&2; }} | true"
+    ));
+    assert!(told.contains("ends with 2"), "{told}");
+    let told = in_shell(&format!("timeout 60 '{binary}' eval < /dev/zero; echo \"ends with $?\" >&2"));
+    assert!(told.contains("a line of more than 67108864 bytes") && told.contains("ends with 2"), "{told}");
+    // So does a renderer's first line.
+    let told =
+        in_shell(&format!("timeout 50 '{binary}' gate --exec 'cat /dev/zero' fog/exp; echo \"ends with $?\" >&2"));
+    assert!(told.contains("a line without end") && told.contains("ends with 4"), "{told}");
+}
+
+#[test]
 fn a_pack_that_was_killed_leaves_nothing_in_the_next_one() {
     let pack = folder("killed").join("pack");
     let path = pack.display().to_string();
@@ -479,7 +500,7 @@ fn any_cut_of_a_file_is_told() {
     });
     assert_eq!(code(&lightmeter(&["gate", &pack, &answers, "--baseline", &baseline, "--update-baseline"])), 0);
     let sweep = ["sweep", "fog/exp", "--over", "p.z", "--from", "-2", "--to", "-1", "--adapter", "cpu", "--checkpoint"];
-    assert_eq!(code(&lightmeter(&[&sweep[..], &[&checkpoint, "--blocks", "2"]].concat())), 0);
+    assert_eq!(code(&lightmeter(&[&sweep[..], &[&checkpoint, "--blocks", "2"]].concat())), 1);
     let written =
         lightmeter::scene::library::SCENES.iter().find(|(name, _)| *name == "fixed-color").expect("it is built in");
     std::fs::write(&scene, written.1).expect("it can be written");
@@ -497,13 +518,15 @@ fn any_cut_of_a_file_is_told() {
     ] {
         let whole = std::fs::read(file).expect("it is there");
         let output = lightmeter(&command);
-        assert_eq!(code(&output), 0, "{command:?}: {}", stderr(&output));
+        // A sweep that is not finished ends with 1, and one whose file is cut with another code.
+        let as_it_was = i32::from(command[0] == "sweep");
+        assert_eq!(code(&output), as_it_was, "{command:?}: {}", stderr(&output));
         // The last byte is the end of a line.
         for part in 1..=12 {
             let end = (whole.len() - 2) * part / 12;
             std::fs::write(file, &whole[..end]).expect("it can be written");
             let output = lightmeter(&command);
-            assert_ne!(code(&output), 0, "{command:?} with {end} of {} bytes of {file}", whole.len());
+            assert!(code(&output) > as_it_was, "{command:?} with {end} of {} bytes of {file}", whole.len());
             let said = stdout(&output) + &stderr(&output);
             assert!(!said.contains("panicked") && !said.trim().is_empty(), "{command:?}: {said}");
         }

@@ -201,11 +201,11 @@ fn what_is_done_in_parts_is_the_same_as_at_once() {
     let once = json(SHORT);
     let parts = short(&["--checkpoint", &checkpoint, "--blocks", "30"]);
     let first = lightmeter(&parts);
-    assert_eq!(code(&first), 0);
+    assert_eq!(code(&first), 1, "what is not finished is not green");
     assert!(stderr(&first).contains("not finished"), "{}", stderr(&first));
     assert_eq!(read(&checkpoint)["done"], 30);
-    for done in [60, 65] {
-        lightmeter(&parts);
+    for (done, status) in [(60, 1), (65, 0)] {
+        assert_eq!(code(&lightmeter(&parts)), status);
         assert_eq!(read(&checkpoint)["done"], done);
     }
     assert_eq!(but_for_times(read(&checkpoint)), but_for_times(once.clone()));
@@ -241,7 +241,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
     assert!(before > 0 && before < blocks, "{before} of {blocks}");
     // A few blocks further, and the same few blocks of a sweep that was never interrupted.
     let further = [&args[..], &["--blocks", "3"]].concat();
-    assert_eq!(code(&lightmeter(&further)), 0);
+    assert_eq!(code(&lightmeter(&further)), 1);
     let resumed = read(&checkpoint);
     assert_eq!(resumed["done"].as_u64(), Some(before + 3));
     let whole = dir.join("whole.json").to_string_lossy().into_owned();
@@ -258,7 +258,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
         "--blocks",
         &count,
     ];
-    assert_eq!(code(&lightmeter(&args)), 0);
+    assert_eq!(code(&lightmeter(&args)), 1);
     assert_eq!(but_for_times(resumed), but_for_times(read(&whole)));
 }
 
@@ -313,7 +313,7 @@ fn a_damaged_checkpoint_is_refused_with_its_path_and_what_to_do() {
     let place = dir.join("damaged.json");
     let path = place.to_string_lossy().into_owned();
     let args = short(&["--adapter", "cpu", "--checkpoint", &path]);
-    assert_eq!(code(&lightmeter(&[&args[..], &["--blocks", "2"]].concat())), 0);
+    assert_eq!(code(&lightmeter(&[&args[..], &["--blocks", "2"]].concat())), 1);
     let good = std::fs::read_to_string(&place).expect("a checkpoint");
     let damages = [
         ("truncated", good[..good.len() / 2].to_owned(), "not JSON"),

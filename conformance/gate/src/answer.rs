@@ -66,7 +66,7 @@ impl Hello {
     pub fn profile(&self, held_to: Option<&'static Profile>) -> Result<&'static Profile, ProcessError> {
         match (held_to, &self.profile) {
             (Some(profile), _) => Ok(profile),
-            (None, Some(name)) => Profile::by_name(name).ok_or_else(|| ProcessError::Profile(name.clone())),
+            (None, Some(name)) => Profile::by_name(name).ok_or_else(|| ProcessError::Profile(clipped(name))),
             (None, None) => Ok(PROFILES[0]),
         }
     }
@@ -369,6 +369,9 @@ pub enum Unread {
     Io(#[from] std::io::Error),
 }
 
+/// Bytes of a line that is too long that are looked through for its end.
+const MOST_SKIPPED: usize = 16 << 20;
+
 /// The next line without its end, in a buffer that never grows beyond [`MOST_BYTES`]; what is too long is read to its end and
 /// dropped. `false` at the end of the stream.
 ///
@@ -376,7 +379,7 @@ pub enum Unread {
 /// Where the line is too long, or the stream fails.
 pub fn next(stream: &mut impl BufRead, line: &mut Vec<u8>) -> Result<bool, Unread> {
     line.clear();
-    let mut dropped = false;
+    let (mut dropped, mut skipped) = (false, 0);
     loop {
         let available = match stream.fill_buf() {
             Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
@@ -394,10 +397,12 @@ pub fn next(stream: &mut impl BufRead, line: &mut Vec<u8>) -> Result<bool, Unrea
             line.extend_from_slice(part);
         } else {
             dropped = true;
+            skipped += part.len();
         }
         let used = part.len() + usize::from(end.is_some());
         stream.consume(used);
-        if end.is_some() {
+        // What has no end at all is told before it ends.
+        if end.is_some() || skipped > MOST_SKIPPED {
             if dropped {
                 return Err(Unread::TooLong);
             }

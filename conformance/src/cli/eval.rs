@@ -39,17 +39,17 @@ impl Eval {
             let member = by_id[&canonical];
             by_id.insert(alias, member);
         }
-        match self.answers(&by_id) {
-            // Whoever does not read the answers any more has read enough.
-            Err(error) if is_broken_pipe(&error) => Ok(Status::Success),
-            status => status,
+        let mut status = Status::Success;
+        match self.answers(&by_id, &mut status) {
+            // Whoever does not read the answers any more has read enough. A line that was refused before is still a wrong one.
+            Err(error) if is_broken_pipe(&error) => Ok(status),
+            answered => answered.map(|()| status),
         }
     }
 
     /// Answers each line: one that nothing can be made of by what is wrong with it.
-    fn answers(&self, by_id: &HashMap<String, &Member>) -> anyhow::Result<Status> {
+    fn answers(&self, by_id: &HashMap<String, &Member>, status: &mut Status) -> anyhow::Result<()> {
         let mut out = std::io::BufWriter::new(std::io::stdout().lock());
-        let mut status = Status::Success;
         let (mut stream, mut line, mut number) = (std::io::stdin().lock(), vec![], 0_u64);
         while next_line(&mut stream, &mut line)? {
             number += 1;
@@ -61,14 +61,13 @@ impl Eval {
             match answer {
                 Ok(answer) => writeln!(out, "{}", serde_json::to_string(&answer)?)?,
                 Err((id, error)) => {
-                    status = Status::BadInput;
+                    *status = Status::BadInput;
                     let refused = EvalRefusal { id, error: format!("line {number}: {error:#}") };
                     writeln!(out, "{}", serde_json::to_string(&refused)?)?;
                 }
             }
         }
-        out.flush()?;
-        Ok(status)
+        Ok(out.flush()?)
     }
 
     fn answer(&self, line: &str, by_id: &HashMap<String, &Member>) -> anyhow::Result<EvalAnswer> {
@@ -114,6 +113,9 @@ impl Eval {
 /// Bytes of a line, at most: more than any formula's inputs take.
 const MOST_BYTES: u64 = 1 << 20;
 
+/// Bytes of a line that is too long that are looked through for its end.
+const MOST_SKIPPED: u64 = 64 << 20;
+
 /// The next line, of which no more is kept than one byte beyond the most; `false` at the end.
 fn next_line(stream: &mut impl BufRead, line: &mut Vec<u8>) -> std::io::Result<bool> {
     line.clear();
@@ -121,7 +123,12 @@ fn next_line(stream: &mut impl BufRead, line: &mut Vec<u8>) -> std::io::Result<b
         return Ok(false);
     }
     if !line.ends_with(b"\n") && line.len() as u64 > MOST_BYTES {
-        stream.skip_until(b'\n')?;
+        let mut rest = stream.take(MOST_SKIPPED);
+        rest.skip_until(b'\n')?;
+        if rest.limit() == 0 {
+            let message = format!("a line of more than {MOST_SKIPPED} bytes; expected a JSON object on each line");
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidData, message));
+        }
     }
     Ok(true)
 }

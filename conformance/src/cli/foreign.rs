@@ -19,6 +19,8 @@ use lightmeter_gpu::{
     vulkan_adapters,
 };
 use lightmeter_scene::effects::effects;
+#[cfg(unix)]
+use rustix::process::{Resource, Rlimit, setrlimit};
 use std::collections::BTreeSet;
 use std::io::{Read, Write as _};
 use std::path::{Path, PathBuf};
@@ -54,6 +56,14 @@ pub(crate) struct Try {
 
 impl Try {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        // Whoever loses the parent that watches it ends by itself: what a shader makes a compiler do may have no end.
+        #[cfg(unix)]
+        {
+            // Time of the processor is counted on all of its cores.
+            let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
+            let most = Some(2 * MOST_TIME.as_secs() * cores);
+            let _ = setrlimit(Resource::Cpu, Rlimit { current: most, maximum: most });
+        }
         // If this process is killed, its parent reports the last of these lines as what was being compiled.
         let under_way = |what: &str| drop(writeln!(std::io::stdout(), "{what}"));
         let shaders = Shaders::from_dir_telling(&self.folder, &|file| under_way(&format!("{file} is read")))?;

@@ -66,7 +66,7 @@ pub(crate) struct Sweep {
     /// Where the state is kept, so that the same command goes on where an interrupted one was
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
-    /// Do this number of blocks now and leave the rest for another time
+    /// Do this number of blocks now and leave the rest for another time; the exit code is 1 until all are done
     #[arg(long, value_name = "N", requires = "checkpoint", value_parser = clap::value_parser!(u64).range(1..))]
     blocks: Option<u64>,
     /// How the result is written
@@ -175,7 +175,8 @@ impl Sweep {
         {
             say(&format!("not finished; the same command goes on from {}", path.display()));
         }
-        Ok(status(document))
+        // Green is only what was judged.
+        Ok(if document.is_finished() { status(document) } else { Status::Failed })
     }
 
     fn asked(&self) -> Asked {
