@@ -75,12 +75,16 @@ mod tests {
     use crate::fault::{Fault, formulas};
     use lightmeter_catalogue::select::CaseRef;
 
+    /// Of the first drawn case in which the mistake shows.
     fn steps(formula: &str, mistake: &str) -> Vec<SeenStep> {
         let member = formulas().iter().find(|member| member.spec.id == formula).expect(formula);
-        let fault = Fault::by_name(mistake).expect(mistake);
+        let variation = Variation::new(member, &[Fault::by_name(mistake).expect(mistake)]).expect("it concerns it");
         let mut row = vec![];
-        member.inputs(CaseRef::Random(21), 1, &mut row);
-        Variation::new(member, &[fault]).expect("it concerns it").steps(&row)
+        let of_case = |index| {
+            member.inputs(CaseRef::Random(index), 1, &mut row);
+            variation.steps(&row)
+        };
+        (0..256).map(of_case).find(|steps| !steps.is_empty()).expect("a case in which the mistake shows")
     }
 
     #[test]
@@ -90,6 +94,6 @@ mod tests {
         assert!(found[0].made > found[0].right && found.iter().any(|step| step.name == "f"), "{found:?}");
         // What is computed before the mistake is as it should be.
         let found = steps("lighting/blinn", "no-diffuse");
-        assert!(!found.is_empty() && found.iter().all(|step| step.name != "h"), "{found:?}");
+        assert!(found.iter().all(|step| step.name != "h"), "{found:?}");
     }
 }
