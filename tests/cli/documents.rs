@@ -26,11 +26,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// What `lightmeter schema` prints and `docs/schemas/` has, but for the scene.
-const NAMES: [&str; 19] = [
+const NAMES: [&str; 20] = [
     "mistakes",
     "run",
     "special",
     "gate",
+    "identify",
     "pack",
     "protocol",
     "frame",

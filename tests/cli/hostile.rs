@@ -149,10 +149,25 @@ fn a_baseline_that_says_what_cannot_be_is_refused() {
             "cases did not pass of",
         ),
         (&|report: &mut Value| report["groups"] = Value::Array(vec![]), "it contains no results to compare with"),
+        (&|report: &mut Value| report["groups"][0]["asked"] = 1.into(), "its totals count"),
+        (
+            &|report: &mut Value| {
+                let again = report["groups"][0].clone();
+                for count in ["asked", "verdicts", "indeterminate"] {
+                    report["totals"][count] = (2 * report["totals"][count].as_u64().expect("a count")).into();
+                }
+                report["groups"].as_array_mut().expect("a list").push(again);
+            },
+            "fog/exp stands there twice",
+        ),
     ] {
         let baseline = with(edit);
         refused(&["gate", &pack, &answers, "--baseline", &baseline], says);
     }
+    let twice = whole.to_string().replacen("\"groups\":", "\"groups\":[],\"groups\":", 1);
+    std::fs::write(&file, twice).expect("it can be written");
+    let baseline = file.display().to_string();
+    refused(&["gate", &pack, &answers, "--baseline", &baseline], "field `groups` stands there twice");
     // Words that are not ASCII, and controls, are words like others.
     let baseline = with(&|report| {
         report["groups"][0]["not_passed"]["failed"] = vec!["größer\u{1b}[2J..é\u{202e}"].into();
@@ -291,6 +306,18 @@ fn a_path_need_not_be_utf_8() {
     let folder = folder("path");
     let out = folder.join(std::ffi::OsStr::from_bytes(b"out-\xff.json"));
     let (pack, answers) = answered("path-asked", &["fog/exp"]);
+    let [strange_pack, strange_answers, scene] = [&b"pack-\xff"[..], b"answers-\xff.jsonl", b"scene-\xff.json"]
+        .map(|name| folder.join(std::ffi::OsStr::from_bytes(name)));
+    std::fs::rename(&pack, &strange_pack).expect("it can be renamed");
+    std::fs::rename(&answers, &strange_answers).expect("it can be renamed");
+    let output = command(&["gate"]).args([&strange_pack, &strange_answers]).output().expect("the binary starts");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    std::fs::rename(&strange_pack, &pack).expect("it can be renamed");
+    std::fs::rename(&strange_answers, &answers).expect("it can be renamed");
+    let fog = Path::new(env!("CARGO_MANIFEST_DIR")).join("catalogue/scenes/fog-exp.json");
+    std::fs::copy(fog, &scene).expect("it can be copied");
+    let output = command(&["effects"]).arg(&scene).output().expect("the binary starts");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
     for flag in ["--out", "--baseline"] {
         let mut gate = command(&["gate", &pack.display().to_string(), &answers.display().to_string()]);
         let output = gate.args(["--format", "json", flag]).arg(&out).output().expect("the binary starts");

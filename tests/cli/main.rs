@@ -15,6 +15,7 @@ mod mistakes;
 mod project;
 mod scene;
 mod selftest;
+mod shader;
 mod shader_bugs;
 mod signals;
 mod snapshots;
@@ -360,7 +361,7 @@ fn malformed_lines_are_named() {
 #[test]
 fn bad_usage_is_told_with_its_code() {
     let rows: &[(&[&str], i32, &str)] = &[
-        (&["run", "--adapter", "vodoo"], 2, "no adapter `vodoo`; there are"),
+        (&["run", "--adapter", "vodoo"], 2, "no adapter `vodoo`. There are"),
         (&["run", "frog"], 2, "no case matches `frog`"),
         (&["run", "fog", "frog"], 2, "no case matches `frog`"),
         (&["run", "fog/[", "--adapter", "cpu"], 2, "is not a glob"),
@@ -371,7 +372,7 @@ fn bad_usage_is_told_with_its_code() {
         (&["run", "blend/separate/add.zero/min"], 2, "no case matches"),
         (&["run", "--separate", "many"], 2, "invalid value"),
         (&["selftest", "--format", "junit"], 2, "[possible values: text, json]"),
-        (&["show", "fog/linear/hard/nothing"], 2, "no case `fog/linear/hard/nothing`; `fog/linear` has cases such as"),
+        (&["show", "fog/linear/hard/nothing"], 2, "no case `fog/linear/hard/nothing`; did you mean"),
         (&["show", "frog"], 2, "there is no `frog`"),
         (
             &["run", "fog", "--adapter", "cpu", "--cases", "8", "--out", "/nowhere/file"],

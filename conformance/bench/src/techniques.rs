@@ -243,7 +243,7 @@ span!(Span1024 By1024 1024 "technique/span-1024" "technique/span-1024-by-differe
 span!(Span4096 By4096 4096 "technique/span-4096" "technique/span-4096-by-differences" "technique_span_4096" "technique_span_4096_by_differences");
 
 fn technique(name: &'static str, what: &'static str, formula: impl Formula) -> Technique {
-    Technique { name, what, member: Member { spec: formula.spec(), formula: Box::new(formula) } }
+    Technique { name, what, member: Member::new(Box::new(formula)) }
 }
 
 /// All of them.

@@ -1,18 +1,22 @@
 //! What somebody may have meant who wrote a name that does not exist.
 
+use std::collections::HashSet;
+
 /// Names that are told at most.
 const MOST_TOLD: usize = 3;
 /// The part of a name's letters that may be wrong.
 const MOST_WRONG: f64 = 0.4;
 
-/// The names nearest to what was typed, the nearest first: those that contain it, and those that differ in few letters. Of an id the last
-/// part may be typed alone.
+/// The names nearest to what was typed, the nearest first: those that contain it, and those that differ in few letters. Of an id the first
+/// part, its family, may be typed alone, and the last.
 #[must_use]
 pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let typed = typed.to_lowercase();
     let is_path = typed.contains('/');
+    let family = |name: &'a str| name.split_once('/').filter(|_| !is_path).map(|(family, _)| family);
     let mut found: Vec<(f64, &str)> = names
         .into_iter()
+        .flat_map(|name| family(name).into_iter().chain([name]))
         .filter_map(|name| {
             let whole = name.to_lowercase();
             let last = whole.rsplit('/').next().unwrap_or_default();
@@ -26,8 +30,8 @@ pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Vec
         })
         .collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.len().cmp(&b.1.len())));
-    found.dedup_by(|a, b| a.1 == b.1);
-    found.into_iter().take(MOST_TOLD).map(|(_, name)| name).collect()
+    let mut told = HashSet::new();
+    found.into_iter().map(|(_, name)| name).filter(|name| told.insert(*name)).take(MOST_TOLD).collect()
 }
 
 /// The same as the end of a sentence: `; did you mean …?`, or a full stop.
@@ -52,6 +56,7 @@ mod tests {
         assert_eq!(nearest("blin", names), ["lighting/blinn"]);
         assert_eq!(nearest("shinines", names), ["shininess-doubled"]);
         assert_eq!(nearest("nothing-like-it", names), [""; 0]);
+        assert_eq!(nearest("fgo", names), ["fog"]);
         assert_eq!(did_you_mean("fgo/exp", names), "; did you mean `fog/exp`?");
     }
 }

@@ -20,15 +20,34 @@ pub enum CaseRef {
 /// Cases near each hard one.
 const NEAR: u64 = 32;
 
+/// What a number of a row is where it is not drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Held {
+    /// The same in every case.
+    Number(f32),
+    /// What the number at another place is.
+    SameAs(usize),
+}
+
 /// A formula with its description.
 pub struct Member {
     /// The formula.
     pub formula: Box<dyn AnyFormula>,
     /// Its description.
     pub spec: Spec,
+    /// Numbers of a row that are not drawn, by their places: what whoever is judged has as a constant, or in common with another input.
+    pub held: Vec<(usize, Held)>,
+    /// Numbers of its outputs that whoever is judged does not give, by their places.
+    pub missing: Vec<usize>,
 }
 
 impl Member {
+    /// A formula with its description.
+    #[must_use]
+    pub fn new(formula: Box<dyn AnyFormula>) -> Self {
+        Self { spec: formula.spec(), formula, held: vec![], missing: vec![] }
+    }
+
     /// Whether it is one of the many blend states, whose cases stand right below it.
     fn is_state(&self) -> bool {
         matches!(self.spec.kind, Kind::Blend(Program::Draw(..)))
@@ -74,6 +93,17 @@ impl Member {
 
     /// The case's inputs, appended to a row.
     pub fn inputs(&self, case: CaseRef, seed: u64, row: &mut Vec<f32>) {
+        let start = row.len();
+        self.drawn(case, seed, row);
+        for &(place, held) in &self.held {
+            row[start + place] = match held {
+                Held::Number(value) => value,
+                Held::SameAs(other) => row[start + other],
+            };
+        }
+    }
+
+    fn drawn(&self, case: CaseRef, seed: u64, row: &mut Vec<f32>) {
         match case {
             CaseRef::Random(k) => cases::inputs(&self.spec, seed, k, row),
             CaseRef::Hard(place) => {
@@ -88,7 +118,7 @@ impl Member {
             }
             CaseRef::Near(place, k) => {
                 let start = row.len();
-                self.inputs(CaseRef::Hard(place), seed, row);
+                self.drawn(CaseRef::Hard(place), seed, row);
                 cases::move_by_ulps(&self.spec, &self.spec.hard[place], k, &mut row[start..]);
             }
         }
@@ -215,20 +245,20 @@ pub fn catalogue() -> Vec<Member> {
 /// The formulas in order, with the states that are to be sampled.
 #[must_use]
 pub fn catalogue_of(samples: &Samples) -> Vec<Member> {
-    cases::all(samples).into_iter().map(|formula| Member { spec: formula.spec(), formula }).collect()
+    cases::all(samples).into_iter().map(Member::new).collect()
 }
 
 /// The blend states that are judged under another's name, under their own.
 #[must_use]
 pub fn alias_members() -> Vec<Member> {
-    cases::blend::alias_formulas().into_iter().map(|formula| Member { spec: formula.spec(), formula }).collect()
+    cases::blend::alias_formulas().into_iter().map(Member::new).collect()
 }
 
 /// A state with another one for alpha, whether the catalogue has it or not.
 #[must_use]
 pub fn separate_member(state: Separate) -> Member {
     let formula = cases::blend::separate_formula(state);
-    Member { spec: formula.spec(), formula }
+    Member::new(formula)
 }
 
 /// The cases of a catalogue that a filter and a shard select, of `cases` random ones for each formula.

@@ -42,7 +42,6 @@ pub struct GateReport {
     #[serde(default)]
     pub seconds: f64,
     /// Counts over all groups.
-    #[serde(default)]
     pub totals: GateTotals,
     /// Lines that cannot be read as answers, or answer what nobody asked.
     #[serde(default)]

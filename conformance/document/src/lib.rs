@@ -10,6 +10,7 @@ pub mod eval;
 pub mod event;
 pub mod frame;
 pub mod gate;
+pub mod identify;
 pub mod list;
 pub mod mistakes;
 mod number;
@@ -89,7 +90,10 @@ fn schema<T: JsonSchema>() -> Schema {
 }
 
 fn read<T: Document + DeserializeOwned>(json: &str) -> Result<T, ReadError> {
-    let value: Value = serde_json::from_str(json).map_err(|error| ReadError::Json(error.to_string(), T::WHAT))?;
+    let Unique(value) = serde_json::from_str(json).map_err(|error| {
+        let wrong = if error.is_data() { ReadError::Field } else { ReadError::Json };
+        wrong(error.to_string(), T::WHAT)
+    })?;
     if value["schema"] != T::SCHEMA {
         let found = value["schema"].as_str().map_or_else(|| "none".into(), |name| format!("`{name}`"));
         return Err(ReadError::Schema { found, schema: T::SCHEMA, what: T::WHAT });
@@ -142,6 +146,7 @@ documents! {
     effects::EffectsDocument: effects::SCHEMA, "the JSON of `lightmeter effects --format json`";
     gate::GateReport: gate::SCHEMA, "the JSON of `lightmeter gate --format json`";
     mistakes::MistakesDocument: mistakes::SCHEMA, "the JSON of `lightmeter mistakes --format json`";
+    identify::IdentifyDocument: identify::SCHEMA, "the JSON of `lightmeter identify --format json`";
     list::CasesDocument: list::CASES, "the JSON of `lightmeter list --format json`";
     list::FormulasDocument: list::FORMULAS, "the JSON of `lightmeter list --formulas --format json`";
     pack::Manifest: pack::SCHEMA, "the manifest of `lightmeter pack`";

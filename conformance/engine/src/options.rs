@@ -4,9 +4,10 @@ use crate::device::Code;
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
 use lightmeter_arithmetic::profile::PROFILES;
+use lightmeter_catalogue::cases::Partial;
 use lightmeter_catalogue::cases::blend::Samples;
 use lightmeter_catalogue::filter::Filter;
-use lightmeter_catalogue::select::Shard;
+use lightmeter_catalogue::select::{Held, Member, Shard};
 use lightmeter_document::event::Stop;
 use lightmeter_document::run::Report;
 use lightmeter_judge::cases::ExpectedFailure;
@@ -60,6 +61,53 @@ pub struct Options {
     pub counts_cases: bool,
     /// How often all is asked. An answer that changes is unstable.
     pub runs: u64,
+    /// What the code under test gives of formulas, where that is not all.
+    pub adapted: Vec<Adapted>,
+}
+
+/// How a formula is judged of code that was written for something a little different.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Adapted {
+    /// The formula.
+    pub id: String,
+    /// The outputs that are not given, of which nothing is judged.
+    pub missing: Vec<String>,
+    /// Inputs that are constants there, and the same in all cases, or that are the same as another input.
+    pub constants: Vec<(String, Constant)>,
+}
+
+/// What an input is that a shader has not.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Constant {
+    /// These numbers, in every case.
+    Numbers(Vec<f32>),
+    /// What another input is.
+    SameAs(String),
+}
+
+impl Adapted {
+    /// The formula as it is judged.
+    #[must_use]
+    pub fn applied(&self, member: Member) -> Member {
+        let spec = &member.spec;
+        let given = spec.outputs.iter().flat_map(|output| {
+            std::iter::repeat_n(!self.missing.iter().any(|name| name == output.name), output.shape.components())
+        });
+        let given: Vec<bool> = given.collect();
+        let place = |name: &str| spec.place(name).unwrap_or_default();
+        let held = self.constants.iter().flat_map(|(name, constant)| -> Vec<(usize, Held)> {
+            match constant {
+                Constant::Numbers(values) => place(name).zip(values.iter().copied().map(Held::Number)).collect(),
+                Constant::SameAs(other) => place(name).zip(place(other).map(Held::SameAs)).collect(),
+            }
+        });
+        let held = held.collect();
+        let missing: Vec<usize> =
+            given.iter().enumerate().filter(|(_, given)| !**given).map(|(place, _)| place).collect();
+        let formula =
+            if missing.is_empty() { member.formula } else { Box::new(Partial { formula: member.formula, given }) };
+        Member { held, formula, missing, spec: member.spec }
+    }
 }
 
 impl Options {
@@ -109,6 +157,7 @@ impl Options {
             expected: vec![],
             counts_cases: false,
             runs: 1,
+            adapted: vec![],
         }
     }
 

@@ -94,7 +94,11 @@ impl Selection {
     /// What the options select. With any case the witnesses of all deviations are asked; without, those that the filter names.
     #[must_use]
     pub fn of(options: &Options) -> Self {
-        let catalogue: Arc<[Member]> = catalogue_of(&options.samples).into();
+        let adapted = |member: Member| match options.adapted.iter().find(|adapted| adapted.id == member.spec.id) {
+            Some(adapted) => adapted.applied(member),
+            None => member,
+        };
+        let catalogue: Arc<[Member]> = catalogue_of(&options.samples).into_iter().map(adapted).collect();
         let formulas = select(&catalogue, &options.filter, options.cases, options.shard);
         let tables = verdict::select(&options.filter, options.shard);
         let size = lightmeter_catalogue::scene::select::size(&options.filter, options.size);

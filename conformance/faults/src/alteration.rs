@@ -106,6 +106,8 @@ pub(super) enum Form {
     RescaledCone,
     /// The cone without its edge.
     ConeWithoutEdge,
+    /// The spotlight shines where its cone is not.
+    ConeTurned,
     /// |z|.
     Planar,
     /// |p|.
@@ -206,7 +208,8 @@ impl Form {
             | Self::SmoothConeAlone
             | Self::LinearCone
             | Self::RescaledCone
-            | Self::ConeWithoutEdge => &[&["cosine", "cutoff_cosine", "exponent"]],
+            | Self::ConeWithoutEdge
+            | Self::ConeTurned => &[&["cosine", "cutoff_cosine", "exponent"]],
             Self::Planar | Self::Radial | Self::SignedDepth | Self::NegatedDepth => &[&["p"]],
             Self::FogExp | Self::FogExp2Document | Self::FogExp2OpenGl | Self::FogRational => {
                 &[&["distance", "density"]]
@@ -371,9 +374,12 @@ fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::Gated | Form::GateTurned | Form::TimesIncidence | Form::HalfLambert { .. } => incident(form, taken),
         Form::Fresnel { over_pi } => fresnel(over_pi, taken),
         Form::NotInverted | Form::QuadraticOfDistance | Form::QuadraticOfProduct => attenuated(form, taken),
-        Form::SmoothCone | Form::SmoothConeAlone | Form::LinearCone | Form::RescaledCone | Form::ConeWithoutEdge => {
-            cone(form, taken)
-        }
+        Form::SmoothCone
+        | Form::SmoothConeAlone
+        | Form::LinearCone
+        | Form::RescaledCone
+        | Form::ConeWithoutEdge
+        | Form::ConeTurned => cone(form, taken),
         Form::Planar | Form::Radial | Form::SignedDepth | Form::NegatedDepth | Form::SquaredLength => {
             length(form, taken)
         }
@@ -520,6 +526,7 @@ fn cone<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::SmoothConeAlone => smoothstep(cutoff, one, cosine),
         Form::LinearCone => rescaled() * power(),
         Form::ConeWithoutEdge => R::if_ge(cutoff, cosine, || zero, power),
+        Form::ConeTurned => R::if_ge(cosine, cutoff, || zero, power),
         _ => R::if_ge(cosine, cutoff, || R::if_ge(zero, exponent, || one, || rescaled().lobe(exponent)), || zero),
     };
     give(taken, [share])

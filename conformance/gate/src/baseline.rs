@@ -6,7 +6,7 @@ use lightmeter_document::Document;
 use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::gate::{GateGroup, GateReport, cases};
 use lightmeter_document::pack::Choice;
-use lightmeter_document::run::{Group, Report};
+use lightmeter_document::run::{Group, Report, Totals};
 use lightmeter_files::read::MOST_TEXT;
 use lightmeter_files::shown;
 use lightmeter_judge::cases::{count_of, expanded};
@@ -36,6 +36,8 @@ pub struct Standard {
     groups: Vec<ComparedGroup>,
     /// Failures that are expected, by their globs.
     expected: Vec<String>,
+    /// What is counted over all groups: its name, the count that the result gives, and the sum of the groups' counts.
+    sums: Vec<(&'static str, u64, u64)>,
     /// Why it is no standard to hold others to.
     unfit: Option<&'static str>,
 }
@@ -61,7 +63,18 @@ impl From<&GateReport> for Standard {
             (!report.has_judged(), "nothing was judged"),
         ];
         let compared_by = report.compared_by.clone().unwrap_or_default();
+        let totals = &report.totals;
+        let sum = |count: fn(&GateGroup) -> u64| report.groups.iter().map(count).fold(0, u64::saturating_add);
+        let sums = vec![
+            ("asked", totals.asked, sum(|group| group.asked)),
+            ("failed", totals.failed, sum(|group| group.failed)),
+            ("skipped", totals.skipped, sum(|group| group.skipped)),
+            ("missing", totals.missing, sum(|group| group.missing)),
+            ("verdicts", totals.verdicts, sum(|group| group.verdicts)),
+            ("indeterminate", totals.indeterminate, sum(|group| group.indeterminate)),
+        ];
         Self {
+            sums,
             choice: report.choice.clone(),
             generator: report.generator,
             profile: report.profile.clone(),
@@ -98,7 +111,19 @@ impl From<&Report> for Standard {
             (report.totals.verdicts == report.totals.indeterminate, "nothing was judged"),
         ];
         let compared_by = report.compared_by.clone().unwrap_or_default();
+        let mut sum = Totals::default();
+        report.groups.iter().for_each(|group| sum.add(&group.totals));
+        let totals = &report.totals;
+        let sums = vec![
+            ("cases", totals.cases, sum.cases),
+            ("verdicts", totals.verdicts, sum.verdicts),
+            ("passed", totals.passed, sum.passed),
+            ("failed", totals.failed, sum.failed),
+            ("skipped", totals.skipped, sum.skipped),
+            ("indeterminate", totals.indeterminate, sum.indeterminate),
+        ];
         Self {
+            sums,
             choice: compared_by.choice,
             generator: compared_by.generator,
             profile: report.profile.to_string(),
@@ -199,7 +224,18 @@ impl Baseline {
                     .into(),
             );
         }
+        for (what, total, sum) in &standard.sums {
+            if total != sum {
+                return refused(format!(
+                    "its totals count {total} {what}, and its groups {sum}: it was changed by hand"
+                ));
+            }
+        }
+        let mut names = HashSet::new();
         for ComparedGroup { name, counts, .. } in &standard.groups {
+            if !names.insert(name) {
+                return refused(format!("{name} stands there twice"));
+            }
             let named = counts.not_passed.values().flatten().map(|text| count_of(text));
             let named = named.fold(0, u64::saturating_add);
             if named > counts.asked {

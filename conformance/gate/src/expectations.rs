@@ -1,6 +1,6 @@
 //! Known failures, written down with their reason: they do not fail a gate, and it says so when they pass.
 
-use super::given::refused;
+use super::given::{is_everything, refused};
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::gate::KnownFailure;
@@ -119,7 +119,8 @@ impl Expectations {
             let version = versions(written.version.as_deref(), &format!("expected[{k}]"))?;
             Ok((written, filter, version))
         };
-        let written = file.expected.into_iter().enumerate().map(read).collect::<Result<_, String>>()?;
+        let written = file.expected.into_iter().enumerate().map(read).collect::<Result<Vec<_>, String>>()?;
+        nothing_is_left(&written)?;
         let read = |(k, skip): (usize, WrittenSkip)| {
             let filter = Filter::new(std::slice::from_ref(&skip.id)).map_err(|error| error.to_string())?;
             if let Some(why) = refused(&filter, &skip.reason) {
@@ -168,6 +169,22 @@ impl Expectations {
         };
         self.skipped.iter().filter(concerns).map(|(_, filter, _)| filter.clone()).collect()
     }
+}
+
+/// Refuses entries that leave nothing to be judged together: those that may pass, of any renderer and of one by name.
+fn nothing_is_left(written: &[(Written, Filter, Option<VersionReq>)]) -> Result<(), String> {
+    let may_pass: Vec<_> = written.iter().filter(|(written, ..)| written.may_pass).collect();
+    for (one, ..) in &may_pass {
+        let concerns = |other: &Written| other.renderer.is_none() || other.renderer == one.renderer;
+        let together = may_pass.iter().filter(|(other, ..)| concerns(other)).map(|(_, filter, _)| filter);
+        if is_everything(&together.collect::<Vec<_>>()) {
+            let whose = one.renderer.as_ref().map_or_else(String::new, |renderer| format!(" of `{renderer}`"));
+            return Err(format!(
+                "the entries{whose} with `may_pass` match everything together; then nothing could fail"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// The stages and targets that something can be known to fail on.
@@ -226,6 +243,11 @@ mod tests {
             ("[[expect]]\nid = \"fog\"\nreason = \"r\"", "unknown field `expect`"),
             ("[[expected]]\nid = \"[\"\nreason = \"r\"", "["),
             ("[[expected]]\nid = \"**\"\nreason = \"r\"\nmay_pass = true", "expected[0] `**` matches everything"),
+            (
+                "[[expected]]\nid = \"[a-f]*/**\"\nreason = \"r\"\nmay_pass = true\n\
+                 [[expected]]\nid = \"[g-z]*\"\nreason = \"r\"\nrenderer = \"one\"\nmay_pass = true",
+                "the entries of `one` with `may_pass` match everything together",
+            ),
             ("[[skipped]]\nid = \"*\"\nreason = \"r\"", "skipped[0] `*` matches everything"),
             ("[[skipped]]\nid = \"fog\"\nreason = \"\"", "skipped[0] `fog` has no reason"),
         ] {

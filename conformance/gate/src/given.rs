@@ -140,11 +140,16 @@ impl Skips {
 
 /// Why something may not be left out; `None` where it may.
 pub(super) fn refused(filter: &Filter, reason: &str) -> Option<String> {
-    let is_everything = ["color/sum", "vector/reflect", "lighting/phong", "fog/exp", "blend/max", "scene/phong"];
-    if is_everything.iter().all(|id| filter.selects(id)) {
+    if is_everything(&[filter]) {
         return Some("matches everything; expected the formulas or cases that are meant".into());
     }
     reason.trim().is_empty().then(|| "has no reason".into())
+}
+
+/// Whether filters select everything together: a formula or scene of each kind.
+pub(super) fn is_everything(filters: &[&Filter]) -> bool {
+    let of_each_kind = ["color/sum", "vector/reflect", "lighting/phong", "fog/exp", "blend/max", "scene/phong"];
+    of_each_kind.iter().all(|id| filters.iter().any(|filter| filter.selects(id)))
 }
 
 /// The bits of a result of this type that is given as a number: of a float the nearest f32, else an integer of 32 bits, which may have a

@@ -6,6 +6,7 @@ use super::plan::{CasePlace, GatePlan};
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{GENERATOR_VERSION, Input, Kind, Output, Spec, ValueShape};
 use lightmeter_catalogue::special::Probe;
+use lightmeter_document::Unique;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
 use lightmeter_document::protocol::{CaseRequest, LayerRequest, ProbeRequest};
 use lightmeter_document::{Document as _, Number, Word};
@@ -349,7 +350,7 @@ pub fn read(folder: &Path) -> Result<GatePlan, PackError> {
         message: format!("{error}; `lightmeter pack DIR` writes a pack"),
     })?;
     let refused = |message: String| PackError::Manifest { path: path.clone(), message };
-    let value: Value = serde_json::from_str(&text).map_err(|error| refused(format!("it is damaged: {error}")))?;
+    let Unique(value) = serde_json::from_str(&text).map_err(|error| refused(format!("it is damaged: {error}")))?;
     match value.get("schema").and_then(Value::as_str) {
         Some(SCHEMA) => {}
         found => {

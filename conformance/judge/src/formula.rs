@@ -198,6 +198,9 @@ fn judge_values(
     let (mut greatest, mut errors) = (0.0, (0.0, 0));
     tally.totals.cases += 1;
     for (output, at) in range.clone().enumerate() {
+        if member.missing.contains(&output) {
+            continue;
+        }
         let (bits, reference) = (words[at], chunk.references[at]);
         let verdict = judge(bits, reference, &legal[output]);
         let excused = match verdict.outcome {

@@ -2,9 +2,10 @@
 
 use super::options::Choice;
 use super::progress::Bar;
+use super::shader::ShaderChoice;
 use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
-use super::{NothingToRun, Status, emit, foreign, show, writable};
+use super::{NothingToRun, Status, emit, show, writable};
 use clap::{Args, ValueEnum};
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
@@ -22,7 +23,6 @@ use lightmeter::scene::select::scene_id;
 use lightmeter::select::catalogue;
 use lightmeter::subject_gpu::device_error;
 use lightmeter_gpu::ClockKind;
-use lightmeter_gpu::Shaders;
 use std::path::{Path, PathBuf};
 
 /// Measure what accuracy costs in time: each technique at each rung of the ladder, its error and its time.
@@ -46,9 +46,8 @@ pub(crate) struct Bench {
     /// Accuracy rules: wgsl, vulkan or opengl
     #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
     profile: &'static Profile,
-    /// Measure the WGSL in this folder in place of the built-in files of the same names
-    #[arg(long, value_name = "DIR")]
-    shaders: Option<PathBuf>,
+    #[command(flatten)]
+    shaders: ShaderChoice,
     /// Name the cheapest row of each group whose largest error is at most this: absolute as `1e-4`, or `4ulp`, or `0.5/255`
     #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
     recommend: Option<Limit>,
@@ -96,11 +95,10 @@ impl Bench {
             let loaded = load::scene(file).map_err(|error| anyhow::anyhow!("{file}: {error}"))?;
             Ok((name, loaded))
         });
-        if let Some(folder) = &self.shaders {
-            foreign::accept(folder, &self.adapter, true)?;
-        }
+        let filter = Filter::new(&globs)?;
+        let accepted = self.shaders.accepted(&filter, &self.adapter, true)?;
         let options = BenchOptions {
-            filter: Filter::new(&globs)?,
+            filter,
             scenes: scenes.collect::<anyhow::Result<_>>()?,
             quick: self.quick,
             seed: self.seed,
@@ -109,7 +107,7 @@ impl Bench {
                 Clock::Wall => ClockKind::Wall,
             }),
             profile: self.profile,
-            shaders: self.shaders.as_deref().map_or_else(Shaders::built_in, Shaders::from_dir)?,
+            shaders: accepted.shaders()?,
             command: self.command(),
             stop: stopped_by_signals()?,
         };
@@ -193,9 +191,7 @@ impl Bench {
         if self.profile.name != "wgsl" {
             command += &format!(" --profile {}", self.profile.name);
         }
-        if let Some(folder) = &self.shaders {
-            command += &format!(" --shaders '{}'", folder.display());
-        }
+        command += &self.shaders.rerun().unwrap_or_default();
         command
     }
 

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct Effects {
     /// A scene's file, or the name of a built-in scene
-    scene: String,
+    scene: PathBuf,
     /// How it is written
     #[arg(long, value_enum, default_value = "text")]
     format: Format,

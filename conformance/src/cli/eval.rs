@@ -11,6 +11,7 @@ use lightmeter::cases::blend::{aliases, separate_of};
 use lightmeter::document::Number;
 use lightmeter::document::eval::{EvalAnswer, EvalRefusal, EvalRequest};
 use lightmeter::faults::{Fault, Variation};
+use lightmeter::nearest::did_you_mean;
 use lightmeter::select::{Member, catalogue, separate_member};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -75,8 +76,10 @@ impl Eval {
         // Of the states separate for alpha the catalogue has some; any can be named.
         let separate = separate_formula(&formula);
         let member = by_id.get(&formula).copied().or(separate.as_ref());
-        let member =
-            member.with_context(|| format!("field `formula`: no formula `{formula}`; see `lightmeter list`"))?;
+        let member = member.with_context(|| {
+            let meant = did_you_mean(&formula, by_id.keys().map(String::as_str));
+            format!("field `formula`: no formula `{formula}`{meant} See `lightmeter list`")
+        })?;
         let inputs = row(member, &inputs)?;
 
         let outputs = member.spec.output_len();

@@ -22,14 +22,18 @@ use lightmeter_scene::effects::effects;
 #[cfg(unix)]
 use rustix::process::{Resource, Rlimit, setrlimit};
 use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::io::{Read, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// How long shaders may take to be read and compiled.
 const MOST_TIME: Duration = Duration::from_secs(60);
+/// How long a shader may take for a few rows.
+const MOST_RUN: Duration = Duration::from_secs(10);
 /// Bytes of memory that this may take.
 const MOST_MEMORY: u64 = 4 << 30;
 /// How often it is looked how much it takes.
@@ -56,14 +60,7 @@ pub(crate) struct Try {
 
 impl Try {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        // Whoever loses the parent that watches it ends by itself: what a shader makes a compiler do may have no end.
-        #[cfg(unix)]
-        {
-            // Time of the processor is counted on all of its cores.
-            let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
-            let most = Some(2 * MOST_TIME.as_secs() * cores);
-            let _ = setrlimit(Resource::Cpu, Rlimit { current: most, maximum: most });
-        }
+        limit_time();
         // If this process is killed, its parent reports the last of these lines as what was being compiled.
         let under_way = |what: &str| drop(writeln!(std::io::stdout(), "{what}"));
         let shaders = Shaders::from_dir_telling(&self.folder, &|file| under_way(&format!("{file} is read")))?;
@@ -85,19 +82,56 @@ impl Try {
     }
 }
 
+/// Limits the processor's time of a process that reads shaders of others: if it loses the parent that watches it, it ends by itself.
+pub(crate) fn limit_time() {
+    #[cfg(unix)]
+    {
+        // Time of the processor is counted on all of its cores.
+        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
+        let most = Some(2 * MOST_TIME.as_secs() * cores);
+        let _ = setrlimit(Resource::Cpu, Rlimit { current: most, maximum: most });
+    }
+}
+
 /// Compiles each function that is not as it was.
 fn functions_compile(gpu: &Gpu, [built_in, shaders]: [&Shaders; 2], under_way: &dyn Fn(&str)) -> anyhow::Result<()> {
     for (file, text) in shaders.texts() {
         let before = built_in.texts().find(|(name, _)| *name == file).map_or("", |(_, text)| text);
-        for function in changed(before, text) {
+        // Of a single shader's functions the formula's own call what they need.
+        for function in changed(before, text).into_iter().filter(|name| !name.starts_with("user_")) {
             under_way(&format!("`{function}` of {file} is compiled"));
             // What takes other than numbers is part of something that does not, or of a scene.
             let Ok(kernel) = Kernel::new(shaders, file, function) else { continue };
             // An adapter may lack what the stage takes: the command that was asked for says so.
-            let _ = ArithmeticPipeline::new(gpu, &kernel, Programmable::Compute)?;
+            let pipeline = ArithmeticPipeline::new(gpu, &kernel, Programmable::Compute)?;
+            // Of a shader as somebody wrote it, it is seen whether it ends.
+            if let Ok(pipeline) = pipeline
+                && text.contains("fn user_entry(")
+            {
+                under_way(&format!("`{function}` of {file} runs"));
+                let ends = ends_in_time();
+                let rows: Vec<f32> = [0.0, 0.5, 1.0].iter().flat_map(|&x| vec![x; kernel.inputs]).collect();
+                pipeline.submit(gpu, &rows).wait(gpu)?;
+                drop(ends);
+            }
         }
     }
     Ok(())
+}
+
+/// Ends this process where what is returned is not dropped in time: a device that does not come back cannot be asked to stop.
+fn ends_in_time() -> Sender<()> {
+    let (sender, receiver) = channel::<()>();
+    std::thread::spawn(move || {
+        if receiver.recv_timeout(MOST_RUN) == Err(RecvTimeoutError::Timeout) {
+            super::say(&format!(
+                "error: the shader runs for more than {} s on three rows of inputs; has it a loop that does not end?",
+                MOST_RUN.as_secs()
+            ));
+            std::process::exit(2);
+        }
+    });
+    sender
 }
 
 /// Compiles what drives the rasteriser, the depth test and the blend unit, where it is not as it was.
@@ -185,13 +219,18 @@ pub(crate) fn accept(folder: &Path, adapters: &[String], has_scenes: bool) -> an
         bail!("the embedded implementation has no shaders: leave out `--shaders` or `--adapter cpu`");
     }
     named::known(adapters)?;
-    let program = std::env::current_exe().context("cannot find the own binary")?;
     let named = adapters.iter().filter(|name| *name != "cpu");
+    let mut given = vec![OsString::from("try-shaders"), folder.into()];
+    given
+        .extend(named.flat_map(|name| ["--adapter", name]).chain(has_scenes.then_some("--scenes")).map(OsString::from));
+    watched_child(&given, folder).map(drop)
+}
+
+/// Has the own binary do something with shaders of others in a process that is watched, and gives what it wrote.
+pub(crate) fn watched_child(given: &[OsString], of: &Path) -> anyhow::Result<String> {
+    let program = std::env::current_exe().context("cannot find the own binary")?;
     let mut child = Command::new(program)
-        .arg("try-shaders")
-        .arg(folder)
-        .args(named.flat_map(|name| ["--adapter", name]))
-        .args(has_scenes.then_some("--scenes"))
+        .args(given)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -203,12 +242,12 @@ pub(crate) fn accept(folder: &Path, adapters: &[String], has_scenes: bool) -> an
     let status = child.wait()?;
     let [said, did] = [complaint, under_way].map(|thread| thread.join().unwrap_or_default());
     let doing = did.lines().next_back().map(|doing| format!(" while {}", shown(doing))).unwrap_or_default();
-    let of = folder.display();
+    let of = of.display();
     if let Some(limit) = broken {
         bail!("the shaders of {of} take more than {limit} to be read and compiled; it ended{doing}");
     }
     match status.code() {
-        Some(0) => Ok(()),
+        Some(0) => Ok(did),
         Some(_) => bail!("{}", clipped(&lines(said.trim().trim_start_matches("error: ")))),
         None => {
             let said = lines(said.trim()).into_owned();

@@ -36,6 +36,7 @@ use lightmeter::select::Shard;
 use lightmeter::special::verdict;
 use lightmeter::subject::Subject;
 use lightmeter_scene::target::TargetFormat;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -47,7 +48,7 @@ use std::time::{Duration, Instant};
 pub(crate) struct Gate {
     /// PACK ANSWERS [ANSWERS…]; with --exec: globs of the cases
     #[arg(value_name = "PACK ANSWERS | FILTER")]
-    given: Vec<String>,
+    given: Vec<OsString>,
     /// Start this command, by `sh -c`, and ask it
     #[arg(long, value_name = "COMMAND")]
     exec: Option<String>,
@@ -64,13 +65,13 @@ pub(crate) struct Gate {
     #[arg(long, value_name = "NAME", value_parser = super::options::Choice::profile)]
     profile: Option<&'static Profile>,
     /// Seconds that a case may take
-    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, requires = "exec", value_parser = seconds)]
     case_timeout: f64,
     /// Seconds that a scene may take
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, requires = "exec", value_parser = seconds)]
     scene_timeout: f64,
     /// Seconds that all may take; without it: as long as it takes
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", requires = "exec", value_parser = seconds)]
     timeout: Option<f64>,
     /// MiB of address space that each process of the renderer may have; without it: as much as there is
     #[arg(long, value_name = "MIB", requires = "exec", value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
@@ -139,16 +140,17 @@ impl Gate {
     /// The cases, and the files of answers.
     fn asked(&self) -> anyhow::Result<(GatePlan, Vec<AnswerFile>)> {
         if self.exec.is_some() {
+            let globs = self.globs()?;
             let is_file =
                 |given: &&String| Path::new(given).exists() && unmatched(std::iter::once(given.as_str())).is_some();
-            if let Some(file) = self.given.iter().find(is_file) {
+            if let Some(file) = globs.iter().find(is_file) {
                 bail!(
                     "`{file}` is a file or folder; with --exec, all other arguments must be globs that select cases, such as `fog/*`"
                 );
             }
-            let plan = self.cases.plan(self.cases.choice(&self.given))?;
+            let plan = self.cases.plan(self.cases.choice(&globs))?;
             // What it declares is not known yet.
-            let has_tables = !verdict::select(&Filter::new(&self.given)?, Shard::WHOLE).is_empty();
+            let has_tables = !verdict::select(&Filter::new(&globs)?, Shard::WHOLE).is_empty();
             return if plan.is_empty() && !has_tables { Err(nothing_to_ask()) } else { Ok((plan, vec![])) };
         }
         let [folder, answers @ ..] = self.given.as_slice() else {
@@ -165,19 +167,27 @@ impl Gate {
         let plan = pack::read(Path::new(folder))?;
         let opened = answers.iter().map(|path| {
             AnswerFile::open(Path::new(path)).map_err(|error| {
-                let is_glob = !Path::new(path).exists() && plan.is_matched(path);
+                let glob = path.to_str().filter(|glob| !Path::new(path).exists() && plan.is_matched(glob));
                 let hint =
                     "of a pack all cases are judged: those of a filter are written by `lightmeter pack DIR FILTER`";
                 let error = anyhow::Error::from(error);
-                if is_glob {
-                    error.context(format!("`{path}` is a filter, and no file of answers; {hint}"))
-                } else {
-                    error
+                match glob {
+                    Some(glob) => error.context(format!("`{glob}` is a filter, and no file of answers; {hint}")),
+                    None => error,
                 }
             })
         });
         let opened = opened.collect::<anyhow::Result<_>>()?;
         Ok((plan, opened))
+    }
+
+    /// What was given as globs, which are text.
+    fn globs(&self) -> anyhow::Result<Vec<String>> {
+        let text = |given: &OsString| {
+            let text = given.to_str().map(str::to_owned);
+            text.with_context(|| format!("`{}` is not UTF-8; expected a glob, such as `fog/*`", given.display()))
+        };
+        self.given.iter().map(text).collect()
     }
 
     /// Has the engine judge what the renderer answers.

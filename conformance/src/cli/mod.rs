@@ -9,6 +9,7 @@ mod effects;
 mod eval;
 mod foreign;
 mod gate;
+mod identify;
 mod list;
 mod manual;
 mod merge;
@@ -21,12 +22,14 @@ mod render;
 mod run;
 mod schema;
 mod selftest;
+mod shader;
 mod show;
 mod signals;
 mod special;
 mod start;
 mod sweep;
 mod terminal;
+mod values;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 use lightmeter::adapters::AdapterError;
@@ -59,7 +62,7 @@ pub(crate) struct Cli {
 
 /// The commands by what they are for.
 const PURPOSES: &[(&str, &[&str])] = &[
-    ("Judge", &["run", "gate", "pack", "sweep", "special"]),
+    ("Judge", &["run", "identify", "gate", "pack", "sweep", "special"]),
     ("Look up", &["list", "show", "mistakes", "effects", "eval", "render"]),
     ("Measure", &["bench", "adapters", "selftest"]),
     ("Results", &["merge", "page", "schema", "completions", "man", "help"]),
@@ -128,10 +131,14 @@ enum Command {
     Completions(manual::Completions),
     /// Write the manual as man pages, one a command
     Man(manual::Man),
+    /// Tell which formula a shader computes
+    Identify(identify::Identify),
     #[command(hide = true)]
     StartRenderer(start::Start),
     #[command(hide = true)]
     TryShaders(foreign::Try),
+    #[command(hide = true)]
+    AdaptShader(shader::Adapt),
 }
 
 impl Cli {
@@ -157,8 +164,10 @@ impl Cli {
             Command::Eval(eval) => eval.run(),
             Command::Completions(completions) => completions.run(),
             Command::Man(man) => man.run(),
+            Command::Identify(identify) => identify.run(),
             Command::StartRenderer(start) => start.run(),
             Command::TryShaders(shaders) => shaders.run(),
+            Command::AdaptShader(shader) => shader.run(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Options that several commands share, read into what the library takes.
 
-use super::{Status, emit, foreign, say, show};
+use super::shader::ShaderChoice;
+use super::{Status, emit, say, show};
 use clap::Args;
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
@@ -8,15 +9,15 @@ use lightmeter::device::Code;
 use lightmeter::document::by_case::Coverage;
 use lightmeter::document::thousands;
 use lightmeter::filter::Filter;
+use lightmeter::nearest::did_you_mean;
 use lightmeter::options::{DEFAULT_CASES, DEFAULT_TARGETS, MOST_CASES, Options};
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::select::scene_id;
 use lightmeter::select::Shard;
 use lightmeter::subject::Subject;
-use lightmeter::subject_gpu::code_of;
 use lightmeter_scene::target::TargetFormat;
 use std::num::NonZeroU64;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 
 /// What `--target` names: one format, or all.
@@ -83,9 +84,8 @@ pub(crate) struct Choice {
     /// Seed of the random cases
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Judge the WGSL in this folder in place of the built-in files of the same names
-    #[arg(long, value_name = "DIR")]
-    pub(crate) shaders: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) shaders: ShaderChoice,
 }
 
 /// How many cases.
@@ -126,7 +126,8 @@ impl std::fmt::Display for ShardArgument {
 impl Choice {
     /// The profile of that name.
     pub(crate) fn profile(name: &str) -> Result<&'static Profile, String> {
-        Profile::named(name)
+        let near = || did_you_mean(name, lightmeter::arithmetic::profile::PROFILES.iter().map(|profile| profile.name));
+        Profile::named(name).map_err(|error| error + &near())
     }
 
     /// The format of that name, or all.
@@ -136,7 +137,8 @@ impl Choice {
             return Ok(Targets(TargetFormat::ALL.to_vec()));
         }
         let found = TargetFormat::by_name(name).map(|target| Targets(vec![target]));
-        found.ok_or_else(|| format!("no such format; expected one of {} and all", names.join(", ")))
+        let near = || did_you_mean(name, names.iter().copied());
+        found.ok_or_else(|| format!("no such format; expected one of {} and all{}", names.join(", "), near()))
     }
 
     /// The formats to blend on, each once, in the order of reports.
@@ -145,17 +147,17 @@ impl Choice {
     }
 
     /// The shaders to judge, those of scenes among them or not.
-    pub(crate) fn code(&self, has_scenes: bool) -> anyhow::Result<Code> {
-        if let Some(folder) = &self.shaders {
-            foreign::accept(folder, &self.adapter, has_scenes)?;
-        }
-        Ok(code_of(self.shaders.as_deref())?)
+    pub(crate) fn code(&self, filter: &Filter, has_scenes: bool) -> anyhow::Result<Code> {
+        self.shaders.accepted(filter, &self.adapter, has_scenes)?.code()
     }
 
     /// The library's options for a filter.
     pub(crate) fn options(&self, filter: Filter, cases: u64, shard: Shard) -> anyhow::Result<Options> {
         let has_scenes = (0..SCENES.len()).any(|place| filter.selects(&scene_id(place)));
-        let options = Options::by(self.code(has_scenes)?, self.shaders.as_deref(), self.seed, self.profile);
+        let accepted = self.shaders.accepted(&filter, &self.adapter, has_scenes)?;
+        let mut options = Options::by(accepted.code()?, None, self.seed, self.profile);
+        options.adapted = accepted.adapted.clone();
+        options.rerun += &self.shaders.rerun()?;
         Ok(Options { filter, cases, shard, targets: self.targets(), size: self.size, ..options })
     }
 

@@ -3,11 +3,13 @@
 use super::Status;
 use super::mistakes::of_scenes_by_name;
 use super::options::Choice;
+use super::shader::ShaderChoice;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::device::Picture;
 use lightmeter::faults::scene::{SceneFault, draw};
+use lightmeter::filter::Filter;
 use lightmeter::image::drawn::drawn;
 use lightmeter::image::file::StoredImage;
 use lightmeter::scene::load;
@@ -23,7 +25,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct Render {
     /// A scene's file, or the name of one that is built in
-    scene: String,
+    scene: PathBuf,
     /// Who draws it
     #[arg(long, value_enum, default_value_t = With::Reference)]
     with: With,
@@ -107,9 +109,9 @@ impl Render {
             target: vec![],
             size: None,
             seed: 1,
-            shaders: self.shaders.clone(),
+            shaders: ShaderChoice { shaders: self.shaders.clone(), ..ShaderChoice::default() },
         };
-        let code = choice.code(true)?;
+        let code = choice.code(&Filter::default(), true)?;
         let subjects = choice.subjects()?;
         let [subject] = subjects.as_slice() else { bail!("an image is drawn by one adapter") };
         let (sets, picture) = match self.stage {

@@ -10,7 +10,7 @@ use super::terminal::level;
 use super::{Status, writable};
 use clap::Args;
 use lightmeter::cases::GENERATOR_VERSION;
-use lightmeter::cases::blend::{Samples, separate_of};
+use lightmeter::cases::blend::{Samples, separate_of, written_state};
 use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::pack::Choice as CaseChoice;
@@ -36,6 +36,9 @@ use std::path::PathBuf;
 pub(crate) struct Run {
     /// Globs that match an id or an ancestor of it: `fog`, `fog/*/hard`, `blend/add/**/0007`
     filter: Vec<String>,
+    /// A blend or depth state as OpenGL, WebGL, WebGPU or Vulkan writes it, as `glBlendFunc(GL_SRC_ALPHA, GL_ONE)`; again for several
+    #[arg(long, value_name = "STATE", value_parser = state)]
+    blend: Vec<String>,
     #[command(flatten)]
     choice: Choice,
     #[command(flatten)]
@@ -71,7 +74,8 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    pub(crate) fn run(self) -> anyhow::Result<Status> {
+    pub(crate) fn run(mut self) -> anyhow::Result<Status> {
+        self.filter.append(&mut self.blend);
         let expectations = self.comparison.expectations()?;
         let earlier = self.comparison.earlier(Baseline::of_run)?;
         matches_something(&expectations)?;
@@ -157,6 +161,12 @@ impl Run {
             }
         })
     }
+}
+
+/// The id of a state as somebody writes it.
+fn state(text: &str) -> Result<String, String> {
+    let expected = "expected such as `glBlendFunc(GL_SRC_ALPHA, GL_ONE)`, or a descriptor of WebGPU or Vulkan as JSON";
+    written_state(text).unwrap_or_else(|| Err(expected.into()))
 }
 
 /// The known failures of the adapters, each by its name and the version of its driver.

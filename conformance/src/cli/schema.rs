@@ -8,6 +8,7 @@ use lightmeter::document::bench::recommendation::Recommendation;
 use lightmeter::document::effects::EffectsDocument;
 use lightmeter::document::frame::FrameDocument;
 use lightmeter::document::gate::GateReport;
+use lightmeter::document::identify::IdentifyDocument;
 use lightmeter::document::list::{CasesDocument, FormulasDocument};
 use lightmeter::document::mistakes::MistakesDocument;
 use lightmeter::document::pack::Manifest;
@@ -59,6 +60,7 @@ enum Of {
     /// The JSON of `list --formulas`
     Formulas,
     /// The JSON of `mistakes`
+    Identify,
     Mistakes,
     /// The JSON of `show`
     Show,
@@ -91,6 +93,7 @@ impl Schema {
             Of::Selftest => SelftestDocument::schema(),
             Of::Cases => CasesDocument::schema(),
             Of::Formulas => FormulasDocument::schema(),
+            Of::Identify => IdentifyDocument::schema(),
             Of::Mistakes => MistakesDocument::schema(),
             Of::Show => ShowDocument::schema(),
             Of::Adapters => AdaptersDocument::schema(),

@@ -20,8 +20,10 @@ use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
 use lightmeter::faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
 use lightmeter::filter::Filter;
+use lightmeter::nearest::did_you_mean;
 use lightmeter::report::selftest as report;
 use lightmeter::report::table::{Align, TextTable};
+use lightmeter::select::catalogue;
 use lightmeter_scene::target::TargetFormat;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
@@ -163,7 +165,10 @@ impl Selftest {
         };
         let record = formulas::selftest(&options);
         if record.clean.is_empty() && !stop.is_set() {
-            bail!("no formula matches `{}`: see `lightmeter list`", self.filter.join(" "));
+            let catalogue = catalogue();
+            let names = catalogue.iter().map(|member| member.spec.id.as_str());
+            let meant = did_you_mean(self.filter.first().map_or("", String::as_str), names);
+            bail!("no formula matches `{}`{meant} See `lightmeter list`", self.filter.join(" "));
         }
         tested.formulas = Some(record);
         if self.calibrate && !stop.is_set() {

@@ -2,7 +2,9 @@
 
 use super::options::{Choice, Format, ShardArgument};
 use super::say;
+use super::shader::ShaderChoice;
 use super::signals::stopped_by_signals;
+use super::values::{float, setting};
 use super::{NothingToRun, Status, writable};
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -13,6 +15,7 @@ use lightmeter::document::Document as _;
 use lightmeter::document::sweep::presets::{ListedPreset, PresetsDocument, SCHEMA};
 use lightmeter::document::sweep::{Description, SweepDocument};
 use lightmeter::document::thousands;
+use lightmeter::filter::Filter;
 use lightmeter::report::sweep as text;
 use lightmeter::select::{Shard, catalogue};
 use lightmeter::sweep::file::{self, DocumentError, name_of};
@@ -57,9 +60,8 @@ pub(crate) struct Sweep {
     /// Accuracy rules: wgsl, vulkan or opengl
     #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
     profile: &'static Profile,
-    /// Judge the WGSL in this folder in place of the built-in files of the same names
-    #[arg(long, value_name = "DIR")]
-    shaders: Option<PathBuf>,
+    #[command(flatten)]
+    shaders: ShaderChoice,
     /// Only a part of the inputs: the I-th of N; `lightmeter merge` joins them
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: ShardArgument,
@@ -86,7 +88,7 @@ impl Sweep {
         check_shard(&plan, shard)?;
         self.check_files()?;
         let choice = self.choice();
-        let code = choice.code(false)?;
+        let code = choice.code(&Filter::new(std::slice::from_ref(&plan.member.spec.id))?, false)?;
         let mut subjects = choice.subjects()?;
         let [subject] = subjects.as_mut_slice() else {
             bail!("a sweep runs on exactly one adapter; name it with --adapter");
@@ -220,9 +222,7 @@ impl Sweep {
         if self.profile.name != "wgsl" {
             let _ = write!(rerun, " --profile {}", self.profile.name);
         }
-        if let Some(dir) = &self.shaders {
-            let _ = write!(rerun, " --shaders '{}'", dir.display().to_string().replace('\'', r"'\''"));
-        }
+        rerun += &self.shaders.rerun().unwrap_or_default();
         rerun
     }
 }
@@ -311,27 +311,6 @@ fn bar(document: &SweepDocument, shard: Shard) -> ProgressBar {
     bar.set_position(document.statistics.inputs);
     bar.reset_eta();
     bar
-}
-
-/// A finite f32, decimal or by its bits.
-fn float(text: &str) -> Result<f32, String> {
-    let x = match text.strip_prefix("0x") {
-        Some(hex) => u32::from_str_radix(hex, 16).ok().map(f32::from_bits),
-        None => text.parse().ok(),
-    };
-    let x = x.ok_or("not a number; expected one such as 0.5, 1e6 or 0x3f800000")?;
-    if !x.is_finite() {
-        return Err(format!("{x} is no float that a sweep can reach; expected a finite f32, at most {:e}", f32::MAX));
-    }
-    Ok(x)
-}
-
-fn setting(text: &str) -> Result<(String, Vec<f32>), String> {
-    let expected = || "expected NAME=VALUE, as density=0.01 or fog=0.5,0.5,1".to_owned();
-    let (name, values) = text.split_once('=').ok_or_else(expected)?;
-    let values: Result<Vec<f32>, String> =
-        values.split(',').map(|value| float(value.trim()).map_err(|error| format!("`{value}`: {error}"))).collect();
-    Ok((name.trim().to_owned(), values?))
 }
 
 fn stage(text: &str) -> Result<Stage, String> {

@@ -1,6 +1,7 @@
 //! Adapters by the names that users give them, opened as subjects.
 
 use super::open_device;
+use lightmeter_catalogue::nearest::did_you_mean;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Adapter, vulkan_adapters};
@@ -23,10 +24,12 @@ pub enum AdapterError {
     )]
     NoDriver(String),
     /// No adapter has that name.
-    #[error("no adapter `{name}`; there are {there}, cpu and all")]
+    #[error("no adapter `{name}`{meant} There are {there}, cpu and all")]
     Unknown {
         /// What was asked for.
         name: String,
+        /// The end of the sentence, with names that are near.
+        meant: String,
         /// What there is.
         there: String,
     },
@@ -134,5 +137,6 @@ fn named<'a>(found: &'a [Adapter], name: &str) -> Result<&'a Adapter, AdapterErr
     }
     drivers_named(found)?;
     let there: Vec<&str> = found.iter().map(|adapter| adapter.name.as_str()).collect();
-    Err(AdapterError::Unknown { name: name.into(), there: there.join(", ") })
+    let meant = did_you_mean(name, there.iter().copied());
+    Err(AdapterError::Unknown { name: name.into(), meant, there: there.join(", ") })
 }

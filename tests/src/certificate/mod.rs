@@ -113,7 +113,7 @@ pub fn certify(cases: u64) -> Vec<FormulaFinding> {
 /// Certifies one formula, of the catalogue or not.
 #[must_use]
 pub fn certify_one<F: Formula + Copy>(formula: F, cases: u64) -> FormulaFinding {
-    let member = Member { spec: Formula::spec(&formula), formula: Box::new(formula) };
+    let member = Member::new(Box::new(formula));
     of(&formula, &member, cases)
 }
 

@@ -3,9 +3,11 @@
 
 mod separate;
 mod special;
+mod written;
 
 pub use super::program::{MOST_LAYERS, Program, UnitCase};
 pub use separate::{Samples, covering_array, separate_of};
+pub use written::{COMMON, Common, written_state};
 
 use super::Visitor;
 use super::formula::{AnyFormula, Formula, bind, formula};

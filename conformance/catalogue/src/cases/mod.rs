@@ -15,6 +15,7 @@ mod draw;
 mod fit;
 pub mod formula;
 mod meaning;
+mod partial;
 mod pattern;
 mod program;
 mod rasteriser;
@@ -24,6 +25,7 @@ mod spec;
 
 pub use draw::{GENERATOR_VERSION, inputs, mix, move_by_ulps};
 pub use formula::{AnyFormula, Formula, Visitor};
+pub use partial::Partial;
 pub use rows::{FromNumbers, Reader, Slot, Wanted, Writer, slot};
 pub use spec::{Domain, Hard, Input, Kind, Naive, Output, Size, Spec, Stable, Stage, ValueShape, Values};
 

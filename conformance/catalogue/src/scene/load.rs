@@ -34,13 +34,15 @@ pub struct Loaded {
 /// # Errors
 ///
 /// Where there is neither, or the scene is refused.
-pub fn scene(path_or_name: &str) -> Result<Loaded, SceneError> {
-    let name = path_or_name.strip_prefix("scene/").unwrap_or(path_or_name);
-    if library::SCENES.iter().any(|(own, _)| *own == name) && !Path::new(path_or_name).is_file() {
+pub fn scene(path_or_name: impl AsRef<Path>) -> Result<Loaded, SceneError> {
+    let path = path_or_name.as_ref();
+    let Some(given) = path.to_str() else { return file(path) };
+    let name = given.strip_prefix("scene/").unwrap_or(given);
+    if library::SCENES.iter().any(|(own, _)| *own == name) && !path.is_file() {
         return builtin(name);
     }
-    if path_or_name.contains(['/', '.', '\\']) || Path::new(path_or_name).exists() {
-        return file(Path::new(path_or_name));
+    if given.contains(['/', '.', '\\']) || path.exists() {
+        return file(path);
     }
     Err(unknown(name))
 }

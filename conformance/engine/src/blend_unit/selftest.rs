@@ -61,7 +61,7 @@ fn groups() -> Vec<Vec<Member>> {
     let drawn = catalogue
         .into_iter()
         .filter(|member| matches!(member.spec.kind, Kind::Blend(program) if !program.is_special()));
-    let aliases = every_state().into_iter().map(|formula| Member { spec: formula.spec(), formula });
+    let aliases = every_state().into_iter().map(Member::new);
     let aliases = aliases.filter(
         |member| matches!(member.spec.kind, Kind::Blend(Program::Draw(state, _)) if state != state.canonical()),
     );
@@ -85,7 +85,7 @@ fn empty_report(target: TargetFormat) -> Result<Report, DeviceError> {
 
 /// The states that share a state's equation and source factor.
 fn beside(state: State) -> Vec<Member> {
-    let formulas = every_state().into_iter().map(|formula| Member { spec: formula.spec(), formula });
+    let formulas = every_state().into_iter().map(Member::new);
     let shares = |program: Program| {
         let (Separate { color, .. }, _) = program.layer(0);
         (color.equation, color.src) == (state.equation, state.src)

@@ -173,4 +173,10 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[form("spot", Form::ConeWithoutEdge)]],
     )
     .seen_in("> for ≥; three.js"),
+    fault(
+        "cone-turned",
+        "the spotlight shines outside of its cone and not inside: the comparison is turned round",
+        &[&[form("spot", Form::ConeTurned)]],
+    )
+    .seen_in("cosine < cutoff for cosine ≥ cutoff"),
 ];

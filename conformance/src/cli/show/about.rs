@@ -4,7 +4,7 @@ use crate::cli::list::with_unit;
 use crate::cli::mistakes::{all_names, document as mistakes};
 use anyhow::bail;
 use lightmeter::cases::Kind;
-use lightmeter::cases::blend::aliases;
+use lightmeter::cases::blend::{COMMON, aliases, written_state};
 use lightmeter::faults::concerning;
 use lightmeter::filter::Filter;
 use lightmeter::nearest::did_you_mean;
@@ -27,6 +27,8 @@ pub(super) fn about(name: &str, catalogue: &[Member]) -> anyhow::Result<Option<S
     if name.trim().is_empty() {
         bail!("an empty name shows nothing; expected such as `fog/exp`, `scene/phong` or `ruling/9`");
     }
+    let written = written_state(name).transpose().map_err(anyhow::Error::msg)?;
+    let name = written.as_deref().unwrap_or(name);
     let spelt = ruling_of(name);
     let name = spelt.as_deref().unwrap_or(name);
     if name == "rulings" {
@@ -165,6 +167,12 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
         let naive =
             hard.naive.map(|naive| format!("; {} fails there: {}", naive.formula, naive.fails)).unwrap_or_default();
         writeln!(text, "  {:<26} {}{naive}", hard.name, hard.pins)?;
+    }
+    for common in COMMON.iter().filter(|common| common.id == spec.id) {
+        writeln!(text, "what it is used for\n  {}", common.what)?;
+        for (other, told) in common.confused_with {
+            writeln!(text, "  commonly confused with {other}, {told}")?;
+        }
     }
     let mistakes: Vec<&str> = concerning(member).iter().map(|fault| fault.name).collect();
     if !mistakes.is_empty() {

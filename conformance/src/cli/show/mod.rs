@@ -14,7 +14,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::cases::Kind;
-use lightmeter::cases::blend::{Samples, separate_of};
+use lightmeter::cases::blend::{Samples, separate_of, written_state};
 use lightmeter::document::run::Examined;
 use lightmeter::document::show::{MistakenStep, ShowDocument, ShownCase, ShownMistake, ShownStep};
 use lightmeter::document::{Document as _, Number};
@@ -79,7 +79,8 @@ struct Known {
 impl Show {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let as_json = self.format == Format::Json;
-        let named = separate_of(&self.id).into_iter().collect();
+        let written = written_state(&self.id).transpose().map_err(anyhow::Error::msg)?;
+        let named = separate_of(written.as_deref().unwrap_or(&self.id)).into_iter().collect();
         let catalogue = catalogue_of(&Samples { seed: self.choice.seed, named, ..Samples::default() });
         if self.is_shown_by_name(&catalogue)? {
             return Ok(Status::Success);
@@ -209,7 +210,7 @@ impl Show {
 
     /// Without an adapter that was asked for, a machine without a driver still shows the case.
     fn answers(&self, member: &Member, inputs: &[f32]) -> anyhow::Result<(Vec<Answer>, Vec<UnitAnswer>)> {
-        let (code, subjects) = (self.choice.code(false)?, self.subjects()?);
+        let (code, subjects) = (self.choice.code(&Filter::new(&[&member.spec.id])?, false)?, self.subjects()?);
         let (mut answers, mut unit, members) = (vec![], vec![], [member]);
         for mut subject in subjects {
             if let Kind::Blend(program) = member.spec.kind {
@@ -259,12 +260,14 @@ fn find<'a>(catalogue: &'a [Member], id: &str) -> anyhow::Result<(&'a Member, Ca
         return Ok(found);
     }
     match catalogue.iter().find(|member| id == member.spec.id || id.starts_with(&format!("{}/", member.spec.group()))) {
-        Some(member) => bail!(
-            "no case `{id}`; `{}` has cases such as `{}`: see `lightmeter list '{}'`",
-            member.spec.group(),
-            member.case_id(CaseRef::Random(0)),
-            member.spec.group()
-        ),
+        Some(member) => {
+            let group = member.spec.group();
+            let cases: Vec<String> =
+                (0..member.spec.hard.len()).map(|place| member.case_id(CaseRef::Hard(place))).collect();
+            let meant = did_you_mean(id, cases.iter().map(String::as_str));
+            let such = member.case_id(CaseRef::Random(0));
+            bail!("no case `{id}`{meant} `{group}` has cases such as `{such}`: see `lightmeter list '{group}'`")
+        }
         None => {
             let names = about::names(catalogue);
             let meant = did_you_mean(id, names.iter().map(String::as_str));

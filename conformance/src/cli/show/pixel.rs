@@ -6,6 +6,7 @@ use lightmeter::blend_unit::pixel::Units;
 use lightmeter::device::{Code, Picture};
 use lightmeter::document::show::{PixelPlace, SCHEMA, SeenIntermediate, ShowDocument, ShownIntermediate, ShownPixel};
 use lightmeter::document::{Document as _, Number};
+use lightmeter::filter::Filter;
 use lightmeter::image::expect::Expectation;
 use lightmeter::image::file::StoredImage;
 use lightmeter::image::{self, LegalPixel};
@@ -96,7 +97,7 @@ pub(super) fn show(
     as_json: bool,
 ) -> anyhow::Result<String> {
     let frame = &loaded.frame;
-    let rows = rows(frame, *pixel, choice.profile, subjects, &choice.code(true)?)?;
+    let rows = rows(frame, *pixel, choice.profile, subjects, &choice.code(&Filter::default(), true)?)?;
     let width = frame.target.width as usize;
     if as_json {
         let shown = ShownPixel {

@@ -4,6 +4,7 @@ use super::super::options::Choice;
 use lightmeter::document::show::{SCHEMA, ShowDocument, ShownProbe};
 use lightmeter::document::special::ProbeResult;
 use lightmeter::document::{Document as _, Number};
+use lightmeter::filter::Filter;
 use lightmeter::special::run::{Results, evaluate, skipped_embedded};
 use lightmeter::special::{FAMILY, Gives, Probe};
 use lightmeter::subject::Subject;
@@ -27,7 +28,7 @@ pub(super) fn show(
     subjects: &[Subject],
     as_json: bool,
 ) -> anyhow::Result<String> {
-    let code = choice.code(false)?;
+    let code = choice.code(&Filter::default(), false)?;
     let mut results = vec![];
     for subject in subjects {
         let found = evaluate(subject, &code, &[probe])?.unwrap_or_else(|| Results {

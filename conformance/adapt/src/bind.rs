@@ -1,0 +1,440 @@
+//! Binds the variables of a shader to expressions over the inputs of a formula.
+
+use crate::AdaptError;
+use crate::meaning::{Context, Meaning, SYNONYMS, Term};
+use crate::name::keys;
+use crate::program::{From, Leaf, ShaderOutput, ShaderProgram, Variable};
+use lightmeter_catalogue::cases::{Spec, ValueShape};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{BuiltIn, ScalarKind};
+use std::collections::{BTreeSet, HashSet};
+
+/// A binding that was asked for: `NAME=EXPRESSION`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AskedBinding {
+    /// The variable, as it stands in the shader, or the last part of its name.
+    pub name: String,
+    /// WGSL over the formula's inputs.
+    pub expression: String,
+}
+
+/// How a binding was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// By `--bind`.
+    Asked,
+    /// The formula has an input of that name.
+    SameName,
+    /// By the list of synonyms.
+    Synonym,
+    /// The pipeline gives it, or the shader does not use it.
+    Fixed,
+}
+
+/// A variable and what it is set to.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// The variable as it stands in the shader.
+    pub name: String,
+    /// The expression over the formula's inputs.
+    pub expression: String,
+    /// How it was found.
+    pub found: Found,
+    /// What it would be if it pointed the other way, where its name does not tell.
+    pub turned: Option<String>,
+    /// Whether it is of an element of an array other than the first.
+    pub is_further: bool,
+    pub(crate) place: String,
+}
+
+/// All variables of a shader, bound.
+#[derive(Clone, Debug)]
+pub struct ShaderBinding {
+    /// Each variable.
+    pub bound: Vec<Bound>,
+    /// For each output of the formula the shader's value, or `None` where the shader gives none.
+    pub outputs: Vec<(&'static str, Option<String>)>,
+    /// Inputs of the formula that no variable has.
+    pub unused: Vec<&'static str>,
+}
+
+/// Binds a shader to a formula.
+///
+/// # Errors
+/// Where a variable has no meaning that the formula knows, a name that was asked for is none of the shader's or is given twice, or no output
+/// fits: with both lists.
+pub fn bind(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> Result<ShaderBinding, AdaptError> {
+    known(program, asked)?;
+    for AskedBinding { name, expression } in asked {
+        for slot in program.slots.iter().filter(|slot| is_named(slot, name)).take(1) {
+            checked(slot, expression, spec)?;
+        }
+    }
+    let context = Context { spec, meanings: all_meanings(program, spec, asked) };
+    let (mut bound, mut missing) = (vec![], vec![]);
+    for slot in &program.slots {
+        match expression(slot, &context, asked) {
+            Some((expression, found)) => {
+                let turned = if found == Found::Asked { None } else { turned(slot, &context) };
+                let is_further = slot.is_further;
+                bound.push(Bound {
+                    name: slot.name.clone(),
+                    expression,
+                    found,
+                    turned,
+                    is_further,
+                    place: slot.place.clone(),
+                });
+            }
+            None => missing.push(format!("{}: {}", slot.name, slot.leaf)),
+        }
+    }
+    if !missing.is_empty() {
+        let inputs =
+            spec.inputs.iter().map(|input| format!("{}: {}", input.name, input.shape.name())).collect::<Vec<_>>();
+        return Err(AdaptError::Bind(format!(
+            "nothing of {} is known to be meant by\n  {}\nThe formula has the inputs\n  {}\nSay what is meant by `--bind \
+             'NAME=EXPRESSION'`, in WGSL over these inputs.",
+            spec.id,
+            missing.join("\n  "),
+            inputs.join("\n  ")
+        )));
+    }
+    let outputs = outputs(program, spec)?;
+    let unused = unused(spec, &bound, &outputs);
+    Ok(ShaderBinding { bound, outputs, unused })
+}
+
+/// What the variables are taken to be, so far as it follows from each alone, and which colours the bindings that are asked for have.
+fn all_meanings(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> BTreeSet<Meaning> {
+    let alone = Context { spec, meanings: BTreeSet::new() };
+    let is_asked = |slot: &Variable| asked.iter().any(|asked| is_named(slot, &asked.name));
+    let of_slot = |slot: &Variable| {
+        meanings(slot).find(|&meaning| {
+            let expression = alone.expression(meaning, slot.from);
+            expression.is_some_and(|expression| {
+                fitted(&expression, shape_of(meaning, &expression, spec), slot.leaf, Some(meaning)).is_some()
+            })
+        })
+    };
+    let mut all: BTreeSet<Meaning> =
+        program.slots.iter().filter(|slot| slot.is_used && !is_asked(slot)).filter_map(of_slot).collect();
+    for AskedBinding { expression, .. } in asked {
+        for term in [Term::Ambient, Term::Diffuse, Term::Specular] {
+            let [light, material] = Context::colors(term).map(|name| has_word(expression, name));
+            match (light, material) {
+                (true, false) => drop(all.insert(Meaning::OfLight(term))),
+                (false, true) => drop(all.insert(Meaning::OfMaterial(term))),
+                _ => {}
+            }
+        }
+    }
+    all
+}
+
+/// Of a vector whose name does not say whether it points towards the light or away from it, the other way.
+fn turned(slot: &Variable, context: &Context<'_>) -> Option<String> {
+    let is_of_light = context.has("direction") && !context.has("axis");
+    let meaning = meanings(slot).find(|&meaning| context.expression(meaning, slot.from).is_some())?;
+    match meaning {
+        Meaning::Travel if is_of_light => Some("-direction".into()),
+        Meaning::ToLight if is_of_light && slot.from == From::Uniform => Some("direction".into()),
+        _ => None,
+    }
+}
+
+fn has_word(expression: &str, name: &str) -> bool {
+    expression.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name)
+}
+
+/// Refuses names that the shader has not, that several have, or that are bound twice.
+fn known(program: &ShaderProgram, asked: &[AskedBinding]) -> Result<(), AdaptError> {
+    let mut seen = HashSet::new();
+    for AskedBinding { name, .. } in asked {
+        if !seen.insert(name) {
+            return Err(AdaptError::Bind(format!("`{name}` is bound twice")));
+        }
+        let whole = |slot: &Variable| {
+            slot.name.split('[').next().unwrap_or_default().to_owned()
+                + slot.name.rsplit(']').next().unwrap_or_default()
+        };
+        let found: BTreeSet<String> = program.slots.iter().filter(|slot| is_named(slot, name)).map(whole).collect();
+        if found.len() > 1 && !program.slots.iter().any(|slot| slot.name == *name) {
+            let found: Vec<String> = found.into_iter().collect();
+            return Err(AdaptError::Bind(format!("`{name}` may be {}; write the whole name", found.join(" or "))));
+        }
+        if found.is_empty() {
+            let names: Vec<&str> = program.slots.iter().map(|slot| slot.name.as_str()).collect();
+            let meant = lightmeter_catalogue::nearest::did_you_mean(name, names.iter().copied());
+            return Err(AdaptError::Bind(format!(
+                "the shader has no `{name}` to bind{meant} It has {}",
+                names.join(", ")
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses an expression that is not WGSL over the formula's inputs, or of another type than the variable.
+fn checked(slot: &Variable, expression: &str, spec: &Spec) -> Result<(), AdaptError> {
+    let inputs: Vec<String> =
+        spec.inputs.iter().map(|input| format!("{}: {}", input.name, type_of(input.shape))).collect();
+    let head = format!("fn bound({}) -> {} {{ return ", inputs.join(", "), slot.leaf);
+    let refused = |message: &str| {
+        AdaptError::Bind(format!(
+            "`--bind '{}={expression}'`: {message}; expected WGSL of the type {} over {}",
+            slot.name,
+            slot.leaf,
+            inputs.join(", ")
+        ))
+    };
+    let module =
+        naga::front::wgsl::parse_str(&format!("{head}({expression}); }}")).map_err(|error| refused(error.message()))?;
+    Validator::new(ValidationFlags::all(), Capabilities::default())
+        .validate(&module)
+        .map_err(|_| refused("it has another type"))?;
+    Ok(())
+}
+
+const fn type_of(shape: ValueShape) -> &'static str {
+    match shape {
+        ValueShape::Scalar => "f32",
+        ValueShape::Vec2 => "vec2f",
+        ValueShape::Vec3 => "vec3f",
+        ValueShape::Vec4 => "vec4f",
+        ValueShape::Mat3 => "mat3x3f",
+        ValueShape::Mat4 => "mat4x4f",
+    }
+}
+
+/// Whether a variable has that name: the whole of it, or its last part.
+fn is_named(slot: &Variable, name: &str) -> bool {
+    slot.name == name || slot.name.rsplit('.').next() == Some(name)
+}
+
+/// What a variable may mean by its name, the most telling key first.
+fn meanings(slot: &Variable) -> impl Iterator<Item = Meaning> + '_ {
+    // three.js hands over the vector to the eye by this name.
+    let given = (slot.name == "vViewPosition").then_some(Meaning::ToEyeWithLength);
+    let of_key = |key: String| {
+        SYNONYMS
+            .iter()
+            .filter(move |(_, names)| names.contains(&key.as_str()))
+            .map(|(meaning, _)| *meaning)
+            .collect::<Vec<_>>()
+    };
+    given.into_iter().chain(keys(&slot.name).into_iter().flat_map(of_key)).map(|meaning| match meaning {
+        // A point in the eye's space goes by the name of the eye's own position.
+        Meaning::Eye if slot.from == From::Input => Meaning::Point,
+        other => other,
+    })
+}
+
+fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) -> Option<(String, Found)> {
+    let whole = asked.iter().find(|asked| asked.name == slot.name);
+    if let Some(asked) = whole.or_else(|| asked.iter().find(|asked| is_named(slot, &asked.name))) {
+        return Some((asked.expression.clone(), Found::Asked));
+    }
+    if let From::BuiltIn(built_in) = slot.from {
+        return Some((built_in_value(built_in, slot.leaf, context), Found::Fixed));
+    }
+    if !slot.is_used {
+        return Some((zero(slot.leaf), Found::Fixed));
+    }
+    let same = context.spec.inputs.iter().find(|input| input.name == slot.name && !is_of_surface(slot, context));
+    if let Some(input) = same
+        && let Some(fitted) = fitted(input.name, input.shape, slot.leaf, None)
+    {
+        return Some((fitted, Found::SameName));
+    }
+    let understood = meanings(slot).find_map(|meaning| {
+        // Further lights of an array give nothing.
+        if slot.is_further && is_light_color(meaning) {
+            return Some((zero(slot.leaf), Found::Synonym));
+        }
+        let expression = context.expression(meaning, slot.from)?;
+        let fitted = fitted(&expression, shape_of(meaning, &expression, context.spec), slot.leaf, Some(meaning))?;
+        Some((fitted, Found::Synonym))
+    });
+    understood.or_else(|| Some((unnamed(slot, context)?, Found::Synonym)))
+}
+
+/// What a variable is whose name is not understood: a matrix is a transform, and a texture has the surface's colour.
+fn unnamed(slot: &Variable, context: &Context<'_>) -> Option<String> {
+    let meaning = match (slot.leaf, slot.from) {
+        (Leaf::Matrix(..), _) => Meaning::Identity,
+        (_, From::Texture) => Meaning::SurfaceColor,
+        _ => return None,
+    };
+    let expression = context.expression(meaning, slot.from)?;
+    fitted(&expression, shape_of(meaning, &expression, context.spec), slot.leaf, Some(meaning))
+}
+
+/// Whether it is the surface's position where the formula's input of that name is the light's: what comes from the stage before, and what
+/// stands beside a light's position.
+fn is_of_surface(slot: &Variable, context: &Context<'_>) -> bool {
+    let has_light = context.meanings.contains(&Meaning::LightPosition);
+    slot.name == "position" && context.has("p") && (slot.from == From::Input || has_light)
+}
+
+const fn is_light_color(meaning: Meaning) -> bool {
+    matches!(meaning, Meaning::OfLight(_) | Meaning::LightColor | Meaning::OfMaterial(_))
+}
+
+/// What the pipeline gives to a single case.
+fn built_in_value(built_in: BuiltIn, leaf: Leaf, context: &Context<'_>) -> String {
+    match built_in {
+        BuiltIn::Position { .. } => {
+            let distance = context.expression(Meaning::Distance, From::Input).unwrap_or_else(|| "1.0".into());
+            // The depth over the reciprocal of w is the distance from the eye's plane.
+            format!("vec4f(0.5, 0.5, 1.0, 1.0 / ({distance}))")
+        }
+        BuiltIn::FrontFacing => "true".into(),
+        _ => zero(leaf),
+    }
+}
+
+fn zero(leaf: Leaf) -> String {
+    format!("{leaf}()")
+}
+
+fn shape_of(meaning: Meaning, expression: &str, spec: &Spec) -> ValueShape {
+    if let Some(input) = spec.inputs.iter().find(|input| input.name == expression) {
+        return input.shape;
+    }
+    use Meaning as M;
+    match meaning {
+        M::Weight(_) if spec.place("ka").is_none() => ValueShape::Vec3,
+        M::Shininess
+        | M::Weight(_)
+        | M::Alpha
+        | M::Constant
+        | M::Linear
+        | M::Quadratic
+        | M::Attenuation
+        | M::Distance
+        | M::CutoffCosine
+        | M::SpotExponent
+        | M::FogDensity
+        | M::FogStart
+        | M::FogEnd
+        | M::FogFactor
+        | M::Incidence
+        | M::HalfCosine
+        | M::ReflectedCosine
+        | M::Identity
+        | M::Count
+        | M::TexturePlace => ValueShape::Scalar,
+        _ => ValueShape::Vec3,
+    }
+}
+
+/// An expression of a shape as the value of a variable; `None` where the two do not fit.
+fn fitted(expression: &str, shape: ValueShape, leaf: Leaf, meaning: Option<Meaning>) -> Option<String> {
+    let w = match meaning {
+        Some(Meaning::Point | Meaning::Eye | Meaning::LightPosition) => "1.0",
+        Some(meaning) if is_direction(meaning) => "0.0",
+        _ => "1.0",
+    };
+    match (shape, leaf) {
+        (_, Leaf::Matrix(columns, rows)) if meaning == Some(Meaning::Identity) => Some(identity(columns, rows)),
+        (ValueShape::Mat3, Leaf::Matrix(3, 3)) | (ValueShape::Mat4, Leaf::Matrix(4, 4)) => Some(expression.into()),
+        (_, Leaf::Vector(size, ScalarKind::Float)) if meaning == Some(Meaning::TexturePlace) => {
+            Some(format!("vec{size}f({expression})"))
+        }
+        (ValueShape::Scalar, Leaf::Scalar(ScalarKind::Float)) if meaning != Some(Meaning::Identity) => {
+            Some(expression.into())
+        }
+        (ValueShape::Scalar, Leaf::Scalar(kind @ (ScalarKind::Sint | ScalarKind::Uint))) => {
+            Some(if kind == ScalarKind::Sint { format!("i32({expression})") } else { format!("u32({expression})") })
+        }
+        // What has no colour has the same of each.
+        (ValueShape::Scalar, Leaf::Vector(size, ScalarKind::Float)) if matches!(meaning, Some(Meaning::Weight(_))) => {
+            Some(format!("vec{size}f({expression})"))
+        }
+        (ValueShape::Vec2, Leaf::Vector(2, ScalarKind::Float))
+        | (ValueShape::Vec3, Leaf::Vector(3, ScalarKind::Float))
+        | (ValueShape::Vec4, Leaf::Vector(4, ScalarKind::Float)) => Some(expression.into()),
+        (ValueShape::Vec3, Leaf::Vector(4, ScalarKind::Float)) => Some(format!("vec4f({expression}, {w})")),
+        (ValueShape::Vec4, Leaf::Vector(3, ScalarKind::Float)) => Some(format!("({expression}).xyz")),
+        _ => None,
+    }
+}
+
+const fn is_direction(meaning: Meaning) -> bool {
+    use Meaning as M;
+    matches!(
+        meaning,
+        M::Normal | M::ToEye | M::ToEyeWithLength | M::ToLight | M::Travel | M::Half | M::Reflected | M::Axis
+    )
+}
+
+fn identity(columns: u8, rows: u8) -> String {
+    let number = |column: u8, row: u8| if column == row { "1.0" } else { "0.0" };
+    let numbers: Vec<&str> = (0..columns).flat_map(|column| (0..rows).map(move |row| number(column, row))).collect();
+    format!("mat{columns}x{rows}f({})", numbers.join(", "))
+}
+
+/// The numbers of a shape.
+fn leaf_of(shape: ValueShape) -> Option<u8> {
+    match shape {
+        ValueShape::Scalar => Some(1),
+        ValueShape::Vec2 => Some(2),
+        ValueShape::Vec3 => Some(3),
+        ValueShape::Vec4 => Some(4),
+        ValueShape::Mat3 | ValueShape::Mat4 => None,
+    }
+}
+
+const fn size(leaf: Leaf) -> Option<u8> {
+    match leaf {
+        Leaf::Scalar(ScalarKind::Float) => Some(1),
+        Leaf::Vector(size, ScalarKind::Float) => Some(size),
+        _ => None,
+    }
+}
+
+/// Which value of the shader each output of the formula is.
+fn outputs(program: &ShaderProgram, spec: &Spec) -> Result<Vec<(&'static str, Option<String>)>, AdaptError> {
+    let fits = |output: &ShaderOutput, wanted: u8| {
+        size(output.leaf).and_then(|given| match (given, wanted) {
+            (given, wanted) if given == wanted => Some(output.value.clone()),
+            (4, 3) => Some(format!("({}).xyz", output.value)),
+            // A shader without an alpha is judged by its colours: the formula's own alpha stands beside them.
+            (3, 4) => Some(format!("vec4f({}, user_own.w)", output.value)),
+            _ => None,
+        })
+    };
+    let given = |name: &str, shape: ValueShape| {
+        let wanted = leaf_of(shape)?;
+        let named = program.outputs.iter().find(|output| output.name == name && size(output.leaf).is_some());
+        let only = || {
+            let mut fitting = program.outputs.iter().filter(|output| fits(output, wanted).is_some());
+            fitting.next().filter(|_| fitting.next().is_none())
+        };
+        named.and_then(|output| fits(output, wanted)).or_else(|| fits(only()?, wanted))
+    };
+    let found: Vec<(&'static str, Option<String>)> =
+        spec.outputs.iter().map(|output| (output.name, given(output.name, output.shape))).collect();
+    if found.iter().all(|(_, value)| value.is_none()) {
+        let own: Vec<String> =
+            program.outputs.iter().map(|output| format!("{}: {}", output.name, output.leaf)).collect();
+        let own = if own.is_empty() { "nothing".into() } else { own.join(", ") };
+        let wanted: Vec<String> =
+            spec.outputs.iter().map(|output| format!("{}: {}", output.name, output.shape.name())).collect();
+        return Err(AdaptError::Bind(format!("the shader gives {own}, and {} gives {}", spec.id, wanted.join(", "))));
+    }
+    Ok(found)
+}
+
+/// Inputs that no variable has, of a shader that gives all outputs.
+fn unused(spec: &Spec, bound: &[Bound], outputs: &[(&'static str, Option<String>)]) -> Vec<&'static str> {
+    if outputs.iter().any(|(_, value)| value.is_none()) {
+        return vec![];
+    }
+    spec.inputs
+        .iter()
+        .map(|input| input.name)
+        .filter(|name| !bound.iter().any(|bound| has_word(&bound.expression, name)))
+        .collect()
+}

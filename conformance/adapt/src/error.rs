@@ -1,0 +1,37 @@
+//! What can be wrong with a shader, or with how it is bound.
+
+use std::path::PathBuf;
+
+/// Why a shader cannot be made a formula's function.
+#[derive(Debug, thiserror::Error)]
+pub enum AdaptError {
+    /// It cannot be read as a file.
+    #[error("cannot read {}: {message}", .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// Its language is not one that is read.
+    #[error("{}: {message}", .path.display())]
+    Language {
+        /// The file.
+        path: PathBuf,
+        /// What would do.
+        message: String,
+    },
+    /// It is not valid in its language, or uses what is not read.
+    #[error("{}{}: {message}", .path.display(), .line.map(|line| format!(":{line}")).unwrap_or_default())]
+    Invalid {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1, where it is known.
+        line: Option<usize>,
+        /// What is wrong, and what would be right.
+        message: String,
+    },
+    /// Something has no binding, has two, or is bound to what does not fit.
+    #[error("{0}")]
+    Bind(String),
+}

@@ -1,0 +1,436 @@
+//! GLSL of any version as the part of it that naga reads.
+//!
+//! naga knows the core language of 4.50 for Vulkan, without combined samplers and loose uniforms. What older and other versions say
+//! differently stands at the global level alone: declarations of uniforms, varyings, attributes and outputs. They become plain global
+//! variables, so that only expressions are left, which all versions share. Lines keep their numbers.
+
+/// What a variable was declared as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// The same for all invocations.
+    Uniform,
+    /// From the stage before.
+    Input,
+    /// `varying` of older versions: an input of a fragment shader, an output of a vertex shader.
+    Varying,
+    /// For the stage after.
+    Output,
+    /// What is sampled: the value that it gives.
+    Texture,
+}
+
+/// GLSL that naga reads, and what its global variables were.
+#[derive(Debug, Default)]
+pub(crate) struct Normalised {
+    /// The text. Its lines are those of the original, but for [`PRELUDE_LINES`] before them.
+    pub(crate) text: String,
+    /// Each variable's name and what it was declared as.
+    pub(crate) roles: Vec<(String, Role)>,
+    /// Whether it has an entry point of its own.
+    pub(crate) has_main: bool,
+}
+
+/// Lines that stand before the original ones.
+pub(crate) const PRELUDE_LINES: usize = 1;
+
+/// What samples a texture: the texture is the value that it gives.
+const SAMPLE: &str = "lightmeter_texture";
+/// What combines a texture and a sampler.
+const COMBINE: &str = "lightmeter_combined";
+/// The output of versions that have no other.
+const COLOR: &str = "lightmeter_FragColor";
+const HELPERS: &str = "vec4 lightmeter_texture(vec4 t, vec2 at) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at) { return t; } \
+    vec4 lightmeter_texture(vec4 t, vec2 at, float bias) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at, float bias) { return t; } \
+    float lightmeter_texture(float t, vec3 at) { return t; } vec4 lightmeter_combined(vec4 t, float s) { return t; } ";
+
+/// Built-in functions that sample.
+const SAMPLING: [&str; 9] = [
+    "texture",
+    "texture2D",
+    "textureCube",
+    "texture2DLod",
+    "textureLod",
+    "texture2DProj",
+    "textureProj",
+    "texture2DLodEXT",
+    "shadow2D",
+];
+const INTERPOLATION: [&str; 12] = [
+    "flat",
+    "smooth",
+    "noperspective",
+    "centroid",
+    "sample",
+    "invariant",
+    "highp",
+    "mediump",
+    "lowp",
+    "patch",
+    "readonly",
+    "writeonly",
+];
+
+/// A word, a mark, or what stands between them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Token<'a> {
+    Word(&'a str),
+    Mark(&'a str),
+    /// White space, comments, and lines for the preprocessor.
+    Space(&'a str),
+}
+
+/// Which of them.
+enum Kind {
+    Word,
+    Mark,
+    Space,
+}
+
+impl<'a> Token<'a> {
+    const fn text(self) -> &'a str {
+        match self {
+            Self::Word(text) | Self::Mark(text) | Self::Space(text) => text,
+        }
+    }
+}
+
+fn tokens(text: &str) -> Vec<Token<'_>> {
+    let mut found = vec![];
+    let mut rest = text;
+    let mut begins_line = true;
+    while let Some(first) = rest.chars().next() {
+        let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+        let (length, kind): (usize, Kind) = if rest.starts_with("//") {
+            (rest.find('\n').unwrap_or(rest.len()), Kind::Space)
+        } else if rest.starts_with("/*") {
+            (rest.find("*/").map_or(rest.len(), |end| end + 2), Kind::Space)
+        } else if first == '#' && begins_line {
+            (directive(rest), Kind::Space)
+        } else if first.is_whitespace() {
+            (rest.find(|c: char| !c.is_whitespace()).unwrap_or(rest.len()), Kind::Space)
+        } else if first.is_ascii_digit() {
+            (rest.find(|c| !is_word(c)).unwrap_or(rest.len()), Kind::Mark)
+        } else if first.is_alphabetic() || first == '_' {
+            (rest.find(|c: char| !is_word(c) || c == '.').unwrap_or(rest.len()), Kind::Word)
+        } else {
+            (first.len_utf8(), Kind::Mark)
+        };
+        let (token, after) = rest.split_at(length);
+        begins_line = token.trim().is_empty() && (begins_line || token.contains('\n'));
+        found.push(match kind {
+            Kind::Word => Token::Word(token),
+            Kind::Mark => Token::Mark(token),
+            Kind::Space => Token::Space(token),
+        });
+        rest = after;
+    }
+    found
+}
+
+/// The length of a line for the preprocessor, with those that a backslash continues it by.
+fn directive(text: &str) -> usize {
+    let mut end = 0;
+    for line in text.split_inclusive('\n') {
+        end += line.len();
+        if !line.trim_end_matches(['\n', '\r']).ends_with('\\') {
+            return end - usize::from(line.ends_with('\n'));
+        }
+    }
+    end
+}
+
+/// Brings GLSL into what naga reads.
+pub(crate) fn normalised(text: &str) -> Normalised {
+    let tokens = tokens(text);
+    let mut out = Normalised::default();
+    let uses_color = tokens.iter().any(|token| matches!(token, Token::Word("gl_FragColor" | "gl_FragData")));
+    out.text = HELPERS.to_owned();
+    if uses_color {
+        out.text += &format!("vec4 {COLOR}; ");
+        out.roles.push((COLOR.into(), Role::Output));
+    }
+    out.text += "\n";
+    let mut place = 0;
+    while place < tokens.len() {
+        let end = statement(&tokens, place);
+        declare(&tokens[place..end], &mut out);
+        place = end;
+    }
+    // naga asks for an entry point, which a file of functions has not.
+    out.has_main = tokens.contains(&Token::Word("main"));
+    if !out.has_main {
+        out.text += "\nvoid main() {}\n";
+    }
+    out
+}
+
+/// Where the statement of the global level that begins at a place ends.
+fn statement(tokens: &[Token<'_>], from: usize) -> usize {
+    let mut depth = 0_usize;
+    // Directives and space before it are a statement of their own.
+    if let Token::Space(_) = tokens[from] {
+        return from + 1;
+    }
+    for (k, token) in tokens.iter().enumerate().skip(from) {
+        match token {
+            Token::Mark("{" | "(" | "[") => depth += 1,
+            Token::Mark(")" | "]") => depth = depth.saturating_sub(1),
+            Token::Mark(";") if depth == 0 => return k + 1,
+            Token::Mark("}") => {
+                depth = depth.saturating_sub(1);
+                let is_function = || {
+                    let before = tokens[from..k].iter().take_while(|token| **token != Token::Mark("{"));
+                    before.filter(|token| !matches!(token, Token::Space(_))).last() == Some(&Token::Mark(")"))
+                };
+                if depth == 0 && is_function() {
+                    return k + 1;
+                }
+            }
+            _ => {}
+        }
+    }
+    tokens.len()
+}
+
+/// Writes a statement of the global level.
+fn declare(statement: &[Token<'_>], out: &mut Normalised) {
+    let solid: Vec<usize> = (0..statement.len()).filter(|&k| !matches!(statement[k], Token::Space(_))).collect();
+    let at = |k: usize| solid.get(k).map_or(Token::Mark(""), |&place| statement[place]);
+    let mut role = None;
+    let mut first = 0;
+    // The qualifiers, a layout's brackets among them.
+    loop {
+        match at(first) {
+            Token::Word("layout") => {
+                while !matches!(at(first), Token::Mark(")" | "")) {
+                    first += 1;
+                }
+            }
+            Token::Word("uniform" | "buffer") => role = Some(Role::Uniform),
+            Token::Word("in" | "attribute") => role = Some(Role::Input),
+            Token::Word("out") => role = Some(Role::Output),
+            Token::Word("varying") => role = Some(Role::Varying),
+            Token::Word(word) if INTERPOLATION.contains(&word) => {}
+            _ => break,
+        }
+        first += 1;
+    }
+    let start = solid.get(first).copied().unwrap_or(statement.len());
+    match (at(first), role) {
+        (Token::Word("precision"), _) => blank(statement, &mut out.text),
+        (Token::Mark(";"), _) => blank(statement, &mut out.text),
+        (_, None) => written(&statement[if first > 0 { start } else { 0 }..], &mut out.text),
+        (Token::Word(_), Some(role)) => {
+            blank(&statement[..start], &mut out.text);
+            let is_struct = at(first) == Token::Word("struct");
+            let declared = &statement[if is_struct { start + 1 } else { start }..];
+            if is_struct || at(first + 1) == Token::Mark("{") {
+                block(declared, role, out)
+            } else {
+                variables(declared, role, out)
+            }
+        }
+        _ => written(statement, &mut out.text),
+    }
+}
+
+/// Keeps lines and directives, and nothing else.
+fn blank(tokens: &[Token<'_>], text: &mut String) {
+    for token in tokens {
+        match token {
+            Token::Space(space) if space.starts_with('#') => directed(space, text),
+            Token::Space(space) => text.extend(space.chars().filter(|c| c.is_whitespace())),
+            _ => text.push(' '),
+        }
+    }
+}
+
+/// Writes what is left as it is, but for the names of what is sampled.
+fn written(tokens: &[Token<'_>], text: &mut String) {
+    for (k, token) in tokens.iter().enumerate() {
+        let next = tokens[k + 1..].iter().find(|token| !matches!(token, Token::Space(_)));
+        let is_called = next == Some(&Token::Mark("("));
+        match *token {
+            Token::Space(space) if space.starts_with('#') => directed(space, text),
+            Token::Space(space) if space.starts_with('/') => text.extend(space.chars().filter(|c| c.is_whitespace())),
+            // What is constant and comes in is what comes in.
+            Token::Word("const") if next == Some(&Token::Word("in")) => {}
+            Token::Word(word) => text.push_str(renamed(word, is_called)),
+            other => text.push_str(other.text()),
+        }
+    }
+}
+
+fn renamed(word: &str, is_called: bool) -> &str {
+    match word {
+        _ if is_called && SAMPLING.contains(&word) => SAMPLE,
+        "sampler2D" | "samplerCube" if is_called => COMBINE,
+        "gl_FragColor" | "gl_FragData" => COLOR,
+        "highp" | "mediump" | "lowp" => "",
+        _ if is_texture(word) => sampled(word),
+        _ => word,
+    }
+}
+
+/// A line for the preprocessor. naga's own takes no other version than its own.
+fn directed(line: &str, text: &mut String) {
+    let words = line.trim_start_matches('#').trim_start();
+    if words.starts_with("version") || words.starts_with("extension") || words.starts_with("pragma") {
+        text.extend(line.chars().filter(|c| *c == '\n'));
+        return;
+    }
+    let Some(body) = words.strip_prefix("define") else {
+        text.push_str(line);
+        return;
+    };
+    text.push_str("#define");
+    written(&tokens(body), text);
+}
+
+/// Whether a word is the type of a texture, an image or a sampler: `sampler2D`, `texture2DArray`, `isampler3D`.
+fn is_texture(word: &str) -> bool {
+    const SHAPES: [&str; 13] = [
+        "1D",
+        "2D",
+        "3D",
+        "Cube",
+        "2DRect",
+        "1DArray",
+        "2DArray",
+        "CubeArray",
+        "Buffer",
+        "2DMS",
+        "2DMSArray",
+        "ExternalOES",
+        "CubeMap",
+    ];
+    let plain = word.strip_prefix(['i', 'u']).unwrap_or(word);
+    let shape = ["sampler", "texture", "image"].iter().find_map(|start| plain.strip_prefix(start));
+    word == "sampler" || shape.is_some_and(|shape| SHAPES.contains(&shape.strip_suffix("Shadow").unwrap_or(shape)))
+}
+
+/// The type of what a texture gives.
+fn sampled(word: &str) -> &'static str {
+    if word == "sampler" || word.ends_with("Shadow") { "float" } else { "vec4" }
+}
+
+/// `vec3 a, b[4];` after its qualifiers.
+fn variables(tokens: &[Token<'_>], role: Role, out: &mut Normalised) {
+    let (mut depth, mut is_name, mut ty) = (0_usize, false, "");
+    for token in tokens {
+        match *token {
+            Token::Word(word) if depth == 0 && INTERPOLATION.contains(&word) => continue,
+            Token::Word(word) if depth == 0 && ty.is_empty() => {
+                ty = word;
+                is_name = true;
+                out.text.push_str(if is_texture(word) { sampled(word) } else { word });
+                continue;
+            }
+            Token::Word(word) if depth == 0 && is_name => {
+                is_name = false;
+                let role = if is_texture(ty) { Role::Texture } else { role };
+                out.roles.push((word.into(), role));
+            }
+            Token::Mark("(" | "[" | "{") => depth += 1,
+            Token::Mark(")" | "]" | "}") => depth -= 1,
+            Token::Mark(",") if depth == 0 => is_name = true,
+            _ => {}
+        }
+        written(&[*token], &mut out.text);
+    }
+}
+
+/// `Name { vec3 a; float b; } instance;` after its qualifiers.
+fn block(tokens: &[Token<'_>], role: Role, out: &mut Normalised) {
+    let open = tokens.iter().position(|token| *token == Token::Mark("{")).unwrap_or(tokens.len());
+    let close = tokens.iter().rposition(|token| *token == Token::Mark("}")).unwrap_or(tokens.len());
+    let (name, members, instance) =
+        (&tokens[..open], &tokens[open + 1..close], &tokens[(close + 1).min(tokens.len())..]);
+    let named = instance.iter().find_map(|token| if let Token::Word(word) = token { Some(*word) } else { None });
+    let mut own = Normalised::default();
+    // Each member is a declaration, whose qualifiers go.
+    for member in members.split_inclusive(|token| *token == Token::Mark(";")) {
+        let first = member.iter().position(|token| !matches!(token, Token::Space(_))).unwrap_or(0);
+        written(&member[..first], &mut own.text);
+        let is_layout = member.get(first) == Some(&Token::Word("layout"));
+        let skipped = if is_layout {
+            member.iter().position(|token| *token == Token::Mark(")")).map_or(0, |k| k + 1)
+        } else {
+            first
+        };
+        variables(&member[skipped..], role, &mut own);
+    }
+    match named {
+        None => {
+            blank(name, &mut out.text);
+            out.text.push_str(&own.text);
+            blank(instance, &mut out.text);
+            out.roles.extend(own.roles);
+        }
+        Some(variable) => {
+            let block = name.iter().find_map(|token| if let Token::Word(word) = token { Some(*word) } else { None });
+            let block = block.unwrap_or("Block");
+            out.text += &format!("struct {block} {{{}}}; {block}", own.text);
+            written(instance, &mut out.text);
+            out.roles.push((variable.into(), role));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(text: &str) -> Vec<String> {
+        let own = normalised(text);
+        own.text.lines().skip(PRELUDE_LINES).map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+    }
+
+    #[test]
+    fn interfaces_become_plain_variables_on_their_lines() {
+        let text = "#version 330 core\n// a comment\nlayout (location = 0) in vec3 Normal;\nuniform Light { vec3 at; float k; } light;\n\
+                    uniform Block {\n  vec3 a;\n  layout(offset = 16) vec3 b;\n};\nuniform sampler2D map;\nout vec4 c;\n\
+                    uniform lowp vec3 x, y[2];\nvoid main() { c = texture(map, vec2(0)) * texture2D(map, vec2(1)); }\n";
+        assert_eq!(
+            lines(text),
+            [
+                "",
+                "",
+                "vec3 Normal;",
+                "struct Light { vec3 at; float k; }; Light light;",
+                "",
+                "vec3 a;",
+                "vec3 b;",
+                "",
+                "vec4 map;",
+                "vec4 c;",
+                "vec3 x, y[2];",
+                "void main() { c = lightmeter_texture(map, vec2(0)) * lightmeter_texture(map, vec2(1)); }",
+            ]
+        );
+        let roles = normalised(text).roles;
+        let role = |name: &str| roles.iter().find(|(own, _)| own == name).map(|(_, role)| *role);
+        assert_eq!(role("Normal"), Some(Role::Input));
+        assert_eq!([role("light"), role("a"), role("b"), role("x"), role("y")], [Some(Role::Uniform); 5]);
+        assert_eq!([role("map"), role("c")], [Some(Role::Texture), Some(Role::Output)]);
+    }
+
+    #[test]
+    fn names_that_begin_like_types_are_names() {
+        let text = "uniform sampler2D samplerColor, texture1;\nvoid main() { vec4 textureColor = texture(texture1, vec2(0)); float image2 = 1.0; }";
+        let own = lines(text);
+        assert_eq!(own[0], "vec4 samplerColor, texture1;");
+        assert_eq!(
+            own[1],
+            "void main() { vec4 textureColor = lightmeter_texture(texture1, vec2(0)); float image2 = 1.0; }"
+        );
+    }
+
+    #[test]
+    fn older_versions_are_read_too() {
+        let text = "#ifdef GL_ES\nprecision mediump float;\n#endif\nvarying vec3 v_normal;\nvoid main() { gl_FragColor = vec4(v_normal, 1.0); }";
+        let own = lines(text);
+        assert_eq!(own[1..4], ["", "#endif", "vec3 v_normal;"]);
+        assert!(own[4].contains("lightmeter_FragColor = vec4(v_normal, 1.0);"), "{own:?}");
+    }
+}

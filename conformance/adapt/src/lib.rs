@@ -1,0 +1,23 @@
+//! Makes a shader as somebody wrote it the function of a formula.
+//!
+//! A shader has uniforms, varyings and textures of its own names; a formula has inputs. The shader's text is read by naga ([`source`]), after
+//! GLSL of any version was brought into the one that naga knows (`glsl`). Its uniforms, inputs and textures become variables of the
+//! invocation, and its entry point a function ([`program`]). Each variable is bound to an expression over the formula's inputs, by its name
+//! or as was asked for ([`bind`]), and the formula's own WGSL function is replaced by one that sets them and calls the shader's
+//! (`wrapper`). From there on it is judged as any other shader is.
+//!
+//! Nothing here computes a formula: what a bound expression normalises or multiplies, the shader's own driver computes.
+
+pub mod bind;
+mod error;
+mod glsl;
+mod meaning;
+mod name;
+pub mod program;
+pub mod source;
+mod wrapper;
+
+pub use error::AdaptError;
+pub use meaning::synonyms;
+pub use program::{Part, ShaderProgram};
+pub use wrapper::replaced;

@@ -1,0 +1,638 @@
+//! A shader as a library of functions in WGSL, whose variables are of the invocation.
+
+use crate::AdaptError;
+use crate::glsl::Role;
+use crate::source::ShaderSource;
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{
+    AddressSpace, ArraySize, Binding, Block, BuiltIn, Expression, Function, GlobalVariable, Handle, Literal, Module,
+    Scalar, ScalarKind, ShaderStage, Span, Statement, Type, TypeInner, VectorSize,
+};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// What of a shader is judged.
+#[derive(Clone, Debug)]
+pub enum Part {
+    /// A function of that name.
+    Function(String),
+    /// The entry point.
+    Shader,
+}
+
+/// The type of a single variable, or of a member.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Leaf {
+    /// A number or a truth value.
+    Scalar(ScalarKind),
+    /// So many numbers of a kind.
+    Vector(u8, ScalarKind),
+    /// Columns and rows of numbers.
+    Matrix(u8, u8),
+}
+
+impl std::fmt::Display for Leaf {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Scalar(kind) => f.write_str(word(*kind)),
+            Self::Vector(size, kind) => write!(f, "vec{size}<{}>", word(*kind)),
+            Self::Matrix(columns, rows) => write!(f, "mat{columns}x{rows}<f32>"),
+        }
+    }
+}
+
+const fn word(kind: ScalarKind) -> &'static str {
+    match kind {
+        ScalarKind::Sint => "i32",
+        ScalarKind::Uint => "u32",
+        ScalarKind::Bool => "bool",
+        ScalarKind::Float | ScalarKind::AbstractInt | ScalarKind::AbstractFloat => "f32",
+    }
+}
+
+/// Where a variable of a shader has its value from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum From {
+    /// A uniform, a storage buffer or a constant of a pipeline.
+    Uniform,
+    /// The stage before.
+    Input,
+    /// Whoever calls the function.
+    Parameter,
+    /// A texture: the value that it gives.
+    Texture,
+    /// The pipeline.
+    BuiltIn(BuiltIn),
+}
+
+/// A variable of a shader, or a member of one, that has to have a value.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// Its name as it stands in the shader: `material.shininess`, `lights[0].position`.
+    pub name: String,
+    /// Its place in the function that replaces the formula's.
+    pub(crate) place: String,
+    /// Its type.
+    pub leaf: Leaf,
+    /// Where its value comes from.
+    pub from: From,
+    /// Whether it is of an element of an array other than the first.
+    pub is_further: bool,
+    /// Whether the shader's text uses it.
+    pub is_used: bool,
+}
+
+/// A value that a shader gives.
+#[derive(Clone, Debug)]
+pub struct ShaderOutput {
+    /// Its name; empty of a function's result that is no structure.
+    pub name: String,
+    pub(crate) value: String,
+    /// Its type.
+    pub leaf: Leaf,
+}
+
+/// A shader as functions in WGSL.
+#[derive(Debug)]
+pub struct ShaderProgram {
+    /// The library. All names in it begin with `user_`.
+    pub(crate) wgsl: String,
+    /// Statements that declare the arguments.
+    pub(crate) declared: Vec<String>,
+    /// The statement that calls it.
+    pub(crate) call: String,
+    /// The variable that says whether it discarded its fragment.
+    pub(crate) discarded: Option<String>,
+    /// What has to have a value.
+    pub slots: Vec<Variable>,
+    /// What it gives.
+    pub outputs: Vec<ShaderOutput>,
+}
+
+/// A name that neither a word of WGSL nor another name is.
+fn safe(kind: &str, name: Option<&str>, k: usize) -> String {
+    let plain: String =
+        name.unwrap_or_default().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    let mut words = plain.split('_').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("_");
+    if !words.is_empty() {
+        words.push('_');
+    }
+    format!("user_{kind}_{words}{k}x")
+}
+
+impl ShaderProgram {
+    /// What a shader, or a function of it, takes and gives.
+    ///
+    /// # Errors
+    /// Where there is no such function, or it uses what cannot be judged this way.
+    pub fn new(path: &Path, source: &ShaderSource, part: &Part) -> Result<Self, AdaptError> {
+        let invalid = |message: String| {
+            let words =
+                NOT_READ.iter().find(|(start, _)| message.starts_with(start)).map_or(&[][..], |(_, words)| words);
+            AdaptError::Invalid { path: path.into(), line: source.line_of(words), message }
+        };
+        let mut module = source.module.clone();
+        check(path, source)?;
+        let entry = taken(&mut module, source, part).map_err(invalid)?;
+        let described = Described::new(&module, source, entry);
+        simplified(&mut module).map_err(invalid)?;
+        let discarded = without_discard(&mut module);
+        renamed(&mut module, entry);
+        let info = validated(&module).map_err(invalid)?;
+        let wgsl = naga::back::wgsl::write_string(&module, &info, naga::back::wgsl::WriterFlags::empty())
+            .map_err(|error| invalid(format!("it cannot be written as WGSL: {error}")))?;
+        described.program(&module, &info, entry, source, (wgsl, discarded)).map_err(invalid)
+    }
+}
+
+/// What is not read, with the words that it stands in a text by.
+const NOT_READ: [(&str, &[&str]); 3] = [
+    ("it takes derivatives", &["dFdx", "dFdy", "fwidth", "dpdx", "dpdy"]),
+    ("it asks for the size", &["textureSize", "textureDimensions"]),
+    ("it gathers", &["textureGather"]),
+];
+
+/// Whether it is valid, with the line of what is not.
+fn check(path: &Path, source: &ShaderSource) -> Result<(), AdaptError> {
+    let capabilities = Capabilities::default() | Capabilities::IMMEDIATES;
+    let error = match Validator::new(ValidationFlags::all(), capabilities).validate(&source.module) {
+        Ok(_) => return Ok(()),
+        Err(error) => error,
+    };
+    let (text, before) = &source.read;
+    let line =
+        error.spans().next().filter(|_| !text.is_empty()).map(|(span, _)| span.location(text).line_number as usize);
+    let line = line.map(|line| line.saturating_sub(*before).max(1));
+    Err(AdaptError::Invalid { path: path.into(), line, message: validated(&source.module).err().unwrap_or_default() })
+}
+
+fn validated(module: &Module) -> Result<ModuleInfo, String> {
+    let capabilities = Capabilities::default() | Capabilities::IMMEDIATES;
+    Validator::new(ValidationFlags::all(), capabilities).validate(module).map_err(|error| {
+        let mut words = error.as_inner().to_string();
+        let mut source = std::error::Error::source(error.as_inner());
+        while let Some(inner) = source {
+            let _ = write!(words, ": {inner}");
+            source = inner.source();
+        }
+        words
+    })
+}
+
+/// The function to call, an entry point made one.
+fn taken(module: &mut Module, source: &ShaderSource, part: &Part) -> Result<Handle<Function>, String> {
+    let entries: Vec<String> = module.entry_points.iter().map(|entry| entry.name.clone()).collect();
+    let place = match part {
+        Part::Function(name) => {
+            let found = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some(name));
+            if let Some((handle, _)) = found {
+                module.entry_points.clear();
+                return Ok(handle);
+            }
+            entries.iter().position(|entry| entry == name).ok_or_else(|| {
+                let names = functions(module, source);
+                let meant = lightmeter_catalogue::nearest::did_you_mean(name, names.iter().map(String::as_str));
+                format!("it has no function `{name}`{meant} It has {}", names.join(", "))
+            })?
+        }
+        Part::Shader if source.is_library => {
+            let names = functions(module, source).join(", ");
+            return Err(format!("it has no main; name a function by `--function NAME@FILE`: it has {names}"));
+        }
+        Part::Shader => {
+            let of_stage =
+                |stage| module.entry_points.iter().enumerate().filter(move |(_, entry)| entry.stage == stage);
+            let stage = [ShaderStage::Fragment, ShaderStage::Vertex]
+                .into_iter()
+                .find(|stage| of_stage(*stage).next().is_some());
+            let found: Vec<usize> = stage.map_or(vec![], |stage| of_stage(stage).map(|(place, _)| place).collect());
+            match found.as_slice() {
+                [place] => *place,
+                [] => {
+                    return Err("it has no fragment or vertex shader; name a function by `--function NAME@FILE`".into());
+                }
+                _ => {
+                    return Err(format!(
+                        "it has several entry points: {}; name one by `--function NAME@FILE`",
+                        entries.join(", ")
+                    ));
+                }
+            }
+        }
+    };
+    let mut function = module.entry_points.swap_remove(place).function;
+    module.entry_points.clear();
+    function.name = Some("entry".into());
+    Ok(module.functions.append(function, Span::UNDEFINED))
+}
+
+/// The functions of a shader by name.
+fn functions(module: &Module, source: &ShaderSource) -> Vec<String> {
+    let own = module.functions.iter().filter_map(|(_, function)| function.name.clone());
+    let entries = module.entry_points.iter().map(|entry| entry.name.clone());
+    let is_own = |name: &String| !(name.starts_with("lightmeter_") || source.is_library && name == "main");
+    let mut names: Vec<String> = own.chain(entries).filter(is_own).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// Puts all variables into the invocation, and what a texture gives in the place of sampling it.
+fn simplified(module: &mut Module) -> Result<(), String> {
+    if module.overrides.iter().next().is_some() {
+        return Err("it has overrides or specialisation constants; write their values as constants".into());
+    }
+    let vec4 = Type { name: None, inner: TypeInner::Vector { size: VectorSize::Quad, scalar: Scalar::F32 } };
+    let texel = module.types.insert(vec4, Span::UNDEFINED);
+    let number = module.types.insert(Type { name: None, inner: TypeInner::Scalar(Scalar::F32) }, Span::UNDEFINED);
+    for (_, variable) in module.global_variables.iter_mut() {
+        match (&module.types[variable.ty].inner, variable.space) {
+            (_, AddressSpace::WorkGroup) => return Err("it shares variables between invocations".into()),
+            (TypeInner::Image { class, .. }, _) => {
+                variable.ty = match class {
+                    naga::ImageClass::Sampled { kind: ScalarKind::Float, .. } => texel,
+                    naga::ImageClass::Depth { .. } => number,
+                    _ => return Err("it has a texture of integers, or one that it writes".into()),
+                };
+            }
+            (TypeInner::Sampler { .. }, _) => variable.ty = number,
+            _ => {}
+        }
+        variable.space = AddressSpace::Private;
+        variable.binding = None;
+    }
+    let pointers: Vec<(Handle<Type>, Type)> = module.types.iter().map(|(handle, ty)| (handle, ty.clone())).collect();
+    for (handle, ty) in pointers {
+        if let TypeInner::Pointer { base, space } = ty.inner
+            && !matches!(space, AddressSpace::Function | AddressSpace::Private)
+        {
+            let inner = TypeInner::Pointer { base, space: AddressSpace::Private };
+            module.types.replace(handle, Type { name: Some(format!("pointer{}", handle.index())), inner });
+        }
+    }
+    for (_, function) in module.functions.iter_mut() {
+        for (_, expression) in function.expressions.iter_mut() {
+            match *expression {
+                Expression::ImageSample { image, gather: None, .. } | Expression::ImageLoad { image, .. } => {
+                    *expression = Expression::Load { pointer: image };
+                }
+                Expression::ImageSample { .. } => return Err("it gathers texels".into()),
+                Expression::ImageQuery { .. } => return Err("it asks for the size of a texture".into()),
+                Expression::Derivative { .. } => {
+                    return Err("it takes derivatives (dFdx, dFdy, fwidth), which a single case has not".into());
+                }
+                _ => {}
+            }
+        }
+        let is_handle =
+            |ty: Handle<Type>| matches!(module.types[ty].inner, TypeInner::Image { .. } | TypeInner::Sampler { .. });
+        if function.arguments.iter().any(|argument| is_handle(argument.ty)) {
+            let name = function.name.clone().unwrap_or_default();
+            return Err(format!("its function `{name}` takes a texture or a sampler; pass what it gives"));
+        }
+        for argument in &mut function.arguments {
+            argument.binding = None;
+        }
+        if let Some(result) = &mut function.result {
+            result.binding = None;
+        }
+    }
+    Ok(())
+}
+
+/// Has a discarded fragment return, and says so in a variable of that name.
+fn without_discard(module: &mut Module) -> Option<String> {
+    let discards = module.functions.iter().any(|(_, function)| has_discard(&function.body));
+    if !discards {
+        return None;
+    }
+    let ty = module.types.insert(Type { name: None, inner: TypeInner::Scalar(Scalar::BOOL) }, Span::UNDEFINED);
+    let flag = module.global_variables.append(
+        GlobalVariable {
+            name: Some("discarded".into()),
+            space: AddressSpace::Private,
+            binding: None,
+            ty,
+            init: None,
+            memory_decorations: naga::MemoryDecorations::empty(),
+        },
+        Span::UNDEFINED,
+    );
+    for (_, function) in module.functions.iter_mut() {
+        if has_discard(&function.body) {
+            let mut add = |expression| function.expressions.append(expression, Span::UNDEFINED);
+            let (pointer, truth) =
+                (add(Expression::GlobalVariable(flag)), add(Expression::Literal(Literal::Bool(true))));
+            let value = function.result.as_ref().map(|result| add(Expression::ZeroValue(result.ty)));
+            let body = std::mem::take(&mut function.body);
+            function.body = returning(body, &[Statement::Store { pointer, value: truth }, Statement::Return { value }]);
+        }
+    }
+    Some(safe("global", Some("discarded"), flag.index()))
+}
+
+fn has_discard(block: &Block) -> bool {
+    block.iter().any(|statement| match statement {
+        Statement::Kill => true,
+        Statement::Block(block) => has_discard(block),
+        Statement::If { accept, reject, .. } => has_discard(accept) || has_discard(reject),
+        Statement::Switch { cases, .. } => cases.iter().any(|case| has_discard(&case.body)),
+        Statement::Loop { body, continuing, .. } => has_discard(body) || has_discard(continuing),
+        _ => false,
+    })
+}
+
+fn returning(block: Block, instead: &[Statement]) -> Block {
+    let mut out = Block::new();
+    for (statement, span) in block.span_into_iter() {
+        let statement = match statement {
+            Statement::Kill => {
+                instead.iter().for_each(|one| out.push(one.clone(), span));
+                return out;
+            }
+            Statement::Block(block) => Statement::Block(returning(block, instead)),
+            Statement::If { condition, accept, reject } => {
+                Statement::If { condition, accept: returning(accept, instead), reject: returning(reject, instead) }
+            }
+            Statement::Switch { selector, mut cases } => {
+                for case in &mut cases {
+                    case.body = returning(std::mem::take(&mut case.body), instead);
+                }
+                Statement::Switch { selector, cases }
+            }
+            Statement::Loop { body, continuing, break_if } => {
+                Statement::Loop { body: returning(body, instead), continuing: returning(continuing, instead), break_if }
+            }
+            other => other,
+        };
+        out.push(statement, span);
+    }
+    out
+}
+
+/// Gives everything a name that nothing else has.
+fn renamed(module: &mut Module, entry: Handle<Function>) {
+    for (handle, function) in module.functions.iter_mut() {
+        function.name = Some(if handle == entry {
+            "user_entry".into()
+        } else {
+            safe("function", function.name.as_deref(), handle.index())
+        });
+    }
+    for (handle, variable) in module.global_variables.iter_mut() {
+        variable.name = Some(safe("global", variable.name.as_deref(), handle.index()));
+    }
+    for (handle, constant) in module.constants.iter_mut() {
+        if constant.name.is_some() {
+            constant.name = Some(safe("constant", constant.name.as_deref(), handle.index()));
+        }
+    }
+    let types: Vec<(Handle<Type>, Type)> = module.types.iter().map(|(handle, ty)| (handle, ty.clone())).collect();
+    for (handle, ty) in types {
+        if let TypeInner::Struct { mut members, span } = ty.inner {
+            for (k, member) in members.iter_mut().enumerate() {
+                member.name = Some(member_name(k));
+                member.binding = None;
+            }
+            let name = Some(safe("type", ty.name.as_deref(), handle.index()));
+            module.types.replace(handle, Type { name, inner: TypeInner::Struct { members, span } });
+        }
+    }
+}
+
+fn member_name(k: usize) -> String {
+    format!("member_{k}x")
+}
+
+/// What a shader says of itself before its names go.
+struct Described {
+    /// Each global variable's name, and what it is; `None` of one of its own.
+    globals: Vec<(String, Option<From>)>,
+    outputs: Vec<usize>,
+    /// Each argument's name.
+    arguments: Vec<(String, From)>,
+    /// The names of structures' members, by the type's place.
+    members: Vec<Vec<(String, Option<BuiltIn>)>>,
+}
+
+impl Described {
+    fn new(module: &Module, source: &ShaderSource, entry: Handle<Function>) -> Self {
+        let role = |name: &str| source.roles.iter().find(|(own, _)| own == name).map(|(_, role)| *role);
+        let (mut globals, mut outputs) = (vec![], vec![]);
+        for (handle, variable) in module.global_variables.iter() {
+            let name = variable.name.clone().unwrap_or_default();
+            let from = match (variable.space, role(&name)) {
+                (_, Some(Role::Uniform)) => Some(From::Uniform),
+                (_, Some(Role::Input | Role::Varying)) => Some(From::Input),
+                (_, Some(Role::Texture)) => Some(From::Texture),
+                (_, Some(Role::Output)) => {
+                    outputs.push(handle.index());
+                    None
+                }
+                (AddressSpace::Handle, None) => match module.types[variable.ty].inner {
+                    TypeInner::Sampler { .. } => None,
+                    _ => Some(From::Texture),
+                },
+                (AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Immediate, None) => {
+                    Some(From::Uniform)
+                }
+                _ => None,
+            };
+            globals.push((name, from));
+        }
+        let function = &module.functions[entry];
+        let is_entry = function.name.as_deref() == Some("entry");
+        let from = |binding: &Option<Binding>| match binding {
+            Some(Binding::BuiltIn(built_in)) => From::BuiltIn(*built_in),
+            _ if is_entry => From::Input,
+            _ => From::Parameter,
+        };
+        let argument = |(k, argument): (usize, &naga::FunctionArgument)| {
+            let name = argument.name.clone().filter(|name| !name.is_empty());
+            (name.or_else(|| stored_name(module, function, k)).unwrap_or_default(), from(&argument.binding))
+        };
+        let members = module.types.iter().map(|(_, ty)| match &ty.inner {
+            TypeInner::Struct { members, .. } => {
+                let built_in = |binding: &Option<Binding>| match binding {
+                    Some(Binding::BuiltIn(built_in)) => Some(*built_in),
+                    _ => None,
+                };
+                members
+                    .iter()
+                    .map(|member| (member.name.clone().unwrap_or_default(), built_in(&member.binding)))
+                    .collect()
+            }
+            _ => vec![],
+        });
+        Self {
+            globals,
+            outputs,
+            arguments: function.arguments.iter().enumerate().map(argument).collect(),
+            members: members.collect(),
+        }
+    }
+
+    fn program(
+        &self,
+        module: &Module,
+        info: &ModuleInfo,
+        entry: Handle<Function>,
+        source: &ShaderSource,
+        (wgsl, discarded): (String, Option<String>),
+    ) -> Result<ShaderProgram, String> {
+        let function = &module.functions[entry];
+        let walk = Walk { module, described: self, text: &source.text };
+        let (mut slots, mut declared, mut words) = (vec![], vec![], vec![]);
+        for (handle, variable) in module.global_variables.iter() {
+            let Some((name, Some(from))) = self.globals.get(handle.index()) else { continue };
+            if !info[entry][handle].is_empty() {
+                let place = variable.name.clone().unwrap_or_default();
+                walk.slots(variable.ty, (name.clone(), place), (*from, false), &mut slots)?;
+            }
+        }
+        for (k, (argument, (name, from))) in function.arguments.iter().zip(&self.arguments).enumerate() {
+            let place = safe("argument", Some(name), k);
+            declared.push(format!("var {place}: {};", walk.type_of(argument.ty)?));
+            let shown = if name.is_empty() { format!("argument {k}") } else { name.clone() };
+            // The members of an entry point's structure are inputs by their own names.
+            let is_nameless =
+                *from == From::Input && matches!(module.types[argument.ty].inner, TypeInner::Struct { .. });
+            walk.slots(
+                argument.ty,
+                (if is_nameless { String::new() } else { shown }, place.clone()),
+                (*from, false),
+                &mut slots,
+            )?;
+            words.push(place);
+        }
+        let mut outputs = vec![];
+        for (handle, variable) in
+            module.global_variables.iter().filter(|(handle, _)| self.outputs.contains(&handle.index()))
+        {
+            walk.outputs(
+                variable.ty,
+                &self.globals[handle.index()].0,
+                variable.name.as_deref().unwrap_or_default(),
+                &mut outputs,
+            );
+        }
+        let call = match &function.result {
+            None => format!("user_entry({});", words.join(", ")),
+            Some(result) => {
+                walk.outputs(result.ty, "", "user_given", &mut outputs);
+                format!("let user_given = user_entry({});", words.join(", "))
+            }
+        };
+        Ok(ShaderProgram { wgsl, declared, call, discarded, slots, outputs })
+    }
+}
+
+/// The name of the variable that an argument without one is stored in: of SPIR-V, whose inputs are variables.
+fn stored_name(module: &Module, function: &Function, argument: usize) -> Option<String> {
+    let is_argument = |value: &Handle<Expression>| matches!(function.expressions[*value], Expression::FunctionArgument(k) if k as usize == argument);
+    function.body.iter().find_map(|statement| match statement {
+        Statement::Store { pointer, value } if is_argument(value) => match function.expressions[*pointer] {
+            Expression::GlobalVariable(variable) => module.global_variables[variable].name.clone(),
+            _ => None,
+        },
+        _ => None,
+    })
+}
+
+/// Goes through the members of types.
+struct Walk<'a> {
+    module: &'a Module,
+    described: &'a Described,
+    text: &'a str,
+}
+
+impl Walk<'_> {
+    fn slots(
+        &self,
+        ty: Handle<Type>,
+        (name, place): (String, String),
+        (from, is_further): (From, bool),
+        out: &mut Vec<Variable>,
+    ) -> Result<(), String> {
+        match &self.module.types[ty].inner {
+            TypeInner::Struct { members, .. } => {
+                for (k, member) in members.iter().enumerate() {
+                    let (own, built_in) = &self.described.members[ty.index()][k];
+                    let from = built_in.map_or(from, From::BuiltIn);
+                    let name = if name.is_empty() { own.clone() } else { format!("{name}.{own}") };
+                    self.slots(member.ty, (name, format!("{place}.{}", member_name(k))), (from, is_further), out)?;
+                }
+                Ok(())
+            }
+            TypeInner::Array { base, size: ArraySize::Constant(size), .. } if size.get() <= MOST_ELEMENTS => {
+                for k in 0..size.get() {
+                    self.slots(
+                        *base,
+                        (format!("{name}[{k}]"), format!("{place}[{k}]")),
+                        (from, is_further || k > 0),
+                        out,
+                    )?;
+                }
+                Ok(())
+            }
+            _ => {
+                let leaf = self.leaf(ty).ok_or_else(|| {
+                    format!(
+                        "`{name}` is no number, vector, matrix, structure or array of at most {MOST_ELEMENTS} of them"
+                    )
+                })?;
+                let is_used = self.is_used(&name);
+                out.push(Variable { name, place, leaf, from, is_further, is_used });
+                Ok(())
+            }
+        }
+    }
+
+    /// Whether the text has a member's name after a dot. Without a text, and of what is no member, it is taken to be used.
+    fn is_used(&self, name: &str) -> bool {
+        let Some((_, member)) = name.rsplit_once('.') else { return true };
+        let ends = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_');
+        let dotted = format!(".{member}");
+        self.text.is_empty()
+            || self.text.match_indices(&dotted).any(|(place, found)| ends(&self.text[place + found.len()..]))
+    }
+
+    fn leaf(&self, ty: Handle<Type>) -> Option<Leaf> {
+        match self.module.types[ty].inner {
+            TypeInner::Scalar(scalar) if scalar.width <= 4 => Some(Leaf::Scalar(scalar.kind)),
+            TypeInner::Vector { size, scalar } if scalar.width <= 4 => Some(Leaf::Vector(size as u8, scalar.kind)),
+            TypeInner::Matrix { columns, rows, scalar } if scalar.width == 4 => {
+                Some(Leaf::Matrix(columns as u8, rows as u8))
+            }
+            _ => None,
+        }
+    }
+
+    fn outputs(&self, ty: Handle<Type>, name: &str, value: &str, out: &mut Vec<ShaderOutput>) {
+        if let TypeInner::Struct { members, .. } = &self.module.types[ty].inner {
+            for (k, member) in members.iter().enumerate() {
+                let (own, built_in) = &self.described.members[ty.index()][k];
+                if built_in.is_none() {
+                    self.outputs(member.ty, own, &format!("{value}.{}", member_name(k)), out);
+                }
+            }
+        } else if let Some(leaf) = self.leaf(ty) {
+            out.push(ShaderOutput { name: name.into(), value: value.into(), leaf });
+        }
+    }
+
+    fn type_of(&self, ty: Handle<Type>) -> Result<String, String> {
+        let own = &self.module.types[ty];
+        match (&own.inner, self.leaf(ty)) {
+            (_, Some(leaf)) => Ok(leaf.to_string()),
+            (TypeInner::Struct { .. }, _) => Ok(own.name.clone().unwrap_or_default()),
+            (TypeInner::Array { base, size: ArraySize::Constant(size), .. }, _) => {
+                Ok(format!("array<{}, {size}>", self.type_of(*base)?))
+            }
+            _ => Err("it takes a parameter that is no number, vector, matrix, structure or array of them".into()),
+        }
+    }
+}
+
+/// Elements of an array that can be bound.
+const MOST_ELEMENTS: u32 = 64;

@@ -1,0 +1,151 @@
+//! A shader's file, read by naga.
+
+use crate::AdaptError;
+use crate::glsl::{self, PRELUDE_LINES, Role};
+use lightmeter_files::read;
+use naga::front::{glsl as glsl_in, spv, wgsl};
+use naga::{Module, ShaderStage};
+use std::path::Path;
+
+/// Bytes that a shader's file may have.
+const MOST_BYTES: u64 = 4 << 20;
+
+/// What a file's ending says of its language.
+const ENDINGS: [(&str, Language); 13] = [
+    ("wgsl", Language::Wgsl),
+    ("spv", Language::Spirv),
+    ("frag", Language::Glsl(ShaderStage::Fragment)),
+    ("glsl", Language::Glsl(ShaderStage::Fragment)),
+    ("fs", Language::Glsl(ShaderStage::Fragment)),
+    ("fsh", Language::Glsl(ShaderStage::Fragment)),
+    ("fp", Language::Glsl(ShaderStage::Fragment)),
+    ("psh", Language::Glsl(ShaderStage::Fragment)),
+    ("vert", Language::Glsl(ShaderStage::Vertex)),
+    ("vs", Language::Glsl(ShaderStage::Vertex)),
+    ("vsh", Language::Glsl(ShaderStage::Vertex)),
+    ("vp", Language::Glsl(ShaderStage::Vertex)),
+    ("comp", Language::Glsl(ShaderStage::Compute)),
+];
+
+/// The language that a shader is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// WGSL.
+    Wgsl,
+    /// GLSL of any version, of a stage.
+    Glsl(ShaderStage),
+    /// SPIR-V, to which compilers of HLSL, Slang and GLSL translate.
+    Spirv,
+}
+
+/// A shader as naga has it.
+#[derive(Debug)]
+pub struct ShaderSource {
+    /// What it says.
+    pub(crate) module: Module,
+    /// Of GLSL each global variable's name and what it was declared as.
+    pub(crate) roles: Vec<(String, Role)>,
+    /// Its text; empty of SPIR-V.
+    pub text: String,
+    /// Its language.
+    pub language: Language,
+    /// The text that naga read, and how many lines of it stand before the file's own.
+    pub(crate) read: (String, usize),
+    /// Whether it is only functions.
+    pub(crate) is_library: bool,
+}
+
+impl ShaderSource {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Where it cannot be read, or naga does not take it: with the line, and what would do.
+    pub fn read(path: &Path) -> Result<Self, AdaptError> {
+        let language = language(path)?;
+        let unreadable = |error: std::io::Error| AdaptError::Read { path: path.into(), message: error.to_string() };
+        if language == Language::Spirv {
+            let bytes = read::bytes(path, MOST_BYTES).map_err(unreadable)?;
+            return of_spirv(path, &bytes);
+        }
+        let text = read::text(path, MOST_BYTES).map_err(unreadable)?;
+        if let Language::Glsl(stage) = language {
+            return of_glsl(path, text, stage);
+        }
+        let module = of_wgsl(path, &text)?;
+        Ok(Self { module, roles: vec![], read: (text.clone(), 0), text, language, is_library: false })
+    }
+
+    /// The line of the file in which something stands that is not read.
+    pub(crate) fn line_of(&self, words: &[&str]) -> Option<usize> {
+        let has = |line: &str| words.iter().any(|word| line.contains(word));
+        self.text.lines().position(has).map(|place| place + 1)
+    }
+}
+
+fn language(path: &Path) -> Result<Language, AdaptError> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if let Some((_, language)) = ENDINGS.iter().find(|(own, _)| *own == ending) {
+        return Ok(*language);
+    }
+    let by_spirv = |compiler: &str| format!("{ending} is read as SPIR-V: compile it by `{compiler}`");
+    let message = match ending.as_str() {
+        "hlsl" | "fx" => by_spirv("dxc -spirv -T ps_6_0 -E main -Fo shader.spv"),
+        "slang" => by_spirv("slangc -target spirv -o shader.spv"),
+        _ => "its ending names no language; expected .wgsl, .frag, .vert or .glsl, or .spv".to_owned(),
+    };
+    Err(AdaptError::Language { path: path.into(), message })
+}
+
+fn of_spirv(path: &Path, bytes: &[u8]) -> Result<ShaderSource, AdaptError> {
+    let options =
+        spv::Options { adjust_coordinate_space: false, strict_capabilities: false, ..spv::Options::default() };
+    let module = spv::parse_u8_slice(bytes, &options).map_err(|error| AdaptError::Invalid {
+        path: path.into(),
+        line: None,
+        message: format!("it is no SPIR-V that naga reads: {error}"),
+    })?;
+    let (text, read) = (String::new(), (String::new(), 0));
+    Ok(ShaderSource { module, roles: vec![], text, language: Language::Spirv, read, is_library: false })
+}
+
+fn of_wgsl(path: &Path, text: &str) -> Result<Module, AdaptError> {
+    wgsl::parse_str(text).map_err(|error| AdaptError::Invalid {
+        path: path.into(),
+        line: error.location(text).map(|place| place.line_number as usize),
+        message: error.message().to_owned(),
+    })
+}
+
+fn of_glsl(path: &Path, own: String, stage: ShaderStage) -> Result<ShaderSource, AdaptError> {
+    let invalid = |line, message: String| AdaptError::Invalid { path: path.into(), line, message };
+    if let Some((line, word)) = unread(&own) {
+        return Err(invalid(Some(line), word));
+    }
+    let glsl::Normalised { text, mut roles, has_main } = glsl::normalised(&own);
+    if stage == ShaderStage::Vertex {
+        // What varies is what a vertex shader gives.
+        roles.iter_mut().filter(|(_, role)| *role == Role::Varying).for_each(|(_, role)| *role = Role::Output);
+    }
+    let module = glsl_in::Frontend::default().parse(&glsl_in::Options::from(stage), &text).map_err(|errors| {
+        let Some(error) = errors.errors.first() else { return invalid(None, errors.to_string()) };
+        let line = error.meta.location(&text).line_number as usize;
+        invalid(Some(line.saturating_sub(PRELUDE_LINES).max(1)), plain(&error.kind.to_string()))
+    })?;
+    let language = Language::Glsl(stage);
+    Ok(ShaderSource { module, roles, text: own, language, read: (text, PRELUDE_LINES), is_library: !has_main })
+}
+
+/// A message without what naga's own types look like.
+fn plain(message: &str) -> String {
+    message.split_once("TypeName(").map_or_else(|| message.to_owned(), |(before, _)| format!("{before}a type"))
+}
+
+/// What no preprocessor here reads: the line, and what would do.
+fn unread(text: &str) -> Option<(usize, String)> {
+    let line = |(k, line): (usize, &str)| {
+        let words = line.trim_start().strip_prefix('#')?.trim_start();
+        let file = words.strip_prefix("include")?.trim();
+        Some((k + 1, format!("`#include {file}` is not followed; put the text there, or compile it to SPIR-V")))
+    };
+    text.lines().enumerate().find_map(line)
+}

@@ -1,0 +1,194 @@
+//! `lightmeter identify`.
+
+use super::options::{Choice, Format};
+use super::progress::Bar;
+use super::shader::{OwnShader, constant};
+use super::signals::stopped_by_signals;
+use super::{Status, writable};
+use anyhow::bail;
+use clap::Args;
+use lightmeter::adapters;
+use lightmeter::arithmetic::Profile;
+use lightmeter::document::Document as _;
+use lightmeter::document::identify::{FormulaCandidate, IdentifyDocument, SCHEMA};
+use lightmeter::document::run::Report;
+use lightmeter::document::thousands;
+use lightmeter::faults::Mistakes;
+use lightmeter::files::lines;
+use lightmeter::filter::Filter;
+use lightmeter::options::{Adapted, Constant, Options};
+use lightmeter::run::run;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Random cases of each formula: mistakes show in as many.
+const CASES: u64 = 256;
+/// Formulas that are told besides the ones that it is, or the nearest one.
+const MOST_TOLD: usize = 3;
+
+/// Tell which formula a shader computes, or the nearest one with the mistake that leads to it
+///
+/// Its variables are bound to the inputs of every formula that they can be bound to, and it is judged by each. The exit code is 0 where it
+/// is one of them, and 1 where every one of them is computed otherwise.
+#[derive(Debug, Args)]
+pub(crate) struct Identify {
+    /// The shader's file: .frag, .vert, .glsl, .wgsl or .spv
+    #[arg(required_unless_present = "names")]
+    file: Option<PathBuf>,
+    /// List the names of variables that are understood, and what they are taken to mean
+    #[arg(long)]
+    names: bool,
+    /// A function of it; without it: the shader as a whole
+    #[arg(long, value_name = "NAME")]
+    function: Option<String>,
+    /// What a variable of the shader means: WGSL over the formula's inputs; again for several
+    #[arg(long, value_name = "NAME=EXPRESSION", allow_hyphen_values = true)]
+    bind: Vec<String>,
+    /// An input of the formula that the shader has as a constant, as `shininess=32`, or in common with another one, as `ma=md`; again for several
+    #[arg(long, value_name = "NAME=VALUE", value_parser = constant, allow_hyphen_values = true)]
+    constant: Vec<(String, Constant)>,
+    /// Adapter to run on, as for `run`; without it: lavapipe, or the first there is
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Accuracy rules: wgsl, vulkan or opengl
+    #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
+    profile: &'static Profile,
+    /// How the result is written
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Write the result to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Identify {
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        writable(self.out.as_deref())?;
+        let Some(file) = self.file.clone() else {
+            self.format.emit(&names(), self.out.as_deref())?;
+            return Ok(Status::Success);
+        };
+        let stop = stopped_by_signals()?;
+        let own = OwnShader::new(file.clone(), self.function.as_deref(), self.bind.clone(), self.constant.clone());
+        let adapters: Vec<String> = self.adapter.iter().cloned().collect();
+        let accepted = own.adapted_to(&[], &adapters)?;
+        if accepted.adapted.is_empty() {
+            bail!(
+                "the variables of {} can be bound to the inputs of no formula. `lightmeter run FORMULA --shader FILE` says which ones are not \
+                 known; `--bind` says what they mean",
+                file.display()
+            );
+        }
+        let ids: Vec<&str> = accepted.adapted.iter().map(|adapted| adapted.id.as_str()).collect();
+        let mut options = Options::by(accepted.code()?, None, 1, self.profile);
+        options.filter = Filter::new(&ids)?;
+        options.cases = CASES;
+        options.diagnose = Some(&Mistakes);
+        options.adapted.clone_from(&accepted.adapted);
+        options.stop = stop;
+        let mut subjects = adapters::open(&adapters)?;
+        let mut bar = Bar::new(None, "cases");
+        let report = run(&mut subjects, &options, &mut bar);
+        bar.bar.finish_and_clear();
+        let document = self.document(&file, &report?, &accepted.adapted);
+        let text = match self.format {
+            Format::Text => lines(&told(&document)?).into_owned(),
+            Format::Json => document.to_json()?,
+        };
+        self.format.emit(&text, self.out.as_deref())?;
+        Ok(if document.is.is_empty() { Status::Failed } else { Status::Success })
+    }
+
+    fn document(&self, file: &Path, report: &Report, adapted: &[Adapted]) -> IdentifyDocument {
+        let mut candidates: Vec<FormulaCandidate> = vec![];
+        for Adapted { id, missing, .. } in adapted {
+            let mut candidate =
+                FormulaCandidate { formula: id.clone(), missing: missing.clone(), ..FormulaCandidate::default() };
+            for group in report.groups.iter().filter(|group| group.id == *id) {
+                candidate.verdicts += group.totals.verdicts - group.totals.indeterminate;
+                candidate.failed += group.totals.failed + u64::from(group.problem.is_some());
+                candidate.explanation = candidate.explanation.or_else(|| group.explanation.clone());
+                if candidate.mistakes.is_empty() {
+                    candidate.mistakes.clone_from(&group.mistakes);
+                }
+            }
+            candidates.push(candidate);
+        }
+        // What has a name is nearer than what has none, and one mistake nearer than two.
+        let steps = |candidate: &FormulaCandidate| match (candidate.failed, candidate.mistakes.len()) {
+            (0, _) => 0,
+            (_, 0) => usize::MAX,
+            (_, mistakes) => mistakes,
+        };
+        #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
+        let share = |candidate: &FormulaCandidate| candidate.failed as f64 / candidate.verdicts.max(1) as f64;
+        candidates.sort_by(|a, b| {
+            steps(a).cmp(&steps(b)).then(a.missing.len().cmp(&b.missing.len())).then(share(a).total_cmp(&share(b)))
+        });
+        let is = |candidate: &&FormulaCandidate| candidate.failed == 0 && candidate.verdicts > 0;
+        IdentifyDocument {
+            schema: SCHEMA.into(),
+            file: file.to_string_lossy().into_owned(),
+            function: self.function.clone(),
+            adapter: report.adapters.first().map(|adapter| adapter.name.clone()).unwrap_or_default(),
+            is: candidates.iter().filter(is).map(|candidate| candidate.formula.clone()).collect(),
+            candidates,
+        }
+    }
+}
+
+/// The names of variables that are understood, as a table.
+fn names() -> String {
+    let row = |(what, names): &(&str, &[&str])| format!("| {what} | {} |\n", names.join(", "));
+    let rows: String = lightmeter_adapt::synonyms().iter().map(row).collect();
+    format!(
+        "| what a variable is | names, without capitals, underscores, digits and prefixes such as `u_` |\n|---|---|\n{rows}"
+    )
+}
+
+/// The result in words.
+fn told(document: &IdentifyDocument) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
+    let what = match &document.function {
+        Some(name) => format!("`{name}` of {}", document.file),
+        None => document.file.clone(),
+    };
+    let others = |skipped: usize| document.candidates.iter().skip(skipped).take(MOST_TOLD);
+    let tried = document.candidates.len();
+    if document.is.is_empty() {
+        let Some(nearest) = document.candidates.first() else { return Ok(text) };
+        let none = match tried {
+            1 => "does not compute the one formula".to_owned(),
+            _ => format!("computes none of the {tried} formulas"),
+        };
+        writeln!(text, "{what} {none} that its variables can be bound to.")?;
+        write!(
+            text,
+            "The nearest is {}, of which {} of {} values are wrong",
+            nearest.formula,
+            thousands(nearest.failed),
+            thousands(nearest.verdicts)
+        )?;
+        match &nearest.explanation {
+            Some(explanation) => writeln!(text, ":\n  {explanation}")?,
+            None => writeln!(text, ".")?,
+        }
+        for other in others(1).filter(|other| other.explanation.is_some()) {
+            let why = other.explanation.as_deref().unwrap_or_default();
+            writeln!(text, "Or it is {}: {why}", other.formula)?;
+        }
+        writeln!(text, "`lightmeter run {} --shader {}` tells each case.", nearest.formula, document.file)?;
+        return Ok(text);
+    }
+    writeln!(text, "{what} computes {}.", document.is.join(", or "))?;
+    let passing = document.candidates.iter().filter(|candidate| document.is.contains(&candidate.formula));
+    for missing in passing.map(|candidate| &candidate.missing).filter(|missing| !missing.is_empty()).take(1) {
+        writeln!(text, "  It does not give {}, which was not judged.", missing.join(", "))?;
+    }
+    for other in others(document.is.len()).filter(|other| !other.mistakes.is_empty()) {
+        let why = other.explanation.as_deref().unwrap_or_default();
+        writeln!(text, "It is not {}: {why}", other.formula)?;
+    }
+    writeln!(text, "On {}, by {CASES} random cases and the hard ones of {tried} formulas.", document.adapter)?;
+    Ok(text)
+}

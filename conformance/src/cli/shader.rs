@@ -1,0 +1,405 @@
+//! Which shaders are judged: the built-in ones, those of a folder, or a single one as somebody wrote it.
+
+use super::foreign;
+use super::terminal::level;
+use super::values::setting;
+use super::{Status, say};
+use anyhow::{Context as _, bail};
+use clap::Args;
+use lightmeter::cases::{Kind, Spec};
+use lightmeter::device::Code;
+use lightmeter::filter::Filter;
+use lightmeter::options::{Adapted, Constant};
+use lightmeter::report::Level;
+use lightmeter::select::{Shard, catalogue, select};
+use lightmeter::subject_gpu::code_of;
+use lightmeter_adapt::bind::{AskedBinding, Found, ShaderBinding, bind};
+use lightmeter_adapt::source::ShaderSource;
+use lightmeter_adapt::{Part, ShaderProgram, replaced};
+use lightmeter_gpu::Shaders;
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// The file of the formulas that a shader was bound to, with what it does not give of them, in the folder of what it was made to.
+const MISSING: &str = "missing";
+/// Families of which a shader can be told to be one.
+const IDENTIFIED: [&str; 7] = ["lighting", "fog", "attenuation", "color", "vector", "interpolation", "depth"];
+/// Formulas that a single shader can be judged by in one command.
+const MOST_FORMULAS: usize = 64;
+
+/// Which shaders are judged.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct ShaderChoice {
+    /// Judge the WGSL in this folder in place of the built-in files of the same names
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["shader", "function"])]
+    pub(crate) shaders: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) own: OwnShader,
+}
+
+/// A shader as somebody wrote it.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct OwnShader {
+    /// Judge a shader as it is, in the place of the formula: GLSL (.frag, .vert, .glsl), WGSL or SPIR-V
+    #[arg(long, value_name = "FILE")]
+    shader: Option<PathBuf>,
+    /// Judge a function of a shader's file in the place of the formula
+    #[arg(long, value_name = "NAME@FILE", conflicts_with = "shader")]
+    function: Option<OsString>,
+    /// What a variable of the shader means: WGSL over the formula's inputs, as `lightDir=-direction`; again for several
+    #[arg(long, value_name = "NAME=EXPRESSION", allow_hyphen_values = true)]
+    bind: Vec<String>,
+    /// An input of the formula that the shader has as a constant, as `shininess=32` or `ls=1,1,1`, or in common with another one, as
+    /// `ma=md`; again for several
+    #[arg(long, value_name = "NAME=VALUE", value_parser = constant, allow_hyphen_values = true)]
+    constant: Vec<(String, Constant)>,
+}
+
+/// Shaders that can be judged.
+pub(crate) struct Accepted {
+    /// The folder to read them from.
+    pub(crate) folder: Option<PathBuf>,
+    /// Whether it was made for this, and goes.
+    is_made: bool,
+    /// How formulas are judged of it.
+    pub(crate) adapted: Vec<Adapted>,
+}
+
+impl Accepted {
+    pub(crate) fn code(&self) -> anyhow::Result<Code> {
+        Ok(code_of(self.folder.as_deref())?)
+    }
+
+    pub(crate) fn shaders(&self) -> anyhow::Result<Shaders> {
+        Ok(self.folder.as_deref().map_or_else(Shaders::built_in, Shaders::from_dir)?)
+    }
+}
+
+impl Drop for Accepted {
+    fn drop(&mut self) {
+        if let Some(folder) = self.folder.as_ref().filter(|_| self.is_made) {
+            let _ = std::fs::remove_dir_all(folder);
+        }
+    }
+}
+
+impl ShaderChoice {
+    /// Has processes of their own read and compile the shaders.
+    pub(crate) fn accepted(&self, filter: &Filter, adapters: &[String], has_scenes: bool) -> anyhow::Result<Accepted> {
+        if self.own.words()?.is_none() {
+            if let Some(folder) = &self.shaders {
+                foreign::accept(folder, adapters, has_scenes)?;
+            }
+            return Ok(Accepted { folder: self.shaders.clone(), is_made: false, adapted: vec![] });
+        }
+        let formulas = formulas(filter)?;
+        self.own.check_constants(&formulas)?;
+        self.own.adapted_to(&formulas, adapters)
+    }
+
+    /// What a command that judges the same again is given.
+    pub(crate) fn rerun(&self) -> anyhow::Result<String> {
+        let mut text = String::new();
+        if let Some(folder) = &self.shaders {
+            let _ = write!(text, " --shaders '{}'", folder.to_string_lossy().replace('\'', r"'\''"));
+        }
+        for word in self.own.words()?.into_iter().flatten() {
+            let _ = write!(text, " {}", quoted(&word.to_string_lossy()));
+        }
+        Ok(text)
+    }
+}
+
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:@".contains(c);
+    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
+/// Whether a shader can be this formula: one of arithmetic alone.
+fn is_identified(spec: &Spec) -> bool {
+    IDENTIFIED.contains(&spec.family())
+        && !spec.function.is_empty()
+        && spec.selectors.is_empty()
+        && matches!(spec.kind, Kind::Arithmetic)
+}
+
+/// An input's numbers, or another input's name.
+pub(crate) fn constant(text: &str) -> Result<(String, Constant), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, as shininess=32, ls=1,1,1 or ma=md")?;
+    let value = value.trim();
+    if value.starts_with(|c: char| c.is_alphabetic()) && !["inf", "nan"].contains(&value.to_lowercase().as_str()) {
+        return Ok((name.trim().into(), Constant::SameAs(value.into())));
+    }
+    setting(text).map(|(name, values)| (name, Constant::Numbers(values)))
+}
+
+/// The formulas that a filter names, which a single shader can stand in for.
+fn formulas(filter: &Filter) -> anyhow::Result<Vec<String>> {
+    let catalogue = catalogue();
+    let found: Vec<String> = if filter.is_empty() {
+        vec![]
+    } else {
+        select(&catalogue, filter, 1, Shard::WHOLE)
+            .into_iter()
+            .map(|one| catalogue[one.member].spec.id.clone())
+            .collect()
+    };
+    if found.is_empty() || found.len() > MOST_FORMULAS {
+        let found = found.len();
+        bail!(
+            "a shader is judged by formulas that are named, such as `lighting/blinn`; the filter selects {found}. `lightmeter identify FILE` \
+             says which formula it is"
+        );
+    }
+    Ok(found)
+}
+
+impl OwnShader {
+    /// A shader, or a function of its file.
+    pub(crate) fn new(
+        file: PathBuf,
+        function: Option<&str>,
+        bind: Vec<String>,
+        constant: Vec<(String, Constant)>,
+    ) -> Self {
+        let named = function.map(|name| {
+            let mut words = OsString::from(format!("{name}@"));
+            words.push(&file);
+            words
+        });
+        Self { shader: named.is_none().then_some(file), function: named, bind, constant }
+    }
+
+    /// Has processes of their own make it the function of formulas, of every one that it can be bound to where none is named.
+    pub(crate) fn adapted_to(&self, formulas: &[String], adapters: &[String]) -> anyhow::Result<Accepted> {
+        let folder = std::env::temp_dir().join(format!("lightmeter-shader-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot write {}", folder.display()))?;
+        let mut accepted = Accepted { folder: Some(folder.clone()), is_made: true, adapted: vec![] };
+        let mut given = vec![OsString::from("adapt-shader"), folder.clone().into_os_string()];
+        given.extend(self.words()?.unwrap_or_default());
+        given.extend(formulas.iter().map(OsString::from));
+        given.extend(formulas.is_empty().then(|| OsString::from("--every")));
+        let told = foreign::watched_child(&given, &self.part()?.1)?;
+        if level() > Level::Quiet && !formulas.is_empty() {
+            say(told.trim_end());
+        }
+        accepted.adapted = self.adapted(&std::fs::read_to_string(folder.join(MISSING))?);
+        if !accepted.adapted.is_empty() {
+            foreign::accept(&folder, adapters, false)?;
+        }
+        Ok(accepted)
+    }
+
+    /// The same as words of a command line; `None` where no shader is given.
+    fn words(&self) -> anyhow::Result<Option<Vec<OsString>>> {
+        let mut words: Vec<OsString> = match (&self.shader, &self.function) {
+            (Some(file), _) => vec!["--shader".into(), file.into()],
+            (_, Some(function)) => vec!["--function".into(), function.clone()],
+            (None, None) if self.bind.is_empty() => return Ok(None),
+            (None, None) => bail!(
+                "`--bind` says what a variable of a shader means: give the shader by `--shader FILE` or `--function NAME@FILE`"
+            ),
+        };
+        for bind in &self.bind {
+            words.extend(["--bind".into(), bind.into()]);
+        }
+        for (name, constant) in &self.constant {
+            let value = match constant {
+                Constant::Numbers(values) => values.iter().map(f32::to_string).collect::<Vec<_>>().join(","),
+                Constant::SameAs(other) => other.clone(),
+            };
+            words.extend(["--constant".into(), format!("{name}={value}").into()]);
+        }
+        Ok(Some(words))
+    }
+
+    /// Refuses constants that are no inputs, or of another size.
+    fn check_constants(&self, formulas: &[String]) -> anyhow::Result<()> {
+        let catalogue = catalogue();
+        for spec in catalogue.iter().map(|member| &member.spec).filter(|spec| formulas.contains(&spec.id)) {
+            let components = |name: &str, of: &str| {
+                let found = spec.inputs.iter().find(|input| input.name == name);
+                found.map(|input| input.shape.components()).with_context(|| {
+                    let names: Vec<&str> = spec.inputs.iter().map(|input| input.name).collect();
+                    format!(
+                        "`--constant {of}`: {} has no input `{name}`; expected one of {}",
+                        spec.id,
+                        names.join(", ")
+                    )
+                })
+            };
+            for (name, constant) in &self.constant {
+                let expected = components(name, name)?;
+                let given = match constant {
+                    Constant::Numbers(values) => values.len(),
+                    Constant::SameAs(other) => components(other, name)?,
+                };
+                if given != expected {
+                    bail!("`--constant {name}`: {given} of {expected} numbers of `{name}` in {}", spec.id);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// How formulas are judged: each by a line, and by a line each what the shader does not give of it.
+    fn adapted(&self, lines: &str) -> Vec<Adapted> {
+        let of = |id: &str| Adapted {
+            id: id.into(),
+            missing: lines
+                .lines()
+                .filter_map(|line| line.strip_prefix(id)?.strip_prefix(' '))
+                .map(str::to_owned)
+                .collect(),
+            constants: self.constant.clone(),
+        };
+        lines.lines().filter(|line| !line.contains(' ')).map(of).collect()
+    }
+
+    /// What is judged, and of which file.
+    pub(crate) fn part(&self) -> anyhow::Result<(Part, PathBuf)> {
+        if let Some(file) = &self.shader {
+            return Ok((Part::Shader, file.clone()));
+        }
+        let function = self.function.as_ref().context("no shader is given")?;
+        let text = function.to_str().context("the name of a function is text")?;
+        let (name, file) = text
+            .split_once('@')
+            .with_context(|| format!("`--function {text}` names no file; expected NAME@FILE, as `shade@my.wgsl`"))?;
+        Ok((Part::Function(name.into()), file.into()))
+    }
+
+    /// The bindings that are asked for.
+    pub(crate) fn asked(&self) -> anyhow::Result<Vec<AskedBinding>> {
+        let asked = |text: &String| {
+            let (name, expression) = text.split_once('=').with_context(|| {
+                format!("`--bind {text}` binds nothing; expected NAME=EXPRESSION, as `lightDir=-direction`")
+            })?;
+            Ok(AskedBinding { name: name.trim().into(), expression: expression.trim().into() })
+        };
+        self.bind.iter().map(asked).collect()
+    }
+}
+
+/// Make a shader the function of formulas
+#[derive(Debug, Args)]
+pub(crate) struct Adapt {
+    /// Where the WGSL is written
+    folder: PathBuf,
+    /// The formulas
+    formulas: Vec<String>,
+    /// Every formula that it can be bound to, in place of them
+    #[arg(long)]
+    every: bool,
+    #[command(flatten)]
+    own: OwnShader,
+}
+
+impl Adapt {
+    /// Writes the files, and tells what is bound.
+    pub(crate) fn run(self) -> anyhow::Result<Status> {
+        foreign::limit_time();
+        let (part, file) = self.own.part()?;
+        let source = ShaderSource::read(&file)?;
+        let program = ShaderProgram::new(&file, &source, &part)?;
+        let catalogue = catalogue();
+        let asked = self.own.asked()?;
+        let bound: Vec<(&Spec, ShaderBinding)> = if self.every {
+            let own = catalogue.iter().map(|member| &member.spec).filter(|spec| is_identified(spec));
+            own.filter_map(|spec| Some((spec, bind(&program, spec, &asked).ok()?))).collect()
+        } else {
+            let of = |id: &String| -> anyhow::Result<(&Spec, ShaderBinding)> {
+                let member = catalogue.iter().find(|member| member.spec.id == *id);
+                let member = member.with_context(|| format!("no formula `{id}`"))?;
+                Ok((&member.spec, bind(&program, &member.spec, &asked)?))
+            };
+            let (bound, mut others): (Vec<_>, Vec<_>) = self.formulas.iter().map(of).partition(Result::is_ok);
+            // Of several formulas it is judged by those that its variables fit.
+            if let (true, Some(Err(error))) = (bound.is_empty(), others.pop()) {
+                return Err(error);
+            }
+            bound.into_iter().flatten().collect()
+        };
+        for (name, text) in replaced(&Shaders::built_in()?, &program, &bound)? {
+            std::fs::write(self.folder.join(&name), text)?;
+        }
+        let mut missing = String::new();
+        for (spec, binding) in &bound {
+            writeln!(missing, "{}", spec.id)?;
+            for (name, _) in binding.outputs.iter().filter(|(_, value)| value.is_none()) {
+                writeln!(missing, "{} {name}", spec.id)?;
+            }
+        }
+        std::fs::write(self.folder.join(MISSING), missing)?;
+        let mut told = String::new();
+        for (spec, binding) in &bound {
+            tell((&file, &part), &self.own.constant, (spec, binding), &mut told)?;
+        }
+        super::show(&told, None)?;
+        Ok(Status::Success)
+    }
+}
+
+/// An expression as people read it.
+fn shortened(expression: &str) -> String {
+    match expression {
+        matrix if matrix.starts_with("mat") => "the identity".into(),
+        zero if zero.ends_with("()") => "0".into(),
+        other => other.to_owned(),
+    }
+}
+
+/// What is judged, and what each of its variables stands for.
+fn tell(
+    (file, part): (&Path, &Part),
+    constants: &[(String, Constant)],
+    (spec, binding): (&Spec, &ShaderBinding),
+    out: &mut String,
+) -> std::fmt::Result {
+    let what = match part {
+        Part::Shader => file.display().to_string(),
+        Part::Function(name) => format!("`{name}` of {}", file.display()),
+    };
+    writeln!(out, "{what} is judged as {}. What its variables are taken to be:", spec.id)?;
+    let width = binding
+        .bound
+        .iter()
+        .filter(|bound| !bound.is_further)
+        .map(|bound| bound.name.chars().count())
+        .max()
+        .unwrap_or(0);
+    for bound in binding.bound.iter().filter(|bound| !bound.is_further) {
+        let found = match bound.found {
+            Found::Asked => "  (as you say)",
+            Found::Fixed => "  (given by the pipeline, or not used)",
+            Found::SameName | Found::Synonym => "",
+        };
+        writeln!(out, "  {:width$}  {}{found}", bound.name, shortened(&bound.expression))?;
+    }
+    if binding.bound.iter().any(|bound| bound.is_further) {
+        writeln!(out, "  The further lights of its arrays are black.")?;
+    }
+    for bound in &binding.bound {
+        if let Some(turned) = &bound.turned {
+            writeln!(out, "  If {} points the other way: --bind '{}={turned}'", bound.name, bound.name)?;
+        }
+    }
+    for (name, value) in &binding.outputs {
+        if value.is_none() {
+            writeln!(out, "  The shader does not give {name}, which is not judged.")?;
+        }
+    }
+    let is_constant = |name: &&str| constants.iter().any(|(own, _)| own == name);
+    let unused: Vec<&str> = binding.unused.iter().copied().filter(|name| !is_constant(name)).collect();
+    if !unused.is_empty() {
+        writeln!(
+            out,
+            "  Nothing in it stands for {}. What it has as a constant, or in common with another input, is said by `--constant {}=VALUE`, \
+             where VALUE is numbers or an input's name.",
+            unused.join(", "),
+            unused[0]
+        )?;
+    }
+    Ok(())
+}

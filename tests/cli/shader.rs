@@ -1,0 +1,315 @@
+//! Shaders as somebody wrote them: bound by the names of their variables, judged as formulas, told apart by `identify`.
+
+use super::gate::folder;
+use super::{code, json, lightmeter, stderr, stdout};
+use lightmeter::document::Document as _;
+use lightmeter::document::identify::IdentifyDocument;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+fn shaders() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/shaders")
+}
+
+/// The example's file, its function, the formula, further options, and the mistakes that are named: none of one that is right.
+type Example = (&'static str, &'static str, &'static str, &'static [&'static str], &'static [&'static str]);
+
+const EXAMPLES: &[Example] = &[
+    ("documents/slides-phong.frag", "", "lighting/phong", &["--bind", "Light.Ldir=direction"], &[]),
+    ("documents/slides-fog.frag", "", "fog/linear", &[], &[]),
+    ("documents/tutorial-gouraud.vert", "", "lighting/scalar-material", &[], &["shininess-floored"]),
+    ("documents/tutorial-phong.frag", "", "lighting/scalar-material", &[], &[]),
+    (
+        "documents/course-two-lights.frag",
+        "",
+        "lighting/two-lights",
+        &[
+            "--bind",
+            "light0dirn=direction",
+            "--bind",
+            "light0color=color0",
+            "--bind",
+            "light1posn=vec4f(position, 1.0)",
+            "--bind",
+            "light1color=color1",
+            "--bind",
+            "islight=1",
+        ],
+        &[],
+    ),
+    ("mistakes/half-vector-mean.frag", "", "lighting/blinn", &[], &["half-vector-as-mean"]),
+    ("mistakes/normal-not-normalised.frag", "", "lighting/phong", &[], &["normal-not-normalised"]),
+    ("mistakes/mirrored-the-wrong-way.wgsl", "", "lighting/phong", &[], &["view-reversed"]),
+    ("mistakes/not-attenuated.frag", "", "lighting/point-blinn", &[], &["not-attenuated"]),
+    ("mistakes/no-cutoff.frag", "", "lighting/spot", &[], &["cutoff-of-90"]),
+    ("mistakes/both-sides-lit.wgsl", "diffuse", "lighting/diffuse-toward", &[], &["incidence-of-both-sides"]),
+    ("mistakes/fog-factor-turned.frag", "", "fog/linear", &[], &["fog-mixed-the-wrong-way"]),
+    ("mistakes/fog-squared-once.glsl", "applyFog", "fog/exp2-opengl", &[], &["fog-exp2-document"]),
+    ("mistakes/gamma-applied.frag", "", "lighting/blinn", &[], &["gamma-encoded"]),
+    ("mistakes/half-lambert.glsl", "halfLambert", "lighting/diffuse-toward", &[], &["half-lambert"]),
+    ("right/blinn.frag", "", "lighting/blinn", &[], &[]),
+    ("right/blinn.wgsl", "", "lighting/blinn", &[], &[]),
+];
+
+/// The words that judge a shader, or a function of it.
+fn words(command: &str, formula: &str, file: &Path, function: &str) -> Vec<String> {
+    let file = file.display().to_string();
+    let shader = if function.is_empty() {
+        ["--shader".to_owned(), file]
+    } else {
+        ["--function".to_owned(), format!("{function}@{file}")]
+    };
+    [command.to_owned(), formula.to_owned()].into_iter().chain(shader).collect()
+}
+
+#[test]
+fn each_example_is_judged_and_its_mistake_named() {
+    for (file, function, formula, options, named) in EXAMPLES {
+        let mut args = words("run", formula, &shaders().join(file), function);
+        args.extend(options.iter().map(ToString::to_string));
+        args.extend(["--cases", "512", "--format", "json"].map(str::to_owned));
+        let output = lightmeter(&args.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(code(&output), i32::from(!named.is_empty()), "{file}: {}", stderr(&output));
+        let report: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+        let groups = report["groups"].as_array().expect("a list");
+        assert_eq!(groups.len(), 2, "{file}: compute and fragment");
+        for group in groups {
+            let found: Vec<&str> =
+                group["mistakes"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+            assert_eq!(found, *named, "{file}: {group}");
+        }
+    }
+}
+
+#[test]
+fn no_example_is_left_out() {
+    let mut there = BTreeSet::new();
+    for kind in ["documents", "mistakes", "right"] {
+        for entry in std::fs::read_dir(shaders().join(kind)).expect("the folder is there") {
+            let name = entry.expect("it can be read").file_name();
+            there.insert(format!("{kind}/{}", name.to_string_lossy()));
+        }
+    }
+    assert_eq!(there, EXAMPLES.iter().map(|(file, ..)| (*file).to_owned()).collect());
+}
+
+#[test]
+fn the_same_code_gives_the_same_in_each_language() {
+    let module = naga::front::wgsl::parse_str(include_str!("../../conformance/examples/shaders/right/blinn.wgsl"));
+    let module = module.expect("it is WGSL");
+    let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default());
+    let info = { info }.validate(&module).expect("it is valid");
+    let options =
+        naga::back::spv::Options { flags: naga::back::spv::WriterFlags::DEBUG, ..naga::back::spv::Options::default() };
+    let words: Vec<u32> = naga::back::spv::write_vec(&module, &info, &options, None).expect("it is written as SPIR-V");
+    let spirv = folder("shader-spirv").join("blinn.spv");
+    std::fs::write(&spirv, words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>())
+        .expect("it can be written");
+    let judged = |file: &Path, options: &[&str]| -> Vec<Value> {
+        let file = file.display().to_string();
+        let run = ["run", "lighting/blinn", "--shader", &file, "--cases", "512", "--format", "json"];
+        let report = json(&[&run[..], options].concat());
+        assert_eq!(report["totals"]["failed"], 0, "{file}");
+        let groups = report["groups"].as_array().expect("a list").clone();
+        groups
+            .into_iter()
+            .map(|group| serde_json::json!([group["verdicts"], group["error_ulp_max"], group["margin_max"]]))
+            .collect()
+    };
+    let wgsl = judged(&shaders().join("right/blinn.wgsl"), &[]);
+    assert_eq!(wgsl, judged(&shaders().join("right/blinn.frag"), &[]));
+    // naga writes no names of inputs.
+    assert_eq!(wgsl, judged(&spirv, &["--bind", "argument 0=p", "--bind", "argument 1=normal"]));
+}
+
+#[test]
+fn a_shader_is_told_which_formula_it_is() {
+    let identified = |file: &str, function: &[&str]| {
+        let file = shaders().join(file).display().to_string();
+        let output = lightmeter(&[&["identify", &file, "--format", "json"], function].concat());
+        (
+            code(&output),
+            IdentifyDocument::read(&stdout(&output)).unwrap_or_else(|error| panic!("{error}: {}", stderr(&output))),
+        )
+    };
+    let (status, found) = identified("right/blinn.frag", &[]);
+    assert_eq!((status, found.is), (0, vec!["lighting/blinn".to_owned()]));
+    let phong =
+        found.candidates.iter().find(|candidate| candidate.formula == "lighting/phong").expect("it is bound to it");
+    assert_eq!(phong.mistakes, ["blinn-for-phong"]);
+    let (status, found) = identified("documents/slides-fog.frag", &[]);
+    assert_eq!(status, 0);
+    assert!(
+        found.is.contains(&"fog/linear".to_owned()) && !found.is.contains(&"fog/linear-radial".to_owned()),
+        "{:?}",
+        found.is
+    );
+    let (status, found) = identified("mistakes/half-lambert.glsl", &["--function", "halfLambert"]);
+    assert_eq!((status, found.is.len()), (1, 0));
+    assert_eq!(
+        (found.candidates[0].formula.as_str(), found.candidates[0].mistakes.as_slice()),
+        ("lighting/diffuse-toward", &["half-lambert".to_owned()][..])
+    );
+}
+
+#[test]
+fn a_shader_is_swept_measured_and_held_to_a_baseline() {
+    let file = shaders().join("documents/slides-fog.frag").display().to_string();
+    let sweep = [
+        "sweep",
+        "fog/linear",
+        "--over",
+        "p.z",
+        "--from",
+        "-9",
+        "--to",
+        "-8.9999",
+        "--output",
+        "color.r",
+        "--format",
+        "json",
+    ];
+    let report = json(&[&sweep[..], &["--shader", &file]].concat());
+    assert_eq!(report["statistics"]["failed"], 0, "{report}");
+    let baseline = folder("shader-baseline").join("baseline.json").display().to_string();
+    for update in [&["--update-baseline"][..], &[]] {
+        let run = ["run", "fog/linear", "--cases", "256", "--shader", &file, "--baseline", &baseline];
+        let output = lightmeter(&[&run[..], update].concat());
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+    }
+    let report = json(&["bench", "fog/linear", "--quick", "--shader", &file, "--format", "json"]);
+    assert!(report["adapters"][0]["groups"].as_array().is_some_and(|groups| !groups.is_empty()), "{report}");
+}
+
+/// What is given, and what is said.
+type Bad = (Vec<String>, &'static str);
+
+fn bad_files() -> Vec<Bad> {
+    let folder = folder("shader-bad");
+    let file = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("it can be written");
+        path.display().to_string()
+    };
+    let head = "in vec3 Normal; in vec3 p; out vec4 c;\n";
+    let main = |body: &str| format!("{head}void main() {{\n  vec3 x = Normal;\n  {body}\n}}\n");
+    vec![
+        (vec!["--shader".into(), folder.join("none.frag").display().to_string()], "cannot read"),
+        (vec!["--shader".into(), file("a.txt", "")], "its ending names no language"),
+        (vec!["--shader".into(), file("a.hlsl", "")], "dxc -spirv"),
+        (vec!["--shader".into(), file("syntax.frag", &main("c = vec4(1.0;"))], "syntax.frag:4"),
+        (
+            vec!["--shader".into(), file("include.frag", "// a\n#include \"x.glsl\"\n")],
+            "include.frag:2: `#include \"x.glsl\"` is not followed",
+        ),
+        (vec!["--shader".into(), file("bad.wgsl", "fn a() -> f32 {\n    return b;\n}\n")], "bad.wgsl:2"),
+        (vec!["--shader".into(), file("bad.spv", "no words")], "it is no SPIR-V"),
+        (vec!["--shader".into(), file("nothing.frag", "void main() {}\n")], "the shader gives nothing"),
+        (vec!["--shader".into(), file("slope.frag", &main("c = vec4(dFdx(Normal), 1.0);"))], "derivatives"),
+        (
+            vec![
+                "--shader".into(),
+                file("unknown.frag", &format!("uniform float wobble;\n{}", main("c = vec4(Normal * wobble, 1.0);"))),
+            ],
+            "wobble: f32",
+        ),
+        (
+            vec![
+                "--shader".into(),
+                file("type.frag", &format!("uniform ivec3 shininess;\n{}", main("c = vec4(vec3(shininess), 1.0);"))),
+            ],
+            "shininess: vec3<i32>",
+        ),
+    ]
+}
+
+fn bad_options(blinn: &str) -> Vec<Bad> {
+    let blinn = blinn.to_owned();
+    vec![
+        (
+            vec!["--shader".into(), blinn.clone(), "--bind".into(), "wobble=1.0".into()],
+            "the shader has no `wobble` to bind",
+        ),
+        (
+            vec![
+                "--shader".into(),
+                blinn.clone(),
+                "--bind".into(),
+                "vNormal=la".into(),
+                "--bind".into(),
+                "vNormal=md".into(),
+            ],
+            "`vNormal` is bound twice",
+        ),
+        (vec!["--shader".into(), blinn.clone(), "--bind".into(), "vNormal=la.x".into()], "it has another type"),
+        (vec!["--shader".into(), blinn.clone(), "--bind".into(), "vNormal=nothing".into()], "no definition in scope"),
+        (vec!["--shader".into(), blinn.clone(), "--constant".into(), "wobble=1".into()], "has no input `wobble`"),
+        (
+            vec!["--shader".into(), blinn.clone(), "--constant".into(), "la=1".into()],
+            "1 of 3 numbers of `la` in lighting/blinn",
+        ),
+        (vec!["--function".into(), "shade".into()], "names no file; expected NAME@FILE"),
+        (vec!["--function".into(), format!("shade@{blinn}")], "it has no function `shade`"),
+        (vec!["--bind".into(), "a=b".into()], "give the shader by"),
+        (vec!["--shader".into(), blinn.clone(), "--adapter".into(), "cpu".into()], "has no shaders"),
+    ]
+}
+
+#[test]
+fn what_is_wrong_with_a_shader_is_told_with_what_would_do() {
+    let blinn = shaders().join("right/blinn.frag").display().to_string();
+    for (given, says) in bad_files().into_iter().chain(bad_options(&blinn)) {
+        let args = [&["run".to_owned(), "lighting/blinn".to_owned()][..], &given].concat();
+        let output = lightmeter(&args.iter().map(String::as_str).collect::<Vec<_>>());
+        let said = stderr(&output);
+        assert!(code(&output) == 2 && said.contains(says), "{given:?}: {}: {said}", code(&output));
+    }
+    let output = lightmeter(&["run", "--shader", &blinn]);
+    assert!(code(&output) == 2 && stderr(&output).contains("lightmeter identify FILE"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_shader_that_discards_or_has_no_end_fails() {
+    let folder = folder("shader-runs");
+    let text = std::fs::read_to_string(shaders().join("right/blinn.frag")).expect("it is there");
+    let with = |name: &str, statement: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text.replace("    vec3 l =", &format!("    {statement}\n    vec3 l =")))
+            .expect("it can be written");
+        path.display().to_string()
+    };
+    let discards = with("discards.frag", "if (n.z < 0.0) discard;");
+    let report = json(&["run", "lighting/blinn", "--cases", "256", "--shader", &discards, "--format", "json"]);
+    assert!(report["totals"]["failed"].as_u64().is_some_and(|failed| failed > 100), "{}", report["totals"]);
+    let endless = with("endless.frag", "while (n.x == n.x) { n.x += 1.0; }");
+    // lavapipe ends a loop after 65,535 turns, so that there is a verdict; another driver's device is lost, or the watch ends it.
+    let output = lightmeter(&["run", "lighting/blinn", "--cases", "64", "--shader", &endless]);
+    assert_eq!(code(&output), 1, "{}", stderr(&output));
+}
+
+#[test]
+fn the_page_has_all_names() {
+    let page = include_str!("../../docs/shaders.md");
+    let output = lightmeter(&["identify", "--names"]);
+    assert!(page.contains(&stdout(&output)), "write the table again: lightmeter identify --names");
+}
+
+#[test]
+fn blend_states_are_read_as_people_write_them() {
+    let output = lightmeter(&["show", "glBlendFunc(GL_SRC_ALPHA, GL_ONE)"]);
+    let text = stdout(&output);
+    assert!(
+        text.starts_with("blend/add/src-alpha/one\n") && text.contains("commonly confused with blend/add/one/one"),
+        "{text}"
+    );
+    let state =
+        r#"{"color": {"srcFactor": "dst", "dstFactor": "zero"}, "alpha": {"srcFactor": "one", "dstFactor": "zero"}}"#;
+    let report =
+        json(&["run", "--blend", state, "--blend", "glDepthFunc(GL_LEQUAL)", "--cases", "64", "--format", "json"]);
+    let ids: BTreeSet<&str> =
+        report["groups"].as_array().expect("a list").iter().filter_map(|group| group["id"].as_str()).collect();
+    assert!(ids.iter().any(|id| id.starts_with("blend/")) && ids.contains("depth/test"), "{ids:?}");
+    let output = lightmeter(&["run", "--blend", "glBlendFunc(GL_SRC_ALPA, GL_ONE)"]);
+    assert!(code(&output) == 2 && stderr(&output).contains("did you mean `src-alpha`"), "{}", stderr(&output));
+}
