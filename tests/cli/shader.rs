@@ -83,6 +83,42 @@ fn each_example_is_judged_and_its_mistake_named() {
 }
 
 #[test]
+fn the_line_in_which_a_mistake_is_made_is_told() {
+    for (file, function, formula, line) in [
+        ("mistakes/half-vector-mean.frag", "", "lighting/blinn", "half-vector-mean.frag:16: vec3 h = (l + v) * 0.5;"),
+        ("mistakes/fog-squared-once.glsl", "applyFog", "fog/exp2-opengl", "fog-squared-once.glsl:3: float f = clamp("),
+    ] {
+        let args =
+            [words("run", formula, &shaders().join(file), function), vec!["--cases".into(), "256".into()]].concat();
+        let said = stderr(&lightmeter(&args.iter().map(String::as_str).collect::<Vec<_>>()));
+        assert!(said.contains(line) && said.contains(" is made\n"), "{said}");
+    }
+}
+
+#[test]
+fn the_stable_form_is_told_in_the_shaders_language() {
+    let file = folder("shader-stable").join("own.glsl");
+    let text = "float attenuation(float kc, float kl, float kq, float d) { return 1.0 / (kl * d + kq * d * d); }";
+    std::fs::write(&file, text).expect("it can be written");
+    for (file, function, formula, says) in [
+        (file, "attenuation", "attenuation/polynomial", "float attenuation_polynomial_bounded("),
+        (
+            shaders().join("mistakes/gamma-applied.frag"),
+            "",
+            "lighting/blinn",
+            "no stable form of lighting/blinn is known",
+        ),
+    ] {
+        let args =
+            [words("run", formula, &file, function), vec!["--cases".into(), "64".into(), "--suggest".into()]].concat();
+        let output = lightmeter(&args.iter().map(String::as_str).collect::<Vec<_>>());
+        assert!(code(&output) == 1 && stderr(&output).contains(says), "{}", stderr(&output));
+    }
+    let output = lightmeter(&["run", "fog", "--suggest"]);
+    assert!(code(&output) == 2 && stderr(&output).contains("no shader is given"), "{}", stderr(&output));
+}
+
+#[test]
 fn no_example_is_left_out() {
     let mut there = BTreeSet::new();
     for kind in ["documents", "mistakes", "right"] {

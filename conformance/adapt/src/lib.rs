@@ -13,11 +13,14 @@ mod error;
 mod glsl;
 mod meaning;
 mod name;
+pub mod place;
 pub mod program;
 pub mod source;
+mod suggest;
 mod wrapper;
 
 pub use error::AdaptError;
 pub use meaning::synonyms;
 pub use program::{Part, ShaderProgram};
+pub use suggest::stable_form;
 pub use wrapper::replaced;

@@ -166,7 +166,7 @@ fn check(path: &Path, source: &ShaderSource) -> Result<(), AdaptError> {
     Err(AdaptError::Invalid { path: path.into(), line, message: validated(&source.module).err().unwrap_or_default() })
 }
 
-fn validated(module: &Module) -> Result<ModuleInfo, String> {
+pub(crate) fn validated(module: &Module) -> Result<ModuleInfo, String> {
     let capabilities = Capabilities::default() | Capabilities::IMMEDIATES;
     Validator::new(ValidationFlags::all(), capabilities).validate(module).map_err(|error| {
         let mut words = error.as_inner().to_string();

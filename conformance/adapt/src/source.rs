@@ -82,6 +82,16 @@ impl ShaderSource {
     }
 }
 
+impl Language {
+    /// What a file's ending says.
+    ///
+    /// # Errors
+    /// Where it names no language that is read: says what would do.
+    pub fn of(path: &Path) -> Result<Self, AdaptError> {
+        language(path)
+    }
+}
+
 fn language(path: &Path) -> Result<Language, AdaptError> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if let Some((_, language)) = ENDINGS.iter().find(|(own, _)| *own == ending) {

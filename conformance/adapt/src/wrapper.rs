@@ -49,8 +49,8 @@ pub fn replaced(
 }
 
 /// The head of a function of ours.
-struct Signature {
-    parameters: Vec<(String, String)>,
+pub(crate) struct Signature {
+    pub(crate) parameters: Vec<(String, String)>,
     result: String,
     /// The members of the parameters that are structures, in order.
     inputs: Vec<String>,
@@ -59,7 +59,7 @@ struct Signature {
 }
 
 impl Signature {
-    fn of(text: &str, function: &str) -> Option<Self> {
+    pub(crate) fn of(text: &str, function: &str) -> Option<Self> {
         let start = text.find(&format!("fn {function}("))? + function.len() + 4;
         let (head, _) = text[start..].split_once('{')?;
         let (parameters, result) = head.rsplit_once(')')?;

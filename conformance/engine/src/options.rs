@@ -74,6 +74,8 @@ pub struct Adapted {
     pub missing: Vec<String>,
     /// Inputs that are constants there, and the same in all cases, or that are the same as another input.
     pub constants: Vec<(String, Constant)>,
+    /// The code's variables, each with the expression over the inputs that it is set to.
+    pub variables: Vec<(String, String)>,
 }
 
 /// What an input is that a shader has not.

@@ -25,6 +25,7 @@ mod seen;
 pub mod selftest;
 mod steps;
 mod table;
+mod touched;
 mod variation;
 
 pub use catalogue::faults;
@@ -38,6 +39,7 @@ pub use look::look;
 pub use mistakes::Mistakes;
 pub use row::Arithmetic;
 pub use seen::SeenStep;
+pub use touched::Touched;
 pub use variation::Variation;
 
 /// A share in percent; 100 of nothing.

@@ -22,6 +22,7 @@ use lightmeter::gate::baseline::{Baseline, Standard};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::judge::cases::ExpectedFailure;
 use lightmeter::nearest::did_you_mean;
+use lightmeter::options::Adapted;
 use lightmeter::report::{github, junit, text};
 use lightmeter::run::run;
 use lightmeter::scene::library::SCENES;
@@ -43,6 +44,9 @@ pub(crate) struct Run {
     choice: Choice,
     #[command(flatten)]
     amount: Amount,
+    /// With a shader that fails: print the stable form of the formula, in the shader's language
+    #[arg(long)]
+    suggest: bool,
     /// A row for each formula rather than for each family
     #[arg(long)]
     groups: bool,
@@ -76,6 +80,9 @@ pub(crate) struct Run {
 impl Run {
     pub(crate) fn run(mut self) -> anyhow::Result<Status> {
         self.filter.append(&mut self.blend);
+        if self.suggest {
+            self.choice.shaders.own.part()?;
+        }
         let expectations = self.comparison.expectations()?;
         let earlier = self.comparison.earlier(Baseline::of_run)?;
         matches_something(&expectations)?;
@@ -126,6 +133,7 @@ impl Run {
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), is_shard)).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
+        self.tell_of_shader(&options.adapted, &report)?;
         if report.interrupted.is_some() {
             std::mem::forget(subjects);
         }
@@ -133,6 +141,19 @@ impl Run {
         self.comparison.update(&report)?;
         emitted?;
         Ok(status(&report, self.required))
+    }
+
+    /// Of a shader as somebody wrote it: the lines in which mistakes are made, and what would be stable.
+    fn tell_of_shader(&self, adapted: &[Adapted], report: &Report) -> anyhow::Result<()> {
+        let own = &self.choice.shaders.own;
+        let places = own.places(adapted, report);
+        if self.format == ReportFormat::Text && !places.is_empty() {
+            say(places.trim_end());
+        }
+        if self.suggest {
+            say(own.suggested(adapted, report)?.trim_end());
+        }
+        Ok(())
     }
 
     /// What chooses the cases.

@@ -8,13 +8,18 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::Code;
+use lightmeter::document::run::Report;
+use lightmeter::faults::{Fault, Touched};
+use lightmeter::files::read;
 use lightmeter::filter::Filter;
 use lightmeter::options::{Adapted, Constant};
 use lightmeter::report::Level;
 use lightmeter::select::{Shard, catalogue, select};
 use lightmeter::subject_gpu::code_of;
 use lightmeter_adapt::bind::{AskedBinding, Found, ShaderBinding, bind};
-use lightmeter_adapt::source::ShaderSource;
+use lightmeter_adapt::place::{line_of_step, line_of_variable};
+use lightmeter_adapt::source::{Language, ShaderSource};
+use lightmeter_adapt::stable_form;
 use lightmeter_adapt::{Part, ShaderProgram, replaced};
 use lightmeter_gpu::Shaders;
 use std::ffi::OsString;
@@ -23,6 +28,8 @@ use std::path::{Path, PathBuf};
 
 /// The file of the formulas that a shader was bound to, with what it does not give of them, in the folder of what it was made to.
 const MISSING: &str = "missing";
+/// The file of what its variables were bound to, there too.
+const BOUND: &str = "bound";
 /// Families of which a shader can be told to be one.
 const IDENTIFIED: [&str; 7] = ["lighting", "fog", "attenuation", "color", "vector", "interpolation", "depth"];
 /// Formulas that a single shader can be judged by in one command.
@@ -184,7 +191,8 @@ impl OwnShader {
         if level() > Level::Quiet && !formulas.is_empty() {
             say(told.trim_end());
         }
-        accepted.adapted = self.adapted(&std::fs::read_to_string(folder.join(MISSING))?);
+        let [missing, bound] = [MISSING, BOUND].map(|name| std::fs::read_to_string(folder.join(name)));
+        accepted.adapted = self.adapted(&missing?, &bound?);
         if !accepted.adapted.is_empty() {
             foreign::accept(&folder, adapters, false)?;
         }
@@ -244,7 +252,7 @@ impl OwnShader {
     }
 
     /// How formulas are judged: each by a line, and by a line each what the shader does not give of it.
-    fn adapted(&self, lines: &str) -> Vec<Adapted> {
+    fn adapted(&self, lines: &str, bound: &str) -> Vec<Adapted> {
         let of = |id: &str| Adapted {
             id: id.into(),
             missing: lines
@@ -253,8 +261,62 @@ impl OwnShader {
                 .map(str::to_owned)
                 .collect(),
             constants: self.constant.clone(),
+            variables: bound
+                .lines()
+                .filter_map(|line| line.strip_prefix(id)?.strip_prefix('\t')?.split_once('\t'))
+                .map(|(name, is)| (name.into(), is.into()))
+                .collect(),
         };
         lines.lines().filter(|line| !line.contains(' ')).map(of).collect()
+    }
+
+    /// The stable form of each formula that the shader fails, in the shader's language.
+    pub(crate) fn suggested(&self, adapted: &[Adapted], report: &Report) -> anyhow::Result<String> {
+        let language = Language::of(&self.part()?.1)?;
+        let (shaders, catalogue) = (Shaders::built_in()?, catalogue());
+        let mut told = String::new();
+        for Adapted { id, .. } in adapted {
+            let fails = report.groups.iter().any(|group| group.id == *id && group.totals.failed > 0);
+            let Some(spec) = catalogue.iter().map(|member| &member.spec).find(|spec| fails && spec.id == *id) else {
+                continue;
+            };
+            match stable_form(&shaders, &format!("{}.wgsl", spec.family()), spec.function, language) {
+                Some(form) => writeln!(told, "the stable form of {id}:\n\n{}", form.trim_end())?,
+                None => writeln!(told, "no stable form of {id} is known")?,
+            }
+        }
+        Ok(told)
+    }
+
+    /// Where in the shader's text the mistakes of a report are made, as far as that can be told: a line each.
+    pub(crate) fn places(&self, adapted: &[Adapted], report: &Report) -> String {
+        let Ok((_, file)) = self.part() else { return String::new() };
+        let Ok(text) = read::text(&file, read::MOST_TEXT) else { return String::new() };
+        let catalogue = catalogue();
+        let mut told = String::new();
+        for Adapted { id, variables, .. } in adapted {
+            let named = report.groups.iter().filter(|group| group.id == *id).find(|group| !group.mistakes.is_empty());
+            let (Some(group), Some(member)) = (named, catalogue.iter().find(|member| member.spec.id == *id)) else {
+                continue;
+            };
+            for fault in group.mistakes.iter().filter_map(|name| Fault::by_name(name)) {
+                let line = fault.touched(member).into_iter().find_map(|touched| match touched {
+                    Touched::Step(step) => line_of_step(&text, step),
+                    Touched::Input(input) => {
+                        let has =
+                            |is: &str| is.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == input);
+                        let names: Vec<&str> =
+                            variables.iter().filter(|(_, is)| has(is)).map(|(name, _)| name.as_str()).collect();
+                        line_of_variable(&text, &names)
+                    }
+                    Touched::Output => None,
+                });
+                if let Some((line, code)) = line {
+                    let _ = writeln!(told, "{}:{line}: {code}\n  is where {} is made", file.display(), fault.name);
+                }
+            }
+        }
+        told
     }
 
     /// What is judged, and of which file.
@@ -332,6 +394,13 @@ impl Adapt {
             }
         }
         std::fs::write(self.folder.join(MISSING), missing)?;
+        let mut lines = String::new();
+        for (spec, binding) in &bound {
+            for bound in &binding.bound {
+                writeln!(lines, "{}\t{}\t{}", spec.id, bound.name, bound.expression)?;
+            }
+        }
+        std::fs::write(self.folder.join(BOUND), lines)?;
         let mut told = String::new();
         for (spec, binding) in &bound {
             tell((&file, &part), &self.own.constant, (spec, binding), &mut told)?;
