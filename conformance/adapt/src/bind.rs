@@ -70,7 +70,9 @@ pub fn bind(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> Res
             checked(slot, expression, spec)?;
         }
     }
-    let context = Context { spec, meanings: all_meanings(program, spec, asked) };
+    let is_point = |slot: &&Variable| meanings(slot).next() == Some(Meaning::Point);
+    let points = program.slots.iter().filter(is_point).count();
+    let context = Context { spec, meanings: all_meanings(program, spec, asked), points };
     let (mut bound, mut missing) = (vec![], vec![]);
     for slot in &program.slots {
         match expression(slot, &context, asked) {
@@ -107,7 +109,7 @@ pub fn bind(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> Res
 
 /// What the variables are taken to be, so far as it follows from each alone, and which colours the bindings that are asked for have.
 fn all_meanings(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> BTreeSet<Meaning> {
-    let alone = Context { spec, meanings: BTreeSet::new() };
+    let alone = Context { spec, meanings: BTreeSet::new(), points: 0 };
     let is_asked = |slot: &Variable| asked.iter().any(|asked| is_named(slot, &asked.name));
     let of_slot = |slot: &Variable| {
         meanings(slot).find(|&meaning| {
@@ -241,11 +243,17 @@ fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) ->
     if !slot.is_used {
         return Some((zero(slot.leaf), Found::Fixed));
     }
-    let same = context.spec.inputs.iter().find(|input| input.name == slot.name && !is_of_surface(slot, context));
+    // naga puts an underscore behind a name that ends in a digit.
+    let name = slot.name.trim_end_matches('_');
+    let same = context.spec.inputs.iter().find(|input| input.name == name && !is_of_surface(slot, context));
     if let Some(input) = same
         && let Some(fitted) = fitted(input.name, input.shape, slot.leaf, None)
     {
         return Some((fitted, Found::SameName));
+    }
+    if is_of_light(slot, context) {
+        return fitted("position", ValueShape::Vec3, slot.leaf, Some(Meaning::LightPosition))
+            .map(|is| (is, Found::Synonym));
     }
     let understood = meanings(slot).find_map(|meaning| {
         // Further lights of an array give nothing.
@@ -256,7 +264,21 @@ fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) ->
         let fitted = fitted(&expression, shape_of(meaning, &expression, context.spec), slot.leaf, Some(meaning))?;
         Some((fitted, Found::Synonym))
     });
-    understood.or_else(|| Some((unnamed(slot, context)?, Found::Synonym)))
+    understood.or_else(|| Some((numbered(slot, context).or_else(|| unnamed(slot, context))?, Found::Synonym)))
+}
+
+/// The input whose name a variable has but for a number at its end, by which tools tell names apart.
+fn numbered(slot: &Variable, context: &Context<'_>) -> Option<String> {
+    let name = slot.name.trim_end_matches(|c: char| c == '_' || c.is_ascii_digit());
+    let input = context.spec.inputs.iter().find(|input| input.name == name)?;
+    fitted(input.name, input.shape, slot.leaf, None)
+}
+
+/// Whether a bare position is the light's: beside another one of the surface, where nothing else is the light's.
+fn is_of_light(slot: &Variable, context: &Context<'_>) -> bool {
+    let is_bare = slot.name.trim_end_matches(|c: char| c == '_' || c.is_ascii_digit()) == "position";
+    let has_light = context.meanings.contains(&Meaning::LightPosition);
+    is_bare && slot.from == From::Parameter && context.has("position") && context.points > 1 && !has_light
 }
 
 /// What a variable is whose name is not understood: a matrix is a transform, and a texture has the surface's colour.
@@ -437,4 +459,50 @@ fn unused(spec: &Spec, bound: &[Bound], outputs: &[(&'static str, Option<String>
         .map(|input| input.name)
         .filter(|name| !bound.iter().any(|bound| has_word(&bound.expression, name)))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::ShaderSource;
+    use crate::suggest::as_glsl;
+    use crate::{Part, replaced};
+    use lightmeter_catalogue::cases::Kind;
+    use lightmeter_catalogue::select::catalogue;
+    use lightmeter_gpu::Shaders;
+
+    /// Each formula of lighting, fog and attenuation is bound by the names that our own functions have, in WGSL and as naga writes it in GLSL.
+    #[test]
+    fn every_formula_of_ours_is_bound_by_its_own_names() {
+        let shaders = Shaders::built_in().expect("the built-in shaders are valid");
+        let folder = std::env::temp_dir().join(format!("lightmeter-bind-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        let mut bound = 0;
+        for member in catalogue() {
+            let spec = &member.spec;
+            let is_meant =
+                ["lighting", "fog", "attenuation"].contains(&spec.family()) && matches!(spec.kind, Kind::Arithmetic);
+            if !is_meant || spec.function.is_empty() {
+                continue;
+            }
+            let file = format!("{}.wgsl", spec.family());
+            let glsl = as_glsl(&shaders, &file, spec.function).expect(spec.function);
+            for (ending, text) in [("wgsl", shaders.source(&file)), ("glsl", glsl)] {
+                let path = folder.join(format!("{}.{ending}", spec.function));
+                std::fs::write(&path, &text).expect("it can be written");
+                let source = ShaderSource::read(&path).unwrap_or_else(|error| panic!("{error}\n{text}"));
+                // naga puts an underscore behind a digit.
+                let names = [spec.function.to_owned(), format!("{}_", spec.function)];
+                let name = names.iter().find(|name| text.contains(&format!("{name}("))).expect(spec.function);
+                let program = ShaderProgram::new(&path, &source, &Part::Function(name.clone()));
+                let program = program.unwrap_or_else(|error| panic!("{error}\n{text}"));
+                let binding = bind(&program, spec, &[]).unwrap_or_else(|error| panic!("{}: {error}\n{text}", spec.id));
+                assert!(binding.unused.is_empty(), "{}: nothing stands for {:?}", spec.id, binding.unused);
+                replaced(&shaders, &program, &[(spec, binding)]).unwrap_or_else(|error| panic!("{error}"));
+                bound += 1;
+            }
+        }
+        std::fs::remove_dir_all(&folder).expect("it can be removed");
+        assert!(bound > 100, "{bound}");
+    }
 }

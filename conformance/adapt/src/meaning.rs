@@ -112,6 +112,18 @@ pub(crate) const SYNONYMS: &[(Meaning, &[&str])] = &[
     (M::Half, &["h", "half", "halfvec", "halfdir", "halfangle", "hvec", "halfdirection", "lighthalfvec"]),
     (M::Reflected, &["r", "reflect", "reflectdir", "reflectvec", "reflectdirection", "rvec"]),
     (
+        M::SpotExponent,
+        &[
+            "exponent",
+            "spotexponent",
+            "lightspotexponent",
+            "lightexponent",
+            "spotpower",
+            "lightspotpower",
+            "concentration",
+        ],
+    ),
+    (
         M::Shininess,
         &[
             "shininess",
@@ -380,10 +392,6 @@ pub(crate) const SYNONYMS: &[(Meaning, &[&str])] = &[
             "conecos",
         ],
     ),
-    (
-        M::SpotExponent,
-        &["spotexponent", "lightspotexponent", "lightexponent", "spotpower", "lightspotpower", "concentration"],
-    ),
     (M::FogColor, &["fog", "fogcolor", "fogcol", "hazecolor", "skycolor", "mistcolor"]),
     (M::FogDensity, &["density", "fogdensity", "hazedensity", "fogamount", "fogk"]),
     (
@@ -466,6 +474,8 @@ pub(crate) struct Context<'a> {
     pub(crate) spec: &'a Spec,
     /// All meanings that the shader's variables have.
     pub(crate) meanings: BTreeSet<Meaning>,
+    /// How many of them may be the surface's position.
+    pub(crate) points: usize,
 }
 
 impl Context<'_> {

@@ -40,8 +40,12 @@ fn as_wgsl(shaders: &Shaders, file: &str, function: &str) -> String {
     found.into_iter().map(|(_, text)| text + "\n").collect::<Vec<_>>().join("\n")
 }
 
-fn as_glsl(shaders: &Shaders, file: &str, function: &str) -> Option<String> {
-    let text = shaders.texts().find(|(name, _)| *name == file)?.1;
+/// The function and what it calls, as naga writes it.
+pub(crate) fn as_glsl(shaders: &Shaders, file: &str, function: &str) -> Option<String> {
+    // A stable form may stand in a file that this one requires.
+    let defines = |text: &str| text.contains(&format!("fn {function}("));
+    let own = shaders.texts().find(|(name, text)| *name == file && defines(text));
+    let (file, text) = own.or_else(|| shaders.texts().find(|(name, text)| !name.contains('/') && defines(text)))?;
     let zeros: Vec<String> =
         Signature::of(text, function)?.parameters.iter().map(|(_, ty)| format!("{ty}()")).collect();
     let entry = format!(
