@@ -181,6 +181,11 @@ fn a_shader_is_told_which_formula_it_is() {
         "{:?}",
         found.is
     );
+    // What can be of several families is put into several files, one of which requires another.
+    let square = folder("shader-square").join("square.glsl");
+    std::fs::write(&square, "float falloff(float d) { return 1.0 / (d * d); }").expect("it can be written");
+    let (status, found) = identified(&square.display().to_string(), &["--function", "falloff"]);
+    assert_eq!((status, found.is), (0, vec!["attenuation/square".to_owned()]));
     let (status, found) = identified("mistakes/half-lambert.glsl", &["--function", "halfLambert"]);
     assert_eq!((status, found.is.len()), (1, 0));
     assert_eq!(

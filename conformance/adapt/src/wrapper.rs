@@ -41,9 +41,13 @@ pub fn replaced(
         *text = text.replacen(&format!("fn {}(", spec.function), &format!("fn user_own_{}(", spec.function), 1);
         text.push_str(&wrapper);
     }
-    for (_, text) in &mut files {
+    for (k, (_, text)) in files.iter_mut().enumerate() {
         // What a file requires is said in its first lines.
         let _ = write!(text, "\n{}", program.wgsl);
+        // One file may require another one, so that each has names of its own.
+        if k > 0 {
+            *text = text.replace("user_", &format!("user{k}_"));
+        }
     }
     Ok(files)
 }

@@ -98,7 +98,7 @@ fn functions_compile(gpu: &Gpu, [built_in, shaders]: [&Shaders; 2], under_way: &
     for (file, text) in shaders.texts() {
         let before = built_in.texts().find(|(name, _)| *name == file).map_or("", |(_, text)| text);
         // Of a single shader's functions the formula's own call what they need.
-        for function in changed(before, text).into_iter().filter(|name| !name.starts_with("user_")) {
+        for function in changed(before, text).into_iter().filter(|name| !name.starts_with("user")) {
             under_way(&format!("`{function}` of {file} is compiled"));
             // What takes other than numbers is part of something that does not, or of a scene.
             let Ok(kernel) = Kernel::new(shaders, file, function) else { continue };
@@ -106,7 +106,7 @@ fn functions_compile(gpu: &Gpu, [built_in, shaders]: [&Shaders; 2], under_way: &
             let pipeline = ArithmeticPipeline::new(gpu, &kernel, Programmable::Compute)?;
             // Of a shader as somebody wrote it, it is seen whether it ends.
             if let Ok(pipeline) = pipeline
-                && text.contains("fn user_entry(")
+                && text.contains("fn user")
             {
                 under_way(&format!("`{function}` of {file} runs"));
                 let ends = ends_in_time();
