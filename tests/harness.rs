@@ -165,7 +165,7 @@ fn mistakes_fail_the_trials_of_the_formulas_that_they_concern() {
 #[test]
 fn a_bad_variable_fails_every_selected_trial_and_says_what_is_right() {
     let rows = [
-        ("LIGHTMETER_ADAPTER", "vodoo", "no adapter `vodoo`; there are"),
+        ("LIGHTMETER_ADAPTER", "vodoo", "no adapter `vodoo`. There are"),
         ("LIGHTMETER_ADAPTER", ",", "no list of names, such as lavapipe,swiftshader"),
         ("LIGHTMETER_CASES", "many", "`many` is not a whole number from 1 to 1000000000000"),
         ("LIGHTMETER_CASES", "0", "`0` is not a whole number"),
