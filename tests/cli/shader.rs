@@ -306,6 +306,13 @@ fn what_is_wrong_with_a_shader_is_told_with_what_would_do() {
         let said = stderr(&output);
         assert!(code(&output) == 2 && said.contains(says), "{given:?}: {}: {said}", code(&output));
     }
+    for command in ["sweep", "bench", "show"] {
+        let output = lightmeter(&[command, "fog/exp/random/000001", "--shader", &blinn, "--constant", "density=1"]);
+        assert_eq!(code(&output), 2, "{command}: {}", stderr(&output));
+    }
+    let fog = shaders().join("documents/slides-fog.frag").display().to_string();
+    let output = lightmeter(&["sweep", "fog/linear", "--over", "p.z", "--output", "f", "--shader", &fog]);
+    assert!(code(&output) == 2 && stderr(&output).contains("does not give f"), "{}", stderr(&output));
     let output = lightmeter(&["run", "--shader", &blinn]);
     assert!(code(&output) == 2 && stderr(&output).contains("lightmeter identify FILE"), "{}", stderr(&output));
 }

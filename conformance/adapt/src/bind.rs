@@ -370,7 +370,7 @@ fn fitted(expression: &str, shape: ValueShape, leaf: Leaf, meaning: Option<Meani
         (ValueShape::Scalar, Leaf::Scalar(kind @ (ScalarKind::Sint | ScalarKind::Uint))) => {
             Some(if kind == ScalarKind::Sint { format!("i32({expression})") } else { format!("u32({expression})") })
         }
-        // What has no colour has the same of each.
+        // A single weight applies to red, green and blue alike.
         (ValueShape::Scalar, Leaf::Vector(size, ScalarKind::Float)) if matches!(meaning, Some(Meaning::Weight(_))) => {
             Some(format!("vec{size}f({expression})"))
         }

@@ -7,7 +7,7 @@ use lightmeter_catalogue::cases::Spec;
 use lightmeter_gpu::Shaders;
 use std::fmt::Write as _;
 
-/// What a discarded fragment gives, of so many numbers: none.
+/// The value of a discarded fragment, NaN in each of its `numbers` components.
 fn nothing_of(numbers: usize) -> String {
     const NAN: &str = "bitcast<f32>(0x7fc00000u)";
     if numbers == 1 { NAN.into() } else { format!("vec{numbers}f({NAN})") }

@@ -96,6 +96,7 @@ impl Bench {
             Ok((name, loaded))
         });
         let filter = Filter::new(&globs)?;
+        self.shaders.own.without_constants()?;
         let accepted = self.shaders.accepted(&filter, &self.adapter, true)?;
         let options = BenchOptions {
             filter,

@@ -148,6 +148,8 @@ impl Choice {
 
     /// The shaders to judge, those of scenes among them or not.
     pub(crate) fn code(&self, filter: &Filter, has_scenes: bool) -> anyhow::Result<Code> {
+        // Only a run holds inputs in its cases.
+        self.shaders.own.without_constants()?;
         self.shaders.accepted(filter, &self.adapter, has_scenes)?.code()
     }
 

@@ -222,6 +222,16 @@ impl OwnShader {
         Ok(Some(words))
     }
 
+    /// Refuses constants where cases are not those of a run.
+    pub(crate) fn without_constants(&self) -> anyhow::Result<()> {
+        if let Some((name, _)) = self.constant.first() {
+            bail!(
+                "`--constant {name}` applies to `run` and `identify` alone; a sweep sets its other inputs by `--set`"
+            );
+        }
+        Ok(())
+    }
+
     /// Refuses constants that are no inputs, or of another size.
     fn check_constants(&self, formulas: &[String]) -> anyhow::Result<()> {
         let catalogue = catalogue();

@@ -88,7 +88,15 @@ impl Sweep {
         check_shard(&plan, shard)?;
         self.check_files()?;
         let choice = self.choice();
-        let code = choice.code(&Filter::new(std::slice::from_ref(&plan.member.spec.id))?, false)?;
+        self.shaders.own.without_constants()?;
+        let filter = Filter::new(std::slice::from_ref(&plan.member.spec.id))?;
+        let accepted = self.shaders.accepted(&filter, &choice.adapter, false)?;
+        let output = plan.output_name();
+        let is_swept = |name: &String| output.split('.').next() == Some(name);
+        if accepted.adapted.iter().any(|adapted| adapted.missing.iter().any(is_swept)) {
+            bail!("the shader does not give {output}; name an output that it gives by `--output`");
+        }
+        let code = accepted.code()?;
         let mut subjects = choice.subjects()?;
         let [subject] = subjects.as_mut_slice() else {
             bail!("a sweep runs on exactly one adapter; name it with --adapter");

@@ -79,7 +79,7 @@ fn cloud(title: String, rungs: &[RungSummary], on_front: &[String], [of, error]:
     let groups = measured.iter().map(|rung| rung.groups + rung.as_f32 + rung.disqualified + rung.unavailable).max()?;
     let series = |(place, rung): (usize, &&RungSummary)| Series {
         large: vec![[rung.ratio, rung.error]],
-        // How far legal values reach is told by one mark: it is no error of anybody's.
+        // The width of the legal interval has one mark: it is not an error that somebody made.
         small: if rung.name == "cpu-accept" { vec![] } else { rung.points.iter().map(|one| [one.1, one.2]).collect() },
         is_bold: on_front.contains(&rung.name),
         ..Series::new(&rung.name, marker(&rung.name, place))
