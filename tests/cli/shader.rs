@@ -90,9 +90,35 @@ fn the_line_in_which_a_mistake_is_made_is_told() {
     ] {
         let args =
             [words("run", formula, &shaders().join(file), function), vec!["--cases".into(), "256".into()]].concat();
-        let said = stderr(&lightmeter(&args.iter().map(String::as_str).collect::<Vec<_>>()));
+        let args: Vec<&str> = args.iter().map(String::as_str).collect();
+        let said = stdout(&lightmeter(&args));
         assert!(said.contains(line) && said.contains(" is made\n"), "{said}");
+        let formula = &json(&[&args[..], &["--format", "json"]].concat())["shader"]["formulas"][0];
+        let place = &formula["mistakes"][0];
+        let (number, code) = (place["line"].to_string(), place["code"].as_str().unwrap_or_default());
+        assert!(line.split_once(":").is_some_and(|(_, rest)| format!("{number}: {code}").starts_with(rest)), "{place}");
+        assert!(formula["variables"].as_array().is_some_and(|variables| variables.len() > 3), "{formula}");
+        let annotated = stdout(&lightmeter(&[&args[..], &["--format", "github"]].concat()));
+        assert!(annotated.contains(&format!(",line={number},title={}", args[1])), "{annotated}");
+        let junit = stdout(&lightmeter(&[&args[..], &["--format", "junit"]].concat()));
+        assert!(junit.contains(" is made\n"), "{junit}");
     }
+}
+
+#[test]
+fn a_baseline_knows_the_constants_it_was_made_with() {
+    let file = shaders().join("right/blinn.frag").display().to_string();
+    let baseline = folder("shader-constants").join("baseline.json").display().to_string();
+    let run = ["run", "lighting/blinn", "--cases", "64", "--shader", &file, "--baseline", &baseline];
+    let held = ["--constant", "shininess=32"];
+    assert_eq!(code(&lightmeter(&[&run[..], &held, &["--update-baseline"]].concat())), 0);
+    assert_eq!(code(&lightmeter(&[&run[..], &held].concat())), 0);
+    let output = lightmeter(&run);
+    assert!(
+        code(&output) == 2 && stderr(&output).contains("constants [\"shininess=32\"] there, [] here"),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]
@@ -219,8 +245,25 @@ fn a_shader_is_swept_measured_and_held_to_a_baseline() {
         let output = lightmeter(&[&run[..], update].concat());
         assert_eq!(code(&output), 0, "{}", stderr(&output));
     }
-    let report = json(&["bench", "fog/linear", "--quick", "--shader", &file, "--format", "json"]);
-    assert!(report["adapters"][0]["groups"].as_array().is_some_and(|groups| !groups.is_empty()), "{report}");
+}
+
+#[test]
+fn a_bench_measures_a_shader_beside_the_suites_own() {
+    let file = shaders().join("right/blinn.frag").display().to_string();
+    let wrong = shaders().join("mistakes/half-vector-mean.frag").display().to_string();
+    for (file, options, is_right) in
+        [(&file, &[][..], true), (&file, &["--constant", "shininess=32"], true), (&wrong, &[], false)]
+    {
+        let bench = ["bench", "lighting/blinn", "--quick", "--shader", file, "--format", "json"];
+        let report = json(&[&bench[..], options].concat());
+        let rows = &report["adapters"][0]["groups"][0]["rows"];
+        let row = |name: &str| rows.as_array().into_iter().flatten().find(|row| row["name"] == name).cloned();
+        let name = std::path::Path::new(file).file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        let (own, ours) = (row(name).expect("it is there"), row("f32").expect("it is there"));
+        assert!(own["time"]["ns"].is_number() && ours["time"]["ns"].is_number(), "{own}");
+        assert_eq!(own["disqualified"].is_null(), is_right, "{own}");
+        assert!(ours["disqualified"].is_null(), "{ours}");
+    }
 }
 
 /// What is given, and what is said.
@@ -306,7 +349,7 @@ fn what_is_wrong_with_a_shader_is_told_with_what_would_do() {
         let said = stderr(&output);
         assert!(code(&output) == 2 && said.contains(says), "{given:?}: {}: {said}", code(&output));
     }
-    for command in ["sweep", "bench", "show"] {
+    for command in ["sweep", "show"] {
         let output = lightmeter(&[command, "fog/exp/random/000001", "--shader", &blinn, "--constant", "density=1"]);
         assert_eq!(code(&output), 2, "{command}: {}", stderr(&output));
     }

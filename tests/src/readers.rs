@@ -121,8 +121,15 @@ fn utf8(bytes: &[u8]) -> Option<&str> {
 fn plan() -> Arc<GatePlan> {
     static PLAN: OnceLock<Arc<GatePlan>> = OnceLock::new();
     let made = PLAN.get_or_init(|| {
-        let choice =
-            Choice { filter: vec!["fog/exp".into()], cases: 2, seed: 0, size: None, targets: vec![], special: false };
+        let choice = Choice {
+            filter: vec!["fog/exp".into()],
+            cases: 2,
+            seed: 0,
+            size: None,
+            targets: vec![],
+            held: vec![],
+            special: false,
+        };
         Arc::new(GatePlan::new(choice).expect("the choice is a valid one"))
     });
     Arc::clone(made)

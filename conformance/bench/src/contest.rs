@@ -8,7 +8,7 @@ use super::turns::{self, Entry, Laps};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::bench::{BenchRow, Errors};
-use lightmeter_gpu::{Clock, ClockReading, Gpu, GpuError, Kernel, RepeatPipeline, Rung};
+use lightmeter_gpu::{Clock, ClockReading, Gpu, GpuError, Kernel, RepeatPipeline, Rung, Shaders};
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_subject_gpu::kernel;
 use rayon::prelude::*;
@@ -128,6 +128,8 @@ pub(super) struct Contender<'a> {
 pub(super) enum On {
     /// The device, in an arithmetic of the ladder.
     Device(Rung),
+    /// The device, by the shader that is measured beside the suite's own.
+    Own,
     /// One core of this processor.
     Processor(Arithmetic),
 }
@@ -161,11 +163,20 @@ impl Arithmetic {
 }
 
 impl On {
+    /// The rung that a device computes it in.
+    const fn rung(self) -> Option<Rung> {
+        match self {
+            Self::Device(rung) => Some(rung),
+            Self::Own => Some(Rung::F32),
+            Self::Processor(_) => None,
+        }
+    }
+
     /// Whether what it gives is meant to be the formula itself, and must be legal.
     const fn claims_exact(self) -> bool {
         match self {
             Self::Device(rung) => rung.is_exact(),
-            Self::Processor(_) => true,
+            Self::Own | Self::Processor(_) => true,
         }
     }
 }
@@ -191,21 +202,22 @@ pub(super) fn contest(
     let selected = sample.selected();
     for (contender, row) in contenders.iter().zip(&mut rows) {
         unless_stopped(bench.stop)?;
-        let ready = match (contender.on, &row.unavailable, bench.gpu) {
-            (On::Device(rung), None, Some(gpu)) => {
+        let ready = match (contender.on.rung(), &row.unavailable, bench.gpu) {
+            (Some(rung), None, Some(gpu)) => {
                 let member = contender.formula.unwrap_or(sample.of[0]);
-                match kernel(bench.shaders, member)? {
+                let shaders = bench.shaders_of(contender);
+                match kernel(shaders, member)? {
                     None => Err("no shader function evaluates it: it is fixed hardware's".into()),
                     Some(kernel) => {
                         let timed = &selected[..sample.random.min(TIMED_ROWS) * kernel.inputs];
                         if idle.is_none() {
                             idle = RepeatPipeline::idle(gpu, &kernel, timed)?.ok();
                         }
-                        compile(bench, gpu, &kernel, rung, timed, &selected)?
+                        compile((bench, shaders), gpu, &kernel, rung, timed, &selected)?
                     }
                 }
             }
-            (On::Device(_), None, None) => Err("the embedded implementation has no shaders".into()),
+            (Some(_), None, None) => Err("the embedded implementation has no shaders".into()),
             _ => {
                 compiled.push(None);
                 continue;
@@ -264,7 +276,7 @@ fn blank(contender: &Contender<'_>) -> BenchRow {
 }
 
 fn compile(
-    bench: &Bench<'_>,
+    (bench, shaders): (&Bench<'_>, &Shaders),
     gpu: &Gpu,
     kernel: &Kernel,
     rung: Rung,
@@ -272,7 +284,7 @@ fn compile(
     selected: &[f32],
 ) -> Result<Result<Compiled, String>, GpuError> {
     let start = Instant::now();
-    let pipeline = match RepeatPipeline::new(gpu, bench.shaders, kernel, rung, timed)? {
+    let pipeline = match RepeatPipeline::new(gpu, shaders, kernel, rung, timed)? {
         Ok(pipeline) => pipeline,
         Err(reason) => return Ok(Err(reason)),
     };
@@ -306,8 +318,8 @@ fn judge_row(
     let own_exact = own.as_deref().unwrap_or(exact);
     let legal = sample.intervals(bench.judged_by(contender, sample.of[0]).or(contender.formula), &bench.profile);
     let found: Vec<f64> = match (contender.on, values) {
-        (On::Device(_), Some(values)) => values.to_vec(),
-        (On::Device(_), None) => return,
+        (On::Device(_) | On::Own, Some(values)) => values.to_vec(),
+        (On::Device(_) | On::Own, None) => return,
         (On::Processor(Arithmetic::F32), _) => {
             let embedded = sample.evaluated(contender.formula, 0.0, |member, row, out: &mut [f32]| {
                 member.formula.embedded(row, out);
@@ -321,7 +333,11 @@ fn judge_row(
     let split = sample.random * outputs;
     let errors = |found: &[f64], exact: &[f64], legal: &[Accept]| -> Option<Errors> {
         let mut gathered = Gathered::default();
-        for ((value, exact), legal) in found.iter().zip(exact).zip(legal) {
+        for (k, ((value, exact), legal)) in found.iter().zip(exact).zip(legal).enumerate() {
+            // What a shader does not give is no error.
+            if sample.of[0].missing.contains(&(k % outputs)) {
+                continue;
+            }
             // Where the formula promises nothing of f32, a value of it is no error; of other arithmetics it may be.
             let is_promised = !legal.is_any() || contender.on != On::Processor(Arithmetic::Accept);
             if is_promised { gathered.add(*value, *exact) } else { gathered.skip() }
@@ -337,6 +353,11 @@ fn judge_row(
 }
 
 impl<'a> Bench<'a> {
+    /// The shaders that a contender is of.
+    fn shaders_of(&self, contender: &Contender<'_>) -> &'a Shaders {
+        self.own.filter(|_| contender.on == On::Own).map_or(self.shaders, |own| &own.shaders)
+    }
+
     /// Where a stable form is used in place of a contender's function, the catalogue's own formula for that stable form, against which it
     /// must be judged: the legal values of the published formula may not include the stable form's results.
     fn judged_by<'b>(&self, contender: &Contender<'_>, of: &'b Member) -> Option<&'b Member>
@@ -399,7 +420,9 @@ fn time_rows(
     }
     for (k, contender) in contenders.iter().enumerate() {
         match (contender.on, &compiled[k], bench.gpu) {
-            (On::Device(_), Some(compiled), Some(gpu)) => entries.push(device_entry(gpu, clock, &compiled.pipeline)),
+            (On::Device(_) | On::Own, Some(compiled), Some(gpu)) => {
+                entries.push(device_entry(gpu, clock, &compiled.pipeline))
+            }
             (On::Processor(arithmetic), ..) if rows[k].unavailable.is_none() => {
                 entries.push(processor_entry(sample, contender.formula, arithmetic, &bench.profile));
             }

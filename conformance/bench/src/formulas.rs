@@ -85,6 +85,13 @@ pub(super) fn formula(bench: &Bench<'_>, id: &str, members: &[&Member]) -> Resul
         on: On::Processor(arithmetic),
         unavailable: None,
     }));
+    contenders.extend(bench.own.map(|own| Contender {
+        name: own.name.clone(),
+        what: "the shader that is measured beside them, in f32".into(),
+        formula: None,
+        on: On::Own,
+        unavailable: None,
+    }));
     let spec = &members[0].spec;
     let has_shader = !spec.function.is_empty() && bench.gpu.is_some();
     let baseline = if has_shader { Rung::F32.name() } else { Arithmetic::F32.name() };

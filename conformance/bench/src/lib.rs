@@ -21,6 +21,7 @@ use lightmeter_catalogue::select::{Member, catalogue};
 use lightmeter_document::bench::{BenchDocument, BenchGroup, ClockUse, Family, GroupKind, Measured, SCHEMA, Scaling};
 use lightmeter_document::bench::{ladder, pareto};
 use lightmeter_document::event::{Event, Observer, Stop};
+use lightmeter_engine::options::Adapted;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Clock, ClockKind, Gpu, GpuError, Rung, Shaders};
 use std::time::Instant;
@@ -42,10 +43,32 @@ pub struct BenchOptions {
     pub profile: &'static Profile,
     /// The shaders.
     pub shaders: Shaders,
+    /// A shader as somebody wrote it, which is measured beside them.
+    pub own: Option<OwnShader>,
     /// The command that asks for it.
     pub command: String,
     /// Ends it before its time.
     pub stop: Stop,
+}
+
+/// A shader as somebody wrote it, made the function of formulas.
+pub struct OwnShader {
+    /// What it is called in tables.
+    pub name: String,
+    /// The WGSL.
+    pub shaders: Shaders,
+    /// The formulas that it is, and how they are judged of it.
+    pub adapted: Vec<Adapted>,
+}
+
+impl OwnShader {
+    /// A formula as it is judged of the shader, which all contenders then are.
+    fn applied(&self, member: Member) -> Member {
+        match self.adapted.iter().find(|adapted| adapted.id == member.spec.id) {
+            Some(adapted) => adapted.applied(member),
+            None => member,
+        }
+    }
 }
 
 /// How much is measured.
@@ -83,6 +106,7 @@ struct Bench<'a> {
     gpu: Option<&'a Gpu>,
     clock: Clock,
     shaders: &'a Shaders,
+    own: Option<&'a OwnShader>,
     catalogue: &'a [Member],
     /// The rungs, each with the reason why the adapter has it not.
     ladder: &'a [(Rung, Option<String>)],
@@ -159,7 +183,11 @@ fn measured(
     setting: Setting,
     observer: &mut dyn Observer,
 ) -> Result<Option<Measured>, GpuError> {
-    let catalogue = catalogue();
+    let mut catalogue = catalogue();
+    if let Some(own) = &options.own {
+        catalogue.retain(|member| own.adapted.iter().any(|adapted| adapted.id == member.spec.id));
+        catalogue = catalogue.into_iter().map(|member| own.applied(member)).collect();
+    }
     let asked = Asked::new(options, &catalogue, ladder_of(subject)?);
     observer.see(&Event::Begun(setting.sittings as u64 * asked.count(subject)));
     let mut all = vec![];
@@ -281,6 +309,7 @@ fn sitting(
         gpu: computes.as_ref(),
         clock: clock(computes.as_ref(), options.clock, use_wall)?,
         shaders: &options.shaders,
+        own: options.own.as_ref(),
         catalogue: asked.catalogue,
         ladder: &asked.ladder,
         profile,
@@ -449,6 +478,7 @@ mod tests {
             clock: None,
             profile: &WGSL,
             shaders: Shaders::built_in().unwrap_or_else(|error| panic!("{error}")),
+            own: None,
             command: String::new(),
             stop: Stop::default(),
         };

@@ -22,6 +22,9 @@ pub struct Choice {
     /// Of a pack, the formats of targets that its blend states are asked for on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<String>,
+    /// Inputs that are constants of the shader under test, or in common with another one, as `shininess=32`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub held: Vec<String>,
     /// Whether a pack has special values.
     #[serde(default, skip_serializing_if = "is_false")]
     pub special: bool,

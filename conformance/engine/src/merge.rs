@@ -10,7 +10,7 @@ use lightmeter_catalogue::select::{CaseRef, catalogue};
 use lightmeter_catalogue::special::Class;
 use lightmeter_document::Number;
 use lightmeter_document::by_case::{CaseCounts, ComparedBy, KnownFailure, RendererUse};
-use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, StoreUse, Totals};
+use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, ShaderUse, StoreUse, Totals};
 use lightmeter_judge::blend_unit::store::problem_of;
 use lightmeter_judge::cases::joined;
 use lightmeter_judge::tally::{KEPT, KEPT_FAILURES};
@@ -38,6 +38,7 @@ pub fn merge(parts: Vec<(PathBuf, Report)>) -> Result<Report, NoWhole> {
     let mut most: HashMap<GroupKey, u64> = whole.groups.iter().map(|group| (key(group), group.totals.failed)).collect();
     let order = Order::new();
     for part in parts {
+        add_places(&mut whole, &part);
         add(&mut whole, part, &order, &mut most);
     }
     whole.groups.iter_mut().for_each(tell_stores);
@@ -59,13 +60,27 @@ pub fn merge(parts: Vec<(PathBuf, Report)>) -> Result<Report, NoWhole> {
     Ok(whole)
 }
 
+/// Adds the lines of a shader in which a part's mistakes are made.
+fn add_places(whole: &mut Report, part: &Report) {
+    let (Some(whole), Some(part)) = (&mut whole.shader, &part.shader) else { return };
+    for (whole, part) in whole.formulas.iter_mut().zip(&part.formulas) {
+        for place in &part.mistakes {
+            if !whole.mistakes.contains(place) {
+                whole.mistakes.push(place.clone());
+            }
+        }
+    }
+}
+
 /// Whether two runs were asked the same and held against the same, which all shards of a run are.
 fn are_of_one_run(a: &Report, b: &Report) -> bool {
     let compared_by = |report: &Report| report.compared_by.clone().map(|by| ComparedBy { shard: None, ..by });
     let expected = |report: &Report| -> Vec<KnownFailure> {
         report.expectations.iter().map(|one| KnownFailure { failed: 0, passed: 0, ..one.clone() }).collect()
     };
-    (compared_by(a), &a.profile, &a.adapters, expected(a)) == (compared_by(b), &b.profile, &b.adapters, expected(b))
+    let shader = |report: &Report| report.shader.as_ref().map(ShaderUse::without_mistakes);
+    let all = |report| (compared_by(report), shader(report), expected(report));
+    (all(a), &a.profile, &a.adapters) == (all(b), &b.profile, &b.adapters)
 }
 
 /// Checks that the parts are all shards of one run.
@@ -87,7 +102,7 @@ fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
             return no_whole(format!("{b} is not finished: {}", interrupted.message));
         }
         if !are_of_one_run(first, part) {
-            let expected = "expected the same cases, seed, targets, profile, adapters and known failures";
+            let expected = "expected the same cases, seed, targets, profile, adapters, shader and known failures";
             return no_whole(format!("{a} and {b} are of different runs: {expected}"));
         }
         let read = shard.split_once('/').and_then(|(i, n)| Some((i.parse::<u64>().ok()?, n.parse::<u64>().ok()?)));

@@ -313,6 +313,7 @@ impl Baseline {
         differs("cases", before.cases.to_string(), now.cases.to_string());
         differs("seed", before.seed.to_string(), now.seed.to_string());
         differs("size", format!("{:?}", before.size), format!("{:?}", now.size));
+        differs("constants", format!("{:?}", before.held), format!("{:?}", now.held));
         differs("generator", self.0.generator.to_string(), GENERATOR_VERSION.to_string());
         if let Some(profile) = profile {
             differs("profile", self.0.profile.clone(), profile.clone());

@@ -356,7 +356,7 @@ mod tests {
 
     fn plan(filter: &[&str], targets: &[&str]) -> Result<GatePlan, PlanError> {
         let [filter, targets] = [filter, targets].map(|words| words.iter().map(|&word| word.to_owned()).collect());
-        GatePlan::new(Choice { filter, cases: 5, seed: 1, size: Some(32), targets, special: true })
+        GatePlan::new(Choice { filter, cases: 5, seed: 1, size: Some(32), targets, held: vec![], special: true })
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::against::Against;
 use crate::gate::{sentence, smallest, whole};
 use crate::text::{failing_group, formula_of, plain};
 use lightmeter_document::gate::{GateReport, cases};
-use lightmeter_document::run::{Failure, Group, Report};
+use lightmeter_document::run::{Failure, Group, Report, ShaderUse};
 
 fn data(text: &str) -> String {
     text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
@@ -15,7 +15,14 @@ fn property(text: &str) -> String {
 }
 
 fn annotation(kind: &str, title: &str, text: &str) -> String {
-    format!("::{kind} title={}::{}\n", property(title), data(text))
+    let separator = if kind.contains(' ') { "," } else { " " };
+    format!("::{kind}{separator}title={}::{}\n", property(title), data(text))
+}
+
+/// An error at the line of a shader in which a formula's mistake is made, or at the shader's file where that is not known.
+fn at_line(shader: &ShaderUse, id: &str) -> String {
+    let line = shader.places(id).next().map_or_else(String::new, |place| format!(",line={}", place.line));
+    format!("error file={}{line}", property(&shader.file))
 }
 
 /// The annotations of a gate.
@@ -51,7 +58,8 @@ pub fn of_run(report: &Report) -> String {
         if let Some(failure) = report.failures.iter().find(|failure| is_of(failure, group)) {
             said += &one_line(failure);
         }
-        out += &annotation("error", &group.id, said.trim_end());
+        let kind = report.shader.as_ref().map_or_else(|| "error".into(), |shader| at_line(shader, &group.id));
+        out += &annotation(&kind, &group.id, said.trim_end());
     }
     for deviation in report.deviations.iter().filter(|deviation| !deviation.still_needed) {
         let title = format!("deviation/{}", deviation.name);

@@ -75,6 +75,11 @@ fn status(group: &Group, report: &Report) -> TestCaseStatus {
         // Writing to a string does not fail.
         let _ = text::failure(failure, Level::Verbose, &mut description);
     }
+    for (shader, place) in
+        report.shader.iter().flat_map(|shader| shader.places(&group.id).map(move |place| (shader, place)))
+    {
+        description += &format!("{}\n", text::made_at(shader, place));
+    }
     status.set_description(description);
     status
 }

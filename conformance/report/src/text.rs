@@ -3,7 +3,9 @@
 use crate::Level;
 use crate::against::{self, Against};
 use crate::table::{Align, TextTable};
-use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, ImageUse, Report, Tiers, Totals};
+use lightmeter_document::run::{
+    BlendState, DeviationUse, Failure, Group, ImageUse, MistakePlace, Report, ShaderUse, Tiers, Totals,
+};
 use lightmeter_document::{Number, Word, is_worse, thousands, worse};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
@@ -59,6 +61,7 @@ pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
     } else {
         failures(report, style.level, out)?;
     }
+    shader_lines(report, out)?;
     if style.level > Level::Quiet {
         writeln!(out)?;
     }
@@ -116,6 +119,20 @@ fn failing_groups(report: &Report, out: &mut impl Write) -> Result {
         failing_group(group, " of", out)?;
     }
     Ok(())
+}
+
+/// The lines of a shader in which the mistakes are made that explain its failures.
+fn shader_lines(report: &Report, out: &mut impl Write) -> Result {
+    let Some(shader) = &report.shader else { return Ok(()) };
+    for place in shader.formulas.iter().flat_map(|formula| &formula.mistakes) {
+        writeln!(out, "{}", made_at(shader, place))?;
+    }
+    Ok(())
+}
+
+/// Where in a shader a mistake is made.
+pub(crate) fn made_at(shader: &ShaderUse, place: &MistakePlace) -> String {
+    format!("{}:{}: {}\n  is where {} is made", shader.file, place.line, place.code, place.mistake)
 }
 
 /// Writes that a group fails, with what explains it. Its counts are of some of its verdicts.

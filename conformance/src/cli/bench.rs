@@ -22,7 +22,7 @@ use lightmeter::scene::load;
 use lightmeter::scene::select::scene_id;
 use lightmeter::select::catalogue;
 use lightmeter::subject_gpu::device_error;
-use lightmeter_gpu::ClockKind;
+use lightmeter_gpu::{ClockKind, Shaders};
 use std::path::{Path, PathBuf};
 
 /// Measure what accuracy costs in time: each technique at each rung of the ladder, its error and its time.
@@ -96,7 +96,6 @@ impl Bench {
             Ok((name, loaded))
         });
         let filter = Filter::new(&globs)?;
-        self.shaders.own.without_constants()?;
         let accepted = self.shaders.accepted(&filter, &self.adapter, true)?;
         let options = BenchOptions {
             filter,
@@ -108,7 +107,8 @@ impl Bench {
                 Clock::Wall => ClockKind::Wall,
             }),
             profile: self.profile,
-            shaders: accepted.shaders()?,
+            shaders: if accepted.adapted.is_empty() { accepted.shaders()? } else { Shaders::built_in()? },
+            own: self.shaders.own.beside(&accepted)?,
             command: self.command(),
             stop: stopped_by_signals()?,
         };

@@ -22,7 +22,7 @@ use lightmeter::gate::baseline::{Baseline, Standard};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::judge::cases::ExpectedFailure;
 use lightmeter::nearest::did_you_mean;
-use lightmeter::options::Adapted;
+use lightmeter::options::Options;
 use lightmeter::report::{github, junit, text};
 use lightmeter::run::run;
 use lightmeter::scene::library::SCENES;
@@ -99,15 +99,7 @@ impl Run {
         options.runs = self.runs;
         options.counts_cases = true;
         writable(self.out.as_deref())?;
-        let part = (shard.count.get() > 1).then(|| self.amount.shard.to_string());
-        let compared_by = ComparedBy {
-            choice: self.chosen(),
-            generator: GENERATOR_VERSION,
-            targets: options.targets.iter().map(|target| target.name().into()).collect(),
-            declared: vec![],
-            separate: Some(self.separate),
-            shard: part,
-        };
+        let compared_by = self.compared_by(&options);
         if let Some(Earlier { baseline, path, .. }) = &earlier {
             baseline.is_of(&compared_by.choice, std::iter::empty(), Some(&options.profile.name.into()), path)?;
         }
@@ -126,14 +118,17 @@ impl Run {
             }
             report => report?,
         };
-        let mut report = Report { compared_by: Some(compared_by), config: used(), ..report };
+        let shader = self.choice.shaders.own.used(&options.adapted, &report);
+        let mut report = Report { compared_by: Some(compared_by), config: used(), shader, ..report };
         // What was not judged for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
         let is_shard = shard.count.get() > 1;
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), is_shard)).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
-        self.tell_of_shader(&options.adapted, &report)?;
+        if self.suggest {
+            say(self.choice.shaders.own.suggested(&options.adapted, &report)?.trim_end());
+        }
         if report.interrupted.is_some() {
             std::mem::forget(subjects);
         }
@@ -143,23 +138,18 @@ impl Run {
         Ok(status(&report, self.required))
     }
 
-    /// Of a shader as somebody wrote it: the lines in which mistakes are made, and what would be stable.
-    fn tell_of_shader(&self, adapted: &[Adapted], report: &Report) -> anyhow::Result<()> {
-        let own = &self.choice.shaders.own;
-        let places = own.places(adapted, report);
-        if self.format == ReportFormat::Text && !places.is_empty() {
-            say(places.trim_end());
-        }
-        if self.suggest {
-            say(own.suggested(adapted, report)?.trim_end());
-        }
-        Ok(())
-    }
-
-    /// What chooses the cases.
-    fn chosen(&self) -> CaseChoice {
+    /// What chooses the cases, by which a later run is compared with this one.
+    fn compared_by(&self, options: &Options) -> ComparedBy {
         let Choice { seed, size, .. } = self.choice;
-        CaseChoice { filter: self.filter.clone(), cases: self.amount.cases, seed, size, ..CaseChoice::default() }
+        let (filter, held) = (self.filter.clone(), self.choice.shaders.own.held());
+        ComparedBy {
+            choice: CaseChoice { filter, cases: self.amount.cases, seed, size, held, ..CaseChoice::default() },
+            generator: GENERATOR_VERSION,
+            targets: options.targets.iter().map(|target| target.name().into()).collect(),
+            declared: vec![],
+            separate: Some(self.separate),
+            shard: (options.shard.count.get() > 1).then(|| self.amount.shard.to_string()),
+        }
     }
 
     /// Whether the result is text on standard output.

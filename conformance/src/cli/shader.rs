@@ -6,15 +6,16 @@ use super::values::setting;
 use super::{Status, say};
 use anyhow::{Context as _, bail};
 use clap::Args;
+use lightmeter::bench::OwnShader as Beside;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::Code;
-use lightmeter::document::run::Report;
+use lightmeter::document::run::{BoundVariable, JudgedAs, MistakePlace, Report, ShaderUse};
 use lightmeter::faults::{Fault, Touched};
 use lightmeter::files::read;
 use lightmeter::filter::Filter;
 use lightmeter::options::{Adapted, Constant};
 use lightmeter::report::Level;
-use lightmeter::select::{Shard, catalogue, select};
+use lightmeter::select::{Member, Shard, catalogue, select};
 use lightmeter::subject_gpu::code_of;
 use lightmeter_adapt::bind::{AskedBinding, Found, ShaderBinding, bind};
 use lightmeter_adapt::place::{line_of_step, line_of_variable};
@@ -141,6 +142,28 @@ pub(crate) fn constant(text: &str) -> Result<(String, Constant), String> {
     setting(text).map(|(name, values)| (name, Constant::Numbers(values)))
 }
 
+/// A constant as it is given on the command line.
+fn written(constant: &Constant) -> String {
+    match constant {
+        Constant::Numbers(values) => values.iter().map(f32::to_string).collect::<Vec<_>>().join(","),
+        Constant::SameAs(other) => other.clone(),
+    }
+}
+
+/// The line of a shader in which a mistake is made, where a single one can be it.
+fn line_of(text: &str, fault: &'static Fault, member: &Member, variables: &[(String, String)]) -> Option<MistakePlace> {
+    let (line, code) = fault.touched(member).into_iter().find_map(|touched| match touched {
+        Touched::Step(step) => line_of_step(text, step),
+        Touched::Input(input) => {
+            let has = |is: &str| is.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == input);
+            let names: Vec<&str> = variables.iter().filter(|(_, is)| has(is)).map(|(name, _)| name.as_str()).collect();
+            line_of_variable(text, &names)
+        }
+        Touched::Output => None,
+    })?;
+    Some(MistakePlace { mistake: fault.name.into(), line, code: code.into() })
+}
+
 /// The formulas that a filter names, which a single shader can stand in for.
 fn formulas(filter: &Filter) -> anyhow::Result<Vec<String>> {
     let catalogue = catalogue();
@@ -213,11 +236,7 @@ impl OwnShader {
             words.extend(["--bind".into(), bind.into()]);
         }
         for (name, constant) in &self.constant {
-            let value = match constant {
-                Constant::Numbers(values) => values.iter().map(f32::to_string).collect::<Vec<_>>().join(","),
-                Constant::SameAs(other) => other.clone(),
-            };
-            words.extend(["--constant".into(), format!("{name}={value}").into()]);
+            words.extend(["--constant".into(), format!("{name}={}", written(constant)).into()]);
         }
         Ok(Some(words))
     }
@@ -226,10 +245,20 @@ impl OwnShader {
     pub(crate) fn without_constants(&self) -> anyhow::Result<()> {
         if let Some((name, _)) = self.constant.first() {
             bail!(
-                "`--constant {name}` applies to `run` and `identify` alone; a sweep sets its other inputs by `--set`"
+                "`--constant {name}` applies to `run`, `bench` and `identify` alone; a sweep sets its other inputs by `--set`"
             );
         }
         Ok(())
+    }
+
+    /// The same for a bench, which measures it beside the suite's own; `None` where no shader is given.
+    pub(crate) fn beside(&self, accepted: &Accepted) -> anyhow::Result<Option<Beside>> {
+        let Ok((part, file)) = self.part() else { return Ok(None) };
+        let name = match part {
+            Part::Function(name) => name,
+            Part::Shader => file.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        };
+        Ok(Some(Beside { name, shaders: accepted.shaders()?, adapted: accepted.adapted.clone() }))
     }
 
     /// Refuses constants that are no inputs, or of another size.
@@ -298,35 +327,39 @@ impl OwnShader {
         Ok(told)
     }
 
-    /// Where in the shader's text the mistakes of a report are made, as far as that can be told: a line each.
-    pub(crate) fn places(&self, adapted: &[Adapted], report: &Report) -> String {
-        let Ok((_, file)) = self.part() else { return String::new() };
-        let Ok(text) = read::text(&file, read::MOST_TEXT) else { return String::new() };
+    /// What is told of it in a report: what it was bound to, and where in its text the mistakes are made, as far as that can be told.
+    pub(crate) fn used(&self, adapted: &[Adapted], report: &Report) -> Option<ShaderUse> {
+        let (part, file) = self.part().ok()?;
+        // Of SPIR-V there is no text.
+        let text = read::text(&file, read::MOST_TEXT).unwrap_or_default();
         let catalogue = catalogue();
-        let mut told = String::new();
-        for Adapted { id, variables, .. } in adapted {
+        let formula = |adapted: &Adapted| {
+            let id = &adapted.id;
             let named = report.groups.iter().filter(|group| group.id == *id).find(|group| !group.mistakes.is_empty());
-            let (Some(group), Some(member)) = (named, catalogue.iter().find(|member| member.spec.id == *id)) else {
-                continue;
-            };
-            for fault in group.mistakes.iter().filter_map(|name| Fault::by_name(name)) {
-                let line = fault.touched(member).into_iter().find_map(|touched| match touched {
-                    Touched::Step(step) => line_of_step(&text, step),
-                    Touched::Input(input) => {
-                        let has =
-                            |is: &str| is.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == input);
-                        let names: Vec<&str> =
-                            variables.iter().filter(|(_, is)| has(is)).map(|(name, _)| name.as_str()).collect();
-                        line_of_variable(&text, &names)
-                    }
-                    Touched::Output => None,
-                });
-                if let Some((line, code)) = line {
-                    let _ = writeln!(told, "{}:{line}: {code}\n  is where {} is made", file.display(), fault.name);
-                }
+            let member = catalogue.iter().find(|member| member.spec.id == *id);
+            let faults = named.into_iter().flat_map(|group| &group.mistakes).filter_map(|name| Fault::by_name(name));
+            let mistakes = member.into_iter().zip(std::iter::repeat(faults)).flat_map(|(member, faults)| {
+                faults.filter_map(|fault| line_of(&text, fault, member, &adapted.variables))
+            });
+            let bound = |(name, is): &(String, String)| BoundVariable { name: name.clone(), is: is.clone() };
+            JudgedAs {
+                id: id.clone(),
+                variables: adapted.variables.iter().map(bound).collect(),
+                not_given: adapted.missing.clone(),
+                mistakes: mistakes.collect(),
             }
-        }
-        told
+        };
+        let function = if let Part::Function(name) = part { Some(name) } else { None };
+        let formulas = adapted.iter().map(formula).collect();
+        Some(ShaderUse { file: file.display().to_string(), function, formulas })
+    }
+
+    /// The inputs that are held in all cases, as they are asked for.
+    pub(crate) fn held(&self) -> Vec<String> {
+        let mut held: Vec<String> =
+            self.constant.iter().map(|(name, constant)| format!("{name}={}", written(constant))).collect();
+        held.sort();
+        held
     }
 
     /// What is judged, and of which file.

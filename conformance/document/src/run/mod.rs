@@ -1,9 +1,11 @@
 //! The JSON of `run`.
 
 mod blend;
+mod shader;
 mod stability;
 
 pub use blend::{BlendPromise, BlendState, SpecialUse, StoreUse, StoresOfShard, Tiers};
+pub use shader::{BoundVariable, JudgedAs, MistakePlace, ShaderUse};
 pub use stability::{Cost, Examined, StableForm};
 
 use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, KnownFailure, RendererUse};
@@ -460,6 +462,9 @@ pub struct Report {
     /// What a project's `lightmeter.toml` said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub config: Option<ConfigUse>,
+    /// The shader that was judged in the place of the suite's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shader: Option<ShaderUse>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
@@ -500,6 +505,7 @@ impl Report {
             regressions: vec![],
             compared_by: None,
             config: None,
+            shader: None,
         }
     }
 

@@ -1,0 +1,69 @@
+//! A shader as somebody wrote it, in the JSON of `run`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A shader that was judged in the place of the suite's own.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ShaderUse {
+    /// Its file.
+    pub file: String,
+    /// The function that was judged; of a whole shader none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub function: Option<String>,
+    /// The formulas that it was judged by.
+    pub formulas: Vec<JudgedAs>,
+}
+
+impl ShaderUse {
+    /// The lines in which the mistakes of a formula are made.
+    pub fn places(&self, id: &str) -> impl Iterator<Item = &MistakePlace> {
+        self.formulas.iter().filter(move |formula| formula.id == id).flat_map(|formula| &formula.mistakes)
+    }
+
+    /// The same before anything was judged.
+    #[must_use]
+    pub fn without_mistakes(&self) -> Self {
+        let formulas = self.formulas.iter().map(|formula| JudgedAs { mistakes: vec![], ..formula.clone() }).collect();
+        Self { formulas, ..self.clone() }
+    }
+}
+
+/// A formula that a shader was judged by.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JudgedAs {
+    /// The formula.
+    pub id: String,
+    /// The shader's variables.
+    pub variables: Vec<BoundVariable>,
+    /// The formula's outputs that it does not give, of which nothing was judged.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_given: Vec<String>,
+    /// Where the mistakes that explain its failures are made.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mistakes: Vec<MistakePlace>,
+}
+
+/// What a variable of a shader was set to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoundVariable {
+    /// The variable.
+    pub name: String,
+    /// The expression over the formula's inputs, in WGSL.
+    pub is: String,
+}
+
+/// A line of a shader in which a mistake is made.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MistakePlace {
+    /// The mistake's name.
+    pub mistake: String,
+    /// The line's number, from 1.
+    pub line: usize,
+    /// What stands there.
+    pub code: String,
+}
