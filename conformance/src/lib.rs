@@ -2,7 +2,8 @@
 
 pub use lightmeter_arithmetic as arithmetic;
 pub use lightmeter_bench as bench;
-pub use lightmeter_catalogue::{cases, filter, nearest, rulings, scene, select};
+pub use lightmeter_book as book;
+pub use lightmeter_catalogue::{cases, dialects, filter, nearest, rulings, scene, select};
 pub use lightmeter_document as document;
 pub use lightmeter_engine::{device, evaluate, merge, options, piece, rows, run, selection, subject, sweep, witness};
 pub use lightmeter_faults as faults;

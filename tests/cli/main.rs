@@ -12,6 +12,7 @@ mod hostile;
 mod images;
 mod live;
 mod mistakes;
+mod pages;
 mod project;
 mod scene;
 mod selftest;
@@ -371,7 +372,7 @@ fn bad_usage_is_told_with_its_code() {
         (&["run", "--target", "rgba8"], 2, "no such format; expected one of rgba32float"),
         (&["run", "blend/separate/add.zero/min"], 2, "no case matches"),
         (&["run", "--separate", "many"], 2, "invalid value"),
-        (&["selftest", "--format", "junit"], 2, "[possible values: text, json]"),
+        (&["selftest", "--format", "junit"], 2, "[possible values: text, json, html]"),
         (&["show", "fog/linear/hard/nothing"], 2, "no case `fog/linear/hard/nothing`; did you mean"),
         (&["show", "frog"], 2, "there is no `frog`"),
         (

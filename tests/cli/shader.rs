@@ -92,7 +92,7 @@ fn the_line_in_which_a_mistake_is_made_is_told() {
             [words("run", formula, &shaders().join(file), function), vec!["--cases".into(), "256".into()]].concat();
         let args: Vec<&str> = args.iter().map(String::as_str).collect();
         let said = stdout(&lightmeter(&args));
-        assert!(said.contains(line) && said.contains(" is made\n"), "{said}");
+        assert!(said.contains(line) && said.contains("\n  is the likely place of "), "{said}");
         let formula = &json(&[&args[..], &["--format", "json"]].concat())["shader"]["formulas"][0];
         let place = &formula["mistakes"][0];
         let (number, code) = (place["line"].to_string(), place["code"].as_str().unwrap_or_default());
@@ -101,7 +101,7 @@ fn the_line_in_which_a_mistake_is_made_is_told() {
         let annotated = stdout(&lightmeter(&[&args[..], &["--format", "github"]].concat()));
         assert!(annotated.contains(&format!(",line={number},title={}", args[1])), "{annotated}");
         let junit = stdout(&lightmeter(&[&args[..], &["--format", "junit"]].concat()));
-        assert!(junit.contains(" is made\n"), "{junit}");
+        assert!(junit.contains("\n  is the likely place of "), "{junit}");
     }
 }
 
@@ -140,6 +140,16 @@ fn the_stable_form_is_told_in_the_shaders_language() {
         let output = lightmeter(&args.iter().map(String::as_str).collect::<Vec<_>>());
         assert!(code(&output) == 1 && stderr(&output).contains(says), "{}", stderr(&output));
     }
+    let file = folder("shader-stable-itself").join("own.glsl");
+    let text = "float opacity(float density, float distance) { return 1.0 - exp(-density * distance); }";
+    std::fs::write(&file, text).expect("it can be written");
+    let args = [words("run", "fog/opacity-expm1", &file, "opacity"), vec!["--suggest".into()]].concat();
+    let output = lightmeter(&args.iter().map(String::as_str).collect::<Vec<_>>());
+    let said = stderr(&output);
+    assert!(
+        said.contains("fog/opacity-expm1 is itself a stable form") && said.contains("float fog_opacity_expm1"),
+        "{said}"
+    );
     let output = lightmeter(&["run", "fog", "--suggest"]);
     assert!(code(&output) == 2 && stderr(&output).contains("no shader is given"), "{}", stderr(&output));
 }

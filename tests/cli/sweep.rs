@@ -365,7 +365,7 @@ const REFUSED: &[(&[&str], &str)] = &[
     (&["fog/exp", "--stage", "fixed-function"], "expected --stage compute or fragment"),
     (&["fog/exp", "--blocks", "3"], "--checkpoint"),
     (&["fog/exp", "--adapter", "none"], "no adapter `none`"),
-    (&["fog/exp", "--format", "junit"], "[possible values: text, json]"),
+    (&["fog/exp", "--format", "junit"], "[possible values: text, json, html]"),
     (&["fog/exp", "--profile", "gl"], "expected one of wgsl"),
     (&["fog/exp", "--checkpoint", "/no/such/folder/a.json"], "cannot write /no/such/folder/a.json"),
     (&["fog/exp", "--out", "/no/such/folder/a.json"], "cannot write /no/such/folder/a.json"),

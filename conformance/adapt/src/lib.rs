@@ -22,5 +22,5 @@ mod wrapper;
 pub use error::AdaptError;
 pub use meaning::synonyms;
 pub use program::{Part, ShaderProgram};
-pub use suggest::stable_form;
+pub use suggest::{in_language, stable_form};
 pub use wrapper::replaced;

@@ -15,10 +15,15 @@ const ENTRY: &str = "lightmeter_entry";
 /// A function's stable form with the functions that it calls, as GLSL where that is the language, else as WGSL; `None` where it has none.
 #[must_use]
 pub fn stable_form(shaders: &Shaders, file: &str, function: &str, language: Language) -> Option<String> {
-    let stable = shaders.stable_form(function)?;
+    in_language(shaders, file, &shaders.stable_form(function)?, language)
+}
+
+/// A function with the functions that it calls, as GLSL where that is the language, else as WGSL; `None` where naga cannot write it.
+#[must_use]
+pub fn in_language(shaders: &Shaders, file: &str, function: &str, language: Language) -> Option<String> {
     match language {
-        Language::Glsl(_) => as_glsl(shaders, file, &stable),
-        Language::Wgsl | Language::Spirv => Some(as_wgsl(shaders, file, &stable)),
+        Language::Glsl(_) => as_glsl(shaders, file, function),
+        Language::Wgsl | Language::Spirv => Some(as_wgsl(shaders, file, function)),
     }
 }
 

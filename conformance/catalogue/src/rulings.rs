@@ -235,10 +235,18 @@ pub const GLOSSARY: &[(&str, &str)] = &[
         "a fixed case in which a deviation shows; once it no longer does, the driver has been fixed and the deviation can be removed",
     ),
     ("dialect", "one of several forms in use, such as OpenGL's and the documents' exponential fog"),
+    (
+        "ULP",
+        "the distance of two neighbouring floats at a number's size; an error of 2 ULP has one more float between the value and the reference",
+    ),
+    (
+        "condition, condition number",
+        "by how much a rounding of the inputs grows in the result: 1 where it stays what it is, 1e6 where six digits are lost",
+    ),
     ("mistake", "a way to compute a formula or a scene wrongly that the diagnosis knows by name"),
     (
         "marked pixel",
-        "a pixel of a scene whose colour hangs on a decision that rounding may turn, such as at an edge; it is not judged",
+        "a pixel of a scene whose colour depends on a decision that rounding may turn, such as whether an edge covers it; it is judged by all colours that are legal there, and left out of the statistics of errors",
     ),
     (
         "group verdict",

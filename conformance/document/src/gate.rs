@@ -2,8 +2,9 @@
 
 use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, RendererUse, is_zero};
 pub use crate::by_case::{KnownFailure, Problems, RendererIdentity};
+use crate::explained::Explained;
 use crate::pack::Choice;
-use crate::run::{ConfigUse, Failure, Group, Identity, Interrupted, Report, StoresOfShard, Totals};
+use crate::run::{ConfigUse, Failure, Group, Identity, ImageUse, Interrupted, Report, StoresOfShard, Totals};
 use crate::{Number, Word, thousands};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -75,6 +76,15 @@ pub struct GateReport {
     /// What is worse than in the baseline.
     #[serde(default)]
     pub regressions: Vec<String>,
+    /// What is better than in the baseline.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mended: Vec<String>,
+    /// What the baseline has not.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub added: Vec<String>,
+    /// What explains the first failing case of each formula.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub explained: Vec<Explained>,
     /// What a project's `lightmeter.toml` said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub config: Option<ConfigUse>,
@@ -177,6 +187,9 @@ pub struct GateGroup {
     pub mistakes: Vec<String>,
     /// The failing case with the simplest inputs.
     pub smallest: Option<String>,
+    /// Of a scene whose image is wrong.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub image: Option<ImageUse>,
 }
 
 impl GateGroup {
@@ -224,6 +237,7 @@ impl GateGroup {
             diagnosis: group.explanation.clone(),
             mistakes: group.mistakes.clone(),
             smallest: counts.smallest.clone(),
+            image: group.image.clone().filter(|image| !image.pixels.is_empty()),
         }
     }
 }
@@ -295,6 +309,9 @@ impl GateReport {
             unstable: report.unstable_cases.clone(),
             expectations: report.expectations.clone(),
             regressions: report.regressions.clone(),
+            mended: report.mended.clone(),
+            added: report.added.clone(),
+            explained: report.explained.clone(),
             config: report.config.clone(),
         }
     }
@@ -371,6 +388,12 @@ impl From<GateReport> for Report {
             unstable_cases: gate.unstable,
             expectations: gate.expectations,
             regressions: gate.regressions,
+            mended: gate.mended,
+            added: gate.added,
+            explained: gate.explained,
+            command: Some(gate.command),
+            version: Some(gate.version),
+            config: gate.config,
             interrupted,
             compared_by: Some(compared_by),
             ..Self::empty(gate.choice.seed, gate.profile.into(), gate.choice.filter, vec![identity.clone()])
@@ -420,6 +443,7 @@ impl GateGroup {
             problem: self.problem,
             expected_problem: self.expected_problem,
             by_case: Some(counts),
+            image: self.image,
             ..Group::new(self.id, adapter.to_owned(), "answer")
         }
     }

@@ -8,6 +8,7 @@ pub mod by_case;
 pub mod effects;
 pub mod eval;
 pub mod event;
+pub mod explained;
 pub mod frame;
 pub mod gate;
 pub mod identify;

@@ -1,5 +1,6 @@
 //! The JSON of `show`: a case of a formula, a probe of a special value, or a pixel of a scene.
 
+pub use crate::explained::{MistakenStep, ShownMistake, ShownStep};
 use crate::run::Examined;
 use crate::special::{ProbeResult, Skipped};
 use crate::{Number, Word};
@@ -58,31 +59,6 @@ pub struct ShownCase {
     pub mistake: Option<ShownMistake>,
 }
 
-/// What a renderer with a mistake gives.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct ShownMistake {
-    /// The mistake's name.
-    pub name: Word,
-    /// What it does, as the end of a sentence.
-    pub says: Word,
-    /// The outputs, each with its value in f64 and what such a renderer may give.
-    pub outputs: Vec<ShownStep>,
-    /// The steps at which it shows, in the order in which they are computed.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub steps: Vec<MistakenStep>,
-}
-
-/// A number of a step that is another one with a mistake.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct MistakenStep {
-    /// The step's name.
-    pub name: Word,
-    /// As the published formula has it.
-    pub right: Number,
-    /// With the mistake.
-    pub made: Number,
-}
-
 /// What an input means.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ShownMeaning {
@@ -90,17 +66,6 @@ pub struct ShownMeaning {
     pub name: Word,
     /// What it means.
     pub means: Word,
-}
-
-/// A step of a formula.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct ShownStep {
-    /// The name of the step; the components of a vector have the same one.
-    pub name: Word,
-    /// The f64 reference.
-    pub value: Number,
-    /// The least and the greatest legal value.
-    pub interval: [Number; 2],
 }
 
 /// A number of the output.

@@ -285,6 +285,26 @@ impl Baseline {
         Ok(worse)
     }
 
+    /// What is better in a result, and what is there that was not.
+    #[must_use]
+    pub fn progress(&self, now: &Standard) -> (Vec<String>, Vec<String>) {
+        let (mut mended, mut added) = (vec![], vec![]);
+        for ComparedGroup { name, counts: now, .. } in now.groups.iter().filter(|group| group.counts.asked > 0) {
+            let Some(ComparedGroup { counts: before, .. }) = self.0.groups.iter().find(|group| group.name == *name)
+            else {
+                added.push(format!("{name}: {} cases", now.asked));
+                continue;
+            };
+            for (what, before, now) in [("failed", before.failed, now.failed), ("missing", before.missing, now.missing)]
+            {
+                if now < before {
+                    mended.push(format!("{name}: {now} {what}, {before} in the baseline"));
+                }
+            }
+        }
+        (mended, added)
+    }
+
     /// Whether its cases were chosen by the same globs, in whatever order.
     fn has_filter_of(&self, now: &Choice) -> bool {
         let [before, now] = [&self.0.choice.filter, &now.filter].map(|globs| globs.iter().collect::<BTreeSet<_>>());

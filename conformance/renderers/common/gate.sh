@@ -9,27 +9,7 @@ mkdir -p "$build"
 # Mesa's device-select layer looks for a Wayland display and says so where there is none.
 export NODEVICE_SELECT=1
 
-# Nothing is judged where what a renderer needs is not here and cannot be had: 3.
-cannot_install() {
-    echo "gate: cannot install $*" >&2
-    exit 3
-}
-
-# Installs Debian packages, or prints the command where that may not be done.
-apt_install() {
-    if [ "$(id -u)" = 0 ]; then
-        as_root=
-    elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
-        as_root="sudo -n"
-    else
-        echo "gate: missing packages; run: sudo apt-get install $*" >&2
-        exit 3
-    fi
-    echo "gate: installing $*" >&2
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get update -qq >&2 || true
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >&2 ||
-        cannot_install "$@"
-}
+. "$renderers/common/install.sh"
 
 has_library() {
     for folder in /lib /usr/lib /usr/lib64 /usr/local/lib /lib/*-linux-gnu /usr/lib/*-linux-gnu; do

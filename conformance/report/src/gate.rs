@@ -234,7 +234,12 @@ fn commands(failure: &GateFailure, group: &GateGroup, style: &GateStyle, out: &m
         [one] => format!(" --mistake {one}"),
         _ => String::new(),
     };
-    writeln!(out, "    explained  lightmeter show {}{target}{mistake}", failure.id)?;
+    // A pixel has no case with a mistake in it: the whole scene is drawn with one.
+    let scene = failure.id.strip_prefix("scene/").and_then(|rest| rest.split('/').next());
+    match scene.filter(|_| !mistake.is_empty()) {
+        Some(scene) => writeln!(out, "    explained  lightmeter render {scene}{mistake} --out {scene}.png")?,
+        None => writeln!(out, "    explained  lightmeter show {}{target}{mistake}", failure.id)?,
+    }
     match &style.again {
         Some(again) => writeln!(out, "    again      {again}{target} {}", failure.id),
         None => Ok(()),

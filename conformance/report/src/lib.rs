@@ -4,6 +4,7 @@ mod against;
 pub mod bench;
 pub mod gate;
 pub mod github;
+pub mod html;
 pub mod junit;
 pub mod live;
 pub mod mistakes;

@@ -132,7 +132,7 @@ fn shader_lines(report: &Report, out: &mut impl Write) -> Result {
 
 /// Where in a shader a mistake is made.
 pub(crate) fn made_at(shader: &ShaderUse, place: &MistakePlace) -> String {
-    format!("{}:{}: {}\n  is where {} is made", shader.file, place.line, place.code, place.mistake)
+    format!("{}:{}: {}\n  is the likely place of {}", shader.file, place.line, place.code, place.mistake)
 }
 
 /// Writes that a group fails, with what explains it. Its counts are of some of its verdicts.

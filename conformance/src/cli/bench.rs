@@ -17,6 +17,7 @@ use lightmeter::filter::Filter;
 use lightmeter::nearest::did_you_mean;
 use lightmeter::report::bench::recommend::{self, Limit, recommend};
 use lightmeter::report::bench::{page, text};
+use lightmeter::report::html;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load;
 use lightmeter::scene::select::scene_id;
@@ -72,6 +73,8 @@ enum Format {
     Json,
     /// A table for a README
     Markdown,
+    /// A page to look at, one file with everything in it
+    Html,
 }
 
 /// How GPU times are told.
@@ -120,7 +123,7 @@ impl Bench {
                 twice[0]
             );
         }
-        if self.recommend.is_some() && self.format == Format::Markdown {
+        if self.recommend.is_some() && matches!(self.format, Format::Markdown | Format::Html) {
             anyhow::bail!("a recommendation is written as text or json");
         }
         writable(self.out.as_deref())?;
@@ -159,12 +162,13 @@ impl Bench {
             (None, Format::Json) => out = document.to_json()?,
             (None, Format::Text) => text::write(document, self.details, level(), &mut out)?,
             (None, Format::Markdown) => page::readme(document, &mut out)?,
+            (None, Format::Html) => out = html::of_bench(document).map_err(anyhow::Error::from_boxed)?,
             (Some(limit), format) => {
                 let recommendation = recommend(document, limit, self.inputs);
                 match format {
                     Format::Json => out = recommendation.to_json()?,
                     Format::Text => recommend::write(&recommendation, &mut out)?,
-                    Format::Markdown => unreachable!("it was refused"),
+                    Format::Markdown | Format::Html => unreachable!("it was refused"),
                 }
             }
         }

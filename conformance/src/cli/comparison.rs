@@ -43,6 +43,11 @@ impl Earlier {
     pub(crate) fn compare(&self, now: &Standard, is_shard: bool) -> Result<Vec<String>, BaselineError> {
         self.baseline.compare(now, self.growth, is_shard, &self.path)
     }
+
+    /// What is better now, and what is new.
+    pub(crate) fn progress(&self, now: &Standard) -> (Vec<String>, Vec<String>) {
+        self.baseline.progress(now)
+    }
 }
 
 impl Comparison {

@@ -8,7 +8,7 @@ use super::progress::{Bar, Stream};
 use super::say;
 use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
-use super::{NothingToRun, Status, show, writable};
+use super::{NothingToRun, Status, command, quoted, show, writable};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::Profile;
@@ -20,7 +20,7 @@ use lightmeter::document::event::Stop;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::pack::Choice;
 use lightmeter::document::run::Report;
-use lightmeter::faults::Mistakes;
+use lightmeter::faults::{Mistakes, explain};
 use lightmeter::files::lines;
 use lightmeter::filter::Filter;
 use lightmeter::gate::answers::{AnswerFile, FileRenderer};
@@ -30,7 +30,7 @@ use lightmeter::gate::pack;
 use lightmeter::gate::plan::{GatePlan, unmatched};
 use lightmeter::gate::process::{Asking, Limits, ProcessRenderer, Starter};
 use lightmeter::options::Options;
-use lightmeter::report::{Level, gate as outputs, github};
+use lightmeter::report::{Level, gate as outputs, github, html};
 use lightmeter::run::run;
 use lightmeter::select::Shard;
 use lightmeter::special::verdict;
@@ -79,7 +79,7 @@ pub(crate) struct Gate {
     /// How many times to ask everything; an answer that changes is unstable. With 1, what failed is asked once more
     #[arg(long, value_name = "N", default_value_t = 1, requires = "exec", value_parser = clap::value_parser!(u64).range(1..=1000))]
     runs: u64,
-    /// Keep the images of a process in this folder
+    /// Keep the images of a process in this folder, and reference, result and error map of each scene that fails
     #[arg(long, value_name = "DIR", requires = "exec")]
     images: Option<PathBuf>,
     /// End with the first formula or scene that fails
@@ -130,6 +130,8 @@ impl Gate {
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), self.is_shard())).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
+        (report.mended, report.added) =
+            whole.map(|earlier| earlier.progress(&Standard::from(&report))).unwrap_or_default();
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
         regressions?;
         self.comparison.update(&report)?;
@@ -221,6 +223,7 @@ impl Gate {
             size: choice.size,
             targets,
             counts_cases: true,
+            images: self.keeps_images().then(|| images.folder.clone()),
             shard: self.shard.0,
             diagnose: Some(&Mistakes),
             stop: stop.clone(),
@@ -248,7 +251,15 @@ impl Gate {
             separate: None,
             shard,
         };
-        Ok(GateReport::of(&Report { compared_by: Some(compared_by), config: used(), ..report? }, command()))
+        let report = report?;
+        let explained = explain(&report.failures, &report.groups, options.profile);
+        let report = Report { compared_by: Some(compared_by), config: used(), explained, ..report };
+        Ok(GateReport::of(&report, command()))
+    }
+
+    /// Whether reference, result and error map of a scene that fails are written.
+    fn keeps_images(&self) -> bool {
+        self.images.is_some() || self.format == ReportFormat::Html
     }
 
     fn asking(&self, command: &str, images: &Images, stop: &Stop) -> Asking {
@@ -296,6 +307,7 @@ impl Gate {
             ReportFormat::Json => report.to_json()?,
             ReportFormat::Junit => outputs::junit(report)?,
             ReportFormat::Github => github::of_gate(report),
+            ReportFormat::Html => html::of_gate(report),
             ReportFormat::Text => {
                 let mut out = String::new();
                 let style =
@@ -329,27 +341,6 @@ impl Drop for Images {
             let _ = std::fs::remove_dir_all(&self.folder);
         }
     }
-}
-
-/// The command, but for where its result goes.
-fn command() -> String {
-    let mut words = vec!["lightmeter".to_owned()];
-    // A path need not be UTF-8.
-    let mut given = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
-    while let Some(word) = given.next() {
-        if word == "--out" {
-            given.next();
-        } else if !word.starts_with("--out=") {
-            words.push(quoted(&word));
-        }
-    }
-    words.join(" ")
-}
-
-/// A word as a shell reads it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:".contains(c);
-    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
 /// A renderer that broke off, or wrote what is no answer, ends with 4 whatever else is right.

@@ -2,9 +2,9 @@
 
 use super::options::{Choice, Format};
 use super::progress::Bar;
-use super::shader::{OwnShader, constant};
+use super::shader::{OwnShader, constant, written};
 use super::signals::stopped_by_signals;
-use super::{Status, writable};
+use super::{Status, quoted, writable};
 use anyhow::bail;
 use clap::Args;
 use lightmeter::adapters;
@@ -92,11 +92,27 @@ impl Identify {
         bar.bar.finish_and_clear();
         let document = self.document(&file, &report?, &accepted.adapted);
         let text = match self.format {
-            Format::Text => lines(&told(&document)?).into_owned(),
+            Format::Text => lines(&told(&document, &self.run_again())?).into_owned(),
             Format::Json => document.to_json()?,
         };
         self.format.emit(&text, self.out.as_deref())?;
         Ok(if document.is.is_empty() { Status::Failed } else { Status::Success })
+    }
+
+    /// What the shader is told by in a run.
+    fn run_again(&self) -> String {
+        let file = self.file.as_deref().unwrap_or(Path::new("")).to_string_lossy();
+        let mut words = match &self.function {
+            Some(name) => format!(" --function {}", quoted(&format!("{name}@{file}"))),
+            None => format!(" --shader {}", quoted(&file)),
+        };
+        for bind in &self.bind {
+            words += &format!(" --bind {}", quoted(bind));
+        }
+        for (name, value) in &self.constant {
+            words += &format!(" --constant {}", quoted(&format!("{name}={}", written(value))));
+        }
+        words
     }
 
     fn document(&self, file: &Path, report: &Report, adapted: &[Adapted]) -> IdentifyDocument {
@@ -147,7 +163,7 @@ fn names() -> String {
 }
 
 /// The result in words.
-fn told(document: &IdentifyDocument) -> Result<String, std::fmt::Error> {
+fn told(document: &IdentifyDocument, again: &str) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     let what = match &document.function {
         Some(name) => format!("`{name}` of {}", document.file),
@@ -173,11 +189,17 @@ fn told(document: &IdentifyDocument) -> Result<String, std::fmt::Error> {
             Some(explanation) => writeln!(text, ":\n  {explanation}")?,
             None => writeln!(text, ".")?,
         }
-        for other in others(1).filter(|other| other.explanation.is_some()) {
+        for other in others(1).filter(|other| !other.mistakes.is_empty()) {
             let why = other.explanation.as_deref().unwrap_or_default();
             writeln!(text, "Or it is {}: {why}", other.formula)?;
         }
-        writeln!(text, "`lightmeter run {} --shader {}` tells each case.", nearest.formula, document.file)?;
+        if nearest.mistakes.is_empty() {
+            writeln!(
+                text,
+                "A variable may mean something else than its name says: the next command prints what each was taken for."
+            )?;
+        }
+        writeln!(text, "`lightmeter run {}{again}` tells each case.", nearest.formula)?;
         return Ok(text);
     }
     writeln!(text, "{what} computes {}.", document.is.join(", or "))?;

@@ -1,18 +1,20 @@
 //! `lightmeter merge`.
 
-use super::Status;
-use super::options::{Format, ReportFormat, Required};
+use super::options::{PageFormat, ReportFormat, Required};
 use super::sweep::{status, written};
 use super::terminal::level;
+use super::{Status, command};
 use anyhow::{Context as _, bail};
 use clap::Args;
+use lightmeter::arithmetic::Profile;
 use lightmeter::document::Document as _;
 use lightmeter::document::gate::GateReport;
 use lightmeter::document::run::Report;
 use lightmeter::document::sweep::{ExactFloat, SweepDocument};
+use lightmeter::faults::explain;
 use lightmeter::files::{lines, read};
 use lightmeter::merge::merge;
-use lightmeter::report::{gate as outputs, github, junit, text};
+use lightmeter::report::{gate as outputs, github, html, junit, text};
 use lightmeter::sweep::file;
 use std::path::PathBuf;
 
@@ -67,8 +69,12 @@ impl Merge {
             parts.push((path.clone(), report));
         }
         let whole = merge(parts)?;
+        // What explains the first failing case of each formula: of the whole, which may be another one than a shard's.
+        let explained = Profile::by_name(&whole.profile)
+            .map_or_else(Vec::new, |profile| explain(&whole.failures, &whole.groups, profile));
+        let whole = Report { command: Some(command()), explained, ..whole };
         if is_gate {
-            let gate = GateReport::of(&whole, "lightmeter merge".into());
+            let gate = GateReport::of(&whole, command());
             self.format.emit(&self.written_gate(&gate)?, self.out.as_deref())?;
             return Ok(Some(super::gate::status(&gate, self.required)));
         }
@@ -77,11 +83,12 @@ impl Merge {
     }
 
     /// How the result of a sweep is written.
-    fn of_sweep(&self) -> anyhow::Result<Format> {
+    fn of_sweep(&self) -> anyhow::Result<PageFormat> {
         Ok(match self.format {
-            ReportFormat::Text => Format::Text,
-            ReportFormat::Json => Format::Json,
-            ReportFormat::Junit | ReportFormat::Github => bail!("a sweep is written as text or json"),
+            ReportFormat::Text => PageFormat::Text,
+            ReportFormat::Json => PageFormat::Json,
+            ReportFormat::Html => PageFormat::Html,
+            ReportFormat::Junit | ReportFormat::Github => bail!("a sweep is written as text, json or html"),
         })
     }
 
@@ -90,6 +97,7 @@ impl Merge {
             ReportFormat::Json => gate.to_json()?,
             ReportFormat::Junit => outputs::junit(gate)?,
             ReportFormat::Github => github::of_gate(gate),
+            ReportFormat::Html => html::of_gate(gate),
             ReportFormat::Text => {
                 let mut out = String::new();
                 let style = outputs::GateStyle { level: level(), ..outputs::GateStyle::default() };
@@ -104,6 +112,7 @@ impl Merge {
             ReportFormat::Json => whole.to_json()?,
             ReportFormat::Junit => junit::to_string(whole)?,
             ReportFormat::Github => github::of_run(whole),
+            ReportFormat::Html => html::of_run(whole),
             ReportFormat::Text => {
                 let style =
                     text::Style { detail: text::Detail::Families, timing: false, is_told: false, level: level() };

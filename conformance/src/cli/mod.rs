@@ -2,6 +2,7 @@
 
 mod adapters;
 mod bench;
+mod book;
 mod comparison;
 pub(crate) mod config;
 mod contact_sheet;
@@ -46,9 +47,7 @@ use std::process::ExitCode;
     name = "lightmeter",
     version,
     max_term_width = 100,
-    after_help = "Exit codes:\n  0    all as expected\n  1    something failed or passed unexpectedly\n  2    bad usage or input\n  \
-    3    nothing could run\n  4    the device failed or was lost, or the renderer under test crashed, hung or broke the protocol\n  \
-    130  interrupted by SIGINT, 143 by SIGTERM: what was judged is reported"
+    after_help = exit_help()
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
@@ -60,12 +59,27 @@ pub(crate) struct Cli {
     no_config: bool,
 }
 
+/// The exit codes, and what each means.
+const EXIT_CODES: &[(&str, &str)] = &[
+    ("0", "all as expected"),
+    ("1", "something failed or passed unexpectedly"),
+    ("2", "bad usage or input"),
+    ("3", "nothing could run"),
+    ("4", "the device failed or was lost, or the renderer under test crashed, hung or broke the protocol"),
+    ("130", "interrupted by SIGINT, 143 by SIGTERM: what was judged is reported"),
+];
+
+fn exit_help() -> String {
+    let lines = EXIT_CODES.iter().map(|(code, means)| format!("  {code:<4} {means}"));
+    format!("Exit codes:\n{}", lines.collect::<Vec<_>>().join("\n"))
+}
+
 /// The commands by what they are for.
 const PURPOSES: &[(&str, &[&str])] = &[
     ("Judge", &["run", "identify", "gate", "pack", "sweep", "special"]),
     ("Look up", &["list", "show", "mistakes", "effects", "eval", "render"]),
     ("Measure", &["bench", "adapters", "selftest"]),
-    ("Results", &["merge", "page", "schema", "completions", "man", "help"]),
+    ("Results", &["merge", "page", "book", "schema", "completions", "man", "help"]),
 ];
 
 impl Cli {
@@ -121,6 +135,8 @@ enum Command {
     Gate(gate::Gate),
     /// Write a page of the docs from a run's JSON
     Page(page::Page),
+    /// Write the book, with a page for each formula
+    Book(book::Book),
     /// Tell what a scene calls for, and why
     Effects(effects::Effects),
     /// Print the JSON Schema of a file
@@ -159,6 +175,7 @@ impl Cli {
             Command::Pack(pack) => pack.run(),
             Command::Gate(gate) => gate.run(),
             Command::Page(page) => page.run(),
+            Command::Book(book) => book.run(),
             Command::Effects(effects) => effects.run(),
             Command::Schema(schema) => schema.run(),
             Command::Eval(eval) => eval.run(),
@@ -236,6 +253,27 @@ impl Status {
     }
 }
 
+/// The command, but for where its result goes.
+pub(crate) fn command() -> String {
+    let mut words = vec!["lightmeter".to_owned()];
+    // A path need not be UTF-8.
+    let mut given = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+    while let Some(word) = given.next() {
+        if word == "--out" {
+            given.next();
+        } else if !word.starts_with("--out=") {
+            words.push(quoted(&word));
+        }
+    }
+    words.join(" ")
+}
+
+/// A word as a shell reads it.
+pub(crate) fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:@".contains(c);
+    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
 /// Whether a file that is to be written at the end can be, told before the work. What it holds stays until then.
 pub(crate) fn writable(file: Option<&Path>) -> anyhow::Result<()> {
     let Some(path) = file else { return Ok(()) };
@@ -287,6 +325,13 @@ mod tests {
             assert!(told.contains(name), "`{name}` is under no purpose");
         }
         assert_eq!(told.len(), all.len() + 1, "`help` besides: {told:?}");
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../x");
+        let script = std::fs::read_to_string(script).expect("the entry script is there");
+        let cases: Vec<&str> = script.lines().filter(|line| line.starts_with("    ") && line.ends_with(')')).collect();
+        for name in &all {
+            let is_case = |line: &&str| line.trim_matches([' ', ')']).split(" | ").any(|one| one == *name);
+            assert!(cases.iter().any(is_case), "`./x {name}` is unknown");
+        }
         Cli::told().debug_assert();
     }
 

@@ -48,6 +48,24 @@ pub(crate) enum ReportFormat {
     Junit,
     /// Lines that GitHub Actions shows as annotations
     Github,
+    /// A page to look at, one file with everything in it
+    Html,
+}
+
+/// How the result of a sweep or a self-test is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum PageFormat {
+    Text,
+    Json,
+    /// A page to look at, one file with everything in it
+    Html,
+}
+
+impl PageFormat {
+    /// Writes the result to a file, or shows it.
+    pub(crate) fn emit(self, text: &str, file: Option<&Path>) -> anyhow::Result<()> {
+        if self == Self::Text { show(text, file) } else { emit(text, file) }
+    }
 }
 
 impl Format {

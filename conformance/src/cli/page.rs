@@ -5,10 +5,15 @@ use super::{Status, emit};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
 use lightmeter::document::Document as _;
-use lightmeter::document::bench::BenchDocument;
+use lightmeter::document::bench::{self, BenchDocument};
+use lightmeter::document::gate::{self, GateReport};
+use lightmeter::document::run::{self, Report};
+use lightmeter::document::selftest as caught;
+use lightmeter::document::sweep::{self, SweepDocument};
 use lightmeter::files::read;
 use lightmeter::report;
 use lightmeter::report::bench::{page, plot};
+use lightmeter::report::html;
 use lightmeter::report::page::scenes::ToldScene;
 use lightmeter::report::page::sweep::Swept;
 use lightmeter::report::page::{BlendRun, markdown, scenes, selftest, special, stability, svg};
@@ -24,6 +29,10 @@ enum Subject {
     Bench,
     /// Blend states against routes and drivers.
     Blend,
+    /// Formulas by the subjects of several runs or gates; HTML where the file's name ends in .html.
+    Matrix,
+    /// A page to look at, from the JSON of `run`, `gate`, `merge`, `bench`, `sweep` or `selftest`: one file with everything in it.
+    Report,
     /// Where formulas are from, what is ruled where the documents are wrong, and words with a meaning of their own; of no run.
     Rulings,
     /// The built-in scenes, with a contact sheet.
@@ -61,6 +70,10 @@ impl Page {
             emit(&self.sweeps()?, self.out.as_deref())?;
             return Ok(Status::Success);
         }
+        if self.subject == Subject::Matrix {
+            emit(&self.matrix()?, self.out.as_deref())?;
+            return Ok(Status::Success);
+        }
         if self.subject == Subject::Rulings {
             if let Some(run) = self.runs.first() {
                 bail!("the page of rulings takes no run; remove {}", run.display());
@@ -76,8 +89,9 @@ impl Page {
         let text = match self.subject {
             Subject::Bench => self.bench(&json),
             Subject::Blend => self.blend(&json),
-            Subject::Scenes | Subject::Sweep | Subject::Rulings => self.scenes(&json),
-            Subject::Selftest => caught(&json),
+            Subject::Report => report_of(&json),
+            Subject::Scenes | Subject::Sweep | Subject::Rulings | Subject::Matrix => self.scenes(&json),
+            Subject::Selftest => selftest_page(&json),
             Subject::Special => special(&json),
             Subject::Stability => self.stability(&json),
         };
@@ -86,7 +100,6 @@ impl Page {
     }
 
     fn sweeps(&self) -> anyhow::Result<String> {
-        let catalogue = catalogue();
         let mut results = vec![];
         for path in &self.runs {
             let result = file::read(path)?;
@@ -96,15 +109,31 @@ impl Page {
                     path.display()
                 );
             }
-            let formula = &result.sweep.formula;
-            let preset = PRESETS.iter().find(|preset| preset.formula == formula);
-            let is_ready_made = preset.is_some()
-                && SweepPlan::new(&catalogue, formula, &Asked::default())
-                    .is_ok_and(|plan| is_over_inputs_of(&result.sweep, &plan));
-            results.push(Swept { what: preset.map(|preset| preset.what), is_ready_made, document: result });
+            results.push(swept(result));
         }
         let mut text = String::new();
         report::page::sweep::markdown(&results, &mut text)?;
+        Ok(text)
+    }
+
+    /// Formulas by the subjects of all results, each of which is called by its file where there are several.
+    fn matrix(&self) -> anyhow::Result<String> {
+        if self.runs.is_empty() {
+            bail!("a matrix needs the JSON result of at least one run or gate");
+        }
+        let mut reports = vec![];
+        for path in &self.runs {
+            let failed = || format!("cannot read {}", path.display());
+            let json = read::text(path, read::MOST_TEXT).with_context(failed)?;
+            reports.push((path.file_stem().unwrap_or_default().to_string_lossy(), run_of(&json).with_context(failed)?));
+        }
+        let named: Vec<(&str, &Report)> = reports.iter().map(|(name, report)| (&**name, report)).collect();
+        let is_html = self.out.as_ref().and_then(|out| out.extension()).is_some_and(|end| end == "html");
+        if is_html {
+            return Ok(html::of_matrix(&named));
+        }
+        let mut text = String::new();
+        html::matrix_markdown(&named, &mut text)?;
         Ok(text)
     }
 
@@ -172,6 +201,37 @@ impl Page {
     }
 }
 
+/// A sweep with what it is, where it is a ready-made one.
+pub(crate) fn swept(document: SweepDocument) -> Swept {
+    let formula = &document.sweep.formula;
+    let preset = PRESETS.iter().find(|preset| preset.formula == formula);
+    let is_ready_made = preset.is_some()
+        && SweepPlan::new(&catalogue(), formula, &Asked::default())
+            .is_ok_and(|plan| is_over_inputs_of(&document.sweep, &plan));
+    Swept { what: preset.map(|preset| preset.what), is_ready_made, document }
+}
+
+/// The page of any result, by what its JSON says that it is.
+fn report_of(json: &str) -> anyhow::Result<String> {
+    let document: serde_json::Value = serde_json::from_str(json).context("it is not JSON")?;
+    match document["schema"].as_str().unwrap_or("none") {
+        run::SCHEMA => Ok(html::of_run(&Report::read(json)?)),
+        gate::SCHEMA => Ok(html::of_gate(&GateReport::read(json)?)),
+        bench::SCHEMA => html::of_bench(&BenchDocument::read(json)?).map_err(anyhow::Error::from_boxed),
+        sweep::SCHEMA => Ok(html::of_sweeps(&[swept(file::parse(json).map_err(anyhow::Error::msg)?)])?),
+        caught::SCHEMA => Ok(html::of_selftest(&selftest::SelftestRun::read(json).map_err(anyhow::Error::msg)?)?),
+        other => bail!("its schema is `{other}`; expected the JSON of a run, a gate, a bench, a sweep or a self-test"),
+    }
+}
+
+/// A run, or a gate as one.
+fn run_of(json: &str) -> anyhow::Result<Report> {
+    match GateReport::read(json) {
+        Ok(gate) => Ok(gate.into()),
+        Err(_) => Ok(Report::read(json)?),
+    }
+}
+
 fn special(json: &str) -> anyhow::Result<String> {
     let run = special::SpecialRun::read(json).map_err(|message| anyhow!(message))?;
     let mut text = String::new();
@@ -179,7 +239,7 @@ fn special(json: &str) -> anyhow::Result<String> {
     Ok(text)
 }
 
-fn caught(json: &str) -> anyhow::Result<String> {
+fn selftest_page(json: &str) -> anyhow::Result<String> {
     let run = selftest::SelftestRun::read(json).map_err(|message| anyhow!(message))?;
     let mut text = String::new();
     selftest::markdown(&run, &mut text)?;

@@ -7,7 +7,7 @@ use super::progress::{Bar, Stream};
 use super::say;
 use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
-use super::{Status, writable};
+use super::{Status, command, writable};
 use clap::Args;
 use lightmeter::cases::GENERATOR_VERSION;
 use lightmeter::cases::blend::{Samples, separate_of, written_state};
@@ -15,7 +15,7 @@ use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::pack::Choice as CaseChoice;
 use lightmeter::document::run::{Identity, Report};
-use lightmeter::faults::Mistakes;
+use lightmeter::faults::{Mistakes, explain};
 use lightmeter::files::lines;
 use lightmeter::filter::Filter;
 use lightmeter::gate::baseline::{Baseline, Standard};
@@ -23,7 +23,7 @@ use lightmeter::gate::expectations::Expectations;
 use lightmeter::judge::cases::ExpectedFailure;
 use lightmeter::nearest::did_you_mean;
 use lightmeter::options::Options;
-use lightmeter::report::{github, junit, text};
+use lightmeter::report::{github, html, junit, text};
 use lightmeter::run::run;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::select::scene_id;
@@ -119,12 +119,17 @@ impl Run {
             report => report?,
         };
         let shader = self.choice.shaders.own.used(&options.adapted, &report);
-        let mut report = Report { compared_by: Some(compared_by), config: used(), shader, ..report };
+        let explained = explain(&report.failures, &report.groups, options.profile);
+        let command = Some(command());
+        let mut report =
+            Report { compared_by: Some(compared_by), config: used(), shader, explained, command, ..report };
         // What was not judged for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
         let is_shard = shard.count.get() > 1;
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), is_shard)).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
+        (report.mended, report.added) =
+            whole.map(|earlier| earlier.progress(&Standard::from(&report))).unwrap_or_default();
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
         if self.suggest {
             say(self.choice.shaders.own.suggested(&options.adapted, &report)?.trim_end());
@@ -162,6 +167,7 @@ impl Run {
             ReportFormat::Json => report.to_json()?,
             ReportFormat::Junit => junit::to_string(report)?,
             ReportFormat::Github => github::of_run(report),
+            ReportFormat::Html => html::of_run(report),
             ReportFormat::Text => {
                 let detail = if self.groups { text::Detail::Groups } else { text::Detail::Families };
                 let mut out = String::new();

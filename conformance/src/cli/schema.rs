@@ -21,6 +21,7 @@ use lightmeter::document::sweep::SweepDocument;
 use lightmeter::document::sweep::presets::PresetsDocument;
 use lightmeter::document::{Document as _, eval, protocol};
 use lightmeter_scene::model::Scene;
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// Print the JSON Schema of a file that lightmeter reads or writes.
@@ -59,8 +60,9 @@ enum Of {
     Cases,
     /// The JSON of `list --formulas`
     Formulas,
-    /// The JSON of `mistakes`
+    /// The JSON of `identify`
     Identify,
+    /// The JSON of `mistakes`
     Mistakes,
     /// The JSON of `show`
     Show,
@@ -80,30 +82,44 @@ enum Of {
 
 impl Schema {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        let schema = match self.of {
-            Of::Scene => schemars::schema_for!(Scene),
-            Of::Run => Report::schema(),
-            Of::Special => SpecialReport::schema(),
-            Of::Gate => GateReport::schema(),
-            Of::Pack => Manifest::schema(),
-            Of::Protocol => protocol::schema(),
-            Of::Frame => FrameDocument::schema(),
-            Of::Sweep => SweepDocument::schema(),
-            Of::Bench => BenchDocument::schema(),
-            Of::Selftest => SelftestDocument::schema(),
-            Of::Cases => CasesDocument::schema(),
-            Of::Formulas => FormulasDocument::schema(),
-            Of::Identify => IdentifyDocument::schema(),
-            Of::Mistakes => MistakesDocument::schema(),
-            Of::Show => ShowDocument::schema(),
-            Of::Adapters => AdaptersDocument::schema(),
-            Of::Effects => EffectsDocument::schema(),
-            Of::Eval => eval::schema(),
-            Of::Presets => PresetsDocument::schema(),
-            Of::Recommendation => Recommendation::schema(),
-            Of::SpecialRecord => SpecialRecord::schema(),
-        };
-        emit(&(serde_json::to_string_pretty(&schema)? + "\n"), self.out.as_deref())?;
+        emit(&(serde_json::to_string_pretty(&self.of.schema())? + "\n"), self.out.as_deref())?;
         Ok(Status::Success)
     }
+}
+
+impl Of {
+    fn schema(self) -> schemars::Schema {
+        match self {
+            Self::Scene => schemars::schema_for!(Scene),
+            Self::Run => Report::schema(),
+            Self::Special => SpecialReport::schema(),
+            Self::Gate => GateReport::schema(),
+            Self::Pack => Manifest::schema(),
+            Self::Protocol => protocol::schema(),
+            Self::Frame => FrameDocument::schema(),
+            Self::Sweep => SweepDocument::schema(),
+            Self::Bench => BenchDocument::schema(),
+            Self::Selftest => SelftestDocument::schema(),
+            Self::Cases => CasesDocument::schema(),
+            Self::Formulas => FormulasDocument::schema(),
+            Self::Identify => IdentifyDocument::schema(),
+            Self::Mistakes => MistakesDocument::schema(),
+            Self::Show => ShowDocument::schema(),
+            Self::Adapters => AdaptersDocument::schema(),
+            Self::Effects => EffectsDocument::schema(),
+            Self::Eval => eval::schema(),
+            Self::Presets => PresetsDocument::schema(),
+            Self::Recommendation => Recommendation::schema(),
+            Self::SpecialRecord => SpecialRecord::schema(),
+        }
+    }
+}
+
+/// All schemas by their names.
+pub(super) fn all() -> anyhow::Result<Vec<(String, Value)>> {
+    let named = |of: &Of| {
+        let name = of.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
+        Ok((name, serde_json::to_value(of.schema())?))
+    };
+    Of::value_variants().iter().map(named).collect()
 }

@@ -1,6 +1,6 @@
 //! `lightmeter selftest`.
 
-use super::options::{Choice, Format, Targets};
+use super::options::{Choice, PageFormat, Targets};
 use super::signals::{status_of, stopped_by_signals};
 use super::{Status, writable};
 use anyhow::bail;
@@ -21,6 +21,8 @@ use lightmeter::faults::selftest as formulas;
 use lightmeter::faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
 use lightmeter::filter::Filter;
 use lightmeter::nearest::did_you_mean;
+use lightmeter::report::html;
+use lightmeter::report::page::selftest::SelftestRun;
 use lightmeter::report::selftest as report;
 use lightmeter::report::table::{Align, TextTable};
 use lightmeter::select::catalogue;
@@ -75,7 +77,7 @@ pub(crate) struct Selftest {
     cases: u64,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: PageFormat,
     /// Write it to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -101,8 +103,9 @@ impl Selftest {
         writable(self.out.as_deref())?;
         let tested = self.test(&targets, &stopped_by_signals()?)?;
         let text = match self.format {
-            Format::Json => tested.json()?,
-            Format::Text => tested.text(&targets)?,
+            PageFormat::Json => tested.json()?,
+            PageFormat::Html => html::of_selftest(&SelftestRun::read(&tested.json()?).map_err(anyhow::Error::msg)?)?,
+            PageFormat::Text => tested.text(&targets)?,
         };
         self.format.emit(&text, self.out.as_deref())?;
         Ok(match &tested.interrupted {

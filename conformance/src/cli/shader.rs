@@ -3,7 +3,7 @@
 use super::foreign;
 use super::terminal::level;
 use super::values::setting;
-use super::{Status, say};
+use super::{Status, quoted, say};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::bench::OwnShader as Beside;
@@ -20,8 +20,7 @@ use lightmeter::subject_gpu::code_of;
 use lightmeter_adapt::bind::{AskedBinding, Found, ShaderBinding, bind};
 use lightmeter_adapt::place::{line_of_step, line_of_variable};
 use lightmeter_adapt::source::{Language, ShaderSource};
-use lightmeter_adapt::stable_form;
-use lightmeter_adapt::{Part, ShaderProgram, replaced};
+use lightmeter_adapt::{Part, ShaderProgram, in_language, replaced, stable_form};
 use lightmeter_gpu::Shaders;
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -119,11 +118,6 @@ impl ShaderChoice {
     }
 }
 
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:@".contains(c);
-    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
-}
-
 /// Whether a shader can be this formula: one of arithmetic alone.
 fn is_identified(spec: &Spec) -> bool {
     IDENTIFIED.contains(&spec.family())
@@ -143,7 +137,7 @@ pub(crate) fn constant(text: &str) -> Result<(String, Constant), String> {
 }
 
 /// A constant as it is given on the command line.
-fn written(constant: &Constant) -> String {
+pub(super) fn written(constant: &Constant) -> String {
     match constant {
         Constant::Numbers(values) => values.iter().map(f32::to_string).collect::<Vec<_>>().join(","),
         Constant::SameAs(other) => other.clone(),
@@ -319,8 +313,13 @@ impl OwnShader {
             let Some(spec) = catalogue.iter().map(|member| &member.spec).find(|spec| fails && spec.id == *id) else {
                 continue;
             };
-            match stable_form(&shaders, &format!("{}.wgsl", spec.family()), spec.function, language) {
-                Some(form) => writeln!(told, "the stable form of {id}:\n\n{}", form.trim_end())?,
+            let file = format!("{}.wgsl", spec.family());
+            if let Some(form) = stable_form(&shaders, &file, spec.function, language) {
+                writeln!(told, "the stable form of {id}:\n\n{}", form.trim_end())?;
+                continue;
+            }
+            match in_language(&shaders, &file, spec.function, language).filter(|_| spec.stable.is_some()) {
+                Some(form) => writeln!(told, "{id} is itself a stable form:\n\n{}", form.trim_end())?,
                 None => writeln!(told, "no stable form of {id} is known")?,
             }
         }

@@ -1,6 +1,7 @@
 //! `lightmeter sweep`.
 
-use super::options::{Choice, Format, ShardArgument};
+use super::options::{Choice, PageFormat, ShardArgument};
+use super::page::swept;
 use super::say;
 use super::shader::ShaderChoice;
 use super::signals::stopped_by_signals;
@@ -16,6 +17,7 @@ use lightmeter::document::sweep::presets::{ListedPreset, PresetsDocument, SCHEMA
 use lightmeter::document::sweep::{Description, SweepDocument};
 use lightmeter::document::thousands;
 use lightmeter::filter::Filter;
+use lightmeter::report::html;
 use lightmeter::report::sweep as text;
 use lightmeter::select::{Shard, catalogue};
 use lightmeter::sweep::file::{self, DocumentError, name_of};
@@ -73,7 +75,7 @@ pub(crate) struct Sweep {
     blocks: Option<u64>,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: PageFormat,
     /// Write it to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -247,10 +249,11 @@ fn check_shard(plan: &SweepPlan<'_>, shard: Shard) -> anyhow::Result<()> {
 }
 
 /// A result as text or JSON.
-pub(crate) fn written(document: &SweepDocument, format: Format, rerun: &str) -> anyhow::Result<String> {
+pub(crate) fn written(document: &SweepDocument, format: PageFormat, rerun: &str) -> anyhow::Result<String> {
     match format {
-        Format::Json => Ok(document.to_json()?),
-        Format::Text => {
+        PageFormat::Json => Ok(document.to_json()?),
+        PageFormat::Html => Ok(html::of_sweeps(&[swept(document.clone())])?),
+        PageFormat::Text => {
             let catalogue = catalogue();
             let formula = catalogue.iter().find(|member| member.spec.id == document.sweep.formula);
             let mut out = String::new();
@@ -274,13 +277,13 @@ pub(crate) fn status(document: &SweepDocument) -> Status {
     if document.statistics.failed > 0 { Status::Failed } else { Status::Success }
 }
 
-fn presets(format: Format) -> anyhow::Result<String> {
+fn presets(format: PageFormat) -> anyhow::Result<String> {
     let range = |free: Free| match free {
         Free::Number { over, from, to, .. } => format!("{over} from {from} to {to}"),
         Free::Bytes => "source, destination, alpha".into(),
     };
     match format {
-        Format::Json => {
+        PageFormat::Json => {
             let listed = |preset: &Preset| ListedPreset {
                 formula: preset.formula.into(),
                 over: range(preset.free),
@@ -289,7 +292,8 @@ fn presets(format: Format) -> anyhow::Result<String> {
             let presets = PRESETS.iter().map(listed).collect();
             Ok(PresetsDocument { schema: SCHEMA.into(), presets }.to_json()?)
         }
-        Format::Text => {
+        PageFormat::Html => anyhow::bail!("the list of ready-made sweeps is text or json"),
+        PageFormat::Text => {
             let mut out = String::new();
             for preset in PRESETS {
                 writeln!(out, "{:<28} {:<28} {}", preset.formula, range(preset.free), preset.what)?;

@@ -85,6 +85,28 @@ impl Factor {
         }
     }
 
+    /// What it is in the colour, and in the alpha.
+    #[must_use]
+    pub const fn formulas(self) -> [&'static str; 2] {
+        match self {
+            Self::Zero => ["0", "0"],
+            Self::One => ["1", "1"],
+            Self::SrcColor => ["Cs", "As"],
+            Self::OneMinusSrcColor => ["1 − Cs", "1 − As"],
+            Self::DstColor => ["Cd", "Ad"],
+            Self::OneMinusDstColor => ["1 − Cd", "1 − Ad"],
+            Self::SrcAlpha => ["As", "As"],
+            Self::OneMinusSrcAlpha => ["1 − As", "1 − As"],
+            Self::DstAlpha => ["Ad", "Ad"],
+            Self::OneMinusDstAlpha => ["1 − Ad", "1 − Ad"],
+            Self::ConstantColor => ["Cc", "Ac"],
+            Self::OneMinusConstantColor => ["1 − Cc", "1 − Ac"],
+            Self::ConstantAlpha => ["Ac", "Ac"],
+            Self::OneMinusConstantAlpha => ["1 − Ac", "1 − Ac"],
+            Self::SrcAlphaSaturate => ["min(As, 1 − Ad)", "1"],
+        }
+    }
+
     /// Its place in [`Factor::ALL`], which is the selector that the shaders take.
     #[must_use]
     pub const fn code(self) -> u32 {

@@ -9,6 +9,7 @@ pub use shader::{BoundVariable, JudgedAs, MistakePlace, ShaderUse};
 pub use stability::{Cost, Examined, StableForm};
 
 use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, KnownFailure, RendererUse};
+use crate::explained::Explained;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -153,6 +154,29 @@ pub struct ImageUse {
     /// Reference, result and error map of a wrong image.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<String>,
+    /// Of a wrong image: the pixels that are farthest off, worst first, and then marked ones.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pixels: Vec<PixelUse>,
+}
+
+/// A pixel of a wrong image, in the target's values, or in steps where it has 8 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PixelUse {
+    /// From the left.
+    pub x: usize,
+    /// From the top.
+    pub y: usize,
+    /// The f64 reference: red, green, blue, alpha.
+    pub reference: [Number; 4],
+    /// The least legal values.
+    pub low: [Number; 4],
+    /// The greatest legal values.
+    pub high: [Number; 4],
+    /// What was drawn.
+    pub value: [Number; 4],
+    /// Whether several outcomes are legal that differ.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub marked: bool,
 }
 
 /// An image of 8 bits that is to one side of its reference, by less than one pixel shows.
@@ -392,6 +416,12 @@ pub struct Report {
     /// `lightmeter.run/1`.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
+    /// The command, but for where its result goes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub command: Option<String>,
+    /// The version of lightmeter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub version: Option<Word>,
     /// The seed of random cases.
     pub seed: u64,
     /// Wall time.
@@ -456,6 +486,15 @@ pub struct Report {
     /// What is worse than in the baseline.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regressions: Vec<String>,
+    /// What is better than in the baseline.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mended: Vec<String>,
+    /// What the baseline has not.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub added: Vec<String>,
+    /// What explains the first failing case of each formula.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub explained: Vec<Explained>,
     /// What chose the cases, and the version of what draws them, where a later run may be compared with this one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compared_by: Option<ComparedBy>,
@@ -478,6 +517,8 @@ impl Report {
     pub fn empty(seed: u64, profile: Word, filter: Vec<String>, adapters: Vec<Identity>) -> Self {
         Self {
             schema: SCHEMA.into(),
+            command: None,
+            version: Some(env!("CARGO_PKG_VERSION").into()),
             seed,
             seconds: 0.0,
             profile,
@@ -503,6 +544,9 @@ impl Report {
             unstable_cases: vec![],
             expectations: vec![],
             regressions: vec![],
+            mended: vec![],
+            added: vec![],
+            explained: vec![],
             compared_by: None,
             config: None,
             shader: None,

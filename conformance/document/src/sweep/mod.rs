@@ -6,7 +6,7 @@ mod statistics;
 
 pub use crate::stores::StoreCounts;
 pub use histogram::Histogram;
-pub use statistics::{ExactFloat, Statistics, StoreStatistics, SweepInput, SweepVerdict};
+pub use statistics::{ExactFloat, Statistics, StoreStatistics, SweepInput, SweepPart, SweepVerdict};
 
 use crate::Word;
 use crate::run::Identity;

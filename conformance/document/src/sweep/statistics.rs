@@ -145,9 +145,24 @@ pub struct Statistics {
     pub nearest_to_limit: Option<SweepVerdict>,
     /// The first results that are not legal.
     pub failures: Vec<SweepVerdict>,
+    /// The same along the input: the sweep in 256 parts of as many floats each, of which those are here that were done.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub along: Vec<SweepPart>,
     /// Of a blend unit.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub stored: Option<StoreStatistics>,
+}
+
+/// A 256th of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SweepPart {
+    /// Which one, from 0.
+    pub part: usize,
+    /// The greatest error.
+    pub error_max: Number,
+    /// Results that are not legal.
+    pub failed: u64,
 }
 
 impl Statistics {
@@ -171,6 +186,9 @@ impl Statistics {
         self.failures.extend(other.failures);
         self.failures.sort_by(|a, b| a.input.order(b.input));
         self.failures.truncate(KEPT);
+        for part in other.along {
+            self.see_part(part);
+        }
         if let Some(other) = other.stored {
             let stored = self.stored.get_or_insert_default();
             stored.tiers.add(&other.tiers);
@@ -184,6 +202,22 @@ impl Statistics {
     pub fn see_error(&mut self, seen: SweepVerdict) {
         if is_beyond(&seen, self.worst.as_ref(), |seen| seen.error.0) {
             self.worst = Some(seen);
+        }
+    }
+
+    /// Adds a part along the input.
+    pub fn see_part(&mut self, seen: SweepPart) {
+        match self.along.binary_search_by_key(&seen.part, |own| own.part) {
+            Ok(place) => {
+                let own = &mut self.along[place];
+                own.failed += seen.failed;
+                own.error_max = Number(if seen.error_max.0.total_cmp(&own.error_max.0).is_gt() {
+                    seen.error_max.0
+                } else {
+                    own.error_max.0
+                });
+            }
+            Err(place) => self.along.insert(place, seen),
         }
     }
 
@@ -215,6 +249,10 @@ impl Statistics {
         let excused = self.excused.values().try_fold(0_u64, |sum, &count| sum.checked_add(count));
         if excused != Some(self.expected_failures) {
             return Some("its deviations do not come to its expected failures".into());
+        }
+        let along = self.along.iter().try_fold(0_u64, |sum, part| sum.checked_add(part.failed));
+        if !self.along.is_empty() && along != Some(self.failed) {
+            return Some("its parts along the input do not come to its failures".into());
         }
         if self.failures.len() as u64 > self.failed || (self.failed > 0 && self.failures.is_empty()) {
             return Some(format!("it keeps {} failures of {}", self.failures.len(), self.failed));

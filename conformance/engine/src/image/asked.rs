@@ -152,6 +152,11 @@ impl Scene<'_> {
             counts.smallest = Some(failure.id.clone());
             self.report.failures.push(failure);
         }
+        let (mut files, mut pixels) = (vec![], vec![]);
+        if has_failed {
+            files = scene.write_files(self.options, &self.subject.identity.name, STAGE, image, &profile);
+            pixels = scene.told_pixels(image, &judged, &profile);
+        }
         let mut totals = Totals { cases: 1, failed_groups: u64::from(problem.is_some()), ..verdicts.totals };
         if counts.expected_failures > 0 {
             totals.expected_failures += std::mem::take(&mut totals.failed);
@@ -173,7 +178,8 @@ impl Scene<'_> {
                 cost: None,
                 bias,
                 departs_in: None,
-                files: vec![],
+                files,
+                pixels,
             }),
             by_case: Some(counts),
             ..self.group()

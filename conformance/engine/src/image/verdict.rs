@@ -9,7 +9,7 @@ use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
 use lightmeter_document::Number;
 use lightmeter_document::by_case::CaseCounts;
-use lightmeter_document::run::{Failure, Group, ImageBias, ImageUse, Report, Totals};
+use lightmeter_document::run::{Failure, Group, ImageBias, ImageUse, PixelUse, Report, Totals};
 use lightmeter_judge::cases::ending;
 use lightmeter_judge::devices::Deviation;
 use lightmeter_judge::diagnose::Cause;
@@ -28,6 +28,9 @@ use lightmeter_scene::target::{Encoding, TargetFormat};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::time::Instant;
+
+/// The most pixels of each kind that are told of a wrong image.
+const MOST_PIXELS: usize = 256;
 
 /// Takes the misses out that a named deviation makes legal; how many there are.
 pub fn excuse(
@@ -207,6 +210,7 @@ impl<'a> JudgedScene<'a> {
             bias: None,
             departs_in: None,
             files: vec![],
+            pixels: vec![],
         }
     }
 
@@ -223,6 +227,7 @@ impl<'a> JudgedScene<'a> {
         used.departs_in = departure.map(|departure| departure.stage.into());
         let departure = departure.map_or_else(String::new, |departure| format!("; {departure}"));
         used.files = self.write(drawn);
+        used.pixels = self.told_pixels(drawn.image, judged, &drawn.profile);
         let kept = judged.misses.iter().filter(|miss| miss.component == 0 || **miss != worst).take(KEPT_FAILURES);
         for miss in std::iter::once(worst).chain(kept.copied()).take(KEPT_FAILURES) {
             report.failures.push(self.failure(drawn, miss));
@@ -251,16 +256,59 @@ impl<'a> JudgedScene<'a> {
         diagnose::departure(drawn.subject, code, self.frame, named, &drawn.profile, &judged.pixels())
     }
 
+    /// The pixels that are farthest off, worst first, and then marked ones, from the top.
+    pub(super) fn told_pixels(&self, image: &StoredImage, judged: &Judged, profile: &Profile) -> Vec<PixelUse> {
+        let expected = self.expected(profile);
+        let mut worst: Vec<(f64, usize)> = vec![];
+        for miss in &judged.misses {
+            match worst.last_mut().filter(|(_, pixel)| *pixel == miss.pixel) {
+                Some((margin, _)) => *margin = if is_worse(miss.margin, *margin) { miss.margin } else { *margin },
+                None => worst.push((miss.margin, miss.pixel)),
+            }
+        }
+        worst.sort_by(|(a, _), (b, _)| b.partial_cmp(a).unwrap_or_else(|| b.is_nan().cmp(&a.is_nan())));
+        worst.truncate(MOST_PIXELS);
+        let is_told = |pixel: &usize| worst.iter().any(|(_, told)| told == pixel);
+        let marked = self.pixels.iter().copied().filter(|&pixel| expected[pixel].is_marked);
+        let marked = marked.filter(|pixel| !is_told(pixel)).take(MOST_PIXELS);
+        let told = worst.iter().map(|(_, pixel)| *pixel).chain(marked);
+        told.map(|pixel| PixelUse {
+            x: pixel % image.width,
+            y: pixel / image.width,
+            reference: self.reference.pixels[pixel].map(short),
+            low: expected[pixel].low.map(short),
+            high: expected[pixel].high.map(short),
+            value: image.pixels[pixel].map(short),
+            marked: expected[pixel].is_marked,
+        })
+        .collect()
+    }
+
     /// Reference, result and error map; nothing where files are not asked for or cannot be written.
     fn write(&self, drawn: &Drawn<'_>) -> Vec<String> {
-        let Some(folder) = &drawn.options.images else { return vec![] };
+        let (image, options) = (drawn.image, drawn.options);
+        self.write_files(options, &drawn.subject.identity.name, stage(drawn.picture), image, &drawn.profile)
+    }
+
+    /// The same of an image of whoever drew it.
+    pub(super) fn write_files(
+        &self,
+        options: &Options,
+        adapter: &str,
+        stage: &str,
+        image: &StoredImage,
+        profile: &Profile,
+    ) -> Vec<String> {
+        let Some(folder) = &options.images else { return vec![] };
         let rounded = StoredImage::of(&render::<f64>(self.frame, None, None), self.frame.target.format);
-        let map = with_legend(&error_map(drawn.image, &self.reference, self.expected(&drawn.profile)));
-        let name = self.id.replace('/', "-");
-        let place = format!("{name}-{}-{}", drawn.subject.identity.name, stage(drawn.picture));
+        let map = with_legend(&error_map(image, &self.reference, self.expected(profile)));
+        // A renderer may have any name.
+        let is_plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+        let adapter: String = adapter.chars().map(|c| if is_plain(c) { c } else { '-' }).collect();
+        let place = format!("{}-{adapter}-{stage}", self.id.replace('/', "-"));
         let _ = std::fs::create_dir_all(folder);
         let mut files = vec![];
-        for (what, image) in [("reference", &rounded), ("result", drawn.image), ("error", &map)] {
+        for (what, image) in [("reference", &rounded), ("result", image), ("error", &map)] {
             let path = folder.join(format!("{place}-{what}.png"));
             match image.write(&path) {
                 Ok(()) => files.push(path.display().to_string()),
@@ -307,6 +355,13 @@ impl<'a> JudgedScene<'a> {
             answer: None,
         }
     }
+}
+
+/// A number as it is told of a pixel: with as many digits as binary32 has.
+fn short(x: f64) -> Number {
+    #[expect(clippy::cast_possible_truncation, reason = "people read it")]
+    let narrow = x as f32;
+    Number(narrow.to_string().parse().unwrap_or(x))
 }
 
 /// What a bias says that the accuracy rules do not explain.

@@ -14,7 +14,7 @@ use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::AnyFormula;
 use lightmeter_document::Number;
-use lightmeter_document::sweep::{ExactFloat, Statistics, SweepInput, SweepVerdict};
+use lightmeter_document::sweep::{ExactFloat, Statistics, SweepInput, SweepPart, SweepVerdict};
 use lightmeter_judge::devices::Deviation;
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_scene::along::{Along, float_of};
@@ -35,7 +35,12 @@ pub struct Judge<'a> {
     pub profile: &'static Profile,
     /// What is granted besides.
     pub deviations: &'a [&'static Deviation],
+    /// The key of the first float of the whole sweep, and how many floats it has.
+    pub whole: (u32, u64),
 }
+
+/// Parts of a sweep whose errors are told one by one.
+const PARTS: u64 = 256;
 
 /// Buffers of a run.
 struct Run {
@@ -75,7 +80,18 @@ impl Judge<'_> {
             }
             self.run(&mut run, words, &mut sum);
         }
+        sum.see_part(SweepPart {
+            part: self.part(first),
+            error_max: sum.worst.map_or(Number(0.0), |worst| worst.error),
+            failed: sum.failed,
+        });
         sum
+    }
+
+    /// The part of the sweep that a float lies in.
+    fn part(&self, key: u32) -> usize {
+        let (first, inputs) = self.whole;
+        usize::try_from(u64::from(key.wrapping_sub(first)) * PARTS / inputs.max(1)).unwrap_or_default()
     }
 
     fn run(&self, run: &mut Run, words: &[u32], sum: &mut Statistics) {
@@ -298,8 +314,9 @@ mod tests {
             let each = rows(&member).step_by(31);
             for ((row, free), x) in each.flat_map(|row| [None, Some(0.0), Some(1e30)].map(|x| (row.clone(), x))) {
                 let along = Along { row: &row, free, output: usize::from(member.spec.output_len() > 1) };
-                let judge = Judge { formula: &*member.formula, along, profile: &WGSL, deviations: &[] };
                 let first = key_of(x.unwrap_or(row[free]));
+                let whole = (first, 3 * RUN as u64 + 17);
+                let judge = Judge { formula: &*member.formula, along, profile: &WGSL, deviations: &[], whole };
                 let inputs: Vec<f32> = (first..).take(3 * RUN + 17).map(float_of).collect();
                 let mut out = vec![0.0; inputs.len()];
                 member.formula.embedded_along(&along, &inputs, &mut out);

@@ -67,7 +67,8 @@ pub fn sweep(
         Over::Number { free, row, from, output, .. } => {
             let along = Along { row, free: *free, output: *output };
             let known = subject.known.clone();
-            let judge = Judge { formula: &*plan.member.formula, along, profile, deviations: &known.deviations };
+            let whole = (key_of(input(*from, 0)), document.sweep.inputs);
+            let judge = Judge { formula: &*plan.member.formula, along, profile, deviations: &known.deviations, whole };
             let Some(device) = subject.device() else {
                 return drive(&mut Embedded { judge, from: *from }, document, last, tell);
             };

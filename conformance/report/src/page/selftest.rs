@@ -54,6 +54,14 @@ impl SelftestRun {
     }
 }
 
+impl SelftestRun {
+    /// Whether every mistake is caught, and nothing right is flagged.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.record.is_good()
+    }
+}
+
 /// The page in Markdown.
 ///
 /// # Errors

@@ -5,6 +5,7 @@ use crate::cli::mistakes::{all_names, document as mistakes};
 use anyhow::bail;
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::{COMMON, aliases, written_state};
+use lightmeter::dialects::DIALECTS;
 use lightmeter::faults::concerning;
 use lightmeter::filter::Filter;
 use lightmeter::nearest::did_you_mean;
@@ -160,6 +161,7 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
         let unit = with_unit(output.unit);
         writeln!(text, "  {:<14} {}{unit}: {}", output.name, output.shape.name(), spec.output_means(output))?;
     }
+    text += &dialects(&spec.id)?;
     if !spec.hard.is_empty() {
         writeln!(text, "hard cases")?;
     }
@@ -192,6 +194,19 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
         writeln!(text, "\nlightmeter show {} --wgsl", spec.id)?;
     }
     writeln!(text, "lightmeter show {}/{case}\nlightmeter run {}", spec.id, spec.id)?;
+    Ok(text)
+}
+
+/// Who computes a formula's subject by which form.
+fn dialects(id: &str) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
+    for one in DIALECTS.iter().filter(|one| one.concern(id)) {
+        writeln!(text, "who computes what: {}", one.title.to_lowercase())?;
+        for form in one.forms {
+            let own = if form.formulas.contains(&id) { " (this formula)" } else { "" };
+            writeln!(text, "  {:<14} {}{own}", form.speaker.name(), form.what)?;
+        }
+    }
     Ok(text)
 }
 

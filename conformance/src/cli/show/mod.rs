@@ -16,10 +16,10 @@ use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::cases::Kind;
 use lightmeter::cases::blend::{Samples, separate_of, written_state};
 use lightmeter::document::run::Examined;
-use lightmeter::document::show::{MistakenStep, ShowDocument, ShownCase, ShownMistake, ShownStep};
+use lightmeter::document::show::{ShowDocument, ShownCase, ShownMistake};
 use lightmeter::document::{Document as _, Number};
 use lightmeter::evaluate::Evaluator;
-use lightmeter::faults::{Fault, SeenStep, Variation};
+use lightmeter::faults::{Fault, Variation, shown_mistake};
 use lightmeter::filter::Filter;
 use lightmeter::formula::intervals;
 use lightmeter::judge::judge;
@@ -160,26 +160,7 @@ impl Show {
     fn mistaken(&self, fault: &'static Fault, member: &Member, inputs: &[f32]) -> anyhow::Result<ShownMistake> {
         let variation = Variation::new(member, &[fault]);
         let variation = variation.with_context(|| format!("`{}` does not concern {}", fault.name, member.spec.id))?;
-        let count = member.spec.output_len();
-        let (mut value, mut legal) = (vec![0.0_f64; count], vec![Accept::ANY; count]);
-        variation.evaluate(inputs, &mut value);
-        variation.interval(inputs, self.choice.profile, &mut legal);
-        let output = |k: usize| ShownStep {
-            name: member.spec.output_name(k).into(),
-            value: Number(value[k]),
-            interval: [Number(legal[k].low()), Number(legal[k].high())],
-        };
-        let step = |SeenStep { name, right, made }| MistakenStep {
-            name: name.into(),
-            right: Number(right),
-            made: Number(made),
-        };
-        Ok(ShownMistake {
-            name: fault.name.into(),
-            says: fault.says.into(),
-            outputs: (0..count).map(output).collect(),
-            steps: variation.steps(inputs).into_iter().map(step).collect(),
-        })
+        Ok(shown_mistake(&variation, member, inputs, self.choice.profile))
     }
 
     fn row(&self, member: &Member, case: CaseRef) -> Vec<f32> {
@@ -441,6 +422,8 @@ fn range(interval: &Accept) -> String {
     if interval.is_any() {
         "anything".into()
     } else {
-        format!("{} to {}", Number(interval.low()).narrow(), Number(interval.high()).narrow())
+        // The sign of a zero may be lost, so that none is told.
+        let end = |x: f64| Number(x + 0.0).narrow();
+        format!("{} to {}", end(interval.low()), end(interval.high()))
     }
 }

@@ -1,0 +1,454 @@
+//! The page of a formula: what it computes, how it looks, who computes it otherwise, how accurate it is, and how it is got wrong.
+
+use crate::contents::Place;
+use crate::diagram::diagram;
+use crate::errors::{CASES, errors};
+use crate::picture::Picture;
+use crate::sketch::{short, sketch};
+use lightmeter_arithmetic::profile::WGSL;
+use lightmeter_catalogue::cases::blend::COMMON;
+use lightmeter_catalogue::cases::{Kind, Spec};
+use lightmeter_catalogue::dialects::{DIALECTS, DialectForm, Dialects};
+use lightmeter_catalogue::rulings::RULINGS;
+use lightmeter_catalogue::select::{CaseRef, Member};
+use lightmeter_document::mistakes::MistakeLook;
+use lightmeter_faults::{Fault, Variation, concerning, look, typical_course};
+use lightmeter_gpu::Shaders;
+use lightmeter_report::html::{course_plot, equation};
+use maud::{Markup, html};
+
+/// What the page of a formula is made of.
+pub(crate) struct FormulaPage<'a> {
+    /// The formula.
+    pub(crate) member: &'a Member,
+    /// All formulas.
+    pub(crate) catalogue: &'a [Member],
+    /// The WGSL.
+    pub(crate) shaders: &'a Shaders,
+    /// Where the page is, for its links.
+    pub(crate) place: Place<'a>,
+}
+
+impl FormulaPage<'_> {
+    /// All of the page but its frame.
+    pub(crate) fn body(&self) -> Markup {
+        let spec = &self.member.spec;
+        let picture = Picture::of(self.member);
+        html! {
+            h1 { code { (spec.id) } }
+            (self.statement())
+            (diagram(spec))
+            h2 #values { "What goes in, what comes out" }
+            (self.values())
+            (self.course())
+            @if let Some(picture) = &picture {
+                figure.picture { (picture.img(self.member)) figcaption { (picture.caption(self.member)) } }
+            }
+            (self.dialects())
+            (self.code())
+            (self.accuracy())
+            (self.stable())
+            (self.hard())
+            (self.mistakes(picture.as_ref()))
+            (self.commands())
+        }
+    }
+
+    pub(crate) fn statement(&self) -> Markup {
+        let spec = &self.member.spec;
+        let rules = spec.rules();
+        html! {
+            (set_equation(spec))
+            @if !rules.is_empty() {
+                p { "What the line does not say:" }
+                ul.rules { @for rule in &rules { li { (rule) } } }
+            }
+            p.quiet { "Source: " (self.source(spec.source)) }
+        }
+    }
+
+    /// A source, with links to the rulings that it names.
+    fn source(&self, text: &str) -> Markup {
+        html! {
+            @for (k, part) in text.split("; ").enumerate() {
+                @if k > 0 { "; " }
+                @let numbers: Vec<u32> = part.strip_prefix("ruling").into_iter().flat_map(|rest| rest.split(|c: char| !c.is_ascii_digit())).filter_map(|word| word.parse().ok()).collect();
+                @match numbers.first() {
+                    Some(number) => a href={ (self.place.to("rulings.html")) "#ruling-" (number) } { (part) },
+                    None => (part),
+                }
+            }
+        }
+    }
+
+    pub(crate) fn values(&self) -> Markup {
+        let spec = &self.member.spec;
+        html! {
+            div.wide tabindex="0" role="group" aria-label="inputs and outputs" { table {
+                thead { tr { th scope="col" { "value" } th scope="col" { "shape" } th scope="col" { "unit" } th scope="col" { "meaning" } th scope="col" { "random cases draw" } } }
+                tbody {
+                    @for input in spec.inputs { tr { th scope="row" { code { (input.name) } } td { (input.shape.name()) } td { (unit(input.unit)) } td { (spec.input_means(input)) } td { (input.domain) } } }
+                    @for output in spec.outputs { tr { th scope="row" { "→ " code { (output.name) } } td { (output.shape.name()) } td { (unit(output.unit)) } td { (spec.output_means(output)) } td {} } }
+                }
+            } }
+        }
+    }
+
+    /// An output along the input on which it varies most.
+    pub(crate) fn course(&self) -> Markup {
+        let Some(course) = typical_course(self.member, &WGSL) else { return html! {} };
+        html! {
+            h2 #course { "How it looks" }
+            (course_plot(&course, None))
+        }
+    }
+
+    pub(crate) fn dialects(&self) -> Markup {
+        let told: Vec<&Dialects> = DIALECTS.iter().filter(|one| one.concern(&self.member.spec.id)).collect();
+        html! {
+            @if !told.is_empty() {
+                h2 #dialects { "Who computes what" }
+                @for one in told { (dialect(one, &self.place, self.catalogue)) }
+            }
+        }
+    }
+
+    pub(crate) fn code(&self) -> Markup {
+        let spec = &self.member.spec;
+        let file = format!("{}.wgsl", spec.family());
+        let text = if spec.function.is_empty() { None } else { self.shaders.function(&file, spec.function) };
+        html! {
+            @if let Some(text) = text {
+                h2 #wgsl { "In WGSL" }
+                p { "The function that is judged, from " code { (file) } ". The reference is a second text of the same formula, in Rust, and shares nothing with it." }
+                pre tabindex="0" { code { (text) } }
+            }
+        }
+    }
+
+    pub(crate) fn accuracy(&self) -> Markup {
+        let found = errors(self.member);
+        html! {
+            @if !found.is_empty() {
+                h2 #accuracy { "How accurate it is in 32 bits" }
+                p {
+                    "Computed in binary32 as it is written, each operation rounded once, at " (CASES) " random cases"
+                    @if !self.member.spec.hard.is_empty() { " and at the hard cases with what lies near them" }
+                    ". Errors are in ULP of binary32. “Legal” is how far WGSL's rules permit a result to be from the exact one."
+                }
+                div.wide tabindex="0" role="group" aria-label="errors" { table {
+                    thead { tr {
+                        th scope="col" { "output" } th scope="col" { "greatest error, random" }
+                        @if !self.member.spec.hard.is_empty() { th scope="col" { "greatest error, hard" } }
+                        th scope="col" { "legal up to, random" } th scope="col" { "cases where any value is legal" } th scope="col" { "condition number, median" }
+                    } }
+                    tbody { @for one in &found { tr {
+                        th scope="row" { code { (one.name) } }
+                        td.right { (ulp(one.random)) }
+                        @if let Some(hard) = one.hard { td.right { (ulp(hard)) } }
+                        td.right { (ulp(one.legal)) } td.right { (percent(one.anything)) } td.right { (ulp(one.condition)) }
+                    } } }
+                } }
+                p.hint { a href=(self.place.to("floats-and-what-is-legal.html")) { "Floats, ULP, and what is legal" } " says what these numbers mean, " a href=(self.place.to("condition-and-stability.html")) { "Condition and stability" } " what the condition number does." }
+            }
+        }
+    }
+
+    pub(crate) fn stable(&self) -> Markup {
+        let spec = &self.member.spec;
+        let better: Vec<(&Spec, &str, &str)> = self
+            .catalogue
+            .iter()
+            .flat_map(|member| member.spec.hard.iter().map(move |hard| (&member.spec, hard)))
+            .filter_map(|(of, hard)| Some((of, hard.name, hard.naive.filter(|naive| naive.formula == spec.id)?.fails)))
+            .collect();
+        html! {
+            @if spec.stable.is_some() || !better.is_empty() {
+                h2 #stable { "The stable form" }
+                @if let Some(stable) = spec.stable {
+                    p { "This is a stable form. At its hard cases and near them it errs by at most " (stable.bound) " roundings: " (stable.because) "." }
+                }
+                @if !better.is_empty() {
+                    p { "This form fails where another one does not:" }
+                    ul { @for (of, case, fails) in &better { li { (self.link(&of.id)) " is right at its hard case " code { (case) } ", where here " (fails) "." } } }
+                }
+            }
+        }
+    }
+
+    pub(crate) fn hard(&self) -> Markup {
+        let (member, spec) = (self.member, &self.member.spec);
+        let rows = spec.hard.iter().enumerate().map(|(place, hard)| {
+            let mut row = vec![];
+            member.inputs(CaseRef::Hard(place), 1, &mut row);
+            let mut reference = vec![0.0; spec.output_len()];
+            member.formula.reference(&row, &mut reference);
+            (hard, reference)
+        });
+        html! {
+            @if !spec.hard.is_empty() {
+                h2 #hard { "Hard cases" }
+                div.wide tabindex="0" role="group" aria-label="hard cases" { table {
+                    thead { tr { th scope="col" { "case" } th scope="col" { "what it holds" } th scope="col" { "inputs that are given" } th scope="col" { "exact result" } th scope="col" { "who fails there" } } }
+                    tbody { @for (hard, reference) in rows { tr {
+                        th scope="row" { code { (hard.name) } }
+                        td { (hard.pins) }
+                        td { @for (name, values) in hard.inputs { div { code { (name) " = " (list(values.iter().map(|&x| f64::from(x)))) } } } }
+                        td { @for (output, values) in outputs(spec, &reference) { div { code { (output) " = " (list(values.iter().copied())) } } } }
+                        td { @if let Some(naive) = hard.naive { (self.link(naive.formula)) ": " (naive.fails) } }
+                    } } }
+                } }
+            }
+        }
+    }
+
+    pub(crate) fn mistakes(&self, picture: Option<&Picture>) -> Markup {
+        let faults = concerning(self.member);
+        html! {
+            @if !faults.is_empty() {
+                h2 #mistakes { "How it is got wrong" }
+                p { (faults.len()) " mistakes that renderers make are known by name in this formula. The suite tells them from each other by what they give; each line is black as it should be and dashed with the mistake." }
+                div.mistakes { @for fault in faults { (self.mistake(fault, picture)) } }
+            }
+        }
+    }
+
+    fn mistake(&self, fault: &'static Fault, picture: Option<&Picture>) -> Markup {
+        let Some(variation) = Variation::new(self.member, &[fault]) else { return html! {} };
+        let plot = sketch(self.member, &variation);
+        let picture = picture.and_then(|picture| picture.img_with(self.member, &variation));
+        let look = look(self.member, fault);
+        html! {
+            section.mistake id={ "mistake-" (fault.name) } {
+                h3 { code { (fault.name) } }
+                p { (sentence(fault.says)) @if let Some(seen) = fault.seen_in { span.quiet { " Seen in: " (seen) "." } } }
+                @if let Some(look) = &look { p.hint { (looks(look)) } }
+                div.pictures {
+                    @if let Some(picture) = &picture { figure.picture { (picture) } }
+                    @if let Some(plot) = &plot { (plot.svg()) }
+                }
+                @if plot.is_none() && picture.is_none() { p.hint { "Too small to be seen in a plot." } }
+            }
+        }
+    }
+
+    pub(crate) fn commands(&self) -> Markup {
+        let spec = &self.member.spec;
+        let case = spec
+            .hard
+            .first()
+            .map_or_else(|| self.member.case_id(CaseRef::Random(0)), |_| self.member.case_id(CaseRef::Hard(0)));
+        html! {
+            h2 #commands { "Look further" }
+            pre tabindex="0" { code {
+                "lightmeter run '" (spec.id) "'\n"
+                "lightmeter show " (case) "\n"
+                @if matches!(spec.kind, Kind::Arithmetic) { "lightmeter bench " (spec.id) "\n" }
+            } }
+            @for common in COMMON.iter().filter(|common| common.id == spec.id) { p { "It is used for: " (common.what) "." } }
+        }
+    }
+
+    pub(crate) fn link(&self, id: &str) -> Markup {
+        link(id, &self.place, self.catalogue)
+    }
+}
+
+/// A formula's name, as a link where it has a page.
+pub(crate) fn link(id: &str, place: &Place<'_>, catalogue: &[Member]) -> Markup {
+    let member = catalogue.iter().find(|member| member.spec.id == id);
+    html! { @match member.and_then(|member| page_of(&member.spec)) {
+        Some(page) => a href=(place.to(&page)) { code { (id) } },
+        None => code { (id) },
+    } }
+}
+
+/// The address of the page that a formula is told on; `None` of a blend state, which the pages of its equation and factors tell.
+pub(crate) fn page_of(spec: &Spec) -> Option<String> {
+    let of_group = ["blend/write-mask", "blend/without-alpha", "blend/layers"];
+    if of_group.contains(&spec.group()) {
+        return Some(format!("formula/{}.html", spec.group()));
+    }
+    let is_told_elsewhere = spec.id.matches('/').count() > 1 && spec.family() == "blend";
+    if is_told_elsewhere {
+        return None;
+    }
+    match spec.id.strip_prefix("blend/mode-") {
+        Some(mode) => Some(format!("blend/mode/{mode}.html")),
+        None => Some(format!("formula/{}.html", spec.id)),
+    }
+}
+
+/// A page of a formula, and what is told on it.
+pub(crate) struct Told<'a> {
+    /// Its address.
+    pub(crate) path: String,
+    /// The formula that it is about: of several on one page the one with the most mistakes.
+    pub(crate) member: &'a Member,
+    /// The others on the same page.
+    pub(crate) others: Vec<&'a Member>,
+}
+
+/// All pages of formulas, in the order of the catalogue.
+pub(crate) fn told<'a>(catalogue: &'a [Member]) -> Vec<Told<'a>> {
+    let mut pages: Vec<(String, Vec<&'a Member>)> = vec![];
+    for member in catalogue {
+        let Some(path) = page_of(&member.spec) else { continue };
+        match pages.iter_mut().find(|(own, _)| *own == path) {
+            Some((_, members)) => members.push(member),
+            None => pages.push((path, vec![member])),
+        }
+    }
+    let page = |(path, members): (String, Vec<&'a Member>)| {
+        let told =
+            (0..members.len()).rev().max_by_key(|&k| if members.len() > 1 { concerning(members[k]).len() } else { 0 });
+        let member = members[told.unwrap_or_default()];
+        let others = members.iter().copied().filter(|other| other.spec.id != member.spec.id).collect();
+        Told { path, member, others }
+    };
+    pages.into_iter().map(page).collect()
+}
+
+/// The formula as mathematics, a line for each of its statements, and as it stands in reports.
+pub(crate) fn set_equation(spec: &Spec) -> Markup {
+    let names: Vec<&str> =
+        spec.inputs.iter().map(|input| input.name).chain(spec.outputs.iter().map(|output| output.name)).collect();
+    html! {
+        div.equation tabindex="0" role="group" aria-label="the formula" { @for line in spec.text.split("; ") { (equation(line, &names)) } }
+        p.quiet { "As reports write it: " code { (spec.text) } }
+    }
+}
+
+/// Who computes what, as a table.
+pub(crate) fn dialect(one: &Dialects, place: &Place<'_>, catalogue: &[Member]) -> Markup {
+    let title = one.ruling.and_then(|number| RULINGS.iter().find(|ruling| ruling.number == number));
+    let form = |form: &DialectForm| {
+        html! { @for (k, id) in form.formulas.iter().enumerate() { @if k > 0 { ", " } (link(id, place, catalogue)) } @if form.formulas.is_empty() { span.quiet { "no formula of the suite" } } }
+    };
+    html! {
+        h3 { (one.title) }
+        div.wide tabindex="0" role="group" aria-label=(one.title) { table {
+            thead { tr { @for one in one.forms { th scope="col" { (one.speaker.name()) } } } }
+            tbody { tr { @for one in one.forms { td { (one.what) } } } tr { @for one in one.forms { td { (form(one)) } } } }
+        } }
+        @if let Some(ruling) = title {
+            p { a href={ (place.to("rulings.html")) "#ruling-" (ruling.number) } { "Ruling " (ruling.number) } ": " (ruling.right) " " (ruling.why) }
+        }
+    }
+}
+
+fn unit(unit: &str) -> &str {
+    if unit == "1" { "" } else { unit }
+}
+
+/// The outputs by name, each with its numbers.
+fn outputs<'a>(spec: &'a Spec, row: &'a [f64]) -> Vec<(&'static str, &'a [f64])> {
+    let mut start = 0;
+    let mut found = vec![];
+    for output in spec.outputs {
+        let end = start + output.shape.components();
+        found.push((output.name, &row[start..end]));
+        start = end;
+    }
+    found
+}
+
+fn list(values: impl ExactSizeIterator<Item = f64>) -> String {
+    let is_one = values.len() == 1;
+    let words: Vec<String> = values.map(number).collect();
+    if is_one { words.concat() } else { format!("({})", words.join(", ")) }
+}
+
+/// A number in a few digits; `NaN` and `∞` by name.
+fn number(x: f64) -> String {
+    if x.is_nan() {
+        "NaN".into()
+    } else if x.is_infinite() {
+        if x > 0.0 { "∞".into() } else { "−∞".into() }
+    } else {
+        short(x)
+    }
+}
+
+/// An error in ULP, in a few digits.
+fn ulp(x: f64) -> String {
+    if x.is_infinite() || x.is_nan() { number(x) } else { short((x * 100.0).round() / 100.0) }
+}
+
+fn percent(share: f64) -> String {
+    if share == 0.0 { "none".into() } else { format!("{:.1} %", 100.0 * share) }
+}
+
+/// Words as a sentence.
+pub(crate) fn sentence(words: &str) -> String {
+    let mut chars = words.chars();
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str() + ".")
+}
+
+/// How a mistake looks, in words.
+fn looks(look: &MistakeLook) -> String {
+    let outputs: Vec<&str> = look.outputs.iter().map(|name| &**name).collect();
+    if look.failing == 0 {
+        return format!("None of {} cases goes wrong: it takes inputs that are drawn for it.", look.cases);
+    }
+    let side = match (look.too_great, look.too_small) {
+        (0, 0) => String::new(),
+        (_, 0) => ", all too great".into(),
+        (0, _) => ", all too small".into(),
+        (great, small) if great > 4 * small => ", mostly too great".into(),
+        (great, small) if small > 4 * great => ", mostly too small".into(),
+        _ => ", too great or too small".into(),
+    };
+    format!("{} of {} cases go wrong, in {}{side}.", look.failing, look.cases, outputs.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::set_equation;
+    use lightmeter_catalogue::select::catalogue;
+
+    /// Letters and digits in their order, those of raised and lowered characters too.
+    fn told(text: &str) -> String {
+        let plain = |c: char| match c {
+            '⁰' => '0',
+            '¹' => '1',
+            '²' => '2',
+            '³' => '3',
+            '⁴' => '4',
+            '⁵' => '5',
+            '⁶' => '6',
+            '⁷' => '7',
+            '⁸' => '8',
+            '⁹' => '9',
+            'ⁿ' | 'ₙ' => 'n',
+            'ᵏ' => 'k',
+            'ʲ' => 'j',
+            'ᵀ' => 'T',
+            'ᵢ' => 'i',
+            '₀' => '0',
+            '₁' => '1',
+            '₂' => '2',
+            c => c,
+        };
+        text.chars().map(plain).filter(|c| c.is_alphanumeric()).collect::<String>().replace('½', "12")
+    }
+
+    #[test]
+    fn the_equation_of_every_formula_says_what_its_line_says() {
+        for member in catalogue() {
+            let html = set_equation(&member.spec).0;
+            let set = html.split("</div>").next().unwrap_or_default();
+            let mut words = String::new();
+            let mut is_tag = false;
+            for c in set.replace("&#x2061;", "").replace("&lt;", "").chars() {
+                match c {
+                    '<' => is_tag = true,
+                    '>' => is_tag = false,
+                    c if !is_tag => words.push(c),
+                    _ => {}
+                }
+            }
+            assert_eq!(told(&words), told(member.spec.text), "{}", member.spec.id);
+        }
+    }
+}

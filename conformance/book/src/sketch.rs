@@ -1,0 +1,212 @@
+//! What a mistake does to a formula, as a small plot: an output along the input on which the mistake shows best.
+
+use lightmeter_catalogue::cases::{Domain, Kind};
+use lightmeter_catalogue::select::{CaseRef, Member};
+use lightmeter_faults::Variation;
+use maud::{Markup, html};
+
+/// Points of a plot.
+const POINTS: usize = 49;
+/// Points by which the place is chosen where a mistake shows best.
+const TRIED: usize = 9;
+/// Random cases among which it is chosen, beside the hard ones.
+const CASES: u64 = 12;
+/// The most inputs of a case that are tried.
+const MOST_INPUTS: usize = 24;
+/// Pixels of a plot.
+const WIDTH: f64 = 200.0;
+const HEIGHT: f64 = 90.0;
+/// The least mean share of a plot's height that is seen.
+const SEEN: f64 = 0.003;
+
+/// An output along one number of the inputs, by the formula and with a mistake.
+pub(crate) struct Sketch {
+    /// The number of the inputs, such as `p.z`.
+    pub(crate) input: String,
+    /// The number of the outputs.
+    pub(crate) output: String,
+    from: f64,
+    to: f64,
+    right: Vec<f64>,
+    mistaken: Vec<f64>,
+}
+
+/// Where a plot begins and ends, and whether its inputs are spaced by their logarithms.
+#[derive(Clone, Copy)]
+pub(crate) struct Range {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    is_logarithmic: bool,
+}
+
+impl Range {
+    /// The range of a number of the inputs; `None` where it is drawn from no range.
+    pub(crate) fn of(member: &Member, row: &[f32], number: usize) -> Option<Self> {
+        let mut start = 0;
+        for input in member.spec.inputs {
+            let end = start + input.shape.components();
+            if (start..end).contains(&number) {
+                let length = || row[start..end].iter().map(|&x| f64::from(x).powi(2)).sum::<f64>().sqrt();
+                let (from, to, is_logarithmic) = match input.domain {
+                    Domain::Uniform(low, high) | Domain::Halves(low, high) => (low.into(), high.into(), false),
+                    Domain::LogUniform(low, high) => (low.into(), high.into(), true),
+                    Domain::Unit => (0.0, 1.0, false),
+                    Domain::Vector(..) => (-length(), length(), false),
+                    Domain::Direction => (-1.0, 1.0, false),
+                    Domain::Whole(low, high) => (low.into(), high.into(), false),
+                    _ => return None,
+                };
+                return (from < to).then_some(Self { from, to, is_logarithmic });
+            }
+            start = end;
+        }
+        None
+    }
+
+    /// The k-th of several points.
+    pub(crate) fn at(self, k: usize, points: usize) -> f32 {
+        #[expect(clippy::cast_precision_loss, reason = "some points")]
+        let share = k as f64 / (points - 1) as f64;
+        let x = if self.is_logarithmic {
+            self.from * (self.to / self.from).powf(share)
+        } else {
+            self.from + share * (self.to - self.from)
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "an input is an f32")]
+        let x = x as f32;
+        x
+    }
+}
+
+/// The cases among which a place is chosen: the middle of the domain with the hard cases' inputs, and random ones.
+fn cases(member: &Member) -> impl Iterator<Item = Vec<f32>> {
+    let hard = (0..member.spec.hard.len()).map(CaseRef::Hard);
+    hard.chain((0..CASES).map(CaseRef::Random)).map(|case| {
+        let mut row = vec![];
+        member.inputs(case, 1, &mut row);
+        row
+    })
+}
+
+/// How far two courses differ on the mean, as a share of what both span.
+fn difference(right: &[f64], mistaken: &[f64]) -> f64 {
+    let [low, high] = span(right.iter().chain(mistaken));
+    if low >= high {
+        return 0.0;
+    }
+    let apart = |(a, b): (&f64, &f64)| if a.is_finite() && b.is_finite() { (a - b).abs() / (high - low) } else { 0.0 };
+    #[expect(clippy::cast_precision_loss, reason = "some points")]
+    let mean = right.iter().zip(mistaken).map(apart).sum::<f64>() / right.len() as f64;
+    mean
+}
+
+/// How well a plot tells a mistake: by how far the two courses differ, and by how much the right one varies, since two level lines tell little.
+fn clarity(right: &[f64], mistaken: &[f64]) -> f64 {
+    const OF_LEVEL_LINES: f64 = 0.02;
+    let ([low, high], [least, most]) = (span(right.iter()), span(right.iter().chain(mistaken)));
+    let varies = if high > low { (4.0 * (high - low) / (most - least)).min(1.0) } else { 0.0 };
+    difference(right, mistaken) * (OF_LEVEL_LINES + varies)
+}
+
+fn span<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
+    let first = [f64::INFINITY, f64::NEG_INFINITY];
+    values.filter(|x| x.is_finite()).fold(first, |[low, high], &x| [low.min(x), high.max(x)])
+}
+
+/// The plot on which a mistake shows best; `None` where it is too small for one.
+pub(crate) fn sketch(member: &Member, variation: &Variation<'_>) -> Option<Sketch> {
+    if matches!(member.spec.kind, Kind::Raster(_) | Kind::Depth(_)) {
+        return None;
+    }
+    let outputs = member.spec.output_len();
+    let mut best: Option<(f64, Vec<f32>, usize, usize)> = None;
+    let (mut right, mut mistaken) = (vec![0.0; outputs], vec![0.0; outputs]);
+    for row in cases(member) {
+        for input in 0..row.len().min(MOST_INPUTS) {
+            let Some(range) = Range::of(member, &row, input) else { continue };
+            let mut moved = row.clone();
+            let mut courses = vec![(vec![], vec![]); outputs];
+            for k in 0..TRIED {
+                moved[input] = range.at(k, TRIED);
+                member.formula.reference(&moved, &mut right);
+                variation.evaluate(&moved, &mut mistaken);
+                for (output, (a, b)) in courses.iter_mut().enumerate() {
+                    a.push(right[output]);
+                    b.push(mistaken[output]);
+                }
+            }
+            for (output, (a, b)) in courses.iter().enumerate() {
+                let seen = clarity(a, b);
+                if best.as_ref().is_none_or(|(most, ..)| seen > *most) {
+                    best = Some((seen, row.clone(), input, output));
+                }
+            }
+        }
+    }
+    let (_, row, input, output) = best.filter(|(clarity, ..)| *clarity > 0.0)?;
+    drawn(member, variation, row, input, output)
+}
+
+fn drawn(member: &Member, variation: &Variation<'_>, mut row: Vec<f32>, input: usize, output: usize) -> Option<Sketch> {
+    let range = Range::of(member, &row, input)?;
+    let outputs = member.spec.output_len();
+    let (mut right, mut mistaken) = (vec![0.0; outputs], vec![0.0; outputs]);
+    let mut sketch = Sketch {
+        input: member.spec.input_name(input),
+        output: member.spec.output_name(output),
+        from: range.from,
+        to: range.to,
+        right: vec![],
+        mistaken: vec![],
+    };
+    for k in 0..POINTS {
+        row[input] = range.at(k, POINTS);
+        member.formula.reference(&row, &mut right);
+        variation.evaluate(&row, &mut mistaken);
+        sketch.right.push(right[output]);
+        sketch.mistaken.push(mistaken[output]);
+    }
+    (difference(&sketch.right, &sketch.mistaken) > SEEN).then_some(sketch)
+}
+
+impl Sketch {
+    /// The plot.
+    pub(crate) fn svg(&self) -> Markup {
+        let [low, high] = span(self.right.iter().chain(&self.mistaken));
+        let path = |values: &[f64]| {
+            let (mut path, mut is_begun) = (String::new(), false);
+            for (k, value) in values.iter().enumerate() {
+                if !value.is_finite() {
+                    is_begun = false;
+                    continue;
+                }
+                #[expect(clippy::cast_precision_loss, reason = "some points")]
+                let x = 4.0 + (WIDTH - 8.0) * k as f64 / (POINTS - 1) as f64;
+                let y = 4.0 + (HEIGHT - 8.0) * (high - value) / (high - low);
+                path += &format!("{}{x:.0} {y:.1}", if is_begun { "L" } else { "M" });
+                is_begun = true;
+            }
+            path
+        };
+        html! {
+            figure.sketch {
+                svg viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="img" aria-label={ (self.output) " along " (self.input) ": right, and with the mistake" } {
+                    rect.frame x="1" y="1" width=(WIDTH - 2.0) height=(HEIGHT - 2.0) {}
+                    path.reference d=(path(&self.right)) {}
+                    path.mistaken d=(path(&self.mistaken)) {}
+                }
+                figcaption { (self.output) " along " (self.input) ", " (short(self.from)) " to " (short(self.to)) }
+            }
+        }
+    }
+}
+
+/// A number in a few digits.
+pub(crate) fn short(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
+        let text = format!("{x:.4}");
+        text.trim_end_matches('0').trim_end_matches('.').replace('-', "−")
+    } else {
+        format!("{x:.2e}").replace('-', "−")
+    }
+}

@@ -1,0 +1,143 @@
+//! Chapters and pages that are written as Markdown: read from the folder of documentation, their links turned to the book's own.
+
+use crate::BookError;
+use crate::contents::Place;
+use lightmeter_files::read;
+use lightmeter_report::html::markdown;
+use maud::{Markup, PreEscaped};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Pages of the documentation that the book takes in, and where they stand in it.
+pub(crate) const PAGES: &[(&str, &str)] = &[
+    ("guide.md", "reference/guide.html"),
+    ("gate.md", "reference/gate.html"),
+    ("protocol.md", "reference/protocol.html"),
+    ("shaders.md", "reference/shaders.html"),
+    ("design.md", "reference/design.html"),
+    ("renderers.md", "renderers.html"),
+    ("rulings.md", "rulings.html"),
+    ("bench.md", "cost.html"),
+    ("stability.md", "reference/stability.html"),
+    ("sweep.md", "reference/sweep.html"),
+    ("scenes.md", "appendix/scenes.html"),
+    ("blend.md", "appendix/blend.html"),
+    ("special-values.md", "appendix/special-values.html"),
+    ("selftest.md", "appendix/selftest.html"),
+    ("certificate.md", "appendix/certificate.html"),
+];
+
+/// A text of the documentation.
+pub(crate) struct Text {
+    /// Its first heading.
+    pub(crate) title: String,
+    text: String,
+    /// The folder that pictures are in, within the documentation.
+    folder: &'static str,
+}
+
+impl Text {
+    /// Reads a text of the documentation.
+    pub(crate) fn read(docs: &Path, name: &str) -> Result<Self, BookError> {
+        let path = docs.join(name);
+        let failed = |message: String| BookError::Read { path: path.clone(), message };
+        let text = read::text(&path, read::MOST_TEXT).map_err(|error| failed(error.to_string()))?;
+        let heading = text.lines().find_map(|line| line.strip_prefix("# "));
+        let title =
+            heading.ok_or_else(|| failed("it has no heading; expected a line such as `# Title`".into()))?.to_owned();
+        Ok(Self { title, text, folder: if name.contains('/') { "book" } else { "" } })
+    }
+
+    /// The text at its place in the book. `pictures` collects the files of the documentation that it shows.
+    pub(crate) fn body(&self, place: &Place<'_>, pictures: &mut BTreeSet<String>) -> Markup {
+        let mut shown = BTreeSet::new();
+        let picture = |name: &str| (!name.contains("://")).then(|| place.to(&format!("pictures/{}", flat(name))));
+        for name in images(&self.text) {
+            shown.insert(if self.folder.is_empty() { name } else { format!("{}/{name}", self.folder) });
+        }
+        pictures.extend(shown);
+        let html = markdown(&self.text, &picture);
+        PreEscaped(links(&html.0, place))
+    }
+}
+
+/// The name of a picture in the book's one folder of pictures.
+pub(crate) fn flat(name: &str) -> String {
+    name.trim_start_matches("../").replace('/', "-")
+}
+
+/// The pictures that a text shows, by their addresses.
+fn images(text: &str) -> impl Iterator<Item = String> {
+    text.split("![").skip(1).filter_map(|rest| {
+        let address = rest.split_once("](")?.1.split_once(')')?.0;
+        (!address.contains("://")).then(|| address.to_owned())
+    })
+}
+
+/// Links of a text as the book has them: `.md` pages are its own, and what the book does not have is no link.
+fn links(html: &str, place: &Place<'_>) -> String {
+    let mut text = String::new();
+    let mut rest = html;
+    while let Some((before, after)) = rest.split_once("<a href=\"") {
+        text += before;
+        let Some((address, after)) = after.split_once('"') else { break };
+        match of_book(address) {
+            Some(address) if address.starts_with('#') || address.contains("://") => {
+                text += &format!("<a href=\"{address}\"")
+            }
+            Some(address) => text += &format!("<a href=\"{}\"", place.to(&address)),
+            None => text += "<a",
+        }
+        rest = after;
+    }
+    text + rest
+}
+
+/// An address as the book has it; `None` where it leads out of the book.
+fn of_book(address: &str) -> Option<String> {
+    if address.starts_with('#') || address.contains("://") {
+        return Some(address.to_owned());
+    }
+    let (path, fragment) =
+        address.split_once('#').map_or((address, String::new()), |(path, at)| (path, format!("#{at}")));
+    let name = path.trim_start_matches("../").trim_start_matches("docs/");
+    if let Some((_, page)) = PAGES.iter().find(|(own, _)| *own == name) {
+        return Some(format!("{page}{fragment}"));
+    }
+    if let Some(schema) = name.strip_prefix("schemas/").and_then(|name| name.strip_suffix(".json")) {
+        return Some(format!("reference/schema/{schema}.html"));
+    }
+    let chapter = name.strip_suffix(".md")?;
+    let page = match chapter {
+        // The first chapter is the way in.
+        "what-it-tells-you" => "index".to_owned(),
+        "README" | "CONTRIBUTING" | "ARCHITECTURE" | "CHANGELOG" => return None,
+        other => other.to_owned(),
+    };
+    Some(format!("{page}.html{fragment}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{flat, images, links, of_book};
+    use crate::contents::Place;
+
+    #[test]
+    fn links_lead_within_the_book_or_are_none() {
+        assert_eq!(of_book("gate.md#files").as_deref(), Some("reference/gate.html#files"));
+        assert_eq!(of_book("formula/fog/exp.md").as_deref(), Some("formula/fog/exp.html"));
+        assert_eq!(of_book("schemas/frame.json").as_deref(), Some("reference/schema/frame.html"));
+        assert_eq!(of_book("../README.md"), None);
+        let html = links(
+            r##"<p><a href="gate.md">g</a> <a href="../README.md">r</a> <a href="#x">x</a></p>"##,
+            &Place::new("formula/a.html"),
+        );
+        assert_eq!(html, r##"<p><a href="../reference/gate.html">g</a> <a>r</a> <a href="#x">x</a></p>"##);
+    }
+
+    #[test]
+    fn pictures_are_found() {
+        assert_eq!(images("a ![x](bench/a.svg) b ![y](https://z)").collect::<Vec<_>>(), ["bench/a.svg"]);
+        assert_eq!(flat("bench/a.svg"), "bench-a.svg");
+    }
+}

@@ -1,0 +1,252 @@
+//! What explains a failing case without its renderer: the formula's steps, the mistake, and the output's course along an input.
+
+use super::fault::Fault;
+use super::seen::SeenStep;
+use super::variation::Variation;
+use lightmeter_arithmetic::{Accept, Profile, Trace, trace};
+use lightmeter_catalogue::cases::{Domain, Kind};
+use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
+use lightmeter_document::Number;
+use lightmeter_document::explained::{CoursePoint, Explained, MistakenStep, OutputCourse, ShownMistake, ShownStep};
+use lightmeter_document::run::{Failure, Group};
+use std::collections::HashSet;
+
+/// Points of a course.
+const POINTS: u32 = 97;
+/// The most cases that are explained.
+const MOST: usize = 500;
+
+/// What explains the first failing case of each formula on each adapter.
+#[must_use]
+pub fn explain(failures: &[Failure], groups: &[Group], profile: &Profile) -> Vec<Explained> {
+    let catalogue = catalogue();
+    let (mut explained, mut seen) = (vec![], HashSet::new());
+    for failure in failures {
+        let is_its = |member: &&Member| {
+            failure.id.strip_prefix(&member.spec.id).is_some_and(|rest| rest.starts_with('/'))
+                || member.case(&failure.id).is_some()
+        };
+        let Some(member) = catalogue.iter().find(is_its) else { continue };
+        if explained.len() == MOST || !seen.insert((member.spec.id.clone(), &failure.adapter)) {
+            continue;
+        }
+        let Some(inputs) = inputs_of(failure, member) else { continue };
+        let is_group = |group: &&Group| {
+            group.adapter == failure.adapter && group.stage == failure.stage && failure.id.starts_with(&group.id)
+        };
+        let mistakes = groups.iter().find(is_group).map_or(&[][..], |group| &group.mistakes);
+        explained.push(explained_case(&failure.id, member, &inputs, &failure.output, mistakes, profile));
+    }
+    explained
+}
+
+/// The row of a failing case.
+fn inputs_of(failure: &Failure, member: &Member) -> Option<Vec<f32>> {
+    let mut row = vec![];
+    if let Some(answer) = &failure.answer {
+        #[expect(clippy::cast_possible_truncation, reason = "inputs are f32, widened")]
+        row.extend(answer.inputs.iter().map(|x| x.0 as f32));
+    } else {
+        for input in member.spec.inputs {
+            let value = failure.inputs_hex.get(input.name)?;
+            let numbers = value.as_array().map_or(std::slice::from_ref(value), Vec::as_slice);
+            for number in numbers {
+                let bits = u32::from_str_radix(number.as_str()?.strip_prefix("0x")?, 16).ok()?;
+                row.push(f32::from_bits(bits));
+            }
+        }
+    }
+    (row.len() == member.spec.input_len()).then_some(row)
+}
+
+fn explained_case(
+    id: &str,
+    member: &Member,
+    inputs: &[f32],
+    output: &str,
+    mistakes: &[String],
+    profile: &Profile,
+) -> Explained {
+    let spec = &member.spec;
+    let mut outputs = vec![Trace { value: 0.0, interval: Accept::ANY }; spec.output_len()];
+    let ((), steps) = trace::record(|| member.formula.trace(inputs, profile, &mut outputs));
+    let step = |step: trace::TraceStep| ShownStep {
+        name: step.name.into(),
+        value: Number(step.result.value),
+        interval: bounds(&step.result.interval),
+    };
+    let faults: Vec<&'static Fault> = mistakes.iter().filter_map(|name| Fault::by_name(name)).collect();
+    let variation = if faults.is_empty() { None } else { Variation::new(member, &faults) };
+    let place = (0..spec.output_len()).find(|&k| spec.output_name(k) == output).unwrap_or_default();
+    Explained {
+        id: id.to_owned(),
+        formula: spec.text.into(),
+        rules: spec.rules().into_iter().map(|rule| rule.to_string().into()).collect(),
+        source: spec.source.into(),
+        steps: steps.into_iter().map(step).collect(),
+        mistake: variation.as_ref().map(|variation| shown_mistake(variation, member, inputs, profile)),
+        course: best_course(member, inputs, place, variation.as_ref(), profile),
+    }
+}
+
+fn bounds(interval: &Accept) -> [Number; 2] {
+    [Number(interval.low()), Number(interval.high())]
+}
+
+/// What a renderer with a mistake gives for a row of inputs.
+#[must_use]
+pub fn shown_mistake(variation: &Variation<'_>, member: &Member, inputs: &[f32], profile: &Profile) -> ShownMistake {
+    let count = member.spec.output_len();
+    let (mut value, mut legal) = (vec![0.0_f64; count], vec![Accept::ANY; count]);
+    variation.evaluate(inputs, &mut value);
+    variation.interval(inputs, profile, &mut legal);
+    let output = |k: usize| ShownStep {
+        name: member.spec.output_name(k).into(),
+        value: Number(value[k]),
+        interval: bounds(&legal[k]),
+    };
+    let step =
+        |SeenStep { name, right, made }| MistakenStep { name: name.into(), right: Number(right), made: Number(made) };
+    let names: Vec<&str> = variation.faults.iter().map(|fault| fault.name).collect();
+    ShownMistake {
+        name: names.join(" and ").into(),
+        says: variation.says().into(),
+        outputs: (0..count).map(output).collect(),
+        steps: variation.steps(inputs).into_iter().map(step).collect(),
+    }
+}
+
+/// The course along the input on which the mistake shows best, or along which the output varies most where there is none.
+fn best_course(
+    member: &Member,
+    inputs: &[f32],
+    output: usize,
+    variation: Option<&Variation<'_>>,
+    profile: &Profile,
+) -> Option<OutputCourse> {
+    if !matches!(member.spec.kind, Kind::Arithmetic | Kind::Blend(_)) {
+        return None;
+    }
+    let courses = (0..inputs.len()).filter_map(|input| course(member, inputs, (input, output), variation, profile));
+    first_best(courses)
+}
+
+/// A formula's first output along the input on which it varies most, at the middle of its domain or at one of its random cases.
+#[must_use]
+pub fn typical_course(member: &Member, profile: &Profile) -> Option<OutputCourse> {
+    const CASES: u64 = 3;
+    let row = |case| {
+        let mut row = vec![];
+        member.inputs(case, 1, &mut row);
+        row
+    };
+    let mut middle = vec![];
+    member.spec.inputs.iter().for_each(|input| input.middle(&mut middle));
+    let rows = std::iter::once(middle).chain((0..CASES).map(|case| row(CaseRef::Random(case))));
+    first_best(rows.filter_map(|row| best_course(member, &row, 0, None, profile)))
+}
+
+/// The clearest of several courses, of equals the first.
+fn first_best(courses: impl Iterator<Item = OutputCourse>) -> Option<OutputCourse> {
+    let mut best: Option<(f64, OutputCourse)> = None;
+    for course in courses {
+        let clarity = clarity(&course);
+        if clarity > best.as_ref().map_or(0.0, |(most, _)| *most) {
+            best = Some((clarity, course));
+        }
+    }
+    best.map(|(_, course)| course)
+}
+
+/// How much of it a course shows: how many of its points tell the mistake, and how far its values vary.
+fn clarity(course: &OutputCourse) -> f64 {
+    let points = || course.points.iter();
+    let tells = |point: &&CoursePoint| {
+        let [low, high] = point.interval;
+        point.mistaken.is_some_and(|mistaken| !(low.0..=high.0).contains(&mistaken.0))
+    };
+    let finite = || points().map(|point| point.reference.0).filter(|x| x.is_finite());
+    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    // A colour goes straight up with most of the colours that it is made of, which tells little.
+    let weight = if course.unit.as_deref() == Some("color") { 0.25 } else { 1.0 };
+    let variation = if most > least { weight * ((most - least) / most.abs().max(least.abs())).min(1.0) } else { 0.0 };
+    #[expect(clippy::cast_precision_loss, reason = "a hundred points")]
+    let telling = points().filter(tells).count() as f64 / f64::from(POINTS);
+    if variation > 0.0 || telling > 0.0 { telling + variation } else { 0.0 }
+}
+
+/// An output along a number of the inputs; `None` where that is drawn from no range.
+#[must_use]
+fn course(
+    member: &Member,
+    inputs: &[f32],
+    (input, output): (usize, usize),
+    variation: Option<&Variation<'_>>,
+    profile: &Profile,
+) -> Option<OutputCourse> {
+    let spec = &member.spec;
+    let at = inputs[input];
+    let (from, to, is_logarithmic, unit) = range(member, inputs, input)?;
+    let (from, to) = (from.min(at.into()), to.max(at.into()));
+    if !(from.is_finite() && to.is_finite() && from < to) || (is_logarithmic && from <= 0.0) {
+        return None;
+    }
+    let count = spec.output_len();
+    let (mut reference, mut legal) = (vec![0.0_f64; count], vec![Accept::ANY; count]);
+    let mut mistaken = vec![0.0_f64; count];
+    let mut row = inputs.to_vec();
+    let mut xs: Vec<f64> = (0..POINTS)
+        .map(|k| {
+            let share = f64::from(k) / f64::from(POINTS - 1);
+            if is_logarithmic { from * (to / from).powf(share) } else { from + share * (to - from) }
+        })
+        .collect();
+    xs.push(at.into());
+    xs.sort_by(f64::total_cmp);
+    let mut point = |x: f64| {
+        #[expect(clippy::cast_possible_truncation, reason = "an input is an f32")]
+        let x = x as f32;
+        row[input] = x;
+        member.formula.reference(&row, &mut reference);
+        member.formula.interval(&row, profile, &mut legal);
+        let mistaken = variation.map(|variation| {
+            variation.evaluate(&row, &mut mistaken);
+            Number(mistaken[output])
+        });
+        CoursePoint {
+            x: Number(x.into()),
+            reference: Number(reference[output]),
+            interval: bounds(&legal[output]),
+            mistaken,
+        }
+    };
+    Some(OutputCourse {
+        input: spec.input_name(input),
+        unit: (!unit.is_empty()).then(|| unit.into()),
+        output: spec.output_name(output),
+        at: Number(at.into()),
+        is_logarithmic,
+        points: xs.into_iter().map(&mut point).collect(),
+    })
+}
+
+/// From where to where a number of the inputs goes, whether by its logarithm, and its unit.
+fn range(member: &Member, inputs: &[f32], number: usize) -> Option<(f64, f64, bool, &'static str)> {
+    let mut start = 0;
+    for input in member.spec.inputs {
+        let end = start + input.shape.components();
+        if (start..end).contains(&number) {
+            let length = || inputs[start..end].iter().map(|&x| f64::from(x).powi(2)).sum::<f64>().sqrt();
+            let (from, to, is_logarithmic) = match input.domain {
+                Domain::Uniform(low, high) => (low.into(), high.into(), false),
+                Domain::LogUniform(low, high) => (low.into(), high.into(), true),
+                Domain::Unit => (0.0, 1.0, false),
+                Domain::Vector(..) => (-length(), length(), false),
+                _ => return None,
+            };
+            return Some((from, to, is_logarithmic, input.unit));
+        }
+        start = end;
+    }
+    None
+}

@@ -1,0 +1,174 @@
+//! The card of a formula that fails: what it computes, of which inputs, where it departs, why, and how to see it again.
+
+use super::matrix::{card_id, is_failing, short};
+use super::plot;
+use crate::text::{made_at, plain};
+use lightmeter_document::explained::{Explained, ShownMistake};
+use lightmeter_document::run::{Failure, Group, Report};
+use lightmeter_document::{Number, is_worse, thousands};
+use maud::{Markup, html};
+
+/// The most cards of a page.
+const MOST: usize = 400;
+/// Cards that are open at first.
+const OPEN: usize = 3;
+
+/// A command that can be copied.
+pub(super) fn command(command: &str) -> Markup {
+    html! { p.command { code { (command) } " " button type="button" data-copy=(command) { "copy" } } }
+}
+
+/// The cards of all formulas that fail, worst first.
+pub(super) fn cards(report: &Report) -> Vec<Markup> {
+    let failing = |group: &&Group| is_failing(group) && group.image.as_ref().is_none_or(|image| image.files.is_empty());
+    let mut formulas: Vec<Vec<&Group>> = vec![];
+    for group in report.groups.iter().filter(failing) {
+        match formulas.iter_mut().find(|own| own[0].id == group.id && own[0].adapter == group.adapter) {
+            Some(own) => own.push(group),
+            None => formulas.push(vec![group]),
+        }
+    }
+    let share = |groups: &[&Group]| {
+        let (failed, verdicts) =
+            groups.iter().fold((0, 0), |(f, v), group| (f + group.totals.failed, v + group.totals.verdicts));
+        #[expect(clippy::cast_precision_loss, reason = "shares")]
+        (failed as f64 / verdicts.max(1) as f64)
+    };
+    formulas.sort_by(|a, b| share(b).total_cmp(&share(a)));
+    let left = formulas.len().saturating_sub(MOST);
+    let mut cards: Vec<Markup> =
+        formulas.iter().take(MOST).enumerate().map(|(place, groups)| card(report, groups, place < OPEN)).collect();
+    if left > 0 {
+        cards.push(html! { p { (left) " more are in the table below and in the JSON." } });
+    }
+    cards
+}
+
+fn card(report: &Report, groups: &[&Group], is_open: bool) -> Markup {
+    let group = groups[0];
+    let is_its = |failure: &&Failure| {
+        let below = failure.id.strip_prefix(&group.id).is_some_and(|rest| rest.starts_with('/'));
+        below && failure.adapter == group.adapter
+    };
+    let failure = report.failures.iter().find(is_its);
+    let explained = failure.and_then(|failure| report.explained.iter().find(|one| one.id == failure.id));
+    html! {
+        details.card id=(card_id(&group.id, &group.adapter)) open[is_open] {
+            summary {
+                span.fail { "✗" } " " b { (group.id) } " on " (group.adapter) " "
+                span.quiet { @for own in groups { (own.place()) ": " (thousands(own.totals.failed)) " of " (thousands(own.totals.verdicts)) " fail. " } }
+            }
+            @for (place, own) in groups.iter().enumerate() {
+                @for what in own.explanation.iter().chain(&own.problem) {
+                    @if place == 0 || !groups[..place].iter().any(|other| other.explanation.as_ref() == Some(what) || other.problem.as_ref() == Some(what)) {
+                        p.cause { (what) }
+                    }
+                }
+            }
+            @if let Some(shader) = &report.shader {
+                @for place in shader.places(&group.id) { pre { (made_at(shader, place)) } }
+            }
+            @if let Some(explained) = explained { (formula(explained)) }
+            @if let Some(failure) = failure { (case(failure, explained)) }
+        }
+    }
+}
+
+fn formula(explained: &Explained) -> Markup {
+    html! {
+        p.formula { (explained.formula) }
+        @if !explained.rules.is_empty() { ul.rules { @for rule in &explained.rules { li { (rule) } } } }
+        p.quiet { "source: " (explained.source) }
+    }
+}
+
+/// The first failing case: a line with what is legal, its inputs, its steps, and its course along one input.
+fn case(failure: &Failure, explained: Option<&Explained>) -> Markup {
+    html! {
+        h3 { "A failing case: " code { (failure.id) } }
+        (verdict(failure))
+        div.columns {
+            div {
+                h4 { "inputs" }
+                div.wide tabindex="0" role="group" aria-label="inputs" { table.inputs {
+                    @for (name, value) in &failure.inputs {
+                        tr { th scope="row" { (name) } td.number { (plain(value)) } td.quiet { @if let Some(unit) = failure.units.get(name) { (unit) } } }
+                    }
+                } }
+            }
+            @if let Some(explained) = explained.filter(|explained| !explained.steps.is_empty()) { div { (steps(explained)) } }
+        }
+        @if let Some(course) = explained.and_then(|explained| explained.course.as_ref()) {
+            (plot::course(course, (course.output == failure.output).then_some(failure.value.0)))
+        }
+        @if !failure.rerun.is_empty() { (command(&failure.rerun)) }
+    }
+}
+
+fn verdict(failure: &Failure) -> Markup {
+    let [low, high] = failure.interval;
+    if let Some(answer) = &failure.answer {
+        return html! {
+            div.wide tabindex="0" role="group" aria-label="outputs" { table {
+                thead { tr { th scope="col" { "output" } th scope="col" { "answer" } th scope="col" { "legal" } th scope="col" { "reference" } } }
+                @for (k, name) in answer.outputs.iter().enumerate() {
+                    @let legal = answer.interval.get(k).copied().unwrap_or([Number(f64::NAN); 2]);
+                    @let value = answer.value.get(k).copied();
+                    @let is_out = value.is_none_or(|value| !(legal[0].0 <= value.0 && value.0 <= legal[1].0));
+                    tr class=[is_out.then_some("fail")] {
+                        th scope="row" { (name) }
+                        td.number { @if let Some(value) = value { (value) } @else { "—" } }
+                        td.number { (legal[0]) " to " (legal[1]) }
+                        td.number { @if let Some(reference) = answer.reference.get(k) { (reference) } }
+                    }
+                }
+            } }
+            @if let Some(problem) = &answer.problem { p.cause { (problem) } }
+        };
+    }
+    html! {
+        p {
+            code { (failure.output) } " is " b.fail { (failure.value) } @if failure.unwritten { " (it was never written)" }
+            "; legal " @match &failure.promise { Some(promise) => { "is " (promise) } None => { "are " (low) " to " (high) ", the reference is " (failure.reference) } }
+            @if failure.error_ulp.0.is_finite() { ", from which it is " (short(failure.error_ulp.0)) " ULP" }
+            "."
+        }
+        @if failure.promise.is_none() { (plot::line(low.0, high.0, failure.reference.0, failure.value.0)) }
+    }
+}
+
+/// The steps with what is legal of each, beside what they are with the mistake; the first that departs is marked.
+fn steps(explained: &Explained) -> Markup {
+    let mistake = explained.mistake.as_ref();
+    let made = |place: usize| -> Option<Number> {
+        // The components of a vector share a name: the same place among those of that name.
+        let name = &explained.steps[place].name;
+        let nth = explained.steps[..place].iter().filter(|step| step.name == *name).count();
+        let seen: Vec<_> = mistake?.steps.iter().filter(|step| step.name == *name).collect();
+        let right = explained.steps[place].value.0;
+        // Only the numbers that differ are told of a mistake.
+        let same = seen.iter().find(|step| step.right.0.to_bits() == right.to_bits());
+        same.or_else(|| seen.get(nth)).filter(|step| step.right.0.to_bits() == right.to_bits()).map(|step| step.made)
+    };
+    let departs = (0..explained.steps.len()).find(|&place| {
+        let [low, high] = explained.steps[place].interval;
+        made(place).is_some_and(|made| is_worse(made.0, high.0) || is_worse(low.0, made.0))
+    });
+    html! {
+        h4 { "steps" }
+        div.wide tabindex="0" role="group" aria-label="steps" { table.steps {
+            thead { tr {
+                th scope="col" { "step" } th scope="col" { "reference" } th scope="col" { "legal" }
+                @if let Some(ShownMistake { name, .. }) = mistake { th scope="col" { "with " (name) } }
+            } }
+            @for (place, step) in explained.steps.iter().enumerate() {
+                tr class=[(departs == Some(place)).then_some("departs")] {
+                    th scope="row" { (step.name) @if departs == Some(place) { " ← departs here" } }
+                    td.number { (step.value.narrow()) }
+                    td.number { (step.interval[0].narrow()) " to " (step.interval[1].narrow()) }
+                    @if mistake.is_some() { td.number { @if let Some(made) = made(place) { (made.narrow()) } } }
+                }
+            }
+        } }
+    }
+}

@@ -1,0 +1,222 @@
+//! Formulas by subjects: a cell says whether it passes, and how near its values come to the edge of what is legal.
+
+use lightmeter_document::run::{Group, Report};
+use lightmeter_document::{Number, thousands};
+use maud::{Markup, html};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::{Result, Write};
+
+/// A stage of a subject.
+pub(super) struct Column<'a> {
+    /// The subject, with the name of its result where there are several.
+    subject: String,
+    /// The stage, and the target of a blend unit.
+    place: String,
+    groups: BTreeMap<&'a str, &'a Group>,
+}
+
+/// Whether a group is wrong.
+pub(super) fn is_failing(group: &Group) -> bool {
+    group.totals.failed > 0 || group.problem.is_some()
+}
+
+/// The columns of results.
+pub(super) fn columns<'a>(reports: &[(&str, &'a Report)]) -> Vec<Column<'a>> {
+    let mut columns: Vec<Column<'a>> = vec![];
+    for (name, report) in reports {
+        for adapter in &report.adapters {
+            let mut own: Vec<Column<'a>> = vec![];
+            for group in report.groups.iter().filter(|group| group.adapter == adapter.name) {
+                // A scene's target is its own: all scenes share a column.
+                let is_scene = group.id.starts_with("scene/");
+                let place = if is_scene { group.stage.to_string() } else { group.place() };
+                let column = match own.iter_mut().find(|column| column.place == place) {
+                    Some(column) => column,
+                    None => {
+                        let subject =
+                            if name.is_empty() { adapter.name.clone() } else { format!("{name}: {}", adapter.name) };
+                        own.push(Column { subject, place, groups: BTreeMap::new() });
+                        own.last_mut().unwrap_or_else(|| unreachable!("it was just added"))
+                    }
+                };
+                column.groups.insert(&group.id, group);
+            }
+            columns.extend(own);
+        }
+    }
+    columns
+}
+
+/// The ids of all rows, in the order of the first result.
+fn ids<'a>(columns: &[Column<'a>]) -> Vec<&'a str> {
+    columns.iter().flat_map(|column| column.groups.keys().copied()).collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+fn family(id: &str) -> &str {
+    id.split('/').next().unwrap_or_default()
+}
+
+/// What a cell is: its class, what it shows, and what it says in full.
+fn cell(group: &Group) -> (&'static str, String, String) {
+    if let Some(reason) = &group.skip_reason {
+        return ("skip", "–".into(), format!("skipped: {reason}"));
+    }
+    let totals = &group.totals;
+    let says = format!(
+        "{} cases; greatest error {}, {} of what is legal",
+        thousands(totals.cases),
+        error(group),
+        share(group.margin_max)
+    );
+    if is_failing(group) {
+        let what = if totals.failed > 0 { format!("✗ {}", thousands(totals.failed)) } else { "✗ all".into() };
+        return ("fail", what, format!("{} of {} fail; {says}", thousands(totals.failed), thousands(totals.verdicts)));
+    }
+    if totals.expected_failures > 0 || group.expected_problem.is_some() {
+        return ("known", format!("≈ {}", thousands(totals.expected_failures)), format!("as known; {says}"));
+    }
+    if totals.verdicts > 0 && totals.verdicts == totals.indeterminate {
+        return ("skip", "?".into(), "the accuracy rules permit anything".into());
+    }
+    ("pass", share(group.margin_max), says)
+}
+
+/// An error in its unit.
+fn error(group: &Group) -> String {
+    let unit = if group.target.as_deref().is_some_and(|target| target.contains('8')) { "steps" } else { "ULP" };
+    format!("{} {unit}", short(group.error_ulp_max.0))
+}
+
+fn share(margin: Number) -> String {
+    if margin.0 == 0.0 { "0".into() } else { short(margin.0) }
+}
+
+/// A number in three digits.
+pub(super) fn short(x: f64) -> String {
+    match x.abs() {
+        _ if !x.is_finite() => Number(x).to_string(),
+        0.0 => "0".into(),
+        small if small < 0.001 => format!("{x:.1e}"),
+        small if small < 10.0 => format!("{x:.2}"),
+        middle if middle < 1e5 => format!("{x:.0}"),
+        _ => format!("{x:.2e}"),
+    }
+}
+
+/// The filters, whose state the page keeps in its address.
+pub(super) fn filters(columns: &[Column<'_>]) -> Markup {
+    let families: BTreeSet<&str> = ids(columns).into_iter().map(family).collect();
+    let subjects: BTreeSet<&str> = columns.iter().map(|column| column.subject.as_str()).collect();
+    html! {
+        form #filters role="search" {
+            label { "Name " input #q type="search" name="q" autocomplete="off" placeholder="fog, blinn …"; }
+            label { "Show " select name="show" {
+                option value="" { "all" }
+                option value="fail" { "what fails" }
+                option value="known" { "known failures" }
+                option value="pass" { "what passes" }
+                option value="skip" { "what was skipped" }
+            } }
+            label { "Family " select name="family" {
+                option value="" { "all" }
+                @for family in families { option { (family) } }
+            } }
+            @if subjects.len() > 1 {
+                label { "Subject " select name="subject" {
+                    option value="" { "all" }
+                    @for subject in &subjects { option { (subject) } }
+                } }
+            }
+            output #count role="status" {}
+        }
+    }
+}
+
+/// The table.
+pub(super) fn table(columns: &[Column<'_>]) -> Markup {
+    let mut subjects: Vec<(&str, usize)> = vec![];
+    for column in columns {
+        match subjects.last_mut().filter(|(name, _)| *name == column.subject) {
+            Some((_, count)) => *count += 1,
+            None => subjects.push((&column.subject, 1)),
+        }
+    }
+    html! {
+        div.wide tabindex="0" role="group" aria-label="all formulas" {
+            table #matrix {
+                thead {
+                    tr { th rowspan="2" scope="col" { "formula" } @for (subject, count) in &subjects { th colspan=(count) scope="colgroup" { (subject) } } }
+                    tr { @for column in columns { th scope="col" data-subject=(column.subject) { (column.place) } } }
+                }
+                tbody {
+                    @for id in ids(columns) {
+                        tr data-family=(family(id)) {
+                            th scope="row" { (id) }
+                            @for column in columns { (told(id, column)) }
+                        }
+                    }
+                }
+            }
+        }
+        p.hint { "A number is the greatest error as a share of what is legal: 1 is the edge. ✗ fails, ≈ fails as is known, – was skipped, ? may be anything." }
+    }
+}
+
+fn told(id: &str, column: &Column<'_>) -> Markup {
+    let Some(group) = column.groups.get(id) else { return html! { td {} } };
+    let (class, shows, says) = cell(group);
+    let card = (class == "fail").then(|| card_id(id, &group.adapter));
+    html! {
+        td class=(class) title=(says) data-subject=(column.subject) {
+            @if let Some(card) = card { a href={ "#" (card) } { (shows) } } @else { (shows) }
+        }
+    }
+}
+
+/// The name of the card of a group that fails.
+pub(super) fn card_id(id: &str, adapter: &str) -> String {
+    let plain = |text: &str| text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect::<String>();
+    format!("fails-{}-{}", plain(id), plain(adapter))
+}
+
+/// The table in Markdown: the counts of each family, and each formula that fails, is expected to, or was skipped somewhere.
+pub(super) fn write_markdown(columns: &[Column<'_>], out: &mut impl Write) -> Result {
+    writeln!(out, "# Formulas by subjects\n")?;
+    writeln!(out, "Each cell has how many formulas pass, and of how many.\n")?;
+    write!(out, "| family |")?;
+    columns.iter().try_for_each(|column| write!(out, " {}, {} |", column.subject, column.place))?;
+    writeln!(out, "\n|---|{}", "--:|".repeat(columns.len()))?;
+    let ids = ids(columns);
+    let families: BTreeSet<&str> = ids.iter().map(|id| family(id)).collect();
+    for name in families {
+        write!(out, "| {name} |")?;
+        for column in columns {
+            let own: Vec<&&Group> =
+                column.groups.iter().filter(|(id, _)| family(id) == name).map(|(_, group)| group).collect();
+            let passing = own.iter().filter(|group| cell(group).0 == "pass").count();
+            if own.is_empty() { write!(out, " |")? } else { write!(out, " {passing}/{} |", own.len())? }
+        }
+        writeln!(out)?;
+    }
+    let is_told = |id: &&&str| {
+        columns
+            .iter()
+            .filter_map(|column| column.groups.get(**id))
+            .any(|group| !matches!(cell(group).0, "pass" | "skip"))
+    };
+    let told: Vec<&&str> = ids.iter().filter(is_told).collect();
+    if told.is_empty() {
+        return Ok(());
+    }
+    write!(out, "\n## What fails\n\n| formula |")?;
+    columns.iter().try_for_each(|column| write!(out, " {}, {} |", column.subject, column.place))?;
+    writeln!(out, "\n|---|{}", "--:|".repeat(columns.len()))?;
+    for id in told {
+        write!(out, "| {id} |")?;
+        for column in columns {
+            write!(out, " {} |", column.groups.get(id).map_or_else(String::new, |group| cell(group).1))?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,176 @@
+//! Results as a page that people look at: one file of HTML with everything in it, made from documents alone.
+//!
+//! Nothing in it is fetched from elsewhere. Its content security policy permits the page's own style and script, by their hashes, and pictures
+//! that are embedded; names of others are text wherever they stand.
+
+mod equation;
+mod failure;
+mod markdown;
+mod matrix;
+mod overview;
+mod page;
+mod plot;
+mod scene;
+
+pub use equation::equation;
+pub use markdown::markdown;
+pub use page::{PageKind, embedded, page};
+pub use plot::course as course_plot;
+
+use crate::against::Against;
+use crate::bench::{page as bench_page, plot as bench_plot};
+use crate::page::selftest::{self, SelftestRun};
+use crate::page::sweep::{self, Swept};
+use lightmeter_document::bench::BenchDocument;
+use lightmeter_document::gate::GateReport;
+use lightmeter_document::run::Report;
+use matrix::Column;
+use maud::{Markup, html};
+use overview::Facts;
+use std::fmt;
+
+/// The page of a run.
+#[must_use]
+pub fn of_run(report: &Report) -> String {
+    run_page(report, report.is_success(), &[])
+}
+
+/// The page of a gate, whose counts are of cases.
+#[must_use]
+pub fn of_gate(gate: &GateReport) -> String {
+    let report = Report::from(gate.clone());
+    let incidents: Vec<String> = gate.incidents.iter().chain(&gate.problems.first).cloned().collect();
+    run_page(&report, !gate.is_failed() && !gate.is_broken() && gate.has_judged(), &incidents)
+}
+
+fn run_page(report: &Report, is_success: bool, incidents: &[String]) -> String {
+    let facts = Facts::of_run(report, is_success);
+    let columns = matrix::columns(&[("", report)]);
+    let cards = failure::cards(report);
+    let scenes = scene::cards(report);
+    let body = html! {
+        (overview::head(&facts))
+        (against(report, incidents))
+        @if !cards.is_empty() || !scenes.is_empty() {
+            section #failures {
+                h2 { "What fails" }
+                p.hint { "Worst first. Keys: " kbd { "j" } " and " kbd { "k" } " go to the next and the previous one, " kbd { "/" } " to the filter." }
+                @for card in scenes.iter().chain(&cards) { (card) }
+            }
+        }
+        (all(&columns))
+        (overview::notes(report))
+    };
+    page(&facts.title, PageKind::Report, &body)
+}
+
+/// The matrix of all formulas, with its filters.
+fn all(columns: &[Column<'_>]) -> Markup {
+    html! {
+        section #all {
+            h2 { "Everything that was judged" }
+            (matrix::filters(columns))
+            (matrix::table(columns))
+        }
+    }
+}
+
+/// What a comparison with a baseline says, what was expected to fail, and what went wrong with a renderer.
+fn against(report: &Report, incidents: &[String]) -> Markup {
+    let lines = Against::of_run(report).lines();
+    let has_baseline = !(report.regressions.is_empty() && report.mended.is_empty() && report.added.is_empty());
+    html! {
+        @if !incidents.is_empty() {
+            section { h2 { "What went wrong with the renderer" } ul.bad { @for incident in incidents { li { (incident) } } } }
+        }
+        @if !lines.is_empty() || has_baseline {
+            section #compared {
+                h2 { "Compared with what is known" }
+                @if !lines.is_empty() {
+                    h3 { "Worse than expected" }
+                    ul.bad { @for (title, what) in &lines { li { b { (title) } ": " (what) } } }
+                }
+                @if !report.mended.is_empty() {
+                    h3 { "Better than the baseline" }
+                    ul.good { @for what in &report.mended { li { (what) } } }
+                }
+                @if !report.added.is_empty() {
+                    h3 { "Not in the baseline" }
+                    ul { @for what in &report.added { li { (what) } } }
+                }
+            }
+        }
+    }
+}
+
+/// A page with a matrix of formulas by the subjects of several results, each with the name that tells it from the others.
+#[must_use]
+pub fn of_matrix(reports: &[(&str, &Report)]) -> String {
+    let columns = matrix::columns(reports);
+    let title = "Formulas by subjects";
+    let body = html! {
+        header.head { h1 { (title) } p { "One column for each stage of each subject. A number is the greatest error as a share of what is legal." } }
+        dl.facts {
+            @for (name, report) in reports {
+                dt { (name) }
+                dd { @for adapter in &report.adapters { (adapter.name) ": " (adapter.device) ", " (adapter.driver) br; } "seed " (report.seed) ", profile " (report.profile) }
+            }
+        }
+        (all(&columns))
+    };
+    page(title, PageKind::Report, &body)
+}
+
+/// The same matrix in Markdown: a row for each formula that does not simply pass everywhere, and the counts of the others.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn matrix_markdown(reports: &[(&str, &Report)], out: &mut impl fmt::Write) -> fmt::Result {
+    matrix::write_markdown(&matrix::columns(reports), out)
+}
+
+/// The page of sweeps.
+///
+/// # Errors
+/// Where a part of it cannot be written.
+pub fn of_sweeps(sweeps: &[Swept]) -> Result<String, fmt::Error> {
+    let mut text = String::new();
+    sweep::markdown(sweeps, &mut text)?;
+    let is_success = sweeps.iter().all(|swept| swept.document.statistics.failed == 0 && swept.document.is_finished());
+    let facts = Facts::of_sweeps(sweeps, is_success);
+    let body = html! {
+        (overview::head(&facts))
+        @for swept in sweeps { (plot::errors(&swept.document)) }
+        section { (markdown(&text, &|_| None)) }
+    };
+    Ok(page(&facts.title, PageKind::Report, &body))
+}
+
+/// The page of a bench, with its pictures.
+///
+/// # Errors
+/// Where a part of it cannot be drawn or written.
+pub fn of_bench(document: &BenchDocument) -> Result<String, Box<dyn std::error::Error + Send + Sync>> {
+    let pictures = bench_plot::pictures(document)?;
+    let mut text = String::new();
+    bench_page::markdown(document, &pictures, "", &mut text)?;
+    let picture = |name: &str| {
+        let found = pictures.iter().find(|picture| name.strip_suffix(".svg") == Some(&picture.stem()))?;
+        Some(embedded("image/svg+xml", found.svg.as_bytes()))
+    };
+    let facts = Facts::of_bench(document);
+    let body = html! { (overview::head(&facts)) section { (markdown(&text, &picture)) } };
+    Ok(page(&facts.title, PageKind::Report, &body))
+}
+
+/// The page of a self-test.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn of_selftest(run: &SelftestRun) -> Result<String, fmt::Error> {
+    let mut text = String::new();
+    selftest::markdown(run, &mut text)?;
+    let facts = Facts::of_selftest(run);
+    let body = html! { (overview::head(&facts)) section { (markdown(&text, &|_| None)) } };
+    Ok(page(&facts.title, PageKind::Report, &body))
+}

@@ -1,0 +1,163 @@
+//! What a result came to, before anything else: the verdict, of what, and by which command; and at the end what else there is to know.
+
+use crate::page::selftest::SelftestRun;
+use crate::page::sweep::Swept;
+use lightmeter_document::bench::BenchDocument;
+use lightmeter_document::run::{Identity, Report};
+use lightmeter_document::thousands;
+use maud::{Markup, html};
+
+/// What is said first.
+pub(super) struct Facts {
+    pub(super) title: String,
+    /// Whether all is well; `None` where that is not the question.
+    is_success: Option<bool>,
+    /// What it came to, in a sentence.
+    says: String,
+    command: Option<String>,
+    /// Names with what they are.
+    facts: Vec<(String, String)>,
+}
+
+fn device(adapter: &Identity) -> (String, String) {
+    (adapter.name.clone(), format!("{}, {}, {}", adapter.device, adapter.backend, adapter.driver))
+}
+
+impl Facts {
+    pub(super) fn of_run(report: &Report, is_success: bool) -> Self {
+        let subject = match (&report.renderer, report.adapters.as_slice()) {
+            (Some(renderer), _) => format!("{} {}", renderer.identity.name, renderer.identity.version),
+            (None, [one]) => one.name.clone(),
+            (None, several) => format!("{} adapters", several.len()),
+        };
+        let failing = report.groups.iter().filter(|group| super::matrix::is_failing(group)).count();
+        let verdicts = report.groups.iter().map(|group| group.totals.verdicts).sum::<u64>();
+        let cases = report.groups.iter().map(|group| group.totals.cases).sum::<u64>();
+        let mut says = format!("{} verdicts on {} cases", thousands(verdicts), thousands(cases));
+        says += &match failing {
+            0 if is_success => ": all are legal.".into(),
+            0 => ": each is legal, but not everything is as expected.".into(),
+            1 => ". One group of them fails.".into(),
+            several => format!(". {several} groups of them fail."),
+        };
+        if let Some(interrupted) = &report.interrupted {
+            says += &format!(" It was interrupted: {interrupted}.");
+        }
+        let mut facts: Vec<(String, String)> = report.adapters.iter().map(device).collect();
+        if let Some(shader) = &report.shader {
+            let of = shader.function.as_ref().map_or_else(String::new, |function| format!("function {function} of "));
+            facts.push(("shader".into(), format!("{of}{}", shader.file)));
+        }
+        facts.push(("seed".into(), report.seed.to_string()));
+        facts.push(("profile".into(), report.profile.to_string()));
+        facts.push(("time".into(), format!("{:.1} s", report.seconds)));
+        facts.extend(report.version.iter().map(|version| ("lightmeter".into(), version.to_string())));
+        facts.extend(report.config.iter().map(|config| ("settings".into(), config.to_string())));
+        Self {
+            title: format!("lightmeter: {subject}"),
+            is_success: Some(is_success),
+            says,
+            command: report.command.clone(),
+            facts,
+        }
+    }
+
+    pub(super) fn of_sweeps(sweeps: &[Swept], is_success: bool) -> Self {
+        let inputs = sweeps.iter().map(|swept| swept.document.sweep.inputs).sum::<u64>();
+        let failed = sweeps.iter().map(|swept| swept.document.statistics.failed).sum::<u64>();
+        let mut facts: Vec<(String, String)> = vec![];
+        for swept in sweeps {
+            let fact = device(&swept.document.sweep.adapter);
+            if !facts.contains(&fact) {
+                facts.push(fact);
+            }
+        }
+        let names: Vec<&str> = sweeps.iter().map(|swept| swept.document.sweep.formula.as_str()).collect();
+        Self {
+            title: format!("lightmeter sweep: {}", names.join(", ")),
+            is_success: Some(is_success),
+            says: format!("{} inputs, of which {} give what is not legal.", thousands(inputs), thousands(failed)),
+            command: None,
+            facts,
+        }
+    }
+
+    pub(super) fn of_bench(document: &BenchDocument) -> Self {
+        let mut facts: Vec<(String, String)> = document
+            .adapters
+            .iter()
+            .map(|one| (one.adapter.clone(), format!("{}, {}, {}", one.device, one.backend, one.driver)))
+            .collect();
+        facts.push(("seed".into(), document.seed.to_string()));
+        facts.push(("cores".into(), document.cores.to_string()));
+        facts.push(("time".into(), format!("{:.0} s", document.seconds)));
+        facts.push(("lightmeter".into(), document.version.to_string()));
+        let groups = document.adapters.iter().map(|adapter| adapter.groups.len()).sum::<usize>();
+        Self {
+            title: "lightmeter bench".into(),
+            is_success: None,
+            says: format!("What accuracy costs in time: {groups} groups of techniques and arithmetics."),
+            command: Some(document.command.clone()),
+            facts,
+        }
+    }
+
+    pub(super) fn of_selftest(run: &SelftestRun) -> Self {
+        Self {
+            title: "lightmeter selftest".into(),
+            is_success: Some(run.is_good()),
+            says: "What the suite catches of the mistakes that it knows, and how small an error it names.".into(),
+            command: Some("lightmeter selftest".into()),
+            facts: vec![],
+        }
+    }
+}
+
+/// The head of a page.
+pub(super) fn head(facts: &Facts) -> Markup {
+    let (class, mark) = match facts.is_success {
+        Some(true) => ("head good", "✓ passes"),
+        Some(false) => ("head bad", "✗ fails"),
+        None => ("head", ""),
+    };
+    html! {
+        header class=(class) {
+            h1 { @if !mark.is_empty() { span.mark { (mark) } " " } (facts.title) }
+            p { (facts.says) }
+            @if let Some(command) = &facts.command { (super::failure::command(command)) }
+        }
+        @if !facts.facts.is_empty() {
+            dl.facts { @for (name, what) in &facts.facts { dt { (name) } dd { (what) } } }
+        }
+    }
+}
+
+/// What else a report says.
+pub(super) fn notes(report: &Report) -> Markup {
+    let mut skips: Vec<(&str, usize)> = vec![];
+    for reason in report.groups.iter().filter_map(|group| group.skip_reason.as_deref()) {
+        match skips.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, count)) => *count += 1,
+            None => skips.push((reason, 1)),
+        }
+    }
+    let has_notes = !skips.is_empty() || !report.deviations.is_empty() || !report.expectations.is_empty();
+    html! {
+        @if has_notes {
+            section #notes {
+                h2 { "What was granted, expected or left out" }
+                ul {
+                    @for deviation in &report.deviations {
+                        li { b { (deviation.name) } " of " (deviation.adapter) ": " (deviation.reason) "; "
+                            (thousands(deviation.excused)) " verdicts are granted by it, and its witness "
+                            @if deviation.still_needed { "still shows it." } @else { "no longer shows it." } }
+                    }
+                    @for known in &report.expectations {
+                        li { b { (known.id) } ", a known failure: " (known.reason) }
+                    }
+                    @for (reason, count) in skips { li { (count) " groups were skipped: " (reason) } }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Results as pages: one file of HTML from the documents of runs, the same as the command itself would have written.
+
+use super::{code, gate, json, lightmeter, stderr, stdout};
+use lightmeter::faults::faults;
+use lightmeter::scene::library::SCENES;
+use lightmeter::scene::load;
+use lightmeter::select::catalogue;
+use lightmeter::special::PROBES;
+use std::path::{Path, PathBuf};
+
+/// A file of these tests' own.
+fn path(name: &str) -> String {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    path.to_str().expect("the path is UTF-8").to_owned()
+}
+
+/// The one file that a page is: with its policy, and without anything from elsewhere.
+#[track_caller]
+fn is_whole(page: &str) {
+    assert!(page.starts_with("<!DOCTYPE html>"), "{page:.200}");
+    assert!(page.contains("default-src 'none'"), "{page:.600}");
+    for elsewhere in ["src=\"http", "href=\"http", "<link", "@import", "url("] {
+        assert!(!page.contains(elsewhere), "{elsewhere}");
+    }
+}
+
+#[test]
+fn a_result_is_a_page_at_once_and_later() {
+    let exec = gate::process::command_of("wrong-at=fog/exp/random/000017");
+    let commands: [(&str, &[&str]); 5] = [
+        ("run", &["run", "fog/exp", "--adapter", "cpu", "--cases", "32"]),
+        ("gate", &["gate", "fog/exp", "--exec", &exec, "--cases", "32"]),
+        ("sweep", &["sweep", "fog/exp", "--adapter", "cpu", "--from", "-8.01", "--to", "-8"]),
+        ("bench", &["bench", "color/replace", "--quick", "--adapter", "cpu"]),
+        ("selftest", &["selftest", "color/replace", "--only", "formulas"]),
+    ];
+    for (name, command) in commands {
+        let [as_json, as_html, later] = ["json", "html", "later.html"].map(|end| path(&format!("page-{name}.{end}")));
+        let failing = i32::from(name == "gate");
+        let output = lightmeter(&[command, &["--format", "json", "--out", &as_json]].concat());
+        assert_eq!(code(&output), failing, "{name}: {}", stderr(&output));
+        let output = lightmeter(&[command, &["--format", "html", "--out", &as_html]].concat());
+        assert_eq!(code(&output), failing, "{name}: {}", stderr(&output));
+        let output = lightmeter(&["page", "report", &as_json, "--out", &later]);
+        assert_eq!(code(&output), 0, "{name}: {}", stderr(&output));
+        for page in [&as_html, &later] {
+            let page = std::fs::read_to_string(page).expect("it was written");
+            is_whole(&page);
+            assert!(page.contains("<h1>"), "{name} has a verdict");
+        }
+    }
+    let sweep = std::fs::read_to_string(path("page-sweep.json")).expect("it was written");
+    let sweep: serde_json::Value = serde_json::from_str(&sweep).expect("it is JSON");
+    let along = sweep["statistics"]["along"].as_array().expect("errors along the input are told");
+    let most = along.iter().filter_map(|part| part["error_max"].as_f64()).fold(0.0, f64::max);
+    assert_eq!(Some(most), sweep["statistics"]["worst"]["error"].as_f64(), "the worst error is that of a part");
+    let gate = std::fs::read_to_string(path("page-gate.later.html")).expect("it was written");
+    for what in ["fails-fog-exp", "fog/exp/random/000017", "lightmeter gate fog/exp", "<figure class=\"plot\">"] {
+        assert!(gate.contains(what), "the card of what fails has {what}");
+    }
+}
+
+#[test]
+fn a_matrix_has_a_column_for_each_subject() {
+    let [a, b] = ["a", "b"].map(|name| path(&format!("matrix-{name}.json")));
+    let run = ["run", "fog/*", "--adapter", "cpu", "--cases", "16", "--format", "json", "--out"];
+    assert_eq!(code(&lightmeter(&[&run[..], &[a.as_str()]].concat())), 0);
+    let exec = gate::process::command_of("wrong-at=fog/exp/random/000003");
+    let gate = ["gate", "fog/*", "--exec", &exec, "--cases", "16", "--format", "json", "--out"];
+    assert_eq!(code(&lightmeter(&[&gate[..], &[b.as_str()]].concat())), 1);
+    let table = stdout(&lightmeter(&["page", "matrix", &a, &b]));
+    for what in ["matrix-a", "matrix-b", "| fog/exp |", "✗"] {
+        assert!(table.contains(what), "no {what} in {table}");
+    }
+    let html = path("matrix.html");
+    assert_eq!(code(&lightmeter(&["page", "matrix", &a, &b, "--out", &html])), 0);
+    let page = std::fs::read_to_string(html).expect("it was written");
+    is_whole(&page);
+    assert!(page.contains("id=\"matrix\""));
+}
+
+#[test]
+fn what_makes_no_page_is_told() {
+    let other = path("no-page.json");
+    std::fs::write(&other, "{\"schema\": \"lightmeter.cases/1\"}").expect("it can be written");
+    let broken = path("no-page.txt");
+    std::fs::write(&broken, "not JSON").expect("it can be written");
+    for (args, said) in [
+        (&["page", "report", &other][..], "its schema is `lightmeter.cases/1`; expected the JSON of a run"),
+        (&["page", "report", &broken], "it is not JSON"),
+        (&["page", "report"], "exactly one run"),
+        (&["page", "matrix"], "at least one run or gate"),
+        (&["page", "matrix", &other], "no-page.json"),
+        (&["book", "--docs", "/nowhere"], "a checkout of lightmeter"),
+        (&["merge", "--format", "html", "/nowhere"], "/nowhere"),
+    ] {
+        let output = lightmeter(args);
+        assert!(code(&output) == 2 && stderr(&output).contains(said), "{args:?}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn the_page_of_a_merge_is_that_of_the_whole() {
+    let command = ["run", "fog", "--adapter", "cpu", "--cases", "16"];
+    let parts = ["1/2", "2/2"].map(|shard| {
+        let out = path(&format!("page-shard-{}.json", &shard[..1]));
+        assert_eq!(
+            code(&lightmeter(&[&command[..], &["--shard", shard, "--format", "json", "--out", &out]].concat())),
+            0
+        );
+        out
+    });
+    let page = stdout(&lightmeter(&["merge", &parts[0], &parts[1], "--format", "html"]));
+    is_whole(&page);
+    let whole = json(&[&command[..], &["--format", "json"]].concat());
+    let formulas = whole["groups"].as_array().expect("groups").iter().filter_map(|group| group["id"].as_str());
+    for id in formulas {
+        assert!(page.contains(id), "{id}");
+    }
+}
+
+/// Pages of the documentation are made from runs of some time. What they say of the suite itself must be so today.
+#[test]
+fn the_pages_of_the_documentation_are_current() {
+    let docs = |name: &str| {
+        let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    };
+    let scenes = docs("scenes.md");
+    for (name, _) in SCENES {
+        let shows = load::builtin(name).expect("it is built in").shows;
+        let plain: String = scenes.lines().find(|line| line.starts_with(&format!("| {name} |"))).expect(name).into();
+        let words = shows.split("ruling").next().unwrap_or_default().trim_end_matches(['(', ' ']);
+        assert!(plain.contains(words), "docs/scenes.md does not say what scene/{name} shows: {words}");
+    }
+    let stability = docs("stability.md");
+    let claims = catalogue().into_iter().filter(|member| member.spec.stable.is_some());
+    for member in claims {
+        let id = &member.spec.id;
+        assert!(stability.contains(&format!("### {id}")), "docs/stability.md has no section for {id}");
+        for hard in member.spec.hard.iter().filter(|hard| hard.naive.is_some()) {
+            assert!(stability.contains(hard.name), "docs/stability.md does not have {id}/hard/{}", hard.name);
+        }
+    }
+    let selftest = docs("selftest.md");
+    for fault in faults() {
+        assert!(selftest.contains(fault.name), "docs/selftest.md does not have {}", fault.name);
+    }
+    let special = docs("special-values.md");
+    for probe in PROBES {
+        let what = probe.what.replace('|', "\\|");
+        assert!(special.contains(&what), "docs/special-values.md does not have {} of {}", probe.what, probe.id());
+    }
+}
