@@ -63,15 +63,40 @@ impl SceneRenderer {
     /// # Panics
     /// Where a stage is asked of [`ShaderForm::Full`], or a draw names a mesh, a texture or a light that the frame lacks.
     pub fn new(gpu: &Gpu, shaders: &Shaders, frame: &Frame, sets: &[Called], recipe: Recipe) -> Result<Self, GpuError> {
+        let (resources, work) = Self::describe(gpu, shaders, frame, sets, recipe)?;
+        Self::of(gpu, &resources, work)
+    }
+
+    /// What [`SceneRenderer::new`] makes and submits, as data.
+    ///
+    /// # Errors
+    /// As [`SceneRenderer::new`] has them, but for what the device refuses.
+    ///
+    /// # Panics
+    /// As [`SceneRenderer::new`] does.
+    pub fn describe(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        frame: &Frame,
+        sets: &[Called],
+        recipe: Recipe,
+    ) -> Result<(Resources, Submission), GpuError> {
         if sets.len() != frame.draws.len() {
             return Err(GpuError::Sets { draws: frame.draws.len(), sets: sets.len() });
         }
         if let Some(reason) = recipe.rung.lacks(gpu) {
             return Err(GpuError::Unavailable { what: recipe.rung.name().into(), reason: reason.into() });
         }
-        let (resources, work) = describe(shaders, frame, sets, recipe, gpu.is_gl)?;
+        describe(shaders, frame, sets, recipe, gpu.is_gl)
+    }
+
+    /// Draws by a description.
+    ///
+    /// # Errors
+    /// Where a shader is invalid, or the device refuses a resource.
+    pub fn of(gpu: &Gpu, resources: &Resources, work: Submission) -> Result<Self, GpuError> {
         let mut executor = Executor::default();
-        executor.make(gpu, &resources, FILE)?;
+        executor.make(gpu, resources, FILE)?;
         Ok(Self { executor, work })
     }
 

@@ -80,6 +80,36 @@ const tests = {
     });
   },
 
+  async "a link to a card shows the card"() {
+    for (const width of [1280, 390]) {
+      await on("fail.html", { fragment: "#card=" + (await lastFormula()), width }, async (page) => {
+        await page.waitForTimeout(800);
+        const top = await page.locator(`#${await lastFormula()}`).evaluate((card) => card.getBoundingClientRect().top);
+        assert.ok(top >= -2 && top < 400, `the card is at ${top}`);
+      });
+    }
+  },
+
+  async "a subject's cells stand below its own heads"() {
+    await on("matrix.html", {}, async (page) => {
+      const subjects = await page.locator("select[name=subject] option").evaluateAll((all) => all.map((one) => one.value).filter(Boolean));
+      assert.ok(subjects.length > 1, `${subjects}`);
+      for (const subject of subjects) {
+        await page.selectOption("select[name=subject]", subject);
+        const [heads, rows] = await page.evaluate(() => {
+          const places = (row) => [...row.children].map((cell, k) => (cell.hidden ? null : k)).filter((k) => k !== null).join();
+          const all = [...document.querySelectorAll("#matrix tbody tr")].map(places);
+          // The first cell of a row is the formula's name, whose head spans both rows of heads.
+          const heads = places(document.querySelectorAll("#matrix thead tr")[1]).split(",").map((k) => Number(k) + 1);
+          return [[0, ...heads].join(), [...new Set(all)]];
+        });
+        assert.deepEqual(rows, [heads], subject);
+        assert.equal(await page.locator("#matrix thead tr").first().locator("th:visible").count(), 2);
+      }
+      assert.equal(await page.locator('#matrix td a').count(), 0, "a matrix has no cards to lead to");
+    });
+  },
+
   async "j and k go through the cards, and / to the filter"() {
     await on("fail.html", {}, async (page) => {
       const focused = () => page.evaluate(() => document.activeElement.closest("details.card")?.id ?? document.activeElement.id);
@@ -150,6 +180,19 @@ const tests = {
     }
   },
 
+  async "no page of the book is wider than a phone"() {
+    const context = await browser.newContext({ viewport: { width: 390, height: 800 } });
+    const page = await context.newPage();
+    const wide = [];
+    for (const name of await everything("book")) {
+      await page.goto(address(name));
+      const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      if (overflow > 0) wide.push(`${name} by ${overflow}`);
+    }
+    await context.close();
+    assert.deepEqual(wide, []);
+  },
+
   async "axe-core finds nothing wrong"() {
     const pages = (await readdir(made)).filter((name) => name.endsWith(".html")).concat(await book());
     for (const name of pages) {
@@ -187,6 +230,12 @@ const tests = {
     assert.deepEqual(broken, []);
   },
 };
+
+// The card of the last formula that fails, before which there are many.
+async function lastFormula() {
+  const text = await readFile(join(made, "fail.html"), "utf8");
+  return [...text.matchAll(/<details class="card" id="(fails-(?!scene)[^"]*)"/g)].at(-1)[1];
+}
 
 // All pages below a folder.
 async function everything(folder) {

@@ -1,5 +1,6 @@
 //! What the property tests share: inputs as proptest strategies, and their evaluation in one dispatch.
 
+pub mod branches;
 pub mod callers;
 pub mod certificate;
 pub mod exact;

@@ -14,8 +14,9 @@ use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::mistakes::MistakeLook;
 use lightmeter_faults::{Fault, Variation, concerning, look, typical_course};
 use lightmeter_gpu::Shaders;
-use lightmeter_report::html::{course_plot, equation};
+use lightmeter_report::html::{course_plot, equation, prose};
 use maud::{Markup, html};
+use std::collections::HashSet;
 
 /// What the page of a formula is made of.
 pub(crate) struct FormulaPage<'a> {
@@ -61,7 +62,7 @@ impl FormulaPage<'_> {
             (set_equation(spec))
             @if !rules.is_empty() {
                 p { "What the line does not say:" }
-                ul.rules { @for rule in &rules { li { (rule) } } }
+                ul.rules { @for rule in &rules { li { (prose(rule)) } } }
             }
             p.quiet { "Source: " (self.source(spec.source)) }
         }
@@ -87,8 +88,8 @@ impl FormulaPage<'_> {
             div.wide tabindex="0" role="group" aria-label="inputs and outputs" { table {
                 thead { tr { th scope="col" { "value" } th scope="col" { "shape" } th scope="col" { "unit" } th scope="col" { "meaning" } th scope="col" { "random cases draw" } } }
                 tbody {
-                    @for input in spec.inputs { tr { th scope="row" { code { (input.name) } } td { (input.shape.name()) } td { (unit(input.unit)) } td { (spec.input_means(input)) } td { (input.domain) } } }
-                    @for output in spec.outputs { tr { th scope="row" { "→ " code { (output.name) } } td { (output.shape.name()) } td { (unit(output.unit)) } td { (spec.output_means(output)) } td {} } }
+                    @for input in spec.inputs { tr { th scope="row" { code { (input.name) } } td { (input.shape.name()) } td { (unit(input.unit)) } td { (prose(spec.input_means(input))) } td { (input.domain) } } }
+                    @for output in spec.outputs { tr { th scope="row" { "→ " code { (output.name) } } td { (output.shape.name()) } td { (unit(output.unit)) } td { (prose(spec.output_means(output))) } td {} } }
                 }
             } }
         }
@@ -170,7 +171,7 @@ impl FormulaPage<'_> {
                 }
                 @if !better.is_empty() {
                     p { "This form fails where another one does not:" }
-                    ul { @for (of, case, fails) in &better { li { (self.link(&of.id)) " is right at its hard case " code { (case) } ", where here " (fails) "." } } }
+                    ul { @for (of, case, fails) in &better { li { "At the hard case " code { (case) } " of " (self.link(&of.id)) ", which is right there: " (prose(fails)) "." } } }
                 }
             }
         }
@@ -192,10 +193,10 @@ impl FormulaPage<'_> {
                     thead { tr { th scope="col" { "case" } th scope="col" { "what it holds" } th scope="col" { "inputs that are given" } th scope="col" { "exact result" } th scope="col" { "who fails there" } } }
                     tbody { @for (hard, reference) in rows { tr {
                         th scope="row" { code { (hard.name) } }
-                        td { (hard.pins) }
+                        td { (prose(hard.pins)) }
                         td { @for (name, values) in hard.inputs { div { code { (name) " = " (list(values.iter().map(|&x| f64::from(x)))) } } } }
                         td { @for (output, values) in outputs(spec, &reference) { div { code { (output) " = " (list(values.iter().copied())) } } } }
-                        td { @if let Some(naive) = hard.naive { (self.link(naive.formula)) ": " (naive.fails) } }
+                        td { @if let Some(naive) = hard.naive { (self.link(naive.formula)) ": " (prose(naive.fails)) } }
                     } } }
                 } }
             }
@@ -204,30 +205,45 @@ impl FormulaPage<'_> {
 
     pub(crate) fn mistakes(&self, picture: Option<&Picture>) -> Markup {
         let faults = concerning(self.member);
+        let has_plots = !matches!(self.member.spec.kind, Kind::Raster(_) | Kind::Depth(_));
+        let mut shown = HashSet::new();
+        let sections: Vec<Markup> =
+            faults.iter().map(|fault| self.mistake(fault, picture, has_plots, &mut shown)).collect();
         html! {
             @if !faults.is_empty() {
                 h2 #mistakes { "How it is got wrong" }
-                p { (faults.len()) " mistakes that renderers make are known by name in this formula. The suite tells them from each other by what they give; each line is black as it should be and dashed with the mistake." }
-                div.mistakes { @for fault in faults { (self.mistake(fault, picture)) } }
+                p {
+                    @if faults.len() == 1 { "One mistake that renderers make is known by name in this formula. " }
+                    @else { (faults.len()) " mistakes that renderers make are known by name in this formula. The suite tells them from each other by what they give. " }
+                    @if has_plots { "The solid line is what is right, the dashed one what the mistake makes of it." }
+                    @else { "They change which pixels are covered, or which fragment is kept: there is no course along an input to plot." }
+                }
+                div.mistakes { @for section in sections { (section) } }
             }
         }
     }
 
-    fn mistake(&self, fault: &'static Fault, picture: Option<&Picture>) -> Markup {
+    fn mistake(
+        &self,
+        fault: &'static Fault,
+        picture: Option<&Picture>,
+        has_plots: bool,
+        shown: &mut HashSet<Vec<i32>>,
+    ) -> Markup {
         let Some(variation) = Variation::new(self.member, &[fault]) else { return html! {} };
-        let plot = sketch(self.member, &variation);
+        let plot = sketch(self.member, &variation, shown);
         let picture = picture.and_then(|picture| picture.img_with(self.member, &variation));
         let look = look(self.member, fault);
         html! {
             section.mistake id={ "mistake-" (fault.name) } {
                 h3 { code { (fault.name) } }
-                p { (sentence(fault.says)) @if let Some(seen) = fault.seen_in { span.quiet { " Seen in: " (seen) "." } } }
+                p { (prose(&sentence(fault.says))) @if let Some(seen) = fault.seen_in { span.quiet { " Seen in: " (seen) "." } } }
                 @if let Some(look) = &look { p.hint { (looks(look)) } }
                 div.pictures {
                     @if let Some(picture) = &picture { figure.picture { (picture) } }
                     @if let Some(plot) = &plot { (plot.svg()) }
                 }
-                @if plot.is_none() && picture.is_none() { p.hint { "Too small to be seen in a plot." } }
+                @if has_plots && plot.is_none() && picture.is_none() { p.hint { "Too small to be seen in a plot." } }
             }
         }
     }

@@ -205,9 +205,9 @@ fn planned<'a>(
     plan.part(
         "Formulas",
         vec![
-            own("formula/index.html", "All formulas", Made::Formulas),
             own("dialects.html", "Who computes what", Made::Dialects),
             own("mistakes.html", "Mistakes by name", Made::Mistakes),
+            own("formula/index.html", "All formulas", Made::Formulas),
         ],
     );
     plan.formulas(catalogue);
@@ -217,7 +217,7 @@ fn planned<'a>(
             own("scenes.html", "Gallery of scenes", Made::Gallery),
             own("scene-mistakes.html", "Mistakes in scenes", Made::SceneMistakes),
             text("renderers.html")?,
-            text("cost.html")?,
+            chapter("cost")?,
         ],
     );
     let mut reference = vec![

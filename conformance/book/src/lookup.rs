@@ -10,6 +10,7 @@ use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::load::Loaded;
 use lightmeter_catalogue::select::Member;
 use lightmeter_faults::{concerning, faults};
+use lightmeter_report::html::prose;
 use lightmeter_scene::blend::{Equation, Factor};
 use maud::{Markup, html};
 use serde_json::Value;
@@ -64,7 +65,7 @@ pub(crate) fn mistakes(catalogue: &[Member], place: &Place<'_>) -> Markup {
         @for fault in faults() {
             section {
                 h2 id=(fault.name) { code { (fault.name) } }
-                p { (sentence(fault.says)) @if let Some(seen) = fault.seen_in { " Seen in: " (seen) "." } }
+                p { (prose(&sentence(fault.says))) @if let Some(seen) = fault.seen_in { " Seen in: " (seen) "." } }
                 @if let Some(pages) = concerned.get(fault.name) {
                     details { summary { (pages.len()) @if pages.len() == 1 { " formula" } @else { " formulas" } }
                         ul { @for page in pages { li { a href={ (place.to(&page.path)) "#mistake-" (fault.name) } { code { (page.member.spec.id) } } } } }
@@ -80,7 +81,7 @@ pub(crate) fn glossary() -> Markup {
     html! {
         h1 { "Glossary" }
         p { "These words have a meaning of their own here. " code { "lightmeter show WORD" } " says the same." }
-        dl.glossary { @for (words, means) in GLOSSARY { dt id=(words.split(", ").next().unwrap_or_default().replace(' ', "-")) { (words) } dd { (sentence(means)) } } }
+        dl.glossary { @for (words, means) in GLOSSARY { dt id=(words.split(", ").next().unwrap_or_default().replace(' ', "-")) { (words) } dd { (prose(&sentence(means))) } } }
     }
 }
 
@@ -111,7 +112,7 @@ pub(crate) fn schemas(sources: &BookSources, place: &Place<'_>) -> Markup {
     html! {
         h1 { "Schemas" }
         p { "Each file that lightmeter reads or writes has a JSON Schema, which " code { "lightmeter schema NAME" } " prints. Fields may be added to a file; none changes its meaning." }
-        ul { @for (name, schema) in &sources.schemas { li { a href=(place.to(&format!("reference/schema/{name}.html"))) { code { (name) } } @if let Some(says) = schema["description"].as_str() { ": " (first_line(says)) } } } }
+        ul { @for (name, schema) in &sources.schemas { li { a href=(place.to(&format!("reference/schema/{name}.html"))) { code { (name) } } @if let Some(says) = schema["description"].as_str() { ": " (prose(first_line(says))) } } } }
     }
 }
 
@@ -147,12 +148,12 @@ fn object(name: &str, schema: &Value) -> Markup {
     let choices: Vec<&Value> = ["oneOf", "anyOf"].iter().filter_map(|key| schema[*key].as_array()).flatten().collect();
     html! {
         @if !name.is_empty() { h2 id={ "def-" (name) } { code { (name) } } }
-        @if let Some(says) = schema["description"].as_str() { p { (says) } }
+        @if let Some(says) = schema["description"].as_str() { p { (prose(says)) } }
         @if let Some(properties) = properties { div.wide tabindex="0" role="group" aria-label={ "fields of " (if name.is_empty() { "the file" } else { name }) } { table {
             thead { tr { th scope="col" { "field" } th scope="col" { "type" } th scope="col" { "meaning" } } }
-            tbody { @for (field, of) in properties { tr { th scope="row" { code { (field) } @if !required(field) { span.quiet { " may be missing" } } } td { (kind(of)) } td { @if let Some(says) = of["description"].as_str() { (says) } } } } }
+            tbody { @for (field, of) in properties { tr { th scope="row" { code { (field) } @if !required(field) { span.quiet { " may be missing" } } } td { (kind(of)) } td { @if let Some(says) = of["description"].as_str() { (prose(says)) } } } } }
         } } }
-        @if !choices.is_empty() { ul { @for choice in choices { li { (kind(choice)) @if let Some(says) = choice["description"].as_str() { ": " (says) } } } } }
+        @if !choices.is_empty() { ul { @for choice in choices { li { (kind(choice)) @if let Some(says) = choice["description"].as_str() { ": " (prose(says)) } } } } }
         @if let Some(words) = schema["enum"].as_array() { p { "One of: " (words.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")) } }
     }
 }

@@ -4,6 +4,7 @@ use lightmeter_catalogue::cases::{Domain, Kind};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_faults::Variation;
 use maud::{Markup, html};
+use std::collections::HashSet;
 
 /// Points of a plot.
 const POINTS: usize = 49;
@@ -18,6 +19,11 @@ const WIDTH: f64 = 200.0;
 const HEIGHT: f64 = 90.0;
 /// The least mean share of a plot's height that is seen.
 const SEEN: f64 = 0.003;
+/// What a hard case counts, whose inputs are seldom those of a scene.
+const OF_HARD_CASES: f64 = 0.1;
+/// Plots show a mistake as well as the best one down to this share of its clarity, and this many are looked at.
+const AS_WELL: f64 = 0.3;
+const MOST_TRIED: usize = 24;
 
 /// An output along one number of the inputs, by the formula and with a mistake.
 pub(crate) struct Sketch {
@@ -78,13 +84,13 @@ impl Range {
     }
 }
 
-/// The cases among which a place is chosen: the middle of the domain with the hard cases' inputs, and random ones.
-fn cases(member: &Member) -> impl Iterator<Item = Vec<f32>> {
+/// The cases among which a place is chosen, random ones and hard ones, and whether each is hard.
+fn cases(member: &Member) -> impl Iterator<Item = (Vec<f32>, bool)> {
     let hard = (0..member.spec.hard.len()).map(CaseRef::Hard);
-    hard.chain((0..CASES).map(CaseRef::Random)).map(|case| {
+    (0..CASES).map(CaseRef::Random).chain(hard).map(|case| {
         let mut row = vec![];
         member.inputs(case, 1, &mut row);
-        row
+        (row, matches!(case, CaseRef::Hard(_)))
     })
 }
 
@@ -113,15 +119,16 @@ fn span<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
     values.filter(|x| x.is_finite()).fold(first, |[low, high], &x| [low.min(x), high.max(x)])
 }
 
-/// The plot on which a mistake shows best; `None` where it is too small for one.
-pub(crate) fn sketch(member: &Member, variation: &Variation<'_>) -> Option<Sketch> {
+/// The plot on which a mistake shows best; `None` where it is too small for one. Of plots that show it nearly as well one is taken that does not
+/// look like another of the page, whose looks `shown` holds.
+pub(crate) fn sketch(member: &Member, variation: &Variation<'_>, shown: &mut HashSet<Vec<i32>>) -> Option<Sketch> {
     if matches!(member.spec.kind, Kind::Raster(_) | Kind::Depth(_)) {
         return None;
     }
     let outputs = member.spec.output_len();
-    let mut best: Option<(f64, Vec<f32>, usize, usize)> = None;
+    let mut found: Vec<(f64, Vec<f32>, usize, usize)> = vec![];
     let (mut right, mut mistaken) = (vec![0.0; outputs], vec![0.0; outputs]);
-    for row in cases(member) {
+    for (row, is_hard) in cases(member) {
         for input in 0..row.len().min(MOST_INPUTS) {
             let Some(range) = Range::of(member, &row, input) else { continue };
             let mut moved = row.clone();
@@ -136,15 +143,22 @@ pub(crate) fn sketch(member: &Member, variation: &Variation<'_>) -> Option<Sketc
                 }
             }
             for (output, (a, b)) in courses.iter().enumerate() {
-                let seen = clarity(a, b);
-                if best.as_ref().is_none_or(|(most, ..)| seen > *most) {
-                    best = Some((seen, row.clone(), input, output));
+                let seen = clarity(a, b) * if is_hard { OF_HARD_CASES } else { 1.0 };
+                if seen > 0.0 {
+                    found.push((seen, row.clone(), input, output));
                 }
             }
         }
     }
-    let (_, row, input, output) = best.filter(|(clarity, ..)| *clarity > 0.0)?;
-    drawn(member, variation, row, input, output)
+    found.sort_by(|(a, ..), (b, ..)| b.total_cmp(a));
+    let most = found.first()?.0;
+    let near = found.into_iter().take_while(|(clarity, ..)| *clarity > AS_WELL * most).take(MOST_TRIED);
+    let mut drawn = near.filter_map(|(_, row, input, output)| drawn(member, variation, row, input, output));
+    let best = drawn.next()?;
+    let sketch = if shown.contains(&best.look()) { drawn.find(|one| !shown.contains(&one.look())) } else { None };
+    let sketch = sketch.unwrap_or(best);
+    shown.insert(sketch.look());
+    Some(sketch)
 }
 
 fn drawn(member: &Member, variation: &Variation<'_>, mut row: Vec<f32>, input: usize, output: usize) -> Option<Sketch> {
@@ -170,6 +184,15 @@ fn drawn(member: &Member, variation: &Variation<'_>, mut row: Vec<f32>, input: u
 }
 
 impl Sketch {
+    /// How it looks: both courses in steps of the plot's height.
+    fn look(&self) -> Vec<i32> {
+        const STEPS: f64 = 24.0;
+        let [low, high] = span(self.right.iter().chain(&self.mistaken));
+        #[expect(clippy::cast_possible_truncation, reason = "a few steps")]
+        let step = |x: &f64| if x.is_finite() { (STEPS * (x - low) / (high - low)).round() as i32 } else { -1 };
+        self.right.iter().chain(&self.mistaken).map(step).collect()
+    }
+
     /// The plot.
     pub(crate) fn svg(&self) -> Markup {
         let [low, high] = span(self.right.iter().chain(&self.mistaken));
@@ -195,7 +218,7 @@ impl Sketch {
                     path.reference d=(path(&self.right)) {}
                     path.mistaken d=(path(&self.mistaken)) {}
                 }
-                figcaption { (self.output) " along " (self.input) ", " (short(self.from)) " to " (short(self.to)) }
+                figcaption { (self.output) ", " (short(low)) " to " (short(high)) " upwards, along " (self.input) ", " (short(self.from)) " to " (short(self.to)) }
             }
         }
     }

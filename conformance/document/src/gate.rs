@@ -24,6 +24,9 @@ pub struct GateReport {
     /// The command.
     #[serde(default)]
     pub command: String,
+    /// The command that asks for one case again, but for the case's id.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub again: Option<String>,
     /// The version of lightmeter.
     #[serde(default)]
     pub version: Word,
@@ -266,7 +269,7 @@ impl GateFailure {
 impl GateReport {
     /// What a run of a renderer came to, counted by its cases.
     #[must_use]
-    pub fn of(report: &Report, command: String) -> Self {
+    pub fn of(report: &Report, command: String, again: Option<String>) -> Self {
         let mut totals = GateTotals { unstable: report.unstable, ..GateTotals::default() };
         let mut groups = vec![];
         for group in &report.groups {
@@ -290,6 +293,7 @@ impl GateReport {
         Self {
             schema: SCHEMA.into(),
             command,
+            again,
             version: env!("CARGO_PKG_VERSION").into(),
             choice: compared_by.choice,
             generator: compared_by.generator,
@@ -381,7 +385,7 @@ impl From<GateReport> for Report {
         let name = &identity.name;
         Self {
             groups: gate.groups.into_iter().map(|group| group.of_run(name)).collect(),
-            failures: gate.failures.into_iter().map(|failure| failure.of_run(name)).collect(),
+            failures: gate.failures.into_iter().map(|failure| failure.of_run(name, gate.again.as_deref())).collect(),
             seconds: gate.seconds,
             renderer: Some(renderer),
             unstable: gate.totals.unstable,
@@ -451,8 +455,20 @@ impl GateGroup {
 
 impl GateFailure {
     /// The failure of a run.
-    fn of_run(self, adapter: &str) -> Failure {
+    fn of_run(self, adapter: &str, again: Option<&str>) -> Failure {
+        let on = self.target.as_ref().map(|target| format!(" --target {target}")).unwrap_or_default();
+        let is_out = |k: &usize| {
+            let ([low, high], value) = (self.interval[*k], self.value[*k]);
+            !(low.0 <= value.0 && value.0 <= high.0)
+        };
+        let judged = self.value.len().min(self.interval.len()).min(self.outputs.len()).min(self.reference.len());
+        let wrong = (0..judged).find(is_out);
         Failure {
+            rerun: again.map(|again| format!("{again}{on} {}", self.id)).unwrap_or_default(),
+            output: wrong.map_or_else(Default::default, |k| self.outputs[k].clone()),
+            value: wrong.map_or(Number(f64::NAN), |k| self.value[k]),
+            reference: wrong.map_or(Number(f64::NAN), |k| self.reference[k]),
+            interval: wrong.map_or([Number(f64::NAN); 2], |k| self.interval[k]),
             target: self.target,
             inputs: self.named,
             units: self.units,

@@ -14,6 +14,12 @@ pub struct SelftestDocument {
     /// `lightmeter.selftest/1`.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
+    /// The command, but for where its result goes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub command: Option<String>,
+    /// The seed of the random cases.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
     /// The faults of the blend unit.
     #[serde(default)]
     pub rows: Vec<UnitRow>,

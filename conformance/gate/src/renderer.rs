@@ -9,6 +9,7 @@ use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_catalogue::select::CaseRef;
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::by_case::RendererUse;
+use lightmeter_document::run::Identity;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
 use lightmeter_engine::rows::Rows;
@@ -75,6 +76,12 @@ impl<R: Renderer + Send> InProcess<R> {
     pub fn new(renderer: R, folder: PathBuf) -> Result<Self, ProcessError> {
         let declared = Declared::new(renderer.hello())?;
         Ok(Self { renderer: Mutex::new(renderer), declared, folder })
+    }
+
+    /// How it is named in reports.
+    #[must_use]
+    pub fn identity(&self) -> Identity {
+        self.declared.identity()
     }
 
     fn renderer(&mut self) -> &mut R {
@@ -227,10 +234,10 @@ mod tests {
             diagnose: Some(&Mistakes),
             ..Options::new(Code::default())
         };
-        let mut subject = Subject::renderer(renderer.declared.identity(), Box::new(renderer));
+        let mut subject = Subject::renderer(renderer.identity(), Box::new(renderer));
         let report = run(std::slice::from_mut(&mut subject), &options, &mut Silent);
         let _ = std::fs::remove_dir_all(&folder);
-        GateReport::of(&report.expect("nothing fails but the renderer"), String::new())
+        GateReport::of(&report.expect("nothing fails but the renderer"), String::new(), None)
     }
 
     #[test]

@@ -7,6 +7,9 @@ use std::fmt::{Result, Write};
 /// Cases that are named.
 const MOST_NAMED: usize = 24;
 
+/// The title of what is worse than in the baseline.
+pub(crate) const BASELINE: &str = "baseline";
+
 /// What a result was held against, and what came of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Against<'a> {
@@ -45,7 +48,7 @@ impl<'a> Against<'a> {
     pub(crate) fn lines(self) -> Vec<(String, String)> {
         let changed = |id: &String| (id.clone(), "its answer changed when it was asked once more".to_owned());
         let mut said: Vec<(String, String)> = self.unstable.iter().take(MOST_NAMED).map(changed).collect();
-        said.extend(self.regressions.iter().map(|what| ("baseline".to_owned(), what.clone())));
+        said.extend(self.regressions.iter().map(|what| (BASELINE.to_owned(), what.clone())));
         let passes = self.expectations.iter().filter(|one| !self.is_shard && one.passes_unexpectedly());
         said.extend(passes.map(|one| (one.id.clone(), format!("passes, and is expected to fail: {}", one.reason))));
         said

@@ -254,7 +254,7 @@ impl Gate {
         let report = report?;
         let explained = explain(&report.failures, &report.groups, options.profile);
         let report = Report { compared_by: Some(compared_by), config: used(), explained, ..report };
-        Ok(GateReport::of(&report, command()))
+        Ok(GateReport::of(&report, command(), self.again()))
     }
 
     /// Whether reference, result and error map of a scene that fails are written.

@@ -57,12 +57,14 @@ impl Merge {
         if !is_gate && Report::read(&first).is_err() {
             return Ok(None);
         }
-        let mut parts = vec![];
+        let (mut parts, mut again) = (vec![], None);
         for path in &self.results {
             let failed = || format!("cannot read {}", path.display());
             let text = read::text(path, read::MOST_TEXT).with_context(failed)?;
             let report = if is_gate {
-                Report::from(GateReport::read(&text).with_context(failed)?)
+                let gate = GateReport::read(&text).with_context(failed)?;
+                again = again.or_else(|| gate.again.clone());
+                Report::from(gate)
             } else {
                 Report::read(&text).with_context(failed)?
             };
@@ -74,7 +76,7 @@ impl Merge {
             .map_or_else(Vec::new, |profile| explain(&whole.failures, &whole.groups, profile));
         let whole = Report { command: Some(command()), explained, ..whole };
         if is_gate {
-            let gate = GateReport::of(&whole, command());
+            let gate = GateReport::of(&whole, command(), again);
             self.format.emit(&self.written_gate(&gate)?, self.out.as_deref())?;
             return Ok(Some(super::gate::status(&gate, self.required)));
         }

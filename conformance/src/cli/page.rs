@@ -1,13 +1,13 @@
 //! `lightmeter page`.
 
 use super::contact_sheet;
-use super::{Status, emit};
+use super::{Status, emit, say};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
 use lightmeter::document::Document as _;
 use lightmeter::document::bench::{self, BenchDocument};
 use lightmeter::document::gate::{self, GateReport};
-use lightmeter::document::run::{self, Report};
+use lightmeter::document::run::{self, ImageUse, Report};
 use lightmeter::document::selftest as caught;
 use lightmeter::document::sweep::{self, SweepDocument};
 use lightmeter::files::read;
@@ -20,7 +20,7 @@ use lightmeter::report::page::{BlendRun, markdown, scenes, selftest, special, st
 use lightmeter::rulings;
 use lightmeter::select::catalogue;
 use lightmeter::sweep::{Asked, PRESETS, SweepPlan, file, is_over_inputs_of};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What a page is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -89,7 +89,7 @@ impl Page {
         let text = match self.subject {
             Subject::Bench => self.bench(&json),
             Subject::Blend => self.blend(&json),
-            Subject::Report => report_of(&json),
+            Subject::Report => report_of(&json, run.parent().unwrap_or(Path::new(""))),
             Subject::Scenes | Subject::Sweep | Subject::Rulings | Subject::Matrix => self.scenes(&json),
             Subject::Selftest => selftest_page(&json),
             Subject::Special => special(&json),
@@ -211,16 +211,43 @@ pub(crate) fn swept(document: SweepDocument) -> Swept {
     Swept { what: preset.map(|preset| preset.what), is_ready_made, document }
 }
 
-/// The page of any result, by what its JSON says that it is.
-fn report_of(json: &str) -> anyhow::Result<String> {
+/// The page of any result, by what its JSON says that it is. The pictures that it names lie where it says, or so from the folder of its file.
+fn report_of(json: &str, folder: &Path) -> anyhow::Result<String> {
     let document: serde_json::Value = serde_json::from_str(json).context("it is not JSON")?;
     match document["schema"].as_str().unwrap_or("none") {
-        run::SCHEMA => Ok(html::of_run(&Report::read(json)?)),
-        gate::SCHEMA => Ok(html::of_gate(&GateReport::read(json)?)),
+        run::SCHEMA => {
+            let mut report = Report::read(json)?;
+            found(report.groups.iter_mut().filter_map(|group| group.image.as_mut()), folder);
+            Ok(html::of_run(&report))
+        }
+        gate::SCHEMA => {
+            let mut gate = GateReport::read(json)?;
+            found(gate.groups.iter_mut().filter_map(|group| group.image.as_mut()), folder);
+            Ok(html::of_gate(&gate))
+        }
         bench::SCHEMA => html::of_bench(&BenchDocument::read(json)?).map_err(anyhow::Error::from_boxed),
         sweep::SCHEMA => Ok(html::of_sweeps(&[swept(file::parse(json).map_err(anyhow::Error::msg)?)])?),
         caught::SCHEMA => Ok(html::of_selftest(&selftest::SelftestRun::read(json).map_err(anyhow::Error::msg)?)?),
         other => bail!("its schema is `{other}`; expected the JSON of a run, a gate, a bench, a sweep or a self-test"),
+    }
+}
+
+/// Says where pictures are, and tells of those that are not there.
+fn found<'a>(images: impl Iterator<Item = &'a mut ImageUse>, folder: &Path) {
+    let mut missing = vec![];
+    for file in images.flat_map(|image| &mut image.files) {
+        let beside = folder.join(&*file);
+        if beside.is_file() {
+            *file = beside.display().to_string();
+        } else if !Path::new(file).is_file() {
+            missing.push(file.clone());
+        }
+    }
+    if let Some(first) = missing.first() {
+        say(&format!(
+            "{} pictures of the result are not there, such as {first}: the page is made without them",
+            missing.len()
+        ));
     }
 }
 

@@ -103,8 +103,10 @@ impl Selftest {
         writable(self.out.as_deref())?;
         let tested = self.test(&targets, &stopped_by_signals()?)?;
         let text = match self.format {
-            PageFormat::Json => tested.json()?,
-            PageFormat::Html => html::of_selftest(&SelftestRun::read(&tested.json()?).map_err(anyhow::Error::msg)?)?,
+            PageFormat::Json => self.json(&tested)?,
+            PageFormat::Html => {
+                html::of_selftest(&SelftestRun::read(&self.json(&tested)?).map_err(anyhow::Error::msg)?)?
+            }
             PageFormat::Text => tested.text(&targets)?,
         };
         self.format.emit(&text, self.out.as_deref())?;
@@ -113,6 +115,24 @@ impl Selftest {
             None if tested.is_good() => Status::Success,
             None => Status::Failed,
         })
+    }
+
+    fn json(&self, tested: &Tested) -> anyhow::Result<String> {
+        let document = SelftestDocument {
+            schema: SCHEMA.into(),
+            command: Some(super::command()),
+            seed: Some(self.seed),
+            rows: tested.unit.clone().unwrap_or_default(),
+            kills: tested.formulas.as_ref().map(|record| record.kills.clone()),
+            clean: tested.formulas.as_ref().map(|record| record.clean.clone()),
+            mistakes: if tested.formulas.is_some() { mistakes() } else { vec![] },
+            named_from: (!tested.resolutions.is_empty()).then_some(NAMED_FROM),
+            calibration: tested.formulas.is_some().then(|| tested.resolutions.clone()),
+            scenes: tested.scenes.clone(),
+            scene_calibration: tested.scene_resolutions.clone(),
+            interrupted: tested.interrupted.clone(),
+        };
+        Ok(document.to_json()?)
     }
 
     fn wants(&self, part: Part) -> bool {
@@ -188,22 +208,6 @@ impl Tested {
             && self.unit.iter().flatten().all(|row| row.finding.is_good())
             && self.formulas.iter().all(Record::is_good)
             && self.scenes.iter().all(SceneRecord::is_good)
-    }
-
-    fn json(&self) -> anyhow::Result<String> {
-        let document = SelftestDocument {
-            schema: SCHEMA.into(),
-            rows: self.unit.clone().unwrap_or_default(),
-            kills: self.formulas.as_ref().map(|record| record.kills.clone()),
-            clean: self.formulas.as_ref().map(|record| record.clean.clone()),
-            mistakes: if self.formulas.is_some() { mistakes() } else { vec![] },
-            named_from: (!self.resolutions.is_empty()).then_some(NAMED_FROM),
-            calibration: self.formulas.is_some().then(|| self.resolutions.clone()),
-            scenes: self.scenes.clone(),
-            scene_calibration: self.scene_resolutions.clone(),
-            interrupted: self.interrupted.clone(),
-        };
-        Ok(document.to_json()?)
     }
 
     /// The parts that were tested, an empty line between them.

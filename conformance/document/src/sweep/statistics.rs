@@ -163,6 +163,9 @@ pub struct SweepPart {
     pub error_max: Number,
     /// Results that are not legal.
     pub failed: u64,
+    /// The greatest margin, of results that are not next to the reference; 0 in files of earlier versions.
+    #[serde(default)]
+    pub margin_max: Number,
 }
 
 impl Statistics {
@@ -211,11 +214,9 @@ impl Statistics {
             Ok(place) => {
                 let own = &mut self.along[place];
                 own.failed += seen.failed;
-                own.error_max = Number(if seen.error_max.0.total_cmp(&own.error_max.0).is_gt() {
-                    seen.error_max.0
-                } else {
-                    own.error_max.0
-                });
+                let greater = |a: Number, b: Number| if a.0.total_cmp(&b.0).is_gt() { a } else { b };
+                own.error_max = greater(seen.error_max, own.error_max);
+                own.margin_max = greater(seen.margin_max, own.margin_max);
             }
             Err(place) => self.along.insert(place, seen),
         }

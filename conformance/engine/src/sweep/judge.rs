@@ -84,6 +84,7 @@ impl Judge<'_> {
             part: self.part(first),
             error_max: sum.worst.map_or(Number(0.0), |worst| worst.error),
             failed: sum.failed,
+            margin_max: sum.nearest_to_limit.map_or(Number(0.0), |nearest| nearest.margin),
         });
         sum
     }

@@ -16,6 +16,14 @@ use std::fmt::{Result, Write};
 pub fn markdown<W: Write>(document: &BenchDocument, pictures: &[Plot], folder: &str, out: &mut W) -> Result {
     writeln!(out, "# What accuracy costs: techniques and the ladder of precision\n")?;
     made(document, out)?;
+    body(document, pictures, folder, out)
+}
+
+/// The page but for its title and how it was made.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn body<W: Write>(document: &BenchDocument, pictures: &[Plot], folder: &str, out: &mut W) -> Result {
     reading(out)?;
     claims(document, out)?;
     for measured in &document.adapters {

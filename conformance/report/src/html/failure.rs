@@ -1,6 +1,7 @@
 //! The card of a formula that fails: what it computes, of which inputs, where it departs, why, and how to see it again.
 
 use super::matrix::{card_id, is_failing, short};
+use super::page::prose;
 use super::plot;
 use crate::text::{made_at, plain};
 use lightmeter_document::explained::{Explained, ShownMistake};
@@ -29,8 +30,7 @@ pub(super) fn cards(report: &Report) -> Vec<Markup> {
         }
     }
     let share = |groups: &[&Group]| {
-        let (failed, verdicts) =
-            groups.iter().fold((0, 0), |(f, v), group| (f + group.totals.failed, v + group.totals.verdicts));
+        let (failed, verdicts) = groups.iter().map(|group| judged(group)).fold((0, 0), |(f, v), (a, b)| (f + a, v + b));
         #[expect(clippy::cast_precision_loss, reason = "shares")]
         (failed as f64 / verdicts.max(1) as f64)
     };
@@ -42,6 +42,17 @@ pub(super) fn cards(report: &Report) -> Vec<Markup> {
         cards.push(html! { p { (left) " more are in the table below and in the JSON." } });
     }
     cards
+}
+
+/// How many failed, and of how many: verdicts, or whole cases where a renderer was asked.
+fn judged(group: &Group) -> (u64, u64) {
+    group.by_case.as_ref().map_or((group.totals.failed, group.totals.verdicts), |counts| (counts.failed, counts.asked))
+}
+
+fn failed_of(group: &Group) -> String {
+    let (failed, of) = judged(group);
+    let what = if group.by_case.is_some() { "cases" } else { "values" };
+    format!("{} of {} {what} fail.", thousands(failed), thousands(of))
 }
 
 fn card(report: &Report, groups: &[&Group], is_open: bool) -> Markup {
@@ -56,7 +67,7 @@ fn card(report: &Report, groups: &[&Group], is_open: bool) -> Markup {
         details.card id=(card_id(&group.id, &group.adapter)) open[is_open] {
             summary {
                 span.fail { "✗" } " " b { (group.id) } " on " (group.adapter) " "
-                span.quiet { @for own in groups { (own.place()) ": " (thousands(own.totals.failed)) " of " (thousands(own.totals.verdicts)) " fail. " } }
+                span.quiet { @for own in groups { (own.place()) ": " (failed_of(own)) " " } }
             }
             @for (place, own) in groups.iter().enumerate() {
                 @for what in own.explanation.iter().chain(&own.problem) {
@@ -77,7 +88,7 @@ fn card(report: &Report, groups: &[&Group], is_open: bool) -> Markup {
 fn formula(explained: &Explained) -> Markup {
     html! {
         p.formula { (explained.formula) }
-        @if !explained.rules.is_empty() { ul.rules { @for rule in &explained.rules { li { (rule) } } } }
+        @if !explained.rules.is_empty() { ul.rules { @for rule in &explained.rules { li { (prose(rule)) } } } }
         p.quiet { "source: " (explained.source) }
     }
 }
@@ -92,7 +103,7 @@ fn case(failure: &Failure, explained: Option<&Explained>) -> Markup {
                 h4 { "inputs" }
                 div.wide tabindex="0" role="group" aria-label="inputs" { table.inputs {
                     @for (name, value) in &failure.inputs {
-                        tr { th scope="row" { (name) } td.number { (plain(value)) } td.quiet { @if let Some(unit) = failure.units.get(name) { (unit) } } }
+                        tr { th scope="row" { (name) } td.number { (plain(value)) } td.quiet { @if let Some(unit) = failure.units.get(name).filter(|unit| &***unit != "1") { (unit) } } }
                     }
                 } }
             }
@@ -154,6 +165,19 @@ fn steps(explained: &Explained) -> Markup {
         let [low, high] = explained.steps[place].interval;
         made(place).is_some_and(|made| is_worse(made.0, high.0) || is_worse(low.0, made.0))
     });
+    // The components of a vector are told apart.
+    let names: Vec<String> = (0..explained.steps.len())
+        .map(|place| {
+            let is_same = |k: &usize| explained.steps[*k].name == explained.steps[place].name;
+            let all: Vec<usize> = (0..explained.steps.len()).filter(is_same).collect();
+            let nth = all.iter().position(|&k| k == place).unwrap_or_default();
+            let name = &explained.steps[place].name;
+            match "xyzw".chars().nth(nth) {
+                Some(component) if (2..=4).contains(&all.len()) => format!("{name}.{component}"),
+                _ => name.to_string(),
+            }
+        })
+        .collect();
     html! {
         h4 { "steps" }
         div.wide tabindex="0" role="group" aria-label="steps" { table.steps {
@@ -163,12 +187,13 @@ fn steps(explained: &Explained) -> Markup {
             } }
             @for (place, step) in explained.steps.iter().enumerate() {
                 tr class=[(departs == Some(place)).then_some("departs")] {
-                    th scope="row" { (step.name) @if departs == Some(place) { " ← departs here" } }
+                    th scope="row" { (names[place]) @if departs == Some(place) { " ← departs here" } }
                     td.number { (step.value.narrow()) }
                     td.number { (step.interval[0].narrow()) " to " (step.interval[1].narrow()) }
                     @if mistake.is_some() { td.number { @if let Some(made) = made(place) { (made.narrow()) } } }
                 }
             }
         } }
+        @if departs.is_none() { p.hint { "Only the result is known of whoever answered: no mistake by name explains it, so no step can be said to be the first that departs." } }
     }
 }

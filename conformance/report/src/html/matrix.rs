@@ -132,8 +132,8 @@ pub(super) fn filters(columns: &[Column<'_>]) -> Markup {
     }
 }
 
-/// The table.
-pub(super) fn table(columns: &[Column<'_>]) -> Markup {
+/// The table. Cells that fail lead to their cards, where the page has them.
+pub(super) fn table(columns: &[Column<'_>], has_cards: bool) -> Markup {
     let mut subjects: Vec<(&str, usize)> = vec![];
     for column in columns {
         match subjects.last_mut().filter(|(name, _)| *name == column.subject) {
@@ -145,14 +145,14 @@ pub(super) fn table(columns: &[Column<'_>]) -> Markup {
         div.wide tabindex="0" role="group" aria-label="all formulas" {
             table #matrix {
                 thead {
-                    tr { th rowspan="2" scope="col" { "formula" } @for (subject, count) in &subjects { th colspan=(count) scope="colgroup" { (subject) } } }
+                    tr { th rowspan="2" scope="col" { "formula" } @for (subject, count) in &subjects { th colspan=(count) scope="colgroup" data-subject=(subject) { (subject) } } }
                     tr { @for column in columns { th scope="col" data-subject=(column.subject) { (column.place) } } }
                 }
                 tbody {
                     @for id in ids(columns) {
                         tr data-family=(family(id)) {
                             th scope="row" { (id) }
-                            @for column in columns { (told(id, column)) }
+                            @for column in columns { (told(id, column, has_cards)) }
                         }
                     }
                 }
@@ -162,10 +162,10 @@ pub(super) fn table(columns: &[Column<'_>]) -> Markup {
     }
 }
 
-fn told(id: &str, column: &Column<'_>) -> Markup {
-    let Some(group) = column.groups.get(id) else { return html! { td {} } };
+fn told(id: &str, column: &Column<'_>, has_cards: bool) -> Markup {
+    let Some(group) = column.groups.get(id) else { return html! { td data-subject=(column.subject) {} } };
     let (class, shows, says) = cell(group);
-    let card = (class == "fail").then(|| card_id(id, &group.adapter));
+    let card = (has_cards && class == "fail").then(|| card_id(id, &group.adapter));
     html! {
         td class=(class) title=(says) data-subject=(column.subject) {
             @if let Some(card) = card { a href={ "#" (card) } { (shows) } } @else { (shows) }

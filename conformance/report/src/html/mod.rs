@@ -14,16 +14,16 @@ mod scene;
 
 pub use equation::equation;
 pub use markdown::markdown;
-pub use page::{PageKind, embedded, page};
+pub use page::{PageKind, embedded, page, prose};
 pub use plot::course as course_plot;
 
-use crate::against::Against;
+use crate::against::{Against, BASELINE};
 use crate::bench::{page as bench_page, plot as bench_plot};
 use crate::page::selftest::{self, SelftestRun};
 use crate::page::sweep::{self, Swept};
 use lightmeter_document::bench::BenchDocument;
 use lightmeter_document::gate::GateReport;
-use lightmeter_document::run::Report;
+use lightmeter_document::run::{Group, Report};
 use matrix::Column;
 use maud::{Markup, html};
 use overview::Facts;
@@ -58,19 +58,19 @@ fn run_page(report: &Report, is_success: bool, incidents: &[String]) -> String {
                 @for card in scenes.iter().chain(&cards) { (card) }
             }
         }
-        (all(&columns))
+        (all(&columns, true))
         (overview::notes(report))
     };
     page(&facts.title, PageKind::Report, &body)
 }
 
 /// The matrix of all formulas, with its filters.
-fn all(columns: &[Column<'_>]) -> Markup {
+fn all(columns: &[Column<'_>], has_cards: bool) -> Markup {
     html! {
         section #all {
             h2 { "Everything that was judged" }
             (matrix::filters(columns))
-            (matrix::table(columns))
+            (matrix::table(columns, has_cards))
         }
     }
 }
@@ -86,9 +86,13 @@ fn against(report: &Report, incidents: &[String]) -> Markup {
         @if !lines.is_empty() || has_baseline {
             section #compared {
                 h2 { "Compared with what is known" }
-                @if !lines.is_empty() {
-                    h3 { "Worse than expected" }
-                    ul.bad { @for (title, what) in &lines { li { b { (title) } ": " (what) } } }
+                @if !report.regressions.is_empty() {
+                    h3 { "Worse than in the baseline" }
+                    ul.bad { @for what in &report.regressions { li { (linked(report, what)) } } }
+                }
+                @if lines.iter().any(|(title, _)| title != BASELINE) {
+                    h3 { "Not as expected" }
+                    ul.bad { @for (title, what) in lines.iter().filter(|(title, _)| title != BASELINE) { li { b { (title) } ": " (what) } } }
                 }
                 @if !report.mended.is_empty() {
                     h3 { "Better than the baseline" }
@@ -100,6 +104,17 @@ fn against(report: &Report, incidents: &[String]) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// What is said of a group, whose name leads to its card where it has one.
+fn linked(report: &Report, what: &str) -> Markup {
+    let is_its = |group: &&Group| what.strip_prefix(&*group.id).is_some_and(|rest| rest.starts_with([' ', ':']));
+    match report.groups.iter().find(|group| matrix::is_failing(group) && is_its(group)) {
+        Some(group) => {
+            html! { a href={ "#" (matrix::card_id(&group.id, &group.adapter)) } { (group.id) } (what[group.id.len()..]) }
+        }
+        None => html! { (what) },
     }
 }
 
@@ -116,7 +131,7 @@ pub fn of_matrix(reports: &[(&str, &Report)]) -> String {
                 dd { @for adapter in &report.adapters { (adapter.name) ": " (adapter.device) ", " (adapter.driver) br; } "seed " (report.seed) ", profile " (report.profile) }
             }
         }
-        (all(&columns))
+        (all(&columns, false))
     };
     page(title, PageKind::Report, &body)
 }
@@ -135,7 +150,7 @@ pub fn matrix_markdown(reports: &[(&str, &Report)], out: &mut impl fmt::Write) -
 /// Where a part of it cannot be written.
 pub fn of_sweeps(sweeps: &[Swept]) -> Result<String, fmt::Error> {
     let mut text = String::new();
-    sweep::markdown(sweeps, &mut text)?;
+    sweep::body(sweeps, &mut text)?;
     let is_success = sweeps.iter().all(|swept| swept.document.statistics.failed == 0 && swept.document.is_finished());
     let facts = Facts::of_sweeps(sweeps, is_success);
     let body = html! {
@@ -153,7 +168,7 @@ pub fn of_sweeps(sweeps: &[Swept]) -> Result<String, fmt::Error> {
 pub fn of_bench(document: &BenchDocument) -> Result<String, Box<dyn std::error::Error + Send + Sync>> {
     let pictures = bench_plot::pictures(document)?;
     let mut text = String::new();
-    bench_page::markdown(document, &pictures, "", &mut text)?;
+    bench_page::body(document, &pictures, "", &mut text)?;
     let picture = |name: &str| {
         let found = pictures.iter().find(|picture| name.strip_suffix(".svg") == Some(&picture.stem()))?;
         Some(embedded("image/svg+xml", found.svg.as_bytes()))
@@ -169,7 +184,7 @@ pub fn of_bench(document: &BenchDocument) -> Result<String, Box<dyn std::error::
 /// Where it cannot be written.
 pub fn of_selftest(run: &SelftestRun) -> Result<String, fmt::Error> {
     let mut text = String::new();
-    selftest::markdown(run, &mut text)?;
+    selftest::body(run, &mut text)?;
     let facts = Facts::of_selftest(run);
     let body = html! { (overview::head(&facts)) section { (markdown(&text, &|_| None)) } };
     Ok(page(&facts.title, PageKind::Report, &body))

@@ -1,7 +1,7 @@
 //! What a result came to, before anything else: the verdict, of what, and by which command; and at the end what else there is to know.
 
 use crate::page::selftest::SelftestRun;
-use crate::page::sweep::Swept;
+use crate::page::sweep::{Swept, command};
 use lightmeter_document::bench::BenchDocument;
 use lightmeter_document::run::{Identity, Report};
 use lightmeter_document::thousands;
@@ -77,7 +77,10 @@ impl Facts {
             title: format!("lightmeter sweep: {}", names.join(", ")),
             is_success: Some(is_success),
             says: format!("{} inputs, of which {} give what is not legal.", thousands(inputs), thousands(failed)),
-            command: None,
+            command: match sweeps {
+                [one] => Some(format!("lightmeter sweep {}", command(one))),
+                _ => None,
+            },
             facts,
         }
     }
@@ -96,7 +99,10 @@ impl Facts {
         Self {
             title: "lightmeter bench".into(),
             is_success: None,
-            says: format!("What accuracy costs in time: {groups} groups of techniques and arithmetics."),
+            says: match groups {
+                1 => "What accuracy costs in time: one group of techniques and arithmetics.".into(),
+                _ => format!("What accuracy costs in time: {groups} groups of techniques and arithmetics."),
+            },
             command: Some(document.command.clone()),
             facts,
         }
@@ -107,8 +113,8 @@ impl Facts {
             title: "lightmeter selftest".into(),
             is_success: Some(run.is_good()),
             says: "What the suite catches of the mistakes that it knows, and how small an error it names.".into(),
-            command: Some("lightmeter selftest".into()),
-            facts: vec![],
+            command: run.command.clone(),
+            facts: run.seed.iter().map(|seed| ("seed".into(), seed.to_string())).collect(),
         }
     }
 }

@@ -17,6 +17,14 @@ pub enum PageKind {
     Book,
 }
 
+/// Words as they stand in documents: what stands between backticks is code.
+#[must_use]
+pub fn prose(words: &str) -> Markup {
+    html! {
+        @for (k, part) in words.split('`').enumerate() { @if k % 2 == 1 { code { (part) } } @else { (part) } }
+    }
+}
+
 /// A picture as an address of its own.
 #[must_use]
 pub fn embedded(mime: &str, bytes: &[u8]) -> String {

@@ -2,7 +2,7 @@
 
 use super::matrix::short;
 use lightmeter_document::explained::{CoursePoint, OutputCourse};
-use lightmeter_document::sweep::SweepDocument;
+use lightmeter_document::sweep::{SweepDocument, SweepPart};
 use maud::{Markup, html};
 
 /// Pixels of a plot: across, upwards, to the left of it, and around.
@@ -212,9 +212,16 @@ pub(super) fn errors(document: &SweepDocument) -> Markup {
     let x = |part: usize| LEFT + (WIDTH - LEFT - AROUND) * part as f64 / parts as f64;
     let axis = Axis { least: 0.0, most: if most > 0.0 { most } else { 1.0 }, top: AROUND };
     let height = |error: f64| if error.is_finite() { AROUND + HEIGHT - axis.y(error) } else { HEIGHT };
+    // The legal band goes up to a margin of 1.
+    let margin = |part: &SweepPart| folded(part.margin_max.0).min(1.0 + MOST_POWER);
+    let most = along.iter().map(margin).filter(|x| x.is_finite()).fold(1.2, f64::max);
+    let margins = Axis { least: 0.0, most, top: AROUND + HEIGHT + 18.0 };
+    let bottom = margins.top + HEIGHT;
+    let has_margins = along.iter().any(|part| part.margin_max.0 > 0.0);
+    let whole = if has_margins { bottom } else { AROUND + HEIGHT };
     html! {
         figure.plot {
-            svg viewBox={ "0 0 " (WIDTH) " " (HEIGHT + 60.0) } role="img" aria-label={ "errors of " (sweep.formula) " along " (sweep.over) } {
+            svg viewBox={ "0 0 " (WIDTH) " " (whole + 46.0) } role="img" aria-label={ "errors of " (sweep.formula) " along " (sweep.over) } {
                 (ticks(&axis, &[0.0, axis.most / 2.0, axis.most], short))
                 (frame(AROUND))
                 // A block of inputs is told where it begins, and of a short sweep there are fewer blocks than parts.
@@ -223,13 +230,24 @@ pub(super) fn errors(document: &SweepDocument) -> Markup {
                     rect class=(if part.failed > 0 { "bar fails" } else { "bar" }) x=(format!("{:.1}", x(part.part))) y=(format!("{:.1}", AROUND + HEIGHT - height(part.error_max.0)))
                         width=(format!("{:.2}", (x(end) - x(part.part)).max(0.8))) height=(format!("{:.1}", height(part.error_max.0).max(0.0))) {}
                 }
-                text.name x=(LEFT + 6.0) y=(AROUND + 14.0) { "greatest error, " (sweep.unit) }
-                @for (place, anchor, end) in [(0.0, "start", &sweep.from), (1.0, "end", &sweep.to)] {
-                    @if let Some(end) = end { text.tick x=(LEFT + (WIDTH - LEFT - AROUND) * place) y=(HEIGHT + 34.0) text-anchor=(anchor) { (end.0) } }
+                text.name x=(LEFT + 6.0) y=(AROUND - 3.0) { "greatest error, " (sweep.unit) }
+                @if has_margins {
+                    (ticks(&margins, &[0.0, 1.0, margins.most], unfolded))
+                    (frame(margins.top))
+                    rect.band x=(LEFT) width=(WIDTH - LEFT - AROUND) y=(format!("{:.1}", margins.y(1.0))) height=(format!("{:.1}", bottom - margins.y(1.0))) {}
+                    @for (k, part) in along.iter().enumerate().filter(|(_, part)| margin(part).is_finite()) {
+                        @let end = along.get(k + 1).map_or(parts, |next| next.part);
+                        line class=(if part.failed > 0 { "level fails" } else { "level" }) x1=(format!("{:.1}", x(part.part))) x2=(format!("{:.1}", x(end).max(x(part.part) + 0.8)))
+                            y1=(format!("{:.1}", margins.y(margin(part)))) y2=(format!("{:.1}", margins.y(margin(part)))) {}
+                    }
+                    text.name x=(LEFT + 6.0) y=(margins.top - 4.0) { "error over tolerance" }
                 }
-                text.name x=(f64::midpoint(LEFT, WIDTH)) y=(HEIGHT + 52.0) text-anchor="middle" { (sweep.over) ", float by float" }
+                @for (place, anchor, end) in [(0.0, "start", &sweep.from), (1.0, "end", &sweep.to)] {
+                    @if let Some(end) = end { text.tick x=(LEFT + (WIDTH - LEFT - AROUND) * place) y=(whole + 18.0) text-anchor=(anchor) { (end.0) } }
+                }
+                text.name x=(f64::midpoint(LEFT, WIDTH)) y=(whole + 36.0) text-anchor="middle" { (sweep.over) ", float by float" }
             }
-            figcaption { (sweep.formula) ": errors of " (sweep.output) " along " (sweep.over) "; parts in which a value is not legal are red." }
+            figcaption { (sweep.formula) ": errors of " (sweep.output) " along " (sweep.over) "; parts in which a value is not legal are red. " @if has_margins { span.key-band {} " legal" } }
         }
     }
 }

@@ -14,6 +14,8 @@ const MOST_BYTES: u64 = 4 << 20;
 const OPEN: usize = 2;
 /// Pixels that the card lists.
 const LISTED: usize = 12;
+/// How far two of them are apart, at least in one direction.
+const APART: usize = 3;
 
 /// The cards of all scenes whose images are wrong, worst first.
 pub(super) fn cards(report: &Report) -> Vec<Markup> {
@@ -79,6 +81,8 @@ fn card(report: &Report, (group, image): (&Group, &ImageUse), is_first: bool, is
                     }
                 }
                 output.pixel role="status" { "Point at a pixel, or choose one below, to see its values." }
+            } @else {
+                p.hint { "The pictures of this scene were not found when the page was made: " (image.files.join(", ")) }
             }
             (pixels(image))
             @if let Some(Failure { rerun, .. }) = failure { @if !rerun.is_empty() { (command(rerun)) } }
@@ -107,12 +111,12 @@ fn pixels(image: &ImageUse) -> Markup {
         @if !image.pixels.is_empty() {
             div.wide tabindex="0" role="group" aria-label="worst pixels" { table.worst {
                 thead { tr { th scope="col" { "pixel" } th scope="col" { "reference" } th scope="col" { "legal" } th scope="col" { "drawn" } } }
-                @for pixel in image.pixels.iter().take(LISTED) {
+                @for pixel in listed(image) {
                     tr {
                         th scope="row" { button type="button" data-x=(pixel.x) data-y=(pixel.y) { (pixel.x) ", " (pixel.y) } }
-                        td.number { (four(&pixel.reference)) }
-                        td.number { (four(&pixel.low)) br; (four(&pixel.high)) }
-                        td.number { (four(&pixel.value)) @if pixel.marked { " (several outcomes are legal)" } }
+                        td.number { (four(pixel, &pixel.reference)) }
+                        td.number { (four(pixel, &pixel.low)) br; (four(pixel, &pixel.high)) }
+                        td.number { (four(pixel, &pixel.value)) @if pixel.marked { " (several outcomes are legal)" } }
                     }
                 }
             } }
@@ -120,6 +124,29 @@ fn pixels(image: &ImageUse) -> Markup {
     }
 }
 
-fn four(numbers: &[Number; 4]) -> String {
-    numbers.map(|x| super::matrix::short(x.0)).join("  ")
+/// The worst pixels, but for those beside one that is listed, which are wrong in the same way.
+fn listed(image: &ImageUse) -> Vec<&PixelUse> {
+    let mut listed: Vec<&PixelUse> = vec![];
+    for pixel in &image.pixels {
+        let is_beside = |other: &PixelUse| pixel.x.abs_diff(other.x) <= APART && pixel.y.abs_diff(other.y) <= APART;
+        if listed.len() < LISTED && !listed.iter().any(|other| is_beside(other)) {
+            listed.push(pixel);
+        }
+    }
+    listed
+}
+
+/// A pixel's numbers, with as many decimals as tell the ends of what is legal from each other and from what was drawn.
+fn four(pixel: &PixelUse, numbers: &[Number; 4]) -> String {
+    let least = (0..4)
+        .flat_map(|k| {
+            let [low, high, value] = [pixel.low[k].0, pixel.high[k].0, pixel.value[k].0];
+            [high - low, value - low, value - high]
+        })
+        .map(f64::abs)
+        .filter(|apart| apart.is_finite() && *apart > 0.0)
+        .fold(1.0, f64::min);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few decimals")]
+    let decimals = (1.0 - least.log10()).ceil().clamp(0.0, 8.0) as usize;
+    numbers.map(|x| if x.0.is_finite() { format!("{:.decimals$}", x.0) } else { x.to_string() }).join("  ")
 }

@@ -19,6 +19,10 @@ pub struct SelftestRun {
     rows: Vec<UnitRow>,
     scenes: Option<SceneRecord>,
     scene_calibration: Vec<SceneResolution>,
+    /// The command, where the file says it.
+    pub(crate) command: Option<String>,
+    /// The seed of the random cases, likewise.
+    pub(crate) seed: Option<u64>,
 }
 
 impl SelftestRun {
@@ -45,6 +49,8 @@ impl SelftestRun {
             rows: document.rows,
             scenes: document.scenes,
             scene_calibration: document.scene_calibration,
+            command: document.command,
+            seed: document.seed,
         };
         let is_told = |kill: &&Kill| run.mistakes.iter().any(|mistake| mistake.name == kill.fault);
         match run.record.kills.iter().find(|kill| !is_told(kill)) {
@@ -75,6 +81,14 @@ pub fn markdown(run: &SelftestRun, out: &mut impl Write) -> Written {
     )?;
     writeln!(out, "```\n./x selftest --calibrate --format json --out selftest.json")?;
     writeln!(out, "./x page selftest selftest.json --out docs/selftest.md\n```\n")?;
+    body(run, out)
+}
+
+/// The page but for its title and how it was made.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn body(run: &SelftestRun, out: &mut impl Write) -> Written {
     totals(&run.record, out)?;
     matrix(run, out)?;
     aliases(&run.record, out)?;
@@ -85,6 +99,11 @@ pub fn markdown(run: &SelftestRun, out: &mut impl Write) -> Written {
     unit(&run.rows, out)?;
     resolution(run, out)?;
     scene_resolution(&run.scene_calibration, out)
+}
+
+/// Words in a cell of a table, where a bar would end the cell.
+fn cell(words: &str) -> String {
+    words.replace('|', "\\|")
 }
 
 fn totals(record: &Record, out: &mut impl Write) -> Written {
@@ -122,7 +141,7 @@ fn matrix(SelftestRun { record, mistakes, .. }: &SelftestRun, out: &mut impl Wri
         if kills.is_empty() {
             continue;
         }
-        write!(out, "| {} | {} |", fault.name, fault.says)?;
+        write!(out, "| {} | {} |", fault.name, cell(&fault.says))?;
         for family in &families {
             let of: Vec<&&Kill> = kills.iter().filter(|kill| family_of(&kill.formula) == *family).collect();
             let named = of.iter().filter(|kill| kill.finding == Finding::Named).count();
@@ -203,7 +222,7 @@ fn drawn(record: &SceneRecord, out: &mut impl Write) -> Written {
     for row in &record.rows {
         let others: Vec<&str> = row.others.iter().filter_map(|other| other.split(':').next()).collect();
         let [caught, named] = [row.caught.len(), row.named.len()];
-        writeln!(out, "| {} | {} | {caught} | {named} | {} |", row.fault, row.says, others.join(", "))?;
+        writeln!(out, "| {} | {} | {caught} | {named} | {} |", row.fault, cell(&row.says), others.join(", "))?;
     }
     for alarm in &record.alarms {
         writeln!(out, "\n**False alarm**: {alarm} fails and nothing is wrong.")?;

@@ -36,6 +36,14 @@ pub fn markdown(results: &[Swept], out: &mut impl Write) -> Result {
         writeln!(out, "./x sweep {} --format json --out {}.json", command(result), stem(results, place))?;
     }
     writeln!(out, "./x page sweep *.json --out docs/sweep.md\n```\n")?;
+    body(results, out)
+}
+
+/// The page but for its title and how it was made.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn body(results: &[Swept], out: &mut impl Write) -> Result {
     let mut adapters: Vec<_> = results.iter().map(|result| &result.sweep.adapter).collect();
     adapters.dedup();
     for (place, adapter) in adapters.iter().enumerate() {
@@ -64,7 +72,7 @@ pub fn markdown(results: &[Swept], out: &mut impl Write) -> Result {
 }
 
 /// What a result was asked for by, as on the command line: what its ready-made sweep says is left out.
-fn command(result: &Swept) -> String {
+pub(crate) fn command(result: &Swept) -> String {
     let sweep = &result.sweep;
     let mut command = sweep.formula.clone();
     if !result.is_ready_made {
