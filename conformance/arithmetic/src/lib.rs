@@ -10,6 +10,9 @@ pub mod profile;
 pub mod random;
 pub mod trace;
 
+#[cfg(test)]
+mod tests;
+
 pub use accept::Accept;
 pub use dual::Dual;
 pub use fixed::Fixed;
