@@ -1,7 +1,12 @@
 //! Lightmeter as a library: the crates of the suite in one library, each module named by its subject.
+//!
+//! [`harness`] judges an engine's formulas within its own tests. For that alone, without wgpu and the command, depend upon it with
+//! `default-features = false`; the features `harness`, `scenes`, `report`, `gpu` and `cli` add the rest.
 
 pub use lightmeter_arithmetic as arithmetic;
+#[cfg(feature = "gpu")]
 pub use lightmeter_bench as bench;
+#[cfg(feature = "cli")]
 pub use lightmeter_book as book;
 pub use lightmeter_catalogue::{cases, dialects, filter, nearest, rulings, scene, select};
 pub use lightmeter_document as document;
@@ -9,10 +14,13 @@ pub use lightmeter_engine::{device, evaluate, merge, options, piece, rows, run, 
 pub use lightmeter_faults as faults;
 pub use lightmeter_files as files;
 pub use lightmeter_gate as gate;
+pub use lightmeter_harness as harness;
 pub use lightmeter_judge as judge;
 pub use lightmeter_judge::{devices, formula, tally};
 pub use lightmeter_report as report;
+#[cfg(feature = "gpu")]
 pub use lightmeter_subject_gpu as subject_gpu;
+#[cfg(feature = "gpu")]
 pub use lightmeter_subject_gpu::adapters;
 
 /// Blend units: what is legal of them, and how they are run.

@@ -162,7 +162,7 @@ fn baseline_gate(bytes: &[u8]) {
         let style = report::gate::GateStyle { level: Level::Verbose, ..Default::default() };
         report::gate::text(&report, &style, &mut out).expect("a string takes all");
         said(out);
-        report::gate::junit(&report).expect("any report is XML");
+        report::junit::of_gate(&report).expect("any report is XML");
         commands(&github::of_gate(&report));
     }
 }

@@ -98,11 +98,38 @@ fn crates_depend_one_way_as_the_architecture_says() {
         assert!(!reached(&crates, package).contains(package.as_str()), "{package} depends upon itself");
     }
     let crates = dependencies(true);
-    for package in ["engine", "faults", "gate", "report", "judge", "catalogue"] {
+    for package in ["engine", "faults", "gate", "harness", "report", "judge", "catalogue"] {
         let package = format!("conformance/{package}");
         assert!(!reached(&crates, &package).contains("gpu"), "{package} reaches the GPU");
     }
     assert!(!reached(&crates, "gpu").contains("reference") && !reached(&crates, "reference").contains("gpu"));
+}
+
+/// The most crates from elsewhere that the library builds without its features.
+const MOST_CRATES: usize = 61;
+
+/// Who judges the answers of an engine of theirs needs neither a GPU nor a command line.
+#[test]
+fn the_library_without_features_is_light() {
+    let tree = |features: &[&str]| -> BTreeSet<String> {
+        let output = Command::new(env!("CARGO"))
+            .args(["tree", "--offline", "--package", "lightmeter", "--edges", "normal", "--prefix", "none"])
+            .args(features)
+            .current_dir(root())
+            .output()
+            .expect("cargo starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).expect("cargo writes UTF-8");
+        let names = text.lines().filter_map(|line| line.split(' ').next());
+        names.filter(|name| !name.starts_with("lightmeter")).map(str::to_owned).collect()
+    };
+    let light = tree(&["--no-default-features"]);
+    for heavy in ["wgpu", "naga", "clap", "indicatif", "image", "maud", "plotters", "npyz"] {
+        assert!(!light.contains(heavy), "the library without features builds {heavy}");
+    }
+    assert!(light.len() <= MOST_CRATES, "{} crates: {light:?}", light.len());
+    let whole = tree(&[]);
+    assert!(whole.contains("wgpu") && whole.contains("clap") && whole.len() > 2 * light.len());
 }
 
 /// Files, each with those that it imports from.
@@ -294,8 +321,9 @@ fn files_with(text: &str) -> Vec<String> {
     let mut all = vec![];
     sources(&root().join("conformance"), &mut all);
     let has = |source: &str| source.split("#[cfg(test)]\nmod tests {").next().is_some_and(|code| code.contains(text));
-    let mut files: Vec<String> =
-        all.into_iter().filter(|(name, source)| name.contains("/src/") && has(source)).map(|(name, _)| name).collect();
+    let is_test = |name: &str| name.contains("/src/tests/") || name.ends_with("/src/tests.rs");
+    let is_meant = |(name, source): &(String, String)| name.contains("/src/") && !is_test(name) && has(source);
+    let mut files: Vec<String> = all.into_iter().filter(is_meant).map(|(name, _)| name).collect();
     files.sort();
     files
 }

@@ -20,6 +20,8 @@ use std::path::{Path, PathBuf};
 pub const DEFAULT_TARGETS: [TargetFormat; 2] = [TargetFormat::Rgba32Float, TargetFormat::Rgba8Unorm];
 /// Random cases of each formula where no other number is asked for.
 pub const DEFAULT_CASES: u64 = 4096;
+/// Random cases for each formula of a renderer that is asked case by case, where nothing else is asked for.
+pub const ASKED_CASES: u64 = 256;
 /// The most cases of each formula that can be asked for.
 pub const MOST_CASES: u64 = 1_000_000_000_000;
 

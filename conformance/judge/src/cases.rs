@@ -368,6 +368,41 @@ mod tests {
     use super::*;
     use lightmeter_catalogue::select::catalogue;
 
+    #[test]
+    fn a_known_failure_has_its_cases_where_it_is_on() {
+        let known = |on: Option<&str>| ExpectedFailure {
+            known: KnownFailure {
+                id: "fog/exp".into(),
+                reason: "it is known".into(),
+                on: on.map(Into::into),
+                failed: 0,
+                passed: 0,
+                crash: false,
+                may_pass: false,
+            },
+            filter: Filter::new(&["fog/exp"]).expect("it is a glob"),
+        };
+        for (on, id, at, has) in [
+            (None, "fog/exp/random/000001", "compute", true),
+            (None, "fog/linear/random/000001", "compute", false),
+            (Some("compute"), "fog/exp/random/000001", "compute", true),
+            (Some("fragment"), "fog/exp/random/000001", "compute", false),
+            (Some("compute"), "fog/linear/random/000001", "compute", false),
+        ] {
+            assert_eq!(known(on).has(id, &[at]), has, "{on:?} {id} {at}");
+        }
+    }
+
+    #[test]
+    fn what_was_said_in_the_place_of_a_value_is_told() {
+        for said in [Unanswered::Skipped, Unanswered::Undeclared, Unanswered::Unjudged, Unanswered::Broken] {
+            assert_eq!(said("why".into()).message(), "why");
+        }
+        for silent in [Unanswered::Missing, Unanswered::Unasked] {
+            assert_eq!(silent.message(), "never answered");
+        }
+    }
+
     fn member(id: &str) -> Member {
         catalogue().into_iter().find(|member| member.spec.id == id).expect("the catalogue has it")
     }

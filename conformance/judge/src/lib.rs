@@ -133,6 +133,33 @@ mod tests {
     }
 
     #[test]
+    fn outcomes_have_the_names_of_reports() {
+        let names = [Outcome::Pass, Outcome::Fail, Outcome::Indeterminate].map(Outcome::name);
+        assert_eq!(names, ["pass", "fail", "indeterminate"]);
+    }
+
+    /// The digits of a number in binary, with 0 and ±1 the simplest and what is no number the least simple.
+    #[test]
+    fn the_fewer_digits_the_simpler() {
+        for (input, digits) in
+            [(0.0, 0), (-0.0, 0), (1.0, 1), (-1.0, 1), (2.0, 3), (0.5, 3), (1.5, 4), (1.25, 5), (0.1, 26)]
+        {
+            assert_eq!(simplicity(&[input]), digits, "{input}");
+        }
+        for input in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            assert_eq!(simplicity(&[input]), 64, "{input}");
+        }
+        assert_eq!(simplicity(&[1.0, 1.5, 0.0]), 5);
+    }
+
+    #[test]
+    fn ordinary_inputs_tell_more_than_hard_ones() {
+        assert_eq!(telling(&[1.5], true), 4);
+        assert_eq!(telling(&[1.5], false), 4 + (1 << 31));
+        assert!(telling(&[f32::NAN; 9], true) < telling(&[0.0], false));
+    }
+
+    #[test]
     fn what_was_never_written_fails() {
         for interval in [Accept::ANY, Accept::from_bounds(0.0, 1.0)] {
             assert_eq!(judge(SENTINEL, 0.0, &interval).outcome, Outcome::Fail);

@@ -1,4 +1,4 @@
-//! A gate's result for people, for CI servers and for GitHub.
+//! A gate's result for people.
 
 use crate::Level;
 use crate::against::{self, Against, listed};
@@ -8,7 +8,6 @@ use lightmeter_document::by_case::Coverage;
 use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, Problems, cases};
 use lightmeter_document::run::Interrupted;
 use lightmeter_document::{Number, thousands};
-use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::fmt::{Result, Write};
 
 /// Missing cases, or rows of them, that are named.
@@ -325,37 +324,4 @@ pub(crate) fn whole(report: &GateReport) -> Vec<(String, String)> {
     said.extend(report.problems.first.iter().map(|what| ("answers".to_owned(), what.clone())));
     said.extend(Against::of_gate(report).lines());
     said
-}
-
-/// The result as JUnit XML: a test for each formula and scene.
-///
-/// # Errors
-/// Where it cannot be written as XML.
-pub fn junit(report: &GateReport) -> std::result::Result<String, SerializeError> {
-    let mut document = Document::new("lightmeter gate");
-    let mut suite = TestSuite::new(format!("{} {}", report.renderer.name, report.renderer.version));
-    for group in &report.groups {
-        let mut status = TestCaseStatus::success();
-        if group.is_failed() {
-            status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-            status.set_message(sentence(group));
-            let mut description = String::new();
-            // Writing to a string does not fail.
-            let _ = told(group, &report.failures, &GateStyle::default(), &mut description);
-            status.set_description(description);
-        } else if group.asked == group.skipped {
-            status = TestCaseStatus::skipped();
-            status.set_message(group.reason.clone().unwrap_or_default());
-        }
-        let mut case = TestCase::new(group.name(), status);
-        case.set_classname(group.id.split('/').next().unwrap_or_default());
-        suite.add_test_case(case);
-    }
-    for (title, what) in whole(report) {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-        status.set_message(what);
-        suite.add_test_case(TestCase::new(title, status));
-    }
-    document.add_test_suite(suite);
-    document.to_string()
 }

@@ -1,8 +1,10 @@
-//! A run's result as JUnit XML: a suite for each adapter, a test for each group and stage.
+//! Results as JUnit XML: of a run a suite for each adapter, and a test for each group and stage; of a gate a test for each formula and scene.
 
 use super::Level;
 use super::against::Against;
 use super::text;
+use crate::gate::{GateStyle, sentence, told, whole};
+use lightmeter_document::gate::GateReport;
 use lightmeter_document::run::{Group, Report};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;
@@ -82,4 +84,37 @@ fn status(group: &Group, report: &Report) -> TestCaseStatus {
     }
     status.set_description(description);
     status
+}
+
+/// A gate's result: a test for each formula and scene.
+///
+/// # Errors
+/// Where it cannot be written as XML.
+pub fn of_gate(report: &GateReport) -> Result<String, SerializeError> {
+    let mut document = Document::new("lightmeter gate");
+    let mut suite = TestSuite::new(format!("{} {}", report.renderer.name, report.renderer.version));
+    for group in &report.groups {
+        let mut status = TestCaseStatus::success();
+        if group.is_failed() {
+            status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+            status.set_message(sentence(group));
+            let mut description = String::new();
+            // Writing to a string does not fail.
+            let _ = told(group, &report.failures, &GateStyle::default(), &mut description);
+            status.set_description(description);
+        } else if group.asked == group.skipped {
+            status = TestCaseStatus::skipped();
+            status.set_message(group.reason.clone().unwrap_or_default());
+        }
+        let mut case = TestCase::new(group.name(), status);
+        case.set_classname(group.id.split('/').next().unwrap_or_default());
+        suite.add_test_case(case);
+    }
+    for (title, what) in whole(report) {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+        status.set_message(what);
+        suite.add_test_case(TestCase::new(title, status));
+    }
+    document.add_test_suite(suite);
+    document.to_string()
 }

@@ -1,15 +1,21 @@
 //! Reports for people and for servers, pages and pictures: from the JSON of runs.
 
 mod against;
+#[cfg(feature = "pages")]
 pub mod bench;
 pub mod gate;
 pub mod github;
+#[cfg(feature = "pages")]
 pub mod html;
+#[cfg(feature = "pages")]
 pub mod junit;
 pub mod live;
 pub mod mistakes;
+#[cfg(feature = "pages")]
 pub mod page;
+#[cfg(feature = "pages")]
 mod plot;
+#[cfg(feature = "pages")]
 pub mod selftest;
 pub mod special;
 pub mod sweep;

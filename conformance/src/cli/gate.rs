@@ -30,7 +30,7 @@ use lightmeter::gate::pack;
 use lightmeter::gate::plan::{GatePlan, unmatched};
 use lightmeter::gate::process::{Asking, Limits, ProcessRenderer, Starter};
 use lightmeter::options::Options;
-use lightmeter::report::{Level, gate as outputs, github, html};
+use lightmeter::report::{Level, gate as outputs, github, html, junit};
 use lightmeter::run::run;
 use lightmeter::select::Shard;
 use lightmeter::special::verdict;
@@ -305,7 +305,7 @@ impl Gate {
     fn write(&self, report: &GateReport) -> anyhow::Result<String> {
         Ok(match self.format {
             ReportFormat::Json => report.to_json()?,
-            ReportFormat::Junit => outputs::junit(report)?,
+            ReportFormat::Junit => junit::of_gate(report)?,
             ReportFormat::Github => github::of_gate(report),
             ReportFormat::Html => html::of_gate(report),
             ReportFormat::Text => {

@@ -97,7 +97,7 @@ impl Merge {
     fn written_gate(&self, gate: &GateReport) -> anyhow::Result<String> {
         Ok(match self.format {
             ReportFormat::Json => gate.to_json()?,
-            ReportFormat::Junit => outputs::junit(gate)?,
+            ReportFormat::Junit => junit::of_gate(gate)?,
             ReportFormat::Github => github::of_gate(gate),
             ReportFormat::Html => html::of_gate(gate),
             ReportFormat::Text => {

@@ -9,10 +9,8 @@ use lightmeter::cases::blend::Samples;
 use lightmeter::document::pack::Choice;
 use lightmeter::gate::pack::{self, MOST_CASES};
 use lightmeter::gate::plan::GatePlan;
+use lightmeter::options::ASKED_CASES;
 use std::path::PathBuf;
-
-/// Random cases for each formula, where nothing else is asked for.
-const CASES: u64 = 256;
 
 /// Which cases a renderer is asked.
 #[derive(Debug, Args)]
@@ -31,7 +29,7 @@ pub(crate) struct Cases {
 impl Cases {
     /// What chooses the cases of globs.
     pub(crate) fn choice(&self, globs: &[String]) -> Choice {
-        let (cases, seed) = (self.cases.unwrap_or(CASES), self.seed.unwrap_or(1));
+        let (cases, seed) = (self.cases.unwrap_or(ASKED_CASES), self.seed.unwrap_or(1));
         Choice { filter: globs.to_vec(), cases, seed, size: self.size, ..Choice::default() }
     }
 

@@ -1,7 +1,9 @@
 //! Materials: 003's scalars and their highlights turned into colours.
 
 use super::field::{At, SceneError};
-use lightmeter_scene::frame::{self, Sampled, TextureFilter, Textured, Wrap};
+use lightmeter_scene::frame::{self, Sampled, Textured};
+#[cfg(feature = "scenes")]
+use lightmeter_scene::frame::{TextureFilter, Wrap};
 use lightmeter_scene::model::{Highlight, Material, Named, Reading, TextureImage, TextureMode};
 
 /// A material with the images that it reads.
@@ -30,6 +32,7 @@ impl Surface {
 }
 
 /// How an image that a file names is read.
+#[cfg(feature = "scenes")]
 pub(super) const fn of_file(texture: usize) -> Textured {
     Textured { sampled: Sampled { texture, filter: TextureFilter::Bilinear, wrap: Wrap::Repeat }, replaces: false }
 }

@@ -2,9 +2,11 @@
 
 use super::field::{At, SceneError};
 use super::files::Files;
+#[cfg(feature = "scenes")]
 use image::{ImageFormat, ImageReader, Limits};
 use lightmeter_scene::frame::Texture;
 use lightmeter_scene::model::TextureImage;
+#[cfg(feature = "scenes")]
 use std::io::Cursor;
 
 /// Texels along each side, at most.
@@ -78,7 +80,14 @@ fn written(at: &At<'_>, rows: &[Vec<[f64; 4]>]) -> Result<Texture, SceneError> {
     Ok(Texture { width, height, texels })
 }
 
+/// A PNG cannot be read without the feature `scenes`.
+#[cfg(not(feature = "scenes"))]
+pub(super) fn from_file(at: &At<'_>, path: &str, _files: &Files<'_>) -> Result<Texture, SceneError> {
+    Err(at.refuse(format_args!("is `{path}`"), "no file, since the library was built without the feature `scenes`"))
+}
+
 /// A PNG: a byte b stands for b/255.
+#[cfg(feature = "scenes")]
 pub(super) fn from_file(at: &At<'_>, path: &str, files: &Files<'_>) -> Result<Texture, SceneError> {
     let bytes =
         files(path).map_err(|error| at.refuse(format_args!("is `{path}`, which cannot be read: {error}"), "a PNG"))?;

@@ -1,9 +1,13 @@
 //! Images as files: PNG of 8 bits, or EXR of binary32.
 
 use crate::blend_unit::pixel::{self, Units};
+#[cfg(feature = "scenes")]
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgba};
 use lightmeter_reference::render::Image;
-use lightmeter_scene::target::{Encoding, TargetFormat};
+#[cfg(feature = "scenes")]
+use lightmeter_scene::target::Encoding;
+use lightmeter_scene::target::TargetFormat;
+#[cfg(feature = "scenes")]
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +33,15 @@ pub enum ImageFileError {
         /// Why.
         message: String,
     },
+}
+
+/// How an image is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImageFileFormat {
+    /// What a screen is to show, in 8 bits.
+    Png,
+    /// Linear values in binary32.
+    Exr,
 }
 
 /// An image in the units of a target.
@@ -82,11 +95,27 @@ impl StoredImage {
     ///
     /// # Errors
     /// Where it ends otherwise than in .png or .exr.
-    pub fn check_name(path: &Path) -> Result<ImageFormat, ImageFileError> {
-        match ImageFormat::from_path(path) {
-            Ok(format @ (ImageFormat::Png | ImageFormat::OpenExr)) => Ok(format),
-            _ => Err(ImageFileError::Format(path.into())),
+    pub fn check_name(path: &Path) -> Result<ImageFileFormat, ImageFileError> {
+        let ends = |end: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(end));
+        match () {
+            () if ends("png") => Ok(ImageFileFormat::Png),
+            () if ends("exr") => Ok(ImageFileFormat::Exr),
+            () => Err(ImageFileError::Format(path.into())),
         }
+    }
+
+    /// The bytes of the file that the name asks for.
+    ///
+    /// # Errors
+    /// Where the format cannot hold the image, or the library was built without the feature `scenes`.
+    ///
+    /// # Panics
+    /// Where a side of the image does not fit 32 bits.
+    #[cfg(not(feature = "scenes"))]
+    pub fn encode(&self, path: &Path) -> Result<Vec<u8>, ImageFileError> {
+        Self::check_name(path)?;
+        let message = "the library was built without the feature `scenes`".into();
+        Err(ImageFileError::Encode { path: path.into(), message })
     }
 
     /// The bytes of the file that the name asks for.
@@ -96,30 +125,39 @@ impl StoredImage {
     ///
     /// # Panics
     /// Where a side of the image does not fit 32 bits.
+    #[cfg(feature = "scenes")]
     pub fn encode(&self, path: &Path) -> Result<Vec<u8>, ImageFileError> {
         let format = Self::check_name(path)?;
         let failed = |message: String| ImageFileError::Encode { path: path.into(), message };
         let [width, height] = [self.width, self.pixels.len() / self.width]
             .map(|pixels| u32::try_from(pixels).expect("a target's size fits 32 bits"));
         let drawn = match format {
-            ImageFormat::Png => {
+            ImageFileFormat::Png => {
                 ImageBuffer::<Rgba<u8>, _>::from_vec(width, height, self.bytes()).map(DynamicImage::from)
             }
-            _ => ImageBuffer::<Rgba<f32>, _>::from_vec(width, height, self.values()).map(DynamicImage::from),
+            ImageFileFormat::Exr => {
+                ImageBuffer::<Rgba<f32>, _>::from_vec(width, height, self.values()).map(DynamicImage::from)
+            }
         };
         let drawn = drawn.ok_or_else(|| failed("its pixels do not fill it".into()))?;
         let mut bytes = Cursor::new(vec![]);
+        let format = match format {
+            ImageFileFormat::Png => ImageFormat::Png,
+            ImageFileFormat::Exr => ImageFormat::OpenExr,
+        };
         drawn.write_to(&mut bytes, format).map_err(|error| failed(error.to_string()))?;
         Ok(bytes.into_inner())
     }
 
     /// Steps from 0 to 255: those of the target, or of its values clamped.
+    #[cfg(feature = "scenes")]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 8 bits")]
     fn bytes(&self) -> Vec<u8> {
         let scale = if self.format.is_unorm() { 1.0 } else { 255.0 };
         self.pixels.iter().flatten().map(|c| (c * scale).clamp(0.0, 255.0).round_ties_even() as u8).collect()
     }
 
+    #[cfg(feature = "scenes")]
     #[expect(clippy::cast_possible_truncation, reason = "the file holds binary32")]
     fn values(&self) -> Vec<f32> {
         let linear = |pixel: &Units| -> [f32; 4] {

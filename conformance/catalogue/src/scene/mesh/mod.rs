@@ -2,6 +2,7 @@
 
 mod grid;
 mod normals;
+#[cfg_attr(not(feature = "scenes"), path = "no_obj.rs")]
 mod obj;
 mod part;
 mod shapes;

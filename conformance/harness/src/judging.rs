@@ -1,0 +1,162 @@
+//! How an engine is judged: by which cases, and against what.
+
+use crate::engine::{AskedEngine, Engine};
+use lightmeter_catalogue::cases::GENERATOR_VERSION;
+use lightmeter_catalogue::filter::Filter;
+use lightmeter_document::by_case::{ComparedBy, Coverage};
+use lightmeter_document::event::Silent;
+use lightmeter_document::gate::GateReport;
+use lightmeter_document::pack::Choice;
+use lightmeter_document::run::Report;
+use lightmeter_engine::device::Code;
+use lightmeter_engine::options::{ASKED_CASES, Options};
+use lightmeter_engine::run::run_selection;
+use lightmeter_engine::selection::{Selection, SelectionPart};
+use lightmeter_engine::subject::Subject;
+use lightmeter_faults::{Mistakes, explain};
+#[cfg(feature = "suite")]
+use lightmeter_gate::baseline;
+use lightmeter_gate::baseline::{Baseline, BaselineError, Standard};
+use lightmeter_gate::expectations::{ExpectationError, Expectations};
+use lightmeter_gate::plan::unmatched;
+use lightmeter_gate::renderer::InProcess;
+use lightmeter_report::gate::{GateStyle, text};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// By how much an error may grow against a baseline, as of `lightmeter gate`.
+const GROWTH: f64 = 2.0;
+
+/// Why an engine cannot be judged.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum HarnessError {
+    /// It declares what there is not, or nothing at all.
+    #[error("{0}")]
+    Engine(String),
+    /// A file of known failures.
+    #[error(transparent)]
+    Expectations(#[from] ExpectationError),
+    /// A baseline.
+    #[error(transparent)]
+    Baseline(#[from] BaselineError),
+    /// The suite itself.
+    #[error("{0}")]
+    Suite(String),
+}
+
+/// What cases an engine is judged by, and against what.
+#[derive(Clone, Debug)]
+pub(crate) struct Criteria {
+    pub(crate) cases: u64,
+    pub(crate) seed: u64,
+    pub(crate) expectations: Option<PathBuf>,
+    pub(crate) baseline: Option<PathBuf>,
+}
+
+impl Default for Criteria {
+    fn default() -> Self {
+        Self { cases: ASKED_CASES, seed: 1, expectations: None, baseline: None }
+    }
+}
+
+/// An engine that is being judged.
+pub(crate) struct Judged {
+    subject: Mutex<Subject>,
+    options: Options,
+    choice: Choice,
+    baseline: Option<(PathBuf, Baseline)>,
+    pub(crate) parts: Vec<SelectionPart>,
+}
+
+impl Criteria {
+    /// Reads what there is to read, and asks the engine what it has.
+    pub(crate) fn begin<E: Engine>(&self, engine: Arc<E>) -> Result<Judged, HarnessError> {
+        let formulas = engine.formulas();
+        let engine_error = |error: &dyn std::fmt::Display| HarnessError::Engine(error.to_string());
+        if formulas.is_empty() {
+            return Err(HarnessError::Engine(format!(
+                "{} has no formula; `lightmeter list --formulas` lists those that there are",
+                engine.name()
+            )));
+        }
+        let (name, version) = (engine.name(), engine.version());
+        let renderer = InProcess::new(AskedEngine(engine), PathBuf::new()).map_err(|error| engine_error(&error))?;
+        let identity = renderer.identity();
+        let expectations = self.expectations.as_deref().map(Expectations::read).transpose()?.unwrap_or_default();
+        if let Some(id) = unmatched(expectations.ids()) {
+            return Err(HarnessError::Engine(format!(
+                "the expectation `{id}` matches no case of any formula: see `lightmeter list`"
+            )));
+        }
+        let options = Options {
+            filter: Filter::new(&formulas).map_err(|error| engine_error(&error))?,
+            cases: self.cases,
+            seed: self.seed,
+            targets: vec![],
+            diagnose: Some(&Mistakes),
+            expected: expectations.of(&name, &version),
+            counts_cases: true,
+            ..Options::new(Code::default())
+        };
+        let mut selection = Selection::of_renderer(&options);
+        (selection.scenes, selection.blended) = (vec![], vec![]);
+        let parts = selection.parts();
+        let baseline = self.baseline.as_ref().filter(|path| path.exists());
+        let baseline = baseline.map(|path| Ok::<_, BaselineError>((path.clone(), Baseline::of_gate(path)?)));
+        Ok(Judged {
+            subject: Mutex::new(Subject::renderer(identity, Box::new(renderer))),
+            choice: Choice { filter: formulas, cases: self.cases, seed: self.seed, ..Choice::default() },
+            options,
+            baseline: baseline.transpose()?,
+            parts,
+        })
+    }
+
+    /// Judges all of an engine, and writes the result to the baseline's file.
+    #[cfg(feature = "suite")]
+    pub(crate) fn renew<E: Engine>(&self, engine: Arc<E>) -> Result<PathBuf, HarnessError> {
+        let path = self.baseline.clone().ok_or_else(|| HarnessError::Engine("there is no baseline to renew".into()))?;
+        let judged = Self { baseline: None, ..self.clone() }.begin(engine)?;
+        let mut whole = judged.parts.first().map(|part| part.selection.clone());
+        if let Some(whole) = &mut whole {
+            whole.formulas = judged.parts.iter().flat_map(|part| part.selection.formulas.clone()).collect();
+            baseline::update(&judged.report(whole, &judged.choice)?, &path)?;
+        }
+        Ok(path)
+    }
+}
+
+impl Judged {
+    /// What the engine is worth in a part, against the baseline as well.
+    pub(crate) fn of(&self, part: &SelectionPart) -> Result<GateReport, HarnessError> {
+        let choice = Choice { filter: part.filters.clone(), ..self.choice.clone() };
+        let mut report = self.report(&part.selection, &choice)?;
+        if let Some((path, baseline)) = &self.baseline {
+            report.regressions = baseline.compare(&Standard::from(&report), GROWTH, false, path)?;
+        }
+        Ok(report)
+    }
+
+    fn report(&self, selection: &Selection, choice: &Choice) -> Result<GateReport, HarnessError> {
+        let mut subject = self.subject.lock().unwrap_or_else(PoisonError::into_inner);
+        let report = run_selection(selection, std::slice::from_mut(&mut *subject), &self.options, &mut Silent)
+            .map_err(|error| HarnessError::Suite(error.to_string()))?;
+        let compared_by =
+            Some(ComparedBy { choice: choice.clone(), generator: GENERATOR_VERSION, ..ComparedBy::default() });
+        let explained = explain(&report.failures, &report.groups, self.options.profile);
+        Ok(GateReport::of(&Report { compared_by, explained, ..report }, String::new(), None))
+    }
+}
+
+/// What `lightmeter gate` prints of a result, where it is none that passes.
+pub(crate) fn complaint(report: &GateReport) -> Option<String> {
+    let is_covered = report.coverage().is_enough(Coverage::REQUIRED);
+    if !report.is_failed() && !report.is_broken() && report.has_judged() && is_covered {
+        return None;
+    }
+    let mut told = String::new();
+    // Writing to a string does not fail.
+    let _ = text(report, &GateStyle::default(), &mut told);
+    Some(told)
+}

@@ -1,0 +1,148 @@
+//! Tests of an engine, one for each formula.
+
+use crate::engine::Engine;
+use crate::judging::{Criteria, HarnessError, complaint};
+use libtest_mimic::{Arguments, Failed, Trial};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// What every test's name begins with.
+const ROOT: &str = "lightmeter";
+/// The exit code where a test failed, as of every Rust test.
+const FAILED: u8 = 101;
+/// The variable that renews the baseline instead of comparing with it.
+const UPDATE: &str = "LIGHTMETER_UPDATE_BASELINE";
+
+/// The tests of an engine.
+pub struct Suite<E> {
+    engine: Arc<E>,
+    judge: Criteria,
+}
+
+impl<E: Engine> Suite<E> {
+    /// The tests of all formulas that an engine has: the hard cases of each, and 256 random ones.
+    #[must_use]
+    pub fn new(engine: E) -> Self {
+        Self { engine: Arc::new(engine), judge: Criteria::default() }
+    }
+
+    /// With this number of random cases for each formula. A baseline is of the number that it was made with.
+    #[must_use]
+    pub fn cases(mut self, cases: u64) -> Self {
+        self.judge.cases = cases;
+        self
+    }
+
+    /// With random cases of another seed than 1.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.judge.seed = seed;
+        self
+    }
+
+    /// With known failures, a TOML file as `lightmeter gate --expect` reads it.
+    #[must_use]
+    pub fn expectations(mut self, path: impl Into<PathBuf>) -> Self {
+        self.judge.expectations = Some(path.into());
+        self
+    }
+
+    /// With an earlier result, than which nothing may be worse. Where the file is not there nothing is compared; with the variable
+    /// `LIGHTMETER_UPDATE_BASELINE` set the result is written to it.
+    #[must_use]
+    pub fn baseline(mut self, path: impl Into<PathBuf>) -> Self {
+        self.judge.baseline = Some(path.into());
+        self
+    }
+
+    /// Runs the tests that the command line asks for, as any test program does. It is all that the `main` of a test target with
+    /// `harness = false` has to do.
+    #[must_use]
+    pub fn main(self) -> ExitCode {
+        let mut arguments = Arguments::from_args();
+        // Judging takes all cores by itself.
+        arguments.test_threads = arguments.test_threads.or(Some(1));
+        if std::env::var_os(UPDATE).is_some_and(|value| !value.is_empty()) && !arguments.list {
+            return self.renew();
+        }
+        match self.trials() {
+            Ok(trials) => libtest_mimic::run(&arguments, trials).exit_code(),
+            Err(error) => {
+                eprintln!("{ROOT}: {error}");
+                ExitCode::from(FAILED)
+            }
+        }
+    }
+
+    fn renew(&self) -> ExitCode {
+        match self.judge.renew(Arc::clone(&self.engine)) {
+            Ok(path) => {
+                eprintln!("{ROOT}: the baseline {} is this result now", path.display());
+                ExitCode::SUCCESS
+            }
+            Err(error) => {
+                eprintln!("{ROOT}: {error}");
+                ExitCode::from(FAILED)
+            }
+        }
+    }
+
+    /// The tests, for a program that has others besides.
+    ///
+    /// # Errors
+    /// Where the engine declares what there is not, or a file cannot be read.
+    pub fn trials(self) -> Result<Vec<Trial>, HarnessError> {
+        let judged = Arc::new(self.judge.begin(self.engine)?);
+        let trial = |place: usize| {
+            let judged_ = Arc::clone(&judged);
+            let name = format!("{ROOT}::{}", judged.parts[place].path.replace('/', "::"));
+            Trial::test(name, move || {
+                let report = judged_.of(&judged_.parts[place]).map_err(|error| Failed::from(error.to_string()))?;
+                complaint(&report).map_or(Ok(()), |complaint| Err(Failed::from(complaint)))
+            })
+        };
+        Ok((0..judged.parts.len()).map(trial).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Formulas;
+    use crate::values::FormulaInputs;
+
+    fn fog(inputs: &FormulaInputs<'_>, base: f32) -> (f32, [f32; 3]) {
+        let f = base.powf(-inputs.float("density") * inputs.vec3("p")[2].abs()).clamp(0.0, 1.0);
+        let ([r, g, b], [x, y, z]) = (inputs.vec3("shaded"), inputs.vec3("fog"));
+        (f, [(r, x), (g, y), (b, z)].map(|(shaded, fog)| shaded * f + fog * (1.0 - f)))
+    }
+
+    #[test]
+    fn an_engine_has_a_test_for_each_formula_and_a_baseline() {
+        let folder = std::env::temp_dir().join(format!("lightmeter-harness-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        let file = folder.join("baseline.json");
+        let suite = |base: f32, cases: u64| {
+            let engine = Formulas::new("engine", "1.0")
+                .with("fog/exp", move |inputs| fog(inputs, base))
+                .with("attenuation/constant", |inputs| 1.0 / inputs.float("kc"));
+            Suite::new(engine).cases(cases).baseline(&file)
+        };
+        let right = suite(std::f32::consts::E, 64);
+        right.judge.renew(Arc::clone(&right.engine)).expect("the baseline is written");
+        let outcomes = |suite: Suite<Formulas>| {
+            let trials = suite.trials().expect("the engine can be judged");
+            let names: Vec<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
+            let arguments = Arguments { quiet: true, test_threads: Some(1), ..Arguments::default() };
+            (names, libtest_mimic::run(&arguments, trials))
+        };
+        let (names, conclusion) = outcomes(right);
+        assert_eq!(names, ["lightmeter::attenuation::constant", "lightmeter::fog::exp"]);
+        assert_eq!((conclusion.num_passed, conclusion.num_failed), (2, 0));
+        assert_eq!(outcomes(suite(2.0, 64)).1.num_failed, 1);
+        // A baseline of other cases is told, by every test that is compared with it.
+        assert_eq!(outcomes(suite(std::f32::consts::E, 65)).1.num_failed, 2);
+        let _ = std::fs::remove_dir_all(&folder);
+    }
+}
