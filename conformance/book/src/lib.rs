@@ -80,7 +80,7 @@ pub enum BookError {
 }
 
 /// The chapters at the beginning of the book.
-const START: &[&str] = &["what-it-tells-you", "my-driver", "my-renderer", "my-shader", "in-ci"];
+const START: &[&str] = &["what-it-tells-you", "my-driver", "my-renderer", "my-shader", "in-ci", "on-several-machines"];
 /// The chapters that explain.
 const EXPLAINED: &[&str] =
     &["floats-and-what-is-legal", "condition-and-stability", "a-rasterisers-freedom", "gouraud-and-highlights"];
@@ -197,7 +197,10 @@ fn planned<'a>(
         Text::read(docs, name).map(|text| (path.to_owned(), text.title.clone(), Made::Text(text)))
     };
     let own = |path: &str, title: &str, made: Made<'a>| (path.to_owned(), title.to_owned(), made);
-    plan.part("Start", START.iter().map(|name| chapter(name)).collect::<Result<_, _>>()?);
+    let mut start: Vec<_> = START.iter().map(|name| chapter(name)).collect::<Result<_, _>>()?;
+    // Beside the renderer in another language.
+    start.insert(3, text("rust-engine.html")?);
+    plan.part("Start", start);
     let mut explained: Vec<_> = EXPLAINED.iter().map(|name| chapter(name)).collect::<Result<_, _>>()?;
     explained.push(own("glossary.html", "Glossary", Made::Glossary));
     explained.push(text("rulings.html")?);

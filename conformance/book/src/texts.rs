@@ -11,6 +11,7 @@ use std::path::Path;
 /// Pages of the documentation that the book takes in, and where they stand in it.
 pub(crate) const PAGES: &[(&str, &str)] = &[
     ("guide.md", "reference/guide.html"),
+    ("../examples/engine/README.md", "rust-engine.html"),
     ("gate.md", "reference/gate.html"),
     ("protocol.md", "reference/protocol.html"),
     ("shaders.md", "reference/shaders.html"),
@@ -43,8 +44,9 @@ impl Text {
         let failed = |message: String| BookError::Read { path: path.clone(), message };
         let text = read::text(&path, read::MOST_TEXT).map_err(|error| failed(error.to_string()))?;
         let heading = text.lines().find_map(|line| line.strip_prefix("# "));
-        let title =
-            heading.ok_or_else(|| failed("it has no heading; expected a line such as `# Title`".into()))?.to_owned();
+        let title = heading
+            .ok_or_else(|| failed("it has no heading; expected a line such as `# Title`".into()))?
+            .replace('`', "");
         Ok(Self { title, text, folder: if name.contains('/') { "book" } else { "" } })
     }
 
@@ -101,7 +103,7 @@ fn of_book(address: &str) -> Option<String> {
     let (path, fragment) =
         address.split_once('#').map_or((address, String::new()), |(path, at)| (path, format!("#{at}")));
     let name = path.trim_start_matches("../").trim_start_matches("docs/");
-    if let Some((_, page)) = PAGES.iter().find(|(own, _)| *own == name) {
+    if let Some((_, page)) = PAGES.iter().find(|(own, _)| own.trim_start_matches("../") == name) {
         return Some(format!("{page}{fragment}"));
     }
     if let Some(schema) = name.strip_prefix("schemas/").and_then(|name| name.strip_suffix(".json")) {
@@ -128,6 +130,7 @@ mod tests {
         assert_eq!(of_book("formula/fog/exp.md").as_deref(), Some("formula/fog/exp.html"));
         assert_eq!(of_book("schemas/frame.json").as_deref(), Some("reference/schema/frame.html"));
         assert_eq!(of_book("../README.md"), None);
+        assert_eq!(of_book("../../examples/engine/README.md").as_deref(), Some("rust-engine.html"));
         let html = links(
             r##"<p><a href="gate.md">g</a> <a href="../README.md">r</a> <a href="#x">x</a></p>"##,
             &Place::new("formula/a.html"),
