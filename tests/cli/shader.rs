@@ -300,6 +300,23 @@ fn bad_files() -> Vec<Bad> {
         (vec!["--shader".into(), file("bad.wgsl", "fn a() -> f32 {\n    return b;\n}\n")], "bad.wgsl:2"),
         (vec!["--shader".into(), file("bad.spv", "no words")], "it is no SPIR-V"),
         (vec!["--shader".into(), file("nothing.frag", "void main() {}\n")], "the shader gives nothing"),
+        (vec!["--shader".into(), file("empty.frag", "")], "it has no function at all"),
+        (vec!["--shader".into(), file("silent.frag", &main(""))], "it never writes c"),
+        (
+            vec!["--shader".into(), file("turns.frag", &main("for (;;) { x += 1.0; } c = vec4(x, 1.0);"))],
+            "turns.frag:4: a loop has no way out",
+        ),
+        (
+            vec!["--shader".into(), file("version.frag", &format!("#version 999\n{}", main("c = vec4(x, 1.0);")))],
+            "version.frag:1: `#version 999` is no version of GLSL",
+        ),
+        (
+            vec![
+                "--shader".into(),
+                file("rays.frag", &format!("#extension GL_EXT_ray_tracing : require\n{}", main("c = vec4(x, 1.0);"))),
+            ],
+            "rays.frag:1: the extension GL_EXT_ray_tracing is required",
+        ),
         (vec!["--shader".into(), file("slope.frag", &main("c = vec4(dFdx(Normal), 1.0);"))], "derivatives"),
         (
             vec![
@@ -383,6 +400,8 @@ fn a_shader_that_discards_or_has_no_end_fails() {
     let discards = with("discards.frag", "if (n.z < 0.0) discard;");
     let report = json(&["run", "lighting/blinn", "--cases", "256", "--shader", &discards, "--format", "json"]);
     assert!(report["totals"]["failed"].as_u64().is_some_and(|failed| failed > 100), "{}", report["totals"]);
+    let output = lightmeter(&["run", "lighting/blinn", "--cases", "16", "--shader", &discards]);
+    assert!(stdout(&output).contains("It discards fragments"), "{}{}", stdout(&output), stderr(&output));
     let endless = with("endless.frag", "while (n.x == n.x) { n.x += 1.0; }");
     // lavapipe ends a loop after 65,535 turns, so that there is a verdict; another driver's device is lost, or the watch ends it.
     let output = lightmeter(&["run", "lighting/blinn", "--cases", "64", "--shader", &endless]);

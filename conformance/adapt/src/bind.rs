@@ -56,6 +56,8 @@ pub struct ShaderBinding {
     pub outputs: Vec<(&'static str, Option<String>)>,
     /// Inputs of the formula that no variable has.
     pub unused: Vec<&'static str>,
+    /// Whether it discards fragments, which then give no value.
+    pub discards: bool,
 }
 
 /// Binds a shader to a formula.
@@ -104,7 +106,7 @@ pub fn bind(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> Res
     }
     let outputs = outputs(program, spec)?;
     let unused = unused(spec, &bound, &outputs);
-    Ok(ShaderBinding { bound, outputs, unused })
+    Ok(ShaderBinding { bound, outputs, unused, discards: program.discarded.is_some() })
 }
 
 /// What the variables are taken to be, so far as it follows from each alone, and which colours the bindings that are asked for have.
@@ -156,9 +158,9 @@ fn known(program: &ShaderProgram, asked: &[AskedBinding]) -> Result<(), AdaptErr
         if !seen.insert(name) {
             return Err(AdaptError::Bind(format!("`{name}` is bound twice")));
         }
-        let whole = |slot: &Variable| {
-            slot.name.split('[').next().unwrap_or_default().to_owned()
-                + slot.name.rsplit(']').next().unwrap_or_default()
+        let whole = |slot: &Variable| match (slot.name.split_once('['), slot.name.rsplit_once(']')) {
+            (Some((before, _)), Some((_, after))) => format!("{before}{after}"),
+            _ => slot.name.clone(),
         };
         let found: BTreeSet<String> = program.slots.iter().filter(|slot| is_named(slot, name)).map(whole).collect();
         if found.len() > 1 && !program.slots.iter().any(|slot| slot.name == *name) {
@@ -439,8 +441,14 @@ fn outputs(program: &ShaderProgram, spec: &Spec) -> Result<Vec<(&'static str, Op
     let found: Vec<(&'static str, Option<String>)> =
         spec.outputs.iter().map(|output| (output.name, given(output.name, output.shape))).collect();
     if found.iter().all(|(_, value)| value.is_none()) {
-        let own: Vec<String> =
-            program.outputs.iter().map(|output| format!("{}: {}", output.name, output.leaf)).collect();
+        let own: Vec<String> = program
+            .outputs
+            .iter()
+            .map(|output| match output.name.as_str() {
+                "" => format!("a {}", output.leaf),
+                name => format!("{name}: {}", output.leaf),
+            })
+            .collect();
         let own = if own.is_empty() { "nothing".into() } else { own.join(", ") };
         let wanted: Vec<String> =
             spec.outputs.iter().map(|output| format!("{}: {}", output.name, output.shape.name())).collect();

@@ -26,7 +26,9 @@ const STEPS: &[(&[&str], Signs)] = &[
 #[must_use]
 pub fn line_of_step<'a>(text: &'a str, step: &str) -> Option<(usize, &'a str)> {
     let (_, signs) = STEPS.iter().find(|(names, _)| names.contains(&step))?;
-    signs.iter().find_map(|words| only(text, |line| words.iter().all(|word| line.contains(word))))
+    // A weaker sign says nothing where several lines have a stronger one.
+    let mut found = signs.iter().map(|words| lines(text, |line| words.iter().all(|word| line.contains(word))));
+    one(&found.find(|found| !found.is_empty())?)
 }
 
 /// The line of a text that has one of these variables.
@@ -38,18 +40,26 @@ pub fn line_of_variable<'a>(text: &'a str, names: &[&str]) -> Option<(usize, &'a
     let has = |line: &str| {
         line.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| names.iter().any(|name| name == word))
     };
-    only(text, has)
+    one(&lines(text, has))
 }
 
-/// The only line that is code and is chosen.
-fn only(text: &str, is_chosen: impl Fn(&str) -> bool) -> Option<(usize, &str)> {
+/// The one of several; `None` of none and of more.
+fn one<T: Copy>(found: &[T]) -> Option<T> {
+    match found {
+        [one] => Some(*one),
+        _ => None,
+    }
+}
+
+/// The lines that are code and are chosen.
+fn lines(text: &str, is_chosen: impl Fn(&str) -> bool) -> Vec<(usize, &str)> {
     let is_code = |line: &str| line.contains('=') || line.contains("return ");
     let code = |line: &'_ str| line.split("//").next().unwrap_or_default().trim_end().len();
-    let mut found = text.lines().enumerate().filter_map(|(k, line)| {
+    let found = text.lines().enumerate().filter_map(|(k, line)| {
         let line = line[..code(line)].trim();
         (is_code(line) && is_chosen(line)).then_some((k + 1, line))
     });
-    found.next().filter(|_| found.next().is_none())
+    found.collect()
 }
 
 #[cfg(test)]
@@ -62,6 +72,12 @@ mod tests {
         assert_eq!(line_of_step(text, "h"), Some((3, "vec3 h = (l + v) * 0.5;")));
         assert_eq!(line_of_step(text, "exp").map(|(line, _)| line), Some(4));
         assert_eq!(line_of_step(text, "l·n"), None);
+        // Two lines reflect, so that neither is it, whatever else they have.
+        let text = "a = reflect(i, n);\nb = reflect(j, n);\nvec3 h = x;\n";
+        assert_eq!(line_of_step(text, "r"), None);
+        // A half vector by name is a stronger sign than a letter, and two of them decide nothing.
+        let text = "vec3 halfway = a;\nvec3 half2 = b;\nvec3 h = c;\n";
+        assert_eq!(line_of_step(text, "h"), None);
         assert_eq!(line_of_variable(text, &["fogColor"]).map(|(line, _)| line), Some(5));
     }
 }

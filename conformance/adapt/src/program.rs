@@ -1,6 +1,7 @@
 //! A shader as a library of functions in WGSL, whose variables are of the invocation.
 
 use crate::AdaptError;
+use crate::ending::ends;
 use crate::glsl::Role;
 use crate::source::ShaderSource;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -134,6 +135,11 @@ impl ShaderProgram {
         let mut module = source.module.clone();
         check(path, source)?;
         let entry = taken(&mut module, source, part).map_err(invalid)?;
+        ends(&module, entry, source).map_err(|(line, message)| AdaptError::Invalid {
+            path: path.into(),
+            line,
+            message,
+        })?;
         let described = Described::new(&module, source, entry);
         simplified(&mut module).map_err(invalid)?;
         let discarded = without_discard(&mut module);
@@ -197,7 +203,11 @@ fn taken(module: &mut Module, source: &ShaderSource, part: &Part) -> Result<Hand
         }
         Part::Shader if source.is_library => {
             let names = functions(module, source).join(", ");
-            return Err(format!("it has no main; name a function by `--function NAME@FILE`: it has {names}"));
+            return Err(if names.is_empty() {
+                "it has no function at all".into()
+            } else {
+                format!("it has no main; name a function by `--function NAME@FILE`: it has {names}")
+            });
         }
         Part::Shader => {
             let of_stage =

@@ -150,12 +150,50 @@ fn plain(message: &str) -> String {
     message.split_once("TypeName(").map_or_else(|| message.to_owned(), |(before, _)| format!("{before}a type"))
 }
 
+/// The versions of GLSL and of GLSL ES.
+const VERSIONS: [&str; 17] = [
+    "100", "110", "120", "130", "140", "150", "300", "310", "320", "330", "400", "410", "420", "430", "440", "450",
+    "460",
+];
+/// Extensions whose words are read without them.
+const EXTENSIONS: [&str; 8] = [
+    "GL_ARB_explicit_attrib_location",
+    "GL_ARB_explicit_uniform_location",
+    "GL_ARB_separate_shader_objects",
+    "GL_ARB_shading_language_420pack",
+    "GL_ARB_uniform_buffer_object",
+    "GL_EXT_shader_io_blocks",
+    "GL_KHR_vulkan_glsl",
+    "GL_OES_standard_derivatives",
+];
+
 /// What no preprocessor here reads: the line, and what would do.
 fn unread(text: &str) -> Option<(usize, String)> {
     let line = |(k, line): (usize, &str)| {
         let words = line.trim_start().strip_prefix('#')?.trim_start();
-        let file = words.strip_prefix("include")?.trim();
-        Some((k + 1, format!("`#include {file}` is not followed; put the text there, or compile it to SPIR-V")))
+        let words = words.split("//").next().unwrap_or_default();
+        let says = if let Some(file) = words.strip_prefix("include") {
+            let file = file.trim();
+            format!("`#include {file}` is not followed; put the text there, or compile it to SPIR-V")
+        } else if let Some(version) = words.strip_prefix("version") {
+            let version = version.trim();
+            if version.split_whitespace().next().is_some_and(|number| VERSIONS.contains(&number)) {
+                return None;
+            }
+            format!(
+                "`#version {version}` is no version of GLSL; expected such as `#version 330 core` or `#version 300 es`"
+            )
+        } else {
+            let (name, behaviour) = words.strip_prefix("extension")?.split_once(':')?;
+            let name = name.trim();
+            if behaviour.trim() != "require" || EXTENSIONS.contains(&name) {
+                return None;
+            }
+            format!(
+                "the extension {name} is required, and is not read; compile the shader to SPIR-V, or write it without"
+            )
+        };
+        Some((k + 1, says))
     };
     text.lines().enumerate().find_map(line)
 }

@@ -24,7 +24,10 @@
 //!
 //! ```
 //! # use lightmeter_harness::assert_formula;
-//! assert_formula("attenuation/constant", |x| 1.0 / x.float("kc"));
+//! assert_formula("color/modulate", |x| {
+//!     let (texel, color) = (x.vec4("texel"), x.vec4("color"));
+//!     [0, 1, 2, 3].map(|k| texel[k] * color[k])
+//! });
 //! ```
 //!
 //! Both judge by the cases, the intervals of legal values and the diagnosis of `lightmeter gate`, and print what it prints.

@@ -124,9 +124,13 @@ mod tests {
         std::fs::create_dir_all(&folder).expect("a folder can be made");
         let file = folder.join("baseline.json");
         let suite = |base: f32, cases: u64| {
-            let engine = Formulas::new("engine", "1.0")
-                .with("fog/exp", move |inputs| fog(inputs, base))
-                .with("attenuation/constant", |inputs| 1.0 / inputs.float("kc"));
+            let engine = Formulas::new("engine", "1.0").with("fog/exp", move |inputs| fog(inputs, base)).with(
+                "color/modulate",
+                |inputs| {
+                    let (texel, color) = (inputs.vec4("texel"), inputs.vec4("color"));
+                    [0, 1, 2, 3].map(|k| texel[k] * color[k])
+                },
+            );
             Suite::new(engine).cases(cases).baseline(&file)
         };
         let right = suite(std::f32::consts::E, 64);
@@ -138,7 +142,7 @@ mod tests {
             (names, libtest_mimic::run(&arguments, trials))
         };
         let (names, conclusion) = outcomes(right);
-        assert_eq!(names, ["lightmeter::attenuation::constant", "lightmeter::fog::exp"]);
+        assert_eq!(names, ["lightmeter::color::modulate", "lightmeter::fog::exp"]);
         assert_eq!((conclusion.num_passed, conclusion.num_failed), (2, 0));
         assert_eq!(outcomes(suite(2.0, 64)).1.num_failed, 1);
         // A baseline of other cases is told, by every test that is compared with it.

@@ -501,6 +501,12 @@ fn tell(
             writeln!(out, "  The shader does not give {name}, which is not judged.")?;
         }
     }
+    if binding.discards {
+        writeln!(
+            out,
+            "  It discards fragments. A case whose fragment is discarded has no value: it is told as NaN, and fails."
+        )?;
+    }
     let is_constant = |name: &&str| constants.iter().any(|(own, _)| own == name);
     let unused: Vec<&str> = binding.unused.iter().copied().filter(|name| !is_constant(name)).collect();
     if !unused.is_empty() {
