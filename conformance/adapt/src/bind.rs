@@ -192,8 +192,12 @@ fn checked(slot: &Variable, expression: &str, spec: &Spec) -> Result<(), AdaptEr
             inputs.join(", ")
         ))
     };
-    let module =
-        naga::front::wgsl::parse_str(&format!("{head}({expression}); }}")).map_err(|error| refused(error.message()))?;
+    let parsed = |written: &str| {
+        naga::front::wgsl::parse_str(&format!("{head}{written}; }}")).map_err(|error| refused(error.message()))
+    };
+    // It stands in brackets later: what is an expression only there, or only without them, is none.
+    parsed(expression)?;
+    let module = parsed(&format!("({expression})"))?;
     Validator::new(ValidationFlags::all(), Capabilities::default())
         .validate(&module)
         .map_err(|_| refused("it has another type"))?;
@@ -309,8 +313,10 @@ const fn is_light_color(meaning: Meaning) -> bool {
 fn built_in_value(built_in: BuiltIn, leaf: Leaf, context: &Context<'_>) -> String {
     match built_in {
         BuiltIn::Position { .. } => {
-            let distance = context.expression(Meaning::Distance, From::Input).unwrap_or_else(|| "1.0".into());
-            // The depth over the reciprocal of w is the distance from the eye's plane.
+            // The depth over the reciprocal of w is the distance from the eye's plane, however a formula measures its own.
+            let planar = context.spec.place("p").filter(|place| place.len() == 3).map(|_| "abs(p.z)".to_owned());
+            let distance = planar.or_else(|| context.expression(Meaning::Distance, From::Input));
+            let distance = distance.unwrap_or_else(|| "1.0".into());
             format!("vec4f(0.5, 0.5, 1.0, 1.0 / ({distance}))")
         }
         BuiltIn::FrontFacing => "true".into(),

@@ -502,8 +502,11 @@ impl Described {
         }
         for (k, (argument, (name, from))) in function.arguments.iter().zip(&self.arguments).enumerate() {
             let place = safe("argument", Some(name), k);
-            declared.push(format!("var {place}: {};", walk.type_of(argument.ty)?));
             let shown = if name.is_empty() { format!("argument {k}") } else { name.clone() };
+            if matches!(module.types[argument.ty].inner, TypeInner::Pointer { .. }) {
+                return Err(format!("its parameter `{shown}` is an output (out or inout); return the value instead"));
+            }
+            declared.push(format!("var {place}: {};", walk.type_of(argument.ty)?));
             // The members of an entry point's structure are inputs by their own names.
             let is_nameless =
                 *from == From::Input && matches!(module.types[argument.ty].inner, TypeInner::Struct { .. });

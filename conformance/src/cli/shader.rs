@@ -17,7 +17,7 @@ use lightmeter::options::{Adapted, Constant};
 use lightmeter::report::Level;
 use lightmeter::select::{Member, Shard, catalogue, select};
 use lightmeter::subject_gpu::code_of;
-use lightmeter_adapt::bind::{AskedBinding, Found, ShaderBinding, bind};
+use lightmeter_adapt::bind::{AskedBinding, Bound, Found, ShaderBinding, bind};
 use lightmeter_adapt::place::{line_of_step, line_of_variable};
 use lightmeter_adapt::source::{Language, ShaderSource};
 use lightmeter_adapt::{Part, ShaderProgram, in_language, replaced, stable_form};
@@ -219,6 +219,12 @@ impl OwnShader {
     /// The same as words of a command line; `None` where no shader is given.
     fn words(&self) -> anyhow::Result<Option<Vec<OsString>>> {
         let mut words: Vec<OsString> = match (&self.shader, &self.function) {
+            // A name that begins with a hyphen would be read as an option.
+            (Some(file), _) if file.as_os_str().as_encoded_bytes().starts_with(b"-") => {
+                let mut joined = OsString::from("--shader=");
+                joined.push(file);
+                vec![joined]
+            }
             (Some(file), _) => vec!["--shader".into(), file.into()],
             (_, Some(function)) => vec!["--function".into(), function.clone()],
             (None, None) if self.bind.is_empty() => return Ok(None),
@@ -270,7 +276,20 @@ impl OwnShader {
                     )
                 })
             };
-            for (name, constant) in &self.constant {
+            for (k, (name, constant)) in self.constant.iter().enumerate() {
+                let others = &self.constant[..k];
+                if others.iter().any(|(other, _)| other == name) {
+                    bail!("`--constant {name}` is given twice");
+                }
+                if let Constant::SameAs(is) = constant {
+                    let is_back =
+                        |(other, back): &(String, Constant)| other == is && matches!(back, Constant::SameAs(_));
+                    if is == name || others.iter().any(is_back) {
+                        bail!(
+                            "`--constant {name}={is}`: of two inputs that are the same only one is said to be the other"
+                        );
+                    }
+                }
                 let expected = components(name, name)?;
                 let given = match constant {
                     Constant::Numbers(values) => values.len(),
@@ -501,6 +520,9 @@ fn tell(
             writeln!(out, "  The shader does not give {name}, which is not judged.")?;
         }
     }
+    for (name, other, is) in alike(binding) {
+        writeln!(out, "  Both {name} and {other} are taken to be {is}. If one is not: --bind '{other}=…'")?;
+    }
     if binding.discards {
         writeln!(
             out,
@@ -519,4 +541,20 @@ fn tell(
         )?;
     }
     Ok(())
+}
+
+/// Variables that are taken to be the same input, which may be more than is meant.
+fn alike(binding: &ShaderBinding) -> Vec<(&str, &str, &str)> {
+    let told = |bound: &&Bound| matches!(bound.found, Found::SameName | Found::Synonym) && !bound.is_further;
+    let told: Vec<&Bound> = binding.bound.iter().filter(told).collect();
+    let mut found = vec![];
+    for (k, one) in told.iter().enumerate() {
+        let other = told[k + 1..].iter().find(|other| other.expression == one.expression);
+        // Matrices, and lights that are left out, have no input in them.
+        let has_input = !one.expression.ends_with("()") && !one.expression.contains("mat");
+        found.extend(
+            other.filter(|_| has_input).map(|other| (one.name.as_str(), other.name.as_str(), one.expression.as_str())),
+        );
+    }
+    found
 }
