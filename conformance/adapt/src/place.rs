@@ -72,12 +72,12 @@ mod tests {
         assert_eq!(line_of_step(text, "h"), Some((3, "vec3 h = (l + v) * 0.5;")));
         assert_eq!(line_of_step(text, "exp").map(|(line, _)| line), Some(4));
         assert_eq!(line_of_step(text, "l·n"), None);
+        assert_eq!(line_of_variable(text, &["fogColor"]).map(|(line, _)| line), Some(5));
         // Two lines reflect, so that neither is it, whatever else they have.
         let text = "a = reflect(i, n);\nb = reflect(j, n);\nvec3 h = x;\n";
         assert_eq!(line_of_step(text, "r"), None);
         // A half vector by name is a stronger sign than a letter, and two of them decide nothing.
         let text = "vec3 halfway = a;\nvec3 half2 = b;\nvec3 h = c;\n";
         assert_eq!(line_of_step(text, "h"), None);
-        assert_eq!(line_of_variable(text, &["fogColor"]).map(|(line, _)| line), Some(5));
     }
 }
