@@ -15,7 +15,7 @@ use lightmeter::subject::Subject;
 use lightmeter::subject_gpu::code_of;
 use lightmeter::witness::NamedDeviation;
 use lightmeter_gpu::FILES;
-use lightmeter_tests::harness::{Suite, Variables};
+use lightmeter_tests::harness::{AdapterSuite, Variables};
 use shader_bugs::SHADER_BUGS;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ use std::process::{Command, Output};
 
 /// The trials' names without any variable.
 fn names() -> BTreeSet<String> {
-    let suite = Suite::new(Variables::default().settings());
+    let suite = AdapterSuite::new(Variables::default().settings());
     let trials = suite.trials();
     let names: BTreeSet<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
     assert_eq!(names.len(), trials.len(), "a name stands twice");

@@ -48,7 +48,7 @@ pub fn main(images: Option<PathBuf>) -> ExitCode {
     {
         eprintln!("{ROOT}: every trial will fail: {message}");
     }
-    let suite = Suite::new(settings);
+    let suite = AdapterSuite::new(settings);
     let trials = suite.trials();
     if !arguments.list
         && let Some(message) = suite.selects_nothing(&arguments, &trials)
@@ -68,14 +68,14 @@ fn with_images(settings: Settings, images: Option<PathBuf>) -> Settings {
 }
 
 /// The trials, and what they have come to.
-pub struct Suite {
+pub struct AdapterSuite {
     settings: Result<Settings, String>,
     parts: Vec<Arc<SelectionPart>>,
     totals: Arc<Mutex<Totals>>,
     started: Instant,
 }
 
-impl Suite {
+impl AdapterSuite {
     /// The suite as settings have it. Where these are bad every trial fails and says why.
     ///
     /// # Panics
