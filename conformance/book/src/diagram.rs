@@ -1,4 +1,4 @@
-//! Diagrams: the points, vectors and quantities that a formula is told by, drawn by the names of its inputs.
+//! Diagrams of formulas: points, vectors and quantities, chosen and labelled by the names of the inputs.
 
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_scene::raster::Raster;

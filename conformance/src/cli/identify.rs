@@ -99,7 +99,7 @@ impl Identify {
         Ok(if document.is.is_empty() { Status::Failed } else { Status::Success })
     }
 
-    /// What the shader is told by in a run.
+    /// The words by which `run` takes the shader.
     fn run_again(&self) -> String {
         let file = self.file.as_deref().unwrap_or(Path::new("")).to_string_lossy();
         let mut words = match &self.function {

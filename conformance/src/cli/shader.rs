@@ -526,7 +526,7 @@ fn tell(
     if binding.discards {
         writeln!(
             out,
-            "  It discards fragments. A case whose fragment is discarded has no value: it is told as NaN, and fails."
+            "  It discards fragments. A case fails where its fragment is discarded: its value is reported as NaN."
         )?;
     }
     let is_constant = |name: &&str| constants.iter().any(|(own, _)| own == name);

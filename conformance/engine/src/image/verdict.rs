@@ -357,7 +357,7 @@ impl<'a> JudgedScene<'a> {
     }
 }
 
-/// A number as it is told of a pixel: with as many digits as binary32 has.
+/// A number of a pixel in the report, with the digits of binary32.
 fn short(x: f64) -> Number {
     #[expect(clippy::cast_possible_truncation, reason = "people read it")]
     let narrow = x as f32;
