@@ -445,3 +445,38 @@ fn blend_states_are_read_as_people_write_them() {
     let output = lightmeter(&["run", "--blend", "glBlendFunc(GL_SRC_ALPA, GL_ONE)"]);
     assert!(code(&output) == 2 && stderr(&output).contains("did you mean `src-alpha`"), "{}", stderr(&output));
 }
+
+#[test]
+fn a_loop_whose_condition_never_ends_it_fails_and_one_that_ends_does_not() {
+    let folder = folder("shader-turns");
+    let judged = |name: &str, turns: &str| {
+        let path = folder.join(name);
+        let text = format!(
+            "#version 330\nin vec3 n; uniform vec3 l; uniform vec3 ld; uniform vec3 md;\nout vec4 color;\n\
+             void main() {{ float s = 0.0; int i = 0; {turns} color = vec4(ld * md * max(dot(n, l), 0.0) * s, 1.0); }}\n"
+        );
+        std::fs::write(&path, text).expect("it can be written");
+        let file = path.display().to_string();
+        let args = [
+            "run",
+            "lighting/diffuse-toward",
+            "--cases",
+            "256",
+            "--shader",
+            &file,
+            "--bind",
+            "n=n",
+            "--format",
+            "json",
+        ];
+        let output = lightmeter(&args);
+        let report: serde_json::Value = serde_json::from_str(&stdout(&output)).expect("it is JSON");
+        (stderr(&output), report["totals"]["failed"].clone(), report["totals"]["verdicts"].clone())
+    };
+    let (said, failed, verdicts) = judged("endless.frag", "while (i >= 0) { s += 1.0; if (s > 1e9) break; i = 1; }");
+    assert!(said.contains("turn more than 16,384 times"), "{said}");
+    assert_eq!(failed, verdicts);
+    let (said, failed, _) = judged("ends.frag", "for (i = 0; i < 4000; ++i) { s += 0.00025; } s = 1.0;");
+    assert!(said.contains("It has loops"), "{said}");
+    assert_eq!(failed, 0, "{said}");
+}

@@ -58,6 +58,8 @@ pub struct ShaderBinding {
     pub unused: Vec<&'static str>,
     /// Whether it discards fragments, which then give no value.
     pub discards: bool,
+    /// Whether it has loops, which are left after [`MOST_TURNS`](crate::MOST_TURNS) and then give no value.
+    pub loops: bool,
 }
 
 /// Binds a shader to a formula.
@@ -106,7 +108,7 @@ pub fn bind(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> Res
     }
     let outputs = outputs(program, spec)?;
     let unused = unused(spec, &bound, &outputs);
-    Ok(ShaderBinding { bound, outputs, unused, discards: program.discarded.is_some() })
+    Ok(ShaderBinding { bound, outputs, unused, discards: program.unanswered.discards, loops: program.unanswered.loops })
 }
 
 /// What the variables are taken to be, so far as it follows from each alone, and which colours the bindings that are asked for have.

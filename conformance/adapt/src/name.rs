@@ -158,6 +158,17 @@ pub(crate) fn keys(name: &str) -> Vec<String> {
     keys
 }
 
+/// A name that neither a word of WGSL nor another name is.
+pub(crate) fn safe(kind: &str, name: Option<&str>, k: usize) -> String {
+    let plain: String =
+        name.unwrap_or_default().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    let mut words = plain.split('_').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("_");
+    if !words.is_empty() {
+        words.push('_');
+    }
+    format!("user_{kind}_{words}{k}x")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,5 +1,8 @@
 //! Where in a shader's text a step of a formula is likely to stand.
 
+use crate::source::ShaderSource;
+use naga::{Block, Function, Handle, Module, Span, Statement};
+
 /// What a line that computes a step has: any of these, each of whose words it has all of.
 type Signs = &'static [&'static [&'static str]];
 
@@ -43,6 +46,65 @@ pub fn line_of_variable<'a>(text: &'a str, names: &[&str]) -> Option<(usize, &'a
     one(&lines(text, has))
 }
 
+/// A shader's text without the lines of functions that what is judged does not call; lines keep their numbers.
+pub(crate) fn judged_text(module: &Module, entry: Handle<Function>, source: &ShaderSource) -> String {
+    let (read, before) = &source.read;
+    let line = |span: Span| (span.location(read).line_number as usize).saturating_sub(*before);
+    let lines_of = |handle: Handle<Function>| {
+        let function = &module.functions[handle];
+        let of_body = function.body.span_iter().map(|(_, span)| *span);
+        let spans = of_body.chain(function.expressions.iter().map(|(one, _)| function.expressions.get_span(one)));
+        let lines = spans.filter(|span| !read.is_empty() && *span != Span::UNDEFINED).flat_map(|span| {
+            let end = span.to_range().map_or(0, |range| range.end.saturating_sub(1));
+            [
+                line(span),
+                line(Span::new(u32::try_from(end).unwrap_or_default(), u32::try_from(end).unwrap_or_default())),
+            ]
+        });
+        lines.fold(None, |all: Option<(usize, usize)>, line| {
+            Some(all.map_or((line, line), |(first, last)| (first.min(line), last.max(line))))
+        })
+    };
+    let called = called_from(module, entry);
+    let other: Vec<(usize, usize)> = module
+        .functions
+        .iter()
+        .filter(|(handle, _)| !called.contains(handle))
+        .filter_map(|(one, _)| lines_of(one))
+        .collect();
+    let is_other = |line: usize| other.iter().any(|(first, last)| (*first..=*last).contains(&line));
+    let kept = source.text.lines().enumerate().map(|(k, text)| if is_other(k + 1) { "" } else { text });
+    kept.collect::<Vec<_>>().join("\n")
+}
+
+/// A function and all that it calls.
+fn called_from(module: &Module, entry: Handle<Function>) -> Vec<Handle<Function>> {
+    fn calls(block: &Block, into: &mut Vec<Handle<Function>>) {
+        for statement in block {
+            match statement {
+                Statement::Call { function, .. } => into.push(*function),
+                Statement::Block(block) => calls(block, into),
+                Statement::If { accept, reject, .. } => {
+                    [accept, reject].map(|block| calls(block, into)).into_iter().collect()
+                }
+                Statement::Switch { cases, .. } => cases.iter().for_each(|case| calls(&case.body, into)),
+                Statement::Loop { body, continuing, .. } => {
+                    [body, continuing].map(|block| calls(block, into)).into_iter().collect()
+                }
+                _ => {}
+            }
+        }
+    }
+    let (mut found, mut next) = (vec![], vec![entry]);
+    while let Some(function) = next.pop() {
+        if !found.contains(&function) {
+            found.push(function);
+            calls(&module.functions[function].body, &mut next);
+        }
+    }
+    found
+}
+
 /// The one of several; `None` of none and of more.
 fn one<T: Copy>(found: &[T]) -> Option<T> {
     match found {
@@ -78,6 +140,21 @@ mod tests {
         assert_eq!(line_of_step(text, "r"), None);
         // A half vector by name is a stronger sign than a letter, and two of them decide nothing.
         let text = "vec3 halfway = a;\nvec3 half2 = b;\nvec3 h = c;\n";
+        // In the whole text another function's line is taken for it.
+        assert_eq!(line_of_step(text, "h").map(|(line, _)| line), Some(2));
+    }
+
+    #[test]
+    fn lines_of_what_is_not_called_are_left_out() {
+        let path = std::env::temp_dir().join(format!("lightmeter-judged-{}.wgsl", std::process::id()));
+        let text = "fn other(l: vec3f, v: vec3f) -> vec3f {\n    return normalize(l + v);\n}\nfn own(l: vec3f, v: vec3f) -> vec3f {\n    let h = (l + v) * 0.5;\n    return h;\n}\nfn shade(l: vec3f, v: vec3f) -> vec3f {\n    return own(l, v);\n}\n";
+        std::fs::write(&path, text).expect("it can be written");
+        let source = ShaderSource::read(&path).unwrap_or_else(|error| panic!("{error}"));
+        std::fs::remove_file(&path).expect("it is there");
+        let entry = source.module.functions.iter().find(|(_, one)| one.name.as_deref() == Some("shade"));
+        let judged = judged_text(&source.module, entry.expect("it is there").0, &source);
+        assert!(!judged.contains("normalize") && judged.contains("* 0.5") && judged.contains("own(l, v)"), "{judged}");
         assert_eq!(line_of_step(text, "h"), None);
+        assert_eq!(line_of_step(&judged, "h"), Some((5, "let h = (l + v) * 0.5;")));
     }
 }

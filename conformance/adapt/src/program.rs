@@ -3,11 +3,14 @@
 use crate::AdaptError;
 use crate::ending::ends;
 use crate::glsl::Role;
+use crate::name::safe;
+use crate::place::judged_text;
 use crate::source::ShaderSource;
+use crate::unanswered::{Unanswered, unanswered};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{
-    AddressSpace, ArraySize, Binding, Block, BuiltIn, Expression, Function, GlobalVariable, Handle, Literal, Module,
-    Scalar, ScalarKind, ShaderStage, Span, Statement, Type, TypeInner, VectorSize,
+    AddressSpace, ArraySize, Binding, BuiltIn, Expression, Function, Handle, Module, Scalar, ScalarKind, ShaderStage,
+    Span, Statement, Type, TypeInner, VectorSize,
 };
 use std::fmt::Write as _;
 use std::path::Path;
@@ -102,23 +105,14 @@ pub struct ShaderProgram {
     pub(crate) declared: Vec<String>,
     /// The statement that calls it.
     pub(crate) call: String,
-    /// The variable that says whether it discarded its fragment.
-    pub(crate) discarded: Option<String>,
+    /// What leaves a case without a value.
+    pub(crate) unanswered: Unanswered,
     /// What has to have a value.
     pub slots: Vec<Variable>,
     /// What it gives.
     pub outputs: Vec<ShaderOutput>,
-}
-
-/// A name that neither a word of WGSL nor another name is.
-fn safe(kind: &str, name: Option<&str>, k: usize) -> String {
-    let plain: String =
-        name.unwrap_or_default().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    let mut words = plain.split('_').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("_");
-    if !words.is_empty() {
-        words.push('_');
-    }
-    format!("user_{kind}_{words}{k}x")
+    /// The text of what is judged: the file's, with the lines of other functions empty. Empty of SPIR-V.
+    pub text: String,
 }
 
 impl ShaderProgram {
@@ -140,14 +134,16 @@ impl ShaderProgram {
             line,
             message,
         })?;
+        let text = judged_text(&module, entry, source);
         let described = Described::new(&module, source, entry);
         simplified(&mut module).map_err(invalid)?;
-        let discarded = without_discard(&mut module);
+        let unanswered = unanswered(&mut module);
         renamed(&mut module, entry);
         let info = validated(&module).map_err(invalid)?;
         let wgsl = naga::back::wgsl::write_string(&module, &info, naga::back::wgsl::WriterFlags::empty())
             .map_err(|error| invalid(format!("it cannot be written as WGSL: {error}")))?;
-        described.program(&module, &info, entry, source, (wgsl, discarded)).map_err(invalid)
+        let program = described.program(&module, &info, entry, source, (wgsl, unanswered)).map_err(invalid)?;
+        Ok(Self { text, ..program })
     }
 }
 
@@ -310,76 +306,6 @@ fn simplified(module: &mut Module) -> Result<(), String> {
     Ok(())
 }
 
-/// Has a discarded fragment return, and says so in a variable of that name.
-fn without_discard(module: &mut Module) -> Option<String> {
-    let discards = module.functions.iter().any(|(_, function)| has_discard(&function.body));
-    if !discards {
-        return None;
-    }
-    let ty = module.types.insert(Type { name: None, inner: TypeInner::Scalar(Scalar::BOOL) }, Span::UNDEFINED);
-    let flag = module.global_variables.append(
-        GlobalVariable {
-            name: Some("discarded".into()),
-            space: AddressSpace::Private,
-            binding: None,
-            ty,
-            init: None,
-            memory_decorations: naga::MemoryDecorations::empty(),
-        },
-        Span::UNDEFINED,
-    );
-    for (_, function) in module.functions.iter_mut() {
-        if has_discard(&function.body) {
-            let mut add = |expression| function.expressions.append(expression, Span::UNDEFINED);
-            let (pointer, truth) =
-                (add(Expression::GlobalVariable(flag)), add(Expression::Literal(Literal::Bool(true))));
-            let value = function.result.as_ref().map(|result| add(Expression::ZeroValue(result.ty)));
-            let body = std::mem::take(&mut function.body);
-            function.body = returning(body, &[Statement::Store { pointer, value: truth }, Statement::Return { value }]);
-        }
-    }
-    Some(safe("global", Some("discarded"), flag.index()))
-}
-
-fn has_discard(block: &Block) -> bool {
-    block.iter().any(|statement| match statement {
-        Statement::Kill => true,
-        Statement::Block(block) => has_discard(block),
-        Statement::If { accept, reject, .. } => has_discard(accept) || has_discard(reject),
-        Statement::Switch { cases, .. } => cases.iter().any(|case| has_discard(&case.body)),
-        Statement::Loop { body, continuing, .. } => has_discard(body) || has_discard(continuing),
-        _ => false,
-    })
-}
-
-fn returning(block: Block, instead: &[Statement]) -> Block {
-    let mut out = Block::new();
-    for (statement, span) in block.span_into_iter() {
-        let statement = match statement {
-            Statement::Kill => {
-                instead.iter().for_each(|one| out.push(one.clone(), span));
-                return out;
-            }
-            Statement::Block(block) => Statement::Block(returning(block, instead)),
-            Statement::If { condition, accept, reject } => {
-                Statement::If { condition, accept: returning(accept, instead), reject: returning(reject, instead) }
-            }
-            Statement::Switch { selector, mut cases } => {
-                for case in &mut cases {
-                    case.body = returning(std::mem::take(&mut case.body), instead);
-                }
-                Statement::Switch { selector, cases }
-            }
-            Statement::Loop { body, continuing, break_if } => {
-                Statement::Loop { body: returning(body, instead), continuing: returning(continuing, instead), break_if }
-            }
-            other => other,
-        };
-        out.push(statement, span);
-    }
-    out
-}
-
 /// Gives everything a name that nothing else has.
 fn renamed(module: &mut Module, entry: Handle<Function>) {
     for (handle, function) in module.functions.iter_mut() {
@@ -488,7 +414,7 @@ impl Described {
         info: &ModuleInfo,
         entry: Handle<Function>,
         source: &ShaderSource,
-        (wgsl, discarded): (String, Option<String>),
+        (wgsl, unanswered): (String, Unanswered),
     ) -> Result<ShaderProgram, String> {
         let function = &module.functions[entry];
         let walk = Walk { module, described: self, text: &source.text };
@@ -536,7 +462,7 @@ impl Described {
                 format!("let user_given = user_entry({});", words.join(", "))
             }
         };
-        Ok(ShaderProgram { wgsl, declared, call, discarded, slots, outputs })
+        Ok(ShaderProgram { wgsl, declared, call, unanswered, slots, outputs, text: String::new() })
     }
 }
 

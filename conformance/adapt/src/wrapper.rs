@@ -7,7 +7,7 @@ use lightmeter_catalogue::cases::Spec;
 use lightmeter_gpu::Shaders;
 use std::fmt::Write as _;
 
-/// The value of a discarded fragment, NaN in each of its `numbers` components.
+/// The value of a case that has none, NaN in each of its `numbers` components.
 fn nothing_of(numbers: usize) -> String {
     const NAN: &str = "bitcast<f32>(0x7fc00000u)";
     if numbers == 1 { NAN.into() } else { format!("vec{numbers}f({NAN})") }
@@ -93,7 +93,7 @@ fn wrapper(signature: &Signature, program: &ShaderProgram, spec: &Spec, binding:
     for (input, value) in spec.inputs.iter().zip(&signature.inputs) {
         let _ = writeln!(text, "    let {} = {value};", input.name);
     }
-    for line in &program.declared {
+    for line in program.unanswered.reset.iter().chain(&program.declared) {
         let _ = writeln!(text, "    {line}");
     }
     for bound in &binding.bound {
@@ -102,7 +102,7 @@ fn wrapper(signature: &Signature, program: &ShaderProgram, spec: &Spec, binding:
     let _ = writeln!(text, "    {}", program.call);
     let names: Vec<String> = (0..signature.parameters.len()).map(|k| format!("user_in{k}x")).collect();
     let _ = writeln!(text, "    let user_own = user_own_{function}({});", names.join(", "));
-    let given = |value: &str, numbers: usize| match &program.discarded {
+    let given = |value: &str, numbers: usize| match &program.unanswered.flag {
         None => value.to_owned(),
         Some(flag) => format!("select({value}, {}, {flag})", nothing_of(numbers)),
     };

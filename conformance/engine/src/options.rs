@@ -78,6 +78,8 @@ pub struct Adapted {
     pub constants: Vec<(String, Constant)>,
     /// The code's variables, each with the expression over the inputs that it is set to.
     pub variables: Vec<(String, String)>,
+    /// The code's text, in which the lines of what is not judged are empty; all of it is empty where there is none.
+    pub text: String,
 }
 
 /// What an input is that a shader has not.

@@ -130,6 +130,10 @@ pub(super) enum Form {
     FogAdded,
     /// The surface's colour as far as the fog leaves it.
     FogToBlack,
+    /// shaded − (1 − f)(shaded − fog).
+    FogFromTheSurface,
+    /// 1 − (distance − dmin)/(dmax − dmin).
+    FogFromDmin,
     /// |v|².
     SquaredLength,
     /// The inverse, not transposed.
@@ -166,6 +170,8 @@ pub(super) enum Form {
     ByteBySum,
     /// How far z is between near and far.
     LinearDepth,
+    /// far/(far − near)·(1 − near/z), or near/(far − near)·(far/z − 1).
+    DepthByProjection,
     /// Depth read back as if it grew evenly.
     LinearDepthRead,
     /// sRGB encoding that switches from the linear piece to the curved piece at the threshold of decoding, 0.04045.
@@ -214,7 +220,8 @@ impl Form {
             Self::FogExp | Self::FogExp2Document | Self::FogExp2OpenGl | Self::FogRational => {
                 &[&["distance", "density"]]
             }
-            Self::FogAdded | Self::FogToBlack => &[&["fog", "shaded", "f"]],
+            Self::FogAdded | Self::FogToBlack | Self::FogFromTheSurface => &[&["fog", "shaded", "f"]],
+            Self::FogFromDmin => &[&["distance", "dmin", "dmax"]],
             Self::SquaredLength => &[&["v"]],
             Self::NormalByInverse | Self::NormalByModelview | Self::NormalByCofactors => &[&["modelview", "n"]],
             Self::DirectionAsPosition => &[&["view", "direction"]],
@@ -224,7 +231,7 @@ impl Form {
             Self::EdgeFromItsEnd => &[&["a", "b", "p"]],
             Self::DepthBetween | Self::DepthRange | Self::UpsideDown => &[&["ndc", "origin", "size", "depth"]],
             Self::TruncatedByte | Self::ByteBy256 | Self::UnclampedByte | Self::ByteBySum => &[&["c"]],
-            Self::LinearDepth => &[&["near", "far", "z"]],
+            Self::LinearDepth | Self::DepthByProjection => &[&["near", "far", "z"]],
             Self::LinearDepthRead => &[&["near", "far", "depth"]],
             Self::EncodeThreshold | Self::EncodeRec709 | Self::EncodeWithoutScale | Self::EncodeCurve => &[&["c"]],
             Self::DecodeRec709 | Self::DecodeThreshold => &[&["e"]],
@@ -389,7 +396,9 @@ fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         | Form::FogRational
         | Form::ExpByQuadratic
         | Form::FogAdded
-        | Form::FogToBlack => fogged(form, taken),
+        | Form::FogToBlack
+        | Form::FogFromTheSurface
+        | Form::FogFromDmin => fogged(form, taken),
         Form::NormalByInverse | Form::NormalByModelview | Form::NormalByCofactors => normal(form, taken),
         Form::DirectionAsPosition | Form::PositionAsDirection | Form::DividedAlways | Form::NotDivided => {
             placed(form, taken)
@@ -397,7 +406,7 @@ fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::MixFromTheEnd | Form::EdgeFromItsEnd | Form::Middle => between(form, taken),
         Form::DepthBetween | Form::DepthRange | Form::UpsideDown => window(form, taken),
         Form::TruncatedByte | Form::ByteBy256 | Form::UnclampedByte | Form::ByteBySum => byte(form, taken),
-        Form::LinearDepth | Form::LinearDepthRead => depth(form, taken),
+        Form::LinearDepth | Form::LinearDepthRead | Form::DepthByProjection => depth(form, taken),
         Form::EncodeThreshold
         | Form::DecodeThreshold
         | Form::EncodeWithoutScale
@@ -547,10 +556,21 @@ fn length<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
 
 fn fogged<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
-    if matches!(form, Form::FogAdded | Form::FogToBlack) {
+    if matches!(form, Form::FogAdded | Form::FogToBlack | Form::FogFromTheSurface) {
         let (fog, shaded, f) = (vector(taken, "fog")?, vector(taken, "shaded")?, scalar(taken, "f")?);
-        let color = if form == Form::FogAdded { shaded + fog.scale(one - f) } else { shaded.scale(f) };
+        let color = match form {
+            Form::FogAdded => shaded + fog.scale(one - f),
+            Form::FogToBlack => shaded.scale(f),
+            _ => shaded - (shaded - fog).scale(one - f),
+        };
         return give(taken, color.0);
+    }
+    if form == Form::FogFromDmin {
+        let [distance, dmin, dmax] = [scalar(taken, "distance")?, scalar(taken, "dmin")?, scalar(taken, "dmax")?];
+        let ramp = || (one - (distance - dmin) / (dmax - dmin)).clamp(zero, one);
+        let at_once = || R::if_ge(distance, dmax, || zero, || one);
+        let f = R::if_ge(dmin, dmax, || R::if_ge(dmax, dmin, at_once, ramp), ramp);
+        return give(taken, [f]);
     }
     if form == Form::ExpByQuadratic {
         let x = -scalar(taken, "exponent")?;
@@ -654,6 +674,14 @@ fn depth<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     let (near, far) = (scalar(taken, "near")?, scalar(taken, "far")?);
     let range = far - near;
     let value = match form {
+        Form::DepthByProjection => {
+            let (z, one) = (scalar(taken, "z")?, R::literal(1.0));
+            if taken.step.name == "reversed depth" {
+                near / range * (far / z - one)
+            } else {
+                far / range * (one - near / z)
+            }
+        }
         Form::LinearDepth if taken.step.name == "reversed depth" => (far - scalar(taken, "z")?) / range,
         Form::LinearDepth => (scalar(taken, "z")? - near) / range,
         _ => near + scalar(taken, "depth")? * range,

@@ -108,8 +108,10 @@ fn together(best: &Explanation, explanations: &[Explanation]) -> String {
         let factor = other.parameter.as_ref().map_or(f64::NAN, |other| other.factor);
         counts(other) == counts(best) && other.faults == best.faults && (factor / scaled.factor - 1.0).abs() < 1e-3
     };
-    let names: Vec<&str> =
+    let mut names: Vec<&str> =
         explanations.iter().filter(is_same).filter_map(|e| Some(e.parameter.as_ref()?.name)).collect();
+    // An input and an output may have the same name.
+    names.dedup();
     // Before it may stand a mistake.
     let parts = best.says.split_once(&format!("as if {} ", scaled.name)).filter(|_| names.len() > 1);
     let Some((mistake, phrase)) = parts else { return best.says.clone() };

@@ -80,7 +80,30 @@ pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
     if let Some(interrupted) = &report.interrupted {
         writeln!(out, "interrupted: {} was under way: {}", interrupted.under_way, interrupted.message)?;
     }
+    if report.totals.cases == 0 && report.is_success() && !report.deviations.is_empty() {
+        let count = report.deviations.len();
+        return writeln!(out, "✓ {count} known deviations were looked for in {:.1} s, and seen", report.seconds);
+    }
     totals(&report.totals, report.is_success(), report.seconds, out)
+}
+
+/// Images that lie to one side of their reference by no more than the accuracy rules permit.
+fn legal_biases(report: &Report, out: &mut impl Write) -> Result {
+    for group in &report.groups {
+        let bias = group.image.as_ref().and_then(|image| image.bias).filter(|bias| bias.beyond.is_none());
+        if let Some(bias) = bias {
+            writeln!(
+                out,
+                "{} on {} ({}) lies to one side, which the accuracy rules permit: {}, {:+.2} steps of 8 bits on average",
+                group.id,
+                group.adapter,
+                group.stage,
+                bias.as_if(),
+                bias.steps
+            )?;
+        }
+    }
+    Ok(())
 }
 
 /// Writes each group that fails, with what explains it, and of each formula on an adapter one failing case.
@@ -224,6 +247,9 @@ fn stability(report: &Report, out: &mut impl Write) -> Result {
 fn notes(report: &Report, level: Level, out: &mut impl Write) -> Result {
     deviations(report, level, out)?;
     skips(report, out)?;
+    if level > Level::Quiet {
+        legal_biases(report, out)?;
+    }
     if level == Level::Verbose {
         stores(report, out)?;
         images(report, out)?;

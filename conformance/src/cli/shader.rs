@@ -11,7 +11,6 @@ use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::Code;
 use lightmeter::document::run::{BoundVariable, JudgedAs, MistakePlace, Report, ShaderUse};
 use lightmeter::faults::{Fault, Touched};
-use lightmeter::files::read;
 use lightmeter::filter::Filter;
 use lightmeter::options::{Adapted, Constant};
 use lightmeter::report::Level;
@@ -20,7 +19,7 @@ use lightmeter::subject_gpu::code_of;
 use lightmeter_adapt::bind::{AskedBinding, Bound, Found, ShaderBinding, bind};
 use lightmeter_adapt::place::{line_of_step, line_of_variable};
 use lightmeter_adapt::source::{Language, ShaderSource};
-use lightmeter_adapt::{Part, ShaderProgram, in_language, replaced, stable_form};
+use lightmeter_adapt::{MOST_TURNS, Part, ShaderProgram, in_language, replaced, stable_form};
 use lightmeter_gpu::Shaders;
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -30,6 +29,8 @@ use std::path::{Path, PathBuf};
 const MISSING: &str = "missing";
 /// The file of what its variables were bound to, there too.
 const BOUND: &str = "bound";
+/// The file of its text without the functions that are not judged, there too.
+const JUDGED: &str = "judged";
 /// Families of which a shader can be told to be one.
 const IDENTIFIED: [&str; 7] = ["lighting", "fog", "attenuation", "color", "vector", "interpolation", "depth"];
 /// Formulas that a single shader can be judged by in one command.
@@ -91,12 +92,33 @@ impl Drop for Accepted {
     }
 }
 
+/// Files whose functions a run takes from the suite itself, and why.
+const UNJUDGED: [(&str, &str); 2] = [
+    ("probe.wgsl", "the witnesses of known deviations are about the device, and so are evaluated by the built-in file"),
+    ("technique.wgsl", "only `lightmeter bench` evaluates its functions"),
+];
+
+/// Says which edited files of a folder are not judged.
+fn tell_unjudged(folder: &Path) -> anyhow::Result<()> {
+    let (built_in, own) = (Shaders::built_in()?, Shaders::from_dir(folder)?);
+    let text = |shaders: &Shaders, file: &str| {
+        shaders.texts().find(|(name, _)| *name == file).map(|(_, text)| text.to_owned())
+    };
+    for (file, why) in UNJUDGED {
+        if text(&built_in, file) != text(&own, file) {
+            say(&format!("note: {} is not judged: {why}", folder.join(file).display()));
+        }
+    }
+    Ok(())
+}
+
 impl ShaderChoice {
     /// Has processes of their own read and compile the shaders.
     pub(crate) fn accepted(&self, filter: &Filter, adapters: &[String], has_scenes: bool) -> anyhow::Result<Accepted> {
         if self.own.words()?.is_none() {
             if let Some(folder) = &self.shaders {
                 foreign::accept(folder, adapters, has_scenes)?;
+                tell_unjudged(folder)?;
             }
             return Ok(Accepted { folder: self.shaders.clone(), is_made: false, adapted: vec![] });
         }
@@ -208,8 +230,8 @@ impl OwnShader {
         if level() > Level::Quiet && !formulas.is_empty() {
             say(told.trim_end());
         }
-        let [missing, bound] = [MISSING, BOUND].map(|name| std::fs::read_to_string(folder.join(name)));
-        accepted.adapted = self.adapted(&missing?, &bound?);
+        let [missing, bound, judged] = [MISSING, BOUND, JUDGED].map(|name| std::fs::read_to_string(folder.join(name)));
+        accepted.adapted = self.adapted(&missing?, &bound?, &judged?);
         if !accepted.adapted.is_empty() {
             foreign::accept(&folder, adapters, false)?;
         }
@@ -304,7 +326,7 @@ impl OwnShader {
     }
 
     /// How formulas are judged: each by a line, and by a line each what the shader does not give of it.
-    fn adapted(&self, lines: &str, bound: &str) -> Vec<Adapted> {
+    fn adapted(&self, lines: &str, bound: &str, text: &str) -> Vec<Adapted> {
         let of = |id: &str| Adapted {
             id: id.into(),
             missing: lines
@@ -318,6 +340,7 @@ impl OwnShader {
                 .filter_map(|line| line.strip_prefix(id)?.strip_prefix('\t')?.split_once('\t'))
                 .map(|(name, is)| (name.into(), is.into()))
                 .collect(),
+            text: text.into(),
         };
         lines.lines().filter(|line| !line.contains(' ')).map(of).collect()
     }
@@ -348,8 +371,6 @@ impl OwnShader {
     /// What is told of it in a report: what it was bound to, and where in its text the mistakes are made, as far as that can be told.
     pub(crate) fn used(&self, adapted: &[Adapted], report: &Report) -> Option<ShaderUse> {
         let (part, file) = self.part().ok()?;
-        // Of SPIR-V there is no text.
-        let text = read::text(&file, read::MOST_TEXT).unwrap_or_default();
         let catalogue = catalogue();
         let formula = |adapted: &Adapted| {
             let id = &adapted.id;
@@ -357,7 +378,7 @@ impl OwnShader {
             let member = catalogue.iter().find(|member| member.spec.id == *id);
             let faults = named.into_iter().flat_map(|group| &group.mistakes).filter_map(|name| Fault::by_name(name));
             let mistakes = member.into_iter().zip(std::iter::repeat(faults)).flat_map(|(member, faults)| {
-                faults.filter_map(|fault| line_of(&text, fault, member, &adapted.variables))
+                faults.filter_map(|fault| line_of(&adapted.text, fault, member, &adapted.variables))
             });
             let bound = |(name, is): &(String, String)| BoundVariable { name: name.clone(), is: is.clone() };
             JudgedAs {
@@ -462,6 +483,7 @@ impl Adapt {
             }
         }
         std::fs::write(self.folder.join(BOUND), lines)?;
+        std::fs::write(self.folder.join(JUDGED), &program.text)?;
         let mut told = String::new();
         for (spec, binding) in &bound {
             tell((&file, &part), &self.own.constant, (spec, binding), &mut told)?;
@@ -478,6 +500,24 @@ fn shortened(expression: &str) -> String {
         zero if zero.ends_with("()") => "0".into(),
         other => other.to_owned(),
     }
+}
+
+/// When a shader gives no value.
+fn tell_without_value(binding: &ShaderBinding, out: &mut String) -> std::fmt::Result {
+    if binding.discards {
+        writeln!(
+            out,
+            "  It discards fragments. A case fails where its fragment is discarded: its value is reported as NaN."
+        )?;
+    }
+    if binding.loops {
+        writeln!(
+            out,
+            "  It has loops. A case fails where they turn more than {} times in all: its value is reported as NaN.",
+            lightmeter::document::thousands(u64::from(MOST_TURNS))
+        )?;
+    }
+    Ok(())
 }
 
 /// What is judged, and what each of its variables stands for.
@@ -523,12 +563,7 @@ fn tell(
     for (name, other, is) in alike(binding) {
         writeln!(out, "  Both {name} and {other} are taken to be {is}. If one is not: --bind '{other}=…'")?;
     }
-    if binding.discards {
-        writeln!(
-            out,
-            "  It discards fragments. A case fails where its fragment is discarded: its value is reported as NaN."
-        )?;
-    }
+    tell_without_value(binding, out)?;
     let is_constant = |name: &&str| constants.iter().any(|(own, _)| own == name);
     let unused: Vec<&str> = binding.unused.iter().copied().filter(|name| !is_constant(name)).collect();
     if !unused.is_empty() {

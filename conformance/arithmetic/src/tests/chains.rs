@@ -512,3 +512,15 @@ fn check(profile: &Profile, name: &str, inputs: [f32; 4], interval: Formula<Acce
         }
     });
 }
+
+#[test]
+fn partial_products_at_the_smallest_normal_are_not_flushed() {
+    WGSL.scope(|| {
+        let width = |smallest: f64| {
+            let product = <Accept>::product([1.25, 1.75, 1.5, smallest].map(Accept::exactly));
+            (product.high() - product.low()) / F32::MIN_NORMAL
+        };
+        assert!(width(F32::MIN_NORMAL) < 1e-5, "{}", width(F32::MIN_NORMAL));
+        assert!(width(F32::MIN_NORMAL / 2.0) > 1.0, "{}", width(F32::MIN_NORMAL / 2.0));
+    });
+}

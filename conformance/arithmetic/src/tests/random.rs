@@ -362,3 +362,24 @@ fn composed_functions_stay_near_their_values() {
         }
     });
 }
+
+#[test]
+fn series_keep_their_accuracy_up_to_where_they_end() {
+    seed(11);
+    WGSL.scope(|| {
+        let check = |name: &str, exact: f64, draw: &dyn Fn() -> f64, each: f64| {
+            let errors: Vec<f64> = (0..2_000).map(|_| (draw() - exact) / exact.abs() / F32::EPSILON).collect();
+            #[expect(clippy::cast_precision_loss, reason = "a small count")]
+            let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+            let greatest = errors.iter().fold(0.0_f64, |greatest, error| greatest.max(error.abs()));
+            assert!(mean.abs() < 2.0, "{name}: mean error of {mean} ε");
+            assert!(greatest < each, "{name}: an error of {greatest} ε");
+        };
+        for x in [0.0625_f64, -0.0625] {
+            check("ln(1 + x)", x.ln_1p(), &|| exactly(x).ln_1p().value, 4.0);
+        }
+        for x in [0.5_f64, -0.5] {
+            check("exp(x) − 1", x.exp_m1(), &|| exactly(x).exp_m1().value, 4.0);
+        }
+    });
+}

@@ -78,6 +78,7 @@ formula!(
     hard [
         Hard::new("no-exponent", "an evenly lit cone", &[("l", &[0.0, 0.6, -0.8]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[0.0])]),
         Hard::new("slight-exponent", "an exponent of 0.0005 is not 0", SLIGHT),
+        Hard::new("barely-before-it", "however small, a cosine above 0 counts", &[("l", &[0.999_999_9, 0.0, -9e-5]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[0.5])]),
         Hard::new("no-exponent-behind", "evenly lit where the cone reaches behind the light too", BEHIND),
         Hard::new("behind", "0 behind the light with the widest cone", &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[2.0])]),
     ],
@@ -122,6 +123,7 @@ formula!(
             .naive("attenuation/polynomial-expanded", "d² is 0", f64::INFINITY),
         Hard::new("all-zero", "the greatest value there is, not ∞", &[("kc", &[0.0]), ("kl", &[0.0]), ("kq", &[0.0])])
             .naive("attenuation/polynomial-expanded", "1/0", f64::INFINITY),
+        Hard::new("as-dark-as-numbers-go", "d² of 1e36 divides: nothing below 2⁻¹²⁶ is clamped", &[("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[1.0]), ("d", &[1e18])]),
         Hard::new("at-a-tube-light", "the greatest value there is, not ∞", &[("kc", &[0.0]), ("kl", &[1000.0]), ("kq", &[0.0]), ("d", &[0.0])])
             .naive("attenuation/polynomial-expanded", "1/0", f64::INFINITY),
     ],
@@ -137,6 +139,7 @@ formula!(
     hard [
         Hard::new("far", "5e19 away", &[("kc", &[1.0]), ("kl", &[1e-20]), ("kq", &[0.0]), ("light", &[3e19, 4e19, 0.0]), ("p", &[0.0, 0.0, 0.0])])
             .naive("attenuation/point", "the distance is ∞", 1e6),
+        Hard::new("as-dark-as-numbers-go", "d² of 1e36 divides", &[("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[1.0]), ("light", &[6e17, 8e17, 0.0]), ("p", &[0.0, 0.0, 0.0])]),
         Hard::new("near", "5e-24 away", &[("kc", &[0.0]), ("kl", &[1e20]), ("kq", &[0.0]), ("light", &[3e-24, 4e-24, 0.0]), ("p", &[0.0, 0.0, 0.0])])
             .naive("attenuation/point", "the distance is 0", f64::INFINITY),
     ],

@@ -76,6 +76,7 @@ formula!(
         Hard::new("green-and-blue", "cyan", &[("a", &[0.0, 1.0, 0.0]), ("b", &[0.0, 0.0, 1.0])]),
         Hard::new("blue-and-red", "magenta", &[("a", &[0.0, 0.0, 1.0]), ("b", &[1.0, 0.0, 0.0])]),
         Hard::new("yellow-and-blue", "white", &[("a", &[1.0, 1.0, 0.0]), ("b", &[0.0, 0.0, 1.0])]),
+        Hard::new("below-black", "clamped", &[("a", &[-1.0, -0.25, 0.5]), ("b", &[0.5, 0.125, -0.75])]),
         Hard::new("white-and-white", "clamped", &[("a", &[1.0, 1.0, 1.0]), ("b", &[1.0, 1.0, 1.0])]),
     ],
 );

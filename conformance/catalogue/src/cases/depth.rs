@@ -174,6 +174,12 @@ formula!(
     "z = n·f/(f − depth(f − n)), depth = f(z − n)/(z(f − n))", "000 §6.6; ruling 15",
     [NEAR, FAR, EYE_DISTANCE] -> [READ_BACK],
     |near, far, z; out| { out.scalar(recovered(near, far, z)); },
+    hard [
+        Hard::new("far-out", "beyond 100 units", &[("near", &[10.0]), ("far", &[1000.0]), ("z", &[700.0])]),
+        Hard::new("far-out-of-a-deep-range", "ill-conditioned: a step of depth is 0.024 units", &[("near", &[0.1]), ("far", &[1000.0]), ("z", &[200.0])]),
+        Hard::new("at-near", "as near as it is drawn", &[("near", &[0.25]), ("far", &[64.0]), ("z", &[0.25])]),
+        Hard::new("at-far", "as far as it is drawn", &[("near", &[16.0]), ("far", &[4096.0]), ("z", &[4096.0])]),
+    ],
 );
 formula!(
     /// A distance read back from depth reversed.

@@ -81,6 +81,9 @@ linear!(
     ]
 );
 
+/// A point 2000 units away.
+const FAR: &[(&str, &[f32])] = &[("p", &[1200.0, 0.0, -1600.0]), ("density", &[0.000_5])];
+
 /// Without a clamp the factor is e.
 const NEGATIVE: &[(&str, &[f32])] = &[("p", &[0.0, 0.0, -10.0]), ("density", &[-0.01])];
 
@@ -108,6 +111,7 @@ exponential!(
         Hard::new("no-density", "density 0 is no fog", &[("p", &[0.0, 0.0, -50.0]), ("density", &[0.0])]),
         Hard::new("at-the-eye", "clear", &[("p", &[0.0, 0.0, 0.0]), ("density", &[1.0])]),
         Hard::new("negative-density", "clamped: never clearer than clear", &[("p", &[0.0, 0.0, -10.0]), ("density", &[-0.1])]),
+        Hard::new("far-out", "2000 units away in thin fog", FAR),
         Hard::new("far", "only fog, the factor underflows", &[("p", &[0.0, 0.0, -1e6]), ("density", &[1.0])]),
     ]
 );
@@ -119,7 +123,8 @@ exponential!(
     fog::exp,
     DENSITY,
     "f = clamp(exp(−density·|p|), 0, 1); color = mix(fog, shaded, f)",
-    "000 §6.5, a dialect"
+    "000 §6.5, a dialect",
+    hard[Hard::new("far-out", "2000 units away in thin fog", FAR)]
 );
 exponential!(
     Exp2Document, "fog/exp2-document", "fog_exp2_document", Distance::Planar, fog::exp2_document, DENSITY_SQUARED,
@@ -163,7 +168,8 @@ exponential!(
     fog::exp2_opengl,
     DENSITY,
     "f = clamp(exp(−(density·|p|)²), 0, 1); color = mix(fog, shaded, f)",
-    "OpenGL 2.1 §3.10, a dialect"
+    "OpenGL 2.1 §3.10, a dialect",
+    hard[Hard::new("far-out", "2000 units away in thin fog", FAR)]
 );
 
 formula!(

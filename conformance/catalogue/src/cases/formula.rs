@@ -282,7 +282,12 @@ macro_rules! formula {
                 const FIT: &[fn(&$crate::cases::Spec, &mut [f32])] = &[$($fit)?];
                 const KIND: &[$crate::cases::Kind] = &[$($kind)?];
                 const OUTPUTS: &[$crate::cases::Output] = &[$($output),*];
-                const HARD: &[$crate::cases::Hard] = &[$($($hard),*)?];
+                const OWN: &[$crate::cases::Hard] = &[$($($hard),*)?];
+                const COLORS: usize = $crate::cases::colors($name::INPUTS);
+                const GIVEN: usize = $crate::cases::given_beyond($name::INPUTS);
+                const BEYOND: [(&str, &[f32]); GIVEN] = $crate::cases::beyond($name::INPUTS);
+                const WITH: [$crate::cases::Hard; OWN.len() + 1] = $crate::cases::and_beyond(OWN, &BEYOND);
+                const HARD: &[$crate::cases::Hard] = if COLORS > 0 { &WITH } else { OWN };
                 const STABLE: &[$crate::cases::Stable] = &[
                     $($crate::cases::Stable { bound: $bound, size: $crate::cases::Size::$size, because: $because })?
                 ];

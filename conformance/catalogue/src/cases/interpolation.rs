@@ -149,6 +149,12 @@ macro_rules! viewport {
                 Hard::new("no-depth-range", "near = far is the depth of every vertex, to the last bit", &[
                     ("clip", &[0.3, -0.4, 0.6, 1.3]), ("origin", &[0.0, 0.0]), ("size", &[640.0, 480.0]), ("depth", &[0.7, 0.7]),
                 ]),
+                Hard::new("behind-the-eye", "a negative w divides as any other", &[
+                    ("clip", &[0.5, -0.75, 1.25, -2.0]), ("origin", &[10.0, 20.0]), ("size", &[640.0, 480.0]), ("depth", &[0.25, 0.75]),
+                ]),
+                Hard::new("beside-the-screen", "nothing is clamped", &[
+                    ("clip", &[5.0, -7.0, 3.0, 2.0]), ("origin", &[10.0, 20.0]), ("size", &[640.0, 480.0]), ("depth", &[0.25, 0.75]),
+                ]),
             ],
         );
     };

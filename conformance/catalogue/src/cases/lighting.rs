@@ -78,6 +78,7 @@ formula!(
         Hard::new("mirror", "1 at any shininess", &[("r", &[0.0, 0.0, 1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1e6])]),
         Hard::new("slightly-above-one", "a cosine a few ULP above 1 under a great power", &[("r", &[0.0, 0.0, 1.000_000_2]), ("v", &[0.0, 0.0, 1.000_000_2]), ("shininess", &[1e6])]),
         Hard::new("edge-on", "0 at a right angle", &[("r", &[1.0, 0.0, 0.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
+        Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("r", &[0.999_999_9, 0.0, 6e-5]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
         Hard::new("no-shininess-edge-on", "0 and 1 are both legal: 0 to the power 0", &[("r", &[1.0, 0.0, 0.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[0.0])]),
         Hard::new("no-shininess", "1 for a cosine above 0", &[("r", &[0.0, 0.6, 0.8]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[0.0])]),
         Hard::new("behind", "0, never the even power of a negative cosine", &[("r", &[0.0, 0.0, -1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[2.0])]),
@@ -90,6 +91,7 @@ formula!(
     [LS, MS, Input::direction("n"), Input::direction("h"), SHININESS] -> [RGB],
     fit facing_vectors,
     |ls, ms, n, h, shininess; out| { out.vector(lighting::specular_blinn(ls, ms, n, h, shininess)); },
+    hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("n", &[0.999_999_9, 0.0, 6e-5]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])])],
 );
 formula!(
     /// The highlight of a viewer at infinity.
@@ -97,6 +99,7 @@ formula!(
     "CS = LS * MS * max(r.z, 0)^shininess", "000 §6.4",
     [LS, MS, Input::direction("r"), SHININESS] -> [RGB],
     |ls, ms, r, shininess; out| { out.vector(lighting::specular_nonlocal(ls, ms, r, shininess)); },
+    hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("r", &[0.999_999_9, 0.0, 6e-5]), ("shininess", &[1.0])])],
 );
 
 /// Half of all pairs of directions look away from each other, where the highlight is 0: keep a quarter of those.
@@ -388,6 +391,8 @@ formula!(
 
 const POWER: Output = Output::new("fs", ValueShape::Scalar, "1");
 const MIRROR: &[f32] = &[0.6, 0.0, 0.8];
+/// Vectors at 89.997° to each other.
+const BARELY: &[(&str, &[f32])] = &[("a", &[0.999_999_9, 0.0, 6e-5]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[1.0])];
 
 formula!(
     /// A highlight's power.
@@ -396,6 +401,7 @@ formula!(
     [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 256.0))] -> [POWER],
     fit toward_each_other,
     |a, b, exponent; out| { out.scalar(lighting::cosine_power(a, b, exponent)); },
+    hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY)],
 );
 formula!(
     /// A highlight's power without its guard.
@@ -404,6 +410,7 @@ formula!(
     [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 256.0))] -> [POWER],
     fit toward_each_other_only,
     |a, b, exponent; out| { out.scalar(lighting::cosine_power_unguarded(a, b, exponent)); },
+    hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY)],
 );
 formula!(
     /// A highlight's power by the chord.
@@ -430,6 +437,7 @@ formula!(
             .naive("lighting/cosine-power", "a·b near 1 has no digits for the angle, which a − b keeps", 1e4),
         Hard::new("half-1e6", "half as bright at 0.07°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.001_177_4, 0.0, 0.999_999_3]), ("exponent", &[1e6])])
             .naive("lighting/cosine-power", "a·b near 1 has no digits for the angle, which a − b keeps", 1e5),
+        Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY),
         Hard::new("behind-even", "0, never the even power of a negative cosine", &[("a", &[0.0, 0.0, -1.0]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[2.0])])
             .naive("lighting/cosine-power-unguarded", "NaN, or 1", 1e6),
         Hard::new("behind", "0, not NaN", &[("a", &[0.0, -0.6, -0.8]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[32.5])])

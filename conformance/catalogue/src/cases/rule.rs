@@ -47,7 +47,10 @@ const RULES: &[(&str, &str)] = &[
         "interpolation/weights interpolation/last-weight*",
         "(x y z) is the area (y − x) × (z − x), the sides taken from the first letter: from another vertex they round otherwise; of a triangle without area nothing is promised",
     ),
-    ("interpolation/weights", "λ = ((b c p), (c a p), (a b p))/(a b c)"),
+    (
+        "interpolation/weights",
+        "λ = ((b c p), (c a p), (a b p))/(a b c): the divisor is the triangle's own area, not the sum of the three",
+    ),
     (
         "interpolation/scanline",
         "Ia and xa lie on the edge v1 v2, Ib and xb on the edge v1 v3, all at the height of p: Ia = (I1(p.y − v2.y) + I2(v1.y − p.y))/(v1.y − v2.y), and so on",
@@ -68,7 +71,7 @@ const RULES: &[(&str, &str)] = &[
     ("interpolation/perspective-scaled", "where the weights of the vertices that count are 0 nothing is promised"),
     (
         "interpolation/mix",
-        "t = 0 gives a and t = 1 gives b, to the last bit; no other form of it is the same, not b − (1 − t)(b − a) either",
+        "t = 0 gives a and t = 1 gives b, to the last bit; no other form of it is the same: neither b − (1 − t)(b − a) nor a shading language's mix, which may be a + t(b − a) and is so on many drivers",
     ),
     (
         "interpolation/edge",
@@ -175,6 +178,10 @@ const RULES: &[(&str, &str)] = &[
     ("vector/halfway", "where v = −l the result is 0"),
     ("vector/halfway-unguarded", "where v = −l nothing is promised"),
     ("vector/toward", "where the light is at the surface point the result is 0"),
+    (
+        "vector/face-normal lighting/flat",
+        "the sides are taken from a, the first vertex: from another one they round otherwise",
+    ),
     ("vector/average-normal", "where the normals cancel the result is 0"),
     ("vector/face-normal vector/face-normal-compensated", "of three points on a line the result is 0"),
     (
@@ -319,6 +326,14 @@ const RULES: &[(&str, &str)] = &[
     ),
     ("attenuation/spot-*", "outside the cone it is 0"),
     // Fog.
+    (
+        "fog/linear* fog/exp*",
+        "mix is fog(1 − f) + shaded·f or fog + f(shaded − fog), whose roundings are both legal; shaded − (1 − f)(shaded − fog) rounds otherwise; colours are not clamped",
+    ),
+    (
+        "fog/linear fog/linear-radial",
+        "the ramp is counted from dmax: 1 − (distance − dmin)/(dmax − dmin) rounds otherwise",
+    ),
     ("fog/linear fog/linear-radial", "where dmin = dmax it is a step: f = 1 nearer than dmax, and 0 from there on"),
     (
         "fog/linear fog/linear-radial",
@@ -358,6 +373,10 @@ const RULES: &[(&str, &str)] = &[
     (
         "depth/stored-reversed",
         "depth is 1 at the near plane and 0 at the far plane, for a viewer at the origin; z is a distance and so above 0",
+    ),
+    (
+        "depth/stored depth/stored-reversed depth/recovered depth/recovered-reversed",
+        "the form is the one that is written: the projection matrix's, f/(f − n)·(1 − n/z), cancels near the near plane and rounds otherwise",
     ),
     ("depth/test/never/*", "nothing passes"),
     ("depth/test/less/*", "new passes where it is < old"),

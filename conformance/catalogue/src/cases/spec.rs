@@ -234,6 +234,110 @@ pub struct Hard {
 /// Inputs by name.
 pub type Values = &'static [(&'static str, &'static [f32])];
 
+impl Input {
+    /// Whether it is a colour, drawn from black to white.
+    #[must_use]
+    const fn is_color(&self) -> bool {
+        let is_color = matches!(self.unit.as_bytes(), b"color") && matches!(self.domain, Domain::Unit);
+        is_color && matches!(self.shape, ValueShape::Vec3 | ValueShape::Vec4)
+    }
+}
+
+/// Colours below black and above white in each component, alone and where three are mixed.
+const BEYOND: [&[f32]; 3] = [&[-0.5, 1.5, 2.0, 0.75], &[1.5, 2.0, -0.75, 1.25], &[2.5, -0.25, 1.25, 0.75]];
+
+/// A surface that is lit, by the names of what places it. What has none of these names is in the middle of its domain.
+const LIT: [(&str, &[f32]); 13] = [
+    ("p", &[0.25, -0.5, -4.0]),
+    ("position", &[1.0, 1.5, -1.0]),
+    ("light", &[1.0, 1.5, -1.0]),
+    ("normal", &[0.36, 0.48, 0.8]),
+    ("n", &[0.36, 0.48, 0.8]),
+    ("l", &[0.48, -0.36, 0.8]),
+    ("toward", &[0.48, -0.36, 0.8]),
+    ("i", &[-0.48, 0.36, -0.8]),
+    ("direction", &[-0.48, 0.36, -0.8]),
+    ("v", &[0.0, 0.6, 0.8]),
+    ("r", &[0.0, 0.6, 0.8]),
+    ("h", &[0.0, 0.6, 0.8]),
+    ("axis", &[-0.2, -0.5, -0.8]),
+];
+
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b, mut k) = (a.as_bytes(), b.as_bytes(), 0);
+    while k < a.len() && k < b.len() && a[k] == b[k] {
+        k += 1;
+    }
+    a.len() == b.len() && k == a.len()
+}
+
+impl Input {
+    /// Where it is, of a surface that is lit.
+    const fn lit(&self) -> Option<&'static [f32]> {
+        let mut k = 0;
+        while k < LIT.len() {
+            if matches!(self.shape, ValueShape::Vec3) && is_same(LIT[k].0, self.name) {
+                return Some(LIT[k].1);
+            }
+            k += 1;
+        }
+        None
+    }
+}
+
+/// The number of colours among inputs.
+#[must_use]
+pub const fn colors(inputs: &[Input]) -> usize {
+    let (mut k, mut count) = (0, 0);
+    while k < inputs.len() {
+        count += if inputs[k].is_color() { 1 } else { 0 };
+        k += 1;
+    }
+    count
+}
+
+/// How many inputs [`beyond`] gives.
+#[must_use]
+pub const fn given_beyond(inputs: &[Input]) -> usize {
+    let (mut k, mut count) = (0, 0);
+    while k < inputs.len() {
+        count += if inputs[k].is_color() || inputs[k].lit().is_some() { 1 } else { 0 };
+        k += 1;
+    }
+    count
+}
+
+/// Values beyond black and white for all colours among inputs, of a surface that is lit; `N` is [`given_beyond`].
+#[must_use]
+pub const fn beyond<const N: usize>(inputs: &[Input]) -> [(&'static str, &'static [f32]); N] {
+    let mut values: [(&'static str, &'static [f32]); N] = [("", &[]); N];
+    let (mut k, mut given, mut color) = (0, 0, 0);
+    while k < inputs.len() {
+        if inputs[k].is_color() {
+            values[given] = (inputs[k].name, BEYOND[color % 3].split_at(inputs[k].shape.components()).0);
+            color += 1;
+            given += 1;
+        } else if let Some(place) = inputs[k].lit() {
+            values[given] = (inputs[k].name, place);
+            given += 1;
+        }
+        k += 1;
+    }
+    values
+}
+
+/// A formula's own hard cases, and one more of colours beyond black and white.
+#[must_use]
+pub const fn and_beyond<const N: usize>(own: &[Hard], values: Values) -> [Hard; N] {
+    let mut all = [Hard::new("beyond-black-and-white", "colours below 0 and above 1 count as they are", values); N];
+    let mut k = 0;
+    while k < own.len() {
+        all[k] = own[k];
+        k += 1;
+    }
+    all
+}
+
 /// Another formula, which computes the same and loses what a stable form keeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Naive {

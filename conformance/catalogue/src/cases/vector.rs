@@ -108,6 +108,8 @@ formula!(
         Hard::new("at-infinity", "w = 0: a direction, undivided", &[("position", &[0.5, 0.25, -0.75, 0.0])]),
         Hard::new("at-no-height", "only w = 0 leaves it undivided", &[("position", &[0.5, 0.0, -0.75, 2.0])]),
         Hard::new("behind-infinity", "a negative w turns it round", &[("position", &[1.0, 2.0, 3.0, -2.0])]),
+        Hard::new("nearly-at-infinity", "however small, w divides", &[("position", &[0.5, 0.25, -0.75, 5e-7])]),
+        Hard::new("as-far-as-numbers-go", "however small, w divides", &[("position", &[0.5, 0.25, -0.75, 1e-37])]),
     ],
 );
 formula!(
@@ -317,6 +319,10 @@ formula!(
         Hard::new("opposite-beside-a-long-face", "the face's normal is normalised", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.0, -0.6, -0.8]), ("face", &[3.0, 0.0, 4.0]), ("t", &[0.5])]),
         Hard::new("opposite-but-1e-6", "what is left is 1e-6", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.000_001, -0.6, -0.8]), ("face", &[0.0, 0.8, -0.6]), ("t", &[0.5])])
             .naive("vector/interpolated-normal", "2 rad off with the least change of t", 1e6),
+        Hard::new("a-little-is-left", "half of 0.004 is above 2⁻¹⁰: the mix is used", &[("n0", &[0.0, 0.0, 1.0]), ("n1", &[0.004, 0.0, -1.0]), ("face", &[0.0, 1.0, 0.0]), ("t", &[0.5])]),
+        Hard::new("barely-enough-is-left", "half of 0.002 is above 2⁻¹⁰, by a fortieth", &[("n0", &[0.0, 0.0, 1.0]), ("n1", &[0.002, 0.0, -1.0]), ("face", &[0.0, 1.0, 0.0]), ("t", &[0.5])]),
+        Hard::new("barely-too-little-is-left", "half of 0.0019 is below 2⁻¹⁰, by a fortieth", &[("n0", &[0.0, 0.0, 1.0]), ("n1", &[0.001_9, 0.0, -1.0]), ("face", &[0.0, 1.0, 0.0]), ("t", &[0.5])]),
+        Hard::new("too-little-is-left", "half of 0.0009 is below 2⁻¹⁰: the face's normal is used", &[("n0", &[0.0, 0.0, 1.0]), ("n1", &[0.000_9, 0.0, -1.0]), ("face", &[0.0, 1.0, 0.0]), ("t", &[0.5])]),
     ],
 );
 

@@ -8,7 +8,7 @@ macro_rules! scenes {
     };
 }
 
-const COUNT: usize = 39;
+const COUNT: usize = 41;
 
 /// Each built-in scene's name and JSON.
 pub const SCENES: [(&str, &str); COUNT] = scenes! {
@@ -23,6 +23,8 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "crossing"
     "depth-on-off"
     "eight-lights"
+    "eight-points"
+    "eight-spots"
     "fixed-color"
     "flat"
     "fog-exp"

@@ -194,6 +194,17 @@ pub struct ImageBias {
     pub beyond: Option<f64>,
 }
 
+impl ImageBias {
+    /// What it is as if: something multiplied, or added to all values.
+    #[must_use]
+    pub fn as_if(&self) -> String {
+        match self.factor {
+            Some(factor) => format!("as if every value were {factor:.4} times what it is to be"),
+            None => format!("as if {:+.2} were added to every value", self.steps),
+        }
+    }
+}
+
 impl Group {
     /// A group of nothing yet.
     #[must_use]

@@ -366,11 +366,8 @@ fn short(x: f64) -> Number {
 
 /// What a bias says that the accuracy rules do not explain.
 pub(super) fn told(bias: &ImageBias) -> Option<String> {
-    let ImageBias { factor, steps, beyond, .. } = *bias;
-    let is = match factor {
-        Some(factor) => format!("as if every value were {factor:.4} times what it is to be"),
-        None => format!("as if {steps:+.2} were added to every value"),
-    };
+    let ImageBias { steps, beyond, .. } = *bias;
+    let is = bias.as_if();
     beyond.map(|beyond| {
         format!(
             "each pixel is legal, but together they lie to one side: {is}, {steps:+.2} steps on average, of which the accuracy \

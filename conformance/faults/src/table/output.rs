@@ -54,6 +54,17 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("alpha-dropped", "alpha is 1 whatever it is to be", &[&[colors(Op::Opaque)]])
         .only(where_alpha_varies)
         .seen_in("three.js, materials not marked transparent"),
+    fault(
+        "lights-limited",
+        "the lights' colours are limited to 1",
+        &[
+            &[input("la", Op::AtMost(1.0)), input("ld", Op::AtMost(1.0)), input("ls", Op::AtMost(1.0))],
+            &[input("la", Op::AtMost(1.0))],
+            &[input("ld", Op::AtMost(1.0))],
+            &[input("ls", Op::AtMost(1.0))],
+            &[input("color0", Op::AtMost(1.0)), input("color1", Op::AtMost(1.0))],
+        ],
+    ),
     fault("negative-clamped", "colours are held above 0", &[&[colors(Op::AtLeast(0.0))]])
         .only(where_colors_are_computed),
     fault("bright-clamped", "colours are limited to 1", &[&[colors(Op::AtMost(1.0))]]).only(where_colors_are_computed),

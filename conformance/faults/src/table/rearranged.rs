@@ -34,6 +34,25 @@ pub(super) const FAULTS: &[Fault] = &[
     .rounding()
     .seen_in("viewport transforms that mix near and far"),
     fault(
+        "rearranged-fog-mix",
+        "the formula is rearranged, shaded − (1 − f)(shaded − fog) for fog(1 − f) + shaded·f: equal for real numbers, and rounded elsewhere",
+        &[&[form("color", Form::FogFromTheSurface)]],
+    )
+    .rounding(),
+    fault(
+        "rearranged-fog-factor",
+        "the formula is rearranged, 1 − (distance − dmin)/(dmax − dmin) for (dmax − distance)/(dmax − dmin): equal for real numbers, and rounded elsewhere",
+        &[&[form("f", Form::FogFromDmin)]],
+    )
+    .rounding(),
+    fault(
+        "rearranged-depth",
+        "the formula is rearranged as a projection matrix has it, f/(f − n)·(1 − n/z) for f(z − n)/(z(f − n)): equal for real numbers, and rounded elsewhere",
+        &[&[form("depth", Form::DepthByProjection)], &[form("reversed depth", Form::DepthByProjection)]],
+    )
+    .rounding()
+    .seen_in("projection matrices, which hold f/(f − n) and n·f/(f − n)"),
+    fault(
         "rearranged-rounding",
         "the formula is rearranged, ⌊255·c + ½⌋ for 255·c rounded: equal for real numbers, and rounded twice",
         &[&[form("byte", Form::ByteBySum)]],

@@ -101,12 +101,13 @@ fn tokens(text: &str, names: &[&str]) -> Vec<Token> {
                 word.push('′');
                 at += 1;
             }
-            let is_variable = word == "a" && !is_article(&chars[at..]) || word.chars().count() == 1 && word != "a";
+            let is_article = word == "a" && is_article(&chars[at..]);
+            let is_variable = word.chars().count() == 1 && !is_article;
             // What has an index, a power or a digit is no word of a sentence.
             let is_scripted = chars.get(at).is_some_and(|&c| lowered(ABOVE, c).or(lowered(BELOW, c)).is_some());
             let is_marked = is_scripted || word.contains(['′', '_']) || word.ends_with(|c: char| c.is_ascii_digit());
             let is_known = NAMES.contains(&word.as_str()) || names.contains(&word.as_str());
-            let is_name = is_variable || is_marked || is_known;
+            let is_name = is_variable || is_marked || is_known && !is_article;
             tokens.push(if is_name { Token::Name(word) } else { Token::Word(word) });
         } else if rest.starts_with(" / ") {
             tokens.push(Token::Wide);
@@ -395,6 +396,8 @@ mod tests {
             spot.contains("<mtext>\u{a0}within the cone\u{a0}</mtext>") && spot.contains("<mi>e</mi></msup>"),
             "{spot}"
         );
+        let article = equation("f = a·x within a cone", &["a"]).0;
+        assert!(article.contains("<mi>a</mi>") && article.contains("a cone"), "{article}");
         let mark = set("a < b");
         assert!(mark.contains("<mo>&lt;</mo>"), "{mark}");
     }

@@ -93,14 +93,17 @@ impl<'a> Call<'a> {
         let (name, rest) = text.split_once('(')?;
         let words = rest.strip_suffix(')')?.split(',').map(str::trim).collect();
         let name = name.trim().trim_start_matches("gl.").trim_start_matches("gl").to_lowercase();
-        ["blend", "depth"].iter().any(|start| name.starts_with(start)).then_some(Self { name, words })
+        ["blend", "depth", "enable", "disable"]
+            .iter()
+            .any(|start| name.starts_with(start))
+            .then_some(Self { name, words })
     }
 }
 
 fn of_calls(calls: &[Call<'_>]) -> Result<String, String> {
     let mut factors = [[Factor::One, Factor::Zero]; 2];
     let mut equations = [Equation::Add; 2];
-    let (mut compare, mut writes) = (None, true);
+    let (mut compare, mut writes, mut blends) = (None, true, true);
     for Call { name, words } in calls {
         match (name.as_str(), words.as_slice()) {
             ("blendfunc", [src, dst]) => factors = [[factor(src)?, factor(dst)?]; 2],
@@ -110,13 +113,15 @@ fn of_calls(calls: &[Call<'_>]) -> Result<String, String> {
             ("blendequation", [both]) => equations = [equation(both)?; 2],
             ("blendequationseparate", [color, alpha]) => equations = [equation(color)?, equation(alpha)?],
             ("blendcolor", _) => {}
+            ("enable" | "disable", [one]) if plain(one) == "blend" => blends = name == "enable",
+            ("enable", [one]) if plain(one) == "depth-test" => {}
             ("depthfunc", [one]) => compare = Some(compared(one)?),
             ("depthmask", [one]) => writes = plain(one) != "false" && *one != "0",
             _ => {
                 return Err(format!(
                     "`{name}` with {} words is no call that sets a state; expected glBlendFunc(SRC, DST), \
                      glBlendFuncSeparate(SRC, DST, SRC_ALPHA, DST_ALPHA), glBlendEquation(MODE), glBlendEquationSeparate(MODE, MODE), \
-                     glDepthFunc(FUNC) or glDepthMask(FLAG)",
+                     glEnable(GL_BLEND), glDisable(GL_BLEND), glDepthFunc(FUNC) or glDepthMask(FLAG)",
                     words.len()
                 ));
             }
@@ -125,52 +130,114 @@ fn of_calls(calls: &[Call<'_>]) -> Result<String, String> {
     if let Some(compare) = compare {
         return Ok(depth_id(compare, writes));
     }
+    if !blends {
+        return Ok(blend_id(OVERWRITE, OVERWRITE));
+    }
     let state = |k: usize| State { equation: equations[k], src: factors[k][0], dst: factors[k][1] };
     Ok(blend_id(state(0), state(1)))
 }
 
 fn of_json(text: &str) -> Result<String, String> {
     let value: Value = serde_json::from_str(text).map_err(|error| format!("it is no JSON: {error}"))?;
-    let word = |value: &Value, names: [&str; 2], otherwise: &str| {
-        names.iter().find_map(|name| value.get(name)?.as_str()).unwrap_or(otherwise).to_owned()
-    };
-    let depth = word(&value, ["depthCompare", "depthCompareOp"], "");
-    if !depth.is_empty() {
-        let flag = ["depthWriteEnabled", "depthWriteEnable"].iter().find_map(|name| value.get(name));
-        let writes =
-            flag.is_none_or(|flag| flag != &Value::Bool(false) && flag != "VK_FALSE" && flag != &Value::from(0));
-        return Ok(depth_id(compared(&depth)?, writes));
+    if value.get("depthCompare").is_some() || value.get("depthCompareOp").is_some() {
+        return of_depth(&value);
     }
-    // WebGPU has a component each; so has a whole GPUColorTargetState beneath `blend`.
-    let components = value.get("blend").unwrap_or(&value);
-    if let (Some(color), Some(alpha)) = (components.get("color"), components.get("alpha")) {
-        let state = |component: &Value| -> Result<State, String> {
-            Ok(State {
-                equation: equation(&word(component, ["operation", "operation"], "add"))?,
-                src: factor(&word(component, ["srcFactor", "srcFactor"], "one"))?,
-                dst: factor(&word(component, ["dstFactor", "dstFactor"], "zero"))?,
-            })
-        };
-        return Ok(blend_id(state(color)?, state(alpha)?));
+    if value.get("srcColorBlendFactor").is_some() || value.get("blendEnable").is_some() {
+        return of_vulkan(&value);
     }
-    if value.get("srcColorBlendFactor").is_some() {
-        let state = |color: &str| -> Result<State, String> {
-            let of = |name: String| value.get(&name).and_then(Value::as_str).ok_or(format!("`{name}` is missing"));
-            Ok(State {
-                equation: equation(of(format!("{color}BlendOp")).unwrap_or("VK_BLEND_OP_ADD"))?,
-                src: factor(of(format!("src{}BlendFactor", capital(color)))?)?,
-                dst: factor(of(format!("dst{}BlendFactor", capital(color)))?)?,
-            })
-        };
-        return Ok(blend_id(state("color")?, state("alpha")?));
+    // WebGPU's state of a target has one object for its colour and one for its alpha, and stands beneath `blend`.
+    let target = value.get("blend").is_some() || value.get("writeMask").is_some();
+    let blend = if target { value.get("blend") } else { Some(&value) };
+    if target {
+        whole_mask(value.get("writeMask"))?;
+        if blend.is_none_or(Value::is_null) {
+            return Ok(blend_id(OVERWRITE, OVERWRITE));
+        }
     }
-    Err("it is no state; expected WebGPU's {\"color\": {…}, \"alpha\": {…}} or {\"depthCompare\": …}, or Vulkan's \
-         {\"srcColorBlendFactor\": …} or {\"depthCompareOp\": …}"
-        .into())
+    let component = |name: &str| blend.and_then(|blend| blend.get(name));
+    match (component("color"), component("alpha")) {
+        (Some(color), Some(alpha)) => Ok(blend_id(of_webgpu(color)?, of_webgpu(alpha)?)),
+        (Some(_), None) => Err("`alpha` is missing; WebGPU wants {\"color\": {…}, \"alpha\": {…}}".into()),
+        (None, Some(_)) => Err("`color` is missing; WebGPU wants {\"color\": {…}, \"alpha\": {…}}".into()),
+        (None, None) => Err(
+            "it is no state; expected WebGPU's {\"color\": {…}, \"alpha\": {…}} or {\"depthCompare\": …}, or Vulkan's \
+                             {\"srcColorBlendFactor\": …} or {\"depthCompareOp\": …}"
+                .into(),
+        ),
+    }
 }
 
-fn capital(word: &str) -> String {
-    word[..1].to_uppercase() + &word[1..]
+/// The state of a target that does not blend.
+const OVERWRITE: State = State { equation: Equation::Add, src: Factor::One, dst: Factor::Zero };
+
+fn of_depth(value: &Value) -> Result<String, String> {
+    let flag = |names: [&str; 2]| names.iter().find_map(|name| value.get(name));
+    let off = |flag: &Value| flag == &Value::Bool(false) || flag == "VK_FALSE" || flag == &Value::from(0);
+    if value.get("depthTestEnable").is_some_and(off) {
+        return Err("`depthTestEnable` is off, and so nothing is tested or written; turn it on, or leave it out".into());
+    }
+    let word = flag(["depthCompare", "depthCompareOp"]).and_then(Value::as_str);
+    let word = word.ok_or("what is compared is no word, as \"less\"")?;
+    let writes = !flag(["depthWriteEnabled", "depthWriteEnable"]).is_some_and(off);
+    Ok(depth_id(compared(word)?, writes))
+}
+
+fn of_webgpu(component: &Value) -> Result<State, String> {
+    let fields = component
+        .as_object()
+        .ok_or_else(|| format!("`{component}` is no object of `srcFactor`, `dstFactor` and `operation`"))?;
+    let word = |name: &str, otherwise: &str| match fields.get(name) {
+        None => Ok(otherwise.to_owned()),
+        Some(value) => {
+            value.as_str().map(str::to_owned).ok_or_else(|| format!("`{name}` is {value}, which is no word"))
+        }
+    };
+    const NAMES: [&str; 3] = ["srcFactor", "dstFactor", "operation"];
+    if let Some(other) = fields.keys().find(|name| !NAMES.contains(&name.as_str())) {
+        return Err(unknown("field", other, other, &NAMES));
+    }
+    Ok(State {
+        equation: equation(&word("operation", "add")?)?,
+        src: factor(&word("srcFactor", "one")?)?,
+        dst: factor(&word("dstFactor", "zero")?)?,
+    })
+}
+
+fn of_vulkan(value: &Value) -> Result<String, String> {
+    whole_mask(value.get("colorWriteMask"))?;
+    if value.get("blendEnable").is_some_and(|on| on == &Value::Bool(false) || on == "VK_FALSE" || on == &Value::from(0))
+    {
+        return Ok(blend_id(OVERWRITE, OVERWRITE));
+    }
+    let state = |part: &str| -> Result<State, String> {
+        let of = |name: String| value.get(&name).and_then(Value::as_str).ok_or(format!("`{name}` is missing"));
+        Ok(State {
+            equation: equation(of(format!("{}BlendOp", part.to_lowercase())).unwrap_or("VK_BLEND_OP_ADD"))?,
+            src: factor(of(format!("src{part}BlendFactor"))?)?,
+            dst: factor(of(format!("dst{part}BlendFactor"))?)?,
+        })
+    };
+    Ok(blend_id(state("Color")?, state("Alpha")?))
+}
+
+/// A mask of channels that writes all four: no formula says what becomes of channels that are not written.
+fn whole_mask(mask: Option<&Value>) -> Result<(), String> {
+    let Some(mask) = mask else { return Ok(()) };
+    let whole = match mask {
+        Value::String(bits) => "RGBA".chars().all(|channel| {
+            bits.split('|').any(|bit| {
+                let bit = bit.trim().trim_start_matches("GPUColorWrite.").trim_start_matches("VK_COLOR_COMPONENT_");
+                bit == "ALL" || bit.strip_suffix("_BIT").unwrap_or(bit).chars().eq([channel])
+            })
+        }),
+        number => number.as_u64() == Some(0xf),
+    };
+    if whole {
+        return Ok(());
+    }
+    Err(format!(
+        "the mask {mask} does not write all channels; a channel that is not written keeps its value. Leave the mask out to see what the others do"
+    ))
 }
 
 /// A word without what says of which interface it is: `GL_SRC_ALPHA`, `gl.SRC_ALPHA` and `VK_BLEND_FACTOR_SRC_ALPHA` are `src-alpha`.
@@ -292,6 +359,34 @@ mod tests {
         assert!(error("glBlendFunc(GL_SRC_ALPA, GL_ONE)").contains("did you mean `src-alpha`"));
         assert!(error("glBlendFunc(GL_ONE)").contains("expected glBlendFunc(SRC, DST)"));
         assert!(error("{\"a\": 1}").contains("expected WebGPU's"));
+        assert!(error(r#"{"color": {"srcFactor": "one"}}"#).contains("`alpha` is missing"));
+        assert!(error(r#"{"color": {"srcFactr": "one"}, "alpha": {}}"#).contains("did you mean `srcFactor`"));
+        assert!(error(r#"{"color": {"srcFactor": 1}, "alpha": {}}"#).contains("which is no word"));
+        assert!(error(r#"{"writeMask": 7}"#).contains("does not write all channels"));
+        assert!(
+            error(r#"{"blendEnable": true, "colorWriteMask": "VK_COLOR_COMPONENT_R_BIT"}"#)
+                .contains("does not write all")
+        );
+        assert!(error(r#"{"blendEnable": true}"#).contains("`srcColorBlendFactor` is missing"));
+        assert!(
+            error(r#"{"depthCompareOp": "VK_COMPARE_OP_LESS", "depthTestEnable": false}"#).contains("depthTestEnable")
+        );
+    }
+
+    #[test]
+    fn a_target_that_does_not_blend_is_overwritten() {
+        for text in [
+            "glDisable(GL_BLEND); glBlendFunc(GL_SRC_ALPHA, GL_ONE)",
+            r#"{"blendEnable": "VK_FALSE", "srcColorBlendFactor": "VK_BLEND_FACTOR_SRC_ALPHA", "dstColorBlendFactor": "VK_BLEND_FACTOR_ONE",
+                "srcAlphaBlendFactor": "VK_BLEND_FACTOR_ONE", "dstAlphaBlendFactor": "VK_BLEND_FACTOR_ONE", "colorWriteMask": 15}"#,
+            r#"{"format": "rgba8unorm", "writeMask": 15}"#,
+            r#"{"color": {}, "alpha": {}}"#,
+        ] {
+            assert_eq!(id(text), "blend/add/one/zero", "{text}");
+        }
+        assert_eq!(id("gl.enable(gl.BLEND); gl.blendFunc(gl.ONE, gl.ONE)"), "blend/add/one/one");
+        let masked = r#"{"blend": {"color": {"dstFactor": "one"}, "alpha": {"dstFactor": "one"}}, "writeMask": "GPUColorWrite.ALL"}"#;
+        assert_eq!(id(masked), "blend/add/one/one");
     }
 
     #[test]
