@@ -2,7 +2,7 @@
 import numpy as np
 from context import Target
 from OpenGL.GL import *
-from protocol import Skip
+from lightmeter_client import Skip
 
 SIDE = 64
 

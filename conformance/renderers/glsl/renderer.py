@@ -3,21 +3,18 @@
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
+here = Path(__file__).resolve().parent
+sys.path[:0] = [str(here.parent / "common"), str(here.parents[2] / "clients/python")]
 
 import context
-from protocol import serve
+from lightmeter_client import Renderer
 
 version = context.create()
 
 from formulas import Formulas, Raster
 from scenes import EFFECTS, draw
 
-hello = {
-    "renderer": "documents-glsl",
-    "version": version,
-    "profile": "opengl",
-    "scenes": ["scene"],
-    "effects": EFFECTS,
-}
-serve(hello, {**Formulas().functions, **Raster().functions}, draw)
+renderer = Renderer("documents-glsl", version, profile="opengl", effects=EFFECTS)
+renderer.batches({**Formulas().functions, **Raster().functions})
+renderer.scene("scene")(draw)
+renderer.serve()

@@ -5,7 +5,7 @@ import numpy as np
 from formulas import LIBRARY, program
 from frames import bind_texture, column_matrix, draw_frame, set_state
 from OpenGL.GL import *
-from protocol import Skip
+from lightmeter_client import Skip
 
 # What the documents have a program or a formula for: no gate of the highlight, no light's ambient term that weakens, no
 # exponent of a spotlight, no fog of the radial distance and none of OpenGL's own square.

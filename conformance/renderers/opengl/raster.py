@@ -5,7 +5,7 @@ from context import Target
 from frames import column_matrix
 from OpenGL.GL import *
 from pixels import Pixels, identity
-from protocol import Skip
+from lightmeter_client import Skip
 from stages import COMPARES, SIDE
 from surfaces import lights_off
 

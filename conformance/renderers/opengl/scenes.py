@@ -2,7 +2,7 @@
 import numpy as np
 from frames import bind_texture, column_matrix, draw_frame, set_state
 from OpenGL.GL import *
-from protocol import Skip
+from lightmeter_client import Skip
 from surfaces import EYE_PLANE_ABSOLUTE, EYE_RADIAL, FOG_DISTANCE_MODE, cone, four, light, lights_off, material, scene_ambient
 
 # What the fixed function has: not what is lit at the fragments, nor a halfway vector that is not normalised. Its highlight is

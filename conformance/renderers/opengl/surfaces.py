@@ -4,7 +4,7 @@ import math
 import numpy as np
 from context import Target
 from OpenGL.GL import *
-from protocol import Skip
+from lightmeter_client import Skip
 
 SIDE = 64
 # Every vertex to the middle of the viewport, wherever it is in eye space: lights and fog do not look at it.

@@ -1,0 +1,197 @@
+"""A renderer's side of lightmeter.protocol/1, in one file that is copied beside a renderer. It needs numpy alone.
+
+    import numpy as np
+    from lightmeter_client import Renderer
+
+    renderer = Renderer("my-renderer", "1.0")
+
+    @renderer.formula("fog/exp")
+    def exponential_fog(p, density, fog, shaded):
+        f = np.clip(np.exp(-density * np.abs(p[2])), 0, 1)
+        return f, fog * (1 - f) + shaded * f
+
+    renderer.serve()
+
+    lightmeter gate --exec 'python3 my-renderer.py' fog/exp
+
+A function is given all cases of a batch at once, its inputs by their names: f32, a number of a case each, or the components of a
+vector one after the other, each with a number a case. It returns the outputs in their order, in the same shape. `lightmeter list
+--formulas` names inputs and outputs, and what each means; a hyphen in a name is an underscore here, and a name that is a word of
+Python has an underscore behind it (`lambda_`).
+"""
+import fnmatch
+import json
+import keyword
+import sys
+import traceback
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+PROTOCOL = "lightmeter.protocol/1"
+NAMED = {"NaN": float("nan"), "Inf": float("inf"), "-Inf": float("-inf")}
+
+
+class Skip(Exception):
+    """The renderer cannot do this; the text says why. Raised, or given in the place of a case's value."""
+
+
+class Cases:
+    """Cases of one formula: `cases.name` holds an input of all of them, f32, a row a case where it is a vector; how many
+    they are is `cases.total`, and their ids are `cases.ids`."""
+
+    def __init__(self, formula, requests):
+        self.formula, self.total = formula, len(requests)
+        self.ids = [request["id"] for request in requests]
+        inputs = [request["inputs"] for request in requests]
+        for name, first in inputs[0].items():
+            setattr(self, parameter(name), column([case[name] for case in inputs], isinstance(first, list)))
+
+    def inputs(self):
+        """All inputs by their names."""
+        return {name: x for name, x in vars(self).items() if isinstance(x, np.ndarray)}
+
+    def case(self, k):
+        """One of them, its inputs as fields."""
+        return SimpleNamespace(**{name: x[k] for name, x in self.inputs().items()})
+
+
+def matches(pattern, formula):
+    """Whether a filter matches an id or what stands above it; `*` stays within a part."""
+    patterns, parts = pattern.split("/"), formula.split("/")
+    return len(patterns) <= len(parts) and all(map(fnmatch.fnmatchcase, parts, patterns))
+
+
+def parameter(name):
+    """The name of an input as Python can have it."""
+    name = name.replace("-", "_")
+    return f"{name}_" if keyword.iskeyword(name) else name
+
+
+def column(values, is_vector):
+    """One input of all cases, a row a case where it is a vector."""
+    try:
+        rows = np.array(values, np.float32)
+    except ValueError:  # The words for what JSON has no number for.
+        rows = np.array([[NAMED.get(x, x) for x in np.ravel(np.array(value, object))] for value in values], np.float32)
+    rows = rows.reshape(len(values), -1)
+    return rows if is_vector else rows[:, 0]
+
+
+def numbers(values):
+    """JSON's numbers, with names for those that it lacks."""
+    values = np.ravel(values).astype(np.float64)
+    if np.isfinite(values).all():
+        return values.tolist()
+    return [x if np.isfinite(x) else "NaN" if np.isnan(x) else "Inf" if x > 0 else "-Inf" for x in values.tolist()]
+
+
+def answer(identity, value):
+    if isinstance(value, Skip):
+        return {"id": identity, "skip": str(value)}
+    return {"id": identity, "value": numbers(value)}
+
+
+def computed(function, cases, dtype):
+    """The outputs of all cases, a row a case."""
+    inputs = {name: np.ascontiguousarray(x.T.astype(dtype)) for name, x in cases.inputs().items()}
+    with np.errstate(all="ignore"):
+        outputs = function(**inputs)
+        parts = [np.atleast_2d(part) for part in (outputs if isinstance(outputs, tuple) else (outputs,))]
+        if any(part.dtype.kind == "f" and part.dtype != dtype for part in parts):
+            raise TypeError(f"{cases.formula} was not computed in {np.dtype(dtype)}")
+        parts = [np.broadcast_to(part, (len(part), cases.total)) for part in parts]
+        return np.concatenate(parts).astype(np.float32).T
+
+
+class Renderer:
+    """What a renderer can do. `declares` is said in its hello as it is: `profile`, `formats`, `effects`, `skips` and others of
+    docs/protocol.md."""
+
+    def __init__(self, name, version="", **declares):
+        self.hello = {"hello": PROTOCOL, "renderer": name, "version": version, **declares}
+        self.functions, self.scenes, self.draw = {}, [], None
+
+    def formula(self, formula, dtype=np.float32):
+        """Makes a function that of a formula. It computes in `dtype`, into which the inputs, f32, go exactly; what it returns is
+        rounded to f32."""
+
+        def given(function):
+            self.formulas(formula, lambda _: function, dtype)
+            return function
+
+        return given
+
+    def formulas(self, pattern, of, dtype=np.float32):
+        """The same of all formulas that a filter matches: `of` gives the function of each, by its id."""
+        self.functions[pattern] = lambda cases: computed(of(cases.formula), cases, dtype)
+
+    def batches(self, functions):
+        """Functions by filters that take `Cases` and return a value a case, each of which may be a `Skip`."""
+        self.functions.update(functions)
+
+    def scene(self, pattern):
+        """Makes a function that which draws scenes: given the scene (docs/protocol.md has its fields), it returns the image, f32 or
+        u8, rows from the top."""
+
+        def given(function):
+            self.scenes.append(pattern)
+            self.draw = function
+            return function
+
+        return given
+
+    def serve(self):
+        """Answers until standard input ends."""
+        folder, waiting = ".", []
+        for line in sys.stdin:
+            request = json.loads(line)
+            if "hello" in request:
+                if request["hello"] != PROTOCOL:
+                    sys.exit(f"the gate speaks {request['hello']}, and this client {PROTOCOL}")
+                folder = request["folder"]
+                hello = {"formulas": list(self.functions), "scenes": self.scenes, **self.hello}
+                print(json.dumps(hello), flush=True)
+            elif "batch" in request:
+                self._flush(folder, waiting)
+                waiting = []
+            else:
+                waiting.append(request)
+        self._flush(folder, waiting)
+
+    def _flush(self, folder, waiting):
+        groups = {}
+        for request in waiting:
+            groups.setdefault(request.get("formula", ""), []).append(request)
+        for formula, requests in groups.items():
+            for reply in self._answers(folder, formula, requests):
+                print(json.dumps(reply))
+        sys.stdout.flush()
+
+    def _answers(self, folder, formula, requests):
+        try:
+            if formula:
+                return self._values(formula, requests)
+            return [self._image(folder, request) for request in requests]
+        except Exception as error:
+            traceback.print_exc()
+            return [{"id": request["id"], "error": repr(error)} for request in requests]
+
+    def _values(self, formula, requests):
+        function = next(f for pattern, f in self.functions.items() if matches(pattern, formula))
+        cases = Cases(formula, requests)
+        try:
+            values = function(cases)
+        except Skip as skip:
+            values = [skip] * cases.total
+        return [answer(*pair) for pair in zip(cases.ids, values, strict=True)]
+
+    def _image(self, folder, request):
+        try:
+            image = self.draw(json.loads(Path(request["scene"]).read_text()))
+        except Skip as skip:
+            return answer(request["id"], skip)
+        name = request["id"].replace("/", "-") + ".npy"
+        np.save(Path(folder, name), image)
+        return {"id": request["id"], "image": name}
