@@ -5,6 +5,7 @@
 
 use crate::algebra::{Rgb, Rgba, Vector};
 use crate::real::{Components as _, Real};
+use crate::step::step;
 use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
 
 /// The three colours that a factor may read.
@@ -132,7 +133,7 @@ impl Mode {
 /// that promises all of an opaque source.
 pub fn without_alpha<R: Real>(mode: Mode, src: Rgba<R>, dst: Rgb<R>) -> Rgb<R> {
     if mode == Mode::Alpha {
-        return dst.mix(src.xyz(), src.w());
+        return step!(quiet "over", |src, dst| dst.mix(src.xyz(), src.w()));
     }
     let (one, zero) = (R::literal(1.0), R::literal(0.0));
     let of = Operands { src, dst: dst.extend(one), constant: Vector::splat(zero) };
@@ -149,7 +150,7 @@ pub fn alpha_clamped<R: Real>(src: Rgba<R>, dst: Rgba<R>) -> Rgba<R> {
 /// `src·As + dst(1 − As)`: all of the source, to the last bit, where it is opaque. Straight alpha; no alpha in the destination.
 pub fn over<R: Real>(src: Rgba<R>, dst: Rgb<R>) -> Rgb<R> {
     let one = R::literal(1.0);
-    src.xyz().zip(dst, |s, d| s * src.w() + d * (one - src.w()))
+    step!(quiet "over", |src, dst| src.xyz().zip(dst, |s, d| s * src.w() + d * (one - src.w())))
 }
 
 /// `dst + As(src − dst)`: one multiplication less; over a bright destination it misses an opaque source.

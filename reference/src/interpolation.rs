@@ -28,7 +28,7 @@ pub fn edge<R: Real>(a: Vec2<R>, b: Vec2<R>, p: Vec2<R>) -> R {
 
 /// The same of a whole triangle.
 fn area<R: Real>(a: Vec2<R>, b: Vec2<R>, c: Vec2<R>) -> R {
-    area_of(a, b, c).named("2·area")
+    step!("2·area", |a, b, c| area_of(a, b, c))
 }
 
 fn area_of<R: Real>(a: Vec2<R>, b: Vec2<R>, c: Vec2<R>) -> R {
@@ -71,8 +71,10 @@ pub fn mix_incremental<R: Real>(a: R, b: R, t: R) -> R {
 
 /// The barycentric weights of p: each the area opposite its vertex over the whole. No value for a triangle without area.
 pub fn weights<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> [R; 3] {
-    let whole = area(a, b, c);
-    [edge(b, c, p), edge(c, a, p), edge(a, b, p)].map(|part| step!(quiet "weight", |part, whole| part / whole))
+    step!(quiet "weights", |a, b, c, p| {
+        let whole = area(a, b, c);
+        [edge(b, c, p), edge(c, a, p), edge(a, b, p)].map(|part| step!(quiet "weight", |part, whole| part / whole))
+    })
 }
 
 /// The scan-line form: along two edges to the line of the pixel, then along the span between them.

@@ -100,7 +100,7 @@ pub fn average_normal<R: Real>(faces: [Vec3<R>; 3]) -> Vec3<R> {
 
 /// `⟨(b − a) × (c − a)⟩`: the normal of a face wound counter-clockwise.
 pub fn face_normal<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>) -> Vec3<R> {
-    let cross = (b - a).cross(c - a).named("(b − a)×(c − a)");
+    let cross = step!("(b − a)×(c − a)", |a, b, c| (b - a).cross(c - a));
     step!("face's n", |cross| cross.normalize())
 }
 

@@ -255,6 +255,27 @@ fn a_shader_is_swept_measured_and_held_to_a_baseline() {
         let output = lightmeter(&[&run[..], update].concat());
         assert_eq!(code(&output), 0, "{}", stderr(&output));
     }
+    // The suite's own code is another subject.
+    let output = lightmeter(&["run", "fog/linear", "--cases", "256", "--baseline", &baseline]);
+    let says = "a shader of your own there, the built-in shaders here";
+    assert!(code(&output) == 2 && stderr(&output).contains(says), "{}", stderr(&output));
+}
+
+#[test]
+fn a_report_says_how_each_variable_was_found_and_which_inputs_have_none() {
+    let file = folder("shader-found").join("own.glsl");
+    let text = "vec3 shade(vec3 normal, vec3 L, vec3 md) { return md * max(dot(normal, L), 0.0); }";
+    std::fs::write(&file, text).expect("it can be written");
+    let function = format!("shade@{}", file.display());
+    let run = ["run", "lighting/diffuse-toward", "--cases", "64", "--function", &function, "--bind", "md=md"];
+    let output = lightmeter(&[&run[..], &["--format", "json"]].concat());
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let judged = &report["shader"]["formulas"][0];
+    let variables = judged["variables"].as_array().expect("a list");
+    let found: Vec<&str> = variables.iter().filter_map(|one| one["found"].as_str()).collect();
+    assert_eq!((found, &judged["unbound"]), (vec!["synonym", "synonym", "asked"], &serde_json::json!(["ld"])));
+    let told = stdout(&lightmeter(&run));
+    assert!(told.contains("nothing in it stands for ld of lighting/diffuse-toward"), "{told}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use lightmeter_catalogue::cases::blend::Samples;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::{Held, Member, Shard};
 use lightmeter_document::event::Stop;
-use lightmeter_document::run::Report;
+use lightmeter_document::run::{BoundVariable, Report};
 use lightmeter_judge::cases::ExpectedFailure;
 use lightmeter_judge::diagnose::Diagnose;
 use lightmeter_judge::formula::Judging;
@@ -77,7 +77,9 @@ pub struct Adapted {
     /// Inputs that are constants there, and the same in all cases, or that are the same as another input.
     pub constants: Vec<(String, Constant)>,
     /// The code's variables, each with the expression over the inputs that it is set to.
-    pub variables: Vec<(String, String)>,
+    pub variables: Vec<BoundVariable>,
+    /// The formula's inputs that no variable and no constant stands for.
+    pub unbound: Vec<String>,
     /// The code's text, in which the lines of what is not judged are empty; all of it is empty where there is none.
     pub text: String,
 }

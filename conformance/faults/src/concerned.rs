@@ -1,7 +1,7 @@
 //! Which mistakes concern a formula.
 
 use super::catalogue::faults;
-use super::fault::{Concerned, Fault};
+use super::fault::{Concerned, Fault, is_in_a_step};
 use super::steps::steps_of;
 use super::variation::Variation;
 use lightmeter_arithmetic::Accept;
@@ -41,7 +41,7 @@ pub(super) fn concerned(member: &Member) -> Arc<[Concerned]> {
     let of_fault = |fault: &&'static Fault| {
         let concerned = Concerned { fault, way: fault.way(spec, &steps)? };
         // What a blend state computes is compared as a function, and what a rasteriser covers is not for a sample to tell.
-        let is_sampled = matches!(spec.kind, Kind::Arithmetic | Kind::Depth(_));
+        let is_sampled = matches!(spec.kind, Kind::Arithmetic | Kind::Depth(_)) || is_in_a_step(concerned.way);
         (!is_sampled || sample.shows(&concerned)).then_some(concerned)
     };
     let found: Arc<[Concerned]> = faults().iter().filter_map(of_fault).collect();

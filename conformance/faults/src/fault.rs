@@ -100,8 +100,8 @@ impl Fault {
             way.iter().all(|step| step.fits(spec, other.as_deref().unwrap_or(steps)))
         };
         let way = self.ways.iter().copied().find(fits)?;
-        let is_blending = matches!(spec.kind, Kind::Blend(_));
-        (!is_blending || shows_in_blending(spec, way)).then_some(way)
+        let is_state = matches!(spec.kind, Kind::Blend(_)) && !is_in_a_step(way);
+        (!is_state || shows_in_blending(spec, way)).then_some(way)
     }
 }
 
@@ -110,6 +110,11 @@ impl Fault {
 pub(super) struct Concerned {
     pub(super) fault: &'static Fault,
     pub(super) way: &'static [Step],
+}
+
+/// Whether a mistake is made in a named step, which what a blend state computes does not tell.
+pub(super) fn is_in_a_step(way: &[Step]) -> bool {
+    way.iter().any(|step| matches!(step, Step::At(_)))
 }
 
 /// Of some of the many states a mistake makes the same function.

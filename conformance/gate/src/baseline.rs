@@ -29,6 +29,8 @@ pub struct Standard {
     profile: String,
     /// Who answered; `None` of a run, whose groups name their adapters.
     renderer: Option<String>,
+    /// Whether a shader was judged in the place of the suite's own.
+    is_of_a_shader: bool,
     /// Which part of the cases, as `2/8`; none for all.
     shard: Option<String>,
     /// The formats that were asked to be blended on.
@@ -79,6 +81,7 @@ impl From<&GateReport> for Standard {
             generator: report.generator,
             profile: report.profile.clone(),
             renderer: Some(shown(&report.renderer.name).into_owned()),
+            is_of_a_shader: false,
             shard: compared_by.shard,
             targets: compared_by.targets.iter().map(ToString::to_string).collect(),
             groups: report.groups.iter().map(group).collect(),
@@ -128,6 +131,7 @@ impl From<&Report> for Standard {
             generator: compared_by.generator,
             profile: report.profile.to_string(),
             renderer: None,
+            is_of_a_shader: report.shader.is_some(),
             shard: compared_by.shard,
             targets: compared_by.targets.iter().map(ToString::to_string).collect(),
             groups: report.groups.iter().map(group).collect(),
@@ -268,6 +272,11 @@ impl Baseline {
             && before != now
         {
             let differences = vec![format!("renderer {before} there, {now} here")];
+            return Err(BaselineError::Others { path: path.into(), differences });
+        }
+        if self.0.is_of_a_shader != now.is_of_a_shader {
+            let what = |is_own: bool| if is_own { "a shader of your own" } else { "the built-in shaders" };
+            let differences = vec![format!("{} there, {} here", what(self.0.is_of_a_shader), what(now.is_of_a_shader))];
             return Err(BaselineError::Others { path: path.into(), differences });
         }
         let is_part = is_shard || !self.has_filter_of(&now.choice);

@@ -4,7 +4,7 @@ use crate::Level;
 use crate::against::{self, Against};
 use crate::table::{Align, TextTable};
 use lightmeter_document::run::{
-    BlendState, DeviationUse, Failure, Group, ImageUse, MistakePlace, Report, ShaderUse, Tiers, Totals,
+    BlendState, DeviationUse, Failure, Group, ImageUse, JudgedAs, MistakePlace, Report, ShaderUse, Tiers, Totals,
 };
 use lightmeter_document::{Number, Word, is_worse, thousands, worse};
 use lightmeter_scene::blend::Route;
@@ -150,7 +150,20 @@ fn shader_lines(report: &Report, out: &mut impl Write) -> Result {
     for place in shader.formulas.iter().flat_map(|formula| &formula.mistakes) {
         writeln!(out, "{}", made_at(shader, place))?;
     }
+    let fails = |id: &str| report.groups.iter().any(|group| group.id == id && group.totals.failed > 0);
+    for formula in shader.formulas.iter().filter(|formula| fails(&formula.id)) {
+        if let Some(unbound) = unbound(formula) {
+            writeln!(out, "{}: {unbound}", shader.file)?;
+        }
+    }
     Ok(())
+}
+
+/// What says that inputs of a formula have nothing in a shader.
+pub(crate) fn unbound(formula: &JudgedAs) -> Option<String> {
+    let names = formula.unbound.join(", ");
+    let says = "nothing in it stands for";
+    (!names.is_empty()).then(|| format!("{says} {names} of {}, so that failures may be by that alone", formula.id))
 }
 
 /// Where in a shader a mistake is made.

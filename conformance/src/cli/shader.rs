@@ -9,7 +9,7 @@ use clap::Args;
 use lightmeter::bench::OwnShader as Beside;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::Code;
-use lightmeter::document::run::{BoundVariable, JudgedAs, MistakePlace, Report, ShaderUse};
+use lightmeter::document::run::{BoundVariable, FoundBy, JudgedAs, MistakePlace, Report, ShaderUse};
 use lightmeter::faults::{Fault, Touched};
 use lightmeter::filter::Filter;
 use lightmeter::options::{Adapted, Constant};
@@ -25,10 +25,8 @@ use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// The file of the formulas that a shader was bound to, with what it does not give of them, in the folder of what it was made to.
-const MISSING: &str = "missing";
-/// The file of what its variables were bound to, there too.
-const BOUND: &str = "bound";
+/// The file of the formulas that a shader was bound to, and how (`[JudgedAs]` as JSON), in the folder of what it was made to.
+const BOUND: &str = "bound.json";
 /// The file of its text without the functions that are not judged, there too.
 const JUDGED: &str = "judged";
 /// Families of which a shader can be told to be one.
@@ -167,12 +165,12 @@ pub(super) fn written(constant: &Constant) -> String {
 }
 
 /// The line of a shader in which a mistake is made, where a single one can be it.
-fn line_of(text: &str, fault: &'static Fault, member: &Member, variables: &[(String, String)]) -> Option<MistakePlace> {
+fn line_of(text: &str, fault: &'static Fault, member: &Member, variables: &[BoundVariable]) -> Option<MistakePlace> {
     let (line, code) = fault.touched(member).into_iter().find_map(|touched| match touched {
         Touched::Step(step) => line_of_step(text, step),
         Touched::Input(input) => {
             let has = |is: &str| is.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == input);
-            let names: Vec<&str> = variables.iter().filter(|(_, is)| has(is)).map(|(name, _)| name.as_str()).collect();
+            let names: Vec<&str> = variables.iter().filter(|one| has(&one.is)).map(|one| one.name.as_str()).collect();
             line_of_variable(text, &names)
         }
         Touched::Output => None,
@@ -230,8 +228,8 @@ impl OwnShader {
         if level() > Level::Quiet && !formulas.is_empty() {
             say(told.trim_end());
         }
-        let [missing, bound, judged] = [MISSING, BOUND, JUDGED].map(|name| std::fs::read_to_string(folder.join(name)));
-        accepted.adapted = self.adapted(&missing?, &bound?, &judged?);
+        let [bound, judged] = [BOUND, JUDGED].map(|name| std::fs::read_to_string(folder.join(name)));
+        accepted.adapted = self.adapted(serde_json::from_str(&bound?)?, &judged?);
         if !accepted.adapted.is_empty() {
             foreign::accept(&folder, adapters, false)?;
         }
@@ -325,24 +323,45 @@ impl OwnShader {
         Ok(())
     }
 
-    /// How formulas are judged: each by a line, and by a line each what the shader does not give of it.
-    fn adapted(&self, lines: &str, bound: &str, text: &str) -> Vec<Adapted> {
-        let of = |id: &str| Adapted {
-            id: id.into(),
-            missing: lines
-                .lines()
-                .filter_map(|line| line.strip_prefix(id)?.strip_prefix(' '))
-                .map(str::to_owned)
-                .collect(),
+    /// What a shader is judged as, and by what.
+    fn judged_as(&self, spec: &Spec, binding: &ShaderBinding) -> JudgedAs {
+        let variable = |bound: &Bound| BoundVariable {
+            name: bound.name.clone(),
+            is: bound.expression.clone(),
+            found: match bound.found {
+                Found::Asked => FoundBy::Asked,
+                Found::SameName => FoundBy::SameName,
+                Found::Synonym => FoundBy::Synonym,
+                Found::Fixed => FoundBy::Fixed,
+            },
+        };
+        let is_given = |(name, value): &(_, Option<_>)| value.is_none().then(|| ToString::to_string(name));
+        JudgedAs {
+            id: spec.id.clone(),
+            variables: binding.bound.iter().map(variable).collect(),
+            not_given: binding.outputs.iter().filter_map(is_given).collect(),
+            unbound: self.unbound(binding).map(str::to_owned).collect(),
+            mistakes: vec![],
+        }
+    }
+
+    /// The inputs that no variable and no constant stands for.
+    fn unbound<'a>(&self, binding: &'a ShaderBinding) -> impl Iterator<Item = &'a str> {
+        let is_constant = |name: &&str| self.constant.iter().any(|(own, _)| own == name);
+        binding.unused.iter().copied().filter(move |name| !is_constant(name))
+    }
+
+    /// How formulas are judged.
+    fn adapted(&self, bound: Vec<JudgedAs>, text: &str) -> Vec<Adapted> {
+        let of = |one: JudgedAs| Adapted {
+            id: one.id,
+            missing: one.not_given,
             constants: self.constant.clone(),
-            variables: bound
-                .lines()
-                .filter_map(|line| line.strip_prefix(id)?.strip_prefix('\t')?.split_once('\t'))
-                .map(|(name, is)| (name.into(), is.into()))
-                .collect(),
+            variables: one.variables,
+            unbound: one.unbound,
             text: text.into(),
         };
-        lines.lines().filter(|line| !line.contains(' ')).map(of).collect()
+        bound.into_iter().map(of).collect()
     }
 
     /// The stable form of each formula that the shader fails, in the shader's language.
@@ -380,11 +399,11 @@ impl OwnShader {
             let mistakes = member.into_iter().zip(std::iter::repeat(faults)).flat_map(|(member, faults)| {
                 faults.filter_map(|fault| line_of(&adapted.text, fault, member, &adapted.variables))
             });
-            let bound = |(name, is): &(String, String)| BoundVariable { name: name.clone(), is: is.clone() };
             JudgedAs {
                 id: id.clone(),
-                variables: adapted.variables.iter().map(bound).collect(),
+                variables: adapted.variables.clone(),
                 not_given: adapted.missing.clone(),
+                unbound: adapted.unbound.clone(),
                 mistakes: mistakes.collect(),
             }
         };
@@ -468,25 +487,12 @@ impl Adapt {
         for (name, text) in replaced(&Shaders::built_in()?, &program, &bound)? {
             std::fs::write(self.folder.join(&name), text)?;
         }
-        let mut missing = String::new();
-        for (spec, binding) in &bound {
-            writeln!(missing, "{}", spec.id)?;
-            for (name, _) in binding.outputs.iter().filter(|(_, value)| value.is_none()) {
-                writeln!(missing, "{} {name}", spec.id)?;
-            }
-        }
-        std::fs::write(self.folder.join(MISSING), missing)?;
-        let mut lines = String::new();
-        for (spec, binding) in &bound {
-            for bound in &binding.bound {
-                writeln!(lines, "{}\t{}\t{}", spec.id, bound.name, bound.expression)?;
-            }
-        }
-        std::fs::write(self.folder.join(BOUND), lines)?;
+        let judged: Vec<JudgedAs> = bound.iter().map(|(spec, binding)| self.own.judged_as(spec, binding)).collect();
+        std::fs::write(self.folder.join(BOUND), serde_json::to_string(&judged)?)?;
         std::fs::write(self.folder.join(JUDGED), &program.text)?;
         let mut told = String::new();
         for (spec, binding) in &bound {
-            tell((&file, &part), &self.own.constant, (spec, binding), &mut told)?;
+            tell((&file, &part), &self.own, (spec, binding), &mut told)?;
         }
         super::show(&told, None)?;
         Ok(Status::Success)
@@ -523,7 +529,7 @@ fn tell_without_value(binding: &ShaderBinding, out: &mut String) -> std::fmt::Re
 /// What is judged, and what each of its variables stands for.
 fn tell(
     (file, part): (&Path, &Part),
-    constants: &[(String, Constant)],
+    own: &OwnShader,
     (spec, binding): (&Spec, &ShaderBinding),
     out: &mut String,
 ) -> std::fmt::Result {
@@ -564,8 +570,7 @@ fn tell(
         writeln!(out, "  Both {name} and {other} are taken to be {is}. If one is not: --bind '{other}=…'")?;
     }
     tell_without_value(binding, out)?;
-    let is_constant = |name: &&str| constants.iter().any(|(own, _)| own == name);
-    let unused: Vec<&str> = binding.unused.iter().copied().filter(|name| !is_constant(name)).collect();
+    let unused: Vec<&str> = own.unbound(binding).collect();
     if !unused.is_empty() {
         writeln!(
             out,

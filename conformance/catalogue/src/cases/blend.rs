@@ -342,6 +342,8 @@ mode!(
     Alpha, "blend/mode-alpha", "blend_alpha", Mode::Alpha, "color = src·As + dst·(1 − As)",
     hard [
         Hard::new("half-red-over-blue", "document 002's figure", &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0])]),
+        Hard::new("transparent-over-dark", "a source of alpha 0 changes nothing, to the last bit", &[("src", &[1.0, 0.85, 0.6, 0.0]), ("dst", &[0.006, 0.0012, 0.000_3])]),
+        Hard::new("dark-over-bright", "an almost opaque source, darker by ½: dst·As is far greater than the result", &[("src", &[0.007_812_5, 0.015_625, 0.031_25, 0.99]), ("dst", &[0.507_812_5, 0.515_625, 0.531_25])]),
     ]
 );
 mode!(Mul, "blend/mode-mul", "blend_mul", Mode::Mul, "color = src * dst");

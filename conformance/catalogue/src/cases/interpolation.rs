@@ -52,6 +52,9 @@ formula!(
     hard [
         Hard::new("far-from-the-origin", "a unit triangle at 1e4: subtract a vertex first", &[("a", &[1e4, 1e4]), ("b", &[10001.0, 1e4]), ("c", &[1e4, 10001.0]), ("p", &[10000.25, 10000.25])]),
         Hard::new("no-area", "no value: nothing is promised", &[("a", &[0.0, 0.0]), ("b", &[1.0, 1.0]), ("c", &[2.0, 2.0]), ("p", &[1.0, 1.0])]),
+        Hard::new("near-a-corner", "the point is 0.02 from the vertex that its sides are taken from", &[("a", &[3.1, 2.7]), ("b", &[103.3, 47.9]), ("c", &[-47.3, 99.9]), ("p", &[3.09, 2.72])]),
+        Hard::new("short-side", "a side of 0.02, from one end of which the others are taken", &[("a", &[3.1, 2.7]), ("b", &[3.11, 2.72]), ("c", &[-47.3, 99.9]), ("p", &[60.3, -80.7])]),
+        Hard::new("far-outside", "weights of hundreds, which add up to 1", &[("a", &[0.1, 0.2]), ("b", &[1.3, 0.3]), ("c", &[0.4, 1.7]), ("p", &[317.3, -211.9])]),
     ],
 );
 formula!(
@@ -125,6 +128,9 @@ formula!(
         Hard::new("right-edge", "does not", &[("a", &[8.0, 0.0]), ("b", &[8.0, 8.0]), ("c", &[0.0, 4.0]), ("p", &[8.0, 4.0])]),
         Hard::new("of-half-a-pixel", "covers what lies inside, however small", &[("a", &[0.0, 0.0]), ("b", &[1.0, 0.0]), ("c", &[0.0, 1.0]), ("p", &[0.25, 0.25])]),
         Hard::new("of-half-a-pixel-turned", "likewise the other way round", &[("a", &[0.0, 0.0]), ("b", &[0.0, 1.0]), ("c", &[1.0, 0.0]), ("p", &[0.25, 0.25])]),
+        Hard::new("just-outside-a-left-edge", "by 1/256 of a pixel, of a triangle of 1/16: not covered", &[("a", &[8.0, 8.0]), ("b", &[8.062_5, 8.0]), ("c", &[8.0, 8.062_5]), ("p", &[7.996_093_75, 8.015_625])]),
+        Hard::new("just-outside-a-top-edge", "likewise", &[("a", &[8.0, 8.0]), ("b", &[8.062_5, 8.0]), ("c", &[8.0, 8.062_5]), ("p", &[8.015_625, 7.996_093_75])]),
+        Hard::new("just-inside-a-right-edge", "by 1/256 of a pixel, of a triangle of 1/16: covered", &[("a", &[8.0, 8.0]), ("b", &[8.0, 8.062_5]), ("c", &[7.937_5, 8.031_25]), ("p", &[7.996_093_75, 8.031_25])]),
         Hard::new("no-area", "covers nothing", &[("a", &[0.0, 0.0]), ("b", &[4.0, 4.0]), ("c", &[8.0, 8.0]), ("p", &[4.0, 4.0])]),
     ],
 );
@@ -260,6 +266,8 @@ formula!(
             .naive("interpolation/edge-from-origin", "six products of 1e8 cancel to 1", 1e6),
         Hard::new("far-1e6", "a unit triangle at 1e6, where a step is 1/16", &[("a", &[1e6, 1e6]), ("b", &[1_000_001.0, 1_000_000.25]), ("p", &[1_000_000.25, 1_000_000.75])])
             .naive("interpolation/edge-from-origin", "six products of 1e12 cancel to 1", 1e8),
+        Hard::new("near-a-corner", "the point is 0.02 from the vertex that the sides are taken from", &[("a", &[3.1, 2.7]), ("b", &[103.3, 47.9]), ("p", &[3.09, 2.72])]),
+        Hard::new("short-side", "a side of 0.02, from one end of which the other is taken", &[("a", &[3.1, 2.7]), ("b", &[3.11, 2.72]), ("p", &[-47.3, 99.9])]),
     ],
 );
 formula!(
@@ -299,6 +307,8 @@ formula!(
             .naive("interpolation/last-weight-by-difference", "1 − α − β cancels", 500.0),
         Hard::new("at-the-edge", "a weight of 1e-6", &[("a", &[0.0, 0.0]), ("b", &[100.0, 0.0]), ("c", &[30.0, 70.0]), ("p", &[41.3, 7e-5])])
             .naive("interpolation/last-weight-by-difference", "1 − α − β cancels", 5e4),
+        Hard::new("near-a-corner", "the point is 0.02 from the vertex that the sides are taken from", &[("a", &[3.1, 2.7]), ("b", &[103.3, 47.9]), ("c", &[-47.3, 99.9]), ("p", &[3.09, 2.72])]),
+        Hard::new("short-side", "a side of 0.02, from one end of which the others are taken", &[("a", &[3.1, 2.7]), ("b", &[3.11, 2.72]), ("c", &[-47.3, 99.9]), ("p", &[60.3, -80.7])]),
     ],
 );
 formula!(

@@ -144,6 +144,8 @@ formula!(
     |a, b, c; out| { out.vector(vector::face_normal(a, b, c)); },
     hard [
         Hard::new("no-area", "0 for three points on a line", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1.0, 1.0, 1.0]), ("c", &[2.0, 2.0, 2.0])]),
+        Hard::new("short-side-c", "c is 0.02 from a, and b is 60", &[("a", &[1.1, 2.3, 0.7]), ("b", &[41.9, -33.3, 25.1]), ("c", &[1.11, 2.32, 0.69])]),
+        Hard::new("short-side-b", "b is 0.02 from a, and c is 60", &[("a", &[1.1, 2.3, 0.7]), ("b", &[1.11, 2.32, 0.69]), ("c", &[41.9, -33.3, 25.1])]),
     ],
 );
 

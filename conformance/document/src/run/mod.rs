@@ -5,7 +5,7 @@ mod shader;
 mod stability;
 
 pub use blend::{BlendPromise, BlendState, SpecialUse, StoreUse, StoresOfShard, Tiers};
-pub use shader::{BoundVariable, JudgedAs, MistakePlace, ShaderUse};
+pub use shader::{BoundVariable, FoundBy, JudgedAs, MistakePlace, ShaderUse};
 pub use stability::{Cost, Examined, StableForm};
 
 use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, KnownFailure, RendererUse};

@@ -41,6 +41,9 @@ pub struct JudgedAs {
     /// The formula's outputs that it does not give, of which nothing was judged.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_given: Vec<String>,
+    /// The formula's inputs that no variable stands for, unless a constant does.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unbound: Vec<String>,
     /// Where the mistakes that explain its failures are made.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mistakes: Vec<MistakePlace>,
@@ -54,6 +57,22 @@ pub struct BoundVariable {
     pub name: String,
     /// The expression over the formula's inputs, in WGSL.
     pub is: String,
+    /// How it was found.
+    pub found: FoundBy,
+}
+
+/// How it was found what a variable of a shader means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FoundBy {
+    /// It was said, by `--bind`.
+    Asked,
+    /// The formula has an input of that name.
+    SameName,
+    /// Its name is a common one for what it means.
+    Synonym,
+    /// The pipeline gives it, or the shader does not use it.
+    Fixed,
 }
 
 /// A line of a shader in which a mistake is made.

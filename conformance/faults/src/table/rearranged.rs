@@ -10,7 +10,7 @@ pub(super) const FAULTS: &[Fault] = &[
     fault(
         "rearranged-from-the-end",
         "the formula is rearranged, b − (1 − t)(b − a) for a(1 − t) + b·t: equal for real numbers, and rounded elsewhere",
-        &[&[form("mix", Form::MixFromTheEnd)]],
+        &[&[form("mix", Form::MixFromTheEnd)], &[form("over", Form::MixFromTheEnd)]],
     )
     .rounding(),
     fault(
@@ -21,9 +21,36 @@ pub(super) const FAULTS: &[Fault] = &[
     .rounding()
     .seen_in("GLSL's mix, as some drivers compute it"),
     fault(
+        "rearranged-over",
+        "the formula is rearranged, src·As + (dst − dst·As) for src·As + dst(1 − As): equal for real numbers, and rounded elsewhere",
+        &[&[form("over", Form::OverFromTheProduct)]],
+    )
+    .rounding()
+    .seen_in("shaders that write fma(src, a, dst − dst·a)"),
+    fault(
         "rearranged-edge",
-        "the formula is rearranged, with the sides taken from another vertex: equal for real numbers, and rounded elsewhere",
-        &[&[form("edge", Form::EdgeFromItsEnd)]],
+        "the formula is rearranged, with the sides taken from the next vertex: equal for real numbers, and rounded elsewhere",
+        &[
+            &[form("edge", Form::EdgeFromItsEnd), form("2·area", Form::EdgeFromItsEnd)],
+            &[form("edge", Form::EdgeFromItsEnd)],
+            &[form("(b − a)×(c − a)", Form::EdgeFromItsEnd)],
+        ],
+    )
+    .rounding(),
+    fault(
+        "rearranged-edge-from-the-last",
+        "the formula is rearranged, with the sides taken from the point or the last vertex: equal for real numbers, and rounded elsewhere",
+        &[
+            &[form("edge", Form::EdgeFromThePoint), form("2·area", Form::EdgeFromThePoint)],
+            &[form("edge", Form::EdgeFromThePoint)],
+            &[form("(b − a)×(c − a)", Form::EdgeFromThePoint)],
+        ],
+    )
+    .rounding(),
+    fault(
+        "rearranged-weights",
+        "the formula is rearranged, each area over the sum of the three for each area over that of the triangle: equal for real numbers, and rounded elsewhere",
+        &[&[form("weights", Form::WeightsBySum)]],
     )
     .rounding(),
     fault(

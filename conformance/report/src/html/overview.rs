@@ -2,6 +2,7 @@
 
 use crate::page::selftest::SelftestRun;
 use crate::page::sweep::{Swept, command};
+use crate::text::unbound;
 use lightmeter_document::bench::BenchDocument;
 use lightmeter_document::run::{Identity, Report};
 use lightmeter_document::thousands;
@@ -47,6 +48,7 @@ impl Facts {
         if let Some(shader) = &report.shader {
             let of = shader.function.as_ref().map_or_else(String::new, |function| format!("function {function} of "));
             facts.push(("shader".into(), format!("{of}{}", shader.file)));
+            facts.extend(shader.formulas.iter().filter_map(unbound).map(|says| ("shader".into(), says)));
         }
         facts.push(("seed".into(), report.seed.to_string()));
         facts.push(("profile".into(), report.profile.to_string()));

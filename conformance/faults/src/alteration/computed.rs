@@ -1,361 +1,14 @@
-//! What a mistake does to a named step of a formula.
+//! Computes a step by another formula.
 
-use super::op::Op;
-use super::row::Arithmetic;
-use lightmeter_arithmetic::Accept;
-use lightmeter_arithmetic::mistaken::{Alteration, Taken, place};
+use super::super::row::Arithmetic;
+use super::Form;
+use lightmeter_arithmetic::mistaken::Taken;
 use lightmeter_reference::departure::{FresnelHighlight, smoothstep};
+use lightmeter_reference::interpolation::edge;
 use lightmeter_reference::lighting::schlick;
 use lightmeter_reference::vector::{halfway, reflect};
-use lightmeter_reference::{Mat3, NamedStep, Real, Vec3, Vector};
+use lightmeter_reference::{Components as _, Mat3, Real, Vec3, Vector};
 use std::f64::consts::FRAC_1_PI;
-
-/// Stands for each step.
-pub(super) const ANY: &str = "*";
-/// Stands for each step that normalises a vector.
-pub(super) const NORMALISED: &str = "⟨*⟩";
-/// Their names.
-const NORMALISED_STEPS: [&str; 9] = ["n", "l", "v", "h", "axis", "face's n", "⟨v⟩", "⟨n⟩", "⟨Σn⟩"];
-
-/// A step that goes wrong, and how.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct At {
-    pub(super) step: &'static str,
-    pub(super) what: Do,
-}
-
-/// How a step goes wrong. What it is given is named as the step names it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Do {
-    /// Its own numbers change.
-    Result(Op),
-    /// What it is given changes.
-    Given(&'static str, Op),
-    /// It gives what it is given.
-    Pass(&'static str),
-    /// The same, changed.
-    PassAs(&'static str, Op),
-    /// The step returns its first operand, with the operation applied to it, instead of computing its result.
-    FirstAs(Op),
-    /// It is given one in the place of the other, and the reverse.
-    Swap(&'static str, &'static str),
-    /// The first named operand is also used in place of the second.
-    Copy(&'static str, &'static str),
-    /// It gives the sum of the two.
-    Sum(&'static str, &'static str),
-    /// It gives more by what it is given.
-    Plus(&'static str),
-    /// It is multiplied by a number that it is given.
-    Times(&'static str),
-    /// It is computed by another formula.
-    Form(Form),
-}
-
-/// Another formula for a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
-    /// i + 2(i·n)n.
-    ReflectWithPlus,
-    /// i − (i·n)n.
-    ReflectOnce,
-    /// n·h for r·v.
-    Blinn,
-    /// r·v for n·h.
-    Phong,
-    /// (r·v)^exponent.
-    PhongPower,
-    /// The normal turned to the eye, n·v ≥ 0.
-    NormalToTheEye,
-    /// The normal turned to the light, n·l ≥ 0.
-    NormalToTheLight,
-    /// |cosine|^exponent.
-    LobeOfBothSides,
-    /// Schlick's approximation of the power.
-    SchlickPower,
-    /// cosine·exponent.
-    ProductForPower,
-    /// max(cosine, 10⁻⁴)^exponent, or any other floor.
-    PowerOfAtLeast(u8),
-    /// The power times (exponent + 8)/8π.
-    EnergyConserving,
-    /// The power times (exponent + 2)/2π.
-    NormalisedPhong,
-    /// 0 where the cosine is at most 0.
-    Gated,
-    /// 0 where the cosine is above 0.
-    GateTurned,
-    /// Times max(cosine, 0).
-    TimesIncidence,
-    /// Blinn's normalised lobe with Schlick's Fresnel term, times n·l; over π or not.
-    Fresnel { over_pi: bool },
-    /// (½·cosine + ½)², or without the square.
-    HalfLambert { squared: bool },
-    /// kc + kl·d + kq·d².
-    NotInverted,
-    /// 1/(kc + kl·d + kq·d).
-    QuadraticOfDistance,
-    /// 1/(kc + d·kl + (d·kq)²).
-    QuadraticOfProduct,
-    /// The cone's edge by smoothstep from the cutoff to the axis, times the power.
-    SmoothCone,
-    /// The same without the power.
-    SmoothConeAlone,
-    /// The cone's edge by a straight line from the cutoff to the axis.
-    LinearCone,
-    /// The power of the cosine rescaled from the cutoff to the axis.
-    RescaledCone,
-    /// The cone without its edge.
-    ConeWithoutEdge,
-    /// The spotlight shines where its cone is not.
-    ConeTurned,
-    /// |z|.
-    Planar,
-    /// |p|.
-    Radial,
-    /// z, which is negative before the eye.
-    SignedDepth,
-    /// −z, which is negative behind the eye.
-    NegatedDepth,
-    /// exp(−density·distance).
-    FogExp,
-    /// exp(−density·distance²).
-    FogExp2Document,
-    /// exp(−(density·distance)²).
-    FogExp2OpenGl,
-    /// 1/(1 + density·distance).
-    FogRational,
-    /// 1/(1 − x + x²/2) for e^x.
-    ExpByQuadratic,
-    /// The full surface colour plus the fog's colour times 1 − f: the surface's colour is not multiplied by f.
-    FogAdded,
-    /// The surface's colour as far as the fog leaves it.
-    FogToBlack,
-    /// shaded − (1 − f)(shaded − fog).
-    FogFromTheSurface,
-    /// 1 − (distance − dmin)/(dmax − dmin).
-    FogFromDmin,
-    /// |v|².
-    SquaredLength,
-    /// The inverse, not transposed.
-    NormalByInverse,
-    /// The modelview as such.
-    NormalByModelview,
-    /// The cofactor matrix, not divided by the determinant: where the determinant is negative, the normal points the wrong way.
-    NormalByCofactors,
-    /// A direction moved by the view's translation.
-    DirectionAsPosition,
-    /// A position that is not moved by a matrix's translation.
-    PositionAsDirection,
-    /// Divided by w though that is 0.
-    DividedAlways,
-    /// Not divided by w.
-    NotDivided,
-    /// b − (1 − t)(b − a).
-    MixFromTheEnd,
-    /// (p − b) × (a − b) for (b − a) × (p − a).
-    EdgeFromItsEnd,
-    /// near(1 − z) + far·z.
-    DepthBetween,
-    /// Depth from [−1, 1] for [0, 1] or the reverse.
-    DepthRange,
-    /// y the other way up.
-    UpsideDown,
-    /// ⌊255·c⌋.
-    TruncatedByte,
-    /// ⌊256·c⌋, at most 255.
-    ByteBy256,
-    /// round(255·c), not clamped.
-    UnclampedByte,
-    /// ⌊255·c + ½⌋.
-    ByteBySum,
-    /// How far z is between near and far.
-    LinearDepth,
-    /// far/(far − near)·(1 − near/z), or near/(far − near)·(far/z − 1).
-    DepthByProjection,
-    /// Depth read back as if it grew evenly.
-    LinearDepthRead,
-    /// sRGB encoding that switches from the linear piece to the curved piece at the threshold of decoding, 0.04045.
-    EncodeThreshold,
-    /// The same, decoded.
-    DecodeThreshold,
-    /// c^(1/2.2) for the curved piece.
-    EncodeCurve,
-    /// c^(1/2.4) − 0.055.
-    EncodeWithoutScale,
-    /// Rec. 709's pieces for sRGB's.
-    EncodeRec709,
-    /// The same, decoded.
-    DecodeRec709,
-    /// The middle of three vertices.
-    Middle,
-}
-
-impl Form {
-    /// The operands that this form needs, as alternative sets of names: a step must have every operand of at least one set.
-    const fn needs(self) -> &'static [&'static [&'static str]] {
-        match self {
-            Self::ReflectWithPlus | Self::ReflectOnce => &[&["i", "n"], &["l", "n"]],
-            Self::Blinn | Self::Phong => &[&["n", "l", "v"]],
-            Self::PhongPower => &[&["n", "l", "v", "exponent"]],
-            Self::NormalToTheEye | Self::NormalToTheLight => &[&["n", "l", "v"]],
-            Self::ExpByQuadratic => &[&["exponent"]],
-            Self::LobeOfBothSides
-            | Self::SchlickPower
-            | Self::ProductForPower
-            | Self::PowerOfAtLeast(_)
-            | Self::EnergyConserving
-            | Self::NormalisedPhong => &[&["cosine", "exponent"], &["a", "b", "exponent"]],
-            Self::Gated | Self::GateTurned | Self::TimesIncidence | Self::HalfLambert { .. } => &[&["cosine"]],
-            Self::Fresnel { .. } => {
-                &[&["light", "material", "n", "l", "v", "shininess"], &["ks", "n", "l", "v", "shininess"]]
-            }
-            Self::NotInverted | Self::QuadraticOfDistance | Self::QuadraticOfProduct => &[&["kc", "kl", "kq", "d"]],
-            Self::SmoothCone
-            | Self::SmoothConeAlone
-            | Self::LinearCone
-            | Self::RescaledCone
-            | Self::ConeWithoutEdge
-            | Self::ConeTurned => &[&["cosine", "cutoff_cosine", "exponent"]],
-            Self::Planar | Self::Radial | Self::SignedDepth | Self::NegatedDepth => &[&["p"]],
-            Self::FogExp | Self::FogExp2Document | Self::FogExp2OpenGl | Self::FogRational => {
-                &[&["distance", "density"]]
-            }
-            Self::FogAdded | Self::FogToBlack | Self::FogFromTheSurface => &[&["fog", "shaded", "f"]],
-            Self::FogFromDmin => &[&["distance", "dmin", "dmax"]],
-            Self::SquaredLength => &[&["v"]],
-            Self::NormalByInverse | Self::NormalByModelview | Self::NormalByCofactors => &[&["modelview", "n"]],
-            Self::DirectionAsPosition => &[&["view", "direction"]],
-            Self::PositionAsDirection => &[&["view", "model", "position"]],
-            Self::DividedAlways | Self::NotDivided => &[&["eye"], &["clip"]],
-            Self::MixFromTheEnd => &[&["a", "b", "t"]],
-            Self::EdgeFromItsEnd => &[&["a", "b", "p"]],
-            Self::DepthBetween | Self::DepthRange | Self::UpsideDown => &[&["ndc", "origin", "size", "depth"]],
-            Self::TruncatedByte | Self::ByteBy256 | Self::UnclampedByte | Self::ByteBySum => &[&["c"]],
-            Self::LinearDepth | Self::DepthByProjection => &[&["near", "far", "z"]],
-            Self::LinearDepthRead => &[&["near", "far", "depth"]],
-            Self::EncodeThreshold | Self::EncodeRec709 | Self::EncodeWithoutScale | Self::EncodeCurve => &[&["c"]],
-            Self::DecodeRec709 | Self::DecodeThreshold => &[&["e"]],
-            Self::Middle => &[&["a", "b", "c"]],
-        }
-    }
-}
-
-impl At {
-    fn is_at(&self, step: &NamedStep) -> bool {
-        match self.step {
-            ANY => true,
-            NORMALISED => NORMALISED_STEPS.contains(&step.name),
-            name => step.name == name,
-        }
-    }
-
-    /// Whether this mistake can be made in a step. `sizes` says how many numbers each of the step's operands has, and `out` how many
-    /// numbers the step returns.
-    pub(super) fn fits(&self, step: &NamedStep, sizes: &[usize], out: usize) -> bool {
-        let size = |name: &str| place(step, sizes, name).map(|range| range.len());
-        let has = |name: &&'static str| size(name).is_some();
-        self.is_at(step)
-            && match self.what {
-                Do::Result(op) => op.fits(out),
-                Do::Given(name, op) => size(name).is_some_and(|count| op.fits(count)),
-                Do::Pass(name) | Do::Plus(name) => size(name) == Some(out),
-                Do::PassAs(name, op) => size(name).is_some_and(|count| op.fits(count) && count == out),
-                Do::FirstAs(op) => sizes.first() == Some(&out) && op.fits(out),
-                Do::Swap(a, b) | Do::Copy(a, b) => size(a).is_some() && size(a) == size(b),
-                Do::Times(name) => size(name) == Some(1),
-                Do::Sum(a, b) => size(a) == Some(out) && size(b) == Some(out),
-                Do::Form(form) => form.needs().iter().any(|names| names.iter().all(has)),
-            }
-    }
-
-    /// Whether two mistakes cannot be combined: they are the same one, or both replace the computation of the same step.
-    pub(super) fn collides(&self, other: &Self) -> bool {
-        let replaces = |at: &Self| matches!(at.what, Do::Pass(_) | Do::PassAs(..) | Do::Sum(..) | Do::Form(_));
-        self.step == other.step && (self.what == other.what || (replaces(self) && replaces(other)))
-    }
-
-    fn make<R: Arithmetic>(&self, taken: &mut Taken<'_, R>) {
-        match self.what {
-            Do::Result(op) => {
-                taken.compute();
-                op.apply(taken.out);
-            }
-            Do::Given(name, op) => {
-                if let Some(range) = taken.place(name) {
-                    op.apply(&mut taken.from[range]);
-                }
-                taken.compute();
-            }
-            Do::Pass(name) => pass(taken, name),
-            Do::PassAs(name, op) => {
-                pass(taken, name);
-                op.apply(taken.out);
-            }
-            Do::FirstAs(op) => {
-                taken.out.copy_from_slice(&taken.from[..taken.out.len()]);
-                op.apply(taken.out);
-            }
-            Do::Swap(a, b) => {
-                if let (Some(a), Some(b)) = (taken.place(a), taken.place(b)) {
-                    a.zip(b).for_each(|(a, b)| taken.from.swap(a, b));
-                }
-                taken.compute();
-            }
-            Do::Copy(from, to) => {
-                if let (Some(from), Some(to)) = (taken.place(from), taken.place(to)) {
-                    taken.from.copy_within(from, to.start);
-                }
-                taken.compute();
-            }
-            Do::Sum(a, b) => {
-                pass(taken, a);
-                add(taken, b);
-            }
-            Do::Plus(name) => {
-                taken.compute();
-                add(taken, name);
-            }
-            Do::Times(name) => {
-                taken.compute();
-                if let Some([factor]) = taken.array(name) {
-                    taken.out.iter_mut().for_each(|x| *x = *x * factor);
-                }
-            }
-            Do::Form(form) => {
-                if computed(form, taken).is_none() {
-                    taken.compute();
-                }
-            }
-        }
-    }
-}
-
-impl Alteration for At {
-    fn concerns(&self, step: &'static NamedStep) -> bool {
-        self.is_at(step)
-    }
-    fn on_f64(&self, taken: &mut Taken<'_, f64>) {
-        self.make(taken);
-    }
-    fn on_f32(&self, taken: &mut Taken<'_, f32>) {
-        self.make(taken);
-    }
-    fn on_accept(&self, taken: &mut Taken<'_, Accept>) {
-        self.make(taken);
-    }
-}
-
-fn pass<R: Real>(taken: &mut Taken<'_, R>, name: &str) {
-    if let Some(range) = taken.place(name).filter(|range| range.len() == taken.out.len()) {
-        taken.out.copy_from_slice(&taken.from[range]);
-    }
-}
-
-fn add<R: Real>(taken: &mut Taken<'_, R>, name: &str) {
-    if let Some(range) = taken.place(name) {
-        taken.out.iter_mut().zip(&taken.from[range]).for_each(|(x, &more)| *x = *x + more);
-    }
-}
 
 fn scalar<R: Real>(taken: &Taken<'_, R>, name: &str) -> Option<R> {
     taken.array(name).map(|[x]| x)
@@ -366,7 +19,7 @@ fn vector<R: Real>(taken: &Taken<'_, R>, name: &str) -> Option<Vec3<R>> {
 }
 
 /// Computes the step by another formula; `None` where it is not given what that needs.
-fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
+pub(super) fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     match form {
         Form::ReflectWithPlus | Form::ReflectOnce | Form::Blinn | Form::Phong | Form::PhongPower => {
             mirrored(form, taken)
@@ -403,7 +56,8 @@ fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::DirectionAsPosition | Form::PositionAsDirection | Form::DividedAlways | Form::NotDivided => {
             placed(form, taken)
         }
-        Form::MixFromTheEnd | Form::EdgeFromItsEnd | Form::Middle => between(form, taken),
+        Form::MixFromTheEnd | Form::OverFromTheProduct | Form::Middle => between(form, taken),
+        Form::EdgeFromItsEnd | Form::EdgeFromThePoint | Form::WeightsBySum => sides(form, taken),
         Form::DepthBetween | Form::DepthRange | Form::UpsideDown => window(form, taken),
         Form::TruncatedByte | Form::ByteBy256 | Form::UnclampedByte | Form::ByteBySum => byte(form, taken),
         Form::LinearDepth | Form::LinearDepthRead | Form::DepthByProjection => depth(form, taken),
@@ -623,21 +277,53 @@ fn placed<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
 }
 
 fn between<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
+    let one = R::literal(1.0);
+    let over = |taken: &Taken<'_, R>| {
+        let [r, g, b, alpha] = taken.array("src")?;
+        Some((Vector([r, g, b]), alpha, vector(taken, "dst")?))
+    };
     match form {
+        Form::MixFromTheEnd if taken.place("src").is_some() => {
+            let (src, alpha, dst) = over(taken)?;
+            give(taken, src.zip(dst, |s, d| s - (one - alpha) * (s - d)).0)
+        }
         Form::MixFromTheEnd => {
             let [a, b, t] = [scalar(taken, "a")?, scalar(taken, "b")?, scalar(taken, "t")?];
-            give(taken, [b - (R::literal(1.0) - t) * (b - a)])
+            give(taken, [b - (one - t) * (b - a)])
         }
-        Form::EdgeFromItsEnd => {
-            let [a, b, p]: [Vector<R, 2>; 3] =
-                [Vector(taken.array("a")?), Vector(taken.array("b")?), Vector(taken.array("p")?)];
-            give(taken, [lightmeter_reference::interpolation::edge(b, p, a)])
+        Form::OverFromTheProduct => {
+            let (src, alpha, dst) = over(taken)?;
+            give(taken, src.zip(dst, |s, d| s * alpha + (d - d * alpha)).0)
         }
         _ => {
             let corners = [vector(taken, "a")?, vector(taken, "b")?, vector(taken, "c")?];
             give(taken, Vector::sum(corners).map(|x| x / R::literal(3.0)).0)
         }
     }
+}
+
+/// A triangle's sides taken from another vertex, in the plane or in space, and its weights by the sum of their areas.
+fn sides<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
+    let third = if taken.place("p").is_some() { "p" } else { "c" };
+    let order = if form == Form::EdgeFromItsEnd { [1, 2, 0] } else { [2, 0, 1] };
+    if form == Form::WeightsBySum {
+        let [a, b, c, p]: [Vector<R, 2>; 4] = [
+            Vector(taken.array("a")?),
+            Vector(taken.array("b")?),
+            Vector(taken.array("c")?),
+            Vector(taken.array("p")?),
+        ];
+        let areas = [[b, c], [c, a], [a, b]].map(|[from, to]| edge(from, to, p));
+        return give(taken, areas.map(|area| area / R::sum(areas)));
+    }
+    if let [Some(a), Some(b), Some(c)] = ["a", "b", third].map(|name| vector(taken, name)) {
+        let [a, b, c] = order.map(|k| [a, b, c][k]);
+        return give(taken, (b - a).cross(c - a).0);
+    }
+    let corners: [Vector<R, 2>; 3] =
+        [Vector(taken.array("a")?), Vector(taken.array("b")?), Vector(taken.array(third)?)];
+    let [a, b, c] = order.map(|k| corners[k]);
+    give(taken, [edge(a, b, c)])
 }
 
 /// Window coordinates and depth, as WebGPU has them or, counted from below and with depth from −1, as OpenGL.

@@ -1,0 +1,198 @@
+//! The other formulas that a step may be computed by.
+
+/// Another formula for a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in super::super) enum Form {
+    /// i + 2(i·n)n.
+    ReflectWithPlus,
+    /// i − (i·n)n.
+    ReflectOnce,
+    /// n·h for r·v.
+    Blinn,
+    /// r·v for n·h.
+    Phong,
+    /// (r·v)^exponent.
+    PhongPower,
+    /// The normal turned to the eye, n·v ≥ 0.
+    NormalToTheEye,
+    /// The normal turned to the light, n·l ≥ 0.
+    NormalToTheLight,
+    /// |cosine|^exponent.
+    LobeOfBothSides,
+    /// Schlick's approximation of the power.
+    SchlickPower,
+    /// cosine·exponent.
+    ProductForPower,
+    /// max(cosine, 10⁻⁴)^exponent, or any other floor.
+    PowerOfAtLeast(u8),
+    /// The power times (exponent + 8)/8π.
+    EnergyConserving,
+    /// The power times (exponent + 2)/2π.
+    NormalisedPhong,
+    /// 0 where the cosine is at most 0.
+    Gated,
+    /// 0 where the cosine is above 0.
+    GateTurned,
+    /// Times max(cosine, 0).
+    TimesIncidence,
+    /// Blinn's normalised lobe with Schlick's Fresnel term, times n·l; over π or not.
+    Fresnel { over_pi: bool },
+    /// (½·cosine + ½)², or without the square.
+    HalfLambert { squared: bool },
+    /// kc + kl·d + kq·d².
+    NotInverted,
+    /// 1/(kc + kl·d + kq·d).
+    QuadraticOfDistance,
+    /// 1/(kc + d·kl + (d·kq)²).
+    QuadraticOfProduct,
+    /// The cone's edge by smoothstep from the cutoff to the axis, times the power.
+    SmoothCone,
+    /// The same without the power.
+    SmoothConeAlone,
+    /// The cone's edge by a straight line from the cutoff to the axis.
+    LinearCone,
+    /// The power of the cosine rescaled from the cutoff to the axis.
+    RescaledCone,
+    /// The cone without its edge.
+    ConeWithoutEdge,
+    /// The spotlight shines where its cone is not.
+    ConeTurned,
+    /// |z|.
+    Planar,
+    /// |p|.
+    Radial,
+    /// z, which is negative before the eye.
+    SignedDepth,
+    /// −z, which is negative behind the eye.
+    NegatedDepth,
+    /// exp(−density·distance).
+    FogExp,
+    /// exp(−density·distance²).
+    FogExp2Document,
+    /// exp(−(density·distance)²).
+    FogExp2OpenGl,
+    /// 1/(1 + density·distance).
+    FogRational,
+    /// 1/(1 − x + x²/2) for e^x.
+    ExpByQuadratic,
+    /// The full surface colour plus the fog's colour times 1 − f: the surface's colour is not multiplied by f.
+    FogAdded,
+    /// The surface's colour as far as the fog leaves it.
+    FogToBlack,
+    /// shaded − (1 − f)(shaded − fog).
+    FogFromTheSurface,
+    /// 1 − (distance − dmin)/(dmax − dmin).
+    FogFromDmin,
+    /// |v|².
+    SquaredLength,
+    /// The inverse, not transposed.
+    NormalByInverse,
+    /// The modelview as such.
+    NormalByModelview,
+    /// The cofactor matrix, not divided by the determinant: where the determinant is negative, the normal points the wrong way.
+    NormalByCofactors,
+    /// A direction moved by the view's translation.
+    DirectionAsPosition,
+    /// A position that is not moved by a matrix's translation.
+    PositionAsDirection,
+    /// Divided by w though that is 0.
+    DividedAlways,
+    /// Not divided by w.
+    NotDivided,
+    /// b − (1 − t)(b − a), or src − (1 − As)(src − dst).
+    MixFromTheEnd,
+    /// src·As + (dst − dst·As).
+    OverFromTheProduct,
+    /// (p − b) × (a − b) for (b − a) × (p − a).
+    EdgeFromItsEnd,
+    /// (a − p) × (b − p) for (b − a) × (p − a).
+    EdgeFromThePoint,
+    /// Each weight is its area over the sum of the three.
+    WeightsBySum,
+    /// near(1 − z) + far·z.
+    DepthBetween,
+    /// Depth from [−1, 1] for [0, 1] or the reverse.
+    DepthRange,
+    /// y the other way up.
+    UpsideDown,
+    /// ⌊255·c⌋.
+    TruncatedByte,
+    /// ⌊256·c⌋, at most 255.
+    ByteBy256,
+    /// round(255·c), not clamped.
+    UnclampedByte,
+    /// ⌊255·c + ½⌋.
+    ByteBySum,
+    /// How far z is between near and far.
+    LinearDepth,
+    /// far/(far − near)·(1 − near/z), or near/(far − near)·(far/z − 1).
+    DepthByProjection,
+    /// Depth read back as if it grew evenly.
+    LinearDepthRead,
+    /// sRGB encoding that switches from the linear piece to the curved piece at the threshold of decoding, 0.04045.
+    EncodeThreshold,
+    /// The same, decoded.
+    DecodeThreshold,
+    /// c^(1/2.2) for the curved piece.
+    EncodeCurve,
+    /// c^(1/2.4) − 0.055.
+    EncodeWithoutScale,
+    /// Rec. 709's pieces for sRGB's.
+    EncodeRec709,
+    /// The same, decoded.
+    DecodeRec709,
+    /// The middle of three vertices.
+    Middle,
+}
+
+impl Form {
+    /// The operands that this form needs, as alternative sets of names: a step must have every operand of at least one set.
+    pub(super) const fn needs(self) -> &'static [&'static [&'static str]] {
+        match self {
+            Self::ReflectWithPlus | Self::ReflectOnce => &[&["i", "n"], &["l", "n"]],
+            Self::Blinn | Self::Phong => &[&["n", "l", "v"]],
+            Self::PhongPower => &[&["n", "l", "v", "exponent"]],
+            Self::NormalToTheEye | Self::NormalToTheLight => &[&["n", "l", "v"]],
+            Self::ExpByQuadratic => &[&["exponent"]],
+            Self::LobeOfBothSides
+            | Self::SchlickPower
+            | Self::ProductForPower
+            | Self::PowerOfAtLeast(_)
+            | Self::EnergyConserving
+            | Self::NormalisedPhong => &[&["cosine", "exponent"], &["a", "b", "exponent"]],
+            Self::Gated | Self::GateTurned | Self::TimesIncidence | Self::HalfLambert { .. } => &[&["cosine"]],
+            Self::Fresnel { .. } => {
+                &[&["light", "material", "n", "l", "v", "shininess"], &["ks", "n", "l", "v", "shininess"]]
+            }
+            Self::NotInverted | Self::QuadraticOfDistance | Self::QuadraticOfProduct => &[&["kc", "kl", "kq", "d"]],
+            Self::SmoothCone
+            | Self::SmoothConeAlone
+            | Self::LinearCone
+            | Self::RescaledCone
+            | Self::ConeWithoutEdge
+            | Self::ConeTurned => &[&["cosine", "cutoff_cosine", "exponent"]],
+            Self::Planar | Self::Radial | Self::SignedDepth | Self::NegatedDepth => &[&["p"]],
+            Self::FogExp | Self::FogExp2Document | Self::FogExp2OpenGl | Self::FogRational => {
+                &[&["distance", "density"]]
+            }
+            Self::FogAdded | Self::FogToBlack | Self::FogFromTheSurface => &[&["fog", "shaded", "f"]],
+            Self::FogFromDmin => &[&["distance", "dmin", "dmax"]],
+            Self::SquaredLength => &[&["v"]],
+            Self::NormalByInverse | Self::NormalByModelview | Self::NormalByCofactors => &[&["modelview", "n"]],
+            Self::DirectionAsPosition => &[&["view", "direction"]],
+            Self::PositionAsDirection => &[&["view", "model", "position"]],
+            Self::DividedAlways | Self::NotDivided => &[&["eye"], &["clip"]],
+            Self::MixFromTheEnd => &[&["a", "b", "t"], &["src", "dst"]],
+            Self::OverFromTheProduct => &[&["src", "dst"]],
+            Self::EdgeFromItsEnd | Self::EdgeFromThePoint => &[&["a", "b", "p"], &["a", "b", "c"]],
+            Self::WeightsBySum => &[&["a", "b", "c", "p"]],
+            Self::DepthBetween | Self::DepthRange | Self::UpsideDown => &[&["ndc", "origin", "size", "depth"]],
+            Self::TruncatedByte | Self::ByteBy256 | Self::UnclampedByte | Self::ByteBySum => &[&["c"]],
+            Self::LinearDepth | Self::DepthByProjection => &[&["near", "far", "z"]],
+            Self::LinearDepthRead => &[&["near", "far", "depth"]],
+            Self::EncodeThreshold | Self::EncodeRec709 | Self::EncodeWithoutScale | Self::EncodeCurve => &[&["c"]],
+            Self::DecodeRec709 | Self::DecodeThreshold => &[&["e"]],
+            Self::Middle => &[&["a", "b", "c"]],
+        }
+    }
+}
