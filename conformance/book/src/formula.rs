@@ -3,6 +3,7 @@
 use crate::contents::Place;
 use crate::diagram::diagram;
 use crate::errors::{CASES, errors};
+use crate::grid::grid;
 use crate::picture::Picture;
 use crate::sketch::{short, sketch};
 use lightmeter_arithmetic::profile::WGSL;
@@ -205,33 +206,27 @@ impl FormulaPage<'_> {
 
     pub(crate) fn mistakes(&self, picture: Option<&Picture>) -> Markup {
         let faults = concerning(self.member);
-        let has_plots = !matches!(self.member.spec.kind, Kind::Raster(_) | Kind::Depth(_));
+        let is_drawn = matches!(self.member.spec.kind, Kind::Raster(_) | Kind::Depth(_));
         let mut shown = HashSet::new();
-        let sections: Vec<Markup> =
-            faults.iter().map(|fault| self.mistake(fault, picture, has_plots, &mut shown)).collect();
+        let sections: Vec<Markup> = faults.iter().map(|fault| self.mistake(fault, picture, &mut shown)).collect();
         html! {
             @if !faults.is_empty() {
                 h2 #mistakes { "How it is got wrong" }
                 p {
                     @if faults.len() == 1 { "One mistake that renderers make is known by name in this formula. " }
                     @else { (faults.len()) " mistakes that renderers make are known by name in this formula. The suite tells them from each other by what they give. " }
-                    @if has_plots { "The solid line is what is right, the dashed one what the mistake makes of it." }
-                    @else { "They change which pixels are covered, or which fragment is kept: there is no course along an input to plot." }
+                    @if is_drawn { "On the left is what is right, on the right what the mistake makes of it; in a plot the solid and the dashed line." }
+                    @else { "The solid line is what is right, the dashed one what the mistake makes of it." }
                 }
                 div.mistakes { @for section in sections { (section) } }
             }
         }
     }
 
-    fn mistake(
-        &self,
-        fault: &'static Fault,
-        picture: Option<&Picture>,
-        has_plots: bool,
-        shown: &mut HashSet<Vec<i32>>,
-    ) -> Markup {
+    fn mistake(&self, fault: &'static Fault, picture: Option<&Picture>, shown: &mut HashSet<Vec<i32>>) -> Markup {
         let Some(variation) = Variation::new(self.member, &[fault]) else { return html! {} };
-        let plot = sketch(self.member, &variation, shown);
+        let grid = grid(self.member, &variation);
+        let plot = if grid.is_some() { None } else { sketch(self.member, &variation, shown) };
         let picture = picture.and_then(|picture| picture.img_with(self.member, &variation));
         let look = look(self.member, fault);
         html! {
@@ -241,9 +236,10 @@ impl FormulaPage<'_> {
                 @if let Some(look) = &look { p.hint { (looks(look)) } }
                 div.pictures {
                     @if let Some(picture) = &picture { figure.picture { (picture) } }
+                    @if let Some(grid) = &grid { (grid.svg()) }
                     @if let Some(plot) = &plot { (plot.svg()) }
                 }
-                @if has_plots && plot.is_none() && picture.is_none() { p.hint { "Too small to be seen in a plot." } }
+                @if grid.is_none() && plot.is_none() && picture.is_none() { p.hint { "Too small to be seen in a plot." } }
             }
         }
     }

@@ -8,6 +8,7 @@ mod contents;
 mod diagram;
 mod errors;
 mod formula;
+mod grid;
 mod lookup;
 mod picture;
 mod scenes;

@@ -1,6 +1,6 @@
 //! What a mistake does to a formula, as a small plot: an output along the input on which the mistake shows best.
 
-use lightmeter_catalogue::cases::{Domain, Kind};
+use lightmeter_catalogue::cases::Domain;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_faults::Variation;
 use maud::{Markup, html};
@@ -13,7 +13,7 @@ const TRIED: usize = 9;
 /// Random cases among which it is chosen, beside the hard ones.
 const CASES: u64 = 12;
 /// The most inputs of a case that are tried.
-const MOST_INPUTS: usize = 24;
+const MOST_INPUTS: usize = 40;
 /// Pixels of a plot.
 const WIDTH: f64 = 200.0;
 const HEIGHT: f64 = 90.0;
@@ -57,7 +57,7 @@ impl Range {
                     Domain::Uniform(low, high) | Domain::Halves(low, high) => (low.into(), high.into(), false),
                     Domain::LogUniform(low, high) => (low.into(), high.into(), true),
                     Domain::Unit => (0.0, 1.0, false),
-                    Domain::Vector(..) => (-length(), length(), false),
+                    Domain::Vector(..) | Domain::Transform(..) => (-length(), length(), false),
                     Domain::Direction => (-1.0, 1.0, false),
                     Domain::Whole(low, high) => (low.into(), high.into(), false),
                     _ => return None,
@@ -95,7 +95,7 @@ fn cases(member: &Member) -> impl Iterator<Item = (Vec<f32>, bool)> {
 }
 
 /// How far two courses differ on the mean, as a share of what both span.
-fn difference(right: &[f64], mistaken: &[f64]) -> f64 {
+pub(crate) fn difference(right: &[f64], mistaken: &[f64]) -> f64 {
     let [low, high] = span(right.iter().chain(mistaken));
     if low >= high {
         return 0.0;
@@ -114,7 +114,7 @@ fn clarity(right: &[f64], mistaken: &[f64]) -> f64 {
     difference(right, mistaken) * (OF_LEVEL_LINES + varies)
 }
 
-fn span<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
+pub(crate) fn span<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
     let first = [f64::INFINITY, f64::NEG_INFINITY];
     values.filter(|x| x.is_finite()).fold(first, |[low, high], &x| [low.min(x), high.max(x)])
 }
@@ -122,9 +122,6 @@ fn span<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
 /// The plot on which a mistake shows best; `None` where it is too small for one. Of plots that show it nearly as well one is taken that does not
 /// look like another of the page, whose looks `shown` holds.
 pub(crate) fn sketch(member: &Member, variation: &Variation<'_>, shown: &mut HashSet<Vec<i32>>) -> Option<Sketch> {
-    if matches!(member.spec.kind, Kind::Raster(_) | Kind::Depth(_)) {
-        return None;
-    }
     let outputs = member.spec.output_len();
     let mut found: Vec<(f64, Vec<f32>, usize, usize)> = vec![];
     let (mut right, mut mistaken) = (vec![0.0; outputs], vec![0.0; outputs]);

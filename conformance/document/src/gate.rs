@@ -85,7 +85,7 @@ pub struct GateReport {
     /// What the baseline has not.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub added: Vec<String>,
-    /// What explains the first failing case of each formula.
+    /// What explains the first failing case of each formula and, where few were judged, the worst case of those that pass.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub explained: Vec<Explained>,
     /// What a project's `lightmeter.toml` said.

@@ -8,17 +8,25 @@ use lightmeter_catalogue::cases::{Domain, Kind};
 use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
 use lightmeter_document::Number;
 use lightmeter_document::explained::{CoursePoint, Explained, MistakenStep, OutputCourse, ShownMistake, ShownStep};
-use lightmeter_document::run::{Failure, Group};
+use lightmeter_document::run::{Failure, Group, Report};
 use std::collections::HashSet;
 
 /// Points of a course.
 const POINTS: u32 = 97;
 /// The most cases that are explained.
 const MOST: usize = 500;
+/// The most formulas that pass of which a case is explained.
+const MOST_PASSING: usize = 24;
 
-/// What explains the first failing case of each formula on each adapter.
+/// What explains the first failing case of each formula on each adapter, and the worst case of those that pass.
 #[must_use]
-pub fn explain(failures: &[Failure], groups: &[Group], profile: &Profile) -> Vec<Explained> {
+pub fn explain(report: &Report, profile: &Profile) -> Vec<Explained> {
+    let mut explained = explain_failures(&report.failures, &report.groups, profile);
+    explained.extend(explain_worst(&report.groups, report.seed, profile));
+    explained
+}
+
+fn explain_failures(failures: &[Failure], groups: &[Group], profile: &Profile) -> Vec<Explained> {
     let catalogue = catalogue();
     let (mut explained, mut seen) = (vec![], HashSet::new());
     for failure in failures {
@@ -38,6 +46,35 @@ pub fn explain(failures: &[Failure], groups: &[Group], profile: &Profile) -> Vec
         explained.push(explained_case(&failure.id, member, &inputs, &failure.output, mistakes, profile));
     }
     explained
+}
+
+/// What explains the case that comes nearest to what is illegal, of each formula that passes; nothing where there are more of them than anyone
+/// looks at one by one.
+fn explain_worst(groups: &[Group], seed: u64, profile: &Profile) -> Vec<Explained> {
+    let passing: Vec<&Group> = groups.iter().filter(|group| group.totals.failed == 0).collect();
+    let mut formulas: Vec<(&str, &Group)> = vec![];
+    for group in passing {
+        match formulas.iter_mut().find(|(id, _)| *id == group.id) {
+            Some((_, worst)) if worst.margin_max.0 < group.margin_max.0 => *worst = group,
+            Some(_) => {}
+            None => formulas.push((&group.id, group)),
+        }
+    }
+    if formulas.len() > MOST_PASSING {
+        return vec![];
+    }
+    let catalogue = catalogue();
+    let explained = |(_, group): (&str, &Group)| {
+        let (id, case) = catalogue.iter().find_map(|member| {
+            let id = group.worst.as_ref().filter(|_| member.spec.id == group.id)?;
+            Some((id, (member, member.case(id)?)))
+        })?;
+        let (member, case) = case;
+        let mut inputs = vec![];
+        member.inputs(case, seed, &mut inputs);
+        Some(explained_case(id, member, &inputs, "", &[], profile))
+    };
+    formulas.into_iter().filter_map(explained).collect()
 }
 
 /// The row of a failing case.

@@ -144,7 +144,7 @@ impl Judged {
             .map_err(|error| HarnessError::Suite(error.to_string()))?;
         let compared_by =
             Some(ComparedBy { choice: choice.clone(), generator: GENERATOR_VERSION, ..ComparedBy::default() });
-        let explained = explain(&report.failures, &report.groups, self.options.profile);
+        let explained = explain(&report, self.options.profile);
         Ok(GateReport::of(&Report { compared_by, explained, ..report }, String::new(), None))
     }
 }

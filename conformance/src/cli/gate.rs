@@ -252,7 +252,7 @@ impl Gate {
             shard,
         };
         let report = report?;
-        let explained = explain(&report.failures, &report.groups, options.profile);
+        let explained = explain(&report, options.profile);
         let report = Report { compared_by: Some(compared_by), config: used(), explained, ..report };
         Ok(GateReport::of(&report, command(), self.again()))
     }

@@ -71,9 +71,8 @@ impl Merge {
             parts.push((path.clone(), report));
         }
         let whole = merge(parts)?;
-        // What explains the first failing case of each formula: of the whole, which may be another one than a shard's.
-        let explained = Profile::by_name(&whole.profile)
-            .map_or_else(Vec::new, |profile| explain(&whole.failures, &whole.groups, profile));
+        // What explains the first failing or the worst case of each formula: of the whole, which may be another one than a shard's.
+        let explained = Profile::by_name(&whole.profile).map_or_else(Vec::new, |profile| explain(&whole, profile));
         let whole = Report { command: Some(command()), explained, ..whole };
         if is_gate {
             let gate = GateReport::of(&whole, command(), again);

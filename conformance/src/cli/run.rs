@@ -119,7 +119,7 @@ impl Run {
             report => report?,
         };
         let shader = self.choice.shaders.own.used(&options.adapted, &report);
-        let explained = explain(&report.failures, &report.groups, options.profile);
+        let explained = explain(&report, options.profile);
         let command = Some(command());
         let mut report =
             Report { compared_by: Some(compared_by), config: used(), shader, explained, command, ..report };

@@ -26,6 +26,7 @@ formula!(
         Hard::new("at-the-light", "1/kc", &[("kc", &[0.5]), ("d", &[0.0])]),
         Hard::new("far", "d² overflows: nothing is promised", &[("d", &[2e19]), ("kq", &[1.0])]),
         Hard::new("no-falloff", "kc = 1 alone gives 1", &[("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[0.0])]),
+        Hard::new("a-long-way-off", "no distance is too long", &[("kc", &[1.0]), ("kl", &[0.1]), ("kq", &[0.1]), ("d", &[1e5])]),
     ],
 );
 formula!(
@@ -34,6 +35,9 @@ formula!(
     "atten = 1, (kc, kl, kq) = (1, 0, 0)", "004",
     [DISTANCE] -> [ATTEN],
     |d; out| { out.scalar(attenuation::constant(d)); },
+    hard [
+        Hard::new("at-the-light", "1 there, too", &[("d", &[0.0])]),
+    ],
 );
 formula!(
     /// The falloff of a tube light.
@@ -41,6 +45,9 @@ formula!(
     "atten = 1/d, (0, 1, 0)", "004",
     [DISTANCE] -> [ATTEN],
     |d; out| { out.scalar(attenuation::linear(d)); },
+    hard [
+        Hard::new("close-to-the-light", "1e5: no distance is too short", &[("d", &[1e-5])]),
+    ],
 );
 formula!(
     /// The falloff of a point light.
@@ -48,6 +55,9 @@ formula!(
     "atten = 1/d², (0, 0, 1)", "004",
     [DISTANCE] -> [ATTEN],
     |d; out| { out.scalar(attenuation::square(d)); },
+    hard [
+        Hard::new("close-to-the-light", "1e10: no distance is too short", &[("d", &[1e-5])]),
+    ],
 );
 formula!(
     /// From positions.
@@ -126,6 +136,7 @@ formula!(
         Hard::new("as-dark-as-numbers-go", "d² of 1e36 divides: nothing below 2⁻¹²⁶ is clamped", &[("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[1.0]), ("d", &[1e18])]),
         Hard::new("at-a-tube-light", "the greatest value there is, not ∞", &[("kc", &[0.0]), ("kl", &[1000.0]), ("kq", &[0.0]), ("d", &[0.0])])
             .naive("attenuation/polynomial-expanded", "1/0", f64::INFINITY),
+        Hard::new("almost-as-dark", "a divisor of 7e37 is below 2¹²⁶", &[("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[0.5]), ("d", &[1.2e19])]),
     ],
 );
 formula!(

@@ -395,6 +395,9 @@ formula!(
     "color = dst + As(src − dst)", "a shortcut",
     [Input::rgba("src"), BRIGHT] -> [RGB],
     |src, dst; out| { out.vector(over_incremental(src, dst)); },
+    hard [
+        Hard::new("alpha-above-one", "alpha is not clamped", &[("src", &[1.0, 0.5, 0.25, 1.5]), ("dst", &[0.0, 0.0, 0.0])]),
+    ],
 );
 formula!(
     /// What many layers hide.
@@ -402,6 +405,9 @@ formula!(
     "opacity = 1 − (1 − α)ⁿ", "002, of n layers",
     [LAYER_ALPHA, LAYER_COUNT] -> [SHOWN],
     |alpha, layers; out| { out.scalar(opacity_of_layers(alpha, layers)); },
+    hard [
+        Hard::new("two-of-almost-opaque", "1 − 0.05²", &[("alpha", &[0.95]), ("layers", &[2.0])]),
+    ],
 );
 formula!(
     /// What many layers hide, however thin.
@@ -427,6 +433,9 @@ formula!(
     "color/α", "a shortcut",
     [Input::rgb("color"), Input::scalar("alpha", "color", Domain::Uniform(0.01, 1.0))] -> [RGB],
     |color, alpha; out| { out.vector(unpremultiply(color, alpha)); },
+    hard [
+        Hard::new("hardly-there", "an alpha of 1e-5 divides like any other", &[("color", &[0.5, 0.25, 0.125]), ("alpha", &[1e-5])]),
+    ],
 );
 formula!(
     /// Straight alpha from premultiplied, where nothing is there too.

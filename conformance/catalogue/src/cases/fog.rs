@@ -87,6 +87,9 @@ const FAR: &[(&str, &[f32])] = &[("p", &[1200.0, 0.0, -1600.0]), ("density", &[0
 /// Without a clamp the factor is e.
 const NEGATIVE: &[(&str, &[f32])] = &[("p", &[0.0, 0.0, -10.0]), ("density", &[-0.01])];
 
+/// Fog whose density is below 0, thin enough to see through.
+const NEGATIVE_THIN: &[(&str, &[f32])] = &[("p", &[0.0, 0.0, -1.0]), ("density", &[-0.1])];
+
 macro_rules! exponential {
     (
         $name:ident, $id:literal, $function:literal, $distance:expr, $factor:path, $density:expr, $text:literal,
@@ -158,6 +161,7 @@ exponential!(
             .naive("fog/exp2-opengl-squares", "0·∞ is NaN", 1e6),
         Hard::new("dense-fog-at-1e-23", "the distance's square underflows", &[("p", &[0.0, 0.0, -1e-23]), ("density", &[9e22])])
             .naive("fog/exp2-opengl-squares", "∞·0 is NaN", 1e6),
+        Hard::new("negative-density", "squared, so that its sign does not matter", NEGATIVE_THIN),
     ]
 );
 exponential!(
@@ -169,7 +173,9 @@ exponential!(
     DENSITY,
     "f = clamp(exp(−(density·|p|)²), 0, 1); color = mix(fog, shaded, f)",
     "OpenGL 2.1 §3.10, a dialect",
-    hard[Hard::new("far-out", "2000 units away in thin fog", FAR)]
+    hard[Hard::new("far-out", "2000 units away in thin fog", FAR),
+        Hard::new("negative-density", "squared, so that its sign does not matter", NEGATIVE_THIN),
+    ]
 );
 
 formula!(
@@ -200,6 +206,9 @@ formula!(
     |p, density, fog, shaded; out| {
         fogged(out, fog::exp2_opengl_squares(fog::distance(p, Distance::Planar), density), fog, shaded);
     },
+    hard [
+        Hard::new("negative-density", "squared, so that its sign does not matter", NEGATIVE_THIN),
+    ],
 );
 formula!(
     /// Exponential fog by a distance of any length.
@@ -229,6 +238,9 @@ formula!(
     "opacity = 1 − exp(−density·distance)", "000 §6.5, 1 − f",
     [THICKNESS, DENSITY] -> [OPACITY],
     |distance, density; out| { out.scalar(fog::opacity(distance, density)); },
+    hard [
+        Hard::new("negative-density", "below 0: nothing is clamped", &[("density", &[-0.1]), ("distance", &[10.0])]),
+    ],
 );
 formula!(
     /// How much of the fog is seen, however thin.

@@ -32,6 +32,9 @@ formula!(
     "attr = α·a + β·b", "000 §6.1",
     [Input::new("weights", ValueShape::Vec2, "1", Domain::Weights), attr("a"), attr("b")] -> [ATTR],
     |weights, a, b; out| { out.scalar(interpolation::line(weights, [a, b])); },
+    hard [
+        Hard::new("weights-of-another-sum", "each weight counts as it is given", &[("weights", &[0.5, 0.25]), ("a", &[1.0]), ("b", &[1.0])]),
+    ],
 );
 formula!(
     /// Over a triangle.
@@ -87,6 +90,8 @@ formula!(
     hard [
         Hard::new("near-zero-w", "1/w overflows: nothing is promised of the published form", &[("w", &[1e-39, 1.0, 1.0])]),
         Hard::new("equal-w", "the same as linear", &[("w", &[4.0, 4.0, 4.0])]),
+        Hard::new("near-w", "a vertex 20 times nearer", &[("lambda", &[0.5, 0.25, 0.25]), ("w", &[0.05, 1.0, 1.0]), ("attr", &[2.0, -2.0, 1.0])]),
+        Hard::new("nearest-w", "a vertex 100,000 times nearer", &[("lambda", &[0.5, 0.25, 0.25]), ("w", &[1e-5, 1.0, 1.0]), ("attr", &[2.0, -2.0, 1.0])]),
     ],
 );
 formula!(
@@ -128,9 +133,9 @@ formula!(
         Hard::new("right-edge", "does not", &[("a", &[8.0, 0.0]), ("b", &[8.0, 8.0]), ("c", &[0.0, 4.0]), ("p", &[8.0, 4.0])]),
         Hard::new("of-half-a-pixel", "covers what lies inside, however small", &[("a", &[0.0, 0.0]), ("b", &[1.0, 0.0]), ("c", &[0.0, 1.0]), ("p", &[0.25, 0.25])]),
         Hard::new("of-half-a-pixel-turned", "likewise the other way round", &[("a", &[0.0, 0.0]), ("b", &[0.0, 1.0]), ("c", &[1.0, 0.0]), ("p", &[0.25, 0.25])]),
-        Hard::new("just-outside-a-left-edge", "by 1/256 of a pixel, of a triangle of 1/16: not covered", &[("a", &[8.0, 8.0]), ("b", &[8.062_5, 8.0]), ("c", &[8.0, 8.062_5]), ("p", &[7.996_093_75, 8.015_625])]),
-        Hard::new("just-outside-a-top-edge", "likewise", &[("a", &[8.0, 8.0]), ("b", &[8.062_5, 8.0]), ("c", &[8.0, 8.062_5]), ("p", &[8.015_625, 7.996_093_75])]),
-        Hard::new("just-inside-a-right-edge", "by 1/256 of a pixel, of a triangle of 1/16: covered", &[("a", &[8.0, 8.0]), ("b", &[8.0, 8.062_5]), ("c", &[7.937_5, 8.031_25]), ("p", &[7.996_093_75, 8.031_25])]),
+        Hard::new("just-outside-a-left-edge", "by 1/256 of a pixel, of a triangle of 1/16: not covered", &[("a", &[8.0, 8.0]), ("b", &[8.062_5, 8.0]), ("c", &[8.0, 8.062_5]), ("p", &[7.996_093_8, 8.015_625])]),
+        Hard::new("just-outside-a-top-edge", "likewise", &[("a", &[8.0, 8.0]), ("b", &[8.062_5, 8.0]), ("c", &[8.0, 8.062_5]), ("p", &[8.015_625, 7.996_093_8])]),
+        Hard::new("just-inside-a-right-edge", "by 1/256 of a pixel, of a triangle of 1/16: covered", &[("a", &[8.0, 8.0]), ("b", &[8.0, 8.062_5]), ("c", &[7.937_5, 8.031_25]), ("p", &[7.996_093_8, 8.031_25])]),
         Hard::new("no-area", "covers nothing", &[("a", &[0.0, 0.0]), ("b", &[4.0, 4.0]), ("c", &[8.0, 8.0]), ("p", &[4.0, 4.0])]),
     ],
 );
@@ -193,6 +198,9 @@ macro_rules! clip_volume {
                 Hard::new("on-the-near-plane", "z = 0 lies within WebGPU's volume and OpenGL's", &[("clip", &[0.0, 0.0, 0.0, 1.0])]),
                 Hard::new("on-opengls-near-plane", "z = −w lies within OpenGL's volume alone", &[("clip", &[0.0, 0.0, -1.0, 1.0])]),
                 Hard::new("behind-the-eye", "outside", &[("clip", &[0.0, 0.0, 0.0, -1.0])]),
+                Hard::new("just-before-the-near-plane", "9e-7 outside of WebGPU's volume", &[("clip", &[0.0, 0.0, -9e-7, 1.0])]),
+                Hard::new("just-before-opengls-near-plane", "1e-6 outside of OpenGL's volume", &[("clip", &[0.0, 0.0, -1.000_001, 1.0])]),
+                Hard::new("all-zero", "inside: 0 ≤ 0 holds", &[("clip", &[0.0, 0.0, 0.0, 0.0])]),
             ],
         );
     };
@@ -361,6 +369,7 @@ formula!(
             .naive("interpolation/perspective", "the numerator overflows", f64::INFINITY),
         Hard::new("w-huge", "small attributes far away", &[("lambda", &[0.3, 0.3, 0.4]), ("w", &[8e37, 7e37, 6e37]), ("attr", &[1e-6, 2e-6, 3e-6])])
             .naive("interpolation/perspective", "λ/w and the numerator underflow", 1e4),
+        Hard::new("almost-equal-w", "a w that is 9e-6 greater than the least", &[("lambda", &[0.5, 0.25, 0.25]), ("w", &[1.000_009, 1.0, 1.0]), ("attr", &[2.0, -2.0, 1.0])]),
     ],
 );
 

@@ -99,7 +99,10 @@ formula!(
     "CS = LS * MS * max(r.z, 0)^shininess", "000 §6.4",
     [LS, MS, Input::direction("r"), SHININESS] -> [RGB],
     |ls, ms, r, shininess; out| { out.vector(lighting::specular_nonlocal(ls, ms, r, shininess)); },
-    hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("r", &[0.999_999_9, 0.0, 6e-5]), ("shininess", &[1.0])])],
+    hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("r", &[0.999_999_9, 0.0, 6e-5]), ("shininess", &[1.0])]),
+        Hard::new("least-lit", "5e-10 is above 0, too", &[("ls", WHITE), ("ms", WHITE), ("r", &[1.0, 0.0, 5e-10]), ("shininess", &[1.0])]),
+        Hard::new("no-shininess-least-lit", "1 for a cosine above 0, however small", &[("ls", WHITE), ("ms", WHITE), ("r", &[1.0, 0.0, 5e-10]), ("shininess", &[0.0])]),
+    ],
 );
 
 /// Half of all pairs of directions look away from each other, where the highlight is 0: keep a quarter of those.
@@ -135,6 +138,8 @@ directional!(
         Hard::new("light-behind-the-surface", "the documents light the highlight; ruling 9", &[("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[-1.0, 0.0, 0.05]), ("shininess", &[1.0])]),
         Hard::new("eye-on-the-surface", "no view vector: 0, not NaN", &[("p", &[0.0, 0.0, 0.0])]),
         Hard::new("no-normal", "ambient alone, not NaN", &[("normal", &[0.0, 0.0, 0.0])]),
+        Hard::new("low-shininess", "an exponent of ½ widens the highlight", &[("ls", WHITE), ("ms", WHITE), ("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.5, 1.0]), ("direction", &[0.0, 0.0, -1.0]), ("shininess", &[0.5])]),
+        Hard::new("high-shininess", "an exponent of 300", &[("ls", WHITE), ("ms", WHITE), ("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.1, 1.0]), ("direction", &[0.0, 0.0, -1.0]), ("shininess", &[300.0])]),
     ]
 );
 directional!(
@@ -142,6 +147,8 @@ directional!(
     "CF = LA*MA + LD*MD·max(l·n, 0) + LS*MS·max(n·h, 0)^shininess, everything normalised", "000 §6.4, 004",
     hard [
         Hard::new("half-vector-of-nothing", "the light behind the eye's line: no highlight, not NaN", &[("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.0, 0.0, 1.0])]),
+        Hard::new("low-shininess", "an exponent of ½ widens the highlight", &[("ls", WHITE), ("ms", WHITE), ("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.5, 1.0]), ("direction", &[0.0, 0.0, -1.0]), ("shininess", &[0.5])]),
+        Hard::new("high-shininess", "an exponent of 300", &[("ls", WHITE), ("ms", WHITE), ("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.1, 1.0]), ("direction", &[0.0, 0.0, -1.0]), ("shininess", &[300.0])]),
     ]
 );
 directional!(
@@ -156,6 +163,7 @@ directional!(
         Hard::new("light-at-95-degrees", "no highlight on the dark side, ruling 9", &[("ls", WHITE), ("ms", WHITE), ("p", &[-0.984_807_8, 0.0, -0.173_648_2]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.996_194_7, 0.0, 0.087_155_7]), ("shininess", &[32.0])])
             .naive("lighting/phong", "a highlight of up to 0.6 from a light behind the surface", 1e6),
         Hard::new("light-edge-on", "l·n = 0 has no highlight, though r·v is above 0", &[("p", &[-1.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[1.0, 0.0, 0.0]), ("shininess", &[1.0])]),
+        Hard::new("light-barely-above", "l·n of 9e-7 is above 0: the highlight is there", &[("ls", WHITE), ("ms", WHITE), ("p", &[0.0, -1.0, -0.001]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.0, 1.0, -9e-7]), ("shininess", &[1.0])]),
     ]
 );
 formula!(
@@ -180,6 +188,10 @@ formula!(
         let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
         out.vector(lighting::unit_light(&light, &material, [p, normal, direction]));
     },
+    hard [
+        Hard::new("short-direction", "the light's direction is not normalised", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.5, 0.0, -0.5])]),
+        Hard::new("long-direction", "nor is its cosine above 1 clamped", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.0, 0.0, -1.5])]),
+    ],
 );
 formula!(
     /// A viewer at infinity.
@@ -191,6 +203,9 @@ formula!(
         let (light, material) = (light([la, ld, ls]), material([ma, md, ms], shininess));
         out.vector(lighting::nonlocal(&light, &material, normal, direction));
     },
+    hard [
+        Hard::new("short-direction", "the light's direction is not normalised", &[("ls", WHITE), ("ms", WHITE), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.0, 0.0, -0.69]), ("shininess", &[2.0])]),
+    ],
 );
 
 macro_rules! point {

@@ -210,6 +210,8 @@ formula!(
             .naive("vector/length", "a square of 1e-44 has 3 bits, or none", 1e5),
         Hard::new("huge", "the squares overflow", &[("v", &[3e25, 4e25, 0.0])])
             .naive("vector/length", "∞", f64::INFINITY),
+        Hard::new("giant", "a component of 2e30, which is scaled by less than 2⁻¹⁰⁰", &[("v", &[2e30, 0.0, 0.0])]),
+        Hard::new("least", "right down to 2⁻¹²⁶", &[("v", &[5e-38, 0.0, 0.0])]),
     ],
 );
 formula!(
@@ -268,6 +270,7 @@ formula!(
             .naive("vector/normal-by-determinant", "the determinant of 1e-40 underflows, or its inverse overflows", 1e6),
         Hard::new("mirrored-and-thin-1e-30", "two axes of 1e-30 under reflection, the normal along the third", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1e-30, 0.0, 0.0, 0.0, 1e-30]), ("n", &[1.0, 0.0, 0.0])])
             .naive("vector/normal-by-determinant", "the cofactor of 1e-60 underflows", 1e6),
+        Hard::new("flattened-to-a-plane", "a determinant of 0 does not turn the normal", &[("modelview", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]), ("n", &[0.0, 0.0, 0.5])]),
     ],
 );
 formula!(
@@ -303,6 +306,7 @@ formula!(
     },
     hard [
         Hard::new("nearly-opposite", "ill-conditioned: what is left is 1e-3 of the normals", &[("n0", &[0.0, 0.6, 0.8]), ("n1", &[0.001, -0.6, -0.8]), ("t", &[0.5])]),
+        Hard::new("opposite", "nothing is left: 0, not the face's normal", &[("n0", &[1.0, 0.0, 0.0]), ("n1", &[-1.0, 0.0, 0.0]), ("face", &[0.5, 0.0, 1.0]), ("t", &[0.5])]),
     ],
 );
 formula!(
@@ -325,6 +329,7 @@ formula!(
         Hard::new("barely-enough-is-left", "half of 0.002 is above 2⁻¹⁰, by a fortieth", &[("n0", &[0.0, 0.0, 1.0]), ("n1", &[0.002, 0.0, -1.0]), ("face", &[0.0, 1.0, 0.0]), ("t", &[0.5])]),
         Hard::new("barely-too-little-is-left", "half of 0.0019 is below 2⁻¹⁰, by a fortieth", &[("n0", &[0.0, 0.0, 1.0]), ("n1", &[0.001_9, 0.0, -1.0]), ("face", &[0.0, 1.0, 0.0]), ("t", &[0.5])]),
         Hard::new("too-little-is-left", "half of 0.0009 is below 2⁻¹⁰: the face's normal is used", &[("n0", &[0.0, 0.0, 1.0]), ("n1", &[0.000_9, 0.0, -1.0]), ("face", &[0.0, 1.0, 0.0]), ("t", &[0.5])]),
+        Hard::new("exactly-enough-is-left", "2⁻¹⁰ itself is no less than 2⁻¹⁰: the mix is used", &[("n0", &[1.0, 0.0, 0.0]), ("n1", &[-1.0, 0.0, 0.0]), ("face", &[0.5, 0.0, 1.0]), ("t", &[0.499_511_72])]),
     ],
 );
 

@@ -503,7 +503,7 @@ pub struct Report {
     /// What the baseline has not.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub added: Vec<String>,
-    /// What explains the first failing case of each formula.
+    /// What explains the first failing case of each formula and, where few were judged, the worst case of those that pass.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub explained: Vec<Explained>,
     /// What chose the cases, and the version of what draws them, where a later run may be compared with this one.

@@ -44,6 +44,23 @@ pub(super) fn cards(report: &Report) -> Vec<Markup> {
     cards
 }
 
+/// The cards of formulas that pass, each with the case that comes nearest to what is illegal.
+pub(super) fn passing_cards(report: &Report) -> Vec<Markup> {
+    let is_of_a_failure = |one: &&Explained| report.failures.iter().any(|failure| failure.id == one.id);
+    let card = |one: &Explained| {
+        html! {
+            details.card.passing {
+                summary { span.pass { "✓" } " its worst case: " b { (one.id) } }
+                (formula(one))
+                @if !one.steps.is_empty() { (steps(one)) }
+                @if let Some(course) = &one.course { (plot::course(course, None)) }
+                (command(&format!("lightmeter show {}", one.id)))
+            }
+        }
+    };
+    report.explained.iter().filter(|one| !is_of_a_failure(one)).map(card).collect()
+}
+
 /// How many failed, and of how many: verdicts, or whole cases where a renderer was asked.
 fn judged(group: &Group) -> (u64, u64) {
     group.by_case.as_ref().map_or((group.totals.failed, group.totals.verdicts), |counts| (counts.failed, counts.asked))

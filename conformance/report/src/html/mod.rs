@@ -48,6 +48,7 @@ fn run_page(report: &Report, is_success: bool, incidents: &[String]) -> String {
     let columns = matrix::columns(&[("", report)]);
     let cards = failure::cards(report);
     let scenes = scene::cards(report);
+    let passing = failure::passing_cards(report);
     let body = html! {
         (overview::head(&facts))
         (against(report, incidents))
@@ -56,6 +57,13 @@ fn run_page(report: &Report, is_success: bool, incidents: &[String]) -> String {
                 h2 { "What fails" }
                 p.hint { "Worst first. Keys: " kbd { "j" } " and " kbd { "k" } " go to the next and the previous one, " kbd { "/" } " to the filter." }
                 @for card in scenes.iter().chain(&cards) { (card) }
+            }
+        }
+        @if !passing.is_empty() {
+            section #nearest {
+                h2 { "What passes, and where it is nearest to failing" }
+                p.hint { "Of each formula the case whose answer uses the most of what is legal: its steps, and the output along the input that moves it most, with the band of legal values." }
+                @for card in passing { (card) }
             }
         }
         (all(&columns, true))
