@@ -112,6 +112,13 @@ fn a_baseline_knows_the_constants_it_was_made_with() {
     let run = ["run", "lighting/blinn", "--cases", "64", "--shader", &file, "--baseline", &baseline];
     let held = ["--constant", "shininess=32"];
     assert_eq!(code(&lightmeter(&[&run[..], &held, &["--update-baseline"]].concat())), 0);
+    let (with, without) =
+        (json(&[&run[..6], &held, &["--format", "json"]].concat()), json(&[&run[..6], &["--format", "json"]].concat()));
+    // The worst case of a formula that passes is explained, but not by other inputs than it was judged with.
+    assert_eq!(
+        (with["explained"].is_null(), without["explained"][0]["id"].as_str()),
+        (true, without["groups"][0]["worst"].as_str())
+    );
     assert_eq!(code(&lightmeter(&[&run[..], &held].concat())), 0);
     let output = lightmeter(&run);
     assert!(

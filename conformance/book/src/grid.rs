@@ -43,17 +43,17 @@ impl Plane {
         let first = |name: &str| {
             let mut inputs = member.spec.inputs.iter();
             let before = inputs.by_ref().take_while(|input| input.name != name);
-            Some(before.map(|input| input.shape.components()).sum::<usize>())
+            before.map(|input| input.shape.components()).sum::<usize>()
         };
         let has = |name: &str| member.spec.inputs.iter().any(|input| input.name == name);
         if has("new") && has("old") {
             #[expect(clippy::cast_precision_loss, reason = "some cells")]
             let step = 1.0 / (CELLS - 1) as f64;
-            let numbers = [first("new")?, first("old")?];
+            let numbers = [first("new"), first("old")];
             return Some(Self { numbers, corner: [0.0, 0.0], step, cells: CELLS, outlines: vec![] });
         }
         let pixel =
-            member.spec.inputs.iter().any(|input| matches!(input.domain, Domain::Pixel)).then(|| first("pixel"))??;
+            member.spec.inputs.iter().any(|input| matches!(input.domain, Domain::Pixel)).then(|| first("pixel"))?;
         let outlines = outlines(member, row)?;
         let [low, high]: [[f64; 2]; 2] = [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| {
             [0, 1].map(|axis| outlines.iter().flatten().map(|corner| corner[axis]).reduce(of).unwrap_or(0.0))

@@ -22,7 +22,10 @@ const MOST_PASSING: usize = 24;
 #[must_use]
 pub fn explain(report: &Report, profile: &Profile) -> Vec<Explained> {
     let mut explained = explain_failures(&report.failures, &report.groups, profile);
-    explained.extend(explain_worst(&report.groups, report.seed, profile));
+    // A case whose inputs were held is another one than its id says.
+    if report.compared_by.as_ref().is_none_or(|by| by.choice.held.is_empty()) {
+        explained.extend(explain_worst(&report.groups, report.seed, profile));
+    }
     explained
 }
 
@@ -51,27 +54,25 @@ fn explain_failures(failures: &[Failure], groups: &[Group], profile: &Profile) -
 /// What explains the case that comes nearest to what is illegal, of each formula that passes; nothing where there are more of them than anyone
 /// looks at one by one.
 fn explain_worst(groups: &[Group], seed: u64, profile: &Profile) -> Vec<Explained> {
-    let passing: Vec<&Group> = groups.iter().filter(|group| group.totals.failed == 0).collect();
-    let mut formulas: Vec<(&str, &Group)> = vec![];
-    for group in passing {
-        match formulas.iter_mut().find(|(id, _)| *id == group.id) {
-            Some((_, worst)) if worst.margin_max.0 < group.margin_max.0 => *worst = group,
+    let failing: HashSet<&str> =
+        groups.iter().filter(|group| group.totals.failed > 0).map(|group| group.id.as_str()).collect();
+    let mut formulas: Vec<&Group> = vec![];
+    for group in groups.iter().filter(|group| !failing.contains(group.id.as_str())) {
+        match formulas.iter_mut().find(|worst| worst.id == group.id) {
+            Some(worst) if worst.margin_max.0 < group.margin_max.0 => *worst = group,
             Some(_) => {}
-            None => formulas.push((&group.id, group)),
+            None => formulas.push(group),
         }
     }
     if formulas.len() > MOST_PASSING {
         return vec![];
     }
     let catalogue = catalogue();
-    let explained = |(_, group): (&str, &Group)| {
-        let (id, case) = catalogue.iter().find_map(|member| {
-            let id = group.worst.as_ref().filter(|_| member.spec.id == group.id)?;
-            Some((id, (member, member.case(id)?)))
-        })?;
-        let (member, case) = case;
+    let explained = |group: &Group| {
+        let id = group.worst.as_ref()?;
+        let member = catalogue.iter().find(|member| member.spec.id == group.id)?;
         let mut inputs = vec![];
-        member.inputs(case, seed, &mut inputs);
+        member.inputs(member.case(id)?, seed, &mut inputs);
         Some(explained_case(id, member, &inputs, "", &[], profile))
     };
     formulas.into_iter().filter_map(explained).collect()

@@ -119,10 +119,9 @@ impl Run {
             report => report?,
         };
         let shader = self.choice.shaders.own.used(&options.adapted, &report);
-        let explained = explain(&report, options.profile);
         let command = Some(command());
-        let mut report =
-            Report { compared_by: Some(compared_by), config: used(), shader, explained, command, ..report };
+        let mut report = Report { compared_by: Some(compared_by), config: used(), shader, command, ..report };
+        report.explained = explain(&report, options.profile);
         // What was not judged for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
         let is_shard = shard.count.get() > 1;
