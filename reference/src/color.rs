@@ -31,11 +31,12 @@ pub fn srgb_encode<R: Real>(c: R) -> R {
 /// `c = e/12.92` for e ≤ 0.04045, else `((e + 0.055)/1.055)^2.4`; for 0 ≤ e ≤ 1. Source: IEC 61966-2-1.
 pub fn srgb_decode<R: Real>(e: R) -> R {
     step!("decoded", |e| {
+        // No binary float is 0.04045. The nearest binary32 lies below it, so a shader's `<` and `<=` differ there, and both are right.
         R::if_ge(
-            R::literal(0.040_45),
             e,
-            || e / R::literal(12.92),
+            R::literal(0.040_45),
             || ((e + R::literal(0.055)) / R::literal(1.055)).pow(R::literal(2.4)),
+            || e / R::literal(12.92),
         )
     })
 }

@@ -1,11 +1,14 @@
 //! Results as pages: one file of HTML from the documents of runs, the same as the command itself would have written.
 
 use super::{code, gate, json, lightmeter, stderr, stdout};
+use lightmeter::cases::{Kind, Spec};
 use lightmeter::faults::faults;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load;
 use lightmeter::select::catalogue;
 use lightmeter::special::PROBES;
+use lightmeter::sweep::PRESETS;
+use lightmeter_scene::blend::{Equation, Factor};
 use std::path::{Path, PathBuf};
 
 /// A file of these tests' own.
@@ -48,6 +51,10 @@ fn a_result_is_a_page_at_once_and_later() {
             is_whole(&page);
             assert!(page.contains("<h1>"), "{name} has a verdict");
         }
+    }
+    let run = std::fs::read_to_string(path("page-run.later.html")).expect("it was written");
+    for what in ["its worst case: <b>fog/exp/", "<figure class=\"plot\">", "lightmeter show fog/exp/"] {
+        assert!(run.contains(what), "the card of what passes has {what}");
     }
     let sweep = std::fs::read_to_string(path("page-sweep.json")).expect("it was written");
     let sweep: serde_json::Value = serde_json::from_str(&sweep).expect("it is JSON");
@@ -119,13 +126,58 @@ fn the_page_of_a_merge_is_that_of_the_whole() {
     }
 }
 
+/// A page of the documentation.
+fn docs(name: &str) -> String {
+    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The page of rulings is made from no run.
+#[test]
+fn the_page_of_rulings_is_current() {
+    let page = stdout(&lightmeter(&["page", "rulings"]));
+    assert!(page == docs("rulings.md"), "docs/rulings.md is another: `lightmeter page rulings --out docs/rulings.md`");
+}
+
+/// Pages of measurements are made from runs of some time. Each formula, state and sweep that there is today has its place there.
+#[test]
+fn the_pages_of_measurements_have_all_that_is_measured() {
+    let bench = docs("bench.md");
+    let (_, every) = bench.split_once("### Every formula").expect("the page has a section of every formula");
+    // A function that is told by a number what to compute is a blend state's, and not measured by itself.
+    let is_measured = |spec: &Spec| matches!(spec.kind, Kind::Arithmetic) && spec.selectors.is_empty();
+    for member in catalogue().iter().filter(|member| is_measured(&member.spec)) {
+        let id = &member.spec.id;
+        assert!(every.contains(&format!("\n| `{id}` |")), "docs/bench.md does not have {id}");
+    }
+    let blend = docs("blend.md");
+    for equation in Equation::ALL {
+        assert!(
+            blend.contains(&format!("\n### {}\n", equation.name())),
+            "docs/blend.md does not have {}",
+            equation.name()
+        );
+    }
+    for (_, table) in blend.split("\n### ").filter_map(|section| section.split_once("| src ↓ dst → |")) {
+        let (head, rows) = table.split_once('\n').expect("a table has rows");
+        for factor in Factor::ALL {
+            let name = factor.name();
+            assert!(head.contains(&format!(" {name} |")), "docs/blend.md has no column of {name}");
+            assert!(rows.contains(&format!("\n| {name} |")), "docs/blend.md has no row of {name}");
+        }
+    }
+    let sweep = docs("sweep.md");
+    for preset in PRESETS {
+        let headed = format!("\n## {} on lavapipe, ", preset.formula);
+        let (_, section) = sweep.split_once(&headed).unwrap_or_else(|| panic!("no {headed:?} in docs/sweep.md"));
+        let section = section.split("\n## ").next().unwrap_or_default();
+        assert!(section.contains(preset.what), "docs/sweep.md does not say of {}: {}", preset.formula, preset.what);
+    }
+}
+
 /// Pages of the documentation are made from runs of some time. What they say of the suite itself must be so today.
 #[test]
 fn the_pages_of_the_documentation_are_current() {
-    let docs = |name: &str| {
-        let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
-        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-    };
     let scenes = docs("scenes.md");
     for (name, _) in SCENES {
         let shows = load::builtin(name).expect("it is built in").shows;

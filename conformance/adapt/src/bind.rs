@@ -18,6 +18,10 @@ pub struct AskedBinding {
     pub expression: String,
 }
 
+/// What is said of a module of SPIR-V that was compiled without names.
+const NAMELESS: &str = "the module has no names of its variables, by which they are bound: compile it with names, such as by `naga -g`, \
+                        `glslangValidator -g` or `dxc -Zi`";
+
 /// How a binding was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
@@ -92,7 +96,13 @@ pub fn bind(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> Res
                     place: slot.place.clone(),
                 });
             }
-            None => missing.push(format!("{}: {}", slot.name, slot.leaf)),
+            None if slot.name.is_empty() => return Err(AdaptError::Bind(NAMELESS.into())),
+            None => {
+                let is_known = meanings(slot).any(|meaning| context.expression(meaning, slot.from).is_some());
+                let why =
+                    if is_known { " (its name is known, and no input that it may mean fits its type)" } else { "" };
+                missing.push(format!("{}: {}{why}", slot.name, slot.leaf));
+            }
         }
     }
     if !missing.is_empty() {
@@ -224,8 +234,8 @@ fn is_named(slot: &Variable, name: &str) -> bool {
 
 /// What a variable may mean by its name, the most telling key first.
 fn meanings(slot: &Variable) -> impl Iterator<Item = Meaning> + '_ {
-    // three.js hands over the vector to the eye by this name.
-    let given = (slot.name == "vViewPosition").then_some(Meaning::ToEyeWithLength);
+    // three.js hands over the vector to the eye by this name. Who turns it round has the surface's position.
+    let given = (slot.name == "vViewPosition" && !slot.is_negated).then_some(Meaning::ToEyeWithLength);
     let of_key = |key: String| {
         SYNONYMS
             .iter()
@@ -253,7 +263,9 @@ fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) ->
     }
     // naga puts an underscore behind a name that ends in a digit.
     let name = slot.name.trim_end_matches('_');
-    let same = context.spec.inputs.iter().find(|input| input.name == name && !is_of_surface(slot, context));
+    // A normal that is a parameter is a unit vector, whatever the formula's is.
+    let is_unit = slot.from == From::Parameter && name == "normal";
+    let same = context.spec.inputs.iter().find(|input| input.name == name && !is_unit && !is_of_surface(slot, context));
     if let Some(input) = same
         && let Some(fitted) = fitted(input.name, input.shape, slot.leaf, None)
     {
@@ -336,7 +348,7 @@ fn shape_of(meaning: Meaning, expression: &str, spec: &Spec) -> ValueShape {
     }
     use Meaning as M;
     match meaning {
-        M::Weight(_) if spec.place("ka").is_none() => ValueShape::Vec3,
+        M::Weight(_) if spec.place("ka").is_none() && expression != "1.0" => ValueShape::Vec3,
         M::Shininess
         | M::Weight(_)
         | M::Alpha

@@ -9,6 +9,7 @@
 //! Nothing here computes a formula: what a bound expression normalises or multiplies, the shader's own driver computes.
 
 pub mod bind;
+pub mod constant;
 mod ending;
 mod error;
 mod glsl;

@@ -53,6 +53,8 @@ pub(crate) enum Meaning {
     Identity,
     Count,
     TexturePlace,
+    Source,
+    Destination,
 }
 
 use Meaning as M;
@@ -292,6 +294,7 @@ pub(crate) const SYNONYMS: &[(Meaning, &[&str])] = &[
             "lightconstantattenuation",
             "lightkc",
             "falloffconstant",
+            "kconstant",
             "fallofkc",
         ],
     ),
@@ -307,6 +310,7 @@ pub(crate) const SYNONYMS: &[(Meaning, &[&str])] = &[
             "lightlinearattenuation",
             "lightkl",
             "fallofflinear",
+            "klinear",
         ],
     ),
     (
@@ -323,6 +327,7 @@ pub(crate) const SYNONYMS: &[(Meaning, &[&str])] = &[
             "lightquadraticattenuation",
             "lightkq",
             "falloffquadratic",
+            "kquadratic",
         ],
     ),
     (
@@ -383,6 +388,8 @@ pub(crate) const SYNONYMS: &[(Meaning, &[&str])] = &[
             "lightcutoff",
             "lightspotcoscutoff",
             "lightcutoffcosine",
+            "outercutoff",
+            "lightoutercutoff",
             "spotcosine",
             "lightspotcutoff",
             "cosinecutoff",
@@ -466,6 +473,28 @@ pub(crate) const SYNONYMS: &[(Meaning, &[&str])] = &[
     (
         M::TexturePlace,
         &["uv", "texcoord", "texcoords", "texposition", "st", "textureposition", "texturecoords", "texturecoord"],
+    ),
+    (
+        M::Source,
+        &["src", "srccolor", "source", "sourcecolor", "fg", "fgcolor", "foreground", "foregroundcolor", "top", "over"],
+    ),
+    (
+        M::Destination,
+        &[
+            "dst",
+            "dstcolor",
+            "dest",
+            "destcolor",
+            "destination",
+            "destinationcolor",
+            "bg",
+            "bgcolor",
+            "background",
+            "backgroundcolor",
+            "bottom",
+            "backdrop",
+            "under",
+        ],
     ),
 ];
 
@@ -656,7 +685,11 @@ impl Context<'_> {
             M::OfMaterial(term) => self.color(term, false),
             M::LightColor => self.light_color(),
             M::SurfaceColor => self.surface_color(from),
-            M::Weight(term) => self.input(["ka", "kd", "ks"][term as usize]).or_else(|| self.color(term, false)),
+            M::Weight(term) => self.input(["ka", "kd", "ks"][term as usize]).or_else(|| {
+                // Beside the term's own colour a weight is 1.
+                let is_beside = self.meanings.contains(&M::OfMaterial(term));
+                if is_beside { Some("1.0".into()) } else { self.color(term, false) }
+            }),
             M::Emission => self.input("emissive").or_else(|| self.has("la").then(|| "vec3f(0.0)".into())),
             M::Alpha => self.input("alpha").or_else(|| Some("1.0".into())),
             M::Constant => self.coefficient("kc", "1.0"),
@@ -680,6 +713,8 @@ impl Context<'_> {
             M::Identity => Some("1.0".into()),
             M::Count => Some("1".into()),
             M::TexturePlace => Some("0.5".into()),
+            M::Source => self.input("src"),
+            M::Destination => self.input("dst"),
         }
     }
 }
@@ -731,6 +766,8 @@ impl Meaning {
             M::Identity => "a transform, which is the identity",
             M::Count => "the number of lights, which is 1",
             M::TexturePlace => "a place in a texture",
+            M::Source => "the colour that is drawn, in blending",
+            M::Destination => "the colour that is there, in blending",
         }
     }
 }

@@ -138,6 +138,10 @@ fn words(name: &str) -> Vec<String> {
 
 /// A variable's name, or a member's, as the words that a synonym may have, the most telling first.
 pub(crate) fn keys(name: &str) -> Vec<String> {
+    // naga numbers what goes from stage to stage, and tells nothing of it.
+    if name.trim_start_matches('_').starts_with("vs2fs_location") {
+        return vec![];
+    }
     let mut parts: Vec<Vec<String>> =
         name.split('.').map(|part| words(part.split('[').next().unwrap_or(part))).collect();
     let own = parts.pop().unwrap_or_default();

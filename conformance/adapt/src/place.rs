@@ -3,7 +3,7 @@
 use crate::source::ShaderSource;
 use naga::{Block, Function, Handle, Module, Span, Statement};
 
-/// What a line that computes a step has: any of these, each of whose words it has all of.
+/// What a line that computes a step has: any of these, each of whose words it has all of, and none of those behind a `!`.
 type Signs = &'static [&'static [&'static str]];
 
 /// The steps of formulas, with what a line has that computes one.
@@ -14,7 +14,15 @@ const STEPS: &[(&[&str], Signs)] = &[
     (&["l"], &[&["normalize(", "ight"], &[" l ="], &[" L ="]]),
     (&["v"], &[&["normalize(", "iew"], &["normalize(", "ye"], &["normalize(", "osition"], &[" v ="], &[" V ="]]),
     (&["FS", "CS"], &[&["pow("]]),
-    (&["FI", "l·n", "CD"], &[&["max(", "dot("], &["abs(", "dot("], &["iffuse", "dot("], &["dot("]]),
+    (
+        &["FI", "l·n", "CD"],
+        &[
+            &["iff", "dot(", "!pow("],
+            &["max(", "dot(", "!pow(", "!pec", "!eflect", "!alf"],
+            &["abs(", "dot(", "!pow(", "!pec", "!eflect", "!alf"],
+            &["dot(", "!pow(", "!pec", "!eflect", "!alf"],
+        ],
+    ),
     (&["CA"], &[&["mbient"]]),
     (&["atten", "kc + kl·d + kq·d²", "d"], &[&["ttenuation"], &["atten"], &["/", "uadratic"], &["falloff"]]),
     (&["spot", "cone", "−l·axis"], &[&["utoff"], &["utOff"], &["spot"], &["cone"]]),
@@ -30,7 +38,11 @@ const STEPS: &[(&[&str], Signs)] = &[
 pub fn line_of_step<'a>(text: &'a str, step: &str) -> Option<(usize, &'a str)> {
     let (_, signs) = STEPS.iter().find(|(names, _)| names.contains(&step))?;
     // A weaker sign says nothing where several lines have a stronger one.
-    let mut found = signs.iter().map(|words| lines(text, |line| words.iter().all(|word| line.contains(word))));
+    let fits = |line: &str, word: &str| match word.strip_prefix('!') {
+        Some(none) => !line.contains(none),
+        None => line.contains(word),
+    };
+    let mut found = signs.iter().map(|words| lines(text, |line| words.iter().all(|word| fits(line, word))));
     one(&found.find(|found| !found.is_empty())?)
 }
 
@@ -135,6 +147,9 @@ mod tests {
         assert_eq!(line_of_step(text, "exp").map(|(line, _)| line), Some(4));
         assert_eq!(line_of_step(text, "l·n"), None);
         assert_eq!(line_of_variable(text, &["fogColor"]).map(|(line, _)| line), Some(5));
+        // A highlight's cosine is none of the diffuse term, whichever is limited.
+        let text = "float diff = dot(norm, toLight);\nfloat spec = max(dot(view, reflected), 0.0);\n";
+        assert_eq!(line_of_step(text, "FI").map(|(line, _)| line), Some(1));
         // Two lines reflect, so that neither is it, whatever else they have.
         let text = "a = reflect(i, n);\nb = reflect(j, n);\nvec3 h = x;\n";
         assert_eq!(line_of_step(text, "r"), None);

@@ -84,6 +84,8 @@ pub struct Variable {
     pub is_further: bool,
     /// Whether the shader's text uses it.
     pub is_used: bool,
+    /// Whether the shader's text has it with a minus before it.
+    pub is_negated: bool,
 }
 
 /// A value that a shader gives.
@@ -520,8 +522,8 @@ impl Walk<'_> {
                         "`{name}` is no number, vector, matrix, structure or array of at most {MOST_ELEMENTS} of them"
                     )
                 })?;
-                let is_used = self.is_used(&name);
-                out.push(Variable { name, place, leaf, from, is_further, is_used });
+                let (is_used, is_negated) = (self.is_used(&name), self.is_negated(&name));
+                out.push(Variable { name, place, leaf, from, is_further, is_used, is_negated });
                 Ok(())
             }
         }
@@ -534,6 +536,16 @@ impl Walk<'_> {
         let dotted = format!(".{member}");
         self.text.is_empty()
             || self.text.match_indices(&dotted).any(|(place, found)| ends(&self.text[place + found.len()..]))
+    }
+
+    /// Whether the text has a name, or a member's, with a minus before it.
+    fn is_negated(&self, name: &str) -> bool {
+        let own = name.rsplit('.').next().unwrap_or(name);
+        let is_letter = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+        self.text.match_indices(own).any(|(place, found)| {
+            let (before, after) = (self.text[..place].trim_end_matches(is_letter), &self.text[place + found.len()..]);
+            before.trim_end().ends_with('-') && !after.starts_with(|c: char| c.is_alphanumeric() || c == '_')
+        })
     }
 
     fn leaf(&self, ty: Handle<Type>) -> Option<Leaf> {

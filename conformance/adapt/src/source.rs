@@ -68,6 +68,8 @@ impl ShaderSource {
             return of_spirv(path, &bytes);
         }
         let text = read::text(path, MOST_BYTES).map_err(unreadable)?;
+        // Some editors begin a file with a mark of its byte order.
+        let text = text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned);
         if let Language::Glsl(stage) = language {
             return of_glsl(path, text, stage);
         }

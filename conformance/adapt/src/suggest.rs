@@ -42,7 +42,13 @@ fn as_wgsl(shaders: &Shaders, file: &str, function: &str) -> String {
         found.push((name, text));
     }
     found.reverse();
-    found.into_iter().map(|(_, text)| text + "\n").collect::<Vec<_>>().join("\n")
+    let functions: Vec<String> = found.into_iter().map(|(_, text)| text + "\n").collect();
+    let structures = source.split("\nstruct ").skip(1).filter_map(|rest| {
+        let (name, end) = (rest.split(' ').next()?, rest.find("\n}")?);
+        let has = |text: &String| text.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name);
+        functions.iter().any(has).then(|| format!("struct {}\n}}\n", &rest[..end]))
+    });
+    structures.chain(functions.iter().cloned()).collect::<Vec<_>>().join("\n")
 }
 
 /// The function and what it calls, as naga writes it.
@@ -84,6 +90,7 @@ mod tests {
                 forms += 1;
                 let wgsl = stable_form(&shaders, file, function, Language::Wgsl).expect(function);
                 assert!(wgsl.contains(&format!("fn {stable}(")), "{wgsl}");
+                naga::front::wgsl::parse_str(&wgsl).unwrap_or_else(|error| panic!("{}\n{wgsl}", error.message()));
                 let glsl =
                     stable_form(&shaders, file, function, Language::Glsl(ShaderStage::Fragment)).expect(function);
                 // naga puts an underscore behind a digit.

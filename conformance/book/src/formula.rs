@@ -1,5 +1,6 @@
 //! The page of a formula: what it computes, how it looks, who computes it otherwise, how accurate it is, and how it is got wrong.
 
+use crate::apart::apart;
 use crate::contents::Place;
 use crate::diagram::diagram;
 use crate::errors::{CASES, errors};
@@ -239,7 +240,9 @@ impl FormulaPage<'_> {
                     @if let Some(grid) = &grid { (grid.svg()) }
                     @if let Some(plot) = &plot { (plot.svg()) }
                 }
-                @if grid.is_none() && plot.is_none() && picture.is_none() { p.hint { "Too small to be seen in a plot." } }
+                @if grid.is_none() && plot.is_none() && picture.is_none() {
+                    @if let Some(apart) = apart(self.member, &variation) { (apart.html()) }
+                }
             }
         }
     }
@@ -416,7 +419,7 @@ fn looks(look: &MistakeLook) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::set_equation;
+    use super::*;
     use lightmeter_catalogue::select::catalogue;
 
     /// Letters and digits in their order, those of raised and lowered characters too.
@@ -443,6 +446,36 @@ mod tests {
             c => c,
         };
         text.chars().map(plain).filter(|c| c.is_alphanumeric()).collect::<String>().replace('½', "12")
+    }
+
+    #[test]
+    fn each_mistake_is_shown_by_a_picture_a_plot_or_numbers() {
+        let catalogue = catalogue();
+        let of_some = ["interpolation/edge", "fog/exp", "lighting/blinn", "vector/normalize", "color/srgb-decode"];
+        let is_shown = |member: &&Member| {
+            matches!(member.spec.kind, Kind::Raster(_)) || of_some.contains(&member.spec.id.as_str())
+        };
+        let shaders = Shaders::built_in().expect("they are right");
+        let (mut grids, mut plots, mut numbers) = (0, 0, 0);
+        for member in catalogue.iter().filter(is_shown) {
+            let mut shown = HashSet::new();
+            for fault in concerning(member) {
+                let page = FormulaPage {
+                    member,
+                    catalogue: &catalogue,
+                    shaders: &shaders,
+                    place: Place::new("formula/x.html"),
+                };
+                let html = page.mistake(fault, None, &mut shown).0;
+                let [has_grid, has_plot, has_numbers] =
+                    ["sketch grid", "class=\"sketch\"", "with the mistake.</p>"].map(|what| html.contains(what));
+                assert!(has_grid || has_plot || has_numbers, "{} of {}: {html}", fault.name, member.spec.id);
+                grids += i32::from(has_grid);
+                plots += i32::from(has_plot);
+                numbers += i32::from(has_numbers);
+            }
+        }
+        assert!(grids > 0 && plots > 0 && numbers > 0, "{grids} {plots} {numbers}");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! Its chapters and appendices are Markdown of the documentation folder. A page for each formula that is no blend state, for each equation, factor
 //! and mode of blending, a gallery of scenes and the pages to look things up on are made from the catalogue, so that what they say is what is judged.
 
+mod apart;
 mod blend;
 mod contents;
 mod diagram;

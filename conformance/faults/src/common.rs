@@ -114,7 +114,7 @@ fn outputs_of(member: &Member, wrong: &[WrongNumber]) -> Option<String> {
     let first = wrong.first()?.place;
     let is_one = range.len() > 1 && wrong.iter().all(|number| number.place == first);
     if is_one {
-        return Some(format!("only component {} of {name} is wrong", first - range.start));
+        return Some(format!("only {} is wrong", member.spec.output_name(first)));
     }
     (places.len() > 1).then(|| format!("only {name} is wrong"))
 }

@@ -5,7 +5,6 @@ use super::progress::Bar;
 use super::shader::{OwnShader, constant, written};
 use super::signals::stopped_by_signals;
 use super::{Status, quoted, writable};
-use anyhow::bail;
 use clap::Args;
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
@@ -72,13 +71,6 @@ impl Identify {
         let own = OwnShader::new(file.clone(), self.function.as_deref(), self.bind.clone(), self.constant.clone());
         let adapters: Vec<String> = self.adapter.iter().cloned().collect();
         let accepted = own.adapted_to(&[], &adapters)?;
-        if accepted.adapted.is_empty() {
-            bail!(
-                "the variables of {} can be bound to the inputs of no formula. `lightmeter run FORMULA --shader FILE` says which ones are not \
-                 known; `--bind` says what they mean",
-                file.display()
-            );
-        }
         let ids: Vec<&str> = accepted.adapted.iter().map(|adapted| adapted.id.as_str()).collect();
         let mut options = Options::by(accepted.code()?, None, 1, self.profile);
         options.filter = Filter::new(&ids)?;

@@ -4,7 +4,7 @@ use super::foreign;
 use super::terminal::level;
 use super::values::setting;
 use super::{Status, quoted, say};
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
 use lightmeter::bench::OwnShader as Beside;
 use lightmeter::cases::{Kind, Spec};
@@ -17,9 +17,10 @@ use lightmeter::report::Level;
 use lightmeter::select::{Member, Shard, catalogue, select};
 use lightmeter::subject_gpu::code_of;
 use lightmeter_adapt::bind::{AskedBinding, Bound, Found, ShaderBinding, bind};
+use lightmeter_adapt::constant::numbers;
 use lightmeter_adapt::place::{line_of_step, line_of_variable};
 use lightmeter_adapt::source::{Language, ShaderSource};
-use lightmeter_adapt::{MOST_TURNS, Part, ShaderProgram, in_language, replaced, stable_form};
+use lightmeter_adapt::{AdaptError, MOST_TURNS, Part, ShaderProgram, in_language, replaced, stable_form};
 use lightmeter_gpu::Shaders;
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -56,8 +57,8 @@ pub(crate) struct OwnShader {
     /// What a variable of the shader means: WGSL over the formula's inputs, as `lightDir=-direction`; again for several
     #[arg(long, value_name = "NAME=EXPRESSION", allow_hyphen_values = true)]
     bind: Vec<String>,
-    /// An input of the formula that the shader has as a constant, as `shininess=32` or `ls=1,1,1`, or in common with another one, as
-    /// `ma=md`; again for several
+    /// An input of the formula that the shader has as a constant, as `shininess=32`, `ls=1,1,1` or `l=normalize(vec3(1, 2, 3))`, or in
+    /// common with another one, as `ma=md`; again for several
     #[arg(long, value_name = "NAME=VALUE", value_parser = constant, allow_hyphen_values = true)]
     constant: Vec<(String, Constant)>,
 }
@@ -146,14 +147,23 @@ fn is_identified(spec: &Spec) -> bool {
         && matches!(spec.kind, Kind::Arithmetic)
 }
 
-/// An input's numbers, or another input's name.
+/// An input's numbers, an expression that gives them, or another input's name.
 pub(crate) fn constant(text: &str) -> Result<(String, Constant), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, as shininess=32, ls=1,1,1 or ma=md")?;
-    let value = value.trim();
-    if value.starts_with(|c: char| c.is_alphabetic()) && !["inf", "nan"].contains(&value.to_lowercase().as_str()) {
-        return Ok((name.trim().into(), Constant::SameAs(value.into())));
+    let (name, value) = (name.trim(), value.trim());
+    let is_name = value.chars().all(|c| c.is_alphanumeric() || c == '_') && value.starts_with(char::is_alphabetic);
+    if is_name && !["inf", "nan"].contains(&value.to_lowercase().as_str()) {
+        return Ok((name.into(), Constant::SameAs(value.into())));
     }
-    setting(text).map(|(name, values)| (name, Constant::Numbers(values)))
+    if let Ok((name, values)) = setting(text) {
+        return Ok((name, Constant::Numbers(values)));
+    }
+    let values = numbers(value).ok_or_else(|| {
+        format!(
+            "`{value}` is no list of numbers, as 1,1,1, and no constant expression of WGSL, as normalize(vec3(1, 2, 3)) or 1.0/3.0"
+        )
+    })?;
+    Ok((name.into(), Constant::Numbers(values)))
 }
 
 /// A constant as it is given on the command line.
@@ -470,7 +480,13 @@ impl Adapt {
         let asked = self.own.asked()?;
         let bound: Vec<(&Spec, ShaderBinding)> = if self.every {
             let own = catalogue.iter().map(|member| &member.spec).filter(|spec| is_identified(spec));
-            own.filter_map(|spec| Some((spec, bind(&program, spec, &asked).ok()?))).collect()
+            let (bound, others): (Vec<_>, Vec<_>) =
+                own.map(|spec| Ok((spec, bind(&program, spec, &asked)?))).partition(Result::is_ok);
+            if bound.is_empty() {
+                let refused = others.into_iter().filter_map(|other: Result<_, AdaptError>| other.err());
+                return Err(no_formula(&file, refused));
+            }
+            bound.into_iter().flatten().collect()
         } else {
             let of = |id: &String| -> anyhow::Result<(&Spec, ShaderBinding)> {
                 let member = catalogue.iter().find(|member| member.spec.id == *id);
@@ -497,6 +513,16 @@ impl Adapt {
         super::show(&told, None)?;
         Ok(Status::Success)
     }
+}
+
+/// That a shader can be bound to no formula: with what is not known of the nearest one.
+fn no_formula(file: &Path, refused: impl Iterator<Item = AdaptError>) -> anyhow::Error {
+    let nearest = refused.map(|error| error.to_string()).min_by_key(|message| message.lines().count());
+    anyhow!(
+        "the variables of {} can be bound to the inputs of no formula. Nearest is this: {}",
+        file.display(),
+        nearest.unwrap_or_default()
+    )
 }
 
 /// An expression as people read it.

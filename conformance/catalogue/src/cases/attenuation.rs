@@ -86,6 +86,7 @@ formula!(
     fit toward_the_cone,
     |l, axis, cutoff_cosine, exponent; out| { out.scalar(attenuation::spot_exponent(l, axis, cutoff_cosine, exponent)); },
     hard [
+        Hard::new("on-the-edge-of-a-hemisphere", "the edge belongs to the cone", ON_THE_EDGE),
         Hard::new("no-exponent", "an evenly lit cone", &[("l", &[0.0, 0.6, -0.8]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[0.0])]),
         Hard::new("slight-exponent", "an exponent of 0.0005 is not 0", SLIGHT),
         Hard::new("barely-before-it", "however small, a cosine above 0 counts", &[("l", &[0.999_999_9, 0.0, -9e-5]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[0.5])]),
@@ -99,6 +100,8 @@ const BEHIND: &[(&str, &[f32])] =
     &[("l", &[0.953_939_2, 0.0, 0.3]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[-0.5]), ("exponent", &[0.0])];
 
 /// A direction 84° from the axis, 0.1^0.0005 as bright.
+const ON_THE_EDGE: &[(&str, &[f32])] =
+    &[("l", &[0.0, 1.0, 0.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[0.0])];
 const SLIGHT: &[(&str, &[f32])] =
     &[("l", &[0.994_987_4, 0.0, -0.1]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[5e-4])];
 
@@ -164,6 +167,7 @@ formula!(
     stable 32.0 Unit "as lighting/cosine-power-by-chord",
     |l, axis, cutoff_cosine, exponent; out| { out.scalar(attenuation::spot_exponent_by_chord(l, axis, cutoff_cosine, exponent)); },
     hard [
+        Hard::new("on-the-edge-of-a-hemisphere", "the edge belongs to the cone", ON_THE_EDGE),
         Hard::new("slight-exponent-by-chord", "an exponent of 0.0005 is not 0", SLIGHT),
         Hard::new("no-exponent-behind", "evenly lit where the cone reaches behind the light too", BEHIND),
         Hard::new("beam-1e4", "half as bright at 0.67°", &[("l", &[-0.011_773_7, 0.0, -0.999_930_7]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[1e4])])

@@ -343,6 +343,8 @@ mode!(
     hard [
         Hard::new("half-red-over-blue", "document 002's figure", &[("src", &[1.0, 0.0, 0.0, 0.5]), ("dst", &[0.0, 0.0, 1.0])]),
         Hard::new("transparent-over-dark", "a source of alpha 0 changes nothing, to the last bit", &[("src", &[1.0, 0.85, 0.6, 0.0]), ("dst", &[0.006, 0.0012, 0.000_3])]),
+        Hard::new("alpha-above-one", "alpha is not clamped", &[("src", &[1.0, 0.5, 0.25, 1.5]), ("dst", &[1.0, 0.5, 0.25])]),
+        Hard::new("alpha-below-zero", "alpha is not clamped", &[("src", &[1.0, 0.5, 0.25, -0.5]), ("dst", &[1.0, 0.75, 0.25])]),
         Hard::new("dark-over-bright", "an almost opaque source, darker by ½: dst·As is far greater than the result", &[("src", &[0.007_812_5, 0.015_625, 0.031_25, 0.99]), ("dst", &[0.507_812_5, 0.515_625, 0.531_25])]),
     ]
 );
@@ -383,6 +385,7 @@ formula!(
     stable 4.0 Own "two products and a sum of one sign",
     |src, dst; out| { out.vector(over(src, dst)); },
     hard [
+        Hard::new("alpha-above-one-over", "alpha is not clamped", &[("src", &[1.0, 0.5, 0.25, 1.5]), ("dst", &[1.0, 0.5, 0.25])]),
         Hard::new("opaque-over-1e8", "all of an opaque source, over the brightest light", &[("src", &[0.3, 0.5, 0.7, 1.0]), ("dst", &[1e8, 1e8, 1e8])])
             .naive("blend/over-incremental", "src − dst has lost src", 1e6),
         Hard::new("opaque-over-1e4", "all of an opaque source, over the sun", &[("src", &[0.3, 0.5, 0.7, 1.0]), ("dst", &[1e4, 2e4, 3e4])])

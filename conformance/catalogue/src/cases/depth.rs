@@ -153,8 +153,10 @@ formula!(
     [NEAR, FAR, EYE_DISTANCE] -> [STORED],
     |near, far, z; out| { out.scalar(stored(near, far, z)); },
     hard [
-        Hard::new("at-the-near-plane", "0", &[("near", &[0.75]), ("z", &[0.75])]),
-        Hard::new("at-the-far-plane", "1", &[("far", &[96.0]), ("z", &[96.0])]),
+        Hard::new("just-behind-the-near-plane", "a depth of 6 parts in a million", &[("near", &[0.75]), ("z", &[0.750_005])]),
+        Hard::new("just-before-the-far-plane", "a depth just below 1", &[("far", &[96.0]), ("z", &[95.9999])]),
+        Hard::new("at-the-near-plane", "0", &[("near", &[0.75]), ("z", &[0.75])]).at_an_end(),
+        Hard::new("at-the-far-plane", "1", &[("far", &[96.0]), ("z", &[96.0])]).at_an_end(),
     ],
 );
 formula!(
@@ -164,8 +166,10 @@ formula!(
     [NEAR, FAR, EYE_DISTANCE] -> [STORED],
     |near, far, z; out| { out.scalar(stored_reversed(near, far, z)); },
     hard [
-        Hard::new("at-the-near-plane", "1", &[("near", &[0.75]), ("z", &[0.75])]),
-        Hard::new("at-the-far-plane", "0", &[("far", &[96.0]), ("z", &[96.0])]),
+        Hard::new("just-behind-the-near-plane", "a depth just below 1", &[("near", &[0.75]), ("z", &[0.750_005])]),
+        Hard::new("just-before-the-far-plane", "a depth of 8 parts in a billion", &[("far", &[96.0]), ("z", &[95.9999])]),
+        Hard::new("at-the-near-plane", "1", &[("near", &[0.75]), ("z", &[0.75])]).at_an_end(),
+        Hard::new("at-the-far-plane", "0", &[("far", &[96.0]), ("z", &[96.0])]).at_an_end(),
     ],
 );
 formula!(
@@ -177,8 +181,8 @@ formula!(
     hard [
         Hard::new("far-out", "beyond 100 units", &[("near", &[10.0]), ("far", &[1000.0]), ("z", &[700.0])]),
         Hard::new("far-out-of-a-deep-range", "ill-conditioned: a step of depth is 0.024 units", &[("near", &[0.1]), ("far", &[1000.0]), ("z", &[200.0])]),
-        Hard::new("at-near", "as near as it is drawn", &[("near", &[0.25]), ("far", &[64.0]), ("z", &[0.25])]),
-        Hard::new("at-far", "as far as it is drawn", &[("near", &[16.0]), ("far", &[4096.0]), ("z", &[4096.0])]),
+        Hard::new("at-near", "as near as it is drawn", &[("near", &[0.25]), ("far", &[64.0]), ("z", &[0.25])]).at_an_end(),
+        Hard::new("at-far", "as far as it is drawn", &[("near", &[16.0]), ("far", &[4096.0]), ("z", &[4096.0])]).at_an_end(),
     ],
 );
 formula!(

@@ -286,8 +286,15 @@ macro_rules! formula {
                 const COLORS: usize = $crate::cases::colors($name::INPUTS);
                 const GIVEN: usize = $crate::cases::given_beyond($name::INPUTS);
                 const BEYOND: [(&str, &[f32]); GIVEN] = $crate::cases::beyond($name::INPUTS);
-                const WITH: [$crate::cases::Hard; OWN.len() + 1] = $crate::cases::and_beyond(OWN, &BEYOND);
-                const HARD: &[$crate::cases::Hard] = if COLORS > 0 { &WITH } else { OWN };
+                const DULL: usize = $crate::cases::given_dull($name::INPUTS);
+                const NONE: [(&str, &[f32]); DULL] = $crate::cases::dull($name::INPUTS, &[0.0]);
+                const HALF: [(&str, &[f32]); DULL] = $crate::cases::dull($name::INPUTS, &[0.5]);
+                const COMMON: usize = (COLORS > 0) as usize + if DULL > 0 { 2 } else { 0 };
+                const HARD: &[$crate::cases::Hard] = &{
+                    const ALL: [$crate::cases::Hard; OWN.len() + COMMON] =
+                        $crate::cases::and_common(OWN, COLORS > 0, [&BEYOND, &NONE, &HALF]);
+                    ALL
+                };
                 const STABLE: &[$crate::cases::Stable] = &[
                     $($crate::cases::Stable { bound: $bound, size: $crate::cases::Size::$size, because: $because })?
                 ];

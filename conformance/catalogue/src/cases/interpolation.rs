@@ -166,6 +166,9 @@ macro_rules! viewport {
                 Hard::new("beside-the-screen", "nothing is clamped", &[
                     ("clip", &[5.0, -7.0, 3.0, 2.0]), ("origin", &[10.0, 20.0]), ("size", &[640.0, 480.0]), ("depth", &[0.25, 0.75]),
                 ]),
+                Hard::new("beside-the-screen-on-the-other-sides", "nothing is clamped", &[
+                    ("clip", &[-7.0, 5.0, -3.0, 2.0]), ("origin", &[10.0, 20.0]), ("size", &[640.0, 480.0]), ("depth", &[0.25, 0.75]),
+                ]),
             ],
         );
     };

@@ -91,7 +91,10 @@ formula!(
     [LS, MS, Input::direction("n"), Input::direction("h"), SHININESS] -> [RGB],
     fit facing_vectors,
     |ls, ms, n, h, shininess; out| { out.vector(lighting::specular_blinn(ls, ms, n, h, shininess)); },
-    hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("n", &[0.999_999_9, 0.0, 6e-5]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])])],
+    hard [
+        Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("n", &[0.999_999_9, 0.0, 6e-5]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("n", &[0.0, 0.0, 1.5]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[4.0])]),
+    ],
 );
 formula!(
     /// The highlight of a viewer at infinity.
@@ -100,6 +103,7 @@ formula!(
     [LS, MS, Input::direction("r"), SHININESS] -> [RGB],
     |ls, ms, r, shininess; out| { out.vector(lighting::specular_nonlocal(ls, ms, r, shininess)); },
     hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("r", &[0.999_999_9, 0.0, 6e-5]), ("shininess", &[1.0])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("r", &[0.0, 0.0, 1.5]), ("shininess", &[4.0])]),
         Hard::new("least-lit", "5e-10 is above 0, too", &[("ls", WHITE), ("ms", WHITE), ("r", &[1.0, 0.0, 5e-10]), ("shininess", &[1.0])]),
         Hard::new("no-shininess-least-lit", "1 for a cosine above 0, however small", &[("ls", WHITE), ("ms", WHITE), ("r", &[1.0, 0.0, 5e-10]), ("shininess", &[0.0])]),
     ],
@@ -252,6 +256,12 @@ formula!(
         let falloff = Falloff { kc, kl, kq };
         out.vector(lighting::point_opengl(&light, &material, [p, normal, position], &falloff, alpha));
     },
+    hard [
+        Hard::new("light-in-the-surface", "no highlight where l·n is 0", &[
+            ("ls", WHITE), ("ms", WHITE), ("shininess", &[2.0]), ("p", &[0.0, 0.0, -4.0]), ("normal", &[0.0, 0.0, 1.0]),
+            ("position", &[3.0, 0.0, -4.0]), ("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[0.0]),
+        ]),
+    ],
 );
 formula!(
     /// A spotlight.
@@ -416,7 +426,11 @@ formula!(
     [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 256.0))] -> [POWER],
     fit toward_each_other,
     |a, b, exponent; out| { out.scalar(lighting::cosine_power(a, b, exponent)); },
-    hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY)],
+    hard [
+        Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY),
+        Hard::new("no-exponent", "1 for a cosine above 0", &[("a", &[0.0, 0.6, 0.8]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[0.0])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("a", &[0.0, 0.0, 1.5]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[4.0])]),
+    ],
 );
 formula!(
     /// A highlight's power without its guard.
@@ -453,6 +467,7 @@ formula!(
         Hard::new("half-1e6", "half as bright at 0.07°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.001_177_4, 0.0, 0.999_999_3]), ("exponent", &[1e6])])
             .naive("lighting/cosine-power", "a·b near 1 has no digits for the angle, which a − b keeps", 1e5),
         Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY),
+        Hard::new("no-exponent", "1 for a cosine above 0", &[("a", &[0.0, 0.6, 0.8]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[0.0])]),
         Hard::new("behind-even", "0, never the even power of a negative cosine", &[("a", &[0.0, 0.0, -1.0]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[2.0])])
             .naive("lighting/cosine-power-unguarded", "NaN, or 1", 1e6),
         Hard::new("behind", "0, not NaN", &[("a", &[0.0, -0.6, -0.8]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[32.5])])
@@ -491,6 +506,9 @@ formula!(
         out.vector(lighting::blinn_stable(&light, &material, [p, normal, direction]));
     },
     hard [
+        Hard::new("light-in-the-surface", "no highlight where l·n is 0", &[
+            ("ls", WHITE), ("ms", WHITE), ("shininess", &[2.0]), ("p", &[0.0, 0.0, -4.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[-1.0, 0.0, 0.0]),
+        ]),
         Hard::new("eye-behind-the-light", "half a vector of nothing: no highlight", &[("ld", WHITE), ("ls", WHITE), ("md", GREY), ("ms", WHITE), ("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.001, 0.0, 1.0]), ("shininess", &[1.0])])
             .naive("lighting/blinn", "lit from behind", 5e3),
         Hard::new("light-at-95-degrees", "a highlight on the dark side", &[("ld", WHITE), ("ls", WHITE), ("md", GREY), ("ms", WHITE), ("p", &[-0.996, 0.0, -0.0872]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.996_194_7, 0.0, 0.087_155_7]), ("shininess", &[0.5])])

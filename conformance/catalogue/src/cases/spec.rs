@@ -229,6 +229,8 @@ pub struct Hard {
     pub inputs: Values,
     /// A form that fails here, of a formula that does not.
     pub naive: Option<Naive>,
+    /// Whether the formula has no meaning a few ULP away: its inputs are then not moved.
+    pub is_at_an_end: bool,
 }
 
 /// Inputs by name.
@@ -247,7 +249,7 @@ impl Input {
 const BEYOND: [&[f32]; 3] = [&[-0.5, 1.5, 2.0, 0.75], &[1.5, 2.0, -0.75, 1.25], &[2.5, -0.25, 1.25, 0.75]];
 
 /// A surface that is lit, by the names of what places it. What has none of these names is in the middle of its domain.
-const LIT: [(&str, &[f32]); 13] = [
+const LIT: [(&str, &[f32]); 20] = [
     ("p", &[0.25, -0.5, -4.0]),
     ("position", &[1.0, 1.5, -1.0]),
     ("light", &[1.0, 1.5, -1.0]),
@@ -261,6 +263,13 @@ const LIT: [(&str, &[f32]); 13] = [
     ("r", &[0.0, 0.6, 0.8]),
     ("h", &[0.0, 0.6, 0.8]),
     ("axis", &[-0.2, -0.5, -0.8]),
+    ("pa", &[-0.5, -0.5, -4.0]),
+    ("pb", &[0.5, 0.25, -4.25]),
+    ("na", &[0.36, 0.48, 0.8]),
+    ("nb", &[0.0, 0.6, 0.8]),
+    ("a", &[-0.5, -0.5, -4.0]),
+    ("b", &[0.75, -0.5, -4.25]),
+    ("c", &[0.0, 0.75, -4.0]),
 ];
 
 const fn is_same(a: &str, b: &str) -> bool {
@@ -326,14 +335,51 @@ pub const fn beyond<const N: usize>(inputs: &[Input]) -> [(&'static str, &'stati
     values
 }
 
-/// A formula's own hard cases, and one more of colours beyond black and white.
+/// How many inputs [`dull`] gives: none where there is no shininess.
 #[must_use]
-pub const fn and_beyond<const N: usize>(own: &[Hard], values: Values) -> [Hard; N] {
-    let mut all = [Hard::new("beyond-black-and-white", "colours below 0 and above 1 count as they are", values); N];
+pub const fn given_dull(inputs: &[Input]) -> usize {
+    let (mut k, mut count, mut has_shininess) = (0, 1, false);
+    while k < inputs.len() {
+        count += if inputs[k].lit().is_some() { 1 } else { 0 };
+        has_shininess |= is_same(inputs[k].name, "shininess");
+        k += 1;
+    }
+    if has_shininess { count } else { 0 }
+}
+
+/// A surface that is lit, with a shininess; `N` is [`given_dull`].
+#[must_use]
+pub const fn dull<const N: usize>(inputs: &[Input], shininess: &'static [f32]) -> [(&'static str, &'static [f32]); N] {
+    let mut values: [(&'static str, &'static [f32]); N] = [("shininess", shininess); N];
+    let (mut k, mut given) = (0, 1);
+    while k < inputs.len() && N > 0 {
+        if let Some(place) = inputs[k].lit() {
+            values[given] = (inputs[k].name, place);
+            given += 1;
+        }
+        k += 1;
+    }
+    values
+}
+
+/// A formula's own hard cases, and those that all formulas of its kind have: colours beyond black and white where it has colours, and
+/// exponents of 0 and of ½ where it has a shininess. `N` is the number of all of them.
+#[must_use]
+pub const fn and_common<const N: usize>(
+    own: &[Hard],
+    has_colors: bool,
+    [beyond, none, half]: [Values; 3],
+) -> [Hard; N] {
+    let mut all = [Hard::new("beyond-black-and-white", "colours below 0 and above 1 count as they are", beyond); N];
     let mut k = 0;
     while k < own.len() {
         all[k] = own[k];
         k += 1;
+    }
+    k += has_colors as usize;
+    if k < N {
+        all[k] = Hard::new("shininess-of-0", "1 wherever the cosine is above 0", none);
+        all[k + 1] = Hard::new("shininess-of-half", "the square root of the cosine", half);
     }
     all
 }
@@ -354,13 +400,19 @@ impl Hard {
     /// A case.
     #[must_use]
     pub const fn new(name: &'static str, pins: &'static str, inputs: Values) -> Self {
-        Self { name, pins, inputs, naive: None }
+        Self { name, pins, inputs, naive: None, is_at_an_end: false }
     }
 
     /// The same, with the form that fails there.
     #[must_use]
     pub const fn naive(self, formula: &'static str, fails: &'static str, at_least: f64) -> Self {
         Self { naive: Some(Naive { formula, fails, at_least }), ..self }
+    }
+
+    /// The same, at an end of what the formula is for: a few ULP away it has no meaning.
+    #[must_use]
+    pub const fn at_an_end(self) -> Self {
+        Self { is_at_an_end: true, ..self }
     }
 }
 

@@ -8,7 +8,7 @@ macro_rules! scenes {
     };
 }
 
-const COUNT: usize = 41;
+const COUNT: usize = 45;
 
 /// Each built-in scene's name and JSON.
 pub const SCENES: [(&str, &str); COUNT] = scenes! {
@@ -37,6 +37,9 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "light-ambient-opengl"
     "lightmap"
     "lights-together"
+    "many-points"
+    "many-spots"
+    "many-suns"
     "missed-highlight"
     "near-clip"
     "obj"
@@ -50,6 +53,7 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "spotlight"
     "teapot"
     "texture-edges"
+    "thresholds"
     "translucent-square"
     "unit-light"
     "viewer"

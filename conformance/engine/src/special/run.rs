@@ -122,7 +122,7 @@ struct Sink<'a> {
 
 impl Sink<'_> {
     fn put(&mut self, probe: &'static Probe, stage: &'static str, bits: u32) {
-        let recorded = self.on_record.and_then(|of| of.record().get(probe, stage));
+        let recorded = self.on_record.and_then(|of| of.record().get(probe, stage, bits));
         let binding = recorded.filter(|_| self.on_record.is_some_and(|of| of.binds));
         let deviation = SpecialDeviation::of(probe, &self.adapter.backend);
         self.results.outcomes.push(ProbeResult {

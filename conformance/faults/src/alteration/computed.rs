@@ -20,53 +20,54 @@ fn vector<R: Real>(taken: &Taken<'_, R>, name: &str) -> Option<Vec3<R>> {
 
 /// Computes the step by another formula; `None` where it is not given what that needs.
 pub(super) fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
+    use Form as F;
     match form {
-        Form::ReflectWithPlus | Form::ReflectOnce | Form::Blinn | Form::Phong | Form::PhongPower => {
+        F::ReflectWithPlus | F::ReflectOnce | F::Blinn | F::BlinnByDifference | F::Phong | F::PhongPower => {
             mirrored(form, taken)
         }
-        Form::NormalToTheEye | Form::NormalToTheLight => turned(form, taken),
-        Form::LobeOfBothSides
-        | Form::SchlickPower
-        | Form::ProductForPower
-        | Form::PowerOfAtLeast(_)
-        | Form::EnergyConserving
-        | Form::NormalisedPhong => power(form, taken),
-        Form::Gated | Form::GateTurned | Form::TimesIncidence | Form::HalfLambert { .. } => incident(form, taken),
-        Form::Fresnel { over_pi } => fresnel(over_pi, taken),
-        Form::NotInverted | Form::QuadraticOfDistance | Form::QuadraticOfProduct => attenuated(form, taken),
-        Form::SmoothCone
-        | Form::SmoothConeAlone
-        | Form::LinearCone
-        | Form::RescaledCone
-        | Form::ConeWithoutEdge
-        | Form::ConeTurned => cone(form, taken),
-        Form::Planar | Form::Radial | Form::SignedDepth | Form::NegatedDepth | Form::SquaredLength => {
-            length(form, taken)
+        F::NormalToTheEye | F::NormalToTheLight => turned(form, taken),
+        F::LobeOfBothSides
+        | F::SchlickPower
+        | F::ProductForPower
+        | F::PowerOfAtLeast(_)
+        | F::EnergyConserving
+        | F::NormalisedPhong => power(form, taken),
+        F::Gated | F::GatedBelow | F::GateTurned | F::TimesIncidence | F::HalfLambert { .. } => incident(form, taken),
+        F::Fresnel { over_pi } => fresnel(over_pi, taken),
+        F::NotInverted | F::ConstantInverted | F::QuadraticOfDistance | F::QuadraticOfProduct => {
+            attenuated(form, taken)
         }
-        Form::FogExp
-        | Form::FogExp2Document
-        | Form::FogExp2OpenGl
-        | Form::FogRational
-        | Form::ExpByQuadratic
-        | Form::FogAdded
-        | Form::FogToBlack
-        | Form::FogFromTheSurface
-        | Form::FogFromDmin => fogged(form, taken),
-        Form::NormalByInverse | Form::NormalByModelview | Form::NormalByCofactors => normal(form, taken),
-        Form::DirectionAsPosition | Form::PositionAsDirection | Form::DividedAlways | Form::NotDivided => {
+        F::SmoothCone | F::SmoothConeAlone | F::LinearCone | F::RescaledCone | F::ConeWithoutEdge | F::ConeTurned => {
+            cone(form, taken)
+        }
+        F::Planar | F::Radial | F::SignedDepth | F::NegatedDepth | F::SquaredLength => length(form, taken),
+        F::FogExp
+        | F::FogExp2Document
+        | F::FogExp2OpenGl
+        | F::FogRational
+        | F::ExpByQuadratic
+        | F::FogAdded
+        | F::FogToBlack
+        | F::FogFromTheSurface
+        | F::FogFromDmin
+        | F::FogNotTurned
+        | F::FogStepBeyond => fogged(form, taken),
+        F::NormalByInverse | F::NormalByModelview | F::NormalByCofactors | F::NormalByUnsigned => normal(form, taken),
+        F::DirectionAsPosition | F::PositionAsDirection | F::DividedAlways | F::DividedIfPositive | F::NotDivided => {
             placed(form, taken)
         }
-        Form::MixFromTheEnd | Form::OverFromTheProduct | Form::Middle => between(form, taken),
-        Form::EdgeFromItsEnd | Form::EdgeFromThePoint | Form::WeightsBySum => sides(form, taken),
-        Form::DepthBetween | Form::DepthRange | Form::UpsideDown => window(form, taken),
-        Form::TruncatedByte | Form::ByteBy256 | Form::UnclampedByte | Form::ByteBySum => byte(form, taken),
-        Form::LinearDepth | Form::LinearDepthRead | Form::DepthByProjection => depth(form, taken),
-        Form::EncodeThreshold
-        | Form::DecodeThreshold
-        | Form::EncodeWithoutScale
-        | Form::EncodeCurve
-        | Form::EncodeRec709
-        | Form::DecodeRec709 => converted(form, taken),
+        F::MixFromTheEnd | F::OverFromTheProduct | F::Middle => between(form, taken),
+        F::EdgeFromItsEnd | F::EdgeFromThePoint | F::NormalByVertices => sides(form, taken),
+        F::WeightsBySum | F::WeightsByDifference => weights(form, taken),
+        F::DepthBetween | F::DepthRange | F::UpsideDown => window(form, taken),
+        F::TruncatedByte | F::ByteBy256 | F::UnclampedByte | F::ByteBySum => byte(form, taken),
+        F::LinearDepth | F::LinearDepthRead | F::DepthByProjection | F::DepthByDifference => depth(form, taken),
+        F::EncodeThreshold
+        | F::DecodeThreshold
+        | F::EncodeWithoutScale
+        | F::EncodeCurve
+        | F::EncodeRec709
+        | F::DecodeRec709 => converted(form, taken),
     }
 }
 
@@ -77,9 +78,13 @@ fn give<R: Copy, const N: usize>(taken: &mut Taken<'_, R>, v: [R; N]) -> Option<
 
 fn mirrored<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     let n = vector(taken, "n")?;
-    if matches!(form, Form::Blinn | Form::Phong | Form::PhongPower) {
+    if matches!(form, Form::Blinn | Form::BlinnByDifference | Form::Phong | Form::PhongPower) {
         let (l, v) = (vector(taken, "l")?, vector(taken, "v")?);
-        let cosine = if form == Form::Blinn { n.dot(halfway(v, l)) } else { reflect(-l, n).dot(v) };
+        let cosine = match form {
+            Form::Blinn => n.dot(halfway(v, l)),
+            Form::BlinnByDifference => n.dot(halfway(v, -l)),
+            _ => reflect(-l, n).dot(v),
+        };
         return match scalar(taken, "exponent") {
             Some(exponent) => give(taken, [cosine.lobe(exponent)]),
             None => give(taken, [cosine]),
@@ -130,7 +135,7 @@ fn incident<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         let wrapped = half * cosine + half;
         return give(taken, [if squared { wrapped * wrapped } else { wrapped }]);
     }
-    if form == Form::GateTurned {
+    if matches!(form, Form::GateTurned | Form::GatedBelow) {
         // With a cosine of 1 the gate is open, so the step computes the value that the gate would otherwise have cut to 0.
         let range = taken.place("cosine")?;
         taken.from[range].fill(R::literal(1.0));
@@ -140,6 +145,7 @@ fn incident<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     let shown = match form {
         Form::GateTurned => R::if_ge(zero, cosine, || fs, || zero),
         Form::Gated => R::if_ge(zero, cosine, || zero, || fs),
+        Form::GatedBelow => R::if_ge(cosine, zero, || fs, || zero),
         _ => fs * cosine.max(zero),
     };
     give(taken, [shown])
@@ -172,6 +178,7 @@ fn attenuated<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     let one = R::literal(1.0);
     let atten = match form {
         Form::NotInverted => R::quadratic([kc, kl, kq], d),
+        Form::ConstantInverted => R::sum([one / kc, kl * d, R::product([kq, d, d])]),
         Form::QuadraticOfDistance => one / R::sum([kc, kl * d, kq * d]),
         _ => one / R::sum([kc, kl * d, R::product([kq, d, kq, d])]),
     };
@@ -219,6 +226,18 @@ fn fogged<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         };
         return give(taken, color.0);
     }
+    if matches!(form, Form::FogNotTurned | Form::FogStepBeyond) {
+        let [distance, dmin, dmax] = [scalar(taken, "distance")?, scalar(taken, "dmin")?, scalar(taken, "dmax")?];
+        let ramp = || ((dmax - distance) / (dmax - dmin)).clamp(zero, one);
+        let at_once = || R::if_ge(distance, dmax, || zero, || one);
+        let beyond = || R::if_ge(dmax, distance, || one, || zero);
+        let f = if form == Form::FogNotTurned {
+            R::if_ge(dmin, dmax, at_once, ramp)
+        } else {
+            R::if_ge(dmin, dmax, || R::if_ge(dmax, dmin, beyond, ramp), ramp)
+        };
+        return give(taken, [f]);
+    }
     if form == Form::FogFromDmin {
         let [distance, dmin, dmax] = [scalar(taken, "distance")?, scalar(taken, "dmin")?, scalar(taken, "dmax")?];
         let ramp = || (one - (distance - dmin) / (dmax - dmin)).clamp(zero, one);
@@ -250,6 +269,10 @@ fn normal<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
             let determinant = m.0[0].dot(cofactors.0[0]);
             Vector(cofactors.0.map(|column| column.dot(n) / determinant))
         }
+        Form::NormalByUnsigned => {
+            let determinant = m.0[0].dot(cofactors.0[0]).abs();
+            cofactors.transform(n).map(|x| x / determinant)
+        }
         Form::NormalByModelview => m.transform(n),
         _ => cofactors.transform(n),
     };
@@ -270,7 +293,12 @@ fn placed<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         }
         _ => {
             let [x, y, z, w] = taken.array("eye").or_else(|| taken.array("clip"))?;
-            Vector(if form == Form::NotDivided { [x, y, z] } else { [x, y, z].map(|c| c / w) })
+            let divided = || Vector([x, y, z].map(|c| c / w));
+            match form {
+                Form::NotDivided => Vector([x, y, z]),
+                Form::DividedIfPositive => R::if_ge(zero, w, || Vector([x, y, z]), divided),
+                _ => divided(),
+            }
         }
     };
     give(taken, moved.0)
@@ -302,19 +330,26 @@ fn between<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     }
 }
 
-/// A triangle's sides taken from another vertex, in the plane or in space, and its weights by the sum of their areas.
+/// The weights of a point by the sum of their areas, or the last by difference.
+fn weights<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
+    let [a, b, c, p]: [Vector<R, 2>; 4] =
+        [Vector(taken.array("a")?), Vector(taken.array("b")?), Vector(taken.array("c")?), Vector(taken.array("p")?)];
+    let areas = [[b, c], [c, a], [a, b]].map(|[from, to]| edge(from, to, p));
+    if form == Form::WeightsBySum {
+        return give(taken, areas.map(|area| area / R::sum(areas)));
+    }
+    let whole = edge(a, b, c);
+    let [first, second] = [areas[0] / whole, areas[1] / whole];
+    give(taken, [first, second, R::literal(1.0) - first - second])
+}
+
+/// A triangle's sides taken from another vertex, in the plane or in space.
 fn sides<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     let third = if taken.place("p").is_some() { "p" } else { "c" };
     let order = if form == Form::EdgeFromItsEnd { [1, 2, 0] } else { [2, 0, 1] };
-    if form == Form::WeightsBySum {
-        let [a, b, c, p]: [Vector<R, 2>; 4] = [
-            Vector(taken.array("a")?),
-            Vector(taken.array("b")?),
-            Vector(taken.array("c")?),
-            Vector(taken.array("p")?),
-        ];
-        let areas = [[b, c], [c, a], [a, b]].map(|[from, to]| edge(from, to, p));
-        return give(taken, areas.map(|area| area / R::sum(areas)));
+    if form == Form::NormalByVertices {
+        let [a, b, c] = [vector(taken, "a")?, vector(taken, "b")?, vector(taken, "c")?];
+        return give(taken, Vector::sum([a.cross(b), b.cross(c), c.cross(a)]).0);
     }
     if let [Some(a), Some(b), Some(c)] = ["a", "b", third].map(|name| vector(taken, name)) {
         let [a, b, c] = order.map(|k| [a, b, c][k]);
@@ -367,6 +402,11 @@ fn depth<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
             } else {
                 far / range * (one - near / z)
             }
+        }
+        Form::DepthByDifference => {
+            let (z, reversed) = (scalar(taken, "z")?, taken.step.name == "reversed depth");
+            let (nearer, whole) = (far * near / (range * z), if reversed { near / range } else { far / range });
+            if reversed { nearer - whole } else { whole - nearer }
         }
         Form::LinearDepth if taken.step.name == "reversed depth" => (far - scalar(taken, "z")?) / range,
         Form::LinearDepth => (scalar(taken, "z")? - near) / range,

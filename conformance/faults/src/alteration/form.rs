@@ -9,6 +9,8 @@ pub(in super::super) enum Form {
     ReflectOnce,
     /// n·h for r·v.
     Blinn,
+    /// n·⟨v − l⟩ for n·h.
+    BlinnByDifference,
     /// r·v for n·h.
     Phong,
     /// (r·v)^exponent.
@@ -31,6 +33,8 @@ pub(in super::super) enum Form {
     NormalisedPhong,
     /// 0 where the cosine is at most 0.
     Gated,
+    /// 0 where the cosine is below 0: not where it is 0.
+    GatedBelow,
     /// 0 where the cosine is above 0.
     GateTurned,
     /// Times max(cosine, 0).
@@ -41,6 +45,8 @@ pub(in super::super) enum Form {
     HalfLambert { squared: bool },
     /// kc + kl·d + kq·d².
     NotInverted,
+    /// 1/kc + kl·d + kq·d².
+    ConstantInverted,
     /// 1/(kc + kl·d + kq·d).
     QuadraticOfDistance,
     /// 1/(kc + d·kl + (d·kq)²).
@@ -57,6 +63,10 @@ pub(in super::super) enum Form {
     ConeWithoutEdge,
     /// The spotlight shines where its cone is not.
     ConeTurned,
+    /// A ramp where dmin < dmax, a step elsewhere.
+    FogNotTurned,
+    /// A ramp where dmin and dmax differ, a step that is still 1 at dmax where they do not.
+    FogStepBeyond,
     /// |z|.
     Planar,
     /// |p|.
@@ -91,12 +101,16 @@ pub(in super::super) enum Form {
     NormalByModelview,
     /// The cofactor matrix, not divided by the determinant: where the determinant is negative, the normal points the wrong way.
     NormalByCofactors,
+    /// The cofactor matrix over the determinant without its sign: where the determinant is negative, the normal points the wrong way.
+    NormalByUnsigned,
     /// A direction moved by the view's translation.
     DirectionAsPosition,
     /// A position that is not moved by a matrix's translation.
     PositionAsDirection,
     /// Divided by w though that is 0.
     DividedAlways,
+    /// Divided by w where it is above 0.
+    DividedIfPositive,
     /// Not divided by w.
     NotDivided,
     /// b − (1 − t)(b − a), or src − (1 − As)(src − dst).
@@ -109,6 +123,10 @@ pub(in super::super) enum Form {
     EdgeFromThePoint,
     /// Each weight is its area over the sum of the three.
     WeightsBySum,
+    /// The last weight is 1 without the others.
+    WeightsByDifference,
+    /// a × b + b × c + c × a.
+    NormalByVertices,
     /// near(1 − z) + far·z.
     DepthBetween,
     /// Depth from [−1, 1] for [0, 1] or the reverse.
@@ -127,6 +145,8 @@ pub(in super::super) enum Form {
     LinearDepth,
     /// far/(far − near)·(1 − near/z), or near/(far − near)·(far/z − 1).
     DepthByProjection,
+    /// far/(far − near) − far·near/((far − near)z), or near·far/((far − near)z) − near/(far − near).
+    DepthByDifference,
     /// Depth read back as if it grew evenly.
     LinearDepthRead,
     /// sRGB encoding that switches from the linear piece to the curved piece at the threshold of decoding, 0.04045.
@@ -150,7 +170,7 @@ impl Form {
     pub(super) const fn needs(self) -> &'static [&'static [&'static str]] {
         match self {
             Self::ReflectWithPlus | Self::ReflectOnce => &[&["i", "n"], &["l", "n"]],
-            Self::Blinn | Self::Phong => &[&["n", "l", "v"]],
+            Self::Blinn | Self::BlinnByDifference | Self::Phong => &[&["n", "l", "v"]],
             Self::PhongPower => &[&["n", "l", "v", "exponent"]],
             Self::NormalToTheEye | Self::NormalToTheLight => &[&["n", "l", "v"]],
             Self::ExpByQuadratic => &[&["exponent"]],
@@ -160,11 +180,15 @@ impl Form {
             | Self::PowerOfAtLeast(_)
             | Self::EnergyConserving
             | Self::NormalisedPhong => &[&["cosine", "exponent"], &["a", "b", "exponent"]],
-            Self::Gated | Self::GateTurned | Self::TimesIncidence | Self::HalfLambert { .. } => &[&["cosine"]],
+            Self::Gated | Self::GatedBelow | Self::GateTurned | Self::TimesIncidence | Self::HalfLambert { .. } => {
+                &[&["cosine"]]
+            }
             Self::Fresnel { .. } => {
                 &[&["light", "material", "n", "l", "v", "shininess"], &["ks", "n", "l", "v", "shininess"]]
             }
-            Self::NotInverted | Self::QuadraticOfDistance | Self::QuadraticOfProduct => &[&["kc", "kl", "kq", "d"]],
+            Self::NotInverted | Self::ConstantInverted | Self::QuadraticOfDistance | Self::QuadraticOfProduct => {
+                &[&["kc", "kl", "kq", "d"]]
+            }
             Self::SmoothCone
             | Self::SmoothConeAlone
             | Self::LinearCone
@@ -176,23 +200,25 @@ impl Form {
                 &[&["distance", "density"]]
             }
             Self::FogAdded | Self::FogToBlack | Self::FogFromTheSurface => &[&["fog", "shaded", "f"]],
-            Self::FogFromDmin => &[&["distance", "dmin", "dmax"]],
+            Self::FogFromDmin | Self::FogNotTurned | Self::FogStepBeyond => &[&["distance", "dmin", "dmax"]],
             Self::SquaredLength => &[&["v"]],
-            Self::NormalByInverse | Self::NormalByModelview | Self::NormalByCofactors => &[&["modelview", "n"]],
+            Self::NormalByInverse | Self::NormalByModelview | Self::NormalByCofactors | Self::NormalByUnsigned => {
+                &[&["modelview", "n"]]
+            }
             Self::DirectionAsPosition => &[&["view", "direction"]],
             Self::PositionAsDirection => &[&["view", "model", "position"]],
-            Self::DividedAlways | Self::NotDivided => &[&["eye"], &["clip"]],
+            Self::DividedAlways | Self::DividedIfPositive | Self::NotDivided => &[&["eye"], &["clip"]],
             Self::MixFromTheEnd => &[&["a", "b", "t"], &["src", "dst"]],
             Self::OverFromTheProduct => &[&["src", "dst"]],
             Self::EdgeFromItsEnd | Self::EdgeFromThePoint => &[&["a", "b", "p"], &["a", "b", "c"]],
-            Self::WeightsBySum => &[&["a", "b", "c", "p"]],
+            Self::WeightsBySum | Self::WeightsByDifference => &[&["a", "b", "c", "p"]],
             Self::DepthBetween | Self::DepthRange | Self::UpsideDown => &[&["ndc", "origin", "size", "depth"]],
             Self::TruncatedByte | Self::ByteBy256 | Self::UnclampedByte | Self::ByteBySum => &[&["c"]],
-            Self::LinearDepth | Self::DepthByProjection => &[&["near", "far", "z"]],
+            Self::LinearDepth | Self::DepthByProjection | Self::DepthByDifference => &[&["near", "far", "z"]],
             Self::LinearDepthRead => &[&["near", "far", "depth"]],
             Self::EncodeThreshold | Self::EncodeRec709 | Self::EncodeWithoutScale | Self::EncodeCurve => &[&["c"]],
             Self::DecodeRec709 | Self::DecodeThreshold => &[&["e"]],
-            Self::Middle => &[&["a", "b", "c"]],
+            Self::Middle | Self::NormalByVertices => &[&["a", "b", "c"]],
         }
     }
 }

@@ -91,6 +91,8 @@ faults! {
         }
     });
     Frame "last-light-left-out" "the last light is left out" |frame| { frame.lights.pop(); };
+    Frame "lights-limited-to-eight" "no more than eight lights shine" @ "OpenGL's GL_LIGHT0 to GL_LIGHT7" |frame| frame.lights.truncate(8);
+    Frame "lights-limited" "the lights' colours are limited to 1" |frame| each_light(frame, |light| [&mut light.ambient, &mut light.diffuse, &mut light.specular].into_iter().flatten().for_each(|c| *c = c.min(1.0)));
     Frame "first-light-alone" "the first light alone shines" |frame| frame.lights.truncate(1);
     // Terms.
     Frame "ambient-left-out" "the ambient light is left out" |frame| frame.ambient = [0.0; 3];
@@ -115,6 +117,7 @@ faults! {
     Frame "material-specular-ignored" "the highlight is white whatever the material" |frame| each_material(frame, |material| material.specular = [1.0; 3]);
     Frame "shininess-fourfold" "shininess is 4 times what was asked" @ "Blinn's exponent converted from Phong's" |frame| each_material(frame, |material| material.shininess *= 4.0);
     Frame "shininess-quarter" "shininess is a quarter of what was asked" @ "Phong's exponent converted from Blinn's" |frame| each_material(frame, |material| material.shininess *= 0.25);
+    Frame "shininess-limited-to-128" "the shininess is limited to 128" @ "OpenGL's GL_SHININESS" |frame| each_material(frame, |material| material.shininess = material.shininess.min(128.0));
     Frame "shininess-128ths" "shininess is in 128ths" |frame| each_material(frame, |material| material.shininess /= 128.0);
     // How it is lit.
     Frame "gouraud-for-phong" "the vertices are lit in the place of the fragments" @ "OpenGL's fixed function; three.js, MeshLambertMaterial of old" |frame| each_shading(frame, |shading| if shading.frequency == Frequency::Phong { shading.frequency = Frequency::Gouraud });
@@ -233,6 +236,8 @@ faults! {
         texture.sampled.wrap = Wrap::Repeat;
     });
     Frame "texture-upside-down" "textures are upside down" @ "OpenGL's origin of images for WebGPU's" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.uvs).for_each(|uv| uv[1] = 1.0 - uv[1]);
+    Frame "texture-alpha-ignored" "the alpha of textures and lightmaps is taken as 1" @ "textures uploaded as RGB" |frame| frame.textures.iter_mut().flat_map(|texture| &mut texture.texels).for_each(|texel| texel[3] = 1.0);
+    Frame "vertex-alpha-ignored" "the alpha of the vertices' colours is taken as 1" @ "vertex colours of three components" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.colors).for_each(|color| color[3] = 1.0);
     Frame "lightmap-left-out" "lightmaps are left out" |frame| each_draw(frame, |draw| draw.lightmap = None);
     Frame "vertex-colours-left-out" "the vertices' colours are left out" |frame| each_draw(frame, |draw| draw.vertex_colors = false);
     Frame "cutout-left-out" "nothing is cut out" |frame| each_draw(frame, |draw| draw.cutout = None);

@@ -54,6 +54,12 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[form("atten", Form::NotInverted)]],
     )
     .only(|spec| spec.id != "attenuation/constant"),
+    fault(
+        "constant-alone-inverted",
+        "attenuation is 1/kc + kl·d + kq·d²: the parentheses around the divisor are missing",
+        &[&[form("atten", Form::ConstantInverted)]],
+    )
+    .only(|spec| spec.id != "attenuation/constant"),
     fault("attenuation-at-most-one", "attenuation is limited to 1", &[&[result("atten", Op::AtMost(1.0))]])
         .only(|spec| spec.id != "attenuation/constant"),
     fault(

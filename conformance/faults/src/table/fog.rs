@@ -51,6 +51,35 @@ pub(super) const FAULTS: &[Fault] = &[
     .only(|spec| spec.family() == "fog"),
     fault("fog-unclamped", "the fog factor is not clamped", &[&[pass("clamp", "f")]]),
     fault(
+        "fog-clamped-above",
+        "the fog factor is limited to 1 and not held above 0",
+        &[&[pass_as("clamp", "f", Op::AtMost(1.0))]],
+    )
+    .only(|spec| spec.id.starts_with("fog/linear")),
+    fault(
+        "fog-clamped-below",
+        "the fog factor is held above 0 and not limited to 1",
+        &[&[pass_as("clamp", "f", Op::AtLeast(0.0))]],
+    )
+    .only(|spec| spec.id.starts_with("fog/linear")),
+    fault(
+        "fog-not-turned",
+        "linear fog is a step where dmax lies before dmin, where it is to be turned round",
+        &[&[form("f", Form::FogNotTurned)]],
+    ),
+    fault(
+        "fog-step-beyond",
+        "where dmin and dmax are the same, fog begins beyond that distance and not at it",
+        &[&[form("f", Form::FogStepBeyond)]],
+    )
+    .seen_in("step(distance, dmax)"),
+    fault(
+        "fog-of-a-clamped-color",
+        "the surface's colour is clamped to [0, 1] before the fog is mixed in",
+        &[&[given("color", "shaded", Op::Clamp)]],
+    )
+    .seen_in("OpenGL's fixed function"),
+    fault(
         "fog-by-complement",
         "the fog factor is 1 − (1 − f), which loses a small one",
         &[&[result("f", Op::Complement)]],
@@ -73,6 +102,13 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[given("exp", "exponent", Op::Negate)]],
     )
     .seen_in("exp((−d)²); MicrosoftDocs/win32, PR 1904"),
+    fault(
+        "fog-density-squared",
+        "the fog's density is squared, and its distance is not",
+        &[&[given("f", "density", Op::Square)]],
+    )
+    .only(|spec| !spec.id.contains("exp2"))
+    .seen_in("OpenGL's squared form written for the plain one"),
     fault("fog-twice", "the fog's factor is squared", &[&[result("f", Op::Square)]]),
     fault(
         "fog-to-black",

@@ -73,6 +73,12 @@ pub(super) const FAULTS: &[Fault] = &[
     .only(|spec| !spec.id.contains("flat-point"))
     .seen_in("OpenGL's last vertex for Vulkan's first"),
     fault("every-edge-covers", "points on any edge are covered", &[&[result("share of an edge", Op::Set(1.0))]]),
+    fault(
+        "edges-of-the-lower-right",
+        "points on lower and right edges are covered, where those on upper and left ones are to be",
+        &[&[given("share of an edge", "ab", Op::Negate)]],
+    )
+    .seen_in("a y axis that points up"),
     fault("no-edge-covers", "points on edges are not covered", &[&[result("share of an edge", Op::Set(0.0))]]),
     fault("always-front", "every triangle is front facing", &[&[result("front", Op::Set(1.0))]]),
     fault(

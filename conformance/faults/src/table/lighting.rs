@@ -122,6 +122,12 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[form("n·(v + l)", Form::Blinn)], &[Instead(&[("vector/halfway-unnormalised", "vector/halfway")])]],
     ),
     fault(
+        "half-vector-by-difference",
+        "the half vector is that of v − l, not of v + l",
+        &[&[form("n·h", Form::BlinnByDifference)], &[given("v + l", "l", Op::Negate)]],
+    )
+    .seen_in("programs that take the light's direction of travel for the one to the light"),
+    fault(
         "half-vector-as-mean",
         "the half vector is the mean (v + l)/2",
         &[&[pass_as("h", "sum", Op::Scale(0.5))], &[result("v + l", Op::Scale(0.5))]],
@@ -401,6 +407,12 @@ pub(super) const FAULTS: &[Fault] = &[
         "the highlight is drawn only where the light is behind the surface",
         &[&[form("FS of the lit side", Form::GateTurned)]],
     ),
+    fault(
+        "gate-open-at-the-edge",
+        "the highlight is kept where l·n is 0 exactly",
+        &[&[form("FS of the lit side", Form::GatedBelow)]],
+    )
+    .seen_in("l·n ≥ 0 for l·n > 0"),
     fault(
         "normal-turned-to-the-eye",
         "the normal is turned to the eye: both sides are lit",

@@ -55,6 +55,12 @@ pub(super) const FAULTS: &[Fault] = &[
         .only(where_alpha_varies)
         .seen_in("three.js, materials not marked transparent"),
     fault(
+        "alpha-clamped",
+        "alpha is clamped to [0, 1] before the target's own clamp",
+        &[&[colors(Op::Component(3, &Op::Clamp))]],
+    )
+    .only(where_alpha_goes_beyond),
+    fault(
         "lights-limited",
         "the lights' colours are limited to 1",
         &[
@@ -78,6 +84,11 @@ fn where_alpha_varies(spec: &Spec) -> bool {
             "color" => matches!(spec.id.as_str(), "color/modulate" | "color/replace"),
             _ => true,
         }
+}
+
+/// Where an alpha comes out that may leave [0, 1].
+fn where_alpha_goes_beyond(spec: &Spec) -> bool {
+    spec.id == "lighting/two-lights" || spec.id == "color/modulate" || spec.id == "color/replace"
 }
 
 /// Sums that may leave [0, 1].

@@ -54,6 +54,20 @@ pub(super) const FAULTS: &[Fault] = &[
     )
     .rounding(),
     fault(
+        "rearranged-weights-by-difference",
+        "the formula is rearranged, 1 without the other two weights for the last one: equal for real numbers, and rounded elsewhere",
+        &[&[form("weights", Form::WeightsByDifference)]],
+    )
+    .rounding()
+    .seen_in("rasterisers that compute two weights of three"),
+    fault(
+        "rearranged-face-normal",
+        "the formula is rearranged, a×b + b×c + c×a for (b − a)×(c − a): equal for real numbers, and rounded elsewhere",
+        &[&[form("(b − a)×(c − a)", Form::NormalByVertices)]],
+    )
+    .rounding()
+    .seen_in("Newell's method for the normal of a polygon"),
+    fault(
         "rearranged-depth-range",
         "the formula is rearranged, near(1 − z) + far·z for near + z(far − near): equal for real numbers, and rounded elsewhere",
         &[&[form("window", Form::DepthBetween)], &[form("window from below", Form::DepthBetween)]],
@@ -76,6 +90,13 @@ pub(super) const FAULTS: &[Fault] = &[
         "rearranged-depth",
         "the formula is rearranged as a projection matrix has it, f/(f − n)·(1 − n/z) for f(z − n)/(z(f − n)): equal for real numbers, and rounded elsewhere",
         &[&[form("depth", Form::DepthByProjection)], &[form("reversed depth", Form::DepthByProjection)]],
+    )
+    .rounding()
+    .seen_in("projection matrices, which hold f/(f − n) and n·f/(f − n)"),
+    fault(
+        "rearranged-depth-by-difference",
+        "the formula is rearranged as a projection matrix multiplies, f/(f − n) − f·n/((f − n)z) for f(z − n)/(z(f − n)): equal for real numbers, and rounded elsewhere",
+        &[&[form("depth", Form::DepthByDifference)], &[form("reversed depth", Form::DepthByDifference)]],
     )
     .rounding()
     .seen_in("projection matrices, which hold f/(f − n) and n·f/(f − n)"),

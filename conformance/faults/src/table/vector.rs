@@ -41,6 +41,12 @@ pub(super) const FAULTS: &[Fault] = &[
     )
     .seen_in("mirrored objects lit from behind"),
     fault(
+        "determinant-without-its-sign",
+        "normals are transformed by the cofactors over the determinant's absolute value",
+        &[&[form("modelview⁻ᵀ·n", Form::NormalByUnsigned)], &[form("⟨modelview⁻ᵀ·n⟩", Form::NormalByUnsigned)]],
+    )
+    .seen_in("mirrored objects lit from behind"),
+    fault(
         "w-divide-missing",
         "a position is not divided by its w",
         &[&[form("xyz/w", Form::NotDivided)], &[form("ndc", Form::NotDivided)]],
@@ -49,6 +55,17 @@ pub(super) const FAULTS: &[Fault] = &[
         "direction-divided",
         "a light at infinity is divided by its w of 0",
         &[&[form("xyz/w", Form::DividedAlways)]],
+    ),
+    fault(
+        "negative-w-not-divided",
+        "a position whose w is below 0 is not divided by it",
+        &[&[form("xyz/w", Form::DividedIfPositive)]],
+    )
+    .seen_in("w > 0 for w ≠ 0"),
+    fault(
+        "w-without-its-sign",
+        "a position is divided by w's absolute value",
+        &[&[given("xyz/w", "eye", Op::Component(3, &Op::Abs))]],
     ),
     fault(
         "matrices-exchanged",
