@@ -17,7 +17,10 @@ export const declared = {
       "blend/separate/*.*constant-color.*constant-alpha",
       "blend/separate/*.*constant-alpha.*constant-color",
     ].map((id) => ({ id, reason: "WebGL refuses a constant colour and a constant alpha together" })),
-    { id: "scene/attached-lights", reason: "light falls off by a power of the distance, not by a polynomial" },
+    ...["scene/attached-lights", "scene/many-points"].map((id) => ({
+      id,
+      reason: "light falls off by a power of the distance, not by a polynomial",
+    })),
     { id: "scene/viewer", reason: "the viewer is local, but with an orthographic camera" },
   ],
   formats: ["rgba8unorm", "bgra8unorm", "rgba16float", "rgba32float"],
