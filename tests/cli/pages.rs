@@ -144,7 +144,7 @@ fn the_page_of_rulings_is_current() {
 fn the_pages_of_measurements_have_all_that_is_measured() {
     let bench = docs("bench.md");
     let (_, every) = bench.split_once("### Every formula").expect("the page has a section of every formula");
-    // A function that is told by a number what to compute is a blend state's, and not measured by itself.
+    // All blend states share one function, which selectors tell what to compute. The page has it once, as `blend/state`.
     let is_measured = |spec: &Spec| matches!(spec.kind, Kind::Arithmetic) && spec.selectors.is_empty();
     for member in catalogue().iter().filter(|member| is_measured(&member.spec)) {
         let id = &member.spec.id;

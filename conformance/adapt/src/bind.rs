@@ -1,9 +1,10 @@
 //! Binds the variables of a shader to expressions over the inputs of a formula.
 
 use crate::AdaptError;
-use crate::meaning::{Context, Meaning, SYNONYMS, Term};
+use crate::meaning::{Context, Meaning, Term};
 use crate::name::keys;
 use crate::program::{From, Leaf, ShaderOutput, ShaderProgram, Variable};
+use crate::synonyms::SYNONYMS;
 use lightmeter_catalogue::cases::{Spec, ValueShape};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{BuiltIn, ScalarKind};
@@ -532,5 +533,54 @@ mod tests {
         }
         std::fs::remove_dir_all(&folder).expect("it can be removed");
         assert!(bound > 100, "{bound}");
+    }
+
+    /// What the variables of a fragment shader in GLSL, or of a function of it, are bound to.
+    fn binding(id: &str, text: &str, part: &Part) -> Result<Vec<(String, String)>, String> {
+        let folder = std::env::temp_dir().join(format!("lightmeter-names-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        let path = folder.join("shader.frag");
+        std::fs::write(&path, text).expect("it can be written");
+        let source = ShaderSource::read(&path).map_err(|error| error.to_string())?;
+        let program = ShaderProgram::new(&path, &source, part).map_err(|error| error.to_string())?;
+        let catalogue = catalogue();
+        let member = catalogue.iter().find(|member| member.spec.id == id).expect(id);
+        let found = bind(&program, &member.spec, &[]).map_err(|error| error.to_string())?;
+        Ok(found.bound.into_iter().map(|one| (one.name, one.expression)).collect())
+    }
+
+    #[test]
+    fn names_are_understood_by_how_they_are_used_and_by_what_stands_beside_them() {
+        let lit = |declared: &str, color: &str| {
+            format!("#version 330\n{declared}\nout vec4 o;\nvoid main() {{ o = vec4({color}, 1.0); }}\n")
+        };
+        let eye = "in vec3 vNormal; in vec3 vViewPosition; uniform vec3 uSpecular;";
+        let of_eye = |v: &str| lit(eye, &format!("uSpecular * dot(normalize(vNormal), normalize({v}))"));
+        let weighted = lit(
+            "uniform float Ka; uniform vec3 ambientColor; uniform float kLinear;",
+            "Ka * ambientColor / (1.0 + kLinear)",
+        );
+        let layers = lit("uniform vec4 fg; uniform vec3 bg;", "fg.rgb * fg.a + bg * (1.0 - fg.a)");
+        for (id, text, name, is) in [
+            ("lighting/blinn", of_eye("vViewPosition"), "vViewPosition", "-p"),
+            ("lighting/blinn", of_eye("-vViewPosition"), "vViewPosition", "p"),
+            ("lighting/point-phong", weighted.clone(), "Ka", "1.0"),
+            ("lighting/point-phong", weighted.clone(), "ambientColor", "la * ma"),
+            ("lighting/point-phong", weighted.clone(), "kLinear", "kl"),
+            ("blend/over", layers.clone(), "fg", "src"),
+            ("blend/over", layers, "bg", "dst"),
+            ("lighting/point-phong", format!("\u{feff}{weighted}"), "kLinear", "kl"),
+        ] {
+            let found = binding(id, &text, &Part::Shader).unwrap_or_else(|error| panic!("{error}\n{text}"));
+            let of_name = found.iter().find(|(own, _)| own == name).map(|(_, is)| is.as_str());
+            assert_eq!(of_name, Some(is), "{name} in {id}: {found:?}");
+        }
+        let function = "#version 330\nvec3 lit(vec3 normal, vec3 ls) { return ls * normal.z; }\nvoid main() {}\n";
+        let found = binding("lighting/blinn", function, &Part::Function("lit".into())).expect("it is understood");
+        assert!(found.contains(&("normal".into(), "normalize(normal)".into())), "{found:?}");
+        let unknown = binding("lighting/blinn", &lit("in vec3 _vs2fs_location0;", "_vs2fs_location0"), &Part::Shader);
+        assert!(unknown.as_ref().is_err_and(|error| error.contains("_vs2fs_location0: vec3")), "{unknown:?}");
+        let other_type = binding("lighting/blinn", &lit("uniform vec3 uShininess;", "uShininess"), &Part::Shader);
+        assert!(other_type.as_ref().is_err_and(|error| error.contains("its name is known")), "{other_type:?}");
     }
 }

@@ -19,12 +19,13 @@ pub mod place;
 pub mod program;
 pub mod source;
 mod suggest;
+mod synonyms;
 mod unanswered;
 mod wrapper;
 
 pub use error::AdaptError;
-pub use meaning::synonyms;
 pub use program::{Part, ShaderProgram};
 pub use suggest::{in_language, stable_form};
+pub use synonyms::synonyms;
 pub use unanswered::MOST_TURNS;
 pub use wrapper::replaced;

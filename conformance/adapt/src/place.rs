@@ -148,7 +148,7 @@ mod tests {
         assert_eq!(line_of_step(text, "l·n"), None);
         assert_eq!(line_of_variable(text, &["fogColor"]).map(|(line, _)| line), Some(5));
         // A highlight's cosine is none of the diffuse term, whichever is limited.
-        let text = "float diff = dot(norm, toLight);\nfloat spec = max(dot(view, reflected), 0.0);\n";
+        let text = "float share = dot(norm, toLight);\nfloat glint = max(dot(view, reflected), 0.0);\n";
         assert_eq!(line_of_step(text, "FI").map(|(line, _)| line), Some(1));
         // Two lines reflect, so that neither is it, whatever else they have.
         let text = "a = reflect(i, n);\nb = reflect(j, n);\nvec3 h = x;\n";

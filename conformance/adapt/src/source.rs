@@ -69,7 +69,7 @@ impl ShaderSource {
         }
         let text = read::text(path, MOST_BYTES).map_err(unreadable)?;
         // Some editors begin a file with a mark of its byte order.
-        let text = text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned);
+        let text = text.trim_start_matches('\u{feff}').to_owned();
         if let Language::Glsl(stage) = language {
             return of_glsl(path, text, stage);
         }

@@ -362,8 +362,8 @@ pub const fn dull<const N: usize>(inputs: &[Input], shininess: &'static [f32]) -
     values
 }
 
-/// A formula's own hard cases, and those that all formulas of its kind have: colours beyond black and white where it has colours, and
-/// exponents of 0 and of ½ where it has a shininess. `N` is the number of all of them.
+/// The hard cases of a formula: its own, one with colours below black and above white if it takes colours, and one with a shininess of 0
+/// and one of ½ if it takes a shininess. `N` is how many there are in all.
 #[must_use]
 pub const fn and_common<const N: usize>(
     own: &[Hard],
