@@ -87,6 +87,9 @@ pub fn uniform<R: Real>(color: Rgb<R>) -> Rgba<R> {
 /// `Σ weightᵢ·colorᵢ, 1`: a colour bound to the vertices and interpolated over a triangle. Source: 000 §6.2.
 pub fn per_vertex<R: Real>(weights: [R; 3], colors: [Rgb<R>; 3]) -> Rgba<R> {
     let [a, b, c] = colors;
-    let [alpha, beta, gamma] = weights;
-    Vector::sum([a.scale(alpha), b.scale(beta), c.scale(gamma)]).extend(R::literal(1.0))
+    let sum = step!("Σ weight·color", |weights, a, b, c| {
+        let [alpha, beta, gamma] = weights;
+        Vector::sum([a.scale(alpha), b.scale(beta), c.scale(gamma)])
+    });
+    sum.extend(R::literal(1.0))
 }

@@ -230,7 +230,7 @@ fn inside_planes<R: Real>(clip: Vec4<R>, near: R) -> R {
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
     let five = [(x, -w), (w, x), (y, -w), (w, y), (z, near)];
     let inside = five.into_iter().fold(one, |inside, (a, b)| R::if_ge(a, b, || inside, || zero));
-    step!(quiet "before the far plane", |inside, z, w| R::if_ge(w, z, || inside, || zero))
+    step!(quiet "before the far plane", |inside, z, w, near| R::if_ge(w, z, || inside, || zero))
 }
 
 /// 1 where the triangle is seen from its front, 0 from its back or without area: front is counter-clockwise as seen.

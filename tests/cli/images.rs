@@ -114,6 +114,33 @@ fn all_pixels_together_tell_what_none_shows_alone() {
     assert!(right["image"].get("bias").is_none() && right["failed_groups"] == 0, "{right}");
 }
 
+/// A fragment that is left out has no position either: what is at fault is the cutout, or the alpha that it goes by.
+#[test]
+fn what_a_cutout_leaves_out_is_no_wrong_position() {
+    for (file, right, wrong, stage, mistake) in [
+        ("effects/cutout.wgsl", "color.a < scene", "color.a <= scene", "cutout", "cutout-at-the-threshold"),
+        ("texture.wgsl", "vec2i(floor(uv * ", "vec2i((uv * ", "surface", "texel-truncated"),
+    ] {
+        let shaders = edited(mistake, file, |text| {
+            assert!(text.contains(right), "{file}");
+            text.replace(right, wrong)
+        });
+        let report = json(&[
+            "run",
+            "scene/texture-edges",
+            "--size",
+            "256",
+            "--shaders",
+            shaders.to_str().expect("UTF-8"),
+            "--format",
+            "json",
+        ]);
+        let group = &report["groups"][0];
+        assert_eq!(group["image"]["departs_in"], stage, "{group}");
+        assert!(group.to_string().contains(mistake), "{group}");
+    }
+}
+
 #[test]
 fn a_wrong_image_names_its_stage_and_leaves_pictures() {
     let dir = edited("images", "vector.wgsl", |text| {

@@ -66,9 +66,12 @@ fn edited(test: &str, file: &str, edit: impl Fn(&str) -> String) -> PathBuf {
     let (_, text) = lightmeter_gpu::FILES
         .into_iter()
         .chain(lightmeter_gpu::SCENE_FILES)
+        .chain(lightmeter_gpu::EFFECT_FILES)
         .find(|(name, _)| *name == file)
         .expect("the shader is built in");
-    std::fs::write(dir.join(file), edit(text)).expect("a shader can be written");
+    let path = dir.join(file);
+    path.parent().map(std::fs::create_dir_all).transpose().expect("a folder for an effect can be made");
+    std::fs::write(path, edit(text)).expect("a shader can be written");
     dir
 }
 

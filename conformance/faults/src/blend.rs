@@ -57,6 +57,8 @@ pub(super) enum Twist {
     NotBlended,
     /// Operands and result limited to [0, 1].
     Clamped,
+    /// Nothing drawn of a source whose alpha is 0 or less.
+    NothingWithoutAlpha,
     /// The last layer alone.
     LastLayerAlone,
     /// The layers in reverse.
@@ -74,6 +76,7 @@ struct Model {
     mask_red_blue: bool,
     saturated_in_alpha: bool,
     clamped: bool,
+    discards: bool,
     last_alone: bool,
     reversed: bool,
 }
@@ -103,6 +106,7 @@ fn right(spec: &Spec) -> Option<Model> {
         mask_red_blue: false,
         saturated_in_alpha: false,
         clamped: false,
+        discards: false,
         last_alone: false,
         reversed: false,
     })
@@ -192,6 +196,7 @@ impl Model {
                 self.each(|_| State { equation: Equation::Add, src: Factor::One, dst: Factor::Zero });
             }
             Twist::Clamped => self.clamped = true,
+            Twist::NothingWithoutAlpha => self.discards = !matches!(self.program, Program::Layers(_)),
             Twist::LastLayerAlone => self.last_alone = matches!(self.program, Program::Layers(_)),
             Twist::LayersReversed => self.reversed = matches!(self.program, Program::Layers(_)),
             _ => {}
@@ -246,7 +251,8 @@ impl Model {
             Program::WithoutAlpha(_) => {
                 let dst = x.vector::<3>("dst")?.extend(R::literal(1.0));
                 let operands = Operands { src: unit(x.vector("src")?), dst: unit(dst), constant: zero };
-                put(out, 0, unit(blend(self.state.color, &operands, self.saturate)).xyz());
+                let blended = unit(blend(self.state.color, &operands, self.saturate));
+                put(out, 0, self.kept(blended, &operands).xyz());
             }
             Program::Draw(_, mask) => {
                 let operands = Operands {
@@ -260,6 +266,7 @@ impl Model {
                     Alpha::Source => blended.xyz().extend(operands.src.w()),
                     Alpha::Destination => blended.xyz().extend(operands.dst.w()),
                 };
+                let blended = self.kept(blended, &operands);
                 let [r, g, b, a] = mask.0;
                 let mask = if self.mask_red_blue { WriteMask([b, g, r, a]) } else { mask };
                 put(out, 0, if self.masked { masked(mask, blended, x.vector("dst")?) } else { blended });
@@ -267,6 +274,11 @@ impl Model {
             Program::Special(_) => return None,
         }
         Some(())
+    }
+
+    /// What is left on the target: what was blended, or what was there before.
+    fn kept<R: Real>(&self, blended: Vec4<R>, operands: &Operands<R>) -> Vec4<R> {
+        if self.discards { R::if_ge(R::literal(0.0), operands.src.w(), || operands.dst, || blended) } else { blended }
     }
 
     fn blended<R: Real>(&self, operands: &Operands<R>) -> Vec4<R> {

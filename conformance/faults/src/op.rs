@@ -73,6 +73,12 @@ pub(super) enum Op {
     FastNormalize,
     /// v → v/|v|, of the zero vector too.
     NormalizeAny,
+    /// v → v/|v| where |v| is at least so much, and 0 elsewhere.
+    NormalizeFrom(f64),
+    /// v → v/(|v| + epsilon).
+    OverLengthPlus(f64),
+    /// v → v/max(|v|, epsilon).
+    OverLengthAtLeast(f64),
     /// v → v/Σ|vᵢ|.
     OverSum,
     /// v → v/max|vᵢ|.
@@ -112,6 +118,9 @@ impl Op {
             Self::Normalize
             | Self::NormalizeAny
             | Self::FastNormalize
+            | Self::NormalizeFrom(_)
+            | Self::OverLengthPlus(_)
+            | Self::OverLengthAtLeast(_)
             | Self::OverSum
             | Self::OverLargest
             | Self::OverSquare => count == 3,
@@ -152,9 +161,14 @@ impl Op {
                     *alpha = one;
                 }
             }
-            Self::Normalize | Self::FastNormalize | Self::OverSum | Self::OverLargest | Self::OverSquare => {
-                divide(self, numbers)
-            }
+            Self::Normalize
+            | Self::FastNormalize
+            | Self::NormalizeFrom(_)
+            | Self::OverLengthPlus(_)
+            | Self::OverLengthAtLeast(_)
+            | Self::OverSum
+            | Self::OverLargest
+            | Self::OverSquare => divide(self, numbers),
             Self::NormalizeAny => {
                 if let [x, y, z] = *numbers {
                     numbers.copy_from_slice(&R::normalize([x, y, z]));
@@ -225,7 +239,10 @@ fn divide<R: Arithmetic>(op: Op, numbers: &mut [R]) {
     let zero = R::literal(0.0);
     let [x, y, z] = *numbers else { return };
     let square = R::sum([x * x, y * y, z * z]);
+    let length = || R::if_ge(zero, square, || zero, || square.sqrt());
     let by = match op {
+        Op::OverLengthPlus(epsilon) => length() + R::literal(epsilon),
+        Op::OverLengthAtLeast(epsilon) => length().max(R::literal(epsilon)),
         Op::OverSum => R::sum([x.abs(), y.abs(), z.abs()]),
         Op::OverLargest => x.abs().max(y.abs()).max(z.abs()),
         _ => square,
@@ -233,6 +250,9 @@ fn divide<R: Arithmetic>(op: Op, numbers: &mut [R]) {
     let divided = || {
         Vector(match op {
             Op::Normalize => R::normalize([x, y, z]),
+            Op::NormalizeFrom(least) => {
+                R::if_ge(square, R::literal(least * least), || Vector(R::normalize([x, y, z])), || Vector([zero; 3])).0
+            }
             Op::FastNormalize => {
                 let inverse = square.fast_inverse_sqrt();
                 [x, y, z].map(|c| c * inverse)

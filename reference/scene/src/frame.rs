@@ -68,6 +68,18 @@ pub struct Departures {
     pub half_lambert: bool,
     /// Textures and lightmaps multiply what is diffuse, and the highlight is added afterwards.
     pub highlight_over_texture: bool,
+    /// What is lit at the vertices is limited to 1 there, before it is interpolated.
+    pub clamped_vertices: bool,
+    /// A spotlight's axis keeps its length.
+    pub axis_at_length: bool,
+    /// Fog mixes alpha with 1, as it mixes colours with the fog's.
+    pub fogged_alpha: bool,
+    /// A nearest texel is found by truncation: below 0 it is the next one.
+    pub truncated_texels: bool,
+    /// What a cutout is to keep is cut out, and the reverse.
+    pub cutout_turned: bool,
+    /// Texture coordinates count by their magnitude.
+    pub texture_magnitudes: bool,
 }
 
 /// An image's size and format.

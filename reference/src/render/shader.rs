@@ -6,14 +6,13 @@
 //! effects says what is called for.
 
 use super::attributes::{Attributes, LIT};
-use crate::algebra::{Mat4, Rgb, Rgba, Vec3, Vec4, Vector};
+use crate::algebra::{Mat4, Rgb, Rgba, Vec2, Vec3, Vec4, Vector};
 use crate::departure::{FresnelHighlight, half_lambert, smoothstep, turned_to};
 use crate::lighting::{self, Material};
 use crate::real::Real;
 use crate::{attenuation, color, fog, texture, vector};
 use lightmeter_scene::effects::{Called, Effect};
-use lightmeter_scene::frame::Shading;
-use lightmeter_scene::frame::{self, FogForm, Frame, Place};
+use lightmeter_scene::frame::{self, Departures, FogForm, Frame, Place, Sampled, Shading, Texture, TextureFilter};
 use lightmeter_scene::shading::{Ambient, Frequency, LightAmbient, Normals, SpecularGate, Viewer};
 use lightmeter_scene::stage::Intermediate;
 
@@ -53,7 +52,7 @@ enum Shape<R> {
 }
 
 impl<R: Real> Shape<R> {
-    fn new(place: Place) -> Self {
+    fn new(place: Place, departures: Departures) -> Self {
         let vec3 = |v: [f32; 3]| Vector(v.map(R::input));
         match place {
             Place::Directional { toward, unit: true } => Self::Directional { l: vec3(toward) },
@@ -64,7 +63,7 @@ impl<R: Real> Shape<R> {
             Place::Spot { position, falloff, axis, cutoff_cosine, exponent } => Self::Spot {
                 position: vec3(position),
                 falloff: falloff.map(R::input),
-                axis: vec3(axis).normalize(),
+                axis: if departures.axis_at_length { vec3(axis) } else { vec3(axis).normalize() },
                 cutoff: R::input(cutoff_cosine),
                 exponent: R::input(exponent),
             },
@@ -137,7 +136,10 @@ impl<'a, R: Real> Shader<'a, R> {
         let m = &draw.material;
         let light = |light: &frame::Light| {
             let [ambient, diffuse, specular] = [light.ambient, light.diffuse, light.specular].map(rgb);
-            Light { colors: lighting::Light { ambient, diffuse, specular }, shape: Shape::new(light.place) }
+            Light {
+                colors: lighting::Light { ambient, diffuse, specular },
+                shape: Shape::new(light.place, frame.departures),
+            }
         };
         let lights = match only {
             _ if draw.shading.is_none() => vec![],
@@ -189,7 +191,11 @@ impl<'a, R: Real> Shader<'a, R> {
             attributes.extend(n.0);
         }
         if at.lit.is_some() {
-            let lit = self.lit(p, n, scratch);
+            let mut lit = self.lit(p, n, scratch);
+            if self.frame.departures.clamped_vertices {
+                let limited = |c: Rgb<R>| c.map(|x| x.clamp(R::literal(0.0), R::literal(1.0)));
+                lit = Lit { color: limited(lit.color), diffuse: limited(lit.diffuse), specular: limited(lit.specular) };
+            }
             attributes.extend([lit.color, lit.diffuse, lit.specular].into_iter().flat_map(|c| c.0));
         }
         if at.uv.is_some() {
@@ -358,11 +364,21 @@ impl<'a, R: Real> Shader<'a, R> {
             surface = (surface.xyz() + highlight).extend(surface.w());
         }
         let kept = match self.draw.cutout.filter(|_| self.has(Effect::Cutout)) {
-            Some(threshold) => R::if_ge(surface.w(), R::input(threshold), || one, || zero),
+            Some(threshold) => {
+                let (kept, cut) = if self.frame.departures.cutout_turned { (zero, one) } else { (one, zero) };
+                R::if_ge(surface.w(), R::input(threshold), || kept, || cut)
+            }
             None => one,
         };
         let color = match f {
-            Some((fog, f)) => fog::apply(fog, surface.xyz(), f).extend(surface.w()),
+            Some((fog, f)) => {
+                let alpha = if self.frame.departures.fogged_alpha {
+                    R::literal(1.0) - (R::literal(1.0) - surface.w()) * f
+                } else {
+                    surface.w()
+                };
+                fog::apply(fog, surface.xyz(), f).extend(alpha)
+            }
             None => surface,
         };
         Fragment { p, n, diffuse: lit.diffuse, specular: lit.specular, surface, color, kept }
@@ -385,7 +401,10 @@ impl<'a, R: Real> Shader<'a, R> {
     /// Vertex colours, texture and lightmap.
     fn surface(&self, mut surface: Rgba<R>, attributes: &[R]) -> Rgba<R> {
         let at = &self.attributes;
-        let uv = |start: usize| Vector([attributes[start], attributes[start + 1]]);
+        let uv = |start: usize, sampled: Sampled| {
+            let given = Vector([attributes[start], attributes[start + 1]]);
+            self.moved(given, &self.frame.textures[sampled.texture], sampled.filter)
+        };
         if let Some(start) = at.color.filter(|_| self.has(Effect::VertexColor)) {
             surface = color::modulate(Vector(std::array::from_fn(|k| attributes[start + k])), surface);
         }
@@ -394,7 +413,7 @@ impl<'a, R: Real> Shader<'a, R> {
         {
             let sampled = textured.sampled;
             let texture = &self.frame.textures[sampled.texture];
-            let texel = texture::sample(texture, sampled.filter, sampled.wrap, uv(start));
+            let texel = texture::sample(texture, sampled.filter, sampled.wrap, uv(start, sampled));
             let apply = if textured.replaces { color::replace } else { color::modulate };
             surface = apply(texel, surface);
         }
@@ -402,9 +421,23 @@ impl<'a, R: Real> Shader<'a, R> {
             && self.only.is_none_or(|called| called.effects.has_lightmap())
         {
             let lightmap = &self.frame.textures[sampled.texture];
-            surface = color::modulate(texture::sample(lightmap, sampled.filter, sampled.wrap, uv(start)), surface);
+            surface =
+                color::modulate(texture::sample(lightmap, sampled.filter, sampled.wrap, uv(start, sampled)), surface);
         }
         surface
+    }
+
+    /// Texture coordinates as they are, or as a mistake takes them.
+    fn moved(&self, uv: Vec2<R>, texture: &Texture, filter: TextureFilter) -> Vec2<R> {
+        let (departures, zero) = (self.frame.departures, R::literal(0.0));
+        if departures.texture_magnitudes {
+            return uv.map(R::abs);
+        }
+        if departures.truncated_texels && filter == TextureFilter::Nearest {
+            let size = [texture.width, texture.height].map(|texels| R::literal(1.0 / f64::from(texels)));
+            return Vector(std::array::from_fn(|k| R::if_ge(uv[k], zero, || uv[k], || uv[k] + size[k])));
+        }
+        uv
     }
 }
 

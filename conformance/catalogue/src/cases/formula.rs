@@ -286,13 +286,20 @@ macro_rules! formula {
                 const COLORS: usize = $crate::cases::colors($name::INPUTS);
                 const GIVEN: usize = $crate::cases::given_beyond($name::INPUTS);
                 const BEYOND: [(&str, &[f32]); GIVEN] = $crate::cases::beyond($name::INPUTS);
-                const DULL: usize = $crate::cases::given_dull($name::INPUTS);
-                const NONE: [(&str, &[f32]); DULL] = $crate::cases::dull($name::INPUTS, &[0.0]);
-                const HALF: [(&str, &[f32]); DULL] = $crate::cases::dull($name::INPUTS, &[0.5]);
-                const COMMON: usize = (COLORS > 0) as usize + if DULL > 0 { 2 } else { 0 };
+                const DULL: usize = $crate::cases::given_placed($name::INPUTS, $crate::cases::Surface::Lit, true);
+                const NONE: [(&str, &[f32]); DULL] =
+                    $crate::cases::placed($name::INPUTS, $crate::cases::Surface::Lit, Some(&[0.0]));
+                const HALF: [(&str, &[f32]); DULL] =
+                    $crate::cases::placed($name::INPUTS, $crate::cases::Surface::Lit, Some(&[0.5]));
+                const FROM_BEHIND: [(&str, &[f32]); DULL] =
+                    $crate::cases::placed($name::INPUTS, $crate::cases::Surface::Behind, Some(&[0.5]));
+                const BRIEF: usize = $crate::cases::given_placed($name::INPUTS, $crate::cases::Surface::Short, false);
+                const SHORT: [(&str, &[f32]); BRIEF] =
+                    $crate::cases::placed($name::INPUTS, $crate::cases::Surface::Short, None);
+                const COMMON: usize = (COLORS > 0) as usize + if DULL > 0 { 3 } else { 0 } + (BRIEF > 0) as usize;
                 const HARD: &[$crate::cases::Hard] = &{
                     const ALL: [$crate::cases::Hard; OWN.len() + COMMON] =
-                        $crate::cases::and_common(OWN, COLORS > 0, [&BEYOND, &NONE, &HALF]);
+                        $crate::cases::and_common(OWN, COLORS > 0, [&BEYOND, &NONE, &HALF, &FROM_BEHIND, &SHORT]);
                     ALL
                 };
                 const STABLE: &[$crate::cases::Stable] = &[

@@ -104,6 +104,9 @@ formula!(
         Input::new("attr", ValueShape::Vec2, "1", ATTRIBUTE),
     ] -> [ATTR],
     |t, w, attr; out| { out.scalar(interpolation::perspective_line(t, w, attr)); },
+    hard [
+        Hard::new("at-the-second-vertex", "its attribute, though the first one's is a million times as great", &[("t", &[1.0]), ("w", &[2.0, 3.0]), ("attr", &[1000.0, 0.000_7])]),
+    ],
 );
 formula!(
     /// The first vertex's attribute.

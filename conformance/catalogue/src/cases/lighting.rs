@@ -411,6 +411,9 @@ formula!(
     |a, b, c, position, kd, ks, shininess; out| { out.scalar(lighting::flat([a, b, c], position, [kd, ks, shininess])); },
     hard [
         Hard::new("no-area", "0, not NaN, for three points on a line", &[("a", &[0.0, 0.0, -1.0]), ("b", &[1.0, 1.0, -1.0]), ("c", &[2.0, 2.0, -1.0])]),
+        Hard::new("tiny", "edges of 1e-9 have a normal", &[
+            ("a", &[-1e-9, -1e-9, -8e-9]), ("b", &[1.5e-9, -1e-9, -8.5e-9]), ("c", &[0.0, 1.5e-9, -8e-9]), ("position", &[2e-9, 3e-9, -2e-9]),
+        ]),
     ],
 );
 

@@ -28,7 +28,7 @@ pub use formula::{AnyFormula, Formula, Visitor};
 pub use partial::Partial;
 pub use rows::{FromNumbers, Reader, Slot, Wanted, Writer, slot};
 pub use spec::{Domain, Hard, Input, Kind, Naive, Output, Size, Spec, Stable, Stage, ValueShape, Values};
-pub use spec::{and_common, beyond, colors, dull, given_beyond, given_dull};
+pub use spec::{Surface, and_common, beyond, colors, given_beyond, given_placed, placed};
 
 /// The families, in the order of reports.
 pub const FAMILIES: [&str; 8] =

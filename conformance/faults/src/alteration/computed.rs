@@ -30,6 +30,8 @@ pub(super) fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> O
         | F::SchlickPower
         | F::ProductForPower
         | F::PowerOfAtLeast(_)
+        | F::PowerOfAtMostOne
+        | F::NoneWithoutExponent
         | F::EnergyConserving
         | F::NormalisedPhong => power(form, taken),
         F::Gated | F::GatedBelow | F::GateTurned | F::TimesIncidence | F::HalfLambert { .. } => incident(form, taken),
@@ -62,8 +64,12 @@ pub(super) fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> O
         F::DepthBetween | F::DepthRange | F::UpsideDown => window(form, taken),
         F::TruncatedByte | F::ByteBy256 | F::UnclampedByte | F::ByteBySum => byte(form, taken),
         F::LinearDepth | F::LinearDepthRead | F::DepthByProjection | F::DepthByDifference => depth(form, taken),
+        F::LastWeightAsTheRest | F::FromTheFirst => shared(form, taken),
+        F::NearPlaneOutside | F::FarPlaneOutside => clipped(form, taken),
         F::EncodeThreshold
         | F::DecodeThreshold
+        | F::DecodeOldThreshold
+        | F::EncodeShortExponent
         | F::EncodeWithoutScale
         | F::EncodeCurve
         | F::EncodeRec709
@@ -117,6 +123,11 @@ fn power<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::LobeOfBothSides => cosine.abs().lobe(exponent),
         Form::SchlickPower => schlick(cosine, exponent),
         Form::ProductForPower => cosine.max(R::literal(0.0)) * exponent,
+        Form::PowerOfAtMostOne => cosine.min(R::literal(1.0)).lobe(exponent),
+        Form::NoneWithoutExponent => {
+            let zero = R::literal(0.0);
+            R::if_ge(zero, exponent, || zero, || cosine.lobe(exponent))
+        }
         Form::PowerOfAtLeast(digits) => cosine.max(R::literal(10.0_f64.powi(-i32::from(digits)))).pow(exponent),
         _ => {
             taken.compute();
@@ -343,6 +354,28 @@ fn weights<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     give(taken, [first, second, R::literal(1.0) - first - second])
 }
 
+/// Values between vertices, counted from one of them.
+fn shared<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
+    if form == Form::FromTheFirst {
+        let (t, w, [a, b]) = (scalar(taken, "t")?, taken.array::<2>("w")?, taken.array("attr")?);
+        let (qa, qb) = ((R::literal(1.0) - t) / w[0], t / w[1]);
+        return give(taken, [a + qb / (qa + qb) * (b - a)]);
+    }
+    let [alpha, beta, _] = taken.array("weights")?;
+    let [a, b, c] = [vector(taken, "a")?, vector(taken, "b")?, vector(taken, "c")?];
+    give(taken, Vector::sum([c, (a - c).scale(alpha), (b - c).scale(beta)]).0)
+}
+
+/// The clip volume without one of its planes.
+fn clipped<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
+    let (z, zero) = (scalar(taken, "z")?, R::literal(0.0));
+    let (greater, less) =
+        if form == Form::NearPlaneOutside { (scalar(taken, "near")?, z) } else { (z, scalar(taken, "w")?) };
+    taken.compute();
+    let inside = *taken.out.first()?;
+    give(taken, [R::if_ge(greater, less, || zero, || inside)])
+}
+
 /// A triangle's sides taken from another vertex, in the plane or in space.
 fn sides<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     let third = if taken.place("p").is_some() { "p" } else { "c" };
@@ -428,10 +461,16 @@ fn converted<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
             let power = || literal(1.099) * c.pow(literal(0.45)) - literal(0.099);
             R::if_ge(literal(0.018), c, || literal(4.5) * c, power)
         }
-        Form::DecodeThreshold => {
+        Form::DecodeThreshold | Form::DecodeOldThreshold => {
             let e = scalar(taken, "e")?;
+            let threshold = if form == Form::DecodeThreshold { 0.003_130_8 } else { 0.039_28 };
             let power = || ((e + literal(0.055)) / literal(1.055)).pow(literal(2.4));
-            R::if_ge(literal(0.003_130_8), e, || e / literal(12.92), power)
+            R::if_ge(literal(threshold), e, || e / literal(12.92), power)
+        }
+        Form::EncodeShortExponent => {
+            let c = scalar(taken, "c")?;
+            let power = || literal(1.055) * c.pow(literal(0.416_66)) - literal(0.055);
+            R::if_ge(literal(0.003_130_8), c, || literal(12.92) * c, power)
         }
         Form::EncodeCurve => {
             let c = scalar(taken, "c")?;

@@ -27,6 +27,10 @@ pub(in super::super) enum Form {
     ProductForPower,
     /// max(cosine, 10⁻⁴)^exponent, or any other floor.
     PowerOfAtLeast(u8),
+    /// min(cosine, 1)^exponent.
+    PowerOfAtMostOne,
+    /// 0 of an exponent of 0.
+    NoneWithoutExponent,
     /// The power times (exponent + 8)/8π.
     EnergyConserving,
     /// The power times (exponent + 2)/2π.
@@ -149,10 +153,22 @@ pub(in super::super) enum Form {
     DepthByDifference,
     /// Depth read back as if it grew evenly.
     LinearDepthRead,
+    /// c + α(a − c) + β(b − c): the last weight is what the other two leave of 1.
+    LastWeightAsTheRest,
+    /// a + qb/(qa + qb)·(b − a) along a line.
+    FromTheFirst,
+    /// What lies in the near plane is outside.
+    NearPlaneOutside,
+    /// What lies in the far plane is outside.
+    FarPlaneOutside,
     /// sRGB encoding that switches from the linear piece to the curved piece at the threshold of decoding, 0.04045.
     EncodeThreshold,
     /// The same, decoded.
     DecodeThreshold,
+    /// sRGB decoding that switches at 0.03928.
+    DecodeOldThreshold,
+    /// c^0.41666 for c^(1/2.4) in the curved piece.
+    EncodeShortExponent,
     /// c^(1/2.2) for the curved piece.
     EncodeCurve,
     /// c^(1/2.4) − 0.055.
@@ -178,6 +194,8 @@ impl Form {
             | Self::SchlickPower
             | Self::ProductForPower
             | Self::PowerOfAtLeast(_)
+            | Self::PowerOfAtMostOne
+            | Self::NoneWithoutExponent
             | Self::EnergyConserving
             | Self::NormalisedPhong => &[&["cosine", "exponent"], &["a", "b", "exponent"]],
             Self::Gated | Self::GatedBelow | Self::GateTurned | Self::TimesIncidence | Self::HalfLambert { .. } => {
@@ -216,8 +234,16 @@ impl Form {
             Self::TruncatedByte | Self::ByteBy256 | Self::UnclampedByte | Self::ByteBySum => &[&["c"]],
             Self::LinearDepth | Self::DepthByProjection | Self::DepthByDifference => &[&["near", "far", "z"]],
             Self::LinearDepthRead => &[&["near", "far", "depth"]],
-            Self::EncodeThreshold | Self::EncodeRec709 | Self::EncodeWithoutScale | Self::EncodeCurve => &[&["c"]],
-            Self::DecodeRec709 | Self::DecodeThreshold => &[&["e"]],
+            Self::EncodeThreshold
+            | Self::EncodeRec709
+            | Self::EncodeWithoutScale
+            | Self::EncodeCurve
+            | Self::EncodeShortExponent => &[&["c"]],
+            Self::DecodeRec709 | Self::DecodeThreshold | Self::DecodeOldThreshold => &[&["e"]],
+            Self::LastWeightAsTheRest => &[&["weights", "a", "b", "c"]],
+            Self::FromTheFirst => &[&["t", "w", "attr"]],
+            Self::NearPlaneOutside => &[&["z", "near"]],
+            Self::FarPlaneOutside => &[&["z", "w"]],
             Self::Middle | Self::NormalByVertices => &[&["a", "b", "c"]],
         }
     }

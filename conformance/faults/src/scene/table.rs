@@ -240,6 +240,36 @@ faults! {
     Frame "vertex-alpha-ignored" "the alpha of the vertices' colours is taken as 1" @ "vertex colours of three components" |frame| frame.meshes.iter_mut().flat_map(|mesh| &mut mesh.colors).for_each(|color| color[3] = 1.0);
     Frame "lightmap-left-out" "lightmaps are left out" |frame| each_draw(frame, |draw| draw.lightmap = None);
     Frame "vertex-colours-left-out" "the vertices' colours are left out" |frame| each_draw(frame, |draw| draw.vertex_colors = false);
+    Frame "texture-half-a-texel-off" "textures are read half a texel to the left and up" @ "texel coordinates without their ½" |frame| each_texture_coordinate(frame, |uv, size| {
+        (0..2).for_each(|k| uv[k] -= 0.5 / size[k]);
+    });
+    Frame "texel-truncated" "a nearest texel is found by truncation, not by ⌊x⌋: below 0 it is the next one" @ "ivec2(uv * size)" |frame| if frame.draws.iter().any(|draw| draw.texture.is_some() || draw.lightmap.is_some()) {
+        frame.departures.truncated_texels = true;
+    };
+    Frame "texture-magnitudes" "texture coordinates count by their magnitude" |frame| if frame.draws.iter().any(|draw| draw.texture.is_some() || draw.lightmap.is_some()) {
+        frame.departures.texture_magnitudes = true;
+    };
+    Frame "texture-for-lightmap" "the lightmap is read at the texture's coordinates" @ "meshes with one set of coordinates" |frame| for mesh in &mut frame.meshes {
+        if !mesh.uvs.is_empty() && !mesh.lightmap_uvs.is_empty() {
+            mesh.lightmap_uvs.clone_from(&mesh.uvs);
+        }
+    };
+    Frame "cutout-at-half" "the cutout's threshold is ½ whatever was asked" |frame| each_draw(frame, |draw| draw.cutout.iter_mut().for_each(|threshold| *threshold = 0.5));
+    Frame "cutout-at-the-threshold" "what has the cutout's threshold for its alpha is cut out, too" @ "alpha <= threshold for alpha < threshold" |frame| each_draw(frame, |draw| {
+        draw.cutout.iter_mut().for_each(|threshold| *threshold = threshold.next_up());
+    });
+    Frame "cutout-turned" "what is at or above the cutout's threshold is cut out in the place of what is below" |frame| if frame.draws.iter().any(|draw| draw.cutout.is_some()) {
+        frame.departures.cutout_turned = true;
+    };
+    Frame "alpha-fogged" "fog takes alpha to 1 as it takes colours to its own" @ "mix(fog, color, f) of four components" |frame| if frame.fog.is_some() {
+        frame.departures.fogged_alpha = true;
+    };
+    Frame "clamped-at-the-vertices" "what is lit at the vertices is limited to 1 there, before it is interpolated" @ "gl4es; OpenGL's fixed function" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some_and(|shading| shading.frequency == Frequency::Gouraud)) {
+        frame.departures.clamped_vertices = true;
+    };
+    Frame "axis-not-normalised" "a spotlight's axis is not normalised" |frame| if frame.lights.iter().any(|light| matches!(light.place, Place::Spot { .. })) {
+        frame.departures.axis_at_length = true;
+    };
     Frame "cutout-left-out" "nothing is cut out" |frame| each_draw(frame, |draw| draw.cutout = None);
     // Where pixels are.
     Frame "half-pixel" "all is half a pixel to the right and down" @ "Direct3D 9" |frame| shift(frame, [0.5, 0.5]);
@@ -307,6 +337,24 @@ fn each_shading(frame: &mut Frame, change: impl Fn(&mut Shading)) {
 
 fn each_texture(frame: &mut Frame, change: impl Fn(&mut Textured)) {
     each_draw(frame, |draw| draw.texture.iter_mut().for_each(&change));
+}
+
+/// The texture coordinates of each draw's mesh, with the size of the texture that they are of.
+#[expect(clippy::cast_precision_loss, reason = "a texture's size")]
+fn each_texture_coordinate(frame: &mut Frame, change: impl Fn(&mut [f32; 2], [f32; 2])) {
+    let size = |texture: usize| [frame.textures[texture].width as f32, frame.textures[texture].height as f32];
+    let mut sizes = vec![[None; 2]; frame.meshes.len()];
+    for draw in &frame.draws {
+        sizes[draw.mesh] = [
+            draw.texture.map(|textured| size(textured.sampled.texture)),
+            draw.lightmap.map(|sampled| size(sampled.texture)),
+        ];
+    }
+    for (mesh, [texture, lightmap]) in frame.meshes.iter_mut().zip(sizes) {
+        for (uvs, size) in [(&mut mesh.uvs, texture), (&mut mesh.lightmap_uvs, lightmap)] {
+            size.into_iter().for_each(|size| uvs.iter_mut().for_each(|uv| change(uv, size)));
+        }
+    }
 }
 
 fn each_fog(frame: &mut Frame, change: impl Fn(&mut Fog)) {

@@ -108,6 +108,12 @@ pub(super) const FAULTS: &[Fault] = &[
     fault("blend-clamped", "operands and result are clamped to [0, 1]", &[&[blended(Blended::Clamped)]])
         .only(where_blending_goes_beyond),
     fault(
+        "nothing-without-alpha",
+        "what has an alpha of 0 or less is not drawn at all",
+        &[&[blended(Blended::NothingWithoutAlpha)]],
+    )
+    .seen_in("VTK, vtkPolyDataFS.glsl; alpha tests left on"),
+    fault(
         "last-layer-alone",
         "only the last layer is blended with what is there",
         &[&[blended(Blended::LastLayerAlone)]],

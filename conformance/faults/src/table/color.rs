@@ -101,6 +101,24 @@ pub(super) const FAULTS: &[Fault] = &[
     )
     .seen_in("FidelityFX-SPD, issue 6"),
     fault(
+        "decode-threshold-of-a-draft",
+        "sRGB's pieces part at 0.03928 where they are to part at 0.04045",
+        &[&[form("decoded", Form::DecodeOldThreshold)]],
+    )
+    .seen_in("WCAG 2.0's relative luminance, after a draft of the standard"),
+    fault(
+        "encode-exponent-of-five-digits",
+        "sRGB is encoded by a power of 0.41666 for 1/2.4",
+        &[&[form("encoded", Form::EncodeShortExponent)]],
+    )
+    .seen_in("three.js, sRGBTransferOETF"),
+    fault(
+        "last-weight-as-the-rest",
+        "the third vertex's weight is what the other two leave of 1, not what is given",
+        &[&[form("Σ weight·color", Form::LastWeightAsTheRest)]],
+    )
+    .seen_in("c + α(a − c) + β(b − c)"),
+    fault(
         "rec709-for-srgb",
         "Rec. 709's curve stands for sRGB's",
         &[

@@ -124,6 +124,18 @@ pub(super) const FAULTS: &[Fault] = &[
     ),
     fault("no-far-plane", "nothing is clipped at the far plane", &[&[pass("before the far plane", "inside")]])
         .seen_in("depth clamping left on"),
+    fault(
+        "near-plane-outside",
+        "what lies in the near plane is clipped",
+        &[&[form("before the far plane", Form::NearPlaneOutside)]],
+    )
+    .seen_in("0 < z for 0 ≤ z"),
+    fault(
+        "far-plane-outside",
+        "what lies in the far plane is clipped",
+        &[&[form("before the far plane", Form::FarPlaneOutside)]],
+    )
+    .seen_in("z < w for z ≤ w"),
     fault("one-step-too-many", "forward differences take a step too many", &[&[plus("end", "step")]]),
     fault(
         "scanline-of-the-other-edge",

@@ -392,6 +392,20 @@ pub(super) const FAULTS: &[Fault] = &[
     )
     .seen_in("guards against pow(0, 0)"),
     fault(
+        "cosine-at-least-0.00001",
+        "the highlight's cosine is held above 0.00001",
+        &[&[form("FS", Form::PowerOfAtLeast(5))]],
+    )
+    .seen_in("VTK, ReplaceShaderLight"),
+    fault("cosine-at-most-1", "the highlight's cosine is limited to 1", &[&[form("FS", Form::PowerOfAtMostOne)]])
+        .seen_in("saturate(dot(n, h)) of vectors that are not of length 1"),
+    fault(
+        "no-highlight-without-shininess",
+        "the highlight is 0 where its exponent is 0",
+        &[&[form("FS", Form::NoneWithoutExponent)]],
+    )
+    .seen_in("guards against pow(0, 0)"),
+    fault(
         "product-for-power",
         "the highlight is the cosine times the shininess, not its power",
         &[&[form("FS", Form::ProductForPower)]],

@@ -68,6 +68,13 @@ pub(super) const FAULTS: &[Fault] = &[
     .rounding()
     .seen_in("Newell's method for the normal of a polygon"),
     fault(
+        "rearranged-line",
+        "the formula is rearranged, a + qb/(qa + qb)·(b − a) for (qa·a + qb·b)/(qa + qb): equal for real numbers, and rounded elsewhere",
+        &[&[form("perspective along a line", Form::FromTheFirst)]],
+    )
+    .rounding()
+    .seen_in("clippers that find the share once for all attributes"),
+    fault(
         "rearranged-depth-range",
         "the formula is rearranged, near(1 − z) + far·z for near + z(far − near): equal for real numbers, and rounded elsewhere",
         &[&[form("window", Form::DepthBetween)], &[form("window from below", Form::DepthBetween)]],

@@ -138,6 +138,23 @@ pub(super) const FAULTS: &[Fault] = &[
     )
     .seen_in("Quake III's Q_rsqrt"),
     fault(
+        "short-vectors-without-direction",
+        "a vector shorter than 1e-7 is taken for one without a length",
+        &[&[at(NORMALISED, Do::FirstAs(Op::NormalizeFrom(1e-7)))]],
+    )
+    .seen_in("an epsilon added to the squared length"),
+    fault(
+        "epsilon-added-to-length",
+        "1e-6 is added to the length that a vector is divided by",
+        &[&[at(NORMALISED, Do::FirstAs(Op::OverLengthPlus(1e-6)))]],
+    ),
+    fault(
+        "length-at-least-1e-12",
+        "the length that a vector is divided by is held above 1e-12",
+        &[&[at(NORMALISED, Do::FirstAs(Op::OverLengthAtLeast(1e-12)))]],
+    )
+    .seen_in("PyTorch, functional.normalize"),
+    fault(
         "normalised-by-sum-to-the-light",
         "the vector to the light is divided by the sum of its components' magnitudes",
         &[&[pass_as("l", "to_light", Op::OverSum)]],
