@@ -4,6 +4,10 @@ build=$renderers/.build
 # The accuracy rules, unless the caller has said which.
 profile=opengl
 options=
+# What `prepare_python` installs, and where.
+requirements=$renderers/common/requirements.txt
+venv=$build/python
+pip_options=
 arguments=$*
 mkdir -p "$build"
 # Mesa's device-select layer looks for a Wayland display and says so where there is none.
@@ -18,33 +22,54 @@ has_library() {
     return 1
 }
 
-# A Python with what `common/requirements.txt` names, and the Debian packages that are asked for.
+# A Python with what `common/requirements.txt` names, and the Debian packages that are asked for. A gate that needs other packages
+# of Python sets `requirements` and `venv`, and `pip_options` where those packages ask for more than they use.
 prepare_python() {
     missing=$*
     python3 -c 'import ensurepip, venv' 2>/dev/null || missing="$missing python3 python3-venv"
     # shellcheck disable=SC2086
     [ -z "$missing" ] || apt_install $missing
-    python=$build/python/bin/python3
-    if ! cmp -s "$renderers/common/requirements.txt" "$build/python/requirements.txt"; then
-        rm -rf "$build/python"
-        python3 -m venv "$build/python"
-        "$python" -m pip install --quiet --disable-pip-version-check -r "$renderers/common/requirements.txt" >&2 ||
-            cannot_install "what common/requirements.txt names"
-        cp "$renderers/common/requirements.txt" "$build/python/requirements.txt"
+    python=$venv/bin/python3
+    if ! cmp -s "$requirements" "$venv/requirements.txt"; then
+        rm -rf "$venv"
+        python3 -m venv "$venv"
+        # shellcheck disable=SC2086
+        "$python" -m pip install --quiet --disable-pip-version-check $pip_options -r "$requirements" >&2 ||
+            cannot_install "what ${requirements#"$renderers"/} names"
+        cp "$requirements" "$venv/requirements.txt"
     fi
 }
 
-# Mesa's software OpenGL through EGL, and that Python.
-prepare_opengl() {
+# What Mesa's software OpenGL through EGL lacks here.
+missing_mesa() {
     missing=
     has_library libEGL.so.1 || missing="$missing libegl1"
     has_library libOpenGL.so.0 || has_library libGL.so.1 || missing="$missing libgl1"
     has_library libEGL_mesa.so.0 || missing="$missing libegl-mesa0"
     has_library dri/swrast_dri.so || has_library libgallium.so || missing="$missing libgl1-mesa-dri"
+}
+
+# Mesa's software OpenGL through EGL, and that Python.
+prepare_opengl() {
+    missing_mesa
     # shellcheck disable=SC2086
     prepare_python $missing
     (cd "$renderers/common" && "$python" -c 'import context; context.create()') >&2 ||
         cannot_install "an OpenGL 4.5 of the compatibility profile"
+}
+
+# Mesa's software Vulkan, unless the caller has chosen a driver or an adapter of it, and that Python.
+prepare_vulkan() {
+    missing=
+    has_library libvulkan.so.1 || missing="$missing libvulkan1"
+    if [ -z "${VK_ICD_FILENAMES:-}${VK_DRIVER_FILES:-}${PYGFX_WGPU_ADAPTER_NAME:-}" ]; then
+        has_library libvulkan_lvp.so || missing="$missing mesa-vulkan-drivers"
+        export PYGFX_WGPU_ADAPTER_NAME=llvmpipe
+        # In threads of its own it flushes subnormals, until one of them has drawn to halves.
+        export LP_NUM_THREADS="${LP_NUM_THREADS-0}"
+    fi
+    # shellcheck disable=SC2086
+    prepare_python $missing
 }
 
 # Adds an option and its value to `options` unless the caller has said it.
