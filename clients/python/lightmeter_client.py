@@ -33,6 +33,9 @@ PROTOCOL = "lightmeter.protocol/1"
 NAMED = {"NaN": float("nan"), "Inf": float("inf"), "-Inf": float("-inf")}
 
 
+SIZES = {"scalar": 1, "vec2": 2, "vec3": 3, "vec4": 4, "mat3": 9, "mat4": 16}
+
+
 class Skip(Exception):
     """The renderer cannot do this; the text says why. Raised, or given in the place of a case's value."""
 
@@ -47,6 +50,16 @@ class Cases:
         inputs = [request["inputs"] for request in requests]
         for name, first in inputs[0].items():
             setattr(self, parameter(name), column([case[name] for case in inputs], isinstance(first, list)))
+
+    @classmethod
+    def of_columns(cls, formula, columns):
+        """The same of arrays by the names of the inputs. Cases of columns have no ids."""
+        cases = cls.__new__(cls)
+        cases.formula, cases.ids = formula, None
+        cases.total = len(next(iter(columns.values())))
+        for name, values in columns.items():
+            setattr(cases, parameter(name), values)
+        return cases
 
     def inputs(self):
         """All inputs by their names."""
@@ -105,6 +118,16 @@ def computed(function, cases, dtype):
         return np.concatenate(parts).astype(np.float32).T
 
 
+def apart(values, sizes):
+    """The outputs of all cases, of so many numbers each, as an array for each output."""
+    values = np.asarray(values, np.float32)
+    if values.ndim != 2 or values.shape[1] != sum(sizes):
+        raise ValueError(f"outputs of shape {values.shape}; expected {sum(sizes)} numbers a case")
+    ends = np.cumsum(sizes)
+    parts = [np.ascontiguousarray(values[:, end - size : end]) for size, end in zip(sizes, ends)]
+    return [part[:, 0] if size == 1 else part for size, part in zip(sizes, parts)]
+
+
 class Renderer:
     """What a renderer can do. `declares` is said in its hello as it is: `profile`, `formats`, `effects`, `skips` and others of
     docs/protocol.md."""
@@ -112,6 +135,7 @@ class Renderer:
     def __init__(self, name, version="", **declares):
         self.hello = {"hello": PROTOCOL, "renderer": name, "version": version, **declares}
         self.functions, self.scenes, self.draw = {}, [], None
+        self.columns = True
 
     def formula(self, formula, dtype=np.float32):
         """Makes a function that of a formula. It computes in `dtype`, into which the inputs, f32, go exactly; what it returns is
@@ -128,7 +152,9 @@ class Renderer:
         self.functions[pattern] = lambda cases: computed(of(cases.formula), cases, dtype)
 
     def batches(self, functions):
-        """Functions by filters that take `Cases` and return a value a case, each of which may be a `Skip`."""
+        """Functions by filters that take `Cases` and return a value a case, each of which may be a `Skip`. Cases are then asked by
+        lines, which have ids."""
+        self.columns = False
         self.functions.update(functions)
 
     def scene(self, pattern):
@@ -142,23 +168,74 @@ class Renderer:
 
         return given
 
+    def answer_pack(self, pack, answers):
+        """Answers a pack of columns, `lightmeter pack DIR --columns`, by files in another folder, of which
+        `lightmeter gate DIR ANSWERS` judges all. Memory holds one formula at a time."""
+        pack, answers = Path(pack), Path(answers)
+        manifest = json.loads((pack / "manifest.json").read_text())
+        if not manifest.get("columns"):
+            sys.exit(f"{pack} has no columns; expected a pack of `lightmeter pack {pack} --columns`")
+        for formula in manifest["formulas"]:
+            name = formula["id"]
+            function = next((f for pattern, f in self.functions.items() if matches(pattern, name)), None)
+            if function is None:
+                continue
+            inputs = {x["name"]: np.load(pack / "columns" / name / f"{x['name']}.npy") for x in formula["inputs"]}
+            sizes = [SIZES[output["shape"]] for output in formula["outputs"]]
+            parts = apart(function(Cases.of_columns(name, inputs)), sizes)
+            folder = answers / "columns" / name
+            folder.mkdir(parents=True, exist_ok=True)
+            for output, part in zip(formula["outputs"], parts):
+                np.save(folder / f"{output['name']}.npy", part)
+        answers.mkdir(parents=True, exist_ok=True)
+        hello = {"formulas": list(self.functions), **self.hello, "pack": manifest["pack"]}
+        (answers / "answers.jsonl").write_text(json.dumps(hello) + "\n")
+
     def serve(self):
         """Answers until standard input ends."""
         folder, waiting = ".", []
-        for line in sys.stdin:
+        for line in iter(sys.stdin.buffer.readline, b""):
             request = json.loads(line)
             if "hello" in request:
                 if request["hello"] != PROTOCOL:
                     sys.exit(f"the gate speaks {request['hello']}, and this client {PROTOCOL}")
                 folder = request["folder"]
-                hello = {"formulas": list(self.functions), "scenes": self.scenes, **self.hello}
-                print(json.dumps(hello), flush=True)
+                declared = {"formulas": list(self.functions), "scenes": self.scenes, "columns": self.columns}
+                print(json.dumps({**declared, **self.hello}), flush=True)
+            elif "columns" in request:
+                self._columns(request, sys.stdin.buffer.read(request["bytes"]))
             elif "batch" in request:
                 self._flush(folder, waiting)
                 waiting = []
             else:
                 waiting.append(request)
         self._flush(folder, waiting)
+
+    def _columns(self, request, data):
+        """Answers a batch in columns: a line, and an array for each output behind it."""
+        head = {"columns": request["columns"], "batch": request["batch"]}
+        columns, start = {}, 0
+        for column in request["inputs"]:
+            end = start + request["count"] * column["components"]
+            values = np.frombuffer(data[4 * start : 4 * end], np.dtype("<f4"))
+            is_vector = column["components"] > 1
+            columns[column["name"]] = values.reshape(request["count"], -1) if is_vector else values
+            start = end
+        try:
+            name = request["columns"]
+            function = next(f for pattern, f in self.functions.items() if matches(pattern, name))
+            sizes = [output["components"] for output in request["outputs"]]
+            parts = apart(function(Cases.of_columns(name, columns)), sizes)
+            data = b"".join(part.astype("<f4").tobytes() for part in parts)
+        except Skip as skip:
+            data, head = b"", {**head, "skip": str(skip)}
+        except Exception as error:
+            traceback.print_exc()
+            data, head = b"", {**head, "error": repr(error)}
+        else:
+            head["bytes"] = len(data)
+        sys.stdout.buffer.write(json.dumps(head).encode() + b"\n" + data)
+        sys.stdout.buffer.flush()
 
     def _flush(self, folder, waiting):
         groups = {}

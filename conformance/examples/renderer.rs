@@ -8,6 +8,7 @@
 //! lightmeter gate blend --exec 'target/debug/examples/renderer targets=all blends-by=truncate'
 //! lightmeter gate special --exec 'target/debug/examples/renderer special=true'
 //! lightmeter gate special --exec 'target/debug/examples/renderer special=swaps-select'
+//! lightmeter gate fog --exec 'target/debug/examples/renderer columns=f4'
 //! ```
 
 use lightmeter::blend_unit::embedded;
@@ -22,7 +23,7 @@ use lightmeter_reference::render::render;
 use lightmeter_scene::target::TargetFormat;
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::io::{BufRead as _, Write};
+use std::io::{BufRead as _, Read as _, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -47,9 +48,16 @@ fn main() -> anyhow::Result<()> {
     let by_id = catalogue.iter().map(|member| (member.spec.id.as_str(), member)).collect();
     let mut renderer = Renderer { faults, by_id, folder: PathBuf::new(), answered: 0 };
     let mut out = std::io::BufWriter::with_capacity(1 << 20, std::io::stdout().lock());
-    for line in std::io::stdin().lock().lines() {
-        let request: Value = serde_json::from_str(&line?)?;
-        if request.get("hello").is_some() {
+    let (mut stream, mut line) = (std::io::stdin().lock(), vec![]);
+    while stream.read_until(b'\n', &mut line)? > 0 {
+        let request: Value = serde_json::from_slice(&line)?;
+        line.clear();
+        if let Some(count) = request["bytes"].as_u64() {
+            let mut bytes = vec![0; usize::try_from(count)?];
+            stream.read_exact(&mut bytes)?;
+            renderer.respond_in_columns(&request, &bytes, &mut out)?;
+            out.flush()?;
+        } else if request.get("hello").is_some() {
             writeln!(out, "{}", renderer.hello(&request))?;
             out.flush()?;
         } else if request.get("batch").is_some() {
@@ -90,9 +98,72 @@ impl Renderer<'_> {
             "formulas": [self.faults.0.get("formulas").map_or("**", String::as_str)],
             "scenes": ["**"],
             "skips": [{ "id": "special", "reason": "no rasteriser, no numbers of 16 bits and no packing" }],
+            "columns": self.faults.0.contains_key("columns"),
             "special": self.faults.0.contains_key("special"),
             "targets": if self.faults.0.contains_key("targets") { TargetFormat::ALL.map(TargetFormat::name).to_vec() } else { vec![] },
         })
+    }
+
+    /// Answers a batch in columns by numbers of the type that it is told, `f4` or `f8`, or fails as it is told.
+    fn respond_in_columns(&self, request: &Value, bytes: &[u8], out: &mut impl Write) -> anyhow::Result<()> {
+        let mut head = json!({ "columns": request["columns"], "batch": request["batch"] });
+        let way = self.faults.0.get("columns").map_or("f4", String::as_str);
+        match way {
+            "crash" => std::process::abort(),
+            "hang" => std::thread::sleep(Duration::from_secs(600)),
+            "skips" => head["skip"] = json!("not built"),
+            "errors" => head["error"] = json!("no memory"),
+            "lines" => head["lines"] = json!(true),
+            "nothing" => {}
+            "other" => head["batch"] = json!(0),
+            _ => {}
+        }
+        if !matches!(way, "f4" | "f8" | "short" | "other" | "type" | "wrong") {
+            writeln!(out, "{head}")?;
+            return Ok(());
+        }
+        let member = self.by_id[request["columns"].as_str().unwrap_or_default()];
+        let numbers: Vec<f32> =
+            bytes.chunks_exact(4).map(|part| part.try_into().map(f32::from_le_bytes)).collect::<Result<_, _>>()?;
+        let count = usize::try_from(request["count"].as_u64().unwrap_or_default())?;
+        let outputs: Vec<Vec<f32>> = (0..count)
+            .map(|row| {
+                let (mut inputs, mut start) = (vec![], 0);
+                for input in member.spec.inputs {
+                    let components = input.shape.components();
+                    inputs.extend_from_slice(&numbers[start + row * components..start + (row + 1) * components]);
+                    start += count * components;
+                }
+                let mut values = vec![0.0; member.spec.output_len()];
+                member.formula.embedded(&inputs, &mut values);
+                values
+            })
+            .collect();
+        let (mut data, mut start) = (vec![], 0);
+        for output in member.spec.outputs {
+            let components = output.shape.components();
+            for value in outputs.iter().flat_map(|row| &row[start..start + components]) {
+                let value = if way == "wrong" { value + 1.0 } else { *value };
+                if way == "f8" {
+                    data.extend(f64::from(value).to_le_bytes());
+                } else {
+                    data.extend(value.to_le_bytes());
+                }
+            }
+            start += components;
+        }
+        if way == "short" {
+            data.truncate(data.len() - 4);
+        }
+        head["bytes"] = json!(data.len());
+        head["dtype"] = json!(match way {
+            "f8" => "<f8",
+            "type" => "<i4",
+            _ => "<f4",
+        });
+        writeln!(out, "{head}")?;
+        out.write_all(&data)?;
+        Ok(())
     }
 
     /// Answers a case, unless it is told to fail at it.

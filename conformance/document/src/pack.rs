@@ -35,6 +35,10 @@ const fn is_false(is_so: &bool) -> bool {
     !*is_so
 }
 
+fn is_empty(word: &Word) -> bool {
+    word.is_empty()
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
 const fn is_zero(count: &usize) -> bool {
     *count == 0
@@ -53,6 +57,12 @@ pub struct Manifest {
     /// What chose the cases.
     #[serde(flatten)]
     pub choice: Choice,
+    /// What tells this pack's cases from those of others, which answers in columns name.
+    #[serde(default, skip_serializing_if = "is_empty")]
+    pub pack: Word,
+    /// Whether the cases of formulas are columns, `columns/FORMULA/INPUT.npy`, and not lines of `cases.jsonl`.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub columns: bool,
     /// The formulas, with their inputs and outputs.
     pub formulas: Vec<PackedFormula>,
     /// How many cases of blend states there are on each target.

@@ -90,6 +90,53 @@ pub struct BatchEnd {
     pub batch: u64,
 }
 
+/// All cases of a batch of a formula. Behind the line follow `bytes` bytes: an array for each input, one behind the other, of the cases'
+/// numbers in C's order, f32, little-endian.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct ColumnsRequest {
+    /// The formula's id.
+    pub columns: String,
+    /// The number of the batch, which the answer has too.
+    pub batch: u64,
+    /// How many cases there are.
+    pub count: usize,
+    /// The inputs, in the order of their arrays.
+    pub inputs: Vec<RequestedColumn>,
+    /// The outputs, in the order in which their arrays are to come.
+    pub outputs: Vec<RequestedColumn>,
+    /// Bytes behind the line.
+    pub bytes: usize,
+}
+
+/// An input or an output of a request in columns.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct RequestedColumn {
+    /// Its name.
+    pub name: Word,
+    /// Numbers of a case.
+    pub components: usize,
+}
+
+/// The answer to a request in columns. Where it has `bytes`, so many follow behind the line: an array for each output.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct ColumnsAnswer {
+    /// The formula's id.
+    pub columns: String,
+    /// The number of the batch.
+    pub batch: u64,
+    /// `<f4`, which it is without, or `<f8`.
+    pub dtype: Option<String>,
+    /// Bytes behind the line.
+    pub bytes: Option<usize>,
+    /// Why the renderer does none of these cases.
+    pub skip: Option<String>,
+    /// Why it could do none of them.
+    pub error: Option<String>,
+    /// Whether the cases are to be asked by lines.
+    pub lines: bool,
+}
+
 /// A line that a renderer reads, which the published schema describes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
@@ -102,6 +149,8 @@ pub enum ProtocolLine {
     Scene(SceneRequest),
     /// A case of a formula.
     Case(CaseRequest),
+    /// A batch of a formula in columns.
+    Columns(ColumnsRequest),
     /// The end of a batch.
     Batch(BatchEnd),
 }
@@ -125,7 +174,7 @@ macro_rules! lines {
     };
 }
 
-lines! { Greeting CaseRequest ProbeRequest SceneRequest }
+lines! { Greeting CaseRequest ProbeRequest SceneRequest ColumnsRequest }
 
 /// The line, without its line feed. It has always had its space.
 impl fmt::Display for BatchEnd {

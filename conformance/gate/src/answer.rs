@@ -38,6 +38,10 @@ pub struct Hello {
     pub targets: Vec<String>,
     /// Cases that it may skip, by globs, each with the reason.
     pub skips: Vec<DeclaredSkip>,
+    /// The pack that a file answers, as the pack's manifest has it; answers in columns say so.
+    pub pack: Option<String>,
+    /// Whether a process is asked in columns: binary batches of a formula.
+    pub columns: bool,
     /// Whether it is asked for special values: NaN, infinity, subnormals, signed zero and rounding, an operation at a time.
     pub special: bool,
 }

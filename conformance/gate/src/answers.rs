@@ -1,6 +1,7 @@
 //! Answers as files: the first of each case, and that further files answer the same.
 
 use super::answer::{self, Hello, Line, Unread, clipped};
+use super::columns::Columns;
 use super::error::ProcessError;
 use super::expectations::Expectations;
 use super::given::{Asks, Declared, Given, given, word};
@@ -111,6 +112,8 @@ struct Contents {
     /// By the special value's place in the plan.
     probes: HashMap<usize, Given>,
     scenes: HashMap<usize, Given>,
+    /// What is answered by arrays.
+    columns: Columns,
     /// Where images lie.
     folder: PathBuf,
 }
@@ -177,7 +180,15 @@ impl FileRenderer {
     /// Reads the next file.
     fn read_next(&mut self) -> Result<(), PackError> {
         let Some(mut file) = self.files.pop_front() else { return Ok(()) };
-        self.contents = Contents { folder: file.folder.clone(), ..Contents::default() };
+        let columns = Columns::open(&file.folder, &self.plan)?;
+        self.is_of_this_pack(&file, &columns)?;
+        for formula in columns.formulas() {
+            let id = &self.plan.member(formula).spec.id;
+            if self.declared.lacks(id).is_some() {
+                note(&mut self.problems, "unknown", || format!("`{id}` is not among what the renderer declares"));
+            }
+        }
+        self.contents = Contents { columns, folder: file.folder.clone(), ..Contents::default() };
         let source = self.are_many.then(|| file.path.display().to_string());
         let told =
             |number: u64| source.as_ref().map_or_else(|| format!("line {number}"), |of| format!("{of}, line {number}"));
@@ -202,6 +213,21 @@ impl FileRenderer {
                 return Ok(());
             }
         }
+    }
+
+    /// Refuses answers to another pack. Columns have no ids that would tell, so that their hello must say what they answer.
+    fn is_of_this_pack(&self, file: &AnswerFile, columns: &Columns) -> Result<(), PackError> {
+        let (own, said) = (self.plan.pack(), file.hello.as_ref().and_then(|hello| hello.pack.as_deref()));
+        let message = match said {
+            Some(other) if other != own => {
+                format!("its hello says that it answers the pack `{}`; this pack is `{own}`", clipped(other))
+            }
+            None if !columns.is_empty() => {
+                format!("its hello does not say which pack it answers; beside columns it has `\"pack\": \"{own}\"`")
+            }
+            _ => return Ok(()),
+        };
+        Err(PackError::Manifest { path: file.path.clone(), message })
     }
 
     /// Takes lines for answers to cases of the plan. What answers none of them is a problem.
@@ -319,6 +345,7 @@ impl Contents {
     /// Stores an answer. Returns whether it is the first to its case.
     fn put(&mut self, plan: &GatePlan, place: CasePlace, given: Given) -> bool {
         match place {
+            CasePlace::Case { formula, .. } if self.columns.has(formula) => false,
             CasePlace::Case { formula, case } => {
                 let outputs = plan.member(formula).spec.output_len();
                 let blank = || Column::new(plan.formulas[formula].count(), outputs);
@@ -346,6 +373,22 @@ impl AskedRenderer for FileRenderer {
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
         let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
         let formula = self.plan.formula(&rows.members[0].spec.id);
+        if let Some(formula) = formula.filter(|formula| self.contents.columns.has(*formula)) {
+            for (place, (&case, words)) in
+                rows.cases.iter().zip(answers.words.chunks_exact_mut(rows.outputs)).enumerate()
+            {
+                match self.plan.formulas[formula].place(case) {
+                    Some(case) => self
+                        .contents
+                        .columns
+                        .read(formula, case, words)
+                        .map_err(|error| DeviceError::Refused(Box::new(error)))?,
+                    None => drop(answers.unanswered.insert(place, Unanswered::Missing)),
+                }
+            }
+            advanced(rows.of.len() as u64);
+            return Ok(answers);
+        }
         let column = formula.and_then(|formula| Some((formula, self.contents.formulas.get(&formula)?)));
         for (place, (&case, words)) in rows.cases.iter().zip(answers.words.chunks_exact_mut(rows.outputs)).enumerate() {
             let found = column.and_then(|(formula, column)| Some((column, self.plan.formulas[formula].place(case)?)));

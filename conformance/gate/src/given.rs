@@ -15,7 +15,6 @@ use lightmeter_document::Number;
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::gate::RendererIdentity;
 use lightmeter_document::run::Identity;
-use lightmeter_engine::rows::Rows;
 use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_scene::frame::Frame;
@@ -177,18 +176,14 @@ pub(super) fn word(given: Given) -> Result<u32, Unanswered> {
     }
 }
 
-/// What was given to each row, as the engine takes it.
-pub(super) fn answers(rows: &Rows<'_>, given: impl IntoIterator<Item = Given>) -> Answers {
-    let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
-    let each = answers.words.chunks_exact_mut(rows.outputs).zip(given).enumerate();
-    for (place, (words, given)) in each {
-        match given {
-            Given::Values(values) => words.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits()),
-            Given::Nothing(why) => drop(answers.unanswered.insert(place, why)),
-            Given::Word(_) | Given::Image(_) => unreachable!("a formula is answered by values"),
-        }
+/// Puts what was given to a row of so many outputs among the answers, as the engine takes them.
+pub(super) fn put(answers: &mut Answers, outputs: usize, place: usize, given: Given) {
+    let words = &mut answers.words[place * outputs..(place + 1) * outputs];
+    match given {
+        Given::Values(values) => words.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits()),
+        Given::Nothing(why) => drop(answers.unanswered.insert(place, why)),
+        Given::Word(_) | Given::Image(_) => unreachable!("a formula is answered by values"),
     }
-    answers
 }
 
 /// The pixel that was given, in the target's units.

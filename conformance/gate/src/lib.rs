@@ -6,6 +6,11 @@
 pub mod answer;
 pub mod answers;
 pub mod baseline;
+#[cfg(feature = "scenes")]
+mod columns;
+#[cfg(not(feature = "scenes"))]
+#[path = "columns_absent.rs"]
+mod columns;
 pub mod error;
 pub mod expectations;
 pub mod frame;

@@ -1,8 +1,8 @@
 //! A pack: the cases as files, for a renderer that answers by files.
 
-use super::frame;
 use super::picture::within;
 use super::plan::{CasePlace, GatePlan};
+use super::{columns, frame};
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{GENERATOR_VERSION, Input, Kind, Output, Spec, ValueShape};
 use lightmeter_catalogue::special::Probe;
@@ -126,11 +126,12 @@ pub fn probe(probe: &Probe) -> ProbeRequest {
     }
 }
 
-/// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go.
+/// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go. The cases of formulas are
+/// lines of JSON, or columns.
 ///
 /// # Errors
 /// Where a file cannot be written, or the folder holds something else.
-pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
+pub fn write(plan: &GatePlan, folder: &Path, has_columns: bool) -> Result<Manifest, PackError> {
     let failed = |path: &Path| {
         let path = path.to_owned();
         move |error: std::io::Error| PackError::Write { path, message: error.to_string() }
@@ -140,6 +141,9 @@ pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
     // A pack that is broken off is known as one, with the files that it may have, and is written over.
     let path = folder.join(MANIFEST);
     let mut names = vec![CASES.to_owned()];
+    if has_columns {
+        names.extend((0..plan.formulas.len()).flat_map(|formula| columns::names(&plan.member(formula).spec)));
+    }
     for scene in 0..plan.scenes.len() {
         names.extend(PackedDraw::new(plan, scene)?.files().map(|(name, _)| name));
     }
@@ -148,12 +152,14 @@ pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
     whole(&path, begun.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
     let mut files = vec![];
     let path = folder.join(CASES);
-    let mut out =
-        Summed { out: BufWriter::new(Whole::create(&path).map_err(failed(&path))?), sum: Default::default(), bytes: 0 };
-    write_cases(plan, &mut out).map_err(failed(&path))?;
-    files.push(out.listed(CASES));
-    let written = out.out.into_inner().map_err(std::io::IntoInnerError::into_error);
-    written.and_then(Whole::finish).map_err(failed(&path))?;
+    let mut out = Summed::create(&path).map_err(failed(&path))?;
+    write_cases(plan, has_columns, &mut out).map_err(failed(&path))?;
+    files.push(out.finish(CASES).map_err(failed(&path))?);
+    if has_columns {
+        for formula in 0..plan.formulas.len() {
+            files.extend(write_columns(plan, formula, folder)?);
+        }
+    }
     for scene in 0..plan.scenes.len() {
         for (name, bytes) in PackedDraw::new(plan, scene)?.files() {
             let path = folder.join(&name);
@@ -163,16 +169,30 @@ pub fn write(plan: &GatePlan, folder: &Path) -> Result<Manifest, PackError> {
             files.push(Listed { crc32: digits(&bytes), bytes: bytes.len() as u64, name });
         }
     }
-    let manifest = Manifest { files, ..manifest(plan)? };
+    let manifest = Manifest { files, columns: has_columns, ..manifest(plan)? };
     let path = folder.join(MANIFEST);
     let text = manifest.to_json().map_err(|error| PackError::Plan(error.to_string()))?;
     whole(&path, text.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
     Ok(manifest)
 }
 
-/// Writes the cases of formulas, behind them those of blend states on targets, and last special values, a line each.
-fn write_cases(plan: &GatePlan, out: &mut impl Write) -> std::io::Result<()> {
-    for formula in 0..plan.formulas.len() {
+/// Writes the inputs of a formula, a file each.
+fn write_columns(plan: &GatePlan, formula: usize, folder: &Path) -> Result<Vec<Listed>, PackError> {
+    let names: Vec<String> = columns::names(&plan.member(formula).spec).collect();
+    let own = folder.join(columns::FOLDER).join(&plan.member(formula).spec.id);
+    let failed = |error: std::io::Error| PackError::Write { path: own.clone(), message: error.to_string() };
+    std::fs::create_dir_all(&own).map_err(failed)?;
+    let create = |name: &String| Summed::create(&folder.join(name)).map_err(failed);
+    let mut streams = names.iter().map(create).collect::<Result<Vec<_>, _>>()?;
+    columns::write(plan, formula, &mut streams).map_err(failed)?;
+    streams.into_iter().zip(&names).map(|(stream, name)| stream.finish(name).map_err(failed)).collect()
+}
+
+/// Writes the cases of formulas unless they are columns, behind them those of blend states on targets, and last special values, a line
+/// each.
+fn write_cases(plan: &GatePlan, has_columns: bool, out: &mut impl Write) -> std::io::Result<()> {
+    let formulas = if has_columns { 0 } else { plan.formulas.len() };
+    for formula in 0..formulas {
         for place in 0..plan.formulas[formula].count() {
             let id = plan.id(CasePlace::Case { formula, case: place });
             writeln!(out, "{}", case(&plan.member(formula).spec, &id, &plan.inputs(formula, place)))?;
@@ -227,6 +247,8 @@ fn manifest(plan: &GatePlan) -> Result<Manifest, PackError> {
         generator: GENERATOR_VERSION,
         version: env!("CARGO_PKG_VERSION").into(),
         choice: plan.choice.clone(),
+        pack: plan.pack().into(),
+        columns: false,
         formulas: (0..plan.formulas.len()).map(|place| formula(plan, place)).collect(),
         probes: plan.probes.len(),
         on_targets: plan.targets.iter().map(|target| (target.name().to_owned(), plan.pixels())).collect(),
@@ -295,9 +317,15 @@ impl<W: Write> Write for Summed<W> {
     }
 }
 
-impl<W> Summed<W> {
-    fn listed(&self, name: &str) -> Listed {
-        Listed { name: name.into(), bytes: self.bytes, crc32: format!("{:08x}", self.sum.clone().finalize()) }
+impl Summed<BufWriter<Whole>> {
+    fn create(path: &Path) -> std::io::Result<Self> {
+        Ok(Self { out: BufWriter::new(Whole::create(path)?), sum: crc32fast::Hasher::default(), bytes: 0 })
+    }
+
+    /// Puts the file in its place; how the manifest lists it.
+    fn finish(self, name: &str) -> std::io::Result<Listed> {
+        self.out.into_inner().map_err(std::io::IntoInnerError::into_error)?.finish()?;
+        Ok(Listed { name: name.into(), bytes: self.bytes, crc32: format!("{:08x}", self.sum.finalize()) })
     }
 }
 
@@ -413,6 +441,10 @@ fn difference(listed: &Manifest, plan: &GatePlan) -> Result<Option<&'static str>
         return Ok(Some("scenes"));
     }
     let mut files: Vec<(String, Option<String>)> = vec![(CASES.into(), None)];
+    if listed.columns {
+        let names = (0..plan.formulas.len()).flat_map(|formula| columns::names(&plan.member(formula).spec));
+        files.extend(names.map(|name| (name, None)));
+    }
     for scene in 0..plan.scenes.len() {
         files.extend(PackedDraw::new(plan, scene)?.files().map(|(name, bytes)| (name, Some(digits(&bytes)))));
     }

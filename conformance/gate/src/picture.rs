@@ -1,7 +1,7 @@
 //! Images that renderers write: PNG of 8 or 16 bits, EXR, NPY.
 
 #[cfg(feature = "scenes")]
-mod decode;
+pub(super) mod decode;
 
 use lightmeter_judge::blend_unit::pixel;
 use lightmeter_judge::image::file::StoredImage;

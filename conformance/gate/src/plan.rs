@@ -1,7 +1,7 @@
 //! Which cases another renderer is asked, and where each stands.
 
-use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::Program;
+use lightmeter_catalogue::cases::{GENERATOR_VERSION, Kind};
 use lightmeter_catalogue::filter::{Filter, FilterError};
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::{builtin, scene_id};
@@ -163,6 +163,16 @@ impl GatePlan {
             }
         }
         Ok(plan)
+    }
+
+    /// What tells packs of different cases apart: the checksum of what chose them, and of what draws them, as 8 digits of base 16.
+    ///
+    /// # Panics
+    /// Never: a choice is an object of JSON.
+    #[must_use]
+    pub fn pack(&self) -> String {
+        let chosen = serde_json::to_string(&(GENERATOR_VERSION, &self.choice)).expect("a choice is an object of JSON");
+        format!("{:08x}", crc32fast::hash(chosen.as_bytes()))
     }
 
     /// Its formulas and scenes by their ids, and how many cases each has.

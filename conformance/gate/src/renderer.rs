@@ -2,7 +2,7 @@
 
 use super::answer::{Hello, Line, clipped};
 use super::error::ProcessError;
-use super::given::{Asks, Declared, answers, given};
+use super::given::{Asks, Declared, given, put};
 use super::picture;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
@@ -110,7 +110,8 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
             };
             skips.settled(&id, given(line, Asks::Outputs(spec)))
         });
-        let answers = answers(rows, given);
+        let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
+        given.enumerate().for_each(|(place, given)| put(&mut answers, rows.outputs, place, given));
         advanced(rows.of.len() as u64);
         Ok(answers)
     }

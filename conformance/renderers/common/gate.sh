@@ -80,6 +80,15 @@ default_option() {
     esac
 }
 
+# The binary that the caller has named, or the one that cargo builds.
+run_lightmeter() {
+    if [ -n "${LIGHTMETER:-}" ]; then
+        "$LIGHTMETER" "$@"
+    else
+        cargo run --quiet --manifest-path "$renderers/../../Cargo.toml" --bin lightmeter -- "$@"
+    fi
+}
+
 # Runs the gate over a command; what the caller says stands last. Without it there are 64 cases of each formula, and known
 # failures are those of `expected.toml`.
 run_gate() {
@@ -91,10 +100,6 @@ run_gate() {
     [ ! -e "$here/expected.toml" ] || expected=$here/expected.toml
     case " $arguments " in *" --expect"*) expected= ;; esac
     set -- --exec "$command" ${expected:+--expect "$expected"} "$@"
-    if [ -n "${LIGHTMETER:-}" ]; then
-        # shellcheck disable=SC2086
-        exec "$LIGHTMETER" gate $options "$@"
-    fi
     # shellcheck disable=SC2086
-    exec cargo run --quiet --manifest-path "$renderers/../../Cargo.toml" --bin lightmeter -- gate $options "$@"
+    run_lightmeter gate $options "$@"
 }

@@ -2,6 +2,12 @@
 """Three formulas in numpy by clients/python/lightmeter_client.py, each for all cases at once:
 
     lightmeter gate --exec 'python3 conformance/renderers/example/columns.py' fog/exp vector/reflect lighting/diffuse-toward
+
+By files of columns it answers a pack, PACK, by a folder, ANSWERS:
+
+    lightmeter pack PACK --columns fog/exp vector/reflect lighting/diffuse-toward
+    python3 conformance/renderers/example/columns.py PACK ANSWERS
+    lightmeter gate PACK ANSWERS
 """
 import sys
 from pathlib import Path
@@ -35,4 +41,7 @@ def diffuse(ld, md, l, n):
     return ld * md * np.maximum(dot(l, n), 0)
 
 
-renderer.serve()
+if len(sys.argv) == 3:
+    renderer.answer_pack(sys.argv[1], sys.argv[2])
+else:
+    renderer.serve()

@@ -34,13 +34,18 @@ DTYPES = {"f32": np.float32, "f64": np.float64}
 def main() -> None:
     parser = argparse.ArgumentParser(description="Answers lightmeter's formulas by numpy")
     parser.add_argument("--dtype", choices=DTYPES, default="f32", help="the type of all arithmetic")
-    name = parser.parse_args().dtype
+    parser.add_argument("--pack", nargs=2, metavar=("PACK", "ANSWERS"), help="answer a pack of columns by a folder")
+    arguments = parser.parse_args()
+    name = arguments.dtype
     renderer = Renderer(f"numpy-{name}", np.__version__)
     for formula, function in FORMULAS.items():
         renderer.formula(formula, DTYPES[name])(function)
     for pattern in blend.STATES:
         renderer.formulas(pattern, blend.by_state, DTYPES[name])
-    renderer.serve()
+    if arguments.pack:
+        renderer.answer_pack(*arguments.pack)
+    else:
+        renderer.serve()
 
 
 if __name__ == "__main__":

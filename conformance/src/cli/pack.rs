@@ -71,6 +71,9 @@ pub(crate) struct Pack {
     /// Ask for special values as well: NaN, infinity, subnormals, signed zero and rounding, an operation at a time
     #[arg(long)]
     special: bool,
+    /// Write the cases of formulas as arrays of NumPy's format, `columns/FORMULA/INPUT.npy`, a row a case, in the place of lines
+    #[arg(long)]
+    columns: bool,
     #[command(flatten)]
     cases: Cases,
 }
@@ -84,7 +87,7 @@ impl Pack {
         if plan.is_empty() {
             return Err(nothing_to_ask());
         }
-        let manifest = pack::write(&plan, &self.dir)?;
+        let manifest = pack::write(&plan, &self.dir, self.columns)?;
         let on_targets: u64 = manifest.on_targets.values().sum();
         let besides = [(on_targets, "on targets"), (manifest.probes as u64, "special values")];
         let besides = besides.into_iter().filter(|(count, _)| *count > 0);

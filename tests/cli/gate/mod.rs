@@ -1,5 +1,6 @@
 //! `lightmeter pack` and `lightmeter gate`: other renderers, by their files and as processes, right ones and all sorts of wrong.
 
+mod columns;
 pub(crate) mod process;
 mod special;
 mod targets;

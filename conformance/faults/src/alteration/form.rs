@@ -183,6 +183,7 @@ pub(in super::super) enum Form {
 
 impl Form {
     /// The operands that this form needs, as alternative sets of names: a step must have every operand of at least one set.
+    #[expect(clippy::too_many_lines, reason = "a line for each form")]
     pub(super) const fn needs(self) -> &'static [&'static [&'static str]] {
         match self {
             Self::ReflectWithPlus | Self::ReflectOnce => &[&["i", "n"], &["l", "n"]],

@@ -40,7 +40,7 @@ const PROLOGUES: [usize; 2] = [10, 12];
 
 /// Whether the header of an array nests more than an array of numbers needs. What parses it takes a time that doubles with each further
 /// level.
-fn is_nested(bytes: &[u8]) -> bool {
+pub(in super::super) fn is_nested(bytes: &[u8]) -> bool {
     let start = PROLOGUES[usize::from(bytes.get(6).is_some_and(|&version| version > 1))];
     let length =
         bytes.get(8..start).unwrap_or_default().iter().rev().fold(0, |sum, &byte| sum << 8 | usize::from(byte));

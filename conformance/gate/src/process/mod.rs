@@ -5,6 +5,7 @@
 //! known at every moment: where it ends, hangs or floods, it is killed and started again, and asked what is open one case at a
 //! time until the one that it fails at is found; that case fails, and the rest goes on.
 
+mod columns;
 mod queue;
 mod running;
 mod session;
@@ -12,7 +13,7 @@ mod session;
 use super::answer::Hello;
 use super::error::ProcessError;
 use super::expectations::Expectations;
-use super::given::{Asks, Declared, Given, answers, pixel, word};
+use super::given::{Asks, Declared, Given, pixel, put, word};
 use super::{frame, pack, picture};
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::Document as _;
@@ -162,15 +163,24 @@ impl AskedRenderer for ProcessRenderer {
     }
 
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
-        let questions = rows.of.iter().zip(rows.cases).zip(rows.inputs.chunks_exact(rows.stride())).map(
-            |((&of, &case), inputs)| {
-                let spec = &rows.members[of].spec;
-                let id = rows.members[of].case_id(case);
-                Question { request: pack::case(spec, &id, inputs).to_string(), id, asks: Asks::Outputs(spec) }
-            },
-        );
-        let given = self.session().all(&questions.collect::<Vec<_>>(), advanced);
-        Ok(answers(rows, given))
+        let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
+        let in_columns = self.declared.hello.columns && rows.members.len() == 1;
+        let left = if in_columns {
+            self.session().columns(rows, &mut answers, advanced)
+        } else {
+            (0..rows.of.len()).collect()
+        };
+        let stride = rows.stride();
+        let question = |&place: &usize| {
+            let member = rows.members[rows.of[place]];
+            let id = member.case_id(rows.cases[place]);
+            let inputs = &rows.inputs[place * stride..(place + 1) * stride];
+            let request = pack::case(&member.spec, &id, inputs).to_string();
+            Question { request, id, asks: Asks::Outputs(&member.spec) }
+        };
+        let given = self.session().all(&left.iter().map(question).collect::<Vec<_>>(), advanced);
+        left.into_iter().zip(given).for_each(|(place, given)| put(&mut answers, rows.outputs, place, given));
+        Ok(answers)
     }
 
     fn targets(&self) -> Vec<TargetFormat> {

@@ -13,7 +13,7 @@ const MOST_STARTS: usize = 3;
 /// Crashes and hangs after which nothing more is asked.
 const MOST_CRASHES: u64 = 100;
 /// Cases of a formula that it may end or hang at before no more of that formula is asked.
-const MOST_OF_FORMULA: usize = 3;
+pub(super) const MOST_OF_FORMULA: usize = 3;
 
 /// What is still to be asked of a process, by the places of the questions.
 struct Queue<'a> {
@@ -76,7 +76,7 @@ impl Session {
     }
 
     /// Ends the process before all was asked; nothing more is asked.
-    fn breaks_off(&mut self, ended: Ended) {
+    pub(super) fn breaks_off(&mut self, ended: Ended) {
         self.kill(ended);
         self.used.incidents.push(format!("{}: what was left was not asked, or not answered", ended.message()));
         self.has_broken_off = true;
@@ -148,7 +148,7 @@ impl Session {
     }
 
     /// Starts the process once more, or tells that it will not.
-    fn starts_again(&mut self, left: usize) -> bool {
+    pub(super) fn starts_again(&mut self, left: usize) -> bool {
         let mut started = self.start();
         for _ in 1..MOST_STARTS {
             if started.is_err() && !self.is_stopped() {

@@ -2,18 +2,21 @@
 
 use super::super::answer::{self, Unread, clipped};
 use super::Starter;
+use lightmeter_document::protocol::ColumnsAnswer;
 use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 use std::ffi::OsStr;
 use std::io::{BufReader, Read as _, Write as _};
 use std::os::unix::process::CommandExt as _;
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Lines of a process that wait to be read.
 const UNREAD: usize = 64;
+/// Bytes of an answer in columns, at most.
+const MOST_ARRAY: usize = 64 << 20;
 /// Bytes of standard error that are kept.
 const KEPT: usize = 4096;
 /// How long a starter may take to end all that it started.
@@ -24,6 +27,8 @@ const MARK: &str = "LIGHTMETER_GATE";
 /// What comes from a process.
 pub(super) enum Event {
     Line(Vec<u8>),
+    /// An answer in columns, and the bytes behind its line.
+    Columns(ColumnsAnswer, Vec<u8>),
     TooLong,
     End,
 }
@@ -36,6 +41,8 @@ pub(super) struct Running {
     group: Option<Pid>,
     /// Its standard input, but while something is written to it.
     pub(super) input: Option<ChildStdin>,
+    /// Whether arrays may stand behind a line that it writes.
+    has_columns: Arc<AtomicBool>,
     /// What it writes.
     pub(super) events: Receiver<Event>,
     /// A word in its environment, which its descendants inherit.
@@ -66,8 +73,10 @@ impl Running {
         let (input, output, errors) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         // What is not taken waits in the pipe, so that memory stays flat.
         let (send, events) = sync_channel(UNREAD);
+        let has_columns = Arc::new(AtomicBool::new(false));
         if let Some(output) = output {
-            std::thread::spawn(move || listen(output, &send));
+            let has_columns = Arc::clone(&has_columns);
+            std::thread::spawn(move || listen(output, &send, &has_columns));
         }
         let complaint = Arc::new(Mutex::new(vec![]));
         let listening = errors.map(|mut errors| {
@@ -84,14 +93,19 @@ impl Running {
             })
         });
         let ends_all = starter.is_some();
-        Ok(Self { child, ends_all, group, input, events, mark, complaint, listening })
+        Ok(Self { child, ends_all, group, input, has_columns, events, mark, complaint, listening })
+    }
+
+    /// Says whether arrays may stand behind a line that it writes from now on.
+    pub(super) fn reads_columns(&self, has_columns: bool) {
+        self.has_columns.store(has_columns, Ordering::Release);
     }
 
     /// Writes lines in a thread of its own, since a renderer may answer before it has read all.
-    pub(super) fn send(&mut self, text: String) -> Option<std::thread::JoinHandle<Option<ChildStdin>>> {
+    pub(super) fn send(&mut self, text: Vec<u8>) -> Option<std::thread::JoinHandle<Option<ChildStdin>>> {
         let mut input = self.input.take()?;
         Some(std::thread::spawn(move || {
-            let written = input.write_all(text.as_bytes()).and_then(|()| input.flush());
+            let written = input.write_all(&text).and_then(|()| input.flush());
             written.is_ok().then_some(input)
         }))
     }
@@ -165,6 +179,18 @@ impl Running {
     }
 }
 
+/// The answer in columns that a line is, and how many bytes stand behind it; `None` of any other line, and where there are more of them than
+/// an answer has.
+fn columns_of(line: &[u8]) -> Option<(ColumnsAnswer, usize)> {
+    let word = b"\"columns\"";
+    if !line.windows(word.len()).any(|part| part == word) {
+        return None;
+    }
+    let answer: ColumnsAnswer = serde_json::from_slice(line).ok()?;
+    let count = answer.bytes.filter(|&count| count <= MOST_ARRAY && !answer.columns.is_empty())?;
+    Some((answer, count))
+}
+
 /// Kills what has the mark in its environment: descendants that left the process group. Where there is no /proc, none is found.
 fn kill_marked(mark: &str) {
     let wanted = format!("{MARK}={mark}");
@@ -188,11 +214,22 @@ fn kill_marked(mark: &str) {
     }
 }
 
-fn listen(output: impl std::io::Read, send: &SyncSender<Event>) {
+/// Hears what it writes, a line at a time, and the array behind one that has some.
+fn listen(output: impl std::io::Read, send: &SyncSender<Event>, has_columns: &AtomicBool) {
     let mut stream = BufReader::with_capacity(1 << 16, output);
     let mut line = vec![];
     loop {
         let event = match answer::next(&mut stream, &mut line) {
+            Ok(true) if has_columns.load(Ordering::Acquire) => match columns_of(&line) {
+                Some((answer, count)) => {
+                    let mut bytes = vec![];
+                    match (&mut stream).take(count as u64).read_to_end(&mut bytes) {
+                        Ok(read) if read == count => Event::Columns(answer, bytes),
+                        _ => Event::End,
+                    }
+                }
+                None => Event::Line(std::mem::take(&mut line)),
+            },
             Ok(true) => Event::Line(std::mem::take(&mut line)),
             Err(Unread::TooLong) => Event::TooLong,
             Ok(false) | Err(Unread::Io(_)) => {

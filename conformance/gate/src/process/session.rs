@@ -5,6 +5,7 @@ use super::super::error::ProcessError;
 use super::super::given::{Asks, Given, Skips, given};
 use super::super::problems::note;
 use super::Asking;
+use super::columns::ROWS;
 use super::running::{Event, Running};
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::gate::RendererIdentity;
@@ -23,9 +24,9 @@ pub(super) const BATCH: [usize; 2] = [16, 1024];
 /// Lines that wait to be read as answers, and their bytes, at most.
 const WAITING: (usize, usize) = (4096, 8 << 20);
 /// Lines beyond one a case, in a batch, that end a process.
-const SURPLUS: usize = 10_000;
+pub(super) const SURPLUS: usize = 10_000;
 /// How long a wait lasts before it is asked whether to stop.
-const MOMENT: Duration = Duration::from_millis(100);
+pub(super) const MOMENT: Duration = Duration::from_millis(100);
 
 /// What became of a process while it was asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,11 +130,13 @@ pub(super) struct Session {
     pub(super) skips: Skips,
     pub(super) used: RendererUse,
     /// Lines that it wrote after its hello.
-    lines: u64,
+    pub(super) lines: u64,
     /// The number of the last batch.
-    number: u64,
+    pub(super) number: u64,
     /// Cases that are asked at once.
     pub(super) size: usize,
+    /// Cases that are asked at once in columns.
+    pub(super) rows: usize,
     /// Cases that the process has answered since it was started.
     pub(super) answered: usize,
     /// Cases that it failed at.
@@ -168,6 +171,7 @@ impl Session {
             lines: 0,
             number: 0,
             size: BATCH[0],
+            rows: ROWS[0],
             answered: 0,
             culprits: 0,
             culprits_of: HashMap::new(),
@@ -232,7 +236,7 @@ impl Session {
             version: env!("CARGO_PKG_VERSION").into(),
             folder: self.asking.folder.to_string_lossy().into_owned(),
         };
-        let written = running.send(format!("{greeting}\n"));
+        let written = running.send(format!("{greeting}\n").into_bytes());
         let begun = Instant::now();
         let until = begun + self.asking.limits.start;
         let until = self.deadline.map_or(until, |deadline| until.min(deadline));
@@ -251,6 +255,7 @@ impl Session {
                     Ok(Line::Hello(hello)) => {
                         self.answered = 0;
                         self.hello = *hello;
+                        running.reads_columns(self.hello.columns);
                         running.input = written.and_then(|thread| thread.join().ok().flatten());
                         self.running = Some(running);
                         return Ok(());
@@ -263,7 +268,9 @@ impl Session {
                         )
                     }
                 },
-                Ok(Event::TooLong) => "said a line without end first; expected its hello".into(),
+                Ok(Event::Columns(..)) | Ok(Event::TooLong) => {
+                    "said a line without end first; expected its hello".into()
+                }
                 Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => {
                     running.has_ended();
                     let how = running.kill();
@@ -283,7 +290,7 @@ impl Session {
     pub(super) fn batch(&mut self, questions: &mut Questions<'_>, batch: &[usize]) -> (Ended, Vec<usize>) {
         let text = self.requests(questions, batch);
         let Some(mut running) = self.running.take() else { return (Ended::Crashed, batch.to_vec()) };
-        let writing = running.send(text);
+        let writing = running.send(text.into_bytes());
         let limits = self.asking.limits;
         let limit = if matches!(questions.all[batch[0]].asks, Asks::Image) { limits.scene } else { limits.case };
         let start = Instant::now();
@@ -373,8 +380,7 @@ impl Session {
             }
             let wait = self.over(waiting.until).saturating_duration_since(Instant::now());
             if wait.is_zero() {
-                let is_over = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
-                return if is_over { Ended::OutOfTime } else { Ended::Hung };
+                return if self.is_out_of_time() { Ended::OutOfTime } else { Ended::Hung };
             }
             match running.events.recv_timeout(wait.min(MOMENT)) {
                 Ok(Event::Line(line)) => waiting.hear(line, &mut self.lines),
@@ -384,6 +390,10 @@ impl Session {
                     let number = self.lines;
                     note(&mut self.used.problems, "oversized", || format!("line {number}: {}", Unread::TooLong));
                 }
+                Ok(Event::Columns(answer, _)) => {
+                    waiting.surplus += 1;
+                    self.is_not_asked(&answer);
+                }
                 Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Ended::Crashed,
                 // The next turn tells which time is over.
                 Err(RecvTimeoutError::Timeout) => {}
@@ -391,13 +401,18 @@ impl Session {
         }
     }
 
+    /// Whether time for all is over.
+    pub(super) fn is_out_of_time(&self) -> bool {
+        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
     /// A moment, or that at which time for all is over.
-    fn over(&self, until: Instant) -> Instant {
+    pub(super) fn over(&self, until: Instant) -> Instant {
         self.deadline.map_or(until, |deadline| until.min(deadline))
     }
 
     /// Whether the process reads all that it was asked, as one that answers does.
-    fn has_read(
+    pub(super) fn has_read(
         &self,
         running: &mut Running,
         mut writing: Option<JoinHandle<Option<ChildStdin>>>,
