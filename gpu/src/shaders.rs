@@ -3,7 +3,7 @@
 use crate::error::GpuError;
 use lightmeter_scene::effects::Effect;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A set of shader files, each known to be valid with those that it requires.
 #[derive(Clone, Debug)]
@@ -20,6 +20,41 @@ impl Shaders {
         let comment = lines[..place].iter().rev().take_while(|line| line.starts_with("//")).count();
         let end = lines[place..].iter().position(|line| line.starts_with('}'))?;
         Some(lines[place - comment..=place + end].join("\n"))
+    }
+
+    /// A function's text as [`Shaders::function`] gives it, and behind it the functions and structures that it names, of the same file or
+    /// of others, each once.
+    #[must_use]
+    pub fn function_with_named(&self, file: &str, name: &str) -> Option<String> {
+        let mut texts = vec![self.function(file, name)?];
+        let mut told = BTreeSet::from([name.to_owned()]);
+        let mut next = 0;
+        while let Some(text) = texts.get(next).cloned() {
+            let code = text.lines().filter(|line| !line.starts_with("//"));
+            let names = code.flat_map(|line| line.split(|c: char| !(c.is_alphanumeric() || c == '_')));
+            for name in names.filter(|name| !name.is_empty()) {
+                if let Some((of, text)) = self.definition(name)
+                    && told.insert(name.to_owned())
+                {
+                    texts.push(if of == file { text } else { format!("// {of}\n{text}") });
+                }
+            }
+            next += 1;
+        }
+        Some(texts.join("\n\n"))
+    }
+
+    /// The file and the text of a function or a structure.
+    fn definition(&self, name: &str) -> Option<(&str, String)> {
+        let structure = |text: &str| {
+            let lines: Vec<&str> = text.lines().collect();
+            let start = lines.iter().position(|line| *line == format!("struct {name} {{"))?;
+            let end = lines[start..].iter().position(|line| line.starts_with('}'))?;
+            Some(lines[start..=start + end].join("\n"))
+        };
+        self.files.iter().find_map(|(file, text)| {
+            self.function(file, name).or_else(|| structure(text)).map(|text| (file.as_str(), text))
+        })
     }
 
     /// The files that one requires, by its `// requires:` line, and those that they require in turn.

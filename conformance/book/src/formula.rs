@@ -4,7 +4,7 @@ use crate::apart::apart;
 use crate::contents::Place;
 use crate::diagram::diagram;
 use crate::errors::{CASES, errors};
-use crate::grid::grid;
+use crate::grid::{grid, plain};
 use crate::picture::Picture;
 use crate::sketch::{short, sketch};
 use lightmeter_arithmetic::profile::WGSL;
@@ -66,7 +66,10 @@ impl FormulaPage<'_> {
                 p { "What the line does not say:" }
                 ul.rules { @for rule in &rules { li { (prose(rule)) } } }
             }
-            p.quiet { "Source: " (self.source(spec.source)) }
+            p.quiet {
+                "Source: " (self.source(spec.source))
+                @if let Some((file, title)) = chapter(spec) { ". Read about it: " a href=(self.place.to(file)) { (title) } }
+            }
         }
     }
 
@@ -99,10 +102,12 @@ impl FormulaPage<'_> {
 
     /// An output along the input on which it varies most.
     pub(crate) fn course(&self) -> Markup {
-        let Some(course) = typical_course(self.member, &WGSL) else { return html! {} };
+        let plain = plain(self.member);
+        let course = if plain.is_some() { None } else { typical_course(self.member, &WGSL) };
         html! {
-            h2 #course { "How it looks" }
-            (course_plot(&course, None))
+            @if plain.is_some() || course.is_some() { h2 #course { "How it looks" } }
+            @if let Some(plain) = &plain { (plain.svg()) }
+            @if let Some(course) = &course { (course_plot(course, None)) }
         }
     }
 
@@ -119,11 +124,11 @@ impl FormulaPage<'_> {
     pub(crate) fn code(&self) -> Markup {
         let spec = &self.member.spec;
         let file = format!("{}.wgsl", spec.family());
-        let text = if spec.function.is_empty() { None } else { self.shaders.function(&file, spec.function) };
+        let text = if spec.function.is_empty() { None } else { self.shaders.function_with_named(&file, spec.function) };
         html! {
             @if let Some(text) = text {
                 h2 #wgsl { "In WGSL" }
-                p { "The function that is judged, from " code { (file) } ". The reference is a second text of the same formula, in Rust, and shares nothing with it." }
+                p { "The function that is judged, from " code { (file) } ", and what it names. The reference is a second text of the same formula, in Rust, and shares nothing with it." }
                 pre tabindex="0" { code { (text) } }
             }
         }
@@ -324,8 +329,35 @@ pub(crate) fn told<'a>(catalogue: &'a [Member]) -> Vec<Told<'a>> {
     pages.into_iter().map(page).collect()
 }
 
-/// The formula as mathematics, a line for each of its statements, and as it stands in reports.
+/// The chapter that explains a formula of its kind, and its title.
+fn chapter(spec: &Spec) -> Option<(&'static str, &'static str)> {
+    let is_of = |ids: &[&str]| ids.iter().any(|id| spec.id.starts_with(id));
+    if is_of(&["lighting/gouraud", "lighting/phong-shading", "lighting/phong-interpolated", "lighting/flat"]) {
+        Some(("gouraud-and-highlights.html", "Gouraud shading and its highlights"))
+    } else if matches!(spec.kind, Kind::Raster(_)) || is_of(&["interpolation/coverage"]) {
+        Some(("a-rasterisers-freedom.html", "A rasteriser's freedom"))
+    } else if spec.stable.is_some() {
+        Some(("condition-and-stability.html", "Condition and stability"))
+    } else {
+        None
+    }
+}
+
+/// Whether the formula on a line is a sentence, or mostly one: as mathematics it would be hard to read.
+fn is_sentence(text: &str) -> bool {
+    const ORDINARY: [&str; 19] = [
+        "the", "of", "is", "with", "it", "by", "as", "how", "that", "which", "in", "on", "and", "its", "against",
+        "passes", "where", "if", "else",
+    ];
+    const LEAST: usize = 3;
+    text.split(|c: char| !c.is_alphabetic()).filter(|word| ORDINARY.contains(word)).count() >= LEAST
+}
+
+/// The formula as mathematics, a line for each of its statements, and as it stands in reports; a sentence as it is.
 pub(crate) fn set_equation(spec: &Spec) -> Markup {
+    if is_sentence(spec.text) {
+        return html! { p.equation.said { (prose(spec.text)) } };
+    }
     let names: Vec<&str> =
         spec.inputs.iter().map(|input| input.name).chain(spec.outputs.iter().map(|output| output.name)).collect();
     html! {
@@ -494,6 +526,7 @@ mod tests {
                 }
             }
             assert_eq!(told(&words), told(member.spec.text), "{}", member.spec.id);
+            assert_eq!(set.contains("<math"), !is_sentence(member.spec.text), "{}", member.spec.id);
         }
     }
 }

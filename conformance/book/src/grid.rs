@@ -74,6 +74,49 @@ impl Plane {
         self.outlines.is_empty() || self.outlines.iter().any(|&outline| is_in(outline, middle))
     }
 
+    /// Each output over the plane's cells, by whoever evaluates a row.
+    fn values(
+        &self,
+        member: &Member,
+        row: &mut [f32],
+        outputs: usize,
+        mut evaluate: impl FnMut(&[f32], &mut [f64]),
+    ) -> Vec<Vec<f64>> {
+        let (mut values, mut courses) = (vec![0.0; outputs], vec![vec![]; outputs]);
+        for y in 0..self.cells {
+            for x in 0..self.cells {
+                self.set(row, [x, y]);
+                evaluate(row, &mut values);
+                let is_inside = self.is_inside(row);
+                for (output, course) in courses.iter_mut().enumerate() {
+                    // Outside of what is drawn nothing but the coverage is a value.
+                    let is_value = is_inside || is_coverage(member, output);
+                    course.push(if is_value { values[output] } else { f64::NAN });
+                }
+            }
+        }
+        courses
+    }
+
+    /// A picture of the plane that is still empty.
+    fn grid(&self, member: &Member, output: usize) -> Grid {
+        let in_cells = |p: [f64; 2]| [0, 1].map(|axis| (p[axis] - self.corner[axis]) / self.step);
+        let is_of_depths = self.outlines.is_empty();
+        let plane = if is_of_depths {
+            "the new depth to the right, the old one upwards"
+        } else {
+            "over the pixels of a triangle"
+        };
+        Grid {
+            output: member.spec.output_name(output),
+            plane,
+            cells: self.cells,
+            right: vec![],
+            mistaken: vec![],
+            outlines: self.outlines.iter().map(|outline| outline.map(in_cells)).collect(),
+        }
+    }
+
     /// The inputs of a cell.
     fn set(&self, row: &mut [f32], cell: [usize; 2]) {
         for (axis, k) in cell.into_iter().enumerate() {
@@ -148,51 +191,61 @@ pub(crate) fn grid(member: &Member, variation: &Variation<'_>) -> Option<Grid> {
     (seen > SEEN).then_some(grid)
 }
 
+/// The picture of a formula that is right, of the case in which its output varies most; `None` where there is no plane to show it on.
+pub(crate) fn plain(member: &Member) -> Option<Grid> {
+    if !matches!(member.spec.kind, Kind::Raster(_) | Kind::Depth(_)) {
+        return None;
+    }
+    let outputs = member.spec.output_len();
+    let cases = (0..CASES).filter_map(|case| {
+        let mut row = vec![];
+        member.inputs(CaseRef::Random(case), 1, &mut row);
+        let plane = Plane::of(member, &row)?;
+        let courses = plane.values(member, &mut row, outputs, |row, values| member.formula.reference(row, values));
+        let varies = |values: &[f64]| {
+            let finite = || values.iter().filter(|x| x.is_finite());
+            let [low, high] = span(finite());
+            let is_high = |x: &&f64| **x > 0.5 * (low + high);
+            // As evenly as the two halves of its values are shared out.
+            let (above, all) = (finite().filter(is_high).count(), finite().count());
+            if high > low { above.min(all - above) } else { 0 }
+        };
+        let (output, right) = courses.into_iter().enumerate().max_by_key(|(_, values)| varies(values))?;
+        let seen = varies(&right);
+        Some((seen, Grid { mistaken: vec![], right, ..plane.grid(member, output) }))
+    });
+    // Of equals the first.
+    let (seen, grid) = cases.reduce(|best, other| if other.0 > best.0 { other } else { best })?;
+    (seen > 0).then_some(grid)
+}
+
 /// A case's picture, and how well it shows the mistake.
 fn drawn(member: &Member, variation: &Variation<'_>, mut row: Vec<f32>) -> Option<(f64, Grid)> {
     let plane = Plane::of(member, &row)?;
     let outputs = member.spec.output_len();
-    let (mut right, mut mistaken) = (vec![0.0; outputs], vec![0.0; outputs]);
-    let mut courses = vec![(vec![], vec![]); outputs];
-    for y in 0..plane.cells {
-        for x in 0..plane.cells {
-            plane.set(&mut row, [x, y]);
-            member.formula.reference(&row, &mut right);
-            variation.evaluate(&row, &mut mistaken);
-            let is_inside = plane.is_inside(&row);
-            for (output, (a, b)) in courses.iter_mut().enumerate() {
-                // Outside of what is drawn nothing but the coverage is a value.
-                let is_value = is_inside || is_coverage(member, output);
-                a.push(if is_value { right[output] } else { f64::NAN });
-                b.push(if is_value { mistaken[output] } else { f64::NAN });
-            }
-        }
-    }
+    let right = plane.values(member, &mut row, outputs, |row, values| member.formula.reference(row, values));
+    let mistaken = plane.values(member, &mut row, outputs, |row, values| variation.evaluate(row, values));
     let seen = |(_, (a, b)): &(usize, (Vec<f64>, Vec<f64>))| difference(a, b);
-    let best = courses.into_iter().enumerate().max_by(|a, b| seen(a).total_cmp(&seen(b)))?;
+    let best = right.into_iter().zip(mistaken).enumerate().max_by(|a, b| seen(a).total_cmp(&seen(b)))?;
     let seen = seen(&best);
     let (output, (right, mistaken)) = best;
-    let in_cells = |p: [f64; 2]| [0, 1].map(|axis| (p[axis] - plane.corner[axis]) / plane.step);
-    let is_of_depths = plane.outlines.is_empty();
-    let grid = Grid {
-        output: member.spec.output_name(output),
-        plane: if is_of_depths {
-            "the new depth to the right, the old one upwards"
-        } else {
-            "over the pixels of a triangle"
-        },
-        cells: plane.cells,
-        right,
-        mistaken,
-        outlines: plane.outlines.iter().map(|outline| outline.map(in_cells)).collect(),
-    };
-    Some((seen, grid))
+    Some((seen, Grid { right, mistaken, ..plane.grid(member, output) }))
 }
 
 impl Grid {
-    /// Both panels.
+    /// Both panels, or that of what is right alone.
     pub(crate) fn svg(&self) -> Markup {
         let [low, high] = span(self.right.iter().chain(&self.mistaken));
+        if self.mistaken.is_empty() {
+            return html! {
+                figure.sketch.grid.alone {
+                    svg viewBox={ "0 0 " (SIDE) " " (SIDE) } role="img" aria-label={ (self.output) " " (self.plane) } {
+                        (self.panel(0.0, &self.right, [low, high]))
+                    }
+                    figcaption { (self.output) " " (self.plane) "; the more ink, the greater, " (short(low)) " to " (short(high)) }
+                }
+            };
+        }
         html! {
             figure.sketch.grid {
                 svg viewBox={ "0 0 " (2.0 * SIDE + 10.0) " " (SIDE) } role="img" aria-label={ (self.output) " " (self.plane) ": right, and with the mistake" } {

@@ -177,10 +177,18 @@ fn drawn(member: &Member, variation: &Variation<'_>, mut row: Vec<f32>, input: u
         sketch.right.push(right[output]);
         sketch.mistaken.push(mistaken[output]);
     }
-    (difference(&sketch.right, &sketch.mistaken) > SEEN).then_some(sketch)
+    (difference(&sketch.right, &sketch.mistaken) > SEEN && sketch.is_readable()).then_some(sketch)
 }
 
 impl Sketch {
+    /// Whether its upper and its lower end differ in the digits that are told of them, and are not both next to nothing: what lies between is
+    /// otherwise rounding, enlarged until it is seen, and told better by numbers.
+    fn is_readable(&self) -> bool {
+        const LEAST: f64 = 1e-12;
+        let [low, high] = span(self.right.iter().chain(&self.mistaken));
+        short(low) != short(high) && high.abs().max(low.abs()) >= LEAST
+    }
+
     /// How it looks: both courses in steps of the plot's height.
     fn look(&self) -> Vec<i32> {
         const STEPS: f64 = 24.0;

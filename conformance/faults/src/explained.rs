@@ -180,8 +180,11 @@ pub fn typical_course(member: &Member, profile: &Profile) -> Option<OutputCourse
     };
     let mut middle = vec![];
     member.spec.inputs.iter().for_each(|input| input.middle(&mut middle));
-    let rows = std::iter::once(middle).chain((0..CASES).map(|case| row(CaseRef::Random(case))));
-    first_best(rows.filter_map(|row| best_course(member, &row, 0, None, profile)))
+    let rows: Vec<Vec<f32>> =
+        std::iter::once(middle).chain((0..CASES).map(|case| row(CaseRef::Random(case)))).collect();
+    // The first output, or another where that one does not vary.
+    (0..member.spec.output_len())
+        .find_map(|output| first_best(rows.iter().filter_map(|row| best_course(member, row, output, None, profile))))
 }
 
 /// The clearest of several courses, of equals the first.

@@ -52,7 +52,7 @@ pub(super) fn passing_cards(report: &Report) -> Vec<Markup> {
             details.card.passing {
                 summary { span.pass { "✓" } " its worst case: " b { (one.id) } }
                 (formula(one))
-                @if !one.steps.is_empty() { (steps(one)) }
+                @if !one.steps.is_empty() { (steps(one, &Hint::None)) }
                 @if let Some(course) = &one.course { (plot::course(course, None)) }
                 (command(&format!("lightmeter show {}", one.id)))
             }
@@ -97,7 +97,7 @@ fn card(report: &Report, groups: &[&Group], is_open: bool) -> Markup {
                 @for place in shader.places(&group.id) { pre { (made_at(shader, place)) } }
             }
             @if let Some(explained) = explained { (formula(explained)) }
-            @if let Some(failure) = failure { (case(failure, explained)) }
+            @if let Some(failure) = failure { (case(failure, explained, &hint_of(groups, explained))) }
         }
     }
 }
@@ -111,7 +111,7 @@ fn formula(explained: &Explained) -> Markup {
 }
 
 /// The first failing case: a line with what is legal, its inputs, its steps, and its course along one input.
-fn case(failure: &Failure, explained: Option<&Explained>) -> Markup {
+fn case(failure: &Failure, explained: Option<&Explained>, hint: &Hint) -> Markup {
     html! {
         h3 { "A failing case: " code { (failure.id) } }
         (verdict(failure))
@@ -124,7 +124,7 @@ fn case(failure: &Failure, explained: Option<&Explained>) -> Markup {
                     }
                 } }
             }
-            @if let Some(explained) = explained.filter(|explained| !explained.steps.is_empty()) { div { (steps(explained)) } }
+            @if let Some(explained) = explained.filter(|explained| !explained.steps.is_empty()) { div { (steps(explained, hint)) } }
         }
         @if let Some(course) = explained.and_then(|explained| explained.course.as_ref()) {
             (plot::course(course, (course.output == failure.output).then_some(failure.value.0)))
@@ -165,8 +165,30 @@ fn verdict(failure: &Failure) -> Markup {
     }
 }
 
+/// What is said below steps of which none is marked as the first that departs.
+enum Hint {
+    /// Nothing: nothing fails.
+    None,
+    /// The cause has a name, and it is made in the result, or in a step without a name.
+    InTheResult,
+    /// What fails is explained, but not by a mistake of the catalogue: the cause above says how.
+    AsTheCauseSays,
+    /// No cause is known.
+    Unknown,
+}
+
+fn hint_of(groups: &[&Group], explained: Option<&Explained>) -> Hint {
+    if explained.is_some_and(|explained| explained.mistake.is_some()) {
+        Hint::InTheResult
+    } else if groups.iter().any(|group| group.explanation.is_some()) {
+        Hint::AsTheCauseSays
+    } else {
+        Hint::Unknown
+    }
+}
+
 /// The steps with what is legal of each, beside what they are with the mistake; the first that departs is marked.
-fn steps(explained: &Explained) -> Markup {
+fn steps(explained: &Explained, hint: &Hint) -> Markup {
     let mistake = explained.mistake.as_ref();
     let made = |place: usize| -> Option<Number> {
         // The components of a vector share a name: the same place among those of that name.
@@ -211,6 +233,13 @@ fn steps(explained: &Explained) -> Markup {
                 }
             }
         } }
-        @if departs.is_none() { p.hint { "Only the result is known of whoever answered: no mistake by name explains it, so no step can be said to be the first that departs." } }
+        @if departs.is_none() {
+            @match hint {
+                Hint::None => {}
+                Hint::InTheResult => { p.hint { "All steps are right with this mistake: it is made in the result itself, or in a step that has no name." } }
+                Hint::AsTheCauseSays => { p.hint { "Only the result is known of whoever answered. What is said above explains it as a whole, so no step can be said to be the first that departs." } }
+                Hint::Unknown => { p.hint { "Only the result is known of whoever answered, and no mistake by name explains it, so no step can be said to be the first that departs." } }
+            }
+        }
     }
 }

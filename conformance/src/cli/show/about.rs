@@ -268,7 +268,7 @@ pub(super) fn wgsl(name: &str, catalogue: &[Member]) -> anyhow::Result<String> {
     if let Some(member) = catalogue.iter().find(|member| member.spec.id == id) {
         let spec = &member.spec;
         let file = format!("{}.wgsl", spec.family());
-        let text = shaders.function(&file, spec.function);
+        let text = shaders.function_with_named(&file, spec.function);
         let Some(text) = text else { bail!("`{name}` is drawn by fixed hardware: no function computes it") };
         return Ok(format!("// {file}\n{text}\n"));
     }
