@@ -22,7 +22,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "depth-on-off",
         "position",
     ),
-    ("what is opaque cut out", "effects/cutout.wgsl", "color.a <", "color.a >=", "sorted", "position"),
+    ("what is opaque cut out", "effects/cutout.wgsl", "color.a <", "color.a >=", "sorted", "cutout"),
     // Normals.
     (
         "normals by the modelview",
