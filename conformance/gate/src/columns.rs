@@ -4,7 +4,7 @@
 //! its cases; a number is a row of its own, a vector or a matrix a row of its components. Rows are read as they are judged, so that no file
 //! is in memory.
 
-use super::pack::PackError;
+use super::error::PackError;
 use super::picture::decode::is_nested;
 use super::plan::GatePlan;
 use lightmeter_catalogue::cases::{Output, Spec};

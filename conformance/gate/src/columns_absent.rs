@@ -1,6 +1,6 @@
 //! In the place of columns where the feature `scenes` is left out, and with it what reads arrays: a clear error.
 
-use super::pack::PackError;
+use super::error::PackError;
 use super::plan::GatePlan;
 use lightmeter_catalogue::cases::Spec;
 use std::io::Write;

@@ -57,3 +57,35 @@ pub enum ProcessError {
         message: String,
     },
 }
+
+/// Why a pack was not written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum PackError {
+    /// A file cannot be written.
+    #[error("cannot write {}: {message}", .path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// A file cannot be read.
+    #[error("cannot read {}: {message}", .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// It is no pack, or another's.
+    #[error("{}: {message}", .path.display())]
+    Manifest {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what would be right.
+        message: String,
+    },
+    /// A scene is refused, or a glob.
+    #[error("{0}")]
+    Plan(String),
+}

@@ -1,5 +1,6 @@
 //! A pack: the cases as files, for a renderer that answers by files.
 
+pub use super::error::PackError;
 use super::picture::within;
 use super::plan::{CasePlace, GatePlan};
 use super::{columns, frame};
@@ -18,7 +19,7 @@ use lightmeter_scene::target::TargetFormat;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::io::{BufWriter, Read as _, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const MANIFEST: &str = "manifest.json";
 const CASES: &str = "cases.jsonl";
@@ -26,38 +27,6 @@ const CASES: &str = "cases.jsonl";
 pub const MOST_CASES: u64 = 10_000_000;
 /// Pixels of a scene's longer side, at most.
 const MOST_PIXELS: u32 = 8192;
-
-/// Why a pack was not written or read.
-#[derive(Debug, thiserror::Error)]
-pub enum PackError {
-    /// A file cannot be written.
-    #[error("cannot write {}: {message}", .path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        message: String,
-    },
-    /// A file cannot be read.
-    #[error("cannot read {}: {message}", .path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        message: String,
-    },
-    /// It is no pack, or another's.
-    #[error("{}: {message}", .path.display())]
-    Manifest {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it, and what would be right.
-        message: String,
-    },
-    /// A scene is refused, or a glob.
-    #[error("{0}")]
-    Plan(String),
-}
 
 /// What a formula of a plan takes and gives.
 fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {

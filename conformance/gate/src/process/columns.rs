@@ -7,7 +7,7 @@ use super::super::answer::clipped;
 use super::super::problems::note;
 use super::queue::MOST_OF_FORMULA;
 use super::running::Event;
-use super::session::{Ended, MOMENT, SURPLUS, Session};
+use super::session::{Ended, MOMENT, ROWS, SURPLUS, Session};
 use lightmeter_catalogue::cases::{Spec, ValueShape};
 use lightmeter_document::protocol::{ColumnsAnswer, ColumnsRequest, RequestedColumn};
 use lightmeter_engine::rows::Rows;
@@ -16,8 +16,6 @@ use std::ops::Range;
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::Instant;
 
-/// Cases of a batch, at first and at most: twice as many where they were answered in an eighth of what a batch may take.
-pub(super) const ROWS: [usize; 2] = [256, 1 << 16];
 /// Bytes of a request, at most, beyond its first row.
 const MOST_REQUEST: usize = 8 << 20;
 

@@ -5,7 +5,6 @@ use super::super::error::ProcessError;
 use super::super::given::{Asks, Given, Skips, given};
 use super::super::problems::note;
 use super::Asking;
-use super::columns::ROWS;
 use super::running::{Event, Running};
 use lightmeter_document::by_case::RendererUse;
 use lightmeter_document::gate::RendererIdentity;
@@ -21,6 +20,8 @@ use std::time::{Duration, Instant};
 
 /// Cases that are asked at once, at first and at most: twice as many where they were answered in an eighth of what a case may take.
 pub(super) const BATCH: [usize; 2] = [16, 1024];
+/// Cases of a batch in columns, at first and at most: twice as many where they were answered in an eighth of what a batch may take.
+pub(super) const ROWS: [usize; 2] = [256, 1 << 16];
 /// Lines that wait to be read as answers, and their bytes, at most.
 const WAITING: (usize, usize) = (4096, 8 << 20);
 /// Lines beyond one a case, in a batch, that end a process.
