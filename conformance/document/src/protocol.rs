@@ -117,7 +117,7 @@ pub struct RequestedColumn {
     pub components: usize,
 }
 
-/// The answer to a request in columns. Where it has `bytes`, so many follow behind the line: an array for each output.
+/// The answer to a request in columns. Where it has `bytes`, that many bytes follow the line: an array for each output.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct ColumnsAnswer {

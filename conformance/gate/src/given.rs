@@ -176,7 +176,7 @@ pub(super) fn word(given: Given) -> Result<u32, Unanswered> {
     }
 }
 
-/// Puts what was given to a row of so many outputs among the answers, as the engine takes them.
+/// Stores what was given to the row at a place in the answers. A row has `outputs` numbers.
 pub(super) fn put(answers: &mut Answers, outputs: usize, place: usize, given: Given) {
     let words = &mut answers.words[place * outputs..(place + 1) * outputs];
     match given {
