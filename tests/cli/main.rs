@@ -131,7 +131,7 @@ fn a_run_in_json_has_what_others_build_upon() {
     let catalogue = lightmeter::select::catalogue();
     let member = catalogue.iter().find(|member| member.spec.id == "fog/linear").expect("a formula");
     let hard = member.spec.hard.len() as u64;
-    assert_eq!(linear["cases"], 100 + hard * (1 + member.near()));
+    assert_eq!(linear["cases"], 100 + hard * (1 + member.near()) + member.boundary());
     assert_eq!(report["failures"], Value::Array(vec![]));
 }
 

@@ -46,10 +46,8 @@ pub(crate) fn errors(member: &Member) -> Vec<OutputErrors> {
         .collect();
     let (mut value, mut reference, mut legal) =
         (vec![0.0_f32; outputs], vec![0.0; outputs], vec![Accept::ANY; outputs]);
-    let hard = (0..member.spec.hard.len()).map(CaseRef::Hard);
-    let near = (0..member.spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));
     let mut conditions = vec![vec![]; outputs];
-    for case in hard.chain(near).chain((0..CASES).map(CaseRef::Random)) {
+    for case in member.hard_and_near().chain((0..CASES).map(CaseRef::Random)) {
         let mut row = vec![];
         member.inputs(case, 1, &mut row);
         member.formula.embedded(&row, &mut value);

@@ -13,6 +13,8 @@ pub enum CaseRef {
     Hard(usize),
     /// The k-th case within a few ULP of a named one.
     Near(usize, u64),
+    /// The k-th case drawn close to where the formula decides or degenerates.
+    Boundary(u64),
     /// The k-th random case.
     Random(u64),
 }
@@ -66,6 +68,7 @@ impl Member {
             CaseRef::Random(k) => format!("{}/{k:06}", self.random_path()),
             CaseRef::Hard(place) => format!("{}/hard/{}", self.spec.group(), self.spec.hard[place].name),
             CaseRef::Near(place, k) => format!("{}/near/{k:02}", self.case_id(CaseRef::Hard(place))),
+            CaseRef::Boundary(k) => format!("{}/boundary/{k:04}", self.spec.group()),
         }
     }
 
@@ -81,6 +84,9 @@ impl Member {
                 }
             };
         }
+        if let Some(number) = id.strip_prefix(self.spec.group()).and_then(|rest| rest.strip_prefix("/boundary/")) {
+            return number.parse().ok().filter(|&k| k < self.boundary()).map(CaseRef::Boundary);
+        }
         let number = id.strip_prefix(&self.random_path())?.strip_prefix('/')?;
         number.parse().ok().map(CaseRef::Random)
     }
@@ -89,6 +95,24 @@ impl Member {
     #[must_use]
     pub fn near(&self) -> u64 {
         if matches!(self.spec.kind, Kind::Arithmetic) { NEAR } else { 0 }
+    }
+
+    /// Cases close to where it decides or degenerates: of arithmetic, likewise.
+    #[must_use]
+    pub fn boundary(&self) -> u64 {
+        cases::boundary_cases(&self.spec)
+    }
+
+    /// The hard cases, then those near them.
+    pub fn hard_and_near(&self) -> impl Iterator<Item = CaseRef> + use<> {
+        let (hard, near) = (self.spec.hard.len(), self.near());
+        let near = (0..hard).flat_map(move |place| (0..near).map(move |k| CaseRef::Near(place, k)));
+        (0..hard).map(CaseRef::Hard).chain(near)
+    }
+
+    /// All cases that are the same whatever the seed: the hard ones, those near them, and those at boundaries.
+    pub fn fixed(&self) -> impl Iterator<Item = CaseRef> + use<> {
+        self.hard_and_near().chain((0..self.boundary()).map(CaseRef::Boundary))
     }
 
     /// The case's inputs, appended to a row.
@@ -106,6 +130,7 @@ impl Member {
     fn drawn(&self, case: CaseRef, seed: u64, row: &mut Vec<f32>) {
         match case {
             CaseRef::Random(k) => cases::inputs(&self.spec, seed, k, row),
+            CaseRef::Boundary(k) => cases::boundary_inputs(&self.spec, k, row),
             CaseRef::Hard(place) => {
                 let start = row.len();
                 for input in self.spec.inputs {
@@ -176,6 +201,8 @@ pub struct Selected {
     pub hard: Vec<usize>,
     /// Those near a hard case: its place, and which.
     pub near: Vec<(usize, u64)>,
+    /// Those at boundaries.
+    pub boundary: Vec<u64>,
     shard: Shard,
 }
 
@@ -183,7 +210,7 @@ impl Selected {
     /// Random cases of the formula at a place.
     #[must_use]
     pub const fn whole(member: usize, random: Random) -> Self {
-        Self { member, random, hard: vec![], near: vec![], shard: Shard::WHOLE }
+        Self { member, random, hard: vec![], near: vec![], boundary: vec![], shard: Shard::WHOLE }
     }
 
     /// The cases, hard ones first.
@@ -195,7 +222,8 @@ impl Selected {
             Random::Some(some) => Box::new(some.iter().copied()),
         };
         let near = self.near.iter().map(|&(place, k)| CaseRef::Near(place, k));
-        self.hard.iter().copied().map(CaseRef::Hard).chain(near).chain(random.map(CaseRef::Random))
+        let boundary = self.boundary.iter().copied().map(CaseRef::Boundary);
+        self.hard.iter().copied().map(CaseRef::Hard).chain(near).chain(boundary).chain(random.map(CaseRef::Random))
     }
 
     /// What of them is evaluated in stages that take rows of numbers: a sixteenth of the many blend states' cases, since it
@@ -208,21 +236,24 @@ impl Selected {
         }
     }
 
-    /// A few of them: the hard cases and the first random ones.
+    /// A few of them: the hard cases and the first random ones; where there is neither, the first of the others.
     #[must_use]
     pub fn few(&self, random: usize) -> Self {
         let number = |case| match case {
             CaseRef::Random(number) => Some(number),
-            CaseRef::Hard(_) | CaseRef::Near(..) => None,
+            CaseRef::Hard(_) | CaseRef::Near(..) | CaseRef::Boundary(_) => None,
         };
-        let random = Random::Some(self.cases().filter_map(number).take(random).collect());
-        Self { random, near: vec![], ..self.clone() }
+        let few: Vec<u64> = self.cases().filter_map(number).take(random).collect();
+        let others = if few.is_empty() && self.hard.is_empty() { random } else { 0 };
+        let near = self.near.iter().copied().take(others).collect();
+        let boundary = self.boundary.iter().copied().take(others).collect();
+        Self { random: Random::Some(few), near, boundary, ..self.clone() }
     }
 
     /// How many cases there are.
     #[must_use]
     pub fn count(&self) -> u64 {
-        self.random_count() + (self.hard.len() + self.near.len()) as u64
+        self.random_count() + (self.hard.len() + self.near.len() + self.boundary.len()) as u64
     }
 
     /// How many of them are random.
@@ -300,7 +331,10 @@ pub fn select(catalogue: &[Member], filter: &Filter, cases: u64, shard: Shard) -
             .flat_map(|k| (0..member.near()).map(move |near| (k, near)))
             .filter(|&(k, near)| shard.has(near) && filter.selects(&member.case_id(CaseRef::Near(k, near))))
             .collect();
-        let chosen = Selected { member: place, random, hard, near, shard };
+        let boundary = (0..member.boundary())
+            .filter(|&k| shard.has(k) && filter.selects(&member.case_id(CaseRef::Boundary(k))))
+            .collect();
+        let chosen = Selected { member: place, random, hard, near, boundary, shard };
         if chosen.count() > 0 {
             selected.push(chosen);
         }

@@ -42,6 +42,9 @@ pub struct FormulaCases {
     pub random: u64,
     /// The hard cases.
     pub hard: Vec<HardCase>,
+    /// The number of cases close to where the formula decides or degenerates: `…/boundary/0000` and those that follow.
+    #[serde(default)]
+    pub boundary: u64,
     /// Other ids of the same formula.
     pub aliases: Vec<String>,
     /// The id of the first random case, where the random cases are numbered from there on.

@@ -149,14 +149,15 @@ impl Order {
         self.0.get(id).copied().unwrap_or(usize::MAX)
     }
 
-    /// The place of a case in its group: hard ones, those near them, random ones; each by its path and number.
+    /// The place of a case in its group: hard ones, those near them, those at boundaries, random ones; each by its path and number.
     fn of_case(&self, id: &str) -> (u8, usize, String, u64) {
         let number = id.rsplit_once('/').and_then(|(path, number)| Some((path.to_owned(), number.parse().ok()?)));
         let (path, number) = number.unwrap_or_else(|| (id.to_owned(), 0));
         match id.split_once("/near/") {
             Some((hard, _)) => (1, self.of(hard), path, number),
             None if id.contains("/hard/") => (0, self.of(id), path, number),
-            None => (2, 0, path, number),
+            None if id.contains("/boundary/") => (2, 0, path, number),
+            None => (3, 0, path, number),
         }
     }
 

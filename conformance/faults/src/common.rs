@@ -146,10 +146,7 @@ fn range_of(member: &Member, failing: &[Answered<'_>], passing: &[Answered<'_>])
         let range = member.spec.place(input.name)?;
         for place in range.clone() {
             let of = |rows: &[Answered<'_>]| rows.iter().map(|row| f64::from(row.inputs[place])).collect::<Vec<f64>>();
-            let name = match range.len() {
-                1 => input.name.to_owned(),
-                _ => format!("component {} of {}", place - range.start, input.name),
-            };
+            let name = member.spec.input_name(place);
             for (beyond, bound, is_above) in one_sided_bounds(&of(failing), &of(passing)) {
                 if beyond <= FEW && one_sided.as_ref().is_none_or(|(least, _)| beyond < *least) {
                     let side = if is_above { "at least" } else { "at most" };

@@ -63,11 +63,8 @@ impl<'a> Sample<'a> {
     const SHARE: usize = 40;
 
     fn new(member: &'a Member) -> Self {
-        let hard = (0..member.spec.hard.len()).map(CaseRef::Hard);
-        let near =
-            (0..member.spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));
-        let inputs: Vec<Vec<f32>> = hard
-            .chain(near)
+        let inputs: Vec<Vec<f32>> = member
+            .fixed()
             .chain((0..Self::RANDOM).map(CaseRef::Random))
             .map(|case| {
                 let mut row = vec![];

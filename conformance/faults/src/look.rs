@@ -15,9 +15,7 @@ const CASES: u64 = 256;
 #[must_use]
 pub fn look(member: &Member, fault: &'static Fault) -> Option<MistakeLook> {
     let (variation, spec) = (Variation::new(member, &[fault])?, &member.spec);
-    let hard = (0..spec.hard.len()).map(CaseRef::Hard);
-    let near = (0..spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));
-    let cases: Vec<CaseRef> = hard.chain(near).chain((0..CASES).map(CaseRef::Random)).collect();
+    let cases: Vec<CaseRef> = member.hard_and_near().chain((0..CASES).map(CaseRef::Random)).collect();
     let outputs = spec.output_len();
     let (mut out, mut reference, mut legal) = (vec![0.0_f32; outputs], vec![0.0; outputs], vec![Accept::ANY; outputs]);
     let mut wrong = vec![false; outputs];

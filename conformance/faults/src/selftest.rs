@@ -91,9 +91,7 @@ struct Bench<'a> {
 impl<'a> Bench<'a> {
     fn new(member: &'a Member, options: &'a SelftestOptions, random: u64) -> Self {
         let spec = &member.spec;
-        let hard = (0..spec.hard.len()).map(CaseRef::Hard);
-        let near = (0..spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));
-        let cases: Vec<CaseRef> = hard.chain(near).chain((0..random).map(CaseRef::Random)).collect();
+        let cases: Vec<CaseRef> = member.fixed().chain((0..random).map(CaseRef::Random)).collect();
         let inputs: Vec<Vec<f32>> = cases
             .iter()
             .map(|&case| {

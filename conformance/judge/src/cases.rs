@@ -206,7 +206,8 @@ impl CaseTally {
 
     fn push(&mut self, (member, case): (usize, CaseRef), state: NotPassed) {
         if let Some(range) = self.not_passed.last_mut()
-            && let (CaseRef::Random(last), CaseRef::Random(number)) = (range.last, case)
+            && let (CaseRef::Random(last), CaseRef::Random(number))
+            | (CaseRef::Boundary(last), CaseRef::Boundary(number)) = (range.last, case)
             && (range.member, range.state) == (member, state)
             && number == last + 1
         {

@@ -24,6 +24,7 @@ impl RowNumber for (usize, CaseRef) {
             CaseRef::Hard(place) => [1, place as u64, 0],
             CaseRef::Near(place, k) => [2, place as u64, k],
             CaseRef::Random(k) => [3, k, 0],
+            CaseRef::Boundary(k) => [4, k, 0],
         };
         [member as u64, kind, first, second].into_iter().fold(0, |number, part| mix(number ^ part))
     }

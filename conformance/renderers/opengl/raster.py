@@ -131,7 +131,15 @@ class Raster(Pixels):
             glDepthRangef(*c.depth)
 
         outside = Skip("glRasterPos gives no position outside of the clip volume")
-        return [place if valid else outside for valid, place in self.raster_position(cases, set_up)]
+        limited = Skip("the viewport is larger than GL_MAX_VIEWPORT_DIMS, or begins beyond GL_VIEWPORT_BOUNDS_RANGE; or its depths lie beyond [0, 1]")
+        low, high = glGetFloatv(GL_VIEWPORT_BOUNDS_RANGE)
+        size, origin = np.abs(cases.size), cases.origin
+        # glDepthRange limits depths to [0, 1].
+        depth = cases.depth
+        fits = (size <= glGetIntegerv(GL_MAX_VIEWPORT_DIMS)).all(axis=1) & (origin >= low).all(axis=1) & (origin <= high).all(axis=1)
+        fits &= ((depth >= 0) & (depth <= 1)).all(axis=1)
+        places = self.raster_position(cases, set_up)
+        return [(place if valid else outside) if fits[k] else limited for k, (valid, place) in enumerate(places)]
 
     def clip_volume(self, cases):
         return [[float(valid)] for valid, _ in self.raster_position(cases, lambda c: None)]

@@ -77,7 +77,8 @@ function makeLights(scene) {
 function makeMaterial(scene, draw, tint) {
   const of = draw.material;
   const options = {
-    opacity: draw.alpha,
+    // A texture in place of the colour is in place of its alpha, too.
+    opacity: draw.texture?.replaces ? 1 : draw.alpha,
     transparent: true,
     vertexColors: draw.vertex_colors,
     side: SIDES[draw.cull],

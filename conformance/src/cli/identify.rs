@@ -122,14 +122,16 @@ impl Identify {
             }
             candidates.push(candidate);
         }
-        // What has a name is nearer than what has none, and one mistake nearer than two.
+        // What has a name is nearer than what has none, and one mistake nearer than two. Shares of what fails are compared in quarters: they
+        // depend on which hard cases a formula has, and where they are alike the formula that is listed first is the more common one.
         let steps = |candidate: &FormulaCandidate| match (candidate.failed, candidate.mistakes.len()) {
             (0, _) => 0,
             (_, 0) => usize::MAX,
             (_, mistakes) => mistakes,
         };
         #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
-        let share = |candidate: &FormulaCandidate| candidate.failed as f64 / candidate.verdicts.max(1) as f64;
+        let share =
+            |candidate: &FormulaCandidate| (4.0 * candidate.failed as f64 / candidate.verdicts.max(1) as f64).round();
         candidates.sort_by(|a, b| {
             steps(a).cmp(&steps(b)).then(a.missing.len().cmp(&b.missing.len())).then(share(a).total_cmp(&share(b)))
         });

@@ -109,16 +109,16 @@ pub struct Exception {
 }
 
 /// Nothing else may err by more than its condition allows, and each of these is still needed.
-pub const EXCEPTIONS: [Exception; 7] = [
+pub const EXCEPTIONS: [Exception; 8] = [
     Exception {
         reason: "a + 16·((b − a)/16) is b, but the steps are rounded at the size of a: what the formula is there to show",
         covers: |id| id == "interpolation/forward-differences",
     },
     Exception {
-        reason: "1 − f of thin fog before a dark surface: f = e^(−x) is rounded at the size of 1, and what is left is x",
+        reason: "1 − f of thin fog before a dark surface: f is rounded at the size of 1, and what is left is 1 − f",
         covers: |id| {
-            let is_exponential = |rest: &str| rest.starts_with("exp2-") || rest == "exp-radial-scaled";
-            id.strip_prefix("fog/").is_some_and(is_exponential)
+            let is_mixed = |rest: &str| rest.starts_with("exp") || rest == "linear";
+            id.strip_prefix("fog/").is_some_and(is_mixed)
         },
     },
     Exception {
@@ -126,6 +126,10 @@ pub const EXCEPTIONS: [Exception; 7] = [
         covers: |id| {
             ["fog/opacity", "blend/opacity-of-layers", "interpolation/last-weight-by-difference"].contains(&id)
         },
+    },
+    Exception {
+        reason: "a scan line whose two ends nearly meet: xb − xa is little more than the rounding of both",
+        covers: |id| id == "interpolation/scanline",
     },
     Exception {
         reason: "a distance beyond the planes is no depth: near·far over a difference that is the rounding of its terms",
@@ -136,8 +140,8 @@ pub const EXCEPTIONS: [Exception; 7] = [
         covers: |id| id == "interpolation/weights",
     },
     Exception {
-        reason: "v + l of vectors that are nearly opposite: more roundings than the nine that a unit of condition stands for",
-        covers: |id| ["lighting/two-lights", "lighting/blinn"].contains(&id),
+        reason: "v + l of vectors that are nearly opposite, l·n of a face that the light grazes: more roundings than the nine that a unit of condition stands for",
+        covers: |id| ["lighting/two-lights", "lighting/blinn", "lighting/flat"].contains(&id),
     },
     Exception {
         reason: "s·d + d·(1 − s) is d, but both terms are rounded at the size of s·d", covers: terms_cancel

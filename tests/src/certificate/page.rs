@@ -71,7 +71,7 @@ fn head(all: &FormulaFinding, held: &FormulaFinding) -> String {
          * {} intervals hold the exact value, all of those that promise anything; {} permit any value.\n\
          * {} values err by more than their condition allows, and by no more than the roundings of their steps: the \
          exceptions below.\n\
-         * The reference chose otherwise than is right in {} cases.\n\n",
+         * Cases in which the reference chose otherwise than is right: {}.\n\n",
         grouped(all.compared),
         grouped(all.no_value),
         grouped(all.past_no_value),

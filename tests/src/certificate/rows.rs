@@ -43,8 +43,10 @@ pub(super) fn rows(member: &Member, cases: u64) -> Vec<Row> {
     let spec = &member.spec;
     let near = |place| (0..member.near()).map(move |k| CaseRef::Near(place, k));
     let hard = (0..spec.hard.len()).flat_map(|place| std::iter::once(CaseRef::Hard(place)).chain(near(place)));
+    let boundary = (0..member.boundary()).map(CaseRef::Boundary);
     let random = (0..random_cases(spec, cases)).map(CaseRef::Random);
     let mut rows: Vec<Row> = hard
+        .chain(boundary)
         .chain(random)
         .map(|case| {
             let mut inputs = vec![];

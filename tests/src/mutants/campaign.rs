@@ -379,10 +379,7 @@ impl Campaign {
         let members = [member];
         let right = Evaluator::new(&mut self.subject, &members, &self.right)?;
         let other = Evaluator::new(&mut self.subject, &members, mutated)?;
-        let hard = (0..member.spec.hard.len()).map(CaseRef::Hard);
-        let near =
-            (0..member.spec.hard.len()).flat_map(|place| (0..member.near()).map(move |k| CaseRef::Near(place, k)));
-        let mut cases = hard.chain(near).chain((0..random).map(CaseRef::Random));
+        let mut cases = member.fixed().chain((0..random).map(CaseRef::Random));
         let (mut worst, outputs) = (MutantClass::Equal, member.spec.output_len());
         let options = Options::new(mutated.clone());
         loop {

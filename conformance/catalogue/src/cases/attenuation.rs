@@ -88,6 +88,7 @@ formula!(
     hard [
         Hard::new("on-the-edge-of-a-hemisphere", "the edge belongs to the cone", ON_THE_EDGE),
         Hard::new("no-exponent", "an evenly lit cone", &[("l", &[0.0, 0.6, -0.8]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[0.0])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("l", &[0.0, 0.0, -1.0]), ("axis", &[0.0, 0.0, 1.5]), ("cutoff_cosine", &[0.5]), ("exponent", &[2.0])]),
         Hard::new("slight-exponent", "an exponent of 0.0005 is not 0", SLIGHT),
         Hard::new("barely-before-it", "however small, a cosine above 0 counts", &[("l", &[0.999_999_9, 0.0, -9e-5]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[0.5])]),
         Hard::new("no-exponent-behind", "evenly lit where the cone reaches behind the light too", BEHIND),

@@ -71,6 +71,15 @@ const fn hard(by: DepthTest) -> &'static [Hard] {
                 )]
             }
         }
+        (Compare::Less, false) => {
+            const {
+                &[Hard::new(
+                    "nearly-at-the-near-plane",
+                    "depths of less than 1e-7 are not 0",
+                    &[("new", &[9e-8]), ("old", &[3e-8])],
+                )]
+            }
+        }
         (Compare::Equal, true) => {
             const {
                 &[Hard::new(

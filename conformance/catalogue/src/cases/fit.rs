@@ -12,36 +12,36 @@ use lightmeter_reference::vector::{face_normal, halfway, reflect};
 use lightmeter_reference::{Vec3, Vector};
 
 /// A row whose inputs are found by their names.
-struct Fitted<'a> {
-    spec: &'a Spec,
-    row: &'a mut [f32],
+pub(super) struct Fitted<'a> {
+    pub(super) spec: &'a Spec,
+    pub(super) row: &'a mut [f32],
     bits: u64,
 }
 
 impl<'a> Fitted<'a> {
-    fn new(spec: &'a Spec, row: &'a mut [f32]) -> Self {
+    pub(super) fn new(spec: &'a Spec, row: &'a mut [f32]) -> Self {
         let bits = row.iter().fold(0, |bits, x| mix(bits ^ u64::from(x.to_bits())));
         Self { spec, row, bits }
     }
 
     /// A whole number below `count`.
-    fn below(&mut self, count: u64) -> u64 {
+    pub(super) fn below(&mut self, count: u64) -> u64 {
         self.bits = mix(self.bits.wrapping_add(0x9e37_79b9_7f4a_7c15));
         (self.bits >> 32) % count
     }
 
     /// A number from low to high, evenly in steps of 2⁻²⁰ of their distance.
-    fn uniform(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn uniform(&mut self, low: f64, high: f64) -> f64 {
         let steps = u32::try_from(self.below(1 << 20)).unwrap_or_default();
         low + (high - low) * f64::from(steps) / f64::from(1 << 20)
     }
 
     /// A vector whose components are each at most 1.
-    fn jitter(&mut self) -> Vec3<f64> {
+    pub(super) fn jitter(&mut self) -> Vec3<f64> {
         Vector(std::array::from_fn(|_| self.uniform(-1.0, 1.0)))
     }
 
-    fn has(&self, name: &str) -> bool {
+    pub(super) fn has(&self, name: &str) -> bool {
         self.spec.place(name).is_some()
     }
 
@@ -49,25 +49,25 @@ impl<'a> Fitted<'a> {
         self.spec.place(name).map(|place| f64::from(self.row[place.start]))
     }
 
-    fn put_scalar(&mut self, name: &str, x: f64) {
+    pub(super) fn put_scalar(&mut self, name: &str, x: f64) {
         if let Some(place) = self.spec.place(name) {
             self.row[place.start] = narrow(x);
         }
     }
 
-    fn vector(&self, name: &str) -> Option<Vec3<f64>> {
+    pub(super) fn vector(&self, name: &str) -> Option<Vec3<f64>> {
         let place = self.spec.place(name)?;
         Some(Vector(std::array::from_fn(|k| f64::from(self.row[place.start + k]))))
     }
 
-    fn put(&mut self, name: &str, v: Vec3<f64>) {
+    pub(super) fn put(&mut self, name: &str, v: Vec3<f64>) {
         if let Some(place) = self.spec.place(name) {
             self.row[place].iter_mut().zip(v.0).for_each(|(to, x)| *to = narrow(x));
         }
     }
 
     /// Turns a vector, which keeps its length.
-    fn turn(&mut self, name: &str, to: Vec3<f64>) {
+    pub(super) fn turn(&mut self, name: &str, to: Vec3<f64>) {
         if let Some(length) = self.vector(name).map(|v| v.length()) {
             self.put(name, to.normalize().scale(length));
         }
@@ -109,7 +109,7 @@ impl<'a> Fitted<'a> {
     }
 
     /// The vectors to the light and to the viewer at a point.
-    fn toward(&self, point: Vec3<f64>) -> Option<[Vec3<f64>; 2]> {
+    pub(super) fn toward(&self, point: Vec3<f64>) -> Option<[Vec3<f64>; 2]> {
         let l = match self.vector("position") {
             Some(position) => position - point,
             None => -self.vector("direction")?,

@@ -58,6 +58,7 @@ formula!(
     hard [
         Hard::new("edge-on", "0 at a right angle", &[("l", &[1.0, 0.0, 0.0]), ("n", &[0.0, 0.0, 1.0])]),
         Hard::new("from-behind", "max, not abs and not the bare product", &[("l", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.0])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("l", &[0.0, 0.0, 1.0]), ("n", &[0.0, 0.0, 1.5])]),
     ],
 );
 formula!(
@@ -66,6 +67,7 @@ formula!(
     "CD = LD * MD * max((−i)·n, 0)", "000 §6.3; rulings 5, 13, 16",
     [LD, MD, Input::direction("i"), Input::direction("n")] -> [RGB],
     |ld, md, i, n; out| { out.vector(lighting::diffuse_travel(ld, md, i, n)); },
+    hard [Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("i", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.5])])],
 );
 formula!(
     /// Phong's highlight.
@@ -209,6 +211,7 @@ formula!(
     },
     hard [
         Hard::new("short-direction", "the light's direction is not normalised", &[("ls", WHITE), ("ms", WHITE), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.0, 0.0, -0.69]), ("shininess", &[2.0])]),
+        Hard::new("long-direction", "nor is its cosine above 1 clamped", &[("normal", &[0.0, 0.0, 1.0]), ("direction", &[0.0, 0.0, -1.5])]),
     ],
 );
 

@@ -11,6 +11,7 @@ pub mod interpolation;
 pub mod lighting;
 pub mod vector;
 
+mod boundary;
 mod draw;
 mod fit;
 pub mod formula;
@@ -23,6 +24,7 @@ mod rows;
 mod rule;
 mod spec;
 
+pub use boundary::{DRAWN, boundary_cases, boundary_inputs, boundary_name, boundary_names};
 pub use draw::{GENERATOR_VERSION, inputs, mix, move_by_ulps};
 pub use formula::{AnyFormula, Formula, Visitor};
 pub use partial::Partial;

@@ -239,7 +239,7 @@ pub type Values = &'static [(&'static str, &'static [f32])];
 impl Input {
     /// Whether it is a colour, drawn from black to white.
     #[must_use]
-    const fn is_color(&self) -> bool {
+    pub(super) const fn is_color(&self) -> bool {
         let is_color = matches!(self.unit.as_bytes(), b"color") && matches!(self.domain, Domain::Unit);
         is_color && matches!(self.shape, ValueShape::Vec3 | ValueShape::Vec4)
     }

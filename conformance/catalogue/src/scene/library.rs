@@ -8,7 +8,7 @@ macro_rules! scenes {
     };
 }
 
-const COUNT: usize = 45;
+const COUNT: usize = 46;
 
 /// Each built-in scene's name and JSON.
 pub const SCENES: [(&str, &str); COUNT] = scenes! {
@@ -54,6 +54,7 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "teapot"
     "texture-edges"
     "thresholds"
+    "transformed"
     "translucent-square"
     "unit-light"
     "viewer"

@@ -37,7 +37,9 @@ impl HardRows {
     fn place(case: CaseRef) -> usize {
         match case {
             CaseRef::Hard(place) | CaseRef::Near(place, _) => place,
-            CaseRef::Random(_) => unreachable!("only hard cases and those near them are rows here"),
+            CaseRef::Boundary(_) | CaseRef::Random(_) => {
+                unreachable!("only hard cases and those near them are rows here")
+            }
         }
     }
 }
@@ -222,11 +224,12 @@ pub fn problem(examined: &[Examined], group: &str, adapter: &str, stage: &str) -
     let broken: Vec<&Examined> = examined.iter().filter(of_group).filter(|one| !one.is_stable()).collect();
     let worst = broken.iter().max_by(|a, b| (a.stable.0 / a.bound).total_cmp(&(b.stable.0 / b.bound)))?;
     Some(format!(
-        "unstable at {} hard case{}: at {} it errs by {} roundings, where the form claims {}",
+        "unstable at {} hard case{}: at {} it errs by {} roundings, where the form claims {}; {} is the form that makes no such claim",
         broken.len(),
         if broken.len() == 1 { "" } else { "s" },
         worst.stable_at,
         Number(worst.stable.0.round()),
-        worst.bound
+        worst.bound,
+        worst.naive_formula
     ))
 }

@@ -119,6 +119,7 @@ fn formula_cases(member: &Member, chosen: &Selected, aliases: &Aliases) -> Formu
         formula: member.spec.id.clone(),
         random: chosen.random_count(),
         hard: chosen.hard.iter().map(|&place| hard_case(member, place)).collect(),
+        boundary: chosen.boundary.len() as u64,
         aliases: aliases.of(&member.spec.id),
         first,
         ids,

@@ -160,6 +160,10 @@ fn tree(
         writeln!(text, "  {name:<32} {:>9}{states}  {}", thousands(random), spec.text)?;
         for chosen in group {
             let member = &catalogue[chosen.member];
+            if !chosen.boundary.is_empty() {
+                let count = thousands(chosen.boundary.len() as u64);
+                writeln!(text, "    {:<33} {count} close to where it decides or degenerates", "boundary")?;
+            }
             for &place in &chosen.hard {
                 let hard = &member.spec.hard[place];
                 let condition =

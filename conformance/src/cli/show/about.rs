@@ -3,8 +3,8 @@
 use crate::cli::list::with_unit;
 use crate::cli::mistakes::{all_names, document as mistakes};
 use anyhow::bail;
-use lightmeter::cases::Kind;
 use lightmeter::cases::blend::{COMMON, aliases, written_state};
+use lightmeter::cases::{DRAWN, Kind, boundary_names};
 use lightmeter::dialects::DIALECTS;
 use lightmeter::faults::concerning;
 use lightmeter::filter::Filter;
@@ -169,6 +169,13 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
         let naive =
             hard.naive.map(|naive| format!("; {} fails there: {}", naive.formula, naive.fails)).unwrap_or_default();
         writeln!(text, "  {:<26} {}{naive}", hard.name, hard.pins)?;
+    }
+    let boundaries = boundary_names(spec);
+    if !boundaries.is_empty() {
+        writeln!(text, "boundaries, each with {DRAWN} cases close to it")?;
+        for names in boundaries.chunks(4) {
+            writeln!(text, "  {}", names.join("; "))?;
+        }
     }
     for common in COMMON.iter().filter(|common| common.id == spec.id) {
         writeln!(text, "what it is used for\n  {}", common.what)?;

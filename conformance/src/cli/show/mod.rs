@@ -13,8 +13,8 @@ use super::{Status, emit, say};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
-use lightmeter::cases::Kind;
 use lightmeter::cases::blend::{Samples, separate_of, written_state};
+use lightmeter::cases::{Kind, boundary_name};
 use lightmeter::document::run::Examined;
 use lightmeter::document::show::{ShowDocument, ShownCase, ShownMistake};
 use lightmeter::document::{Document as _, Number};
@@ -108,7 +108,7 @@ impl Show {
         let legal: Vec<Accept> = outputs.iter().map(|output| output.interval).collect();
         let near: Vec<Vec<f32>> = match case {
             CaseRef::Hard(place) => (0..member.near()).map(|k| self.row(member, CaseRef::Near(place, k))).collect(),
-            CaseRef::Near(..) | CaseRef::Random(_) => vec![],
+            CaseRef::Near(..) | CaseRef::Boundary(_) | CaseRef::Random(_) => vec![],
         };
         let conditioning = Conditioning::of(member, &inputs, &legal, &near);
         let known = Known { inputs, outputs, steps, condition, conditioning };
@@ -295,6 +295,11 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
     }
     if let CaseRef::Near(place, _) = case {
         writeln!(text, "  near: {} ({})", spec.hard[place].name, spec.hard[place].pins)?;
+    }
+    if let CaseRef::Boundary(k) = case
+        && let Some(near) = boundary_name(spec, k)
+    {
+        writeln!(text, "  boundary: {near}")?;
     }
     for rule in spec.rules() {
         writeln!(text, "  rule: {rule}")?;
