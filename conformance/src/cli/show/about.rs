@@ -4,7 +4,7 @@ use crate::cli::list::with_unit;
 use crate::cli::mistakes::{all_names, document as mistakes};
 use anyhow::bail;
 use lightmeter::cases::blend::{COMMON, aliases, written_state};
-use lightmeter::cases::{DRAWN, Kind, boundary_names};
+use lightmeter::cases::{DRAWN, Kind, Spec, boundary_names};
 use lightmeter::dialects::DIALECTS;
 use lightmeter::faults::concerning;
 use lightmeter::filter::Filter;
@@ -170,13 +170,7 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
             hard.naive.map(|naive| format!("; {} fails there: {}", naive.formula, naive.fails)).unwrap_or_default();
         writeln!(text, "  {:<26} {}{naive}", hard.name, hard.pins)?;
     }
-    let boundaries = boundary_names(spec);
-    if !boundaries.is_empty() {
-        writeln!(text, "boundaries, each with {DRAWN} cases close to it")?;
-        for names in boundaries.chunks(4) {
-            writeln!(text, "  {}", names.join("; "))?;
-        }
-    }
+    text += &boundaries(spec)?;
     for common in COMMON.iter().filter(|common| common.id == spec.id) {
         writeln!(text, "what it is used for\n  {}", common.what)?;
         for (other, told) in common.confused_with {
@@ -201,6 +195,18 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
         writeln!(text, "\nlightmeter show {} --wgsl", spec.id)?;
     }
     writeln!(text, "lightmeter show {}/{case}\nlightmeter run {}", spec.id, spec.id)?;
+    Ok(text)
+}
+
+/// What its boundary cases come close to.
+fn boundaries(spec: &Spec) -> anyhow::Result<String> {
+    let (mut text, names) = (String::new(), boundary_names(spec));
+    if !names.is_empty() {
+        writeln!(text, "boundaries, each with {DRAWN} cases close to it")?;
+    }
+    for names in names.chunks(4) {
+        writeln!(text, "  {}", names.join("; "))?;
+    }
     Ok(text)
 }
 
