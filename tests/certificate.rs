@@ -76,6 +76,7 @@ impl Formula for Wrong {
             inputs: INPUTS,
             outputs: OUTPUTS,
             fit: None,
+            within: None,
             hard: &[],
             stable: None,
             is_normalised: false,

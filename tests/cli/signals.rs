@@ -150,7 +150,7 @@ fn probes_that_a_signal_ends_say_so() {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("stopped-special-{status}"));
         let _ = std::fs::remove_dir_all(&folder);
         let args = ["special", "--record", folder.to_str().expect("UTF-8")];
-        let ended = |more: &[&str]| stopped_after(0.06, &[&args[..], more].concat(), signal);
+        let ended = |more: &[&str]| stopped_after(0.03, &[&args[..], more].concat(), signal);
         let document = document(&ended(&["--format", "json"]), status);
         assert!(list(&document, "outcomes").is_empty() && list(&document, "adapters").is_empty(), "{document}");
         let text = text(&ended(&[]), status);

@@ -218,17 +218,24 @@ formula!(
     |p, density; out| { out.scalar(fog::exp(fog::distance(p, Distance::Planar), density)); },
 );
 
+/// The greatest value of a span is its last one where it rises.
+fn rising(row: &mut [f32]) {
+    if row[0] > row[1] {
+        row.swap(0, 1);
+    }
+}
+
 macro_rules! span {
     ($direct:ident $by:ident $n:literal $id:literal $by_id:literal $function:literal $by_function:literal) => {
         formula!(
-            $direct: $id by $function, "a·(1 − t) + b·t at t = (N − 1)/N", "004", [RAMP_A, RAMP_B] -> [FACTOR],
+            $direct: $id by $function, "a·(1 − t) + b·t at t = (N − 1)/N", "004", [RAMP_A, RAMP_B] -> [FACTOR], within rising,
             |a, b; out| {
                 // Exact: N is a power of two.
                 out.scalar(interpolation::mix(a, b, R::literal(f64::from($n - 1) / f64::from($n))));
             },
         );
         formula!(
-            $by: $by_id by $by_function, "a + (b − a)/N + … + (b − a)/N", "004", [RAMP_A, RAMP_B] -> [FACTOR],
+            $by: $by_id by $by_function, "a + (b − a)/N + … + (b − a)/N", "004", [RAMP_A, RAMP_B] -> [FACTOR], within rising,
             |a, b; out| {
                 out.scalar(interpolation::last_by_differences::<R, $n>(a, b));
             },

@@ -68,7 +68,7 @@ impl Member {
             CaseRef::Random(k) => format!("{}/{k:06}", self.random_path()),
             CaseRef::Hard(place) => format!("{}/hard/{}", self.spec.group(), self.spec.hard[place].name),
             CaseRef::Near(place, k) => format!("{}/near/{k:02}", self.case_id(CaseRef::Hard(place))),
-            CaseRef::Boundary(k) => format!("{}/boundary/{k:04}", self.spec.group()),
+            CaseRef::Boundary(k) => format!("{}/boundary/{k:04}", self.spec.id),
         }
     }
 
@@ -84,7 +84,7 @@ impl Member {
                 }
             };
         }
-        if let Some(number) = id.strip_prefix(self.spec.group()).and_then(|rest| rest.strip_prefix("/boundary/")) {
+        if let Some(number) = id.strip_prefix(&*self.spec.id).and_then(|rest| rest.strip_prefix("/boundary/")) {
             return number.parse().ok().filter(|&k| k < self.boundary()).map(CaseRef::Boundary);
         }
         let number = id.strip_prefix(&self.random_path())?.strip_prefix('/')?;
@@ -97,7 +97,7 @@ impl Member {
         if matches!(self.spec.kind, Kind::Arithmetic) { NEAR } else { 0 }
     }
 
-    /// Cases close to where it decides or degenerates: of arithmetic, likewise.
+    /// Cases close to where it decides or degenerates.
     #[must_use]
     pub fn boundary(&self) -> u64 {
         cases::boundary_cases(&self.spec)

@@ -32,6 +32,7 @@ impl Formula for OverAnother {
             inputs: DEPTHS,
             outputs: OUTPUTS,
             fit: Some(bring_together),
+            within: None,
             hard: hard(self.0),
             stable: None,
             is_normalised: false,
@@ -68,15 +69,6 @@ const fn hard(by: DepthTest) -> &'static [Hard] {
                     "nearer-before-the-near-plane",
                     "both are 0 once clamped, so neither is nearer",
                     &[("new", &[-0.5]), ("old", &[-0.25])],
-                )]
-            }
-        }
-        (Compare::Less, false) => {
-            const {
-                &[Hard::new(
-                    "nearly-at-the-near-plane",
-                    "depths of less than 1e-7 are not 0",
-                    &[("new", &[9e-8]), ("old", &[3e-8])],
                 )]
             }
         }
@@ -137,6 +129,7 @@ impl Formula for OverItself {
             inputs: raster::TRIANGLE,
             outputs: OUTPUTS,
             fit: Some(raster::triangle_around_the_pixel),
+            within: None,
             hard: &[],
             stable: None,
             is_normalised: false,
@@ -152,6 +145,15 @@ impl Formula for OverItself {
 const NEAR: Input = Input::scalar("near", "unit", Domain::LogUniform(0.5, 1.0));
 const FAR: Input = Input::scalar("far", "unit", Domain::LogUniform(50.0, 100.0));
 const EYE_DISTANCE: Input = Input::scalar("z", "unit", Domain::LogUniform(1.0, 50.0));
+/// Near plane, distance and far plane in this order.
+fn between_the_planes(row: &mut [f32]) {
+    if row[0] > row[1] {
+        row.swap(0, 1);
+    }
+    row[1] = row[1].max(row[0].next_up());
+    row[2] = row[2].clamp(row[0], row[1]);
+}
+
 const STORED: Output = Output::new("depth", ValueShape::Scalar, "1");
 const READ_BACK: Output = Output::new("z", ValueShape::Scalar, "unit");
 
@@ -160,6 +162,7 @@ formula!(
     Stored: "depth/stored" by "depth_stored",
     "depth = f(z − n)/(z(f − n))", "000 §6.6; ruling 15",
     [NEAR, FAR, EYE_DISTANCE] -> [STORED],
+    within between_the_planes,
     |near, far, z; out| { out.scalar(stored(near, far, z)); },
     hard [
         Hard::new("just-behind-the-near-plane", "a depth of 6 parts in a million", &[("near", &[0.75]), ("z", &[0.750_005])]),
@@ -173,6 +176,7 @@ formula!(
     StoredReversed: "depth/stored-reversed" by "depth_stored_reversed",
     "depth = n(f − z)/(z(f − n))", "000 §6.6, with depth reversed",
     [NEAR, FAR, EYE_DISTANCE] -> [STORED],
+    within between_the_planes,
     |near, far, z; out| { out.scalar(stored_reversed(near, far, z)); },
     hard [
         Hard::new("just-behind-the-near-plane", "a depth just below 1", &[("near", &[0.75]), ("z", &[0.750_005])]),
@@ -186,6 +190,7 @@ formula!(
     Recovered: "depth/recovered" by "depth_recovered",
     "z = n·f/(f − depth(f − n)), depth = f(z − n)/(z(f − n))", "000 §6.6; ruling 15",
     [NEAR, FAR, EYE_DISTANCE] -> [READ_BACK],
+    within between_the_planes,
     |near, far, z; out| { out.scalar(recovered(near, far, z)); },
     hard [
         Hard::new("far-out", "beyond 100 units", &[("near", &[10.0]), ("far", &[1000.0]), ("z", &[700.0])]),
@@ -199,6 +204,7 @@ formula!(
     RecoveredReversed: "depth/recovered-reversed" by "depth_recovered_reversed",
     "z = n·f/(n + depth(f − n)), depth = n(f − z)/(z(f − n))", "000 §6.6, with depth reversed",
     [NEAR, FAR, EYE_DISTANCE] -> [READ_BACK],
+    within between_the_planes,
     stable 32.0 Own "five products, two differences that cancel by little and two divisions of at most 2½ ULP",
     |near, far, z; out| { out.scalar(recovered_reversed(near, far, z)); },
     hard [

@@ -115,7 +115,7 @@ impl<'a> Fitted<'a> {
             None => -self.vector("direction")?,
         };
         // Formulas without a point have the viewer at infinity.
-        let v = if self.has("p") || self.has("pa") { -point } else { Vector([0.0, 0.0, 1.0]) };
+        let v = if self.has("p") || self.has("pa") || self.has("a") { -point } else { Vector([0.0, 0.0, 1.0]) };
         Some([l.normalize(), v.normalize()])
     }
 

@@ -263,6 +263,7 @@ macro_rules! formula {
         $text:literal, $source:literal, $(normalised $normalised:literal,)?
         [$($input:expr),* $(,)?] -> [$($output:expr),* $(,)?],
         $(fit $fit:expr,)?
+        $(within $within:expr,)?
         $(kind $kind:expr,)?
         $(stable $bound:literal $size:ident $because:literal,)?
         |$($taken:ident),+; $out:ident| $body:block
@@ -280,6 +281,7 @@ macro_rules! formula {
             fn spec(&self) -> $crate::cases::Spec {
                 const NORMALISED: &[bool] = &[$($normalised)?];
                 const FIT: &[fn(&$crate::cases::Spec, &mut [f32])] = &[$($fit)?];
+                const WITHIN: &[fn(&mut [f32])] = &[$($within)?];
                 const KIND: &[$crate::cases::Kind] = &[$($kind)?];
                 const OUTPUTS: &[$crate::cases::Output] = &[$($output),*];
                 const OWN: &[$crate::cases::Hard] = &[$($($hard),*)?];
@@ -315,6 +317,7 @@ macro_rules! formula {
                     inputs: Self::INPUTS,
                     outputs: OUTPUTS,
                     fit: FIT.first().copied(),
+                    within: WITHIN.first().copied(),
                     hard: HARD,
                     stable: STABLE.first().copied(),
                     is_normalised: NORMALISED.contains(&true),

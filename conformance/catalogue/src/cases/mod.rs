@@ -12,6 +12,7 @@ pub mod lighting;
 pub mod vector;
 
 mod boundary;
+mod common;
 mod draw;
 mod fit;
 pub mod formula;
@@ -25,12 +26,12 @@ mod rule;
 mod spec;
 
 pub use boundary::{DRAWN, boundary_cases, boundary_inputs, boundary_name, boundary_names};
+pub use common::{Surface, and_common, beyond, colors, given_beyond, given_placed, placed};
 pub use draw::{GENERATOR_VERSION, inputs, mix, move_by_ulps};
 pub use formula::{AnyFormula, Formula, Visitor};
 pub use partial::Partial;
 pub use rows::{FromNumbers, Reader, Slot, Wanted, Writer, slot};
 pub use spec::{Domain, Hard, Input, Kind, Naive, Output, Size, Spec, Stable, Stage, ValueShape, Values};
-pub use spec::{Surface, and_common, beyond, colors, given_beyond, given_placed, placed};
 
 /// The families, in the order of reports.
 pub const FAMILIES: [&str; 8] =

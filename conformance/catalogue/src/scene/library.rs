@@ -105,6 +105,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(not(feature = "scenes"), ignore = "scenes read files of images and meshes")]
     fn every_two_effects_that_can_meet_do_so_in_a_draw_and_each_is_drawn_on_floats() {
         let mut draws: Vec<Effects> = vec![];
         let mut on_floats = Effects::NONE;

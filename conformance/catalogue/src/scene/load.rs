@@ -224,6 +224,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(not(feature = "scenes"), ignore = "scenes read files of images and meshes")]
     fn an_obj_brings_its_materials() {
         let frame = loaded("obj");
         let draw = |name: &str| frame.draws.iter().find(|draw| draw.name == format!("house/{name}")).expect(name);
@@ -238,6 +239,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(not(feature = "scenes"), ignore = "scenes read files of images and meshes")]
     fn scenes_have_moderate_meshes() {
         for (name, _) in library::SCENES {
             let frame = loaded(name);

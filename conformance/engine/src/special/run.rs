@@ -61,19 +61,19 @@ pub fn run(
     let probes: Vec<&'static Probe> = PROBES.iter().collect();
     observer.see(&Event::Begun(subjects.len() as u64));
     for subject in subjects {
+        // A subject is probed as a whole: who is not begun is what is missing.
+        report.interrupted = stop.interrupted("the probes", &subject.identity.name);
+        if report.interrupted.is_some() {
+            break;
+        }
         observer.see(&Event::Group(&subject.identity.name));
-        let results = if stop.is_set() { None } else { evaluate(subject, code, &probes)? };
-        if let Some(results) = results {
+        if let Some(results) = evaluate(subject, code, &probes)? {
             report.adapters.push(subject.identity.clone());
             report.outcomes.extend(results.outcomes);
             report.skipped.extend(results.skipped);
             report.records.extend(results.record);
         }
         observer.see(&Event::Advanced(1));
-        report.interrupted = stop.interrupted("the probes", &subject.identity.name);
-        if report.interrupted.is_some() {
-            break;
-        }
     }
     let place = |outcome: &ProbeResult| PROBES.iter().position(|probe| outcome.probe == probe.name);
     report.outcomes.sort_by_key(place);

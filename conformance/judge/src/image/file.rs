@@ -2,6 +2,8 @@
 
 use crate::blend_unit::pixel::{self, Units};
 #[cfg(feature = "scenes")]
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+#[cfg(feature = "scenes")]
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgba};
 use lightmeter_reference::render::Image;
 #[cfg(feature = "scenes")]
@@ -141,11 +143,15 @@ impl StoredImage {
         };
         let drawn = drawn.ok_or_else(|| failed("its pixels do not fill it".into()))?;
         let mut bytes = Cursor::new(vec![]);
-        let format = match format {
-            ImageFileFormat::Png => ImageFormat::Png,
-            ImageFileFormat::Exr => ImageFormat::OpenExr,
-        };
-        drawn.write_to(&mut bytes, format).map_err(|error| failed(error.to_string()))?;
+        match format {
+            ImageFileFormat::Png => {
+                // Reports embed them: the smallest file is worth the time.
+                let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
+                drawn.write_with_encoder(encoder)
+            }
+            ImageFileFormat::Exr => drawn.write_to(&mut bytes, ImageFormat::OpenExr),
+        }
+        .map_err(|error| failed(error.to_string()))?;
         Ok(bytes.into_inner())
     }
 

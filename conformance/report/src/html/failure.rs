@@ -1,5 +1,6 @@
 //! The card of a formula that fails: what it computes, of which inputs, where it departs, why, and how to see it again.
 
+use super::card::{Card, cause, failing_share, judged, percent};
 use super::matrix::{card_id, is_failing, short};
 use super::page::prose;
 use super::plot;
@@ -10,7 +11,7 @@ use lightmeter_document::{Number, is_worse, thousands};
 use maud::{Markup, html};
 
 /// The most cards of a page.
-const MOST: usize = 400;
+pub(super) const MOST: usize = 400;
 /// Cards that are open at first.
 const OPEN: usize = 3;
 
@@ -20,7 +21,7 @@ pub(super) fn command(command: &str) -> Markup {
 }
 
 /// The cards of all formulas that fail, worst first.
-pub(super) fn cards(report: &Report) -> Vec<Markup> {
+pub(super) fn cards(report: &Report) -> Vec<Card> {
     let failing = |group: &&Group| is_failing(group) && group.image.as_ref().is_none_or(|image| image.files.is_empty());
     let mut formulas: Vec<Vec<&Group>> = vec![];
     for group in report.groups.iter().filter(failing) {
@@ -29,19 +30,21 @@ pub(super) fn cards(report: &Report) -> Vec<Markup> {
             None => formulas.push(vec![group]),
         }
     }
-    let share = |groups: &[&Group]| {
-        let (failed, verdicts) = groups.iter().map(|group| judged(group)).fold((0, 0), |(f, v), (a, b)| (f + a, v + b));
-        #[expect(clippy::cast_precision_loss, reason = "shares")]
-        (failed as f64 / verdicts.max(1) as f64)
+    formulas.sort_by(|a, b| failing_share(b).total_cmp(&failing_share(a)));
+    let told = |(place, groups): (usize, &Vec<&Group>)| Card {
+        anchor: card_id(&groups[0].id, &groups[0].adapter),
+        name: groups[0].id.clone(),
+        place: format!("{}, {}", groups[0].adapter, stages(groups)),
+        failed: percent(failing_share(groups)),
+        cause: groups.iter().find_map(|group| cause(group).or_else(|| group.problem.clone())),
+        body: card(report, groups, place < OPEN),
     };
-    formulas.sort_by(|a, b| share(b).total_cmp(&share(a)));
-    let left = formulas.len().saturating_sub(MOST);
-    let mut cards: Vec<Markup> =
-        formulas.iter().take(MOST).enumerate().map(|(place, groups)| card(report, groups, place < OPEN)).collect();
-    if left > 0 {
-        cards.push(html! { p { (left) " more are in the table below and in the JSON." } });
-    }
-    cards
+    formulas.iter().take(MOST).enumerate().map(told).collect()
+}
+
+/// The stages of one formula that fail.
+fn stages(groups: &[&Group]) -> String {
+    groups.iter().map(|group| group.place()).collect::<Vec<_>>().join(", ")
 }
 
 /// The cards of formulas that pass, each with the case that comes nearest to what is illegal.
@@ -59,11 +62,6 @@ pub(super) fn passing_cards(report: &Report) -> Vec<Markup> {
         }
     };
     report.explained.iter().filter(|one| !is_of_a_failure(one)).map(card).collect()
-}
-
-/// How many failed, and of how many: verdicts, or whole cases where a renderer was asked.
-fn judged(group: &Group) -> (u64, u64) {
-    group.by_case.as_ref().map_or((group.totals.failed, group.totals.verdicts), |counts| (counts.failed, counts.asked))
 }
 
 fn failed_of(group: &Group) -> String {

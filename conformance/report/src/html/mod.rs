@@ -3,6 +3,7 @@
 //! Nothing in it is fetched from elsewhere. Its content security policy permits the page's own style and script, by their hashes, and pictures
 //! that are embedded; names of others are text wherever they stand.
 
+mod card;
 mod equation;
 mod failure;
 mod markdown;
@@ -21,10 +22,11 @@ use crate::against::{Against, BASELINE};
 use crate::bench::{page as bench_page, plot as bench_plot};
 use crate::page::selftest::{self, SelftestRun};
 use crate::page::sweep::{self, Swept};
+use card::Card;
 use lightmeter_document::bench::BenchDocument;
 use lightmeter_document::gate::GateReport;
 use lightmeter_document::run::{Group, Report};
-use matrix::Column;
+use matrix::{Column, is_failing};
 use maud::{Markup, html};
 use overview::Facts;
 use std::fmt;
@@ -46,19 +48,11 @@ pub fn of_gate(gate: &GateReport) -> String {
 fn run_page(report: &Report, is_success: bool, incidents: &[String]) -> String {
     let facts = Facts::of_run(report, is_success);
     let columns = matrix::columns(&[("", report)]);
-    let cards = failure::cards(report);
-    let scenes = scene::cards(report);
     let passing = failure::passing_cards(report);
     let body = html! {
         (overview::head(&facts))
         (against(report, incidents))
-        @if !cards.is_empty() || !scenes.is_empty() {
-            section #failures {
-                h2 { "What fails" }
-                p.hint { "Worst first. Keys: " kbd { "j" } " and " kbd { "k" } " go to the next and the previous one, " kbd { "/" } " to the filter." }
-                @for card in scenes.iter().chain(&cards) { (card) }
-            }
-        }
+        (failures(report))
         @if !passing.is_empty() {
             section #nearest {
                 h2 { "What passes, and where it is nearest to failing" }
@@ -70,6 +64,39 @@ fn run_page(report: &Report, is_success: bool, incidents: &[String]) -> String {
         (overview::notes(report))
     };
     page(&facts.title, PageKind::Report, &body)
+}
+
+/// What fails, worst first: scenes, then formulas; nothing where all passes.
+fn failures(report: &Report) -> Markup {
+    let mut cards = scene::cards(report);
+    cards.extend(failure::cards(report));
+    let failing = report.groups.iter().filter(|group| is_failing(group)).count();
+    html! {
+        @if !cards.is_empty() {
+            section #failures {
+                h2 { "What fails" }
+                @if cards.len() > 1 { (list(&cards)) }
+                p.hint { "Worst first. Keys: " kbd { "j" } " and " kbd { "k" } " go to the next and the previous one, " kbd { "/" } " to the filter." }
+                @for card in &cards { (card.body) }
+                @if failing > failure::MOST { p { "Further ones are in the table below and in the JSON." } }
+            }
+        }
+    }
+}
+
+/// One line for each card.
+fn list(cards: &[Card]) -> Markup {
+    html! {
+        div.wide tabindex="0" role="group" aria-label="what fails" { table.fails {
+            thead { tr { th scope="col" { "what" } th scope="col" { "where" } th scope="col" { "how much" } th scope="col" { "cause" } } }
+            tbody { @for card in cards { tr {
+                th scope="row" { a href={ "#" (card.anchor) } { (card.name) } }
+                td { (card.place) }
+                td { (card.failed) }
+                td { @match &card.cause { Some(cause) => (cause), None => span.quiet { "no known mistake explains it" } } }
+            } } }
+        } }
+    }
 }
 
 /// The matrix of all formulas, with its filters.
@@ -118,7 +145,7 @@ fn against(report: &Report, incidents: &[String]) -> Markup {
 /// What is said of a group, whose name leads to its card where it has one.
 fn linked(report: &Report, what: &str) -> Markup {
     let is_its = |group: &&Group| what.strip_prefix(&*group.id).is_some_and(|rest| rest.starts_with([' ', ':']));
-    match report.groups.iter().find(|group| matrix::is_failing(group) && is_its(group)) {
+    match report.groups.iter().find(|group| is_failing(group) && is_its(group)) {
         Some(group) => {
             html! { a href={ "#" (matrix::card_id(&group.id, &group.adapter)) } { (group.id) } (what[group.id.len()..]) }
         }

@@ -1,5 +1,6 @@
 //! The card of a scene whose image is wrong: reference and result behind a slider, the error map, and the pixels' values.
 
+use super::card::{Card, cause, failing_share, percent};
 use super::failure::command;
 use super::matrix::{card_id, is_failing};
 use super::page::embedded;
@@ -13,49 +14,104 @@ const MOST_BYTES: u64 = 4 << 20;
 /// Scenes whose cards are open at first.
 const OPEN: usize = 2;
 /// Pixels that the card lists.
-const LISTED: usize = 12;
+const LISTED: usize = 8;
 /// How far two of them are apart, at least in one direction.
 const APART: usize = 3;
 
-/// The cards of all scenes whose images are wrong, worst first.
-pub(super) fn cards(report: &Report) -> Vec<Markup> {
-    let mut scenes: Vec<(&Group, &ImageUse)> = report
-        .groups
-        .iter()
-        .filter(|group| is_failing(group))
-        .filter_map(|group| Some((group, group.image.as_ref().filter(|image| !image.files.is_empty())?)))
-        .collect();
-    scenes.sort_by_key(|(group, _)| std::cmp::Reverse(group.totals.failed));
-    let mut named = vec![];
-    let mut cards = vec![];
-    for (place, (group, image)) in scenes.into_iter().enumerate() {
-        let first = !named.contains(&(&group.id, &group.adapter));
-        named.push((&group.id, &group.adapter));
-        cards.push(card(report, (group, image), first, place < OPEN));
-    }
-    cards
+/// Reference, result and error map of a wrong image.
+const PICTURES: [&str; 3] = ["reference", "result", "error"];
+
+/// A wrong image, and the stages that drew it in the same way.
+struct Wrong<'a> {
+    group: &'a Group,
+    image: &'a ImageUse,
+    pictures: [Option<Vec<u8>>; 3],
+    /// Other stages, whose pictures are the same to the last bit.
+    alike: Vec<&'a Group>,
+    /// Whether it is the scene's first card of its adapter, to which links lead.
+    is_first: bool,
 }
 
-/// A PNG that the report names, as an address; nothing where it is none.
-fn picture(image: &ImageUse, what: &str) -> Option<String> {
+impl Wrong<'_> {
+    fn anchor(&self) -> String {
+        card_id(&self.group.id, &self.group.adapter) + if self.is_first { "" } else { "-full" }
+    }
+
+    /// The stages that drew it in this way.
+    fn places(&self) -> String {
+        let stages: Vec<&str> =
+            self.alike.iter().map(|group| &*group.stage).chain([&*self.group.stage]).rev().collect();
+        let target = self.group.target.as_ref().map_or_else(String::new, |target| format!(" on {target}"));
+        stages.join(" and ") + &target + if stages.len() > 1 { " alike" } else { "" }
+    }
+}
+
+/// The images of all scenes that are wrong, worst first. What several stages draw alike stands there once.
+fn wrong(report: &Report) -> Vec<Wrong<'_>> {
+    let mut all: Vec<Wrong<'_>> = vec![];
+    for group in report.groups.iter().filter(|group| is_failing(group)) {
+        let Some(image) = group.image.as_ref().filter(|image| !image.files.is_empty()) else { continue };
+        let pictures = PICTURES.map(|what| picture(image, what));
+        let is_its = |other: &&mut Wrong<'_>| other.group.id == group.id && other.group.adapter == group.adapter;
+        let is_first = !all.iter_mut().any(|other| is_its(&other));
+        let is_same = |other: &&mut Wrong<'_>| is_its(other) && pictures[1].is_some() && other.pictures == pictures;
+        match all.iter_mut().find(is_same) {
+            Some(other) => other.alike.push(group),
+            None => all.push(Wrong { group, image, pictures, alike: vec![], is_first }),
+        }
+    }
+    all.sort_by(|a, b| failing_share(&[b.group]).total_cmp(&failing_share(&[a.group])));
+    all
+}
+
+/// The cards of all scenes whose images are wrong, worst first.
+pub(super) fn cards(report: &Report) -> Vec<Card> {
+    let told = |(place, wrong): (usize, &Wrong<'_>)| Card {
+        anchor: wrong.anchor(),
+        name: wrong.group.id.clone(),
+        place: format!("{}, {}", wrong.group.adapter, wrong.places()),
+        failed: percent(failing_share(&[wrong.group])),
+        cause: cause(wrong.group),
+        body: card(report, wrong, place < OPEN),
+    };
+    wrong(report).iter().enumerate().map(told).collect()
+}
+
+/// A PNG that the report names; nothing where it is none.
+fn picture(image: &ImageUse, what: &str) -> Option<Vec<u8>> {
     let path = image.files.iter().find(|file| file.ends_with(&format!("-{what}.png")))?;
     let is_small = std::fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() <= MOST_BYTES);
     let bytes = is_small.then(|| std::fs::read(path).ok()).flatten()?;
-    bytes.starts_with(b"\x89PNG\r\n\x1a\n").then(|| embedded("image/png", &bytes))
+    bytes.starts_with(b"\x89PNG\r\n\x1a\n").then_some(bytes)
 }
 
-fn card(report: &Report, (group, image): (&Group, &ImageUse), is_first: bool, is_open: bool) -> Markup {
-    let [reference, result, error] = ["reference", "result", "error"].map(|what| picture(image, what));
+/// The map without the legend that stands below it in its file, and a legend beside it.
+fn map(wrong: &Wrong<'_>, error: &str) -> Markup {
+    let (width, height) = (wrong.image.width, wrong.image.height);
+    html! {
+        figure {
+            svg.map viewBox={ "0 0 " (width) " " (height) } role="img" aria-label={ "where " (wrong.group.id) " is wrong, and by how much" } {
+                image href=(error) x="0" y="0" {}
+            }
+            div.legend aria-hidden="true" { @for power in ["0.01", "0.1", "1", "10", "100", "1000"] { span { (power) } } }
+            figcaption { "Error over tolerance. From 1 on a pixel is wrong: yellow, red, violet. Grey pixels lie at an edge, where more is legal." }
+        }
+    }
+}
+
+fn card(report: &Report, wrong: &Wrong<'_>, is_open: bool) -> Markup {
+    let Wrong { group, image, .. } = *wrong;
+    let [reference, result, error] =
+        wrong.pictures.each_ref().map(|bytes| bytes.as_ref().map(|bytes| embedded("image/png", bytes)));
     let failure = report.failures.iter().find(|failure| {
         failure.adapter == group.adapter
             && failure.stage == group.stage
             && failure.id.starts_with(&format!("{}/", group.id))
     });
-    let id = card_id(&group.id, &group.adapter) + if is_first { "" } else { "-full" };
     html! {
-        details.card.scene id=(id) open[is_open] {
+        details.card.scene id=(wrong.anchor()) open[is_open] {
             summary {
-                span.fail { "✗" } " " b { (group.id) } " on " (group.adapter) ", " (group.place()) " "
+                span.fail { "✗" } " " b { (group.id) } " on " (group.adapter) ", " (wrong.places()) ": "
                 span.quiet { (thousands(group.totals.failed)) " of " (thousands(group.totals.verdicts)) " values fail." }
             }
             @for what in group.explanation.iter().chain(&group.problem) {
@@ -75,10 +131,7 @@ fn card(report: &Report, (group, image): (&Group, &ImageUse), is_first: bool, is
                         label { input.marked type="checkbox"; " show the pixels that are listed" }
                         figcaption { "Reference on the left of the line, result on the right." }
                     }
-                    @if let Some(error) = &error {
-                        figure { img.map src=(error) alt={ "where " (group.id) " is wrong, and by how much" };
-                            figcaption { "Error over tolerance, on a scale of logarithms." } }
-                    }
+                    @if let Some(error) = &error { (map(wrong, error)) }
                 }
                 output.pixel role="status" { "Point at a pixel, or choose one below, to see its values." }
             } @else {
@@ -93,7 +146,7 @@ fn card(report: &Report, (group, image): (&Group, &ImageUse), is_first: bool, is
 /// The worst pixels, and the values of all that are told for the script.
 fn pixels(image: &ImageUse) -> Markup {
     let row = |pixel: &PixelUse| -> Value {
-        let four = |numbers: &[Number; 4]| json!(numbers.map(|x| x.to_string()));
+        let four = |numbers: &[Number; 4]| json!(numbers);
         json!([
             pixel.x,
             pixel.y,

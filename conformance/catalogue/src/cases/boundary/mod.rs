@@ -6,6 +6,7 @@
 
 use super::draw::{inputs, mix};
 use super::fit::Fitted;
+use super::program::Program;
 use super::spec::{Domain, Input, Kind, Spec, ValueShape};
 use near::Near;
 use std::ops::Range;
@@ -105,7 +106,9 @@ pub fn boundary_inputs(spec: &Spec, k: u64, row: &mut Vec<f32>) {
     near.distance = core_math::exp2(-exponent);
     near.side = if mix(k) & 1 == 0 { 1.0 } else { -1.0 };
     near.take(approach);
-    in_depth_order(spec, row);
+    if let Some(within) = spec.within {
+        within(row);
+    }
 }
 
 /// What the `k`-th of them comes close to, in words.
@@ -166,18 +169,6 @@ impl Approach {
     }
 }
 
-/// Near plane, distance and far plane in this order, outside of which depth has no meaning.
-fn in_depth_order(spec: &Spec, row: &mut [f32]) {
-    if let (Some(near), Some(far), Some(z)) = (spec.place("near"), spec.place("far"), spec.place("z")) {
-        let (near, far, z) = (near.start, far.start, z.start);
-        if row[near] > row[far] {
-            row.swap(near, far);
-        }
-        row[far] = row[far].max(row[near].next_up());
-        row[z] = row[z].clamp(row[near], row[far]);
-    }
-}
-
 impl Input {
     const fn is_vec3(&self) -> bool {
         matches!(self.shape, ValueShape::Vec3)
@@ -209,8 +200,9 @@ impl Input {
 
 /// The ways in which a formula's inputs come close to a boundary.
 fn approaches(spec: &Spec) -> Vec<Approach> {
-    // What is timed alone promises something within its domain only.
-    if spec.kind != Kind::Arithmetic || spec.family() == "technique" {
+    // The corners of a blend state stand among its random cases, and a rasteriser has none but its edges, which random cases look for.
+    if matches!(spec.kind, Kind::Raster(_) | Kind::Blend(Program::Draw(..) | Program::Special(_) | Program::Layers(_)))
+    {
         return vec![];
     }
     let mut all = vec![];
@@ -372,10 +364,13 @@ mod tests {
     }
 
     #[test]
-    fn every_formula_of_arithmetic_has_boundaries_and_each_of_them_moves_its_inputs() {
-        for member in catalogue().iter().filter(|member| member.spec.kind == Kind::Arithmetic) {
+    fn every_formula_has_boundaries_and_each_of_them_moves_its_inputs() {
+        for member in &catalogue() {
             let spec = &member.spec;
             let names = boundary_names(spec);
+            if spec.kind != Kind::Arithmetic && names.is_empty() {
+                continue;
+            }
             let is_whole = |input: &Input| matches!(input.domain, Domain::Whole(..) | Domain::Transform(..));
             assert!(!names.is_empty() || spec.inputs.iter().all(is_whole), "{}", spec.id);
             assert_eq!(boundary_cases(spec), names.len() as u64 * DRAWN);

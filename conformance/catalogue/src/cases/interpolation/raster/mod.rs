@@ -262,6 +262,7 @@ impl Formula for RasterFlat {
             inputs,
             outputs: &[ATTR],
             fit: None,
+            within: None,
             hard: &[],
             stable: None,
             is_normalised: false,
