@@ -207,6 +207,25 @@ const tests = {
     }
   },
 
+  async "the book is searched by words, and a link holds them"() {
+    await on("book/search.html", {}, async (page) => {
+      await page.fill("#q", "exp2 opengl");
+      const first = page.locator("#found li").first();
+      assert.match(await first.textContent(), /fog\/exp2-opengl/);
+      assert.match(await page.textContent("#count"), /^\d+ of \d+ pages$/);
+      const link = page.url();
+      await page.goto("about:blank");
+      await page.goto(link);
+      assert.equal(await page.inputValue("#q"), "exp2 opengl");
+      await page.locator("#found li a").first().click();
+      assert.match(await page.textContent("h1"), /fog\/exp2-opengl/);
+    });
+    await on("book/search.html", { fragment: "#q=no-such-word" }, async (page) => {
+      assert.equal(await page.locator("#found li").count(), 0);
+      assert.match(await page.textContent("#count"), /^0 of/);
+    });
+  },
+
   async "every link of the book leads somewhere"() {
     const pages = await everything("book");
     assert.ok(pages.length > 60, `${pages.length} pages`);

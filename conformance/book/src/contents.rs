@@ -3,6 +3,9 @@
 use lightmeter_report::html::{PageKind, page};
 use maud::{Markup, html};
 
+/// The page that finds others by their words, which has no place in the order.
+pub(crate) const SEARCH: &str = "search.html";
+
 /// A page of the book.
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
@@ -58,11 +61,19 @@ impl Contents {
         self.parts.iter().flat_map(|part| &part.entries)
     }
 
+    /// The title of a page.
+    pub(crate) fn title(&self, path: &str) -> &str {
+        if path == SEARCH {
+            return "Search";
+        }
+        self.entries().find(|entry| entry.path == path).map_or("lightmeter", |entry| &entry.title)
+    }
+
     /// A whole page: the list of the book's pages, what the page says, and the ways to the pages beside it.
     pub(crate) fn framed(&self, path: &str, body: &Markup) -> String {
         let entries: Vec<&Entry> = self.entries().collect();
         let at = entries.iter().position(|entry| entry.path == path);
-        let title = at.map_or("lightmeter", |at| entries[at].title.as_str());
+        let title = self.title(path);
         let family = at.and_then(|at| entries[at].family.as_deref());
         let place = Place::new(path);
         let before = at.and_then(|at| at.checked_sub(1)).map(|at| entries[at]);
@@ -70,7 +81,7 @@ impl Contents {
         let body = html! {
             div.book {
                 nav #contents aria-label="contents" {
-                    p { a href=(place.to("index.html")) { b { "lightmeter" } } }
+                    p { a href=(place.to("index.html")) { b { "lightmeter" } } " · " a href=(place.to(SEARCH)) { "Search" } }
                     details open { summary { "Contents" }
                         @for part in &self.parts {
                             p.part { (part.title) }
@@ -90,6 +101,7 @@ impl Contents {
                 }
             }
         };
-        page(&format!("{title} · lightmeter"), PageKind::Book, &body)
+        let kind = if path == SEARCH { PageKind::Search } else { PageKind::Book };
+        page(&format!("{title} · lightmeter"), kind, &body)
     }
 }

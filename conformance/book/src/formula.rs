@@ -9,7 +9,7 @@ use crate::picture::Picture;
 use crate::sketch::{short, sketch};
 use lightmeter_arithmetic::profile::WGSL;
 use lightmeter_catalogue::cases::blend::COMMON;
-use lightmeter_catalogue::cases::{Kind, Spec};
+use lightmeter_catalogue::cases::{DRAWN, Kind, Spec, boundary_names};
 use lightmeter_catalogue::dialects::{DIALECTS, DialectForm, Dialects};
 use lightmeter_catalogue::rulings::RULINGS;
 use lightmeter_catalogue::select::{CaseRef, Member};
@@ -186,6 +186,7 @@ impl FormulaPage<'_> {
 
     pub(crate) fn hard(&self) -> Markup {
         let (member, spec) = (self.member, &self.member.spec);
+        let boundaries = boundary_names(spec);
         let rows = spec.hard.iter().enumerate().map(|(place, hard)| {
             let mut row = vec![];
             member.inputs(CaseRef::Hard(place), 1, &mut row);
@@ -206,6 +207,11 @@ impl FormulaPage<'_> {
                         td { @if let Some(naive) = hard.naive { (self.link(naive.formula)) ": " (prose(naive.fails)) } }
                     } } }
                 } }
+            }
+            @if !boundaries.is_empty() {
+                h2 #boundaries { "Close to where it decides" }
+                p { (DRAWN) " cases each come close to a place where the formula decides something or degenerates, at distances from ½ to 2⁻²⁴: " }
+                p { @for (k, name) in boundaries.iter().enumerate() { @if k > 0 { " · " } (name) } }
             }
         }
     }

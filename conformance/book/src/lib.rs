@@ -8,16 +8,18 @@ mod blend;
 mod contents;
 mod diagram;
 mod errors;
+mod figure;
 mod formula;
 mod grid;
 mod lookup;
 mod picture;
 mod scenes;
+mod search;
 mod sketch;
 mod texts;
 mod wrong_scenes;
 
-use contents::{Contents, Entry, Place};
+use contents::{Contents, Entry, Place, SEARCH};
 use formula::{FormulaPage, Told, told};
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::load::{self, Loaded};
@@ -27,6 +29,7 @@ use lightmeter_gpu::Shaders;
 use lightmeter_scene::blend::{Equation, Factor};
 use maud::{Markup, html};
 use rayon::prelude::*;
+use search::Found;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -124,7 +127,7 @@ pub fn write(out: &Path, sources: &BookSources, told: &(dyn Fn(usize, usize) + S
     let (contents, pages) = planned(sources, &catalogue)?;
     let wrong = wrong_scenes::wrong_scenes(&scenes);
     let (done, all) = (AtomicUsize::new(0), pages.len());
-    let shown: Vec<BTreeSet<String>> = pages
+    let made: Vec<(Found, BTreeSet<String>)> = pages
         .par_iter()
         .map(|(path, made)| {
             let place = Place::new(path);
@@ -151,9 +154,11 @@ pub fn write(out: &Path, sources: &BookSources, told: &(dyn Fn(usize, usize) + S
             };
             file(out, path, contents.framed(path, &body).as_bytes())?;
             told(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-            Ok(pictures)
+            Ok((Found::new(path, contents.title(path), &body.0), pictures))
         })
         .collect::<Result<_, BookError>>()?;
+    let (found, shown): (Vec<Found>, Vec<BTreeSet<String>>) = made.into_iter().unzip();
+    file(out, SEARCH, contents.framed(SEARCH, &search::page(&found)).as_bytes())?;
     for name in shown.into_iter().flatten().collect::<BTreeSet<String>>() {
         let path = sources.docs.join(&name);
         let bytes = std::fs::read(&path).map_err(|error| BookError::Read { path, message: error.to_string() })?;

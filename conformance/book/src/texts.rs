@@ -2,6 +2,7 @@
 
 use crate::BookError;
 use crate::contents::Place;
+use crate::figure::{FIGURE, with_figures};
 use lightmeter_files::read;
 use lightmeter_report::html::markdown;
 use maud::{Markup, PreEscaped};
@@ -53,13 +54,14 @@ impl Text {
     /// The text at its place in the book. `pictures` collects the files of the documentation that it shows.
     pub(crate) fn body(&self, place: &Place<'_>, pictures: &mut BTreeSet<String>) -> Markup {
         let mut shown = BTreeSet::new();
-        let picture = |name: &str| (!name.contains("://")).then(|| place.to(&format!("pictures/{}", flat(name))));
+        let is_own = |name: &str| name.contains("://") || name.starts_with(FIGURE);
+        let picture = |name: &str| (!is_own(name)).then(|| place.to(&format!("pictures/{}", flat(name))));
         for name in images(&self.text) {
             shown.insert(if self.folder.is_empty() { name } else { format!("{}/{name}", self.folder) });
         }
         pictures.extend(shown);
         let html = markdown(&self.text, &picture);
-        PreEscaped(links(&html.0, place))
+        PreEscaped(links(&with_figures(&html.0), place))
     }
 }
 
@@ -72,7 +74,7 @@ pub(crate) fn flat(name: &str) -> String {
 fn images(text: &str) -> impl Iterator<Item = String> {
     text.split("![").skip(1).filter_map(|rest| {
         let address = rest.split_once("](")?.1.split_once(')')?.0;
-        (!address.contains("://")).then(|| address.to_owned())
+        (!address.contains("://") && !address.starts_with(FIGURE)).then(|| address.to_owned())
     })
 }
 

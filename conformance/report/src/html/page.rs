@@ -7,6 +7,7 @@ use sha2::{Digest as _, Sha256};
 
 const STYLE: &str = include_str!("style.css");
 const REPORT_SCRIPT: &str = include_str!("report.js");
+const SEARCH_SCRIPT: &str = include_str!("search.js");
 
 /// What a page is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +16,8 @@ pub enum PageKind {
     Report,
     /// A page of the book, which runs nothing.
     Book,
+    /// The book's page that finds others.
+    Search,
 }
 
 /// Words as they stand in documents: what stands between backticks is code.
@@ -37,10 +40,11 @@ pub fn page(title: &str, kind: PageKind, body: &Markup) -> String {
     let hash = |text: &str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)));
     let script = match kind {
         PageKind::Report => Some(REPORT_SCRIPT),
+        PageKind::Search => Some(SEARCH_SCRIPT),
         PageKind::Book => None,
     };
     let scripts = script.map_or_else(|| "'none'".into(), hash);
-    let images = if kind == PageKind::Book { "'self' data:" } else { "data:" };
+    let images = if kind == PageKind::Report { "data:" } else { "'self' data:" };
     let policy = format!(
         "default-src 'none'; img-src {images}; style-src {}; script-src {scripts}; base-uri 'none'; form-action 'none'",
         hash(STYLE)

@@ -1,0 +1,104 @@
+//! The page that finds others by their words. It holds all that it looks in, so that it works from a folder without a server.
+
+use maud::{Markup, PreEscaped, html};
+use serde_json::json;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The least length of a word, and the most, beyond which it is a number or an address.
+const LENGTHS: std::ops::RangeInclusive<usize> = 3..=32;
+/// Words on more than this share of all pages tell nothing.
+const ON_MOST: f64 = 0.5;
+
+/// What is known of a page.
+pub(crate) struct Found {
+    pub(crate) path: String,
+    pub(crate) title: String,
+    /// Those that can be linked: their names, and what they say.
+    headings: Vec<(String, String)>,
+    words: BTreeSet<String>,
+}
+
+impl Found {
+    /// What there is to find on a page.
+    pub(crate) fn new(path: &str, title: &str, html: &str) -> Self {
+        let mut headings = vec![];
+        for part in html.split("<h2 id=\"").chain(html.split("<h3 id=\"")).filter(|part| !part.starts_with("<h1")) {
+            if let Some((id, rest)) = part.split_once('"')
+                && let Some((_, rest)) = rest.split_once('>')
+                && let Some((text, _)) = rest.split_once("</h")
+                && !id.contains('<')
+            {
+                headings.push((id.to_owned(), plain(text).trim().to_owned()));
+            }
+        }
+        let words = plain(html).to_lowercase();
+        let words = words.split(|c: char| !(c.is_alphanumeric() || c == '-' || c == '_'));
+        let words = words.filter(|word| LENGTHS.contains(&word.len()) && word.chars().any(char::is_alphabetic));
+        Self { path: path.to_owned(), title: title.to_owned(), headings, words: words.map(str::to_owned).collect() }
+    }
+}
+
+/// The text of some HTML.
+fn plain(html: &str) -> String {
+    let mut text = String::new();
+    let mut is_tag = false;
+    for c in html.chars() {
+        match c {
+            '<' => is_tag = true,
+            '>' if is_tag => {
+                is_tag = false;
+                text.push(' ');
+            }
+            c if !is_tag => text.push(c),
+            _ => {}
+        }
+    }
+    [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&amp;", "&")]
+        .iter()
+        .fold(text, |text, (entity, c)| text.replace(entity, c))
+}
+
+/// The page.
+pub(crate) fn page(found: &[Found]) -> Markup {
+    let mut on: BTreeMap<&str, usize> = BTreeMap::new();
+    for word in found.iter().flat_map(|one| &one.words) {
+        *on.entry(word).or_default() += 1;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a count of pages")]
+    let tells = |word: &&str| (on[word] as f64) <= ON_MOST * found.len() as f64;
+    let pages: Vec<_> = found
+        .iter()
+        .map(|one| {
+            let words: Vec<&str> = one.words.iter().map(String::as_str).filter(tells).collect();
+            json!([one.path, one.title, one.headings, words.join(" ")])
+        })
+        .collect();
+    // A script's data ends at the first `</`, whatever it stands in.
+    let data = json!(pages).to_string().replace('<', "\\u003c");
+    html! {
+        h1 { "Search" }
+        p { label for="q" { "Words, or the beginnings of words, that a page is to have:" } }
+        p { input #q type="search" name="q" autocomplete="off" placeholder="exp2 fog, nan, highlight …"; " " output #count role="status" {} }
+        ul #found {}
+        noscript { p { "The search needs scripts. " a href="formula/index.html" { "All formulas" } ", " a href="mistakes.html" { "mistakes by name" } " and the contents list everything." } }
+        script #pages type="application/json" { (PreEscaped(data)) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Found, page, plain};
+
+    #[test]
+    fn a_page_is_found_by_its_words_and_its_headings() {
+        let found =
+            Found::new("a.html", "A", "<h1>A</h1><h2 id=\"why\">Why <code>exp</code></h2><p>Fog &amp; mist</p>");
+        assert_eq!(found.headings, [("why".to_owned(), "Why  exp".to_owned())]);
+        assert!(["fog", "mist", "exp", "why"].iter().all(|word| found.words.contains(*word)), "{:?}", found.words);
+        assert_eq!(plain("a &lt;b&gt;<i>c</i>"), "a <b> c ");
+        let other = Found::new("b.html", "B", "</script><p>fog");
+        let html = page(&[found, other]).0;
+        // Fog is on both pages and tells nothing; no page ends the script.
+        assert!(html.contains("mist") && !html.contains("\"fog") && html.matches("</script>").count() == 1, "{html}");
+    }
+}
