@@ -6,6 +6,7 @@ use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// What became of a group's cases, each of which has a verdict for each scalar output.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
@@ -155,6 +156,25 @@ pub struct RendererIdentity {
     pub name: String,
     /// Its version.
     pub version: String,
+    /// What it computes on, where it says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub device: Option<String>,
+    /// The driver of that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub driver: Option<String>,
+}
+
+impl fmt::Display for RendererIdentity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, version, device, driver } = self;
+        write!(f, "{name}{}{version}", if version.is_empty() { "" } else { " " })?;
+        for (before, what) in [(" on ", device), (", ", driver)] {
+            if let Some(what) = what {
+                write!(f, "{before}{what}")?;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Answers that cannot be read, or that nobody asked for.

@@ -353,15 +353,23 @@ impl GateReport {
     }
 }
 
+impl RendererIdentity {
+    /// The same as a run tells of an adapter.
+    #[must_use]
+    pub fn of_run(&self) -> Identity {
+        Identity {
+            name: self.name.clone(),
+            device: self.device.clone().unwrap_or_else(|| self.name.clone()),
+            backend: "renderer".into(),
+            driver: self.driver.clone().unwrap_or_else(|| self.version.clone()),
+        }
+    }
+}
+
 /// The run that a gate is a view of, as far as that tells.
 impl From<GateReport> for Report {
     fn from(gate: GateReport) -> Self {
-        let identity = Identity {
-            name: gate.renderer.name.clone(),
-            device: gate.renderer.name.clone(),
-            backend: "renderer".into(),
-            driver: gate.renderer.version.clone(),
-        };
+        let identity = gate.renderer.of_run();
         // Earlier versions wrote the signal alone.
         let by_signal = gate.signal.map(|signal| Interrupted {
             under_way: "the gate".into(),

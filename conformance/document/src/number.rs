@@ -21,6 +21,21 @@ impl Number {
             _ => self.to_string(),
         }
     }
+
+    /// The number in four digits, for people.
+    #[must_use]
+    pub fn brief(self) -> String {
+        let x = self.0;
+        match x.abs() {
+            size if !size.is_finite() || size == 0.0 => self.to_string(),
+            size if !(1e-3..1e6).contains(&size) => format!("{x:.3e}"),
+            size => {
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most six")]
+                let decimals = (3.0 - size.log10().floor()).max(0.0) as usize;
+                format!("{x:.decimals$}")
+            }
+        }
+    }
 }
 
 impl Serialize for Number {
@@ -116,6 +131,12 @@ mod tests {
         let shown = [0.1, f64::from(0.1_f32), 1e-40, f64::from(1e-40_f32), f64::INFINITY, -0.5, 3e9]
             .map(|x| Number(x).narrow());
         assert_eq!(shown, ["0.1", "0.1", "1e-40", "1e-40", "Inf", "-0.5", "3e9"]);
+    }
+
+    #[test]
+    fn numbers_for_people_have_four_digits() {
+        let shown = [0.0, 12.345_678, 0.012_345_6, 123_456.7, 1e-5, 1.0, f64::NAN].map(|x| Number(x).brief());
+        assert_eq!(shown, ["0", "12.35", "0.01235", "123457", "1.000e-5", "1.000", "NaN"]);
     }
 
     #[test]

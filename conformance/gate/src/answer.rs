@@ -5,6 +5,7 @@ use super::frame;
 use lightmeter_arithmetic::Profile;
 use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::filter::Filter;
+use lightmeter_document::gate::RendererIdentity;
 use lightmeter_document::protocol::PROTOCOL;
 use lightmeter_scene::frame::Frame;
 use serde::de::{Deserializer, Visitor};
@@ -24,10 +25,16 @@ pub struct Hello {
     pub renderer: String,
     /// Its version.
     pub version: String,
+    /// What it computes on, such as a GPU's name.
+    pub device: Option<String>,
+    /// The driver of that, with its version.
+    pub driver: Option<String>,
     /// Globs of the formulas that it evaluates.
     pub formulas: Vec<String>,
     /// Globs of the scenes that it draws.
     pub scenes: Vec<String>,
+    /// Globs of formulas and scenes that it does not, though the others name them.
+    pub excludes: Vec<String>,
     /// Formats of targets that it draws on; `None` for all.
     pub formats: Option<Vec<String>>,
     /// Effects that it has; `None` for all. A scene that calls for another is not asked for.
@@ -63,6 +70,18 @@ impl Hello {
         Self { renderer: "unnamed".into(), formulas: vec!["**".into()], scenes: vec!["**".into()], ..Self::default() }
     }
 
+    /// How reports name it.
+    #[must_use]
+    pub fn identity(&self) -> RendererIdentity {
+        let told = |text: &Option<String>| text.as_ref().map(|text| clipped(text));
+        RendererIdentity {
+            name: clipped(&self.renderer),
+            version: clipped(&self.version),
+            device: told(&self.device),
+            driver: told(&self.driver),
+        }
+    }
+
     /// The accuracy rules that it is judged by: those that it is held to, or those that it asks for.
     ///
     /// # Errors
@@ -79,10 +98,10 @@ impl Hello {
     ///
     /// # Errors
     /// Where a glob cannot be read.
-    pub fn filters(&self) -> Result<[Option<Filter>; 2], lightmeter_catalogue::filter::FilterError> {
+    pub fn filters(&self) -> Result<[Option<Filter>; 3], lightmeter_catalogue::filter::FilterError> {
         // No glob matches everything in a filter, and nothing in a declaration.
         let read = |globs: &[String]| (!globs.is_empty()).then(|| Filter::new(globs)).transpose();
-        Ok([read(&self.formulas)?, read(&self.scenes)?])
+        Ok([read(&self.formulas)?, read(&self.scenes)?, read(&self.excludes)?])
     }
 
     /// Why it does not draw a frame; `None` where it does.
@@ -309,14 +328,20 @@ fn hello(text: &str) -> Result<Line<'_>, String> {
         return Err(format!("said a hello of `{}`; expected `{PROTOCOL}`", clipped(&protocol)));
     }
     for (name, value) in &rest {
-        let is_list = matches!(name.as_str(), "formulas" | "scenes" | "formats" | "effects" | "targets");
+        let is_list = matches!(name.as_str(), "formulas" | "scenes" | "excludes" | "formats" | "effects" | "targets");
         if is_list && !value.is_array() && !value.is_null() {
             return Err(format!(
                 "said a hello in which `{name}` is no list; expected such as [\"fog/*\", \"lighting/blinn\"]"
             ));
         }
-        if name == "version" && !value.is_string() {
-            return Err("said a hello in which `version` is no string; expected such as \"1.2\"".into());
+        let example = match name.as_str() {
+            "version" => "1.2",
+            "device" => "llvmpipe (LLVM 15.0.6, 256 bits)",
+            "driver" => "Mesa 22.3.6",
+            _ => continue,
+        };
+        if !value.is_string() {
+            return Err(format!("said a hello in which `{name}` is no string; expected such as \"{example}\""));
         }
     }
     let hello: Hello = serde_json::from_value(rest.into()).map_err(wrong)?;
@@ -478,6 +503,8 @@ mod tests {
             (br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#, "expected `lightmeter.protocol/1`"),
             (br#"{"renderer":"r","formulas":"fog"}"#, "`formulas` is no list"),
             (br#"{"renderer":"r","version":1.2}"#, "`version` is no string"),
+            (br#"{"renderer":"r","driver":["Mesa"]}"#, "`driver` is no string; expected such as \"Mesa 22.3.6\""),
+            (br#"{"renderer":"r","excludes":"fog"}"#, "`excludes` is no list"),
             (br#"{"renderer":"r","special":"yes"}"#, "expected a boolean"),
         ] {
             let error = read(line).expect_err(said);

@@ -412,7 +412,9 @@ impl Comparison {
             // A NaN is worse than any number.
             if is_alike && lightmeter_judge::is_worse(now.0, self.factor * before.0.max(floor)) {
                 worse.push(format!(
-                    "{id}: {what} {now}; in the baseline it was {before}, and more than {} times that counts as worse",
+                    "{id}: {what} {}; in the baseline it was {}, and more than {} times that counts as worse",
+                    now.brief(),
+                    before.brief(),
                     self.factor
                 ));
             }

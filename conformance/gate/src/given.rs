@@ -13,7 +13,6 @@ use lightmeter_catalogue::select::catalogue;
 use lightmeter_catalogue::special::{Gives, PROBES, Probe};
 use lightmeter_document::Number;
 use lightmeter_document::by_case::RendererUse;
-use lightmeter_document::gate::RendererIdentity;
 use lightmeter_document::run::Identity;
 use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, Unanswered};
@@ -200,13 +199,14 @@ pub(super) struct Declared {
     pub(super) hello: Hello,
     formulas: Option<Filter>,
     scenes: Option<Filter>,
+    excludes: Option<Filter>,
     pub(super) skips: Skips,
     pub(super) targets: Vec<TargetFormat>,
 }
 
 /// A name that is misspelt would leave out what it was to declare, and nobody would see it.
 fn matches_something(hello: &Hello) -> Result<(), ProcessError> {
-    if hello.formulas.is_empty() && hello.scenes.is_empty() {
+    if hello.formulas.is_empty() && hello.scenes.is_empty() && hello.excludes.is_empty() {
         return Ok(());
     }
     let members = catalogue();
@@ -217,7 +217,12 @@ fn matches_something(hello: &Hello) -> Result<(), ProcessError> {
         .chain(PROBES.iter().map(Probe::id))
         .collect();
     let scenes: Vec<String> = (0..SCENES.len()).map(scene_id).collect();
-    for (what, globs, ids) in [("formula", &hello.formulas, &formulas), ("scene", &hello.scenes, &scenes)] {
+    let both: Vec<String> = formulas.iter().chain(&scenes).cloned().collect();
+    for (what, globs, ids) in [
+        ("formula", &hello.formulas, &formulas),
+        ("scene", &hello.scenes, &scenes),
+        ("formula or scene", &hello.excludes, &both),
+    ] {
         for glob in globs {
             let filter = Filter::new(std::slice::from_ref(glob))?;
             if !ids.iter().any(|id| filter.selects(id)) {
@@ -232,12 +237,12 @@ fn matches_something(hello: &Hello) -> Result<(), ProcessError> {
 impl Declared {
     /// Reads what a hello declares.
     pub(super) fn new(hello: Hello) -> Result<Self, ProcessError> {
-        let [formulas, scenes] = hello.filters()?;
+        let [formulas, scenes, excludes] = hello.filters()?;
         matches_something(&hello)?;
         let format = |name: &String| TargetFormat::by_name(name).ok_or_else(|| ProcessError::Target(name.clone()));
         let targets = hello.targets.iter().map(format).collect::<Result<_, _>>()?;
         let skips = Skips::of(&hello)?;
-        Ok(Self { hello, formulas, scenes, skips, targets })
+        Ok(Self { hello, formulas, scenes, excludes, skips, targets })
     }
 
     /// Why a formula or a scene is not asked; `None` where it is.
@@ -245,19 +250,21 @@ impl Declared {
         let (declared, what) =
             if id.starts_with("scene/") { (&self.scenes, "scenes") } else { (&self.formulas, "formulas") };
         let has = declared.as_ref().is_some_and(|filter| filter.selects(id));
-        (!has).then(|| format!("not among the {what} that it declares"))
+        match &self.excludes {
+            _ if !has => Some(format!("not among the {what} that it declares")),
+            Some(excludes) if excludes.selects(id) => Some("it excludes it".into()),
+            _ => None,
+        }
     }
 
     /// How it is named in reports.
     pub(super) fn identity(&self) -> Identity {
-        let (name, version) = (clipped(&self.hello.renderer), clipped(&self.hello.version));
-        Identity { device: name.clone(), name, backend: "renderer".into(), driver: version }
+        self.hello.identity().of_run()
     }
 
     /// What a report says of it, where nothing went wrong.
     pub(super) fn used(&self) -> RendererUse {
-        let Identity { name, driver: version, .. } = self.identity();
-        RendererUse { identity: RendererIdentity { name, version }, ..RendererUse::default() }
+        RendererUse { identity: self.hello.identity(), ..RendererUse::default() }
     }
 
     /// Why a frame is not asked for; `None` where it is.

@@ -27,7 +27,7 @@ FORMATS = {
 
 
 def create():
-    """Makes a context of OpenGL 4.5, compatibility profile, current; returns Mesa's version."""
+    """Makes a context of OpenGL 4.5, compatibility profile, current; returns Mesa's version and the device's name."""
     display = EGL.eglGetDisplay(EGL.EGL_DEFAULT_DISPLAY)
     EGL.eglInitialize(display, ctypes.c_long(), ctypes.c_long())
     EGL.eglBindAPI(EGL.EGL_OPENGL_API)
@@ -44,7 +44,8 @@ def create():
     glPixelStorei(GL_PACK_ALIGNMENT, 1)
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1)
     # "4.5 (Compatibility Profile) Mesa 22.3.6"
-    return glGetString(GL_VERSION).decode().split("Mesa ")[1].split("-")[0].split()[0]
+    version = glGetString(GL_VERSION).decode().split("Mesa ")[1].split("-")[0].split()[0]
+    return version, glGetString(GL_RENDERER).decode()
 
 
 class Target:

@@ -9,12 +9,12 @@ sys.path[:0] = [str(here.parent / "common"), str(here.parents[2] / "clients/pyth
 import context
 from lightmeter_client import Renderer
 
-version = context.create()
+version, device = context.create()
 
 from formulas import Formulas, Raster
 from scenes import EFFECTS, draw
 
-renderer = Renderer("documents-glsl", version, profile="opengl", effects=EFFECTS)
+renderer = Renderer("documents-glsl", version, device=device, driver=f"Mesa {version}", profile="opengl", effects=EFFECTS)
 renderer.batches({**Formulas().functions, **Raster().functions})
 renderer.scene("scene")(draw)
 renderer.serve()

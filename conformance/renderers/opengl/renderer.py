@@ -13,10 +13,12 @@ from scenes import EFFECTS, draw
 from stages import Stages
 from surfaces import Surfaces
 
-version = context.create()
+version, device = context.create()
 renderer = Renderer(
     "opengl-fixed-function",
     version,
+    device=device,
+    driver=f"Mesa {version}",
     profile="opengl",
     effects=EFFECTS,
     skips=[

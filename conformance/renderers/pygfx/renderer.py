@@ -13,11 +13,14 @@ from raster import Raster
 from scenes import EFFECTS, NO_POLYNOMIAL, draw
 from surfaces import Surfaces
 
+info = gfx.renderers.wgpu.get_shared().adapter.info
 blending = Blending()
 functions = {**Surfaces(blending).functions, **Raster(blending.places).functions}
 renderer = Renderer(
     "pygfx",
     gfx.__version__,
+    device=info["device"],
+    driver=info["description"],
     profile="opengl",
     formulas=[*functions, *DECLARED],
     effects=EFFECTS,

@@ -1,6 +1,7 @@
 // What three.js draws: cases of formulas, a pixel each, and scenes.
 import { blendFormulas } from "./blending.js";
 import { drawScene, EFFECTS } from "./scenes.js";
+import { renderer } from "./stage.js";
 import { surfaceFormulas } from "./surfaces.js";
 
 const FORMULAS = { ...surfaceFormulas, ...blendFormulas };
@@ -30,6 +31,13 @@ export const declared = {
 export function evaluate(formula, cases) {
   const pattern = Object.keys(FORMULAS).find((pattern) => matches(pattern, formula));
   return FORMULAS[pattern](cases, formula);
+}
+
+// What WebGL draws on, as the browser names it.
+export function device() {
+  const gl = renderer.getContext();
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  return gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
 }
 
 export { drawScene };

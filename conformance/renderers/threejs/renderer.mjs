@@ -88,7 +88,7 @@ for await (const line of createInterface({ input: process.stdin })) {
   const request = JSON.parse(line);
   if (request.hello) {
     folder = request.folder;
-    const declared = await page.evaluate(() => window.renderer.declared);
+    const declared = await page.evaluate(() => ({ ...window.renderer.declared, device: window.renderer.device() }));
     write({ hello: request.hello, renderer: "three.js", version: `0.${REVISION}.0`, profile: "opengl", ...declared });
   } else if (request.batch) {
     for (const [key, requests] of waiting) {

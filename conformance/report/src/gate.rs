@@ -5,7 +5,7 @@ use crate::against::{self, Against, listed};
 use crate::table::{Align, TextTable};
 use crate::text::plain;
 use lightmeter_document::by_case::Coverage;
-use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, Problems, cases};
+use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, Problems, RendererIdentity, cases};
 use lightmeter_document::run::Interrupted;
 use lightmeter_document::{Number, thousands};
 use std::fmt::{Result, Write};
@@ -30,9 +30,8 @@ pub struct GateStyle {
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn begun(name: &str, version: &str, profile: &str, out: &mut impl Write) -> Result {
-    let version = if version.is_empty() { String::new() } else { format!(" {version}") };
-    writeln!(out, "{name}{version} · profile {profile}")
+pub fn begun(renderer: &RendererIdentity, profile: &str, out: &mut impl Write) -> Result {
+    writeln!(out, "{renderer} · profile {profile}")
 }
 
 /// Writes it for people.
@@ -46,7 +45,7 @@ pub fn text(report: &GateReport, style: &GateStyle, out: &mut impl Write) -> Res
         writeln!(out, "{config}")?;
     }
     if style.level > Level::Quiet && !style.is_told {
-        begun(&renderer.name, &renderer.version, &report.profile, out)?;
+        begun(renderer, &report.profile, out)?;
     }
     let failed: Vec<&GateGroup> = report.groups.iter().filter(|group| group.is_failed()).collect();
     for group in failed.iter().take(MOST_TOLD).filter(|_| !style.is_told) {

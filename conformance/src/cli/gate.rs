@@ -235,7 +235,7 @@ impl Gate {
         if self.is_read_by_people() {
             if level() > Level::Quiet {
                 let mut line = String::new();
-                outputs::begun(&hello.renderer, &hello.version, options.profile.name, &mut line)?;
+                outputs::begun(&hello.identity(), options.profile.name, &mut line)?;
                 show(&lines(&line), None)?;
             }
             bar = bar.live(Stream::Output, self.again());

@@ -561,6 +561,27 @@ fn what_the_first_line_does_not_declare_is_unknown() {
 }
 
 #[test]
+fn a_hello_says_what_it_computes_on_and_what_it_leaves_out() {
+    let (pack, answers) = answered("says-all", &["fog/exp", "fog/linear"]);
+    let saying = |hello: &str| edit(&answers, |k, line| if k == 0 { hello } else { "" }.to_owned() + line + "\n");
+    let hello = "{\"renderer\": \"r\", \"version\": \"2\", \"device\": \"GPU\", \"driver\": \"D 3\", \"formulas\": [\"fog\"], \
+                 \"excludes\": [\"fog/{linear,exp2-*}\"]}\n";
+    let file = saying(hello);
+    let (_, report) = judged(&pack, &file, &[]);
+    let renderer = &report["renderer"];
+    assert!(renderer["device"] == "GPU" && renderer["driver"] == "D 3", "{renderer}");
+    let groups = report["groups"].as_array().expect("an array");
+    let ids: Vec<_> = groups.iter().filter(|group| group["asked"].as_u64() > Some(0)).map(|one| &one["id"]).collect();
+    assert_eq!(ids, ["fog/exp"]);
+    assert!(report.to_string().contains("it excludes it"), "{report}");
+    let output = lightmeter(&["gate", text(&pack), text(&file)]);
+    assert!(stdout(&output).starts_with("r 2 on GPU, D 3 · profile wgsl\n"), "{}", stdout(&output));
+    let misspelt = saying("{\"renderer\": \"r\", \"formulas\": [\"fog\"], \"excludes\": [\"fog/linaer\"]}\n");
+    let output = lightmeter(&["gate", text(&pack), text(&misspelt)]);
+    assert!(code(&output) == 2 && stderr(&output).contains("`fog/linear`"), "{}", stderr(&output));
+}
+
+#[test]
 fn results_are_written_for_servers() {
     let (pack, answers) = answered("outputs", &["fog/exp"]);
     let wrong = edit(

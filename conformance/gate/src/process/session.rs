@@ -7,7 +7,6 @@ use super::super::problems::note;
 use super::Asking;
 use super::running::{Event, Running};
 use lightmeter_document::by_case::RendererUse;
-use lightmeter_document::gate::RendererIdentity;
 use lightmeter_document::protocol::{BatchEnd, Greeting, PROTOCOL};
 use lightmeter_judge::cases::ExpectedFailure;
 use rayon::prelude::*;
@@ -214,8 +213,7 @@ impl Session {
     /// Ends it, and tells who it was and what went wrong.
     pub(super) fn end_well(&mut self) -> RendererUse {
         self.finish();
-        let identity = RendererIdentity { name: clipped(&self.hello.renderer), version: clipped(&self.hello.version) };
-        RendererUse { identity, ..self.used.clone() }
+        RendererUse { identity: self.hello.identity(), ..self.used.clone() }
     }
 
     /// Ends it at once; what it ended by, and what it complained of.
