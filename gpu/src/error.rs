@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// An error of the GPU's side: of a shader, of an adapter, or of the device.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum GpuError {
     /// A shader does not parse or does not validate.
     #[error("invalid shader {file}:\n{message}")]

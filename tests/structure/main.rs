@@ -275,8 +275,8 @@ fn shared_names(types: impl IntoIterator<Item = (String, PathBuf)>) -> BTreeMap<
     places
 }
 
-#[test]
-fn no_two_public_types_have_one_name() {
+/// The root files of the workspace's libraries.
+fn libraries() -> Vec<PathBuf> {
     let mut roots = vec![];
     for package in packages() {
         let targets = package["targets"].as_array().expect("targets").iter();
@@ -284,6 +284,31 @@ fn no_two_public_types_have_one_name() {
         roots.extend(libraries.map(|target| PathBuf::from(target["src_path"].as_str().expect("a path"))));
     }
     assert!(roots.len() > 10, "libraries of the workspace: {roots:?}");
+    roots
+}
+
+/// Ways to go wrong are added: who matches on an error of the libraries must be ready for another one.
+#[test]
+fn errors_may_grow() {
+    let is_enum = |text: &str, name: &str| text.contains(&format!("pub enum {name} {{"));
+    let may_grow = |text: &str, name: &str| text.contains(&format!("#[non_exhaustive]\npub enum {name} {{"));
+    let (mut enums, mut wrong) = (0, vec![]);
+    for (name, file) in libraries().iter().flat_map(|root| public_types(root)) {
+        let text = std::fs::read_to_string(&file).expect("a source file");
+        if name.ends_with("Error") && is_enum(&text, &name) {
+            enums += 1;
+            if !may_grow(&text, &name) {
+                wrong.push(format!("{name} in {}", name_of(&file)));
+            }
+        }
+    }
+    assert!(enums > 10, "{enums} errors");
+    assert!(wrong.is_empty(), "these errors lack #[non_exhaustive] above `pub enum`:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn no_two_public_types_have_one_name() {
+    let roots = libraries();
     let mut wrong = vec![];
     let mut unused = BTreeSet::from(SHARED_NAMES);
     for (name, files) in shared_names(roots.iter().flat_map(|root| public_types(root))) {

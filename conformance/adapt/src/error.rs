@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// Why a shader cannot be made a formula's function.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AdaptError {
     /// It cannot be read as a file.
     #[error("cannot read {}: {message}", .path.display())]

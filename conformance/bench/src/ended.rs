@@ -5,6 +5,7 @@ use lightmeter_gpu::GpuError;
 
 /// Why a measurement has no result.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BenchError {
     /// A shader is invalid, or a device failed.
     #[error(transparent)]

@@ -62,6 +62,7 @@ pub struct BookSources {
 
 /// Why no book was made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BookError {
     /// A file of the documentation.
     #[error("cannot read {}: {message}", .path.display())]

@@ -58,6 +58,7 @@ pub enum EvalLine {
 
 /// Why a line is not a request.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RequestError {
     /// It is not JSON.
     #[error("not JSON: {0}")]

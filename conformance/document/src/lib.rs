@@ -38,6 +38,7 @@ pub type Word = std::borrow::Cow<'static, str>;
 
 /// Why a text is not the document that it should be.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// It is not JSON.
     #[error("not JSON: {0}; expected {1}")]

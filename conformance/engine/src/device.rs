@@ -17,6 +17,7 @@ use std::sync::Arc;
 
 /// What can go wrong on a device.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum DeviceError {
     /// The device was lost, or reported an error.
     #[error("{0}")]

@@ -260,6 +260,7 @@ enum Read {
 
 /// Why files of answers cannot be judged.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FilesError {
     /// A file cannot be read.
     #[error("{0}")]

@@ -161,6 +161,7 @@ pub struct Baseline(Standard);
 
 /// Why a baseline cannot be compared with, or written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BaselineError {
     /// It cannot be read.
     #[error("cannot read {}: {message}", .path.display())]

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 /// Why a renderer could not be asked at all.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProcessError {
     /// The command cannot be started, or says nothing that can be read.
     #[error("`{command}` {message}")]
@@ -60,6 +61,7 @@ pub enum ProcessError {
 
 /// Why a pack was not written or read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PackError {
     /// A file cannot be written.
     #[error("cannot write {}: {message}", .path.display())]

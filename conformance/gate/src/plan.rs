@@ -39,6 +39,7 @@ pub struct GatePlan {
 
 /// Why there is no plan of a choice.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlanError {
     /// A glob cannot be read.
     #[error("{0}")]

@@ -241,8 +241,8 @@ impl Status {
         }
         let device = match error.downcast_ref::<AdapterError>() {
             Some(AdapterError::NoDriver(_)) => return Self::Nothing,
-            Some(AdapterError::Unknown { .. }) => return Self::BadInput,
             Some(AdapterError::Device(error)) => Some(error),
+            Some(_) => return Self::BadInput,
             None => error.downcast_ref::<DeviceError>(),
         };
         match device {

@@ -4,6 +4,7 @@ use std::fmt;
 
 /// Why a scene is refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SceneError {
     /// A file that cannot be read.
     #[error("cannot read {file}: {error}")]

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// What is wrong with a sweep's file.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum DocumentError {
     /// It cannot be read.
     #[error("cannot read {}: {message}", path.display())]

@@ -21,6 +21,7 @@ const TASK: usize = 1 << 12;
 
 /// Why a sweep ends early.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SweepError {
     /// A shader or a device.
     #[error(transparent)]

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 /// Why an image was not written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageFileError {
     /// The name does not end as a known format does.
     #[error("{}: an image is written as .png or .exr", .0.display())]

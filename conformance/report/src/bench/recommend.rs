@@ -23,6 +23,7 @@ pub enum Limit {
 
 /// A limit that cannot be read.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LimitError {
     /// It is no number with a unit.
     #[error("error limit `{0}` is no number with a unit; expected 1e-4 (absolute), 4ulp, 0.5/255 or 0.5steps")]

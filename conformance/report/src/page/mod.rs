@@ -32,6 +32,7 @@ impl Deref for BlendRun {
 
 /// Why no page can be made of a file.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PageError {
     /// It is not a run's JSON.
     #[error(transparent)]
