@@ -21,6 +21,7 @@ fn main() -> ExitCode {
 /// Where no desktop runs, one of Mesa's layers complains on standard error unless this variable is set, which must be so when a process
 /// starts: the process is started anew with it.
 fn without_desktop() {
+    #[cfg(unix)]
     const SILENT: &str = "NODEVICE_SELECT";
     #[cfg(unix)]
     if ["XDG_RUNTIME_DIR", SILENT].iter().all(|name| std::env::var_os(name).is_none())

@@ -10,7 +10,7 @@ pub struct Adapter {
     pub name: String,
     /// The device, as the driver names it.
     pub device: String,
-    /// `vulkan` or `gl`.
+    /// `vulkan`, `dx12`, `metal` or `gl`.
     pub backend: &'static str,
     /// The driver and its version, as the driver says it.
     pub driver: String,
@@ -19,16 +19,19 @@ pub struct Adapter {
     adapter: wgpu::Adapter,
 }
 
-/// Every Vulkan adapter: lavapipe first, hardware next, then the other software drivers.
+/// What drivers are reached by, but for OpenGL; what a system lacks is not looked for.
+const NATIVE: wgpu::Backends = wgpu::Backends::VULKAN.union(wgpu::Backends::DX12).union(wgpu::Backends::METAL);
+
+/// Every adapter of Vulkan, on Windows of Direct3D 12 and on macOS of Metal: lavapipe first, hardware next, then the other software drivers.
 #[must_use]
-pub fn vulkan_adapters() -> Vec<Adapter> {
-    enumerate(wgpu::Backends::VULKAN)
+pub fn native_adapters() -> Vec<Adapter> {
+    enumerate(NATIVE)
 }
 
 /// Every adapter of every backend, in the same order, OpenGL's last of their kind.
 #[must_use]
 pub fn adapters() -> Vec<Adapter> {
-    enumerate(wgpu::Backends::VULKAN | wgpu::Backends::GL)
+    enumerate(NATIVE | wgpu::Backends::GL)
 }
 
 fn enumerate(backends: wgpu::Backends) -> Vec<Adapter> {
@@ -52,7 +55,12 @@ fn enumerate(backends: wgpu::Backends) -> Vec<Adapter> {
 impl Adapter {
     fn new(adapter: wgpu::Adapter) -> Self {
         let info = adapter.get_info();
-        let backend = if info.backend == wgpu::Backend::Gl { "gl" } else { "vulkan" };
+        let backend = match info.backend {
+            wgpu::Backend::Gl => "gl",
+            wgpu::Backend::Dx12 => "dx12",
+            wgpu::Backend::Metal => "metal",
+            _ => "vulkan",
+        };
         let driver = [info.driver.as_str(), info.driver_info.as_str()]
             .into_iter()
             .filter(|part| !part.is_empty())
@@ -87,7 +95,7 @@ fn short_name(device: &str, backend: &str) -> String {
     }
     let words: Vec<&str> = lower.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
     let name = words.join("-");
-    if backend == "gl" { format!("{name}-gl") } else { name }
+    if ["gl", "dx12"].contains(&backend) { format!("{name}-{backend}") } else { name }
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ mod shaders;
 mod sweep;
 pub mod work;
 
-pub use adapters::{Adapter, adapters, vulkan_adapters};
+pub use adapters::{Adapter, adapters, native_adapters};
 pub use arithmetic::{ArithmeticPipeline, Programmable};
 pub use blend_unit::{Batch, BlendUnit, UnitDraw};
 pub use depth_unit::{DEPTH_OUTPUTS, DepthUnit};

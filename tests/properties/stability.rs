@@ -42,7 +42,7 @@ fn options(code: Code) -> Options {
 }
 
 fn subjects() -> Vec<Subject> {
-    let adapters = lightmeter_gpu::vulkan_adapters();
+    let adapters = lightmeter_gpu::native_adapters();
     assert!(!adapters.is_empty(), "no Vulkan driver is here: `./x test` installs lavapipe");
     let open = |adapter: &Adapter| open_device(adapter).expect("the adapter gives a device");
     adapters.iter().map(open).collect()

@@ -21,7 +21,7 @@ use lightmeter::judge::{Outcome, judge};
 use lightmeter::select::{CaseRef, Member, catalogue};
 use lightmeter::subject::Subject;
 use lightmeter::subject_gpu::{code_of, open_device};
-use lightmeter_gpu::vulkan_adapters;
+use lightmeter_gpu::native_adapters;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 use std::cell::RefCell;
@@ -127,7 +127,7 @@ fn whole(k: u32) -> f32 {
 pub fn device() -> MutexGuard<'static, Subject> {
     static DEVICE: OnceLock<Mutex<Subject>> = OnceLock::new();
     let open = || {
-        let adapters = vulkan_adapters();
+        let adapters = native_adapters();
         let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
         Mutex::new(open_device(adapter).expect("the adapter gives a device"))
     };

@@ -16,7 +16,7 @@ use lightmeter_gpu::compose::{Composer, Recipe, ShaderForm};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{
     ArithmeticPipeline, BlendUnit, DepthUnit, Gpu, Kernel, Programmable, RasterPipeline, Shaders, adapters,
-    vulkan_adapters,
+    native_adapters,
 };
 use lightmeter_scene::effects::effects;
 #[cfg(unix)]
@@ -67,7 +67,7 @@ impl Try {
         let built_in = Shaders::built_in()?;
         let is_asked = |name: &str| self.adapter.iter().any(|asked| asked == name || asked == "all");
         let found = match self.adapter.is_empty() {
-            true => vulkan_adapters().into_iter().take(1).collect(),
+            true => native_adapters().into_iter().take(1).collect(),
             false => adapters().into_iter().filter(|adapter| is_asked(&adapter.name)).collect::<Vec<_>>(),
         };
         for adapter in found {

@@ -104,6 +104,9 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 impl Gate {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        if cfg!(not(unix)) && self.memory.is_some() {
+            anyhow::bail!("--memory needs the limits that Unix sets for a process; leave it out on this system");
+        }
         let expectations = self.comparison.expectations()?;
         let earlier = self.comparison.earlier(Baseline::of_gate)?;
         matches_something(&expectations)?;
@@ -271,8 +274,9 @@ impl Gate {
             ..Limits::default()
         };
         let folder = images.folder.clone();
-        // Where the own binary is not found, a shell starts the renderer.
-        let starter = std::env::current_exe().ok().map(|program| Starter { program, memory: self.memory });
+        // Only Unix has the limits and the signals of a starter; elsewhere, or where the own binary is not found, a shell starts it.
+        let program = std::env::current_exe().ok().filter(|_| cfg!(unix));
+        let starter = program.map(|program| Starter { program, memory: self.memory });
         Asking { command: command.to_owned(), starter, folder, limits, runs: self.runs, stop: stop.clone() }
     }
 

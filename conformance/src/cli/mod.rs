@@ -27,6 +27,7 @@ mod shader;
 mod show;
 mod signals;
 mod special;
+#[cfg(unix)]
 mod start;
 mod sweep;
 mod terminal;
@@ -36,7 +37,8 @@ use clap::{CommandFactory as _, Parser, Subcommand};
 use lightmeter::adapters::AdapterError;
 use lightmeter::device::DeviceError;
 use lightmeter::files::{can_be_written, lines, whole};
-use signal_hook::consts::{SIGHUP, SIGTERM};
+use signal_hook::consts::SIGTERM;
+use signals::SIGHUP;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -150,6 +152,7 @@ enum Command {
     /// Tell which formula a shader computes
     Identify(identify::Identify),
     #[command(hide = true)]
+    #[cfg(unix)]
     StartRenderer(start::Start),
     #[command(hide = true)]
     TryShaders(foreign::Try),
@@ -182,6 +185,7 @@ impl Cli {
             Command::Completions(completions) => completions.run(),
             Command::Man(man) => man.run(),
             Command::Identify(identify) => identify.run(),
+            #[cfg(unix)]
             Command::StartRenderer(start) => start.run(),
             Command::TryShaders(shaders) => shaders.run(),
             Command::AdaptShader(shader) => shader.run(),

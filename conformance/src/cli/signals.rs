@@ -4,14 +4,20 @@ use super::Status;
 use super::say;
 use lightmeter::document::event::Stop;
 use lightmeter::document::run::Interrupted;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGINT, SIGTERM};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+
+/// A terminal was closed. Windows has no such signal, but results of other systems name it.
+pub(crate) const SIGHUP: i32 = 1;
+
+/// The signals that end a program.
+pub(crate) const ENDING: &[i32] = if cfg!(unix) { &[SIGINT, SIGTERM, SIGHUP] } else { &[SIGINT, SIGTERM] };
 
 /// Set by the first signal that ends a program: what was judged is then reported. The second ends this one at once.
 pub(crate) fn stopped_by_signals() -> anyhow::Result<Stop> {
     let (stop, is_second) = (Stop::default(), Arc::new(AtomicBool::new(false)));
-    for signal in [SIGINT, SIGTERM, SIGHUP] {
+    for &signal in ENDING {
         let number = usize::try_from(signal)?;
         signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, is_second.clone())?;
         signal_hook::flag::register(signal, is_second.clone())?;

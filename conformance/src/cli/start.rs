@@ -1,13 +1,13 @@
 //! `lightmeter start-renderer`: what `gate` starts a renderer by, so that nothing of it outlives the gate.
 
 use super::Status;
+use super::signals::ENDING;
 use anyhow::Context as _;
 use clap::Args;
 use rustix::io::Errno;
 use rustix::process::{
     Pid, Resource, Rlimit, Signal, WaitOptions, WaitStatus, getpid, getppid, kill_process, setrlimit, wait,
 };
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::low_level::emulate_default_handler;
 use std::collections::BTreeMap;
 use std::fs::OpenOptions;
@@ -38,7 +38,7 @@ impl Start {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let parent = Pid::from_raw(self.parent);
         let stop = Arc::new(AtomicBool::new(false));
-        for signal in [SIGTERM, SIGINT, SIGHUP] {
+        for &signal in ENDING {
             signal_hook::flag::register(signal, stop.clone())?;
         }
         // What loses its parent becomes a child of this process, and is found so.

@@ -4,7 +4,7 @@ use super::open_device;
 use lightmeter_catalogue::nearest::did_you_mean;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::subject::Subject;
-use lightmeter_gpu::{Adapter, vulkan_adapters};
+use lightmeter_gpu::{Adapter, native_adapters};
 
 /// The name of the embedded implementation, which needs no driver.
 pub const EMBEDDED: &str = "cpu";
@@ -54,7 +54,7 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
         return Ok(vec![open_device(&first()?)?]);
     }
     let only_embedded = asked.iter().all(|name| name == EMBEDDED);
-    let mut found = if only_embedded { vec![] } else { vulkan_adapters() };
+    let mut found = if only_embedded { vec![] } else { native_adapters() };
     let known = |found: &[Adapter], name: &String| name == EMBEDDED || found.iter().any(|a| a.name == *name);
     if !asked.iter().all(|name| known(&found, name)) {
         found = lightmeter_gpu::adapters();
@@ -107,7 +107,7 @@ pub fn names() -> Result<Vec<String>, AdapterError> {
 
 /// The adapter that is judged where none is asked for. Where the user names drivers, no other one takes their place.
 fn first() -> Result<Adapter, AdapterError> {
-    if let Some(adapter) = vulkan_adapters().into_iter().next() {
+    if let Some(adapter) = native_adapters().into_iter().next() {
         return Ok(adapter);
     }
     drivers_named(&[])?;

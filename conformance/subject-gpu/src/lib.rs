@@ -344,7 +344,7 @@ mod tests {
     use lightmeter_document::run::Report;
     use lightmeter_engine::options::Options;
     use lightmeter_engine::run::run;
-    use lightmeter_gpu::vulkan_adapters;
+    use lightmeter_gpu::native_adapters;
     use lightmeter_scene::target::TargetFormat;
 
     struct LoseAt<F>(&'static str, F);
@@ -359,7 +359,7 @@ mod tests {
 
     /// Loses the devices of the blend unit when a group begins.
     fn lose_at(group: &'static str, filter: &str) -> Report {
-        let adapters = vulkan_adapters();
+        let adapters = native_adapters();
         let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
         let (identity, known, mut device) = device_of(adapter).expect("the adapter gives a device");
         let shaders = Shaders::built_in().expect("the built-in shaders are valid");

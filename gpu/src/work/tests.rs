@@ -1,7 +1,7 @@
 //! What a device gives of a description is what it gives of the same after it was written as JSON and read again.
 
 use super::{Resources, Submission};
-use crate::adapters::vulkan_adapters;
+use crate::adapters::native_adapters;
 use crate::device::{Executor, Gpu};
 use lightmeter_scene::target::SENTINEL;
 use serde::Serialize;
@@ -10,7 +10,7 @@ use std::fmt::Debug;
 
 /// The first adapter's device.
 pub(crate) fn device() -> Gpu {
-    let adapters = vulkan_adapters();
+    let adapters = native_adapters();
     let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
     adapter.open().unwrap_or_else(|error| panic!("{error}"))
 }

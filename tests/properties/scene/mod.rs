@@ -113,7 +113,7 @@ const FRAMES: u64 = 24;
 /// reference.
 #[test]
 fn devices_draw_random_frames_within_what_is_legal() {
-    let adapters = lightmeter_gpu::vulkan_adapters();
+    let adapters = lightmeter_gpu::native_adapters();
     let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
     let subject = open_device(adapter).expect("the adapter gives a device");
     let code = code_of(None).expect("the built-in shaders are valid");
@@ -138,7 +138,7 @@ fn devices_draw_random_frames_within_what_is_legal() {
 /// The intermediate results of random frames on a device, where something is drawn for certain.
 #[test]
 fn devices_draw_intermediate_results_within_what_is_legal() {
-    let adapters = lightmeter_gpu::vulkan_adapters();
+    let adapters = lightmeter_gpu::native_adapters();
     let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
     let subject = open_device(adapter).expect("the adapter gives a device");
     let code = code_of(None).expect("the built-in shaders are valid");

@@ -6,6 +6,7 @@
 //! time until the one that it fails at is found; that case fails, and the rest goes on.
 
 mod columns;
+mod family;
 mod queue;
 mod running;
 mod session;

@@ -1,12 +1,10 @@
 //! A running renderer: its pipes, and its end with all that it started.
 
 use super::super::answer::{self, Unread, clipped};
-use super::Starter;
+use super::{Starter, family};
 use lightmeter_document::protocol::ColumnsAnswer;
-use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 use std::ffi::OsStr;
 use std::io::{BufReader, Read as _, Write as _};
-use std::os::unix::process::CommandExt as _;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -21,8 +19,6 @@ const MOST_ARRAY: usize = 64 << 20;
 const KEPT: usize = 4096;
 /// How long a starter may take to end all that it started.
 const MOST_OF_END: Duration = Duration::from_secs(2);
-/// The variable that marks a renderer and its descendants.
-const MARK: &str = "LIGHTMETER_GATE";
 
 /// What comes from a process.
 pub(super) enum Event {
@@ -38,7 +34,6 @@ pub(super) struct Running {
     child: Child,
     /// Whether the child ends all that descends from it when it is told to end.
     ends_all: bool,
-    group: Option<Pid>,
     /// Its standard input, but while something is written to it.
     pub(super) input: Option<ChildStdin>,
     /// Whether arrays may stand behind a line that it writes.
@@ -58,18 +53,18 @@ impl Running {
         let mark = format!("{}-{}", std::process::id(), STARTED.fetch_add(1, Ordering::Relaxed));
         let (program, arguments) = match starter {
             Some(starter) => (starter.program.as_os_str(), starter.arguments(command)),
-            None => (OsStr::new("sh"), vec!["-c".to_owned(), command.to_owned()]),
+            None => {
+                let (shell, arguments) = family::shell(command);
+                (OsStr::new(shell), arguments)
+            }
         };
-        let mut child = Command::new(program)
+        let mut child = family::lead(&mut Command::new(program), &mark)
             .args(arguments)
-            .env(MARK, &mark)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
-            .process_group(0)
             .spawn()
             .map_err(|error| format!("cannot be started: {error}"))?;
-        let group = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
         let (input, output, errors) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         // What is not taken waits in the pipe, so that memory stays flat.
         let (send, events) = sync_channel(UNREAD);
@@ -93,7 +88,7 @@ impl Running {
             })
         });
         let ends_all = starter.is_some();
-        Ok(Self { child, ends_all, group, input, has_columns, events, mark, complaint, listening })
+        Ok(Self { child, ends_all, input, has_columns, events, mark, complaint, listening })
     }
 
     /// Says whether arrays may stand behind a line that it writes from now on.
@@ -113,18 +108,11 @@ impl Running {
     /// Ends it with its children; how it ended, in words.
     pub(super) fn kill(mut self) -> String {
         drop(self.input.take());
-        if self.ends_all
-            && let Some(child) = self.group
-        {
-            let _ = kill_process(child, Signal::TERM);
+        if self.ends_all {
+            family::terminate(&self.child);
             self.ends_within(MOST_OF_END);
         }
-        if let Some(group) = self.group {
-            let _ = kill_process_group(group, Signal::KILL);
-        }
-        let _ = self.child.kill();
-        let status = self.child.wait();
-        kill_marked(&self.mark);
+        let status = family::kill(&mut self.child, &self.mark);
         // What left the group and cleared its environment may hold the pipe open: it is not waited for.
         let until = Instant::now() + Duration::from_millis(200);
         while self.listening.as_ref().is_some_and(|thread| !thread.is_finished()) && Instant::now() < until {
@@ -189,29 +177,6 @@ fn columns_of(line: &[u8]) -> Option<(ColumnsAnswer, usize)> {
     let answer: ColumnsAnswer = serde_json::from_slice(line).ok()?;
     let count = answer.bytes.filter(|&count| count <= MOST_ARRAY && !answer.columns.is_empty())?;
     Some((answer, count))
-}
-
-/// Kills what has the mark in its environment: descendants that left the process group. Where there is no /proc, none is found.
-fn kill_marked(mark: &str) {
-    let wanted = format!("{MARK}={mark}");
-    let is_marked = |environment: &[u8]| environment.split(|&byte| byte == 0).any(|one| one == wanted.as_bytes());
-    // One that is being forked as the list is read is found the next time.
-    for _ in 0..3 {
-        let Ok(entries) = std::fs::read_dir("/proc") else { return };
-        let mut found = false;
-        for entry in entries.flatten() {
-            let Some(pid) = entry.file_name().to_str().and_then(|name| name.parse().ok()).and_then(Pid::from_raw)
-            else {
-                continue;
-            };
-            if std::fs::read(entry.path().join("environ")).is_ok_and(|environment| is_marked(&environment)) {
-                found |= kill_process(pid, Signal::KILL).is_ok();
-            }
-        }
-        if !found {
-            return;
-        }
-    }
 }
 
 /// Hears what it writes, a line at a time, and the array behind one that has some.

@@ -62,7 +62,7 @@ impl Prepared {
 
 /// The first adapter's device.
 fn subject() -> Subject {
-    let adapters = lightmeter_gpu::vulkan_adapters();
+    let adapters = lightmeter_gpu::native_adapters();
     let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
     open_device(adapter).expect("the adapter gives a device")
 }
