@@ -220,6 +220,13 @@ const tests = {
       await page.locator("#found li a").first().click();
       assert.match(await page.textContent("h1"), /fog\/exp2-opengl/);
     });
+    // A word that stands on most pages is found there, too, and a bare fragment is what is looked for.
+    await on("book/search.html", { fragment: "#opengl" }, async (page) => {
+      const pages = (await everything("book")).filter((name) => name !== "book/search.html");
+      const have = await Promise.all(pages.map(async (name) => /\bopengl/i.test((await readFile(join(made, name), "utf8")).replace(/<nav[^]*?<\/nav>|<[^>]*>/g, " "))));
+      const [found] = (await page.textContent("#count")).split(" of ").map(Number);
+      assert.ok(found >= 100 && Math.abs(found - have.filter(Boolean).length) <= 2, `${found} of ${have.filter(Boolean).length}`);
+    });
     await on("book/search.html", { fragment: "#q=no-such-word" }, async (page) => {
       assert.equal(await page.locator("#found li").count(), 0);
       assert.match(await page.textContent("#count"), /^0 of/);

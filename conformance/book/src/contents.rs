@@ -92,7 +92,7 @@ impl Contents {
                     }
                 }
                 main {
-                    a.to-contents href="#contents" { "Contents" }
+                    p.to-contents { a href="#contents" { "Contents" } " · " a href=(place.to(SEARCH)) { "Search" } }
                     (body)
                     div.turn {
                         @match before { Some(entry) => a href=(place.to(&entry.path)) rel="prev" { "← " (entry.title) }, None => span {} }

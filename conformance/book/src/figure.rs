@@ -182,12 +182,18 @@ fn open_pixels() -> Markup {
     // A vertex moves by less than a step of a sixteenth in either direction.
     let reach = 2.0_f64.sqrt() / 16.0;
     let corners: [[f64; 2]; 3] = [[1.2, 0.3], [15.06, 2.74], [3.1, 5.7]];
-    // How far a point is inside of each edge, in pixels.
-    let inside = |[x, y]: [f64; 2]| {
+    let mut edge = Set::new("interpolation/edge", CaseRef::Random(0), &[]);
+    #[expect(clippy::cast_possible_truncation, reason = "inputs are f32")]
+    let narrow = |point: [f64; 2]| point.map(|x| x as f32);
+    // How far a point is inside of each edge, in pixels: twice an area over the edge's length.
+    let mut inside = |point: [f64; 2]| {
         (0..3)
             .map(|k| {
-                let ([ax, ay], [bx, by]) = (corners[k], corners[(k + 1) % 3]);
-                ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / (bx - ax).hypot(by - ay)
+                let (a, b) = (corners[k], corners[(k + 1) % 3]);
+                edge.set("a", &narrow(a));
+                edge.set("b", &narrow(b));
+                edge.set("p", &narrow(point));
+                edge.values()[1] / (b[0] - a[0]).hypot(b[1] - a[1])
             })
             .fold(f64::INFINITY, f64::min)
     };
@@ -213,16 +219,23 @@ fn open_pixels() -> Markup {
 /// A highlight lit at each fragment, and at vertices 8° apart with the colours between them interpolated.
 fn missed_highlight() -> Markup {
     const APART: f64 = 8.0;
-    const SHININESS: i32 = 100;
-    // The mirrored ray turns twice as far as the normal.
-    let lit = |degrees: f64| (2.0 * degrees).to_radians().cos().max(0.0).powi(SHININESS);
+    let mut power =
+        Set::new("lighting/cosine-power", CaseRef::Random(0), &[("a", &[0.0, 0.0, 1.0]), ("exponent", &[100.0])]);
+    let mut lit = |degrees: f64| {
+        // The mirrored ray turns twice as far as the normal.
+        let (sine, cosine) = (2.0 * degrees).to_radians().sin_cos();
+        #[expect(clippy::cast_possible_truncation, reason = "inputs are f32")]
+        power.set("b", &[sine as f32, 0.0, cosine as f32]);
+        power.values()[1]
+    };
     let at = |k: i32| (f64::from(k) + 0.5) * APART;
     let field = Field { x: [-2.5 * APART, 2.5 * APART], y: [0.0, 1.05] };
     let vertices: Vec<[f64; 2]> = (-3..=2).map(|k| [at(k), lit(at(k))]).collect();
-    let fragments = (-200..=200).map(|k| [f64::from(k) * APART / 80.0, lit(f64::from(k) * APART / 80.0)]);
+    let fragments: Vec<[f64; 2]> =
+        (-200..=200).map(|k| f64::from(k) * APART / 80.0).map(|degrees| [degrees, lit(degrees)]).collect();
     let within = html! {
         path.mistaken d=(field.path(vertices.iter().copied())) {}
-        path.reference d=(field.path(fragments)) {}
+        path.reference d=(field.path(fragments.into_iter())) {}
         @for [x, y] in &vertices { circle.float cx=(format!("{:.1}", field.x(*x))) cy=(format!("{:.1}", field.y(*y))) r="4" {} }
         text x=(LEFT + 8.0) y=(3.0 * AROUND) { "solid: Phong shading" }
         text x=(LEFT + 8.0) y=(4.0 * AROUND) { "dashed: Gouraud, vertices" }

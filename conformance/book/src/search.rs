@@ -2,12 +2,10 @@
 
 use maud::{Markup, PreEscaped, html};
 use serde_json::json;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-/// The least length of a word, and the most, beyond which it is a number or an address.
-const LENGTHS: std::ops::RangeInclusive<usize> = 3..=32;
-/// Words on more than this share of all pages tell nothing.
-const ON_MOST: f64 = 0.5;
+/// The characters of a word; what is longer is an address.
+const LENGTHS: std::ops::RangeInclusive<usize> = 2..=32;
 
 /// What is known of a page.
 pub(crate) struct Found {
@@ -22,18 +20,20 @@ impl Found {
     /// What there is to find on a page.
     pub(crate) fn new(path: &str, title: &str, html: &str) -> Self {
         let mut headings = vec![];
-        for part in html.split("<h2 id=\"").chain(html.split("<h3 id=\"")).filter(|part| !part.starts_with("<h1")) {
-            if let Some((id, rest)) = part.split_once('"')
-                && let Some((_, rest)) = rest.split_once('>')
-                && let Some((text, _)) = rest.split_once("</h")
-                && !id.contains('<')
-            {
-                headings.push((id.to_owned(), plain(text).trim().to_owned()));
+        for part in html.split("<h").skip(1) {
+            let Some(rest) = ["2 id=\"", "3 id=\""].iter().find_map(|begin| part.strip_prefix(begin)) else { continue };
+            if let Some((id, rest)) = rest.split_once("\">") {
+                // Code in a heading has tags of its own, none of which is a heading's.
+                let text = rest.split("</h").next().unwrap_or_default();
+                headings.push((id.to_owned(), plain(text).split_whitespace().collect::<Vec<_>>().join(" ")));
             }
         }
         let words = plain(html).to_lowercase();
         let words = words.split(|c: char| !(c.is_alphanumeric() || c == '-' || c == '_'));
-        let words = words.filter(|word| LENGTHS.contains(&word.len()) && word.chars().any(char::is_alphabetic));
+        // A name is found by its parts, too.
+        let words = words.flat_map(|word| word.split(['-', '_']).chain([word]));
+        let words =
+            words.filter(|word| LENGTHS.contains(&word.chars().count()) && word.chars().any(char::is_alphabetic));
         Self { path: path.to_owned(), title: title.to_owned(), headings, words: words.map(str::to_owned).collect() }
     }
 }
@@ -60,16 +60,10 @@ fn plain(html: &str) -> String {
 
 /// The page.
 pub(crate) fn page(found: &[Found]) -> Markup {
-    let mut on: BTreeMap<&str, usize> = BTreeMap::new();
-    for word in found.iter().flat_map(|one| &one.words) {
-        *on.entry(word).or_default() += 1;
-    }
-    #[expect(clippy::cast_precision_loss, reason = "a count of pages")]
-    let tells = |word: &&str| (on[word] as f64) <= ON_MOST * found.len() as f64;
     let pages: Vec<_> = found
         .iter()
         .map(|one| {
-            let words: Vec<&str> = one.words.iter().map(String::as_str).filter(tells).collect();
+            let words: Vec<&str> = one.words.iter().map(String::as_str).collect();
             json!([one.path, one.title, one.headings, words.join(" ")])
         })
         .collect();
@@ -78,7 +72,7 @@ pub(crate) fn page(found: &[Found]) -> Markup {
     html! {
         h1 { "Search" }
         p { label for="q" { "Words, or the beginnings of words, that a page is to have:" } }
-        p { input #q type="search" name="q" autocomplete="off" placeholder="exp2 fog, nan, highlight …"; " " output #count role="status" {} }
+        p { input #q type="search" name="q" autocomplete="off" placeholder="exp2 fog …"; " " output #count role="status" {} }
         ul #found {}
         noscript { p { "The search needs scripts. " a href="formula/index.html" { "All formulas" } ", " a href="mistakes.html" { "mistakes by name" } " and the contents list everything." } }
         script #pages type="application/json" { (PreEscaped(data)) }
@@ -93,12 +87,12 @@ mod tests {
     fn a_page_is_found_by_its_words_and_its_headings() {
         let found =
             Found::new("a.html", "A", "<h1>A</h1><h2 id=\"why\">Why <code>exp</code></h2><p>Fog &amp; mist</p>");
-        assert_eq!(found.headings, [("why".to_owned(), "Why  exp".to_owned())]);
+        assert_eq!(found.headings, [("why".to_owned(), "Why exp".to_owned())]);
         assert!(["fog", "mist", "exp", "why"].iter().all(|word| found.words.contains(*word)), "{:?}", found.words);
         assert_eq!(plain("a &lt;b&gt;<i>c</i>"), "a <b> c ");
         let other = Found::new("b.html", "B", "</script><p>fog");
         let html = page(&[found, other]).0;
-        // Fog is on both pages and tells nothing; no page ends the script.
-        assert!(html.contains("mist") && !html.contains("\"fog") && html.matches("</script>").count() == 1, "{html}");
+        // A word is found wherever it stands, and no page ends the script.
+        assert!(html.matches("fog").count() == 3 && html.matches("</script>").count() == 1, "{html}");
     }
 }

@@ -61,12 +61,12 @@ pub fn run(
     let probes: Vec<&'static Probe> = PROBES.iter().collect();
     observer.see(&Event::Begun(subjects.len() as u64));
     for subject in subjects {
+        observer.see(&Event::Group(&subject.identity.name));
         // A subject is probed as a whole: who is not begun is what is missing.
         report.interrupted = stop.interrupted("the probes", &subject.identity.name);
         if report.interrupted.is_some() {
             break;
         }
-        observer.see(&Event::Group(&subject.identity.name));
         if let Some(results) = evaluate(subject, code, &probes)? {
             report.adapters.push(subject.identity.clone());
             report.outcomes.extend(results.outcomes);

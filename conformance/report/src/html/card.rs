@@ -11,8 +11,8 @@ pub(super) struct Card {
     pub(super) name: String,
     /// Who computed it, and where.
     pub(super) place: String,
-    /// How much of it fails.
-    pub(super) failed: String,
+    /// The share of it that fails.
+    pub(super) share: f64,
     /// The mistake, in words, where it is known.
     pub(super) cause: Option<String>,
     /// All that is known.

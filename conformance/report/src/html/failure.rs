@@ -1,6 +1,6 @@
 //! The card of a formula that fails: what it computes, of which inputs, where it departs, why, and how to see it again.
 
-use super::card::{Card, cause, failing_share, judged, percent};
+use super::card::{Card, cause, failing_share, judged};
 use super::matrix::{card_id, is_failing, short};
 use super::page::prose;
 use super::plot;
@@ -11,7 +11,7 @@ use lightmeter_document::{Number, is_worse, thousands};
 use maud::{Markup, html};
 
 /// The most cards of a page.
-pub(super) const MOST: usize = 400;
+const MOST: usize = 400;
 /// Cards that are open at first.
 const OPEN: usize = 3;
 
@@ -20,8 +20,8 @@ pub(super) fn command(command: &str) -> Markup {
     html! { p.command { code { (command) } " " button type="button" data-copy=(command) { "copy" } } }
 }
 
-/// The cards of all formulas that fail, worst first.
-pub(super) fn cards(report: &Report) -> Vec<Card> {
+/// The cards of the formulas that fail, worst first, and how many more there are than a page has cards for.
+pub(super) fn cards(report: &Report) -> (Vec<Card>, usize) {
     let failing = |group: &&Group| is_failing(group) && group.image.as_ref().is_none_or(|image| image.files.is_empty());
     let mut formulas: Vec<Vec<&Group>> = vec![];
     for group in report.groups.iter().filter(failing) {
@@ -35,11 +35,11 @@ pub(super) fn cards(report: &Report) -> Vec<Card> {
         anchor: card_id(&groups[0].id, &groups[0].adapter),
         name: groups[0].id.clone(),
         place: format!("{}, {}", groups[0].adapter, stages(groups)),
-        failed: percent(failing_share(groups)),
+        share: failing_share(groups),
         cause: groups.iter().find_map(|group| cause(group).or_else(|| group.problem.clone())),
         body: card(report, groups, place < OPEN),
     };
-    formulas.iter().take(MOST).enumerate().map(told).collect()
+    (formulas.iter().take(MOST).enumerate().map(told).collect(), formulas.len().saturating_sub(MOST))
 }
 
 /// The stages of one formula that fail.

@@ -22,7 +22,7 @@ use crate::against::{Against, BASELINE};
 use crate::bench::{page as bench_page, plot as bench_plot};
 use crate::page::selftest::{self, SelftestRun};
 use crate::page::sweep::{self, Swept};
-use card::Card;
+use card::{Card, percent};
 use lightmeter_document::bench::BenchDocument;
 use lightmeter_document::gate::GateReport;
 use lightmeter_document::run::{Group, Report};
@@ -66,11 +66,11 @@ fn run_page(report: &Report, is_success: bool, incidents: &[String]) -> String {
     page(&facts.title, PageKind::Report, &body)
 }
 
-/// What fails, worst first: scenes, then formulas; nothing where all passes.
+/// What fails, worst first; nothing where all passes.
 fn failures(report: &Report) -> Markup {
-    let mut cards = scene::cards(report);
-    cards.extend(failure::cards(report));
-    let failing = report.groups.iter().filter(|group| is_failing(group)).count();
+    let (mut cards, left) = failure::cards(report);
+    cards.extend(scene::cards(report));
+    cards.sort_by(|a, b| b.share.total_cmp(&a.share));
     html! {
         @if !cards.is_empty() {
             section #failures {
@@ -78,7 +78,7 @@ fn failures(report: &Report) -> Markup {
                 @if cards.len() > 1 { (list(&cards)) }
                 p.hint { "Worst first. Keys: " kbd { "j" } " and " kbd { "k" } " go to the next and the previous one, " kbd { "/" } " to the filter." }
                 @for card in &cards { (card.body) }
-                @if failing > failure::MOST { p { "Further ones are in the table below and in the JSON." } }
+                @if left > 0 { p { (left) " more are in the table below and in the JSON." } }
             }
         }
     }
@@ -92,7 +92,7 @@ fn list(cards: &[Card]) -> Markup {
             tbody { @for card in cards { tr {
                 th scope="row" { a href={ "#" (card.anchor) } { (card.name) } }
                 td { (card.place) }
-                td { (card.failed) }
+                td { (percent(card.share)) }
                 td { @match &card.cause { Some(cause) => (cause), None => span.quiet { "no known mistake explains it" } } }
             } } }
         } }

@@ -38,8 +38,8 @@ impl Facts {
         says += &match failing {
             0 if is_success => ": all are legal.".into(),
             0 => ": each is legal, but not everything is as expected.".into(),
-            1 => ". One group of them fails.".into(),
-            several => format!(". {several} groups of them fail."),
+            1 => ". One group of cases fails.".into(),
+            several => format!(". {several} groups of cases fail."),
         };
         if let Some(interrupted) = &report.interrupted {
             says += &format!(" It was interrupted: {interrupted}.");

@@ -1,6 +1,6 @@
 //! The card of a scene whose image is wrong: reference and result behind a slider, the error map, and the pixels' values.
 
-use super::card::{Card, cause, failing_share, percent};
+use super::card::{Card, cause, failing_share};
 use super::failure::command;
 use super::matrix::{card_id, is_failing};
 use super::page::embedded;
@@ -28,13 +28,13 @@ struct Wrong<'a> {
     pictures: [Option<Vec<u8>>; 3],
     /// Other stages, whose pictures are the same to the last bit.
     alike: Vec<&'a Group>,
-    /// Whether it is the scene's first card of its adapter, to which links lead.
+    /// Whether it is the scene's worst card of its adapter, to which links lead.
     is_first: bool,
 }
 
 impl Wrong<'_> {
     fn anchor(&self) -> String {
-        card_id(&self.group.id, &self.group.adapter) + if self.is_first { "" } else { "-full" }
+        card_id(&self.group.id, &self.group.adapter) + if self.is_first { "" } else { "-other" }
     }
 
     /// The stages that drew it in this way.
@@ -53,14 +53,19 @@ fn wrong(report: &Report) -> Vec<Wrong<'_>> {
         let Some(image) = group.image.as_ref().filter(|image| !image.files.is_empty()) else { continue };
         let pictures = PICTURES.map(|what| picture(image, what));
         let is_its = |other: &&mut Wrong<'_>| other.group.id == group.id && other.group.adapter == group.adapter;
-        let is_first = !all.iter_mut().any(|other| is_its(&other));
         let is_same = |other: &&mut Wrong<'_>| is_its(other) && pictures[1].is_some() && other.pictures == pictures;
         match all.iter_mut().find(is_same) {
             Some(other) => other.alike.push(group),
-            None => all.push(Wrong { group, image, pictures, alike: vec![], is_first }),
+            None => all.push(Wrong { group, image, pictures, alike: vec![], is_first: false }),
         }
     }
     all.sort_by(|a, b| failing_share(&[b.group]).total_cmp(&failing_share(&[a.group])));
+    for place in 0..all.len() {
+        let (before, from_here) = all.split_at_mut(place);
+        let own = &mut from_here[0];
+        let is_its = |other: &Wrong<'_>| other.group.id == own.group.id && other.group.adapter == own.group.adapter;
+        own.is_first = !before.iter().any(is_its);
+    }
     all
 }
 
@@ -70,7 +75,7 @@ pub(super) fn cards(report: &Report) -> Vec<Card> {
         anchor: wrong.anchor(),
         name: wrong.group.id.clone(),
         place: format!("{}, {}", wrong.group.adapter, wrong.places()),
-        failed: percent(failing_share(&[wrong.group])),
+        share: failing_share(&[wrong.group]),
         cause: cause(wrong.group),
         body: card(report, wrong, place < OPEN),
     };

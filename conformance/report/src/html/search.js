@@ -7,13 +7,16 @@
   const count = document.getElementById('count');
   const MOST = 40;
 
+  // Whether a word of a heading begins so.
+  const has = (text, word) => text.toLowerCase().split(/[^\p{L}\p{N}_-]+/u).some(one => one.startsWith(word));
+
   // How well a page fits a word: by its title, by a heading, by its text; 0 where it has none of it.
   function fit([, title, headings, words], word) {
     const name = title.toLowerCase();
     if (name === word) return 100;
     if (name.split(/[^a-z0-9]+/).includes(word)) return 40;
     if (name.includes(word)) return 20;
-    if (headings.some(([, text]) => text.toLowerCase().includes(word))) return 8;
+    if (headings.some(([, text]) => has(text, word))) return 8;
     return (' ' + words).includes(' ' + word) ? 1 : 0;
   }
 
@@ -32,7 +35,7 @@
       link.href = path;
       link.textContent = title;
       item.append(link);
-      for (const [id, text] of headings.filter(([, text]) => words.some(word => text.toLowerCase().includes(word))).slice(0, 3)) {
+      for (const [id, text] of headings.filter(([, text]) => words.some(word => has(text, word))).slice(0, 3)) {
         const below = document.createElement('a');
         below.href = `${path}#${id}`;
         below.textContent = text;
@@ -44,8 +47,13 @@
   }
 
   field.addEventListener('input', search);
-  addEventListener('hashchange', () => { field.value = new URLSearchParams(location.hash.slice(1)).get('q') || ''; search(); });
-  field.value = new URLSearchParams(location.hash.slice(1)).get('q') || '';
-  search();
+  // A bare fragment, typed by hand, is what is looked for, too.
+  function restore() {
+    const hash = location.hash.slice(1);
+    field.value = hash.includes('=') ? new URLSearchParams(hash).get('q') || '' : decodeURIComponent(hash);
+    search();
+  }
+  addEventListener('hashchange', restore);
+  restore();
   field.focus();
 })();
