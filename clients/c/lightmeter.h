@@ -15,8 +15,8 @@
  *     int main(void) { return lightmeter_serve("my-renderer", "1.0", formulas, 1); }
  *
  * and then `lightmeter gate --exec ./my-renderer fog/exp`. `lightmeter list --formulas` names the inputs of each formula and the outputs,
- * which an answer has one after the other. Scenes, blend units and special values are asked in the same lines (docs/protocol.md); this
- * file answers formulas.
+ * which an answer has one after the other. Cases are asked in binary batches where the processor is little-endian, and else line by line.
+ * Scenes, blend units and special values are asked in lines as well (docs/protocol.md); this file answers formulas.
  */
 #ifndef LIGHTMETER_H
 #define LIGHTMETER_H
@@ -56,8 +56,20 @@ typedef struct {
 /* The numbers of an input, of which there are `count`. Where the formula has no such input, zeros, and the case is answered as an error. */
 const float *lightmeter_input(const lightmeter_case *asked, const char *name, size_t count);
 
+/* What a renderer says of itself. All but the name may be NULL. */
+typedef struct {
+    const char *name, *version;
+    /* What it computes on, and the driver of that, as reports are to show them. */
+    const char *device, *driver;
+    /* What is left out of the formulas: ids or filters, as "blend/min", or entries such as "shape:mat4". The list ends with NULL. */
+    const char *const *excludes;
+} lightmeter_about;
+
 /* Answers until standard input ends; what `main` returns. */
 int lightmeter_serve(const char *name, const char *version, const lightmeter_formula *formulas, size_t count);
+
+/* The same, with more about the renderer. */
+int lightmeter_serve_as(const lightmeter_about *about, const lightmeter_formula *formulas, size_t count);
 
 #endif
 
@@ -67,6 +79,10 @@ int lightmeter_serve(const char *name, const char *version, const lightmeter_for
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef _WIN32
+#include <fcntl.h>
+#include <io.h>
+#endif
 
 const float *lightmeter_input(const lightmeter_case *asked, const char *name, size_t count)
 {
@@ -177,22 +193,93 @@ static const char *lightmeter_inputs(const char *at, lightmeter_case *asked)
     return lightmeter_sign(at, '}');
 }
 
-enum lightmeter_kind { LIGHTMETER_HELLO, LIGHTMETER_BATCH, LIGHTMETER_CASE, LIGHTMETER_OTHER };
+/* A batch in columns: how many cases it has, the numbers of each output, and the bytes of its arrays. The inputs stand in a case. */
+typedef struct {
+    unsigned long batch, count, bytes;
+    size_t outputs[LIGHTMETER_OUTPUTS], output_count;
+} lightmeter_columns;
 
-static enum lightmeter_kind lightmeter_read(const char *line, lightmeter_case *asked)
+/* A whole number without a sign. */
+static const char *lightmeter_whole(const char *at, unsigned long *out)
+{
+    char *end;
+    at = lightmeter_space(at);
+    if (!at || *at < '0' || *at > '9')
+        return NULL;
+    *out = strtoul(at, &end, 10);
+    return end;
+}
+
+/* `[{"name": "p", "components": 3}, …]`: of inputs, whose names a case keeps, or of outputs. */
+static const char *lightmeter_arrays(const char *at, lightmeter_case *asked, lightmeter_columns *columns, int are_inputs)
+{
+    char field[LIGHTMETER_NAME], name[LIGHTMETER_NAME];
+    at = lightmeter_sign(at, '[');
+    while (at && !lightmeter_sign(at, ']')) {
+        unsigned long components = 0;
+        name[0] = '\0';
+        at = lightmeter_sign(at, '{');
+        while (at && !lightmeter_sign(at, '}')) {
+            at = lightmeter_sign(lightmeter_string(at, field, sizeof field), ':');
+            if (at && strcmp(field, "name") == 0)
+                at = lightmeter_string(at, name, sizeof name);
+            else if (at && strcmp(field, "components") == 0)
+                at = lightmeter_whole(at, &components);
+            else if (at)
+                at = lightmeter_skip(at);
+            if (at && lightmeter_sign(at, ','))
+                at = lightmeter_sign(at, ',');
+        }
+        at = lightmeter_sign(at, '}');
+        if (!at || !name[0] || components == 0 || components > LIGHTMETER_NUMBERS)
+            return NULL;
+        if (are_inputs) {
+            if (asked->input_count == LIGHTMETER_INPUTS || asked->number_count + components > LIGHTMETER_NUMBERS)
+                return NULL;
+            size_t place = asked->input_count++;
+            memcpy(asked->inputs[place].name, name, sizeof name);
+            asked->inputs[place].first = asked->number_count;
+            asked->inputs[place].count = components;
+            asked->number_count += components;
+        } else {
+            if (columns->output_count == LIGHTMETER_OUTPUTS)
+                return NULL;
+            columns->outputs[columns->output_count++] = components;
+        }
+        if (lightmeter_sign(at, ','))
+            at = lightmeter_sign(at, ',');
+    }
+    return lightmeter_sign(at, ']');
+}
+
+enum lightmeter_kind { LIGHTMETER_HELLO, LIGHTMETER_BATCH, LIGHTMETER_CASE, LIGHTMETER_COLUMNS, LIGHTMETER_OTHER };
+
+static enum lightmeter_kind lightmeter_read(const char *line, lightmeter_case *asked, lightmeter_columns *columns)
 {
     enum lightmeter_kind kind = LIGHTMETER_OTHER;
     char field[LIGHTMETER_NAME], word[LIGHTMETER_NAME];
     memset(asked, 0, sizeof *asked);
+    memset(columns, 0, sizeof *columns);
     const char *at = lightmeter_sign(line, '{');
     while (at && !lightmeter_sign(at, '}')) {
         at = lightmeter_sign(lightmeter_string(at, field, sizeof field), ':');
         if (at && strcmp(field, "hello") == 0) {
             at = lightmeter_string(at, word, sizeof word);
             kind = at && strcmp(word, LIGHTMETER_PROTOCOL) == 0 ? LIGHTMETER_HELLO : LIGHTMETER_OTHER;
+        } else if (at && strcmp(field, "columns") == 0) {
+            kind = LIGHTMETER_COLUMNS;
+            at = lightmeter_string(at, asked->formula, LIGHTMETER_NAME);
         } else if (at && strcmp(field, "batch") == 0) {
-            kind = LIGHTMETER_BATCH;
-            at = lightmeter_skip(at);
+            kind = kind == LIGHTMETER_COLUMNS ? kind : LIGHTMETER_BATCH;
+            at = lightmeter_whole(at, &columns->batch);
+        } else if (at && strcmp(field, "count") == 0) {
+            at = lightmeter_whole(at, &columns->count);
+        } else if (at && strcmp(field, "bytes") == 0) {
+            at = lightmeter_whole(at, &columns->bytes);
+        } else if (at && strcmp(field, "outputs") == 0) {
+            at = lightmeter_arrays(at, asked, columns, 0);
+        } else if (at && strcmp(field, "inputs") == 0 && lightmeter_sign(at, '[')) {
+            at = lightmeter_arrays(at, asked, columns, 1);
         } else if (at && strcmp(field, "id") == 0) {
             at = lightmeter_string(at, asked->id, LIGHTMETER_NAME);
         } else if (at && strcmp(field, "formula") == 0) {
@@ -209,22 +296,97 @@ static enum lightmeter_kind lightmeter_read(const char *line, lightmeter_case *a
     return at ? kind : LIGHTMETER_OTHER;
 }
 
-static void lightmeter_answer(lightmeter_case *asked, const lightmeter_formula *formulas, size_t count)
+/* A string in quotes, as JSON has it; control characters are left out. */
+static void lightmeter_write(const char *text)
+{
+    putchar('"');
+    for (; *text; ++text) {
+        if (*text == '"' || *text == '\\')
+            putchar('\\');
+        if ((unsigned char)*text >= ' ')
+            putchar(*text);
+    }
+    putchar('"');
+}
+
+static void lightmeter_field(const char *name, const char *text)
+{
+    if (text) {
+        printf(", \"%s\": ", name);
+        lightmeter_write(text);
+    }
+}
+
+static const lightmeter_formula *lightmeter_find(const char *id, const lightmeter_formula *formulas, size_t count)
+{
+    for (size_t k = 0; k < count; ++k)
+        if (strcmp(formulas[k].id, id) == 0 && formulas[k].outputs <= LIGHTMETER_OUTPUTS)
+            return &formulas[k];
+    return NULL;
+}
+
+/* Answers a batch in columns; whether its bytes could be read. A batch in which a case goes wrong is asked again by lines. */
+static int lightmeter_answer_columns(lightmeter_case *asked, const lightmeter_columns *columns, const lightmeter_formula *formula)
+{
+    float out[LIGHTMETER_OUTPUTS];
+    size_t count = columns->count, outputs = 0;
+    for (size_t k = 0; k < columns->output_count; ++k)
+        outputs += columns->outputs[k];
+    if (asked->number_count == 0 || outputs == 0 || count > (size_t)-1 / sizeof(float) / (asked->number_count + outputs))
+        return 0;
+    if (columns->bytes != sizeof(float) * count * asked->number_count)
+        return 0;
+    float *given = malloc(columns->bytes + 1), *answers = calloc(count * outputs + 1, sizeof(float));
+    int is_read = given && answers && fread(given, 1, columns->bytes, stdin) == columns->bytes;
+    if (!is_read) {
+        free(given);
+        free(answers);
+        return 0;
+    }
+    int is_answered = formula && formula->outputs == outputs;
+    for (size_t row = 0; row < count && is_answered; ++row) {
+        for (size_t k = 0; k < asked->input_count; ++k) {
+            size_t first = asked->inputs[k].first, components = asked->inputs[k].count;
+            memcpy(asked->numbers + first, given + count * first + row * components, components * sizeof(float));
+        }
+        memset(out, 0, sizeof out);
+        formula->answer(asked, out);
+        is_answered = !asked->error[0];
+        for (size_t k = 0, first = 0; k < columns->output_count; first += columns->outputs[k++])
+            memcpy(answers + count * first + row * columns->outputs[k], out + first, columns->outputs[k] * sizeof(float));
+    }
+    fputs("{\"columns\": ", stdout);
+    lightmeter_write(asked->formula);
+    printf(", \"batch\": %lu, ", columns->batch);
+    if (is_answered) {
+        printf("\"bytes\": %lu}\n", (unsigned long)(count * outputs * sizeof(float)));
+        fwrite(answers, sizeof(float), count * outputs, stdout);
+    } else {
+        printf("\"lines\": true}\n");
+    }
+    fflush(stdout);
+    free(given);
+    free(answers);
+    return 1;
+}
+
+static void lightmeter_answer(lightmeter_case *asked, const lightmeter_formula *formula)
 {
     float out[LIGHTMETER_OUTPUTS] = {0};
-    const lightmeter_formula *formula = NULL;
-    for (size_t k = 0; k < count; ++k)
-        if (strcmp(formulas[k].id, asked->formula) == 0 && formulas[k].outputs <= LIGHTMETER_OUTPUTS)
-            formula = &formulas[k];
     if (formula)
         formula->answer(asked, out);
     else
         snprintf(asked->error, LIGHTMETER_NAME, "no formula `%.100s` is answered", asked->formula);
     if (asked->error[0]) {
-        printf("{\"id\": \"%s\", \"error\": \"%s\"}\n", asked->id, asked->error);
+        fputs("{\"id\": ", stdout);
+        lightmeter_write(asked->id);
+        lightmeter_field("error", asked->error);
+        puts("}");
         return;
     }
-    printf("{\"id\": \"%s\", \"value\": [", asked->id);
+    fputs("{\"id\": ", stdout);
+    lightmeter_write(asked->id);
+    fputs(", \"value\": [", stdout);
     for (size_t k = 0; k < formula->outputs; ++k) {
         const char *comma = k ? ", " : "";
         if (isnan(out[k]))
@@ -237,29 +399,68 @@ static void lightmeter_answer(lightmeter_case *asked, const lightmeter_formula *
     printf("]}\n");
 }
 
+static void lightmeter_hello(const lightmeter_about *about, const lightmeter_formula *formulas, size_t count)
+{
+    const unsigned one = 1;
+    printf("{\"hello\": \"%s\"", LIGHTMETER_PROTOCOL);
+    lightmeter_field("renderer", about->name);
+    lightmeter_field("version", about->version ? about->version : "");
+    lightmeter_field("device", about->device);
+    lightmeter_field("driver", about->driver);
+    printf(", \"columns\": %s, \"excludes\": [", *(const unsigned char *)&one ? "true" : "false");
+    for (size_t k = 0; about->excludes && about->excludes[k]; ++k) {
+        fputs(k ? ", " : "", stdout);
+        lightmeter_write(about->excludes[k]);
+    }
+    printf("], \"formulas\": [");
+    for (size_t k = 0; k < count; ++k) {
+        fputs(k ? ", " : "", stdout);
+        lightmeter_write(formulas[k].id);
+    }
+    printf("]}\n");
+    fflush(stdout);
+}
+
 int lightmeter_serve(const char *name, const char *version, const lightmeter_formula *formulas, size_t count)
+{
+    lightmeter_about about = {name, version, NULL, NULL, NULL};
+    return lightmeter_serve_as(&about, formulas, count);
+}
+
+int lightmeter_serve_as(const lightmeter_about *about, const lightmeter_formula *formulas, size_t count)
 {
     char *line = malloc(LIGHTMETER_LINE + 2);
     lightmeter_case *asked = malloc(sizeof *asked);
+    lightmeter_columns columns;
     if (!line || !asked)
         return 1;
+#ifdef _WIN32
+    _setmode(_fileno(stdin), _O_BINARY);
+    _setmode(_fileno(stdout), _O_BINARY);
+#endif
     while (fgets(line, LIGHTMETER_LINE + 2, stdin)) {
-        switch (lightmeter_read(line, asked)) {
+        switch (lightmeter_read(line, asked, &columns)) {
         case LIGHTMETER_HELLO:
-            printf("{\"hello\": \"%s\", \"renderer\": \"%s\", \"version\": \"%s\", \"formulas\": [", LIGHTMETER_PROTOCOL, name, version);
-            for (size_t k = 0; k < count; ++k)
-                printf("%s\"%s\"", k ? ", " : "", formulas[k].id);
-            printf("]}\n");
-            fflush(stdout);
+            lightmeter_hello(about, formulas, count);
+            break;
+        case LIGHTMETER_COLUMNS:
+            if (!lightmeter_answer_columns(asked, &columns, lightmeter_find(asked->formula, formulas, count))) {
+                fprintf(stderr, "a batch of %s cannot be read: its sizes are wrong, it ends early, or memory is short\n", asked->formula);
+                free(asked);
+                free(line);
+                return 1;
+            }
             break;
         case LIGHTMETER_BATCH:
             fflush(stdout);
             break;
         case LIGHTMETER_CASE:
-            lightmeter_answer(asked, formulas, count);
+            lightmeter_answer(asked, lightmeter_find(asked->formula, formulas, count));
             break;
         case LIGHTMETER_OTHER:
             fprintf(stderr, "a line is none of " LIGHTMETER_PROTOCOL ": %.200s\n", line);
+            free(asked);
+            free(line);
             return 1;
         }
     }

@@ -22,6 +22,7 @@ Python has an underscore behind it (`lambda_`).
 import fnmatch
 import json
 import keyword
+import re
 import sys
 import traceback
 from pathlib import Path
@@ -71,9 +72,20 @@ class Cases:
 
 
 def matches(pattern, formula):
-    """Whether a filter matches an id or what stands above it; `*` stays within a part."""
-    patterns, parts = pattern.split("/"), formula.split("/")
-    return len(patterns) <= len(parts) and all(map(fnmatch.fnmatchcase, parts, patterns))
+    """Whether a filter matches an id or what stands above it: `*` is any characters of a part, `**` any number of parts, `{a,b}` either."""
+    choice = re.search(r"\{([^{}]*)\}", pattern)
+    if choice:
+        before, after = pattern[: choice.start()], pattern[choice.end() :]
+        return any(matches(before + one + after, formula) for one in choice[1].split(","))
+    return parts_match(pattern.split("/"), formula.split("/"))
+
+
+def parts_match(patterns, parts):
+    if not patterns:
+        return True
+    if patterns[0] == "**":
+        return any(parts_match(patterns[1:], parts[k:]) for k in range(len(parts) + 1))
+    return bool(parts) and fnmatch.fnmatchcase(parts[0], patterns[0]) and parts_match(patterns[1:], parts[1:])
 
 
 def parameter(name):
@@ -129,12 +141,13 @@ def apart(values, sizes):
 
 
 class Renderer:
-    """What a renderer can do. `declares` is said in its hello as it is: `profile`, `formats`, `effects`, `skips` and others of
-    docs/protocol.md."""
+    """What a renderer can do. `declares` is said in its hello as it is: `profile`, `formats`, `effects`, `skips`, `excludes` and others
+    of docs/protocol.md. With `describe=True` the gate describes each formula before its first case: `described`, by id."""
 
     def __init__(self, name, version="", **declares):
         self.hello = {"hello": PROTOCOL, "renderer": name, "version": version, **declares}
         self.functions, self.scenes, self.draw = {}, [], None
+        self.described = {}
         self.columns = True
 
     def formula(self, formula, dtype=np.float32):
@@ -202,6 +215,8 @@ class Renderer:
                 folder = request["folder"]
                 declared = {"formulas": list(self.functions), "scenes": self.scenes, "columns": self.columns}
                 print(json.dumps({**declared, **self.hello}), flush=True)
+            elif "describe" in request:
+                self.described[request["describe"]["id"]] = request["describe"]
             elif "columns" in request:
                 self._columns(request, sys.stdin.buffer.read(request["bytes"]))
             elif "batch" in request:

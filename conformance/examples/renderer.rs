@@ -9,6 +9,7 @@
 //! lightmeter gate special --exec 'target/debug/examples/renderer special=true'
 //! lightmeter gate special --exec 'target/debug/examples/renderer special=swaps-select'
 //! lightmeter gate fog --exec 'target/debug/examples/renderer columns=f4'
+//! lightmeter gate fog --exec 'target/debug/examples/renderer describe=all'
 //! ```
 
 use lightmeter::blend_unit::embedded;
@@ -22,7 +23,7 @@ use lightmeter::select::{Member, alias_members, catalogue};
 use lightmeter_reference::render::render;
 use lightmeter_scene::target::TargetFormat;
 use serde_json::{Value, json};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::{BufRead as _, Read as _, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -46,12 +47,17 @@ fn main() -> anyhow::Result<()> {
     let faults = Faults::read();
     let catalogue: Vec<Member> = catalogue().into_iter().chain(alias_members()).collect();
     let by_id = catalogue.iter().map(|member| (member.spec.id.as_str(), member)).collect();
-    let mut renderer = Renderer { faults, by_id, folder: PathBuf::new(), answered: 0 };
+    let mut renderer = Renderer { faults, by_id, folder: PathBuf::new(), answered: 0, described: HashSet::new() };
     let mut out = std::io::BufWriter::with_capacity(1 << 20, std::io::stdout().lock());
     let (mut stream, mut line) = (std::io::stdin().lock(), vec![]);
     while stream.read_until(b'\n', &mut line)? > 0 {
         let request: Value = serde_json::from_slice(&line)?;
         line.clear();
+        if let Some(described) = request.get("describe") {
+            renderer.described.insert(described["id"].as_str().unwrap_or_default().to_owned());
+            continue;
+        }
+        renderer.knows(&request)?;
         if let Some(count) = request["bytes"].as_u64() {
             let mut bytes = vec![0; usize::try_from(count)?];
             stream.read_exact(&mut bytes)?;
@@ -83,9 +89,19 @@ struct Renderer<'a> {
     /// Where images are written.
     folder: PathBuf,
     answered: u32,
+    /// The formulas that were described.
+    described: HashSet<String>,
 }
 
 impl Renderer<'_> {
+    /// That a formula was described before it is asked for, where descriptions are.
+    fn knows(&self, request: &Value) -> anyhow::Result<()> {
+        let formula = request.get("formula").or_else(|| request.get("columns")).and_then(Value::as_str);
+        let is_described = formula.is_none_or(|formula| self.described.contains(formula));
+        anyhow::ensure!(is_described || !self.faults.0.contains_key("describe"), "{formula:?} was not described");
+        Ok(())
+    }
+
     fn hello(&mut self, request: &Value) -> Value {
         self.folder = request["folder"].as_str().unwrap_or_default().into();
         if self.faults.has("no-hello", "") {
@@ -99,6 +115,7 @@ impl Renderer<'_> {
             "scenes": ["**"],
             "skips": [{ "id": "special", "reason": "no rasteriser, no numbers of 16 bits and no packing" }],
             "columns": self.faults.0.contains_key("columns"),
+            "describe": self.faults.0.contains_key("describe"),
             "special": self.faults.0.contains_key("special"),
             "targets": if self.faults.0.contains_key("targets") { TargetFormat::ALL.map(TargetFormat::name).to_vec() } else { vec![] },
         })

@@ -419,7 +419,10 @@ pub fn phong_interpolated<R: Real>(a: Vertex<R>, b: Vertex<R>, t: R, position: V
         let v = -p;
         step!(quiet "v at a vertex", |v| v)
     };
-    let (to_light, to_eye) = (to_light(a.p).mix(to_light(b.p), t), to_eye(a.p).mix(to_eye(b.p), t));
+    let (to_light_from_a, to_light_from_b, to_eye) = (to_light(a.p), to_light(b.p), to_eye(a.p).mix(to_eye(b.p), t));
+    let to_light = Vector(std::array::from_fn(|k| {
+        R::mix_of_differences([to_light_from_a[k], to_light_from_b[k]], position[k], [a.p[k], b.p[k]], t)
+    }));
     let (l, v) = (step!("l", |to_light| to_light.normalize()), step!("v", |to_eye| to_eye.normalize()));
     let n = normal(at_vertex(a.n).mix(at_vertex(b.n), t));
     intensity([n, l, v], material)

@@ -80,6 +80,12 @@ pub trait Real:
         a * (Self::literal(1.0) - t) + b * t
     }
 
+    /// The mix of two differences from one number: `to_a` is from − a, and `to_b` from − b. The other legal form is from − mix(a, b, t).
+    #[must_use]
+    fn mix_of_differences([to_a, to_b]: [Self; 2], _from: Self, [_a, _b]: [Self; 2], t: Self) -> Self {
+        Self::mix(to_a, to_b, t)
+    }
+
     /// v / |v|. The other legal form is v · 1/√(v·v). The vector must not be zero.
     #[must_use]
     fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {

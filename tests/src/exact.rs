@@ -429,6 +429,13 @@ impl Exact {
         self.0.map(|x| ARENA.with_borrow(|arena| (arena.numbers[x].value.clone(), arena.numbers[x].error)))
     }
 
+    /// Whether it is not 0, and may be for all that its digits tell.
+    #[must_use]
+    pub fn is_not_told_from_zero(self) -> bool {
+        self.get()
+            .is_some_and(|(value, error)| value != Float::ZERO && error.is_some_and(|error| magnitude(&value) <= error))
+    }
+
     /// Decimal digits of it that are sure beside a number of that size; nothing where all are.
     #[must_use]
     pub fn digits_beside(self, size: f64) -> Option<u32> {

@@ -514,7 +514,7 @@ mod tests {
             if !is_meant || spec.function.is_empty() {
                 continue;
             }
-            let file = format!("{}.wgsl", spec.family());
+            let file = spec.file();
             let glsl = as_glsl(&shaders, &file, spec.function).expect(spec.function);
             for (ending, text) in [("wgsl", shaders.source(&file)), ("glsl", glsl)] {
                 let path = folder.join(format!("{}.{ending}", spec.function));

@@ -24,7 +24,7 @@ pub fn replaced(
 ) -> Result<Vec<(String, String)>, AdaptError> {
     let mut files: Vec<(String, String)> = vec![];
     for (spec, binding) in bound {
-        let file = format!("{}.wgsl", spec.family());
+        let file = spec.file();
         let place = files.iter().position(|(name, _)| *name == file).unwrap_or_else(|| {
             let text = shaders.texts().find(|(name, _)| *name == file).map_or("", |(_, text)| text);
             files.push((file.clone(), text.to_owned()));

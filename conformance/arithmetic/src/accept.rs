@@ -259,6 +259,24 @@ fn add_down(a: f64, b: f64) -> f64 {
     if error < 0.0 { sum.next_down() } else { sum }
 }
 
+/// The exponent, biased as f64's is, of the last bit of x that is not 0.
+#[inline]
+fn last_bit(x: f64) -> u64 {
+    let bits = x.to_bits();
+    let zeros = u64::from((bits | 1 << 52).trailing_zeros());
+    ((bits >> 52) & 0x7ff) + zeros
+}
+
+/// Whether every partial sum of terms is a value of the format, given the sum of their magnitudes and the finest of their last bits: all are
+/// whole multiples of that bit, and none has more of them than the significand can hold. What is exact, correct rounding leaves alone.
+#[inline]
+fn is_exact_in_any_order<F: Format>(magnitude: f64, finest: u64) -> bool {
+    // `last_bit` counts from 52 places below the leading bit.
+    let most = finest + u64::from(F::FRACTION_BITS) + 1;
+    let has_all_bits = finest >= 52 + (F::MIN_NORMAL.to_bits() >> 52) && (53..52 + 0x7ff).contains(&most);
+    has_all_bits && magnitude <= f64::from_bits((most - 52) << 52) && relative() <= F::EPSILON
+}
+
 /// An upper bound of (1 + ε)ⁿ⁻¹ − 1 that exceeds it by no more than f64 rounding errors in the last bits.
 fn chain_error<F: Format>(n: usize) -> f64 {
     let epsilon = epsilon::<F>();
@@ -507,6 +525,7 @@ impl<F: Format> Real for Accept<F> {
         }
         // Adding an exact 0 causes no rounding, so such terms are skipped. If two terms remain, the sum is a single addition.
         let (mut low, mut high, mut magnitude, mut count) = (0.0, 0.0, 0.0, 0);
+        let (mut all_are_points, mut finest) = (true, u64::MAX);
         let mut last_two = [Self::exactly(0.0); 2];
         for term in terms {
             if term.is_exactly(0.0) {
@@ -517,6 +536,8 @@ impl<F: Format> Real for Accept<F> {
             low += term.low;
             high += term.high;
             magnitude += term.magnitude();
+            all_are_points &= term.is_point();
+            finest = finest.min(last_bit(term.low));
         }
         match count {
             0 => return Self::exactly(0.0),
@@ -527,6 +548,9 @@ impl<F: Format> Real for Accept<F> {
         // A partial sum may overflow in another order than this one.
         if magnitude.is_nan() || magnitude > F::MAX {
             return Self::ANY;
+        }
+        if all_are_points && is_exact_in_any_order::<F>(magnitude, finest) {
+            return Self::exactly(low);
         }
         let mut error = chain_error::<F>(count) * magnitude;
         // Partial sums that cancel to a subnormal may be flushed; above this magnitude the rounding term covers that.
@@ -579,6 +603,10 @@ impl<F: Format> Real for Accept<F> {
         products.hull(difference)
     }
 
+    fn mix_of_differences([to_a, to_b]: [Self; 2], from: Self, [a, b]: [Self; 2], t: Self) -> Self {
+        Self::mix(to_a, to_b, t).hull(from - Self::mix(a, b, t))
+    }
+
     fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
         let square = Self::sum(v.map(|x| x.square()));
         let (length, inverse) = (square.sqrt(), square.inverse_sqrt());
@@ -600,8 +628,14 @@ impl<F: Format> Real for Accept<F> {
         if self.low > 0.0 {
             return self.pow(exponent);
         }
-        // From 0 to the upper end: the power grows with the cosine.
-        let top = Self::raw(self.high, self.high).pow(exponent);
-        if top.is_any() { top } else { top.hull(Self::lobe_at_no_cosine(exponent)) }
+        // From 0 to the upper end: the power grows with the cosine. Where it vanishes, its error in ULP grows as the cosine gets smaller.
+        let [top, least] = [self.high, F::MIN_SUBNORMAL].map(|cosine| Self::raw(cosine, cosine).pow(exponent));
+        if top.is_any() || least.is_any() {
+            return top.hull(least);
+        }
+        let whole = top.hull(least).hull(Self::lobe_at_no_cosine(exponent));
+        // Between the two a power is no greater than the top's and errs by no more than the least's. Of a normal top that is covered: there the
+        // power itself falls faster than its error grows.
+        if top.high < 2.0 * F::MIN_NORMAL { Self::seal(whole.low, top.high + least.high) } else { whole }
     }
 }

@@ -260,6 +260,9 @@ impl Real for RandomLegal {
     fn mix(a: Self, b: Self, t: Self) -> Self {
         if coin() { a + t * (b - a) } else { a * (Self::of(1.0) - t) + b * t }
     }
+    fn mix_of_differences([to_a, to_b]: [Self; 2], from: Self, [a, b]: [Self; 2], t: Self) -> Self {
+        if coin() { from - Self::mix(a, b, t) } else { Self::mix(to_a, to_b, t) }
+    }
     fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
         let square = Self::sum(v.map(|x| x * x));
         if coin() {

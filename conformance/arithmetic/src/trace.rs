@@ -132,6 +132,17 @@ impl Real for Trace {
     fn mix(a: Self, b: Self, t: Self) -> Self {
         Self { value: Real::mix(a.value, b.value, t.value), interval: Real::mix(a.interval, b.interval, t.interval) }
     }
+    fn mix_of_differences([to_a, to_b]: [Self; 2], from: Self, [a, b]: [Self; 2], t: Self) -> Self {
+        Self {
+            value: Real::mix_of_differences([to_a.value, to_b.value], from.value, [a.value, b.value], t.value),
+            interval: Real::mix_of_differences(
+                [to_a.interval, to_b.interval],
+                from.interval,
+                [a.interval, b.interval],
+                t.interval,
+            ),
+        }
+    }
     fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
         let values = <f64 as Real>::normalize(v.map(|x| x.value));
         let intervals = Accept::normalize(v.map(|x| x.interval));

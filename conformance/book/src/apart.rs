@@ -25,7 +25,11 @@ pub(crate) fn apart(member: &Member, variation: &Variation<'_>) -> Option<Apart>
     let hard = (0..member.spec.hard.len())
         .flat_map(|place| std::iter::once(CaseRef::Hard(place)).chain((0..near).map(move |k| CaseRef::Near(place, k))));
     let mut best: Option<(f64, Apart)> = None;
-    for case in hard.chain((0..RANDOM).map(CaseRef::Random)) {
+    let usual = hard.chain((0..RANDOM).map(CaseRef::Random)).map(|case| (case, true));
+    for (case, is_usual) in usual.chain((0..member.boundary()).map(|k| (CaseRef::Boundary(k), false))) {
+        if !is_usual && best.is_some() {
+            break;
+        }
         let mut row = vec![];
         member.inputs(case, 1, &mut row);
         member.formula.embedded(&row, &mut right);

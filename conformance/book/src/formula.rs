@@ -123,7 +123,7 @@ impl FormulaPage<'_> {
 
     pub(crate) fn code(&self) -> Markup {
         let spec = &self.member.spec;
-        let file = format!("{}.wgsl", spec.family());
+        let file = spec.file();
         let text = if spec.function.is_empty() { None } else { self.shaders.function_with_named(&file, spec.function) };
         html! {
             @if let Some(text) = text {
@@ -210,7 +210,7 @@ impl FormulaPage<'_> {
             }
             @if !boundaries.is_empty() {
                 h2 #boundaries { "Close to where it decides" }
-                p { (DRAWN) " cases each come close to a place where the formula decides something or degenerates, at distances from ½ to 2⁻²⁴: " }
+                p { (DRAWN) " cases each come close to a place where the formula decides something or degenerates: at distances from ½ to 2⁻²⁴, at a distance of 0, and together with another of these: " }
                 p { @for (k, name) in boundaries.iter().enumerate() { @if k > 0 { " · " } (name) } }
             }
         }

@@ -1,5 +1,6 @@
 //! The JSON of `list`: the cases, `lightmeter.cases/1`, or with `--formulas` the formulas, `lightmeter.formulas/1`.
 
+use crate::protocol::MadeBy;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -152,6 +153,9 @@ pub struct ListedFormula {
     pub rules: Vec<Word>,
     /// Where the formula is from.
     pub source: Word,
+    /// What computes it or draws it.
+    #[serde(default)]
+    pub made_by: MadeBy,
     /// The stages that judge it: `compute`, `fragment`, `fixed-function` or `raster`.
     pub stages: Vec<Word>,
     /// What the formula claims, where it is a stable form.

@@ -1,6 +1,7 @@
 //! The manifest of a pack of cases: `lightmeter.pack/1`.
 
 use crate::Word;
+use crate::protocol::MadeBy;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -88,12 +89,16 @@ pub struct PackedFormula {
     /// The rules that the line does not state.
     #[serde(default)]
     pub rules: Vec<Word>,
+    /// What computes it or draws it.
+    #[serde(default)]
+    pub made_by: MadeBy,
     /// What it takes, in the order of a case's numbers.
     pub inputs: Vec<PackedValue>,
     /// What it gives, in the order of an answer's numbers.
     pub outputs: Vec<PackedValue>,
     /// How many cases the pack has of it.
-    pub count: usize,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
 }
 
 /// An input or an output of a formula.
@@ -112,13 +117,19 @@ pub struct PackedValue {
 }
 
 impl PackedFormula {
-    /// The same without rules and meanings. They explain the cases and do not choose them, and packs of older versions have none.
+    /// The same without rules, meanings and what computes it. They explain the cases and do not choose them, and packs of older versions have none.
     #[must_use]
     pub fn without_explanations(&self) -> Self {
         let plain = |values: &[PackedValue]| {
             values.iter().map(|value| PackedValue { means: Word::default(), ..value.clone() }).collect()
         };
-        Self { rules: vec![], inputs: plain(&self.inputs), outputs: plain(&self.outputs), ..self.clone() }
+        Self {
+            rules: vec![],
+            made_by: MadeBy::default(),
+            inputs: plain(&self.inputs),
+            outputs: plain(&self.outputs),
+            ..self.clone()
+        }
     }
 }
 

@@ -301,6 +301,7 @@ fn add_group(known: &mut Group, more: Group, order: &Order, most: &mut u64) {
     *most = more.totals.failed.max(*most);
     if more.explanation.is_some() && (known.explanation.is_none() || fails_more) {
         known.explanation = more.explanation;
+        known.cause = more.cause;
         known.mistakes = more.mistakes;
     }
     if more.problem.is_some() && (known.problem.is_none() || fails_more) {

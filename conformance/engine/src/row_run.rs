@@ -1,7 +1,7 @@
 //! A group of formulas in the stages that take rows: chunk after chunk, each handed to every stage of every subject before the
 //! reference is computed on all cores.
 
-use crate::again::{Digests, UNASKED, digest, number};
+use crate::again::{Digests, UNASKED, digest_of_values, number};
 use crate::device::DeviceError;
 use crate::options::Options;
 use crate::rows::Rows;
@@ -153,7 +153,7 @@ impl<'a> RowRun<'a> {
     /// A sample of at most `most` failing cases for each stage of each subject, each with a hash of its answer.
     pub(crate) fn failing(&self, most: usize) -> Vec<Vec<Vec<(CaseRef, u32)>>> {
         let of_stage = |(standing, _): &(RowStanding, f64)| {
-            let values = |values: &[f32]| digest(values.iter().map(|value| u64::from(value.to_bits())));
+            let values = |values: &[f32]| digest_of_values(values.iter().map(|&value| value.into()));
             let rows = standing.wrong.rows().into_iter().map(|((_, case), row)| (case, values(row)));
             let refused = standing.cases.refused.iter().filter(|(_, why)| matches!(why, Unanswered::Unjudged(_)));
             let mut all: Vec<(CaseRef, u32)> =
@@ -270,18 +270,18 @@ impl<'a> RowRun<'a> {
         let id = group_id(&self.members[0].spec, stage);
         let counts = by.counts_cases.then(|| standing.cases.told(self.members, id));
         let unjudged = counts.as_ref().map_or(0, |counts| counts.unjudged);
-        let mut cause = told.explanation;
-        if let Some(Cause { says, .. }) = cause.as_mut().filter(|_| unjudged > 0) {
+        let mut found = told.explanation;
+        if let Some(Cause { says, .. }) = found.as_mut().filter(|_| unjudged > 0) {
             *says += &format!("; besides, {} were not answered by values", cases(unjudged));
         }
-        let (explanation, mistakes) =
-            cause.map_or_else(Default::default, |Cause { says, mistakes }| (Some(says), mistakes));
+        let (explanation, cause, mistakes) = Cause::parts(found);
         Group {
             totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
             error_ulp_max: Number(tally.error_max),
             margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
             worst: tally.worst.as_ref().map(|(_, place)| name_of(place)),
             explanation,
+            cause,
             mistakes,
             problem,
             by_case: counts,
@@ -327,7 +327,7 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
     // Of those that explain as many, the first: it fails most often.
     let shared: Vec<usize> = causes.iter().map(alike).collect();
     let best = (0..causes.len()).max_by_key(|&place| (shared[place], Reverse(place))).unwrap_or_default();
-    let Cause { says, mistakes } = causes.swap_remove(best);
+    let Cause { says, cause, mistakes } = causes.swap_remove(best);
     let mut says = format!("{}: {says}", members[failing[best].0].spec.id);
     if shared[best] > 0 && shared.len() > 1 {
         let (same, others) = (shared[best] - 1, shared.len() - 1);
@@ -337,7 +337,7 @@ fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Sub
             _ => format!("; it also explains {same} of the {others} formulas that fail next most often"),
         };
     }
-    Told { explanation: Some(Cause { says, mistakes }), ..Told::default() }
+    Told { explanation: Some(Cause { says, cause, mistakes }), ..Told::default() }
 }
 
 const fn is_shader(stage: Stage) -> bool {

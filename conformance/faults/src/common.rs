@@ -151,19 +151,26 @@ fn range_of(member: &Member, failing: &[Answered<'_>], passing: &[Answered<'_>])
                 if beyond <= FEW && one_sided.as_ref().is_none_or(|(least, _)| beyond < *least) {
                     let side = if is_above { "at least" } else { "at most" };
                     let percent = digits(beyond * 100.0, 2);
-                    let says =
-                        format!("all have {name} {side} {}, which {percent} % of the others have", digits(bound, 3));
+                    let says = format!("all have {name} {side} {}, which {percent} % of the others have", told(bound));
                     one_sided = Some((beyond, says));
                 }
             }
             let (apart, bound, is_above) = bound_of(of(failing), of(passing));
             if apart >= APART && best.as_ref().is_none_or(|(least, _)| apart > *least) {
                 let side = if is_above { "above" } else { "at most" };
-                best = Some((apart, format!("they have {name} {side} {}", digits(bound, 3))));
+                best = Some((apart, format!("they have {name} {side} {}", told(bound))));
             }
         }
     }
     best.or(one_sided).map(|(_, says)| says)
+}
+
+/// A bound in three digits, or in as many as tell it from a whole number.
+fn told(bound: f64) -> String {
+    let is_whole = |x: f64| x.fract().abs() <= 0.0;
+    let told = |count: i32| digits(bound, count);
+    let tells = |count: &i32| is_whole(bound) || !told(*count).parse().is_ok_and(is_whole);
+    (3..12).find(tells).map_or_else(|| bound.to_string(), told)
 }
 
 /// The least and the greatest of the first numbers, each with the share of the second ones that lie on the same side of it.
@@ -205,6 +212,7 @@ mod tests {
         assert_eq!((apart, bound, is_above), (1.0, 3.0, true));
         let bounds = one_sided_bounds(&[5.0, 6.0], &[1.0, 2.0, 5.5, 7.0]);
         assert_eq!(bounds, [(0.5, 5.0, true), (0.75, 6.0, false)]);
+        assert_eq!([0.9996, 1.0, 12.344, 255.0].map(told), ["0.9996", "1.00", "12.3", "255"]);
         let (apart, ..) = bound_of(vec![1.0, 3.0, 5.0], vec![2.0, 4.0, 6.0]);
         assert!(apart < 0.7, "{apart}");
     }

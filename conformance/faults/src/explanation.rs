@@ -40,6 +40,12 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
+    /// What the best explanation says, and by which names the catalogue knows it.
+    #[must_use]
+    pub fn cause(&self) -> Option<String> {
+        self.explanations.first().map(|best| told(best, &self.explanations))
+    }
+
     /// The outcome where the failing cases are a sample of `all`.
     #[must_use]
     pub fn sentence_of(&self, all: usize) -> String {
@@ -78,11 +84,7 @@ pub(super) fn sentence(failing: usize, explanations: &[Explanation]) -> String {
     let cases = if failing == 1 { "case is" } else { "cases are" };
     let Some(best) = explanations.first() else { return "nothing fails".into() };
     let Explanation { explained, open, .. } = best;
-    let mut told = format!(
-        "{explained} of {failing} failing {cases} explained by: {}{}",
-        together(best, explanations),
-        called(&best.faults)
-    );
+    let mut told = format!("{explained} of {failing} failing {cases} explained by: {}", told(best, explanations));
     let equal = |other: &&Explanation| {
         other.parameter.is_none() && other.faults.len() <= best.faults.len() && is_equal(best, other)
     };
@@ -93,6 +95,11 @@ pub(super) fn sentence(failing: usize, explanations: &[Explanation]) -> String {
         0 => told,
         open => format!("{told}; in {open} of them whoever makes this mistake may answer anything"),
     }
+}
+
+/// What the best explanation says, and its mistakes' names.
+fn told(best: &Explanation, explanations: &[Explanation]) -> String {
+    together(best, explanations) + &called(&best.faults)
 }
 
 /// The names under which `lightmeter mistakes` and `--mistake` know what explains answers.

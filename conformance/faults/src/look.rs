@@ -15,13 +15,19 @@ const CASES: u64 = 256;
 #[must_use]
 pub fn look(member: &Member, fault: &'static Fault) -> Option<MistakeLook> {
     let (variation, spec) = (Variation::new(member, &[fault])?, &member.spec);
-    let cases: Vec<CaseRef> = member.hard_and_near().chain((0..CASES).map(CaseRef::Random)).collect();
+    let usual: Vec<CaseRef> = member.hard_and_near().chain((0..CASES).map(CaseRef::Random)).collect();
     let outputs = spec.output_len();
     let (mut out, mut reference, mut legal) = (vec![0.0_f32; outputs], vec![0.0; outputs], vec![Accept::ANY; outputs]);
     let mut wrong = vec![false; outputs];
     let formula = spec.id.clone();
-    let mut look = MistakeLook { formula, cases: cases.len(), failing: 0, too_great: 0, too_small: 0, outputs: vec![] };
-    for case in cases {
+    let mut look = MistakeLook { formula, cases: 0, failing: 0, too_great: 0, too_small: 0, outputs: vec![] };
+    let count = usual.len();
+    // A mistake that none of them shows is shown by cases close to where the formula decides or degenerates.
+    for (place, case) in usual.into_iter().chain((0..member.boundary()).map(CaseRef::Boundary)).enumerate() {
+        if place == count && look.failing > 0 {
+            break;
+        }
+        look.cases += 1;
         let mut row = vec![];
         member.inputs(case, 1, &mut row);
         variation.evaluate(&row, &mut out);

@@ -19,7 +19,7 @@ impl Diagnose for Mistakes {
         let found = diagnose(member, answered, profile);
         let says = found.sentence_of(usize::try_from(failing).unwrap_or(usize::MAX));
         let names = found.explanations.first().map(|first| first.faults.iter().map(ToString::to_string).collect());
-        Cause { says, mistakes: names.unwrap_or_default() }
+        Cause { says, cause: found.cause(), mistakes: names.unwrap_or_default() }
     }
 
     fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<String> {
@@ -30,6 +30,6 @@ impl Diagnose for Mistakes {
         let found = Trial::new(frame, image, expected, profile).diagnose();
         let names =
             found.explanations.first().map(|first| first.faults.iter().map(|fault| fault.name.into()).collect());
-        Cause { says: found.sentence, mistakes: names.unwrap_or_default() }
+        Cause { cause: found.cause(), says: found.sentence, mistakes: names.unwrap_or_default() }
     }
 }

@@ -75,6 +75,8 @@ pub(super) enum Op {
     NormalizeAny,
     /// v → v/|v| where |v| is at least so much, and 0 elsewhere.
     NormalizeFrom(f64),
+    /// v → v/|v|, and of the zero vector the z axis.
+    NormalizeOrZ,
     /// v → v/(|v| + epsilon).
     OverLengthPlus(f64),
     /// v → v/max(|v|, epsilon).
@@ -119,6 +121,7 @@ impl Op {
             | Self::NormalizeAny
             | Self::FastNormalize
             | Self::NormalizeFrom(_)
+            | Self::NormalizeOrZ
             | Self::OverLengthPlus(_)
             | Self::OverLengthAtLeast(_)
             | Self::OverSum
@@ -164,6 +167,7 @@ impl Op {
             Self::Normalize
             | Self::FastNormalize
             | Self::NormalizeFrom(_)
+            | Self::NormalizeOrZ
             | Self::OverLengthPlus(_)
             | Self::OverLengthAtLeast(_)
             | Self::OverSum
@@ -249,7 +253,7 @@ fn divide<R: Arithmetic>(op: Op, numbers: &mut [R]) {
     };
     let divided = || {
         Vector(match op {
-            Op::Normalize => R::normalize([x, y, z]),
+            Op::Normalize | Op::NormalizeOrZ => R::normalize([x, y, z]),
             Op::NormalizeFrom(least) => {
                 R::if_ge(square, R::literal(least * least), || Vector(R::normalize([x, y, z])), || Vector([zero; 3])).0
             }
@@ -260,7 +264,8 @@ fn divide<R: Arithmetic>(op: Op, numbers: &mut [R]) {
             _ => [x, y, z].map(|c| c / by),
         })
     };
-    let divided = R::if_ge(zero, by, || Vector([zero; 3]), divided);
+    let of_zero = if op == Op::NormalizeOrZ { R::literal(1.0) } else { zero };
+    let divided = R::if_ge(zero, by, || Vector([zero, zero, of_zero]), divided);
     numbers.copy_from_slice(&divided.0);
 }
 
@@ -299,6 +304,8 @@ mod tests {
         assert_eq!(changed(Op::Component(1, &Op::Square), &[2.0, 3.0]), [2.0, 9.0]);
         assert_eq!(changed(Op::OverSum, &[1.0, -2.0, 1.0]), [0.25, -0.5, 0.25]);
         assert_eq!(changed(Op::Normalize, &[0.0; 3]), [0.0; 3]);
+        assert_eq!(changed(Op::NormalizeOrZ, &[0.0; 3]), [0.0, 0.0, 1.0]);
+        assert_eq!(changed(Op::NormalizeOrZ, &[0.0, -2.0, 0.0]), [0.0, -1.0, 0.0]);
         assert_eq!(changed(Op::Half, &[1.0 + 1.0 / 4096.0, 70000.0, 1e-9]), [1.0, f64::INFINITY, 0.0]);
         assert_eq!(changed(Op::HalfCut, &[2.0 - 1.0 / 4096.0, 70000.0]), [2.0 - 1.0 / 1024.0, f64::INFINITY]);
         assert_eq!(changed(Op::BFloat, &[1.0 + 1.0 / 512.0]), [1.0]);

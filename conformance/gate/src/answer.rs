@@ -33,7 +33,8 @@ pub struct Hello {
     pub formulas: Vec<String>,
     /// Globs of the scenes that it draws.
     pub scenes: Vec<String>,
-    /// Globs of formulas and scenes that it does not, though the others name them.
+    /// What it does not, though the others name it: globs of formulas and scenes, or such as `function:lighting_spot`, `file:fog.wgsl`,
+    /// `shape:mat4`, `effect:lightmap` and `format:rgba32float`.
     pub excludes: Vec<String>,
     /// Formats of targets that it draws on; `None` for all.
     pub formats: Option<Vec<String>>,
@@ -49,6 +50,8 @@ pub struct Hello {
     pub pack: Option<String>,
     /// Whether a process is asked in columns: binary batches of a formula.
     pub columns: bool,
+    /// Whether a process is told of each formula, before its first case, what it takes, what it gives and what computes it.
+    pub describe: bool,
     /// Whether it is asked for special values: NaN, infinity, subnormals, signed zero and rounding, an operation at a time.
     pub special: bool,
 }
@@ -98,10 +101,10 @@ impl Hello {
     ///
     /// # Errors
     /// Where a glob cannot be read.
-    pub fn filters(&self) -> Result<[Option<Filter>; 3], lightmeter_catalogue::filter::FilterError> {
+    pub fn filters(&self) -> Result<[Option<Filter>; 2], lightmeter_catalogue::filter::FilterError> {
         // No glob matches everything in a filter, and nothing in a declaration.
         let read = |globs: &[String]| (!globs.is_empty()).then(|| Filter::new(globs)).transpose();
-        Ok([read(&self.formulas)?, read(&self.scenes)?, read(&self.excludes)?])
+        Ok([read(&self.formulas)?, read(&self.scenes)?])
     }
 
     /// Why it does not draw a frame; `None` where it does.

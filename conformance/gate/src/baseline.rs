@@ -11,6 +11,7 @@ use lightmeter_files::read::MOST_TEXT;
 use lightmeter_files::shown;
 use lightmeter_judge::cases::{count_of, expanded};
 use lightmeter_judge::image::file::whole;
+use lightmeter_scene::target::TargetFormat;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -380,6 +381,7 @@ impl Comparison {
     fn of(&self, before: &ComparedGroup, now: &ComparedGroup) -> Vec<String> {
         let (id, is_by_case) = (&now.name, before.is_by_case && now.is_by_case);
         let (before, now) = (&before.counts, &now.counts);
+        let target = now.target.as_deref();
         let mut worse = vec![];
         if before.asked == 0 {
             return worse;
@@ -404,6 +406,13 @@ impl Comparison {
         if is_same && now.indeterminate > before.indeterminate {
             worse.push(format!("{id}: {} verdicts permit anything, {} did", now.indeterminate, before.indeterminate));
         }
+        // The format of what was drawn on ends the name of a run's group, and is a gate's group's target; a gate does not tell that of a scene.
+        let format = target.unwrap_or_else(|| id.rsplit(' ').next().unwrap_or_default());
+        let unit = match TargetFormat::by_name(format) {
+            Some(format) if format.is_unorm() => "steps",
+            None if id.starts_with("scene/") => "steps or ULP",
+            _ => "ULP",
+        };
         let all_expected = now.expected_failures > before.expected_failures;
         for (is_alike, what, before, now, floor) in [
             (!all_expected, "errs by", before.error_max, now.error_max, FLOOR),
@@ -413,7 +422,7 @@ impl Comparison {
             // A NaN is worse than any number.
             if is_alike && lightmeter_judge::is_worse(now.0, self.factor * before.0.max(floor)) {
                 worse.push(format!(
-                    "{id}: {what} {}; in the baseline it was {}, and more than {} times that counts as worse",
+                    "{id}: {what} {} {unit}; in the baseline it was {}, and more than {} times that counts as worse",
                     now.brief(),
                     before.brief(),
                     self.factor

@@ -29,6 +29,16 @@ pub enum ProcessError {
         /// The names that are nearest to it, as the end of a sentence.
         meant: String,
     },
+    /// It excludes by what there is not.
+    #[error("the renderer's hello: `{entry}` of `excludes` names no {what}{known}")]
+    Excludes {
+        /// The entry.
+        entry: String,
+        /// What it should name: `shape`, `effect`.
+        what: &'static str,
+        /// What there is, as the end of a sentence.
+        known: String,
+    },
     /// It declares that it skips what must not be left out.
     #[error("the renderer's hello: skips `{id}`: it {why}")]
     Skip {

@@ -2,6 +2,7 @@
 
 use super::answer::{DeclaredSkip, Hello, Line, clipped};
 use super::error::ProcessError;
+use super::excludes::Excludes;
 use super::plan::unmatched;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::cases::blend::aliases;
@@ -199,7 +200,7 @@ pub(super) struct Declared {
     pub(super) hello: Hello,
     formulas: Option<Filter>,
     scenes: Option<Filter>,
-    excludes: Option<Filter>,
+    excludes: Excludes,
     pub(super) skips: Skips,
     pub(super) targets: Vec<TargetFormat>,
 }
@@ -221,7 +222,7 @@ fn matches_something(hello: &Hello) -> Result<(), ProcessError> {
     for (what, globs, ids) in [
         ("formula", &hello.formulas, &formulas),
         ("scene", &hello.scenes, &scenes),
-        ("formula or scene", &hello.excludes, &both),
+        ("formula or scene", &Excludes::globs(&hello.excludes).cloned().collect(), &both),
     ] {
         for glob in globs {
             let filter = Filter::new(std::slice::from_ref(glob))?;
@@ -237,10 +238,12 @@ fn matches_something(hello: &Hello) -> Result<(), ProcessError> {
 impl Declared {
     /// Reads what a hello declares.
     pub(super) fn new(hello: Hello) -> Result<Self, ProcessError> {
-        let [formulas, scenes, excludes] = hello.filters()?;
+        let [formulas, scenes] = hello.filters()?;
+        let excludes = Excludes::new(&hello.excludes)?;
         matches_something(&hello)?;
         let format = |name: &String| TargetFormat::by_name(name).ok_or_else(|| ProcessError::Target(name.clone()));
-        let targets = hello.targets.iter().map(format).collect::<Result<_, _>>()?;
+        let mut targets = hello.targets.iter().map(format).collect::<Result<Vec<_>, _>>()?;
+        targets.retain(|&target| !excludes.has_format(target));
         let skips = Skips::of(&hello)?;
         Ok(Self { hello, formulas, scenes, excludes, skips, targets })
     }
@@ -250,10 +253,10 @@ impl Declared {
         let (declared, what) =
             if id.starts_with("scene/") { (&self.scenes, "scenes") } else { (&self.formulas, "formulas") };
         let has = declared.as_ref().is_some_and(|filter| filter.selects(id));
-        match &self.excludes {
+        match self.excludes.has(id) {
             _ if !has => Some(format!("not among the {what} that it declares")),
-            Some(excludes) if excludes.selects(id) => Some("it excludes it".into()),
-            _ => None,
+            true => Some("it excludes it".into()),
+            false => None,
         }
     }
 
@@ -269,7 +272,7 @@ impl Declared {
 
     /// Why a frame is not asked for; `None` where it is.
     pub(super) fn lacks_frame(&self, frame: &Frame) -> Option<String> {
-        self.hello.lacks(frame)
+        self.hello.lacks(frame).or_else(|| self.excludes.of_frame(frame))
     }
 }
 

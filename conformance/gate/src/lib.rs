@@ -12,6 +12,7 @@ mod columns;
 #[path = "columns_absent.rs"]
 mod columns;
 pub mod error;
+mod excludes;
 pub mod expectations;
 pub mod frame;
 mod given;

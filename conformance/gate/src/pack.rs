@@ -9,7 +9,7 @@ use lightmeter_catalogue::cases::{GENERATOR_VERSION, Input, Kind, Output, Spec, 
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::Unique;
 use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
-use lightmeter_document::protocol::{CaseRequest, LayerRequest, ProbeRequest};
+use lightmeter_document::protocol::{CaseRequest, LayerRequest, MadeBy, ProbeRequest};
 use lightmeter_document::{Document as _, Number, Word};
 use lightmeter_files::{Whole, read};
 use lightmeter_judge::image::file::{StoredImage, whole};
@@ -28,9 +28,14 @@ pub const MOST_CASES: u64 = 10_000_000;
 /// Pixels of a scene's longer side, at most.
 const MOST_PIXELS: u32 = 8192;
 
-/// What a formula of a plan takes and gives.
+/// A formula of a plan, with the number of its cases.
 fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {
-    let spec = &plan.member(formula).spec;
+    PackedFormula { count: Some(plan.formulas[formula].count()), ..described(&plan.member(formula).spec) }
+}
+
+/// A formula, what it takes and gives, and what computes it.
+#[must_use]
+pub fn described(spec: &Spec) -> PackedFormula {
     let value = |name: &'static str, shape: ValueShape, unit: &'static str, means: &'static str| PackedValue {
         name: name.into(),
         shape: shape.name().into(),
@@ -43,10 +48,40 @@ fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {
         id: spec.id.clone(),
         formula: spec.text.into(),
         rules: spec.rules().into_iter().map(Word::from).collect(),
+        made_by: made_by(spec),
         inputs: spec.inputs.iter().map(input).collect(),
         outputs: spec.outputs.iter().map(output).collect(),
-        count: plan.formulas[formula].count(),
+        count: None,
     }
+}
+
+/// What computes a formula, or draws it: its function, how its matrices are laid out, its blend state or its depth test.
+#[must_use]
+pub fn made_by(spec: &Spec) -> MadeBy {
+    let has_function = !spec.function.is_empty();
+    let is_matrix = |shape: ValueShape| matches!(shape, ValueShape::Mat3 | ValueShape::Mat4);
+    let has_matrices = spec.inputs.iter().any(|input| is_matrix(input.shape))
+        || spec.outputs.iter().any(|output| is_matrix(output.shape));
+    MadeBy {
+        file: has_function.then(|| spec.file()),
+        function: has_function.then(|| spec.function.to_owned()),
+        matrices: has_matrices.then(|| "columns".into()),
+        blend: if let Kind::Blend(program) = spec.kind { Some(layers(program)) } else { None },
+        depth: if let Kind::Depth(test) = spec.kind { Some(test) } else { None },
+        raster: if let Kind::Raster(raster) = spec.kind { Some(raster) } else { None },
+    }
+}
+
+/// The states that a program draws by, one for each of its layers in turn.
+fn layers(program: Program) -> Vec<LayerRequest> {
+    let layers = if let Program::Layers(modes) = program { modes.len() } else { 1 };
+    let layer = |number: usize| {
+        let (Separate { color, alpha }, mask) = program.layer(number);
+        let written: Vec<&str> =
+            ["r", "g", "b", "a"].into_iter().zip(mask.0).filter(|(_, is)| *is).map(|(k, _)| k).collect();
+        LayerRequest { color, alpha, mask: written.concat() }
+    };
+    (0..layers).map(layer).collect()
 }
 
 /// A case of a formula as a renderer is asked it.
@@ -67,15 +102,7 @@ pub fn case(spec: &Spec, id: &str, row: &[f32]) -> CaseRequest {
 /// A case of a blend state as a renderer is asked it on a target: with the states that it draws by, one for each of its layers in turn.
 #[must_use]
 pub fn on_target(spec: &Spec, id: &str, row: &[f32], target: TargetFormat, program: Program) -> CaseRequest {
-    let layers = if let Program::Layers(modes) = program { modes.len() } else { 1 };
-    let layer = |number: usize| {
-        let (Separate { color, alpha }, mask) = program.layer(number);
-        let written: Vec<&str> =
-            ["r", "g", "b", "a"].into_iter().zip(mask.0).filter(|(_, is)| *is).map(|(k, _)| k).collect();
-        LayerRequest { color, alpha, mask: written.concat() }
-    };
-    let blend = (0..layers).map(layer).collect();
-    CaseRequest { target: Some(target), blend: Some(blend), ..case(spec, id, row) }
+    CaseRequest { target: Some(target), blend: Some(layers(program)), ..case(spec, id, row) }
 }
 
 /// A probe of special values as a renderer is asked it: one operation on operands, which are told as numbers and bit for bit.

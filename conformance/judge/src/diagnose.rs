@@ -30,11 +30,21 @@ impl Answered<'_> {
 /// What explains wrong answers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cause {
-    /// As a sentence.
+    /// As a sentence: what explains how many of them, what would as well, and where to look.
     pub says: String,
+    /// What alone, in words, where something explains them.
+    pub cause: Option<String>,
     /// The names of the mistakes that explain them together, as `lightmeter mistakes` lists them. Empty where none does, and of a parameter
     /// that is wrong.
     pub mistakes: Vec<String>,
+}
+
+impl Cause {
+    /// What is known of it, each apart; nothing where nothing was looked for.
+    #[must_use]
+    pub fn parts(found: Option<Self>) -> (Option<String>, Option<String>, Vec<String>) {
+        found.map_or_else(Default::default, |Self { says, cause, mistakes }| (Some(says), cause, mistakes))
+    }
 }
 
 /// Knows mistakes, and tells which one explains answers. `lightmeter_faults` has the one that commands use.

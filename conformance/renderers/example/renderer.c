@@ -44,5 +44,6 @@ static const lightmeter_formula formulas[] = {
 
 int main(void)
 {
-    return lightmeter_serve("example-c", "1.0", formulas, sizeof formulas / sizeof formulas[0]);
+    const lightmeter_about about = {.name = "example-c", .version = "1.0", .device = "the processor"};
+    return lightmeter_serve_as(&about, formulas, sizeof formulas / sizeof formulas[0]);
 }

@@ -127,17 +127,17 @@ class Raster(Pixels):
 
     def viewport(self, cases):
         def set_up(c):
-            glViewportIndexedf(0, *c.origin, *c.size)
+            glViewportIndexedf(0, *c.origin, *np.maximum(c.size, 0))
             glDepthRangef(*c.depth)
 
         outside = Skip("glRasterPos gives no position outside of the clip volume")
-        limited = Skip("the viewport is larger than GL_MAX_VIEWPORT_DIMS, or begins beyond GL_VIEWPORT_BOUNDS_RANGE; or its depths lie beyond [0, 1]")
+        limited = Skip("the viewport is smaller than 0 or larger than GL_MAX_VIEWPORT_DIMS, or begins beyond GL_VIEWPORT_BOUNDS_RANGE; or its depths lie beyond [0, 1]")
         low, high = glGetFloatv(GL_VIEWPORT_BOUNDS_RANGE)
-        size, origin = np.abs(cases.size), cases.origin
+        size, origin = cases.size, cases.origin
         # glDepthRange limits depths to [0, 1].
         depth = cases.depth
         fits = (size <= glGetIntegerv(GL_MAX_VIEWPORT_DIMS)).all(axis=1) & (origin >= low).all(axis=1) & (origin <= high).all(axis=1)
-        fits &= ((depth >= 0) & (depth <= 1)).all(axis=1)
+        fits &= (size >= 0).all(axis=1) & ((depth >= 0) & (depth <= 1)).all(axis=1)
         places = self.raster_position(cases, set_up)
         return [(place if valid else outside) if fits[k] else limited for k, (valid, place) in enumerate(places)]
 

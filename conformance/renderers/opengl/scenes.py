@@ -3,7 +3,7 @@ import numpy as np
 from frames import bind_texture, column_matrix, draw_frame, set_state
 from OpenGL.GL import *
 from lightmeter_client import Skip
-from surfaces import EYE_PLANE_ABSOLUTE, EYE_RADIAL, FOG_DISTANCE_MODE, cone, four, light, lights_off, material, scene_ambient
+from surfaces import EYE_PLANE_ABSOLUTE, EYE_RADIAL, FOG_DISTANCE_MODE, cone, four, light, lights_off, material, scene_ambient, set_fog_color
 
 # What the fixed function has: not what is lit at the fragments, nor a halfway vector that is not normalised. Its highlight is
 # Blinn's, whatever a scene asks for; scenes of Phong's are drawn all the same, and judged.
@@ -49,7 +49,7 @@ def set_fog(fog):
         glFogf(GL_FOG_END, form["dmax"])
     else:
         glFogf(GL_FOG_DENSITY, form["density"])
-    glFogfv(GL_FOG_COLOR, four(fog["color"]))
+    set_fog_color(fog["color"])
     glFogi(FOG_DISTANCE_MODE, EYE_RADIAL if fog["distance"] == "radial" else EYE_PLANE_ABSOLUTE)
 
 

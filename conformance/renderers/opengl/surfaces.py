@@ -22,6 +22,14 @@ def four(rgb, last=1):
     return np.append(rgb, last).astype(np.float32)
 
 
+def set_fog_color(color):
+    """Sets the fog's colour. Mesa compares it with the earlier one *clamped* to [0, 1] and leaves that where they are equal, although it
+    draws by the unclamped one (_mesa_Fogfv, TEST_EQ_4V(ctx->Fog.Color, params)): black after a negative colour, or white after one above
+    1, changes nothing. So a grey is set first, which is the same clamped and unclamped."""
+    glFogfv(GL_FOG_COLOR, four((0.5, 0.5, 0.5), 0.5))
+    glFogfv(GL_FOG_COLOR, four(color))
+
+
 def light(number, place, ambient=BLACK, diffuse=BLACK, specular=BLACK, falloff=NO_FALLOFF):
     """A light at `place`, which is a direction towards it where its fourth component is 0."""
     name = GL_LIGHT0 + number
@@ -343,7 +351,7 @@ class Surfaces:
                     continue
                 else:
                     glFogf(GL_FOG_DENSITY, c.density)
-                glFogfv(GL_FOG_COLOR, four(fogs[k]))
+                set_fog_color(fogs[k])
                 glBegin(GL_POINTS)
                 glColor4fv(four(colors[k]))
                 glVertex3fv(c.p)

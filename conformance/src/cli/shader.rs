@@ -384,7 +384,7 @@ impl OwnShader {
             let Some(spec) = catalogue.iter().map(|member| &member.spec).find(|spec| fails && spec.id == *id) else {
                 continue;
             };
-            let file = format!("{}.wgsl", spec.family());
+            let file = spec.file();
             if let Some(form) = stable_form(&shaders, &file, spec.function, language) {
                 writeln!(told, "the stable form of {id}:\n\n{}", form.trim_end())?;
                 continue;

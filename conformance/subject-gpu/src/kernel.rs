@@ -12,7 +12,7 @@ pub fn kernel(shaders: &Shaders, member: &Member) -> Result<Option<Kernel>, GpuE
     if function.is_empty() {
         return Ok(None);
     }
-    let file = format!("{}.wgsl", spec.family());
+    let file = spec.file();
     let kernel = Kernel::new(shaders, &file, function)?;
     let (selectors, outputs) = (spec.selectors.len(), spec.output_len());
     let inputs = spec.input_len() + selectors;

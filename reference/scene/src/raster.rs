@@ -1,9 +1,12 @@
 //! Primitive topologies, the vertex that a flat attribute is taken from, and the cases of the rasteriser.
 
 use crate::depth::Compare;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// How a stream of vertices is read as primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Topology {
     /// Every vertex a point.
     Points,
@@ -77,7 +80,8 @@ impl Provoking {
 pub const TARGET_SIZE: u32 = 256;
 
 /// What a case of the rasteriser draws and looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Raster {
     /// A triangle's attribute, perspective-correct and linear.
     TriangleAttributes,

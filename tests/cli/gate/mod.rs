@@ -242,7 +242,7 @@ fn packs_that_are_damaged_or_of_another_kind_are_refused() {
     let right = std::fs::read_to_string(&manifest).expect("there is a manifest");
     let rows = [
         ("lightmeter.pack/1", "lightmeter.pack/9", "its schema is `lightmeter.pack/9`"),
-        ("\"generator\": 3", "\"generator\": 2", "drawn by generator 2"),
+        ("\"generator\": 4", "\"generator\": 2", "drawn by generator 2"),
         ("\"cases.jsonl\"", "\"../answers.jsonl\"", "leaves the folder"),
         ("\"crc32\": \"", "\"crc32\": \"0", "not what was packed"),
         ("\"files\"", "\"", "damaged"),
@@ -576,6 +576,36 @@ fn a_hello_says_what_it_computes_on_and_what_it_leaves_out() {
     assert!(report.to_string().contains("it excludes it"), "{report}");
     let output = lightmeter(&["gate", text(&pack), text(&file)]);
     assert!(stdout(&output).starts_with("r 2 on GPU, D 3 · profile wgsl\n"), "{}", stdout(&output));
+    for (entry, asked) in [
+        ("function:fog_linear", vec!["fog/exp"]),
+        ("file:fog.wgsl", vec![]),
+        ("shape:mat4", vec!["fog/exp", "fog/linear"]),
+        ("matrices:columns", vec!["fog/exp", "fog/linear"]),
+        ("blend:min", vec!["fog/exp", "fog/linear"]),
+        ("depth:less", vec!["fog/exp", "fog/linear"]),
+        ("effect:fog_exp", vec!["fog/exp", "fog/linear"]),
+    ] {
+        let file = saying(&format!("{{\"renderer\": \"r\", \"formulas\": [\"fog\"], \"excludes\": [\"{entry}\"]}}\n"));
+        let (_, report) = judged(&pack, &file, &[]);
+        let groups = report["groups"].as_array().expect("an array");
+        let has_cases = |group: &&serde_json::Value| group["asked"].as_u64() > Some(0);
+        let mut ids: Vec<_> = groups.iter().filter(has_cases).filter_map(|one| one["id"].as_str()).collect();
+        ids.sort_unstable();
+        assert_eq!(ids, asked, "{entry}");
+    }
+    for (entry, said) in [
+        ("shape:mat5", "names no shape; expected one of mat3, mat4, scalar, vec2, vec3, vec4"),
+        ("function:fog_lin", "names no function; did you mean `fog_linear`"),
+        (
+            "of:fog",
+            "names no kind of thing; expected one of function, file, shape, matrices, blend, depth, effect, format",
+        ),
+        ("format:rgb8", "names no format; expected one of bgra8unorm"),
+    ] {
+        let file = saying(&format!("{{\"renderer\": \"r\", \"formulas\": [\"fog\"], \"excludes\": [\"{entry}\"]}}\n"));
+        let output = lightmeter(&["gate", text(&pack), text(&file)]);
+        assert!(code(&output) == 2 && stderr(&output).contains(said), "{}", stderr(&output));
+    }
     let misspelt = saying("{\"renderer\": \"r\", \"formulas\": [\"fog\"], \"excludes\": [\"fog/linaer\"]}\n");
     let output = lightmeter(&["gate", text(&pack), text(&misspelt)]);
     assert!(code(&output) == 2 && stderr(&output).contains("`fog/linear`"), "{}", stderr(&output));

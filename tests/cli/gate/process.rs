@@ -1,8 +1,9 @@
 //! A renderer in a process of its own: how it fails, and what is left of it.
 
 use super::{count, folder, report, text};
-use crate::{code, command, lightmeter, stderr};
+use crate::{code, command, lightmeter, stderr, stdout};
 use rustix::process::{Pid, Signal, kill_process, test_kill_process};
+use serde_json::{Value, json};
 use std::path::Path;
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
@@ -54,6 +55,42 @@ fn runs(file: &Path) -> bool {
         std::thread::sleep(Duration::from_millis(10));
     }
     false
+}
+
+#[test]
+fn formulas_are_described_before_they_are_asked_for() {
+    // It ends where it is asked for a formula that was not described.
+    for more in ["", " columns=f4", " targets=all", " crash-at=fog/exp/random/000017"] {
+        let output = process(&["fog/{exp,linear}", "blend/mode-add"], &format!("describe=all{more}"), &[]);
+        let (status, report) = report(&output);
+        let expected = if more.contains("crash") { (4, 1) } else { (0, 0) };
+        assert_eq!((status, count(&report, "failed")), expected, "{more}: {report}");
+    }
+}
+
+#[test]
+fn what_is_described_says_what_computes_a_formula_and_how() {
+    let output = lightmeter(&["list", "--formulas", "--format", "json", "vector/normal-modelview", "fog/exp"]);
+    let listed: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    let made_by = |id: &str| {
+        let formulas = listed["formulas"].as_array().expect("an array");
+        formulas
+            .iter()
+            .find(|formula| formula["id"] == id)
+            .map(|formula| formula["made_by"].clone())
+            .expect("it is there")
+    };
+    let matrix = made_by("vector/normal-modelview");
+    assert_eq!(matrix, json!({"file": "vector.wgsl", "function": "vector_normal_modelview", "matrices": "columns"}));
+    assert_eq!(made_by("fog/exp"), json!({"file": "fog.wgsl", "function": "fog_exp"}));
+    let output = lightmeter(&["list", "--formulas", "--format", "json", "depth/test/less/keep", "blend/min"]);
+    let listed: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    for formula in listed["formulas"].as_array().expect("an array") {
+        let made_by = &formula["made_by"];
+        let is_depth = formula["id"] == "depth/test/less/keep";
+        assert!(!is_depth || made_by["depth"] == json!({"compare": "less", "write": false}), "{formula}");
+        assert!(is_depth || made_by["blend"][0]["color"]["equation"] == "min", "{formula}");
+    }
 }
 
 #[test]

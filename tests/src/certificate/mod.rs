@@ -210,6 +210,10 @@ impl FormulaFinding {
             self.by_steps_worst.raise(f64::INFINITY, &at);
             return;
         }
+        if running.value == 0.0 && exact.is_not_told_from_zero() {
+            self.zeros += 1;
+            return;
+        }
         let Some((error, relative)) = exact.distance(running.value) else {
             self.broken.push(format!("{}: {:e} where {:?} is right", at(), running.value, exact.get()));
             return;

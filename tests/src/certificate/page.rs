@@ -71,6 +71,7 @@ fn head(all: &FormulaFinding, held: &FormulaFinding) -> String {
          * {} intervals hold the exact value, all of those that promise anything; {} permit any value.\n\
          * {} values err by more than their condition allows, and by no more than the roundings of their steps: the \
          exceptions below.\n\
+         * {} values that the reference has as 0 are told from 0 by none of the exact value's digits, and are taken as right.\n\
          * Cases in which the reference chose otherwise than is right: {}.\n\n",
         grouped(all.compared),
         grouped(all.no_value),
@@ -80,6 +81,7 @@ fn head(all: &FormulaFinding, held: &FormulaFinding) -> String {
         grouped(all.intervals),
         grouped(all.open),
         grouped(all.by_steps),
+        grouped(all.zeros),
         grouped(all.ties.len() as u64),
     );
     page

@@ -6,7 +6,7 @@ use super::spec::{Domain, Hard, Input, Kind, Spec, ValueShape};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State};
 
 /// Raised whenever the same seed would give other inputs.
-pub const GENERATOR_VERSION: u64 = 3;
+pub const GENERATOR_VERSION: u64 = 4;
 
 /// The inputs of random case `k` of a formula.
 pub fn inputs(spec: &Spec, seed: u64, k: u64, row: &mut Vec<f32>) {

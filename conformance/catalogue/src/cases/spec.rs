@@ -365,6 +365,12 @@ impl Spec {
         self.id.split('/').next().unwrap_or_default()
     }
 
+    /// The WGSL file that its function stands in.
+    #[must_use]
+    pub fn file(&self) -> String {
+        format!("{}.wgsl", self.family())
+    }
+
     /// The group that verdicts are counted in: the first two segments of the id.
     #[must_use]
     pub fn group(&self) -> &str {

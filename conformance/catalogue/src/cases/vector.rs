@@ -108,6 +108,7 @@ formula!(
         Hard::new("at-infinity", "w = 0: a direction, undivided", &[("position", &[0.5, 0.25, -0.75, 0.0])]),
         Hard::new("at-no-height", "only w = 0 leaves it undivided", &[("position", &[0.5, 0.0, -0.75, 2.0])]),
         Hard::new("behind-infinity", "a negative w turns it round", &[("position", &[1.0, 2.0, 3.0, -2.0])]),
+        Hard::new("nearly-near", "however near 1, w divides", &[("position", &[5.0, 2.5, -7.5, 1.000_005])]),
         Hard::new("nearly-at-infinity", "however small, w divides", &[("position", &[0.5, 0.25, -0.75, 5e-7])]),
         Hard::new("as-far-as-numbers-go", "however small, w divides", &[("position", &[0.5, 0.25, -0.75, 1e-37])]),
     ],

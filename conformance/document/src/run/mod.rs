@@ -113,6 +113,9 @@ pub struct Group {
     /// The mistake that explains what failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explanation: Option<String>,
+    /// What that mistake is, in words, without how much of what failed it explains.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<String>,
     /// The names of the mistakes that explain what failed together.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mistakes: Vec<String>,
@@ -225,6 +228,7 @@ impl Group {
             worst: None,
             skip_reason: None,
             explanation: None,
+            cause: None,
             mistakes: vec![],
             problem: None,
             expected_problem: None,

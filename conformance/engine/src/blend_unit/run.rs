@@ -139,7 +139,7 @@ fn ask_failing(
         let answers = renderer.pixels(&AskedPixels { member, program, target, cases: &cases, inputs: &inputs })?;
         for (&(.., case, before), now) in of_state.iter().zip(answers) {
             let now = match now {
-                Ok(pixel) => again::digest(pixel.iter().map(|component| component.to_bits())),
+                Ok(pixel) => again::digest_of_values(pixel.iter().copied()),
                 Err(why) => again::number(&why),
             };
             if again::has_changed(before, now) {

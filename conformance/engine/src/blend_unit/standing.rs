@@ -35,7 +35,7 @@ use std::time::Instant;
 fn digests(pixels: &[Units], number: usize, drawn: &Pixels) -> Vec<u32> {
     let of_pixel = |(place, pixel): (usize, &Units)| match drawn.unanswered.get(&(number, place)) {
         Some(why) => again::number(why),
-        None => again::digest(pixel.iter().map(|component| component.to_bits())),
+        None => again::digest_of_values(pixel.iter().copied()),
     };
     pixels.iter().enumerate().map(of_pixel).collect()
 }
@@ -363,7 +363,9 @@ impl UnitStanding {
             let refused = unjudged(id, why.message(), stage(subject), &subject.identity.name);
             report.failures.push(Failure { target: Some(self.target.name().into()), ..refused });
         }
-        let explanation = explain(&self.samples)
+        let explained = explain(&self.samples);
+        let explanation = explained
+            .as_ref()
             .map(|(says, count, of)| format!("{count} of {of} failing pixels are as if {says}"))
             .or_else(|| (!self.samples.is_empty()).then(|| "no mistake in the catalogue explains what failed".into()));
         for (name, excused) in &self.verdicts.excused {
@@ -391,6 +393,7 @@ impl UnitStanding {
             worst: self.verdicts.worst.as_ref().map(|(_, (.., id))| id.clone()),
             skip_reason: self.lacks.map(Into::into),
             explanation,
+            cause: explained.map(|(says, ..)| format!("as if {says}")),
             problem,
             by_case: options.counts_cases.then(|| self.cases.told(members, group)),
             ..Group::new(group.into(), subject.identity.name.clone(), stage)

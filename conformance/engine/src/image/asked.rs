@@ -140,13 +140,12 @@ impl Scene<'_> {
         if !has_failed {
             counts.error_passing = Number(verdicts.error_max);
         }
-        let cause = self
+        let found = self
             .options
             .diagnose
             .filter(|_| has_failed)
             .map(|diagnose| diagnose.image(&self.loaded.frame, image, scene.expected(&profile), &profile));
-        let (explanation, mistakes) =
-            cause.map_or_else(Default::default, |Cause { says, mistakes }| (Some(says), mistakes));
+        let (explanation, cause, mistakes) = Cause::parts(found);
         if has_failed {
             let failure = self.failure(&scene, image, &judged, &profile);
             counts.smallest = Some(failure.id.clone());
@@ -168,6 +167,7 @@ impl Scene<'_> {
             margin_max: Number(margin),
             worst: Some(self.id.clone()),
             explanation,
+            cause,
             mistakes,
             problem,
             image: Some(ImageUse {

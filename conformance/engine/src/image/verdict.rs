@@ -154,18 +154,17 @@ impl<'a> JudgedScene<'a> {
         }
         let by_case = drawn.options.counts_cases.then(|| self.counts(has_failed, totals.failed == 0));
         let mut used = ImageUse { bias, ..self.image_use(drawn.image, expected) };
-        let (explanation, mistakes) = match worst(&judged) {
-            Some(worst) => {
-                let Cause { says, mistakes } = self.explain(drawn, named, (&judged, worst), &mut used, report)?;
-                (Some(says), mistakes)
-            }
-            None => (None, vec![]),
+        let explained = match worst(&judged) {
+            Some(worst) => Some(self.explain(drawn, named, (&judged, worst), &mut used, report)?),
+            None => None,
         };
+        let (explanation, cause, mistakes) = Cause::parts(explained);
         Ok(Group {
             error_ulp_max: Number(judged.verdicts.error_max),
             margin_max: Number(judged.worst().map_or(0.0, |worst| worst.margin)),
             worst: judged.worst().map(|worst| pixel_id(&self.id, drawn.image.width, worst.pixel)),
             explanation,
+            cause,
             mistakes,
             problem,
             image: Some(used),
@@ -237,12 +236,12 @@ impl<'a> JudgedScene<'a> {
         let clock = Instant::now();
         let expected = self.expected(&drawn.profile);
         let granted = drawn.subject.known.granted(drawn.options.profile);
-        let cause = drawn.options.diagnose.map(|diagnose| diagnose.image(self.frame, drawn.image, expected, &granted));
-        let (mistake, mistakes) =
-            cause.map_or_else(Default::default, |Cause { says, mistakes }| (format!("; {says}"), mistakes));
+        let found = drawn.options.diagnose.map(|diagnose| diagnose.image(self.frame, drawn.image, expected, &granted));
+        let (mistake, cause, mistakes) = Cause::parts(found);
+        let mistake = mistake.map_or_else(String::new, |says| format!("; {says}"));
         report.timing.diagnose += clock.elapsed().as_secs_f64();
         let says = format!("{pixels} pixels{departure}{mistake}; the worst: {command}{}", files_told(&used.files));
-        Ok(Cause { says, mistakes })
+        Ok(Cause { says, cause, mistakes })
     }
 
     fn departure(

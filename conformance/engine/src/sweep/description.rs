@@ -14,9 +14,7 @@ const BLEND_FILE: &str = "blend_unit.wgsl";
 #[must_use]
 pub fn describe(plan: &SweepPlan<'_>, subject: &Subject, profile: &Profile, code: &Code) -> Description {
     let (from, to, unit, file) = match plan.over {
-        Over::Number { from, to, .. } => {
-            (Some(ExactFloat(from)), Some(ExactFloat(to)), "ULP", format!("{}.wgsl", plan.member.spec.family()))
-        }
+        Over::Number { from, to, .. } => (Some(ExactFloat(from)), Some(ExactFloat(to)), "ULP", plan.member.spec.file()),
         Over::Bytes => (None, None, "step", BLEND_FILE.into()),
     };
     let adapter = &subject.identity;

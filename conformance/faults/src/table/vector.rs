@@ -144,6 +144,12 @@ pub(super) const FAULTS: &[Fault] = &[
     )
     .seen_in("an epsilon added to the squared length"),
     fault(
+        "z-axis-for-zero",
+        "the z axis is taken for a vector without length",
+        &[&[at(NORMALISED, Do::FirstAs(Op::NormalizeOrZ))]],
+    )
+    .seen_in("guards against NaN"),
+    fault(
         "epsilon-added-to-length",
         "1e-6 is added to the length that a vector is divided by",
         &[&[at(NORMALISED, Do::FirstAs(Op::OverLengthPlus(1e-6)))]],

@@ -101,7 +101,9 @@ impl Session {
         self.number += 1;
         let (number, count) = (self.number, batch.len());
         let Some(mut running) = self.running.take() else { return Came::Failed(Ended::Crashed) };
-        let writing = running.send(request(spec, rows, batch, number));
+        let mut text = self.description(spec).into_bytes();
+        text.extend(request(spec, rows, batch, number));
+        let writing = running.send(text);
         let (limit, start) = (self.asking.limits.case, Instant::now());
         let until = start + limit;
         let mut surplus = 0;

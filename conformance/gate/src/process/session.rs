@@ -3,11 +3,13 @@
 use super::super::answer::{self, Hello, Line, Unread, clipped};
 use super::super::error::ProcessError;
 use super::super::given::{Asks, Given, Skips, given};
+use super::super::pack::described;
 use super::super::problems::note;
 use super::Asking;
 use super::running::{Event, Running};
+use lightmeter_catalogue::cases::Spec;
 use lightmeter_document::by_case::RendererUse;
-use lightmeter_document::protocol::{BatchEnd, Greeting, PROTOCOL};
+use lightmeter_document::protocol::{BatchEnd, Description, Greeting, PROTOCOL};
 use lightmeter_judge::cases::ExpectedFailure;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -145,6 +147,8 @@ pub(super) struct Session {
     pub(super) culprits_of: HashMap<String, usize>,
     /// The ids that were asked, hashed.
     asked: HashSet<u64>,
+    /// The formulas that the process was told of since it was started.
+    described: HashSet<String>,
     /// Whether nothing more is asked.
     pub(super) has_broken_off: bool,
 }
@@ -176,6 +180,7 @@ impl Session {
             culprits: 0,
             culprits_of: HashMap::new(),
             asked: HashSet::new(),
+            described: HashSet::new(),
             has_broken_off: false,
         }
     }
@@ -253,6 +258,7 @@ impl Session {
                     }
                     Ok(Line::Hello(hello)) => {
                         self.answered = 0;
+                        self.described.clear();
                         self.hello = *hello;
                         running.reads_columns(self.hello.columns);
                         running.input = written.and_then(|thread| thread.join().ok().flatten());
@@ -320,13 +326,25 @@ impl Session {
     fn requests(&mut self, questions: &Questions<'_>, batch: &[usize]) -> String {
         let mut text = String::new();
         for &place in batch {
-            let Question { id, request, .. } = &questions.all[place];
+            let Question { id, request, asks } = &questions.all[place];
             self.asked.insert(hash(id));
+            if let Asks::Outputs(spec) | Asks::Pixel(spec) = asks {
+                text += &self.description(spec);
+            }
             text += request;
             text.push('\n');
         }
         self.number += 1;
         text + &format!("{}\n", BatchEnd { batch: self.number })
+    }
+
+    /// A line that describes a formula, where it was asked for and not written yet.
+    pub(super) fn description(&mut self, spec: &Spec) -> String {
+        if self.hello.describe && self.described.insert(spec.id.clone()) {
+            format!("{}\n", Description { describe: described(spec) })
+        } else {
+            String::new()
+        }
     }
 
     /// Takes lines for answers to questions. What answers none of them is a problem.

@@ -19,13 +19,6 @@ pub(super) struct Card {
     pub(super) body: Markup,
 }
 
-/// Why a group fails, without how many cases say so and what to do next.
-pub(super) fn cause(group: &Group) -> Option<String> {
-    let explanation = group.explanation.as_ref()?;
-    let (_, cause) = explanation.split_once("explained by: ")?;
-    Some(cause.split("; ").next().unwrap_or(cause).to_owned())
-}
-
 /// How many failed, and of how many: verdicts, or whole cases where a renderer was asked. An image is one case, and counts by its values.
 pub(super) fn judged(group: &Group) -> (u64, u64) {
     let by_case = group.by_case.as_ref().filter(|_| group.image.is_none());

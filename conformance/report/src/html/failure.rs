@@ -1,6 +1,6 @@
 //! The card of a formula that fails: what it computes, of which inputs, where it departs, why, and how to see it again.
 
-use super::card::{Card, cause, failing_share, judged};
+use super::card::{Card, failing_share, judged};
 use super::matrix::{card_id, is_failing, short};
 use super::page::prose;
 use super::plot;
@@ -36,7 +36,7 @@ pub(super) fn cards(report: &Report) -> (Vec<Card>, usize) {
         name: groups[0].id.clone(),
         place: format!("{}, {}", groups[0].adapter, stages(groups)),
         share: failing_share(groups),
-        cause: groups.iter().find_map(|group| cause(group).or_else(|| group.problem.clone())),
+        cause: groups.iter().find_map(|group| group.cause.clone().or_else(|| group.problem.clone())),
         body: card(report, groups, place < OPEN),
     };
     (formulas.iter().take(MOST).enumerate().map(told).collect(), formulas.len().saturating_sub(MOST))

@@ -29,6 +29,7 @@ use lightmeter_document::run::{Group, Report};
 use matrix::{Column, is_failing};
 use maud::{Markup, html};
 use overview::Facts;
+use std::collections::HashMap;
 use std::fmt;
 
 /// The page of a run.
@@ -123,7 +124,7 @@ fn against(report: &Report, incidents: &[String]) -> Markup {
                 h2 { "Compared with what is known" }
                 @if !report.regressions.is_empty() {
                     h3 { "Worse than in the baseline" }
-                    ul.bad { @for what in &report.regressions { li { (linked(report, what)) } } }
+                    ul.bad { @for line in compared(report, &report.regressions) { li { (line) } } }
                 }
                 @if lines.iter().any(|(title, _)| title != BASELINE) {
                     h3 { "Not as expected" }
@@ -131,26 +132,59 @@ fn against(report: &Report, incidents: &[String]) -> Markup {
                 }
                 @if !report.mended.is_empty() {
                     h3 { "Better than the baseline" }
-                    ul.good { @for what in &report.mended { li { (what) } } }
+                    ul.good { @for line in compared(report, &report.mended) { li { (line) } } }
                 }
                 @if !report.added.is_empty() {
                     h3 { "Not in the baseline" }
-                    ul { @for what in &report.added { li { (what) } } }
+                    ul { @for line in compared(report, &report.added) { li { (line) } } }
                 }
             }
         }
     }
 }
 
-/// What is said of a group, whose name leads to its card where it has one.
-fn linked(report: &Report, what: &str) -> Markup {
-    let is_its = |group: &&Group| what.strip_prefix(&*group.id).is_some_and(|rest| rest.starts_with([' ', ':']));
-    match report.groups.iter().find(|group| is_failing(group) && is_its(group)) {
-        Some(group) => {
-            html! { a href={ "#" (matrix::card_id(&group.id, &group.adapter)) } { (group.id) } (what[group.id.len()..]) }
+/// Lines back in which a group's other places are looked for: each has a few things said of it.
+const MOST_PLACES: usize = 16;
+
+/// What a comparison says of groups: a line for all places of a formula that it says the same of, whose name leads to a card where there is one.
+fn compared(report: &Report, lines: &[String]) -> Vec<Markup> {
+    // A run calls its groups by subject and place, a gate by the target that they are blended on.
+    let of_run = |group: &Group| format!("{} on {}, {}", group.id, group.adapter, group.place());
+    let of_gate = |group: &Group| match &group.target {
+        Some(target) => format!("{} on {target}", group.id),
+        None => group.id.clone(),
+    };
+    let by_name: HashMap<String, &Group> =
+        report.groups.iter().flat_map(|group| [(of_run(group), group), (of_gate(group), group)]).collect();
+    // What is said, the first of the groups that it is said of, and the places of all.
+    let mut said: Vec<(&str, Option<&Group>, Vec<String>)> = vec![];
+    for line in lines {
+        let of = line.split_once(": ").and_then(|(name, what)| Some((what, *by_name.get(name)?)));
+        let Some((what, group)) = of else {
+            said.push((line, None, vec![]));
+            continue;
+        };
+        let is_alike = |(other, first, _): &&mut (&str, Option<&Group>, Vec<String>)| {
+            *other == what && first.is_some_and(|first| (&first.id, &first.adapter) == (&group.id, &group.adapter))
+        };
+        // The places of a group stand next to each other.
+        match said.iter_mut().rev().take(MOST_PLACES).find(is_alike) {
+            Some((.., places)) => places.push(group.place()),
+            None => said.push((what, Some(group), vec![group.place()])),
         }
-        None => html! { (what) },
     }
+    let line = |(what, group, places): (&str, Option<&Group>, Vec<String>)| match group {
+        Some(group) => html! {
+            @if is_failing(group) {
+                a href={ "#" (matrix::card_id(&group.id, &group.adapter)) } { (group.id) }
+            } @else {
+                (group.id)
+            }
+            " on " (group.adapter) ", " (places.join(" and ")) ": " (what)
+        },
+        None => html! { (what) },
+    };
+    said.into_iter().map(line).collect()
 }
 
 /// A page with a matrix of formulas by the subjects of several results, each with the name that tells it from the others.

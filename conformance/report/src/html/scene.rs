@@ -1,6 +1,6 @@
 //! The card of a scene whose image is wrong: reference and result behind a slider, the error map, and the pixels' values.
 
-use super::card::{Card, cause, failing_share};
+use super::card::{Card, failing_share};
 use super::failure::command;
 use super::matrix::{card_id, is_failing};
 use super::page::embedded;
@@ -76,7 +76,7 @@ pub(super) fn cards(report: &Report) -> Vec<Card> {
         name: wrong.group.id.clone(),
         place: format!("{}, {}", wrong.group.adapter, wrong.places()),
         share: failing_share(&[wrong.group]),
-        cause: cause(wrong.group),
+        cause: wrong.group.cause.clone(),
         body: card(report, wrong, place < OPEN),
     };
     wrong(report).iter().enumerate().map(told).collect()
@@ -117,7 +117,11 @@ fn card(report: &Report, wrong: &Wrong<'_>, is_open: bool) -> Markup {
         details.card.scene id=(wrong.anchor()) open[is_open] {
             summary {
                 span.fail { "✗" } " " b { (group.id) } " on " (group.adapter) ", " (wrong.places()) ": "
-                span.quiet { (thousands(group.totals.failed)) " of " (thousands(group.totals.verdicts)) " values fail." }
+                span.quiet {
+                    (thousands(group.totals.failed)) " of " (thousands(group.totals.verdicts)) " values fail"
+                    @if group.totals.expected_failures > 0 { ", besides " (thousands(group.totals.expected_failures)) " that are known deviations" }
+                    "."
+                }
             }
             @for what in group.explanation.iter().chain(&group.problem) {
                 p.cause { (what.split("; the worst: ").next().unwrap_or_default()) }

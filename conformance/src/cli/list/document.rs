@@ -8,6 +8,7 @@ use lightmeter::document::list::{
     ListedFormula, ListedInput, ListedOutput, ListedProbe, NaiveForm, SceneCases, StableClaim, TableCases,
 };
 use lightmeter::document::{Number, Word};
+use lightmeter::gate::pack::made_by;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load;
 use lightmeter::scene::select::{Chosen, scene_id};
@@ -86,6 +87,7 @@ fn formula(member: &Member, aliases: &Aliases) -> ListedFormula {
         formula: spec.text.into(),
         rules: spec.rules().into_iter().map(Word::from).collect(),
         source: spec.source.into(),
+        made_by: made_by(spec),
         stages: spec.stages().iter().map(|stage| Word::from(stage.name())).collect(),
         stable: spec.stable.map(stable),
         inputs: spec.inputs.iter().map(input).collect(),

@@ -202,7 +202,7 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
 fn boundaries(spec: &Spec) -> anyhow::Result<String> {
     let (mut text, names) = (String::new(), boundary_names(spec));
     if !names.is_empty() {
-        writeln!(text, "boundaries, each with {DRAWN} cases close to it")?;
+        writeln!(text, "boundaries, each with {DRAWN} cases close to it, on it, or close to another one too")?;
     }
     for names in names.chunks(4) {
         writeln!(text, "  {}", names.join("; "))?;
@@ -280,7 +280,7 @@ pub(super) fn wgsl(name: &str, catalogue: &[Member]) -> anyhow::Result<String> {
     let id = canonical(name);
     if let Some(member) = catalogue.iter().find(|member| member.spec.id == id) {
         let spec = &member.spec;
-        let file = format!("{}.wgsl", spec.family());
+        let file = spec.file();
         let text = shaders.function_with_named(&file, spec.function);
         let Some(text) = text else { bail!("`{name}` is drawn by fixed hardware: no function computes it") };
         return Ok(format!("// {file}\n{text}\n"));

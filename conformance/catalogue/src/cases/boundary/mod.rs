@@ -2,9 +2,9 @@
 //! vectors nearly at right angles, parallel or opposite, a light in the surface, a point on the edge of a cone.
 //!
 //! A shortcut that is taken near such a place (`if abs(l·n) < 1e-4`) is seldom seen by inputs drawn evenly. So each way in which the inputs
-//! of a formula can come close to one is found from their shapes, domains, units and names, and is drawn at distances from ½ to 2⁻²⁴.
+//! of a formula can come close to one is found from their shapes, domains, units and names, and is drawn at distances from ½ to 2⁻²⁴, at a distance of 0, and together with another of the ways.
 
-use super::draw::{inputs, mix};
+use super::draw::inputs;
 use super::fit::Fitted;
 use super::program::Program;
 use super::spec::{Domain, Input, Kind, Spec, ValueShape};
@@ -13,9 +13,12 @@ use std::ops::Range;
 
 mod near;
 
-/// Distances from ½ to 2⁻²⁴: eight steps of three octaves, four in each.
-pub const DRAWN: u64 = 32;
+/// How many cases are drawn of each way: 32 at distances from ½ to 2⁻²⁴, which are eight steps of three octaves with four in each, then
+/// 4 at a distance of 0 and 12 at any of these distances after another of the ways was taken.
+pub const DRAWN: u64 = 48;
 const IN_EACH_STEP: u64 = 4;
+const OF_ONE_WAY: u64 = 32;
+const OF_ONE_WAY_OR_AT_0: u64 = 36;
 /// What the numbers are drawn with: the same in every run, as those of other hard cases are.
 const SEED: u64 = 0xb0da;
 
@@ -30,26 +33,38 @@ enum Approach {
     AboveOne(usize),
     /// A number below 0.
     BelowZero(usize),
-    /// A number of many times its domain's greatest.
+    /// A number of many times its domain's greatest, in half of the cases among places as many times as small.
     Great(usize),
     /// The second number near the first, or near its negative.
     Equal([usize; 2], f64),
     /// Three numbers that are nearly the same.
     AllEqual(Range<usize>),
+    /// A whole number, near the least of its domain or near the greatest.
+    End(usize, u32),
     /// A colour near black.
     Dark(Range<usize>),
+    /// A colour's components above 1, or below 0.
+    Beyond(Range<usize>, f64),
     /// A vector near the origin.
     Short(Range<usize>),
     /// A place of up to 256 times its distance.
     Far(Range<usize>),
     /// A place on the other side of the origin.
     Turned(Range<usize>),
-    /// All lengths and places as many times as small.
+    /// All that is in a unit as many times as small.
     Small(&'static str),
+    /// All but directions and matrices as many times as small.
+    AllSmall,
     /// A vector of up to four times its length.
     Long(Range<usize>),
+    /// A vector of a length near 1.
+    UnitLength(Range<usize>),
     /// The vector's component of this place near 0.
     Level(Range<usize>, usize),
+    /// A place near the axis of depth.
+    OnAxis(Range<usize>),
+    /// An exponent of a power of two, such as one for which products stand in for powers.
+    PowerOfTwo(usize),
     /// The second vector near a right angle to the first.
     Perpendicular([Range<usize>; 2]),
     /// The second vector nearly parallel to the first, or nearly opposite.
@@ -67,6 +82,8 @@ enum Approach {
     Shrunk(Range<usize>),
     /// A matrix that nearly flattens along a column.
     Flat(Range<usize>),
+    /// A matrix of which some columns, or the last line, are near the identity's.
+    Identity(Range<usize>),
     /// A normal near a right angle to the light, or to the viewer.
     Grazing {
         normal: &'static str,
@@ -100,11 +117,20 @@ pub fn boundary_inputs(spec: &Spec, k: u64, row: &mut Vec<f32>) {
     let all = approaches(spec);
     let Some(approach) = usize::try_from(k / DRAWN).ok().and_then(|way| all.get(way)) else { return };
     let mut near = Near { fitted: Fitted::new(spec, row), distance: 1.0, side: 1.0 };
-    // 2⁻¹ to 2⁻²⁴ in eight steps of three, and within each at random.
-    let exponent =
-        3.0 * f64::from(u32::try_from(k % DRAWN / IN_EACH_STEP).unwrap_or_default()) + near.fitted.uniform(1.0, 4.0);
-    near.distance = core_math::exp2(-exponent);
-    near.side = if mix(k) & 1 == 0 { 1.0 } else { -1.0 };
+    let drawn = k % DRAWN;
+    if drawn < OF_ONE_WAY {
+        near.go_to(Some(drawn / IN_EACH_STEP));
+    } else if drawn < OF_ONE_WAY_OR_AT_0 {
+        near.go_to(None);
+    } else {
+        let others = all.len() as u64 - 1;
+        if others > 0 {
+            near.go_anywhere();
+            let another = (k / DRAWN + 1 + near.fitted.below(others)) % (others + 1);
+            usize::try_from(another).ok().and_then(|way| all.get(way)).inspect(|approach| near.take(approach));
+        }
+        near.go_anywhere();
+    }
     near.take(approach);
     if let Some(within) = spec.within {
         within(row);
@@ -125,6 +151,22 @@ pub fn boundary_names(spec: &Spec) -> Vec<String> {
 }
 
 impl Approach {
+    /// Whether vectors or places move by it, which may come to a length of 0.
+    const fn is_of_vectors(&self) -> bool {
+        matches!(
+            self,
+            Self::Short(_)
+                | Self::Small(_)
+                | Self::AllSmall
+                | Self::Cancel(_)
+                | Self::Parallel(..)
+                | Self::Close(_)
+                | Self::Depth(..)
+                | Self::Distance(..)
+                | Self::Against(_)
+        )
+    }
+
     fn told(&self, spec: &Spec) -> String {
         let number = |place: &usize| spec.input_name(*place);
         let whole = |places: &Range<usize>| {
@@ -143,10 +185,19 @@ impl Approach {
             Self::AllEqual(places) => format!("the components of {} nearly equal", whole(places)),
             Self::Far(places) => format!("{} far away", whole(places)),
             Self::Turned(places) => format!("{} on the other side of the origin", whole(places)),
-            Self::Small(unit) => format!("all that is in {unit}s small"),
+            Self::Small(unit) => format!("all lengths and places in {unit}s small"),
+            Self::End(place, end) => format!("{} near {end}", number(place)),
+            Self::AllSmall => "all numbers and places small".into(),
             Self::Dark(places) => format!("{} nearly black", whole(places)),
+            Self::Beyond(places, side) => {
+                format!("{} {}", whole(places), if *side < 0.0 { "below 0" } else { "above 1" })
+            }
             Self::Short(places) => format!("a short {}", whole(places)),
             Self::Long(places) => format!("a long {}", whole(places)),
+            Self::UnitLength(places) => format!("{} of a length near 1", whole(places)),
+            Self::OnAxis(places) => format!("{} near the z axis", whole(places)),
+            Self::PowerOfTwo(place) => format!("{} near a power of two", number(place)),
+            Self::Identity(places) => format!("a part of {} near the identity's", whole(places)),
             Self::Level(_, place) => format!("{} near 0", number(place)),
             Self::Perpendicular([a, b]) => format!("{} and {} nearly at right angles", whole(a), whole(b)),
             Self::Parallel([a, b], sign) => {
@@ -192,9 +243,14 @@ impl Input {
         is_drawn && !self.is_color() && !self.is_place()
     }
 
+    /// Whether as many times as small it is as good an input.
+    fn is_scalable(&self) -> bool {
+        self.is_numbers() || self.is_color() || self.is_place() || matches!(self.domain, Domain::Vector(..))
+    }
+
     /// Whether a number may be given outside of its domain at the end: below 0 and above 1.
-    const fn is_share(&self) -> bool {
-        matches!(self.domain, Domain::Unit | Domain::Weights)
+    fn is_share(&self) -> bool {
+        matches!(self.domain, Domain::Unit | Domain::Weights) || self.unit == "color"
     }
 }
 
@@ -215,59 +271,83 @@ fn approaches(spec: &Spec) -> Vec<Approach> {
     among_numbers(spec, &mut all);
     let has_places = |unit: &&&str| spec.inputs.iter().any(|input| input.is_place() && input.unit == **unit);
     all.extend(["unit", "pixel"].iter().filter(has_places).map(|unit| Approach::Small(unit)));
+    if spec.inputs.iter().filter(|input| input.is_scalable()).count() > 1 {
+        all.push(Approach::AllSmall);
+    }
     of_light(spec, &mut all);
     all
+}
+
+/// Those of an input of numbers that each stand for themselves.
+fn of_numbers(input: &Input, place: &Range<usize>, all: &mut Vec<Approach>) {
+    for number in place.clone() {
+        all.push(Approach::Zero(number));
+        if input.is_share() {
+            all.extend([Approach::AboveOne(number), Approach::BelowZero(number)]);
+        }
+        match input.domain {
+            Domain::LogUniform(..) => {
+                all.push(Approach::Great(number));
+                if matches!(input.name, "shininess" | "exponent") {
+                    all.push(Approach::PowerOfTwo(number));
+                }
+            }
+            Domain::Uniform(low, high) if low >= 0.0 && high > 1.0 => {
+                all.extend([Approach::Great(number), Approach::One(number)]);
+                if input.unit == "unit" {
+                    all.push(Approach::BelowZero(number));
+                }
+            }
+            Domain::Uniform(low, high) if !input.is_share() && (low > 1.0 || high < 1.0) => {}
+            _ => all.push(Approach::One(number)),
+        }
+    }
+    if place.len() == 3 {
+        all.push(Approach::AllEqual(place.clone()));
+    }
+    for a in place.clone() {
+        for b in a + 1..place.end {
+            all.push(Approach::Equal([a, b], 1.0));
+            if input.shape == ValueShape::Vec4 {
+                all.push(Approach::Equal([b, a], -1.0));
+            }
+        }
+    }
 }
 
 /// Those of one input.
 fn alone(input: &Input, place: Range<usize>, all: &mut Vec<Approach>) {
     if input.is_numbers() {
-        for number in place.clone() {
-            all.push(Approach::Zero(number));
-            if input.is_share() {
-                all.extend([Approach::AboveOne(number), Approach::BelowZero(number)]);
-            }
-            match input.domain {
-                Domain::LogUniform(..) => all.push(Approach::Great(number)),
-                Domain::Uniform(low, high) if low >= 0.0 && high > 1.0 => {
-                    all.extend([Approach::Great(number), Approach::One(number)]);
-                    if input.unit == "unit" {
-                        all.push(Approach::BelowZero(number));
-                    }
-                }
-                Domain::Uniform(low, high) if low > 1.0 || high < 1.0 => {}
-                _ => all.push(Approach::One(number)),
-            }
-        }
-        if place.len() == 3 {
-            all.push(Approach::AllEqual(place.clone()));
-        }
-        for a in place.clone() {
-            for b in a + 1..place.end {
-                all.push(Approach::Equal([a, b], 1.0));
-                if input.shape == ValueShape::Vec4 {
-                    all.push(Approach::Equal([b, a], -1.0));
-                }
-            }
-        }
+        of_numbers(input, &place, all);
     } else if input.is_color() {
         if input.shape == ValueShape::Vec4 {
-            all.extend([Approach::Zero(place.end - 1), Approach::One(place.end - 1)]);
+            let alpha = place.end - 1;
+            all.extend([Approach::Zero(alpha), Approach::One(alpha)]);
+            all.extend([Approach::AboveOne(alpha), Approach::BelowZero(alpha)]);
         }
+        all.extend([1.0, -1.0].map(|side| Approach::Beyond(place.clone(), side)));
         all.push(Approach::Dark(place));
     } else if input.is_direction() {
         all.extend(place.clone().map(|number| Approach::Level(place.clone(), number)));
         // A direction is a unit vector: whoever normalises it does nothing wrong.
         if input.domain != Domain::Direction {
-            all.extend([Approach::Short(place.clone()), Approach::Long(place)]);
+            all.extend([Approach::Short(place.clone()), Approach::Long(place.clone()), Approach::UnitLength(place)]);
         }
     } else if input.is_place() {
         if matches!(input.domain, Domain::Uniform(0.0, _)) {
             all.push(Approach::Turned(place.clone()));
         }
+        if input.is_vec3() {
+            all.extend(place.clone().map(|number| Approach::Level(place.clone(), number)));
+            all.push(Approach::OnAxis(place.clone()));
+        }
         all.extend([Approach::Short(place.clone()), Approach::Far(place)]);
     } else if input.shape == ValueShape::Mat3 {
-        all.extend([Approach::Shrunk(place.clone()), Approach::Flat(place)]);
+        all.extend([Approach::Shrunk(place.clone()), Approach::Flat(place.clone()), Approach::Identity(place)]);
+    } else if input.shape == ValueShape::Mat4 {
+        all.push(Approach::Identity(place));
+    } else if let Domain::Whole(low, high) = input.domain {
+        all.extend(place.flat_map(|number| [low, high].map(|end| Approach::End(number, end))));
     }
 }
 
@@ -374,7 +454,8 @@ mod tests {
             let is_whole = |input: &Input| matches!(input.domain, Domain::Whole(..) | Domain::Transform(..));
             assert!(!names.is_empty() || spec.inputs.iter().all(is_whole), "{}", spec.id);
             assert_eq!(boundary_cases(spec), names.len() as u64 * DRAWN);
-            for (name, first) in names.iter().zip((0..).step_by(32)) {
+            for (name, way) in names.iter().zip(0..) {
+                let first = way * DRAWN;
                 let is_moved = |k: &u64| {
                     let mut drawn = vec![];
                     inputs(spec, SEED, *k, &mut drawn);
@@ -383,7 +464,7 @@ mod tests {
                     drawn != moved
                 };
                 let moved = (first..first + DRAWN).filter(is_moved).count();
-                assert!(moved >= 24, "{}: {name} moves {moved} of {DRAWN}", spec.id);
+                assert!(moved >= 36, "{}: {name} moves {moved} of {DRAWN}", spec.id);
             }
         }
     }
@@ -394,16 +475,26 @@ mod tests {
         let of = |id: &str| catalogue.iter().find(|member| member.spec.id == id).expect("it is there");
         let spec = &of("interpolation/perspective-line").spec;
         let place = boundary_names(spec).iter().position(|name| name == "w.y near w.x").expect("a boundary");
-        let apart = (place as u64 * DRAWN..).take(32).map(|k| {
-            let row = row(spec, k);
-            (f64::from(row[2]) / f64::from(row[1]) - 1.0).abs()
-        });
-        let apart: Vec<f64> = apart.collect();
+        let first = place as u64 * DRAWN;
+        let apart_in = |cases: Range<u64>| {
+            let apart = cases.map(|k| {
+                let row = row(spec, first + k);
+                let (x, y) = (f64::from(row[1]), f64::from(row[2]));
+                if x.to_bits() == y.to_bits() { 0.0 } else { (y / x - 1.0).abs() }
+            });
+            apart.collect::<Vec<f64>>()
+        };
+        let apart = apart_in(0..OF_ONE_WAY);
         assert!(apart.iter().all(|&x| x <= 0.51), "{apart:?}");
         for octave in 0..8 {
             let high = core_math::exp2(f64::from(-3 * octave - 1)) * 1.1;
             let inside = apart.iter().filter(|&&x| x < high && x > high / 10.0).count();
             assert!(inside >= 1, "none near {high}: {apart:?}");
         }
+        let on_it = apart_in(OF_ONE_WAY..OF_ONE_WAY_OR_AT_0);
+        assert!(on_it.iter().all(|&x| x <= 0.0), "{on_it:?}");
+        let with_another = apart_in(OF_ONE_WAY_OR_AT_0..DRAWN);
+        assert!(with_another.iter().all(|&x| x <= 0.51), "{with_another:?}");
+        assert!(with_another.iter().any(|&x| x <= 0.0) && with_another.iter().any(|&x| x > 0.0), "{with_another:?}");
     }
 }

@@ -18,6 +18,21 @@ pub(super) struct Near<'a> {
 }
 
 impl Near<'_> {
+    /// To a distance of one of the eight steps from 2⁻¹ to 2⁻²⁴, within which it is drawn, or to 0; on either side.
+    pub(super) fn go_to(&mut self, step: Option<u64>) {
+        self.distance = step.map_or(0.0, |step| {
+            let octaves = 3.0 * f64::from(u32::try_from(step).unwrap_or_default());
+            core_math::exp2(-octaves - self.fitted.uniform(1.0, 4.0))
+        });
+        self.side = if self.fitted.below(2) == 0 { 1.0 } else { -1.0 };
+    }
+
+    /// To any of these distances, in half of the cases 0.
+    pub(super) fn go_anywhere(&mut self) {
+        let step = self.fitted.below(16);
+        self.go_to((step < 8).then_some(step));
+    }
+
     fn get(&self, place: usize) -> f64 {
         self.fitted.row[place].into()
     }
@@ -47,22 +62,38 @@ impl Near<'_> {
         spec.inputs.iter().find(is_there).map_or(Domain::Unit, |input| input.domain)
     }
 
-    /// Takes the way to the boundary.
+    /// Takes the way to the boundary. What lighting makes of a vector without length, shading languages leave open, and no author guards it:
+    /// `vector/normalize` and its like ask for it, lighting comes no closer than 2⁻²⁴.
     pub(super) fn take(&mut self, approach: &Approach) {
+        let asked = self.distance;
+        if approach.is_of_vectors() && self.fitted.spec.family() == "lighting" {
+            self.distance = asked.max(core_math::exp2(-24.0));
+        }
+        self.go(approach);
+        self.distance = asked;
+    }
+
+    fn go(&mut self, approach: &Approach) {
         match approach {
             Approach::Zero(place) => self.zero(*place),
             Approach::One(place) => self.set(*place, 1.0 + self.side * self.distance),
             Approach::AboveOne(place) => self.set(*place, 1.0 + 2.0 * self.distance),
-            Approach::BelowZero(place) => self.set(*place, -2.0 * self.distance),
+            Approach::BelowZero(place) => self.set(*place, 0.0 - 2.0 * self.distance),
+            Approach::End(place, end) => self.end(*place, f64::from(*end)),
             Approach::Great(place) => self.great(*place),
             Approach::Equal([from, to], sign) => {
                 self.others_small([*from, *to]);
                 let x = self.get(*from) * sign * (1.0 + self.side * self.distance);
                 self.set(*to, x);
             }
-            Approach::Small(unit) => self.small(unit, self.distance),
+            Approach::Small(unit) => self.small(|input| input.unit == *unit, self.distance),
+            Approach::AllSmall => self.small(Input::is_scalable, self.distance),
             Approach::Grazing { .. } | Approach::Mirroring { .. } | Approach::Against(_) => self.light(approach),
             Approach::Cone => self.cone(),
+            Approach::PowerOfTwo(place) => {
+                let power = core_math::exp2(f64::from(u8::try_from(self.fitted.below(9)).unwrap_or_default()));
+                self.set(*place, power * (1.0 + self.side * self.distance));
+            }
             Approach::AllRound => self.fitted.put_scalar("cutoff_cosine", -1.0),
             _ => self.of_vectors(approach),
         }
@@ -72,6 +103,12 @@ impl Near<'_> {
         match approach {
             Approach::Dark(places) | Approach::Short(places) | Approach::Shrunk(places) => {
                 self.scale(places.clone(), self.distance);
+            }
+            Approach::Beyond(places, side) => {
+                for place in places.clone().take(3) {
+                    let off = 2.0 * self.distance * self.get(place);
+                    self.set(place, if *side < 0.0 { 0.0 - off } else { 1.0 + off });
+                }
             }
             Approach::AllEqual(places) => {
                 let first = self.get(places.start);
@@ -89,36 +126,87 @@ impl Near<'_> {
                 let by = 1.0 + self.fitted.uniform(0.0, 3.0);
                 self.scale(places.clone(), by);
             }
+            Approach::UnitLength(places) => {
+                let length = 1.0 + self.side * self.distance;
+                let to = self.vector(places).normalize().scale(length);
+                self.put(places, to);
+            }
+            Approach::OnAxis(places) => self.scale(places.start..places.end - 1, self.distance),
+            Approach::Identity(places) => self.identity(places),
             Approach::Level(places, place) => {
                 let length = self.vector(places).length();
                 self.set(*place, self.side * self.distance * length);
                 let turned = self.vector(places).normalize().scale(length);
                 self.put(places, turned);
             }
+            Approach::Flat(places) => {
+                // The column that the determinant's sign is of.
+                let column = places.start + 3 * usize::from(self.side > 0.0);
+                self.scale(column..column + 3, self.distance);
+            }
+            _ => self.of_places(approach),
+        }
+    }
+
+    fn of_places(&mut self, approach: &Approach) {
+        match approach {
             Approach::Close([a, b]) => {
                 let off = self.fitted.jitter().scale(self.distance);
                 let at = self.vector(a);
                 self.put(b, at + off);
-                if self.fitted.row[a.clone()] == self.fitted.row[b.clone()] {
+                if self.distance > 0.0 && self.fitted.row[a.clone()] == self.fitted.row[b.clone()] {
                     self.fitted.row[b.start] = self.fitted.row[b.start].next_up();
                 }
             }
-            Approach::Line([a, b, p]) => self.line([a, b, p]),
             Approach::Depth(place, number) => {
                 let x = -self.get(*number) * (1.0 + self.side * self.distance);
                 self.set(place.end - 1, x);
+            }
+            // Along an axis no rounding parts the length from the number.
+            Approach::Distance(place, number) if self.distance <= 0.0 => {
+                let length = self.get(*number);
+                self.put(place, Vector([0.0, 0.0, -length]));
             }
             Approach::Distance(place, number) => {
                 let length = self.get(*number) * (1.0 + self.side * self.distance);
                 let to = self.vector(place).normalize().scale(length);
                 self.put(place, to);
             }
-            Approach::Flat(places) => {
-                // The column that the determinant's sign is of.
-                let column = places.start + 3 * usize::from(self.side > 0.0);
-                self.scale(column..column + 3, self.distance);
+            _ if self.distance > 0.0 => self.among_vectors(approach),
+            _ => self.among_vectors_exactly(approach),
+        }
+    }
+
+    /// Exactly at right angles, parallel, opposite, cancelling or on a line, in whatever order it is computed.
+    fn among_vectors_exactly(&mut self, approach: &Approach) {
+        match approach {
+            Approach::Perpendicular([a, b]) => {
+                let axis = usize::try_from(self.fitted.below(3)).unwrap_or_default();
+                let [mut along, mut across] = [Vector::splat(0.0); 2];
+                let (from, to) = (self.vector(a), self.vector(b));
+                along.0[axis] = self.side * from.length();
+                across.0[(axis + 1) % 3] = to.length();
+                self.put(a, along);
+                self.put(b, across);
             }
-            _ => self.among_vectors(approach),
+            Approach::Parallel([a, b], sign) => {
+                let at = self.vector(a);
+                self.put(b, at.scale(*sign));
+            }
+            Approach::Cancel([a, b, c]) => {
+                let (from, to) = (coarse(self.vector(a)), coarse(self.vector(b)));
+                self.put(a, from);
+                self.put(b, to);
+                self.put(c, -(from + to));
+            }
+            Approach::Line([a, b, p]) => {
+                let quarters = f64::from(u8::try_from(self.fitted.below(5)).unwrap_or_default());
+                let (from, to) = (coarse(self.vector(a)), coarse(self.vector(b)));
+                self.put(a, from);
+                self.put(b, to);
+                self.put(p, from + (to - from).scale(0.25 * quarters));
+            }
+            _ => {}
         }
     }
 
@@ -139,6 +227,7 @@ impl Near<'_> {
                 let sum = self.vector(a) + self.vector(b);
                 self.put(c, left - sum);
             }
+            Approach::Line([a, b, p]) => self.line([a, b, p]),
             _ => {}
         }
     }
@@ -157,10 +246,9 @@ impl Near<'_> {
         }
     }
 
-    /// All that is in a unit.
-    fn small(&mut self, unit: &str, by: f64) {
+    fn small(&mut self, is_made_small: impl Fn(&Input) -> bool, by: f64) {
         let spec = self.fitted.spec;
-        for input in spec.inputs.iter().filter(|input| input.unit == unit) {
+        for input in spec.inputs.iter().filter(|input| is_made_small(input)) {
             if let Some(places) = spec.place(input.name) {
                 self.scale(places, by);
             }
@@ -178,11 +266,24 @@ impl Near<'_> {
         self.set(place, x);
     }
 
+    /// A whole number at an end of its domain, or up to three inside of it.
+    fn end(&mut self, place: usize, end: f64) {
+        let Domain::Whole(low, high) = self.domain_of(place) else { return };
+        let inward = f64::from(u8::try_from(self.fitted.below(4)).unwrap_or_default());
+        let inward = if self.distance > 0.0 { inward } else { 0.0 };
+        let x = if end > f64::from(low) { end - inward } else { end + inward };
+        self.set(place, x.clamp(low.into(), high.into()));
+    }
+
     /// Up to 64 times the greatest of a domain.
     fn great(&mut self, place: usize) {
         if let Domain::LogUniform(_, high) | Domain::Uniform(_, high) = self.domain_of(place) {
-            let x = f64::from(high) * core_math::exp2(self.fitted.uniform(0.0, 6.0));
-            self.set(place, x);
+            let by = core_math::exp2(self.fitted.uniform(0.0, 6.0));
+            // Fog of a great density is nothing but fog, unless its distance is small.
+            if self.fitted.below(2) == 0 {
+                self.small(|input| input.is_place() && input.unit == "unit", 1.0 / (by * f64::from(high)));
+            }
+            self.set(place, f64::from(high) * by);
         }
     }
 
@@ -190,7 +291,7 @@ impl Near<'_> {
     fn line(&mut self, [a, b, p]: [&Range<usize>; 3]) {
         // Half of them among points of which none is far from another.
         if self.fitted.below(2) == 0 {
-            self.small("pixel", 1.0 / 64.0);
+            self.small(|input| input.unit == "pixel", 1.0 / 64.0);
         }
         let t = self.fitted.uniform(0.0, 1.0);
         let (from, to) = (self.vector(a), self.vector(b));
@@ -199,6 +300,26 @@ impl Near<'_> {
             off.0[2] = 0.0;
         }
         self.put(p, from + (to - from).scale(t) + off);
+    }
+
+    /// Some columns near the identity's, or of a 4 × 4 matrix the last line: the others stay as they are.
+    fn identity(&mut self, places: &Range<usize>) {
+        let (side, ways) = if places.len() == 16 { (4, 3) } else { (3, 2) };
+        let column = usize::try_from(self.fitted.below(side)).unwrap_or_default();
+        // All but one column, that one alone, or the last line.
+        let way = self.fitted.below(ways);
+        let side = usize::try_from(side).unwrap_or_default();
+        for (k, place) in places.clone().enumerate() {
+            let is_changed = match way {
+                0 => k / side != column,
+                1 => k / side == column,
+                _ => k % side == side - 1,
+            };
+            if is_changed {
+                let off = self.fitted.uniform(-1.0, 1.0) * self.distance;
+                self.set(place, if k / side == k % side { 1.0 } else { 0.0 } + off);
+            }
+        }
     }
 
     fn light(&mut self, approach: &Approach) {
@@ -243,4 +364,9 @@ impl Near<'_> {
             self.fitted.put_scalar("cutoff_cosine", cosine.clamp(-1.0, 1.0));
         }
     }
+}
+
+/// A vector of few digits, whose sums are exact.
+fn coarse(v: Vec3<f64>) -> Vec3<f64> {
+    Vector(v.0.map(|x| (x * 256.0).trunc() / 256.0))
 }

@@ -72,6 +72,14 @@ pub struct SceneDiagnosis {
     pub sentence: String,
 }
 
+impl SceneDiagnosis {
+    /// What the best explanation says, and by which names the catalogue knows it.
+    #[must_use]
+    pub fn cause(&self) -> Option<String> {
+        self.explanations.first().map(says)
+    }
+}
+
 /// An image and all that is known of it.
 pub struct Trial<'a> {
     frame: &'a Frame,
