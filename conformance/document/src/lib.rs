@@ -13,6 +13,7 @@ pub mod frame;
 pub mod gate;
 pub mod identify;
 pub mod list;
+pub mod made_by;
 pub mod mistakes;
 mod number;
 pub mod pack;

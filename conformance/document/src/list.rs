@@ -1,6 +1,6 @@
 //! The JSON of `list`: the cases, `lightmeter.cases/1`, or with `--formulas` the formulas, `lightmeter.formulas/1`.
 
-use crate::protocol::MadeBy;
+use crate::made_by::MadeBy;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

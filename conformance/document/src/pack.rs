@@ -1,7 +1,7 @@
 //! The manifest of a pack of cases: `lightmeter.pack/1`.
 
 use crate::Word;
-use crate::protocol::MadeBy;
+use crate::made_by::MadeBy;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,10 +1,8 @@
 //! What a renderer that runs as a process is told and asked, a line each: `lightmeter.protocol/1`.
 
 use crate::Word;
+use crate::made_by::LayerRequest;
 use crate::pack::PackedFormula;
-use lightmeter_scene::blend::State;
-use lightmeter_scene::depth::DepthTest;
-use lightmeter_scene::raster::Raster;
 use lightmeter_scene::target::TargetFormat;
 use schemars::{JsonSchema, Schema};
 use serde::{Deserialize, Serialize};
@@ -28,7 +26,7 @@ pub struct Greeting {
 
 /// What is told of a formula before its first case, where the renderer's hello asks for it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Description {
+pub struct FormulaDescription {
     /// The formula, as a pack's manifest has it, without the number of cases.
     pub describe: PackedFormula,
 }
@@ -48,40 +46,6 @@ pub struct CaseRequest {
     /// The states, one for each layer in turn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blend: Option<Vec<LayerRequest>>,
-}
-
-/// What computes a formula or draws it, beside its inputs and outputs.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct MadeBy {
-    /// The WGSL file that an adapter runs, of `gpu/src/shaders`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub file: Option<String>,
-    /// The function in that file; none where fixed hardware alone draws it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub function: Option<String>,
-    /// How the numbers of matrices follow each other: `columns`, where there are any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub matrices: Option<Word>,
-    /// The blend states, one for each layer in turn.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub blend: Option<Vec<LayerRequest>>,
-    /// The depth test.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub depth: Option<DepthTest>,
-    /// What a rasteriser draws.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub raster: Option<Raster>,
-}
-
-/// How a layer is drawn.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct LayerRequest {
-    /// Of red, green and blue.
-    pub color: State,
-    /// Of alpha.
-    pub alpha: State,
-    /// The components that are written: letters of `rgba`.
-    pub mask: String,
 }
 
 /// An operation on special values.
@@ -181,7 +145,7 @@ pub enum ProtocolLine {
     /// A scene to be drawn.
     Scene(SceneRequest),
     /// What a formula takes, gives and is computed by.
-    Description(Description),
+    Description(FormulaDescription),
     /// A case of a formula.
     Case(CaseRequest),
     /// A batch of a formula in columns.
@@ -209,7 +173,7 @@ macro_rules! lines {
     };
 }
 
-lines! { Greeting Description CaseRequest ProbeRequest SceneRequest ColumnsRequest }
+lines! { Greeting FormulaDescription CaseRequest ProbeRequest SceneRequest ColumnsRequest }
 
 /// The line, without its line feed. It has always had its space.
 impl fmt::Display for BatchEnd {

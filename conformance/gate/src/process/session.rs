@@ -9,7 +9,7 @@ use super::Asking;
 use super::running::{Event, Running};
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_document::by_case::RendererUse;
-use lightmeter_document::protocol::{BatchEnd, Description, Greeting, PROTOCOL};
+use lightmeter_document::protocol::{BatchEnd, FormulaDescription, Greeting, PROTOCOL};
 use lightmeter_judge::cases::ExpectedFailure;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -341,7 +341,7 @@ impl Session {
     /// A line that describes a formula, where it was asked for and not written yet.
     pub(super) fn description(&mut self, spec: &Spec) -> String {
         if self.hello.describe && self.described.insert(spec.id.clone()) {
-            format!("{}\n", Description { describe: described(spec) })
+            format!("{}\n", FormulaDescription { describe: described(spec) })
         } else {
             String::new()
         }
