@@ -122,4 +122,6 @@ fn a_group_of_blend_states_is_told_by_the_mistake_that_most_of_them_show() {
     let group = groups.iter().find(|group| group["stage"] == "compute" && group["id"] == "blend/add").expect("one");
     assert_eq!(group["mistakes"], serde_json::json!(["color-for-alpha"]), "{group}");
     assert!(group["explanation"].to_string().contains("; it also explains "), "{group}");
+    let cause = group["cause"].as_str().expect("the cause alone");
+    assert!(cause.ends_with("(color-for-alpha)") && !cause.contains("explain"), "{cause}");
 }

@@ -185,6 +185,9 @@ pub struct GateGroup {
     pub expected_problem: Option<String>,
     /// What explains its failures.
     pub diagnosis: Option<String>,
+    /// What the renderer did wrong, in words, without how many failures it explains.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<String>,
     /// The names of the mistakes that explain them together.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mistakes: Vec<String>,
@@ -238,6 +241,7 @@ impl GateGroup {
             problem: group.problem.clone(),
             expected_problem: group.expected_problem.clone(),
             diagnosis: group.explanation.clone(),
+            cause: group.cause.clone(),
             mistakes: group.mistakes.clone(),
             smallest: counts.smallest.clone(),
             image: group.image.clone().filter(|image| !image.pixels.is_empty()),
@@ -451,6 +455,7 @@ impl GateGroup {
             margin_max: self.margin_max,
             worst: self.worst,
             explanation: self.diagnosis,
+            cause: self.cause,
             mistakes: self.mistakes,
             problem: self.problem,
             expected_problem: self.expected_problem,

@@ -24,7 +24,7 @@ pub struct Greeting {
     pub folder: String,
 }
 
-/// What is told of a formula before its first case, where the renderer's hello asks for it.
+/// The line that describes a formula. It is written before the formula's first case if the renderer's hello has `"describe": true`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FormulaDescription {
     /// The formula, as a pack's manifest has it, without the number of cases.

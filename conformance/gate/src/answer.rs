@@ -50,7 +50,7 @@ pub struct Hello {
     pub pack: Option<String>,
     /// Whether a process is asked in columns: binary batches of a formula.
     pub columns: bool,
-    /// Whether a process is told of each formula, before its first case, what it takes, what it gives and what computes it.
+    /// Whether the gate describes each formula to the process before its first case: its inputs, its outputs and what computes it.
     pub describe: bool,
     /// Whether it is asked for special values: NaN, infinity, subnormals, signed zero and rounding, an operation at a time.
     pub special: bool,

@@ -109,8 +109,8 @@ fn verdict(report: &GateReport, level: Level, out: &mut impl Write) -> Result {
     if excluded > 0 {
         let why = match totals.not_asked {
             0 => String::new(),
-            all if all == excluded => ", which the renderer does not declare".into(),
-            some => format!(", {} of which the renderer does not declare", thousands(some)),
+            all if all == excluded => ", which the renderer does not declare or excludes".into(),
+            some => format!(", {} of which the renderer does not declare or excludes", thousands(some)),
         };
         let [chosen, judged, excluded] = [chosen, judged, excluded].map(thousands);
         writeln!(out, "of {chosen} chosen cases {judged} were judged and {excluded} excluded{why}")?;

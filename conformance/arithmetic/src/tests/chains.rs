@@ -369,6 +369,12 @@ fn both_forms_of_a_function_are_legal() {
         let one = exactly(1.0);
         [
             ("mix", Accept::mix(a, b, t), a * (one - t) + b * t, a + t * (b - a)),
+            (
+                "mix of differences",
+                Accept::mix_of_differences([c - a, c - b], c, [a, b], t),
+                Accept::mix(c - a, c - b, t),
+                c - Accept::mix(a, b, t),
+            ),
             ("quadratic", Accept::quadratic([a, b, c], t), a + t * (b + t * c), {
                 Accept::sum([a, b * t, Accept::product([c, t, t])])
             }),

@@ -304,7 +304,7 @@ const RULES: &[(&str, &str)] = &[
     ("lighting/phong-shading", "where nothing is left of the mixed normals the normal is 0"),
     (
         "lighting/phong-interpolated",
-        "position − pa and position − pb are mixed for l, or position − mix(pa, pb, t) is taken; −pa and −pb are mixed for v; none is normalised before it is mixed",
+        "l is position − pa and position − pb mixed, or position − mix(pa, pb, t), and v is −pa and −pb mixed; none is normalised before it is mixed",
     ),
     ("lighting/flat", "a face without area has the normal 0"),
     (

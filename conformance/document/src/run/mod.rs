@@ -113,7 +113,7 @@ pub struct Group {
     /// The mistake that explains what failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explanation: Option<String>,
-    /// What that mistake is, in words, without how much of what failed it explains.
+    /// What the renderer did wrong, in words, without how many failures it explains.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cause: Option<String>,
     /// The names of the mistakes that explain what failed together.

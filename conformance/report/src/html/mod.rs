@@ -4,6 +4,7 @@
 //! that are embedded; names of others are text wherever they stand.
 
 mod card;
+mod compared;
 mod equation;
 mod failure;
 mod markdown;
@@ -23,13 +24,13 @@ use crate::bench::{page as bench_page, plot as bench_plot};
 use crate::page::selftest::{self, SelftestRun};
 use crate::page::sweep::{self, Swept};
 use card::{Card, percent};
+use compared::compared;
 use lightmeter_document::bench::BenchDocument;
 use lightmeter_document::gate::GateReport;
-use lightmeter_document::run::{Group, Report};
-use matrix::{Column, is_failing};
+use lightmeter_document::run::Report;
+use matrix::Column;
 use maud::{Markup, html};
 use overview::Facts;
-use std::collections::HashMap;
 use std::fmt;
 
 /// The page of a run.
@@ -141,50 +142,6 @@ fn against(report: &Report, incidents: &[String]) -> Markup {
             }
         }
     }
-}
-
-/// Lines back in which a group's other places are looked for: each has a few things said of it.
-const MOST_PLACES: usize = 16;
-
-/// What a comparison says of groups: a line for all places of a formula that it says the same of, whose name leads to a card where there is one.
-fn compared(report: &Report, lines: &[String]) -> Vec<Markup> {
-    // A run calls its groups by subject and place, a gate by the target that they are blended on.
-    let of_run = |group: &Group| format!("{} on {}, {}", group.id, group.adapter, group.place());
-    let of_gate = |group: &Group| match &group.target {
-        Some(target) => format!("{} on {target}", group.id),
-        None => group.id.clone(),
-    };
-    let by_name: HashMap<String, &Group> =
-        report.groups.iter().flat_map(|group| [(of_run(group), group), (of_gate(group), group)]).collect();
-    // What is said, the first of the groups that it is said of, and the places of all.
-    let mut said: Vec<(&str, Option<&Group>, Vec<String>)> = vec![];
-    for line in lines {
-        let of = line.split_once(": ").and_then(|(name, what)| Some((what, *by_name.get(name)?)));
-        let Some((what, group)) = of else {
-            said.push((line, None, vec![]));
-            continue;
-        };
-        let is_alike = |(other, first, _): &&mut (&str, Option<&Group>, Vec<String>)| {
-            *other == what && first.is_some_and(|first| (&first.id, &first.adapter) == (&group.id, &group.adapter))
-        };
-        // The places of a group stand next to each other.
-        match said.iter_mut().rev().take(MOST_PLACES).find(is_alike) {
-            Some((.., places)) => places.push(group.place()),
-            None => said.push((what, Some(group), vec![group.place()])),
-        }
-    }
-    let line = |(what, group, places): (&str, Option<&Group>, Vec<String>)| match group {
-        Some(group) => html! {
-            @if is_failing(group) {
-                a href={ "#" (matrix::card_id(&group.id, &group.adapter)) } { (group.id) }
-            } @else {
-                (group.id)
-            }
-            " on " (group.adapter) ", " (places.join(" and ")) ": " (what)
-        },
-        None => html! { (what) },
-    };
-    said.into_iter().map(line).collect()
 }
 
 /// A page with a matrix of formulas by the subjects of several results, each with the name that tells it from the others.

@@ -2,7 +2,8 @@
 //! vectors nearly at right angles, parallel or opposite, a light in the surface, a point on the edge of a cone.
 //!
 //! A shortcut that is taken near such a place (`if abs(l·n) < 1e-4`) is seldom seen by inputs drawn evenly. So each way in which the inputs
-//! of a formula can come close to one is found from their shapes, domains, units and names, and is drawn at distances from ½ to 2⁻²⁴, at a distance of 0, and together with another of the ways.
+//! of a formula can come close to one is found from their shapes, domains, units and names. It is drawn at distances from ½ to 2⁻²⁴, at a
+//! distance of 0, and together with another of the ways.
 
 use super::draw::inputs;
 use super::fit::Fitted;
@@ -33,7 +34,7 @@ enum Approach {
     AboveOne(usize),
     /// A number below 0.
     BelowZero(usize),
-    /// A number of many times its domain's greatest, in half of the cases among places as many times as small.
+    /// A number far above its domain. In half of the cases the places are scaled down to match.
     Great(usize),
     /// The second number near the first, or near its negative.
     Equal([usize; 2], f64),
@@ -51,9 +52,9 @@ enum Approach {
     Far(Range<usize>),
     /// A place on the other side of the origin.
     Turned(Range<usize>),
-    /// All that is in a unit as many times as small.
+    /// All lengths and places in a unit, scaled by the distance.
     Small(&'static str),
-    /// All but directions and matrices as many times as small.
+    /// All inputs but directions and matrices, scaled by the distance.
     AllSmall,
     /// A vector of up to four times its length.
     Long(Range<usize>),
@@ -63,7 +64,7 @@ enum Approach {
     Level(Range<usize>, usize),
     /// A place near the axis of depth.
     OnAxis(Range<usize>),
-    /// An exponent of a power of two, such as one for which products stand in for powers.
+    /// An exponent near a power of two, for which a shader may multiply and not take a power.
     PowerOfTwo(usize),
     /// The second vector near a right angle to the first.
     Perpendicular([Range<usize>; 2]),
@@ -151,7 +152,7 @@ pub fn boundary_names(spec: &Spec) -> Vec<String> {
 }
 
 impl Approach {
-    /// Whether vectors or places move by it, which may come to a length of 0.
+    /// Whether it moves vectors or places so that one of them, or the difference of two, may come to a length of 0.
     const fn is_of_vectors(&self) -> bool {
         matches!(
             self,
@@ -243,7 +244,7 @@ impl Input {
         is_drawn && !self.is_color() && !self.is_place()
     }
 
-    /// Whether as many times as small it is as good an input.
+    /// Whether it is still a valid input when it is scaled down.
     fn is_scalable(&self) -> bool {
         self.is_numbers() || self.is_color() || self.is_place() || matches!(self.domain, Domain::Vector(..))
     }

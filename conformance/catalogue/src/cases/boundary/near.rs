@@ -62,8 +62,8 @@ impl Near<'_> {
         spec.inputs.iter().find(is_there).map_or(Domain::Unit, |input| input.domain)
     }
 
-    /// Takes the way to the boundary. What lighting makes of a vector without length, shading languages leave open, and no author guards it:
-    /// `vector/normalize` and its like ask for it, lighting comes no closer than 2⁻²⁴.
+    /// Moves the inputs to the boundary. Shading languages leave open what `normalize` gives for a vector of length 0, and shaders for lighting do
+    /// not guard against it. So formulas such as `vector/normalize` are asked for it, and those of lighting come no closer to it than 2⁻²⁴.
     pub(super) fn take(&mut self, approach: &Approach) {
         let asked = self.distance;
         if approach.is_of_vectors() && self.fitted.spec.family() == "lighting" {
