@@ -9,11 +9,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::process::ExitCode;
 use std::time::Instant;
 
-const HELP: &str = "usage: ./x mutants [--only FILE] [--every N] [--update]
+const HELP: &str = "usage: ./x mutants [--only FILE] [--survivors] [--every N] [--update]
 
 Changes one constant, operator or argument of the built-in shaders at a time, and tells whether a default run fails.
 
   --only FILE   mutants of this file alone, such as fog.wgsl or effects/spot.wgsl
+  --survivors   only mutants that tests/mutants.txt names: are they still not noticed?
   --every N     only each N-th mutant
   --update      write the survivors to tests/mutants.txt
 
@@ -22,12 +23,13 @@ Exit code: 0, or 1 where a mutant survives that tests/mutants.txt does not name,
 /// What is asked for.
 struct Asked {
     only: Option<String>,
+    are_survivors: bool,
     every: usize,
     update: bool,
 }
 
 fn asked() -> Result<Asked, String> {
-    let mut asked = Asked { only: None, every: 1, update: false };
+    let mut asked = Asked { only: None, are_survivors: false, every: 1, update: false };
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or_else(|| format!("{argument} takes a value"));
@@ -38,6 +40,7 @@ fn asked() -> Result<Asked, String> {
                 let number = text.parse().ok().filter(|&every: &usize| every > 0);
                 asked.every = number.ok_or_else(|| format!("--every `{text}`: expected a whole number above 0"))?;
             }
+            "--survivors" => asked.are_survivors = true,
             "--update" => asked.update = true,
             _ => return Err(format!("unexpected argument `{argument}`")),
         }
@@ -74,13 +77,16 @@ fn judge_all(asked: &Asked) -> Result<bool, String> {
     let files: Vec<(String, String)> =
         campaign.shaders().texts().map(|(file, text)| (file.to_owned(), text.to_owned())).collect();
     let of_file = |(file, text): &(String, String)| mutants(file, text);
-    let is_asked = |mutant: &Mutant| asked.only.as_ref().is_none_or(|only| *only == mutant.file);
+    let mut known = Survivors::read().map_err(|error| format!("{SURVIVORS}: {error}"))?;
+    let is_asked = |mutant: &Mutant| {
+        asked.only.as_ref().is_none_or(|only| *only == mutant.file)
+            && (!asked.are_survivors || known.class(mutant).is_some())
+    };
     let all: Vec<Mutant> = files.iter().flat_map(of_file).filter(is_asked).step_by(asked.every).collect();
     if all.is_empty() {
         let names: Vec<&str> = files.iter().map(|(file, _)| file.as_str()).collect();
-        return Err(format!("no mutants of that file; the files are {}", names.join(", ")));
+        return Err(format!("no such mutants of that file; the files are {}", names.join(", ")));
     }
-    let mut known = Survivors::read().map_err(|error| format!("{SURVIVORS}: {error}"))?;
     let mut counts: BTreeMap<&str, BTreeMap<MutantClass, usize>> = BTreeMap::new();
     let (mut is_all_known, clock) = (true, Instant::now());
     for (place, mutant) in all.iter().enumerate() {

@@ -436,7 +436,7 @@ fn of_light(spec: &Spec, all: &mut Vec<Approach>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::select::catalogue;
+    use crate::select::{Member, catalogue};
 
     fn row(spec: &Spec, k: u64) -> Vec<f32> {
         let mut row = vec![];
@@ -497,5 +497,49 @@ mod tests {
         let with_another = apart_in(OF_ONE_WAY_OR_AT_0..DRAWN);
         assert!(with_another.iter().all(|&x| x <= 0.51), "{with_another:?}");
         assert!(with_another.iter().any(|&x| x <= 0.0) && with_another.iter().any(|&x| x > 0.0), "{with_another:?}");
+    }
+
+    /// The rows of a formula's way whose distance is 0.
+    fn rows_at_0(id: &str, way: &str) -> (Member, Vec<Vec<f32>>) {
+        let member = catalogue().into_iter().find(|member| member.spec.id == id).expect("it is there");
+        let names = boundary_names(&member.spec);
+        let place = names.iter().position(|name| name == way).unwrap_or_else(|| panic!("{names:?}"));
+        let first = place as u64 * DRAWN;
+        let rows = (OF_ONE_WAY..OF_ONE_WAY_OR_AT_0).map(|k| row(&member.spec, first + k)).collect();
+        (member, rows)
+    }
+
+    fn numbers(spec: &Spec, row: &[f32], name: &str) -> Vec<f64> {
+        let places = spec.place(name).expect("an input");
+        row[places].iter().copied().map(f64::from).collect()
+    }
+
+    fn product(a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| a * b).sum()
+    }
+
+    #[test]
+    fn a_direction_lies_exactly_on_the_edge_of_a_cone() {
+        let (member, rows) = rows_at_0("attenuation/spot-cutoff", "near the edge of the cone");
+        for row in &rows {
+            let of = |name: &str| numbers(&member.spec, row, name);
+            let off = product(&of("l"), &of("axis")) + of("cutoff_cosine")[0];
+            assert!(off.abs() <= 0.0, "{row:?}");
+        }
+        let (member, rows) = rows_at_0("lighting/spot", "near the edge of the cone");
+        for row in &rows {
+            let of = |name: &str| numbers(&member.spec, row, name);
+            let to: Vec<f64> = of("position").iter().zip(of("p")).map(|(to, from)| to - from).collect();
+            assert!(product(&to, &of("axis")).abs() <= 0.0 && of("cutoff_cosine")[0].abs() <= 0.0, "{row:?}");
+        }
+    }
+
+    #[test]
+    fn a_light_lies_exactly_in_the_surface() {
+        let (member, rows) = rows_at_0("lighting/phong", "normal nearly at right angles to the light");
+        for row in &rows {
+            let of = |name: &str| numbers(&member.spec, row, name);
+            assert!(product(&of("direction"), &of("normal")).abs() <= 0.0, "{row:?}");
+        }
     }
 }

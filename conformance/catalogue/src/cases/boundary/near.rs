@@ -331,6 +331,9 @@ impl Near<'_> {
         let Some([l, v]) = self.fitted.toward(at) else { return };
         let off = self.side * self.distance;
         match approach {
+            Approach::Grazing { normal, light, .. } if self.distance <= 0.0 => {
+                self.at_right_angles(normal, point, *light)
+            }
             Approach::Grazing { normal, light, .. } => {
                 let to = if *light { l } else { v };
                 let Some(n) = self.fitted.vector(normal) else { return };
@@ -351,8 +354,27 @@ impl Near<'_> {
         }
     }
 
-    /// A cone whose edge is near the direction, by its cosine.
+    /// A light or a viewer exactly in the surface, whatever rounds: where it is, and the normal, lie along two coordinates' axes.
+    fn at_right_angles(&mut self, normal: &str, point: &str, light: bool) {
+        let far = self.fitted.uniform(0.5, 5.0);
+        let k = if light { self.fitted.below(3) } else { 2 };
+        if light {
+            let at = self.fitted.vector(point).unwrap_or_else(|| Vector::splat(0.0));
+            self.fitted.put("direction", along(k, self.side));
+            self.fitted.put("position", at + along(k, self.side * far));
+        } else {
+            self.fitted.put(point, along(k, -far));
+        }
+        let turned = if self.fitted.below(2) == 0 { 1.0 } else { -1.0 };
+        self.fitted.turn(normal, along((k + 1) % 3, turned));
+    }
+
+    /// A cone whose edge is near the direction, by its cosine, or exactly there.
     fn cone(&mut self) {
+        if self.distance <= 0.0 {
+            self.on_the_cone();
+            return;
+        }
         let toward = match (self.fitted.vector("l"), self.fitted.vector("position"), self.fitted.vector("p")) {
             (Some(l), ..) => -l,
             (None, Some(position), Some(p)) => (p - position).normalize(),
@@ -364,6 +386,27 @@ impl Near<'_> {
             self.fitted.put_scalar("cutoff_cosine", cosine.clamp(-1.0, 1.0));
         }
     }
+
+    /// A direction on the edge of its cone, whatever rounds: the axis is one of the coordinates', so that its product with a direction is a
+    /// number of that direction. Where a direction is normalised, it is at right angles to the axis, and the cone is half of all directions.
+    fn on_the_cone(&mut self) {
+        let k = self.fitted.below(3);
+        if let Some(l) = self.fitted.vector("l") {
+            let number = -l.dot(along(k, 1.0));
+            self.fitted.put("axis", along(k, if number < 0.0 { -1.0 } else { 1.0 }));
+            self.fitted.put_scalar("cutoff_cosine", number.abs());
+        } else if let Some(p) = self.fitted.vector("p") {
+            self.fitted.put("axis", along(k, self.side));
+            self.fitted.put_scalar("cutoff_cosine", 0.0);
+            let far = self.fitted.uniform(0.5, 5.0);
+            self.fitted.put("position", p + along((k + 1) % 3, far));
+        }
+    }
+}
+
+/// A vector along the axis of one coordinate.
+fn along(coordinate: u64, length: f64) -> Vec3<f64> {
+    Vector(std::array::from_fn(|k| if k as u64 == coordinate { length } else { 0.0 }))
 }
 
 /// A vector of few digits, whose sums are exact.
