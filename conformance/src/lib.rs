@@ -8,6 +8,8 @@ pub use lightmeter_arithmetic as arithmetic;
 pub use lightmeter_bench as bench;
 #[cfg(feature = "cli")]
 pub use lightmeter_book as book;
+#[cfg(feature = "gpu")]
+pub use lightmeter_browser as browser;
 pub use lightmeter_catalogue::{cases, dialects, filter, nearest, rulings, scene, select};
 pub use lightmeter_document as document;
 pub use lightmeter_engine::{device, evaluate, merge, options, piece, rows, run, selection, subject, sweep, witness};

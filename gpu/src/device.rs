@@ -1,9 +1,11 @@
 //! One open device, the executor that runs work on it, and what tells how long that takes. Nobody outside reaches the device
-//! itself.
+//! itself. A device is wgpu's, or one elsewhere, which a [`Host`] hands the work to.
 
 mod clock;
 mod encode;
 mod executor;
+mod hosted;
+mod native;
 mod objects;
 mod readback;
 #[cfg(test)]
@@ -11,136 +13,118 @@ mod tests;
 
 pub use clock::{Clock, ClockKind, ClockReading};
 pub(crate) use executor::Executor;
+pub use hosted::{Abilities, Host, HostError, Ticket, WorkPiece};
 pub use readback::Pending;
 
 use crate::error::GpuError;
 use lightmeter_scene::target::TargetFormat;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
-
-/// How long a submission may take: hundreds of pipelines compiled by a software driver on a slow machine take a minute.
-const PATIENCE: Duration = Duration::from_secs(300);
+use native::Native;
+use std::sync::Arc;
 
 /// An open device.
 #[derive(Debug)]
 pub struct Gpu {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+    place: Place,
     pub(crate) is_gl: bool,
+    is_cpu: bool,
+    most_pixels: u32,
     features: wgpu::Features,
     downlevel: wgpu::DownlevelFlags,
-    failure: Arc<Mutex<Option<String>>>,
-    name: String,
-    adapter: wgpu::Adapter,
+}
+
+/// Where a device is.
+#[derive(Debug)]
+enum Place {
+    /// Here, reached by wgpu.
+    Here(Native),
+    /// Elsewhere.
+    Hosted(Arc<dyn Host>),
 }
 
 impl Gpu {
     pub(crate) fn open(name: &str, adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
-        let wanted = wgpu::Features::FLOAT32_BLENDABLE
-            | wgpu::Features::DUAL_SOURCE_BLENDING
-            | wgpu::Features::TIMESTAMP_QUERY
-            | wgpu::Features::SHADER_F16
-            | wgpu::Features::SHADER_F64;
-        let features = adapter.features() & wanted;
-        let descriptor = wgpu::DeviceDescriptor {
-            label: Some("lightmeter"),
-            required_features: features,
-            required_limits: adapter.limits(),
-            ..Default::default()
-        };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
-            .map_err(|error| GpuError::Open { adapter: name.into(), message: error.to_string() })?;
-        let failure = Arc::new(Mutex::new(None));
-        let (on_error, on_lost) = (failure.clone(), failure.clone());
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&on_error, error.to_string())));
-        device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                note(&on_lost, format!("device lost: {message}"));
-            }
-        });
+        let (native, features) = Native::open(name, adapter)?;
+        let info = adapter.get_info();
         Ok(Self {
-            device,
-            queue,
-            is_gl: adapter.get_info().backend == wgpu::Backend::Gl,
+            is_gl: info.backend == wgpu::Backend::Gl,
+            is_cpu: info.device_type == wgpu::DeviceType::Cpu,
+            most_pixels: native.most_pixels(),
             features,
             downlevel: adapter.get_downlevel_capabilities().flags,
-            failure,
-            name: name.into(),
-            adapter: adapter.clone(),
+            place: Place::Here(native),
         })
+    }
+
+    /// A device elsewhere, which can do all that WebGPU guarantees, and what its abilities say besides.
+    #[must_use]
+    pub fn hosted(host: Arc<dyn Host>) -> Self {
+        let abilities = host.abilities();
+        Self {
+            is_gl: false,
+            is_cpu: abilities.is_cpu,
+            most_pixels: abilities.most_pixels,
+            features: abilities.features(),
+            downlevel: wgpu::DownlevelFlags::all(),
+            place: Place::Hosted(host),
+        }
     }
 
     /// Whether the driver computes on the processor.
     #[must_use]
-    pub fn is_cpu(&self) -> bool {
-        self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    pub const fn is_cpu(&self) -> bool {
+        self.is_cpu
     }
 
     /// Pixels of a target's side, at most.
     #[must_use]
-    pub fn most_pixels(&self) -> u32 {
-        self.device.limits().max_texture_dimension_2d
+    pub const fn most_pixels(&self) -> u32 {
+        self.most_pixels
     }
 
-    /// Another device on the same adapter, with a queue of its own.
+    /// Another device on the same adapter, with a queue of its own; elsewhere the same one.
     ///
     /// # Errors
     /// Where the driver gives none.
     pub fn sibling(&self) -> Result<Self, GpuError> {
-        Self::open(&self.name, &self.adapter)
+        match &self.place {
+            Place::Here(native) => Self::open(native.name(), native.adapter()),
+            Place::Hosted(host) => Ok(Self::hosted(host.clone())),
+        }
     }
 
     /// What destroys the device, as if it were lost.
-    pub(crate) fn breaker(&self) -> impl Fn() + use<> {
-        let device = self.device.clone();
-        move || device.destroy()
+    pub(crate) fn breaker(&self) -> Box<dyn Fn()> {
+        match &self.place {
+            Place::Here(native) => Box::new(native.breaker()),
+            Place::Hosted(host) => {
+                let host = host.clone();
+                Box::new(move || {
+                    let ticket = host.send(&WorkPiece::Destroy);
+                    host.forget(ticket);
+                })
+            }
+        }
     }
 
     /// How many devices compile pipelines side by side: a software Vulkan driver compiles at the first draw, on the one
     /// thread of its queue.
     pub(crate) fn lanes(&self) -> usize {
         let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        if self.is_cpu() && !self.is_gl { cores.min(4) } else { 1 }
+        let is_here = matches!(self.place, Place::Here(_));
+        if is_here && self.is_cpu && !self.is_gl { cores.min(4) } else { 1 }
     }
 
-    /// The first error that the device reported since the last time this was asked.
-    fn check(&self) -> Result<(), GpuError> {
-        let failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
-        failure.map_or(Ok(()), |message| Err(GpuError::Device(message)))
-    }
-
-    /// The same after a shader was compiled: what the device says then is of the shader.
-    fn check_shader(&self, file: &str) -> Result<(), GpuError> {
-        self.check().map_err(|error| match error {
-            GpuError::Device(message) if !message.contains("lost") => GpuError::Shader { file: file.into(), message },
-            other => other,
-        })
-    }
-
-    /// Waits until everything submitted is done, but not for ever: an edited shader may loop.
-    fn wait(&self) -> Result<(), GpuError> {
-        self.wait_until(None)
-    }
-
-    /// The same until a submission is done, whatever came after it.
-    fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
-        self.wait_until(Some(submission))
-    }
-
-    fn wait_until(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), GpuError> {
-        let wait = wgpu::PollType::Wait { submission_index, timeout: Some(PATIENCE) };
-        match self.device.poll(wait) {
-            Ok(_) => self.check(),
-            Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout(PATIENCE.as_secs())),
-            // What the device said before is why nothing can be waited for.
-            Err(error) => Err(self.check().err().unwrap_or_else(|| GpuError::Device(error.to_string()))),
+    fn format_features(&self, target: TargetFormat) -> wgpu::TextureFormatFeatures {
+        match &self.place {
+            Place::Here(native) => native.adapter().get_texture_format_features(format(target)),
+            Place::Hosted(_) => format(target).guaranteed_format_features(self.features),
         }
     }
 
     /// Why a target cannot be blended on here; `None` where it can.
     #[must_use]
     pub fn lacks_blending(&self, target: TargetFormat) -> Option<&'static str> {
-        let on_adapter = self.adapter.get_texture_format_features(format(target));
+        let on_adapter = self.format_features(target);
         if target == TargetFormat::Rgba32Float && !self.features.contains(wgpu::Features::FLOAT32_BLENDABLE) {
             Some("the adapter lacks the feature FLOAT32_BLENDABLE")
         } else if !on_adapter.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
@@ -155,8 +139,7 @@ impl Gpu {
     /// Why a format cannot be drawn to here; `None` where it can.
     #[must_use]
     pub fn lacks_target(&self, target: TargetFormat) -> Option<&'static str> {
-        let on_adapter = self.adapter.get_texture_format_features(format(target));
-        (!on_adapter.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT))
+        (!self.format_features(target).allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT))
             .then_some("the adapter cannot draw to the format: it lacks RENDER_ATTACHMENT there")
     }
 
@@ -207,8 +190,4 @@ pub(crate) fn middle(pixel: u32, width: u32, height: u32) -> [f32; 2] {
     #[expect(clippy::cast_possible_truncation, reason = "exact: sizes are powers of two")]
     let middle = [(middle(pixel % width, width) - 1.0) as f32, (1.0 - middle(pixel / width, height)) as f32];
     middle
-}
-
-fn note(failure: &Mutex<Option<String>>, message: String) {
-    failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
 }

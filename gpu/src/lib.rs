@@ -28,7 +28,7 @@ pub use adapters::{Adapter, adapters, native_adapters};
 pub use arithmetic::{ArithmeticPipeline, Programmable};
 pub use blend_unit::{Batch, BlendUnit, UnitDraw};
 pub use depth_unit::{DEPTH_OUTPUTS, DepthUnit};
-pub use device::{Clock, ClockKind, ClockReading, Gpu, Pending};
+pub use device::{Abilities, Clock, ClockKind, ClockReading, Gpu, Host, HostError, Pending, Ticket, WorkPiece};
 pub use error::GpuError;
 pub use kernel::Kernel;
 pub use library::{EFFECT_FILES, FILES, SCENE_FILES};

@@ -10,7 +10,7 @@ use lightmeter::gate::plan::unmatched;
 use std::path::{Path, PathBuf};
 
 /// What a result is held against.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct Comparison {
     /// Known failures with their reasons, a TOML file
     #[arg(long, value_name = "FILE")]

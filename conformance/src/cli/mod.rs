@@ -23,6 +23,7 @@ mod render;
 mod run;
 mod schema;
 mod selftest;
+mod serve;
 mod shader;
 mod show;
 mod signals;
@@ -78,7 +79,7 @@ fn exit_help() -> String {
 
 /// The commands by what they are for.
 const PURPOSES: &[(&str, &[&str])] = &[
-    ("Judge", &["run", "identify", "gate", "pack", "sweep", "special"]),
+    ("Judge", &["run", "serve", "identify", "gate", "pack", "sweep", "special"]),
     ("Look up", &["list", "show", "mistakes", "effects", "eval", "render"]),
     ("Measure", &["bench", "adapters", "selftest"]),
     ("Results", &["merge", "page", "book", "schema", "completions", "man", "help"]),
@@ -111,6 +112,8 @@ impl Cli {
 enum Command {
     /// Judge an adapter, or shaders of your own on it
     Run(run::Run),
+    /// Judge the GPU of a browser
+    Serve(serve::Serve),
     /// List the cases as a tree, or the formulas
     List(list::List),
     /// Show a case step by step, or what is known of a name
@@ -165,6 +168,7 @@ impl Cli {
         terminal::settle(self.shown);
         match self.command {
             Command::Run(run) => run.run(),
+            Command::Serve(serve) => serve.run(),
             Command::List(list) => list.run(),
             Command::Show(show) => show.run(),
             Command::Bench(bench) => bench.run(),

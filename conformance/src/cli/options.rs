@@ -83,7 +83,7 @@ impl ReportFormat {
 }
 
 /// Which cases, on what, by which rules.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct Choice {
     /// Adapter to run on, by its short name in `lightmeter adapters`; `cpu` for the embedded implementation; `all`.
     /// Again for several. Without it: lavapipe, or the first adapter there is
@@ -107,7 +107,7 @@ pub(crate) struct Choice {
 }
 
 /// How many cases.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct Amount {
     /// Random cases for each formula, and pairs for each blend state; a sixteenth of them for a state in a shader
     #[arg(long, value_name = "N", default_value_t = DEFAULT_CASES, value_parser = clap::value_parser!(u64).range(1..=MOST_CASES))]
@@ -179,6 +179,11 @@ impl Choice {
         options.adapted = accepted.adapted.clone();
         options.rerun += &self.shaders.rerun()?;
         Ok(Options { filter, cases, shard, targets: self.targets(), size: self.size, ..options })
+    }
+
+    /// The adapters that were named.
+    pub(crate) fn adapters(&self) -> &[String] {
+        &self.adapter
     }
 
     /// The subjects that were asked for, opened.

@@ -2,20 +2,24 @@
 
 use super::terminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lightmeter::browser::{PageGroup, PageState, Session};
 use lightmeter::document::event::{Event, Observer, Stop};
 use lightmeter::files::lines;
 use lightmeter::report::Level;
 use lightmeter::report::gate::GateStyle;
 use lightmeter::report::live::Live;
+use std::sync::Arc;
 
 /// A bar for work that is counted in these units.
 pub(crate) struct Bar {
     pub(crate) bar: ProgressBar,
     /// Tells what fails as soon as it is judged, and where.
     live: Option<(Live, Stream)>,
-    /// Told once something fails.
+    /// PageState once something fails.
     fail_fast: Option<Stop>,
     failed: u64,
+    /// The browser that is judged, whose page shows how far the work has come.
+    session: Option<Arc<Session>>,
     /// Whether nothing was told yet.
     is_silent: bool,
 }
@@ -37,13 +41,18 @@ impl Bar {
         if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
         }
-        Self { bar, live: None, fail_fast: None, failed: 0, is_silent: true }
+        Self { bar, live: None, fail_fast: None, failed: 0, session: None, is_silent: true }
     }
 
     /// The same, that tells what fails as soon as it is judged; of a renderer, with the command that asks for a case again.
     pub(crate) fn live(self, stream: Stream, again: Option<String>) -> Self {
         let style = GateStyle { level: terminal::level(), is_told: true, again };
         Self { live: Some((Live::new(style), stream)), ..self }
+    }
+
+    /// The same, that shows a browser's page how far the work has come.
+    pub(crate) fn shown_to(self, session: Option<Arc<Session>>) -> Self {
+        Self { session, ..self }
     }
 
     /// The same, that ends the work once something fails.
@@ -54,6 +63,9 @@ impl Bar {
 
 impl Observer for Bar {
     fn see(&mut self, event: &Event<'_>) {
+        if let Some(session) = &self.session {
+            session.tell(|told| note(told, event));
+        }
         match event {
             Event::Begun(work) => self.bar.set_length(*work),
             Event::Group(id) => self.bar.set_message((*id).to_owned()),
@@ -82,6 +94,23 @@ impl Observer for Bar {
                     Stream::Error => terminal::write(text, &mut std::io::stderr().lock()),
                 });
             }
+        }
+    }
+}
+
+/// Notes for a page what is seen of a run.
+fn note(told: &mut PageState, event: &Event<'_>) {
+    match event {
+        Event::Begun(work) => told.of = *work,
+        Event::Group(id) => told.says = format!("{id} is judged."),
+        Event::Advanced(work) => told.done += work,
+        Event::Judged { is_scouted: true, .. } => {}
+        Event::Judged { group, .. } => {
+            let target = group.target.iter().map(|target| format!(", {target}"));
+            let stage = std::iter::once(group.stage.to_string()).chain(target).collect();
+            let failed = group.totals.failed;
+            told.failed += u64::from(failed > 0 || group.problem.is_some());
+            told.groups.push(PageGroup { id: group.id.clone(), stage, verdicts: group.totals.verdicts, failed });
         }
     }
 }

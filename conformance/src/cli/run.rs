@@ -9,12 +9,15 @@ use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
 use super::{Status, command, writable};
 use clap::Args;
+use lightmeter::browser::Session;
 use lightmeter::cases::GENERATOR_VERSION;
 use lightmeter::cases::blend::{Samples, separate_of, written_state};
 use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
+use lightmeter::document::event::Stop;
 use lightmeter::document::pack::Choice as CaseChoice;
 use lightmeter::document::run::{Identity, Report};
+use lightmeter::document::thousands;
 use lightmeter::faults::{Mistakes, explain};
 use lightmeter::files::lines;
 use lightmeter::filter::Filter;
@@ -31,9 +34,10 @@ use lightmeter::select::{catalogue_of, select};
 use lightmeter::subject::Subject;
 use lightmeter::witness::NamedDeviation;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Judge the wgpu implementation on an adapter.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct Run {
     /// Globs that match an id or an ancestor of it: `fog`, `fog/*/hard`, `blend/add/**/0007`
     filter: Vec<String>,
@@ -77,8 +81,46 @@ pub(crate) struct Run {
     out: Option<PathBuf>,
 }
 
+/// What is asked for, checked.
+pub(crate) struct Prepared {
+    expectations: Expectations,
+    earlier: Option<Earlier>,
+    options: Options,
+    compared_by: ComparedBy,
+    is_shard: bool,
+}
+
+impl Prepared {
+    /// What ends the run before its time.
+    pub(crate) const fn stop(&self) -> &Stop {
+        &self.options.stop
+    }
+}
+
 impl Run {
+    /// The adapters that were named.
+    pub(crate) fn adapters(&self) -> &[String] {
+        self.choice.adapters()
+    }
+
+    /// The same, whose result does not overwrite that of the runs before.
+    pub(crate) fn numbered(mut self, number: usize) -> Self {
+        if let Some(out) = self.out.as_mut().filter(|_| number > 1) {
+            let stem = out.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let ending = out.extension().map(|ending| format!(".{}", ending.to_string_lossy())).unwrap_or_default();
+            out.set_file_name(format!("{stem}-{number}{ending}"));
+        }
+        self
+    }
+
     pub(crate) fn run(mut self) -> anyhow::Result<Status> {
+        let prepared = self.prepared()?;
+        let subjects = self.choice.subjects()?;
+        self.judged(prepared, subjects, None)
+    }
+
+    /// What is asked for, checked, before anything is opened.
+    pub(crate) fn prepared(&mut self) -> anyhow::Result<Prepared> {
         self.filter.append(&mut self.blend);
         if self.suggest {
             self.choice.shaders.own.part()?;
@@ -103,11 +145,21 @@ impl Run {
         if let Some(Earlier { baseline, path, .. }) = &earlier {
             baseline.is_of(&compared_by.choice, std::iter::empty(), Some(&options.profile.name.into()), path)?;
         }
-        let mut subjects = self.choice.subjects()?;
+        Ok(Prepared { expectations, earlier, options, compared_by, is_shard: shard.count.get() > 1 })
+    }
+
+    /// Runs what is asked for on subjects, and tells the result; a browser's page too, where that is judged.
+    pub(crate) fn judged(
+        &self,
+        prepared: Prepared,
+        mut subjects: Vec<Subject>,
+        session: Option<Arc<Session>>,
+    ) -> anyhow::Result<Status> {
+        let Prepared { expectations, earlier, mut options, compared_by, is_shard } = prepared;
         options.expected = known_failures(&expectations, &subjects);
         let stream = if self.is_read_by_people() { Stream::Output } else { Stream::Error };
         let fail_fast = self.fail_fast.then(|| options.stop.clone());
-        let mut bar = Bar::new(None, "cases").live(stream, None).fail_fast(fail_fast);
+        let mut bar = Bar::new(None, "cases").live(stream, None).fail_fast(fail_fast).shown_to(session.clone());
         let report = run(&mut subjects, &options, &mut bar);
         bar.bar.finish_and_clear();
         let report = match report {
@@ -124,11 +176,13 @@ impl Run {
         report.explained = explain(&report, options.profile);
         // What was not judged for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
-        let is_shard = shard.count.get() > 1;
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), is_shard)).transpose();
         report.regressions = regressions.as_ref().map_or(vec![], |found| found.clone().unwrap_or_default());
         (report.mended, report.added) =
             whole.map(|earlier| earlier.progress(&Standard::from(&report))).unwrap_or_default();
+        if let Some(session) = &session {
+            session.tell_the_end(said_of(&report), Some([html::of_run(&report), report.to_json()?]));
+        }
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
         if self.suggest {
             say(self.choice.shaders.own.suggested(&options.adapted, &report)?.trim_end());
@@ -176,6 +230,17 @@ impl Run {
                 lines(&out).into_owned()
             }
         })
+    }
+}
+
+/// What a browser's page is told at the end.
+fn said_of(report: &Report) -> String {
+    let totals = &report.totals;
+    let counts = format!("{} verdicts, {} failed", thousands(totals.verdicts), thousands(totals.failed));
+    match &report.interrupted {
+        Some(interrupted) => format!("The run ended before its time: {}. {counts}.", interrupted.message),
+        None if report.is_success() => format!("This GPU computes all of it right: {counts}."),
+        None => format!("This GPU computes something wrong, or the shaders do: {counts}. The report says what."),
     }
 }
 

@@ -1,6 +1,8 @@
 //! Adapters by the names that users give them, opened as subjects.
 
+use super::browser;
 use super::open_device;
+use lightmeter_browser::{Chromium, ChromiumError};
 use lightmeter_catalogue::nearest::did_you_mean;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::subject::Subject;
@@ -8,7 +10,9 @@ use lightmeter_gpu::{Adapter, native_adapters};
 
 /// The name of the embedded implementation, which needs no driver.
 pub const EMBEDDED: &str = "cpu";
-/// The name that stands for every adapter there is.
+/// The name of a headless Chromium, which is started for it.
+pub const CHROMIUM: &str = "chromium";
+/// The name that stands for every adapter there is; a browser is none.
 pub const ALL: &str = "all";
 
 /// What the Vulkan loader reads the places of drivers from, in place of its own.
@@ -25,7 +29,7 @@ pub enum AdapterError {
     )]
     NoDriver(String),
     /// No adapter has that name.
-    #[error("no adapter `{name}`{meant} There are {there}, cpu and all")]
+    #[error("no adapter `{name}`{meant} There are {there}, cpu, chromium and all")]
     Unknown {
         /// What was asked for.
         name: String,
@@ -34,6 +38,9 @@ pub enum AdapterError {
         /// What there is.
         there: String,
     },
+    /// There is no Chromium, or it gives no WebGPU.
+    #[error(transparent)]
+    Chromium(#[from] ChromiumError),
     /// The driver gave no device, or the device failed.
     #[error(transparent)]
     Device(#[from] DeviceError),
@@ -53,9 +60,11 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
     if asked.is_empty() {
         return Ok(vec![open_device(&first()?)?]);
     }
-    let only_embedded = asked.iter().all(|name| name == EMBEDDED);
-    let mut found = if only_embedded { vec![] } else { native_adapters() };
-    let known = |found: &[Adapter], name: &String| name == EMBEDDED || found.iter().any(|a| a.name == *name);
+    let needs_none = asked.iter().all(|name| [EMBEDDED, CHROMIUM].contains(&name.as_str()));
+    let mut found = if needs_none { vec![] } else { native_adapters() };
+    let known = |found: &[Adapter], name: &String| {
+        [EMBEDDED, CHROMIUM].contains(&name.as_str()) || found.iter().any(|a| a.name == *name)
+    };
     if !asked.iter().all(|name| known(&found, name)) {
         found = lightmeter_gpu::adapters();
     }
@@ -63,6 +72,7 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
     for name in asked {
         match name.as_str() {
             EMBEDDED => subjects.push(Subject::embedded()),
+            CHROMIUM => subjects.push(browser::of_chromium(CHROMIUM, Chromium::start()?)),
             ALL => {
                 drivers_named(&found)?;
                 if found.is_empty() {
@@ -86,7 +96,7 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
 /// Where there is no adapter of a name, or no driver.
 pub fn known(asked: &[String]) -> Result<(), AdapterError> {
     let mut found = None;
-    for name in asked.iter().filter(|name| ![EMBEDDED, ALL].contains(&name.as_str())) {
+    for name in asked.iter().filter(|name| ![EMBEDDED, CHROMIUM, ALL].contains(&name.as_str())) {
         named(found.get_or_insert_with(lightmeter_gpu::adapters), name)?;
     }
     Ok(())

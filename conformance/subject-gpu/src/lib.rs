@@ -2,6 +2,7 @@
 
 pub mod adapters;
 mod blend;
+pub mod browser;
 mod cost;
 mod kernel;
 mod special;
@@ -68,6 +69,13 @@ fn device_of(adapter: &Adapter) -> Result<(Identity, Known, GpuDevice), DeviceEr
     let gpu = adapter.open().map_err(device_error)?;
     let device = GpuDevice { name: adapter.name.clone(), gpu, blend: None, depth: None };
     Ok((identity, known, device))
+}
+
+/// A subject on a device that is open already, such as a browser's.
+#[must_use]
+pub fn on_gpu(identity: Identity, known: Known, gpu: Gpu) -> Subject {
+    let device = GpuDevice { name: identity.name.clone(), gpu, blend: None, depth: None };
+    Subject::on_device(identity, known, Box::new(device))
 }
 
 /// The device of a subject on an adapter; `None` of any other.

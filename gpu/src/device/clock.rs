@@ -1,6 +1,7 @@
 //! How long a device works: by its own timestamps, or, where it has none that can be used, by the clock on the wall.
 
-use crate::device::Gpu;
+use super::native::Native;
+use super::{Gpu, Place};
 use crate::error::GpuError;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -77,6 +78,8 @@ impl ClockReading {
 /// A clock of a device.
 #[derive(Debug)]
 pub struct Clock {
+    kind: ClockKind,
+    /// What timestamps are read through, on a device that is here.
     stamps: Option<Stamps>,
     note: Option<String>,
     readings: AtomicU64,
@@ -144,21 +147,24 @@ impl Clock {
         if !gpu.has_timestamps() {
             return Ok(Self::wall(Some("the adapter lacks the feature TIMESTAMP_QUERY".into())));
         }
-        let clock = Self { stamps: Some(Stamps::new(gpu)), ..Self::wall(None) };
-        gpu.check()?;
+        let Place::Here(native) = &gpu.place else {
+            return Ok(Self { kind: ClockKind::Timestamps, ..Self::wall(None) });
+        };
+        let clock = Self { kind: ClockKind::Timestamps, stamps: Some(Stamps::new(native)), ..Self::wall(None) };
+        native.check()?;
         Ok(clock)
     }
 
     /// The clock on the wall, and why it is that.
     #[must_use]
     pub const fn wall(note: Option<String>) -> Self {
-        Self { stamps: None, note, readings: AtomicU64::new(0), rejected: AtomicU64::new(0) }
+        Self { kind: ClockKind::Wall, stamps: None, note, readings: AtomicU64::new(0), rejected: AtomicU64::new(0) }
     }
 
     /// How it tells time.
     #[must_use]
     pub const fn kind(&self) -> ClockKind {
-        if self.stamps.is_some() { ClockKind::Timestamps } else { ClockKind::Wall }
+        self.kind
     }
 
     /// Readings that were taken so far, and how many of them could not be true.
@@ -176,35 +182,47 @@ impl Clock {
     /// Times the passes that are encoded, in a submission of their own on an idle device.
     pub(super) fn time(
         &self,
-        gpu: &Gpu,
+        native: &Native,
         encode: impl FnOnce(&mut wgpu::CommandEncoder, Span<'_>),
     ) -> Result<ClockReading, GpuError> {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = native.device.create_command_encoder(&Default::default());
         encode(&mut encoder, self.stamps.as_ref().map_or(Span::NONE, |stamps| Span::of(&stamps.queries)));
         if let Some(stamps) = &self.stamps {
             encoder.resolve_query_set(&stamps.queries, 0..2, &stamps.resolved, 0);
             encoder.copy_buffer_to_buffer(&stamps.resolved, 0, &stamps.staging, 0, 16);
         }
         let commands = encoder.finish();
-        gpu.wait()?;
+        native.wait()?;
         let start = Instant::now();
-        gpu.queue.submit([commands]);
-        gpu.wait()?;
+        native.queue.submit([commands]);
+        native.wait()?;
         let wall = start.elapsed().as_secs_f64();
-        let reading = match &self.stamps {
+        Ok(self.noted(match &self.stamps {
             None => ClockReading::Seconds(wall),
-            Some(stamps) => ClockReading::of_ticks(stamps.read(gpu)?, stamps.period, wall),
-        };
+            Some(stamps) => ClockReading::of_ticks(stamps.read(native)?, stamps.period, wall),
+        }))
+    }
+
+    /// What a device elsewhere tells of work: two timestamps in nanoseconds, and the seconds that went by on the wall.
+    pub(super) fn reading(&self, nanoseconds: [u64; 2], wall: f64) -> ClockReading {
+        self.noted(match self.kind {
+            ClockKind::Wall => ClockReading::Seconds(wall),
+            ClockKind::Timestamps => ClockReading::of_ticks(nanoseconds, 1e-9, wall),
+        })
+    }
+
+    /// Counts a reading.
+    fn noted(&self, reading: ClockReading) -> ClockReading {
         self.readings.fetch_add(1, Ordering::Relaxed);
         self.rejected.fetch_add(u64::from(reading.seconds().is_none()), Ordering::Relaxed);
-        Ok(reading)
+        reading
     }
 }
 
 impl Stamps {
-    fn new(gpu: &Gpu) -> Self {
+    fn new(native: &Native) -> Self {
         let buffer = |usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            native.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("timestamps"),
                 size: 16,
                 usage,
@@ -212,21 +230,21 @@ impl Stamps {
             })
         };
         Self {
-            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+            queries: native.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("timestamps"),
                 ty: wgpu::QueryType::Timestamp,
                 count: 2,
             }),
             resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
             staging: buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
-            period: f64::from(gpu.queue.get_timestamp_period()) * 1e-9,
+            period: f64::from(native.queue.get_timestamp_period()) * 1e-9,
         }
     }
 
-    fn read(&self, gpu: &Gpu) -> Result<[u64; 2], GpuError> {
+    fn read(&self, native: &Native) -> Result<[u64; 2], GpuError> {
         let failed = |message: String| GpuError::Device(message);
         self.staging.map_async(wgpu::MapMode::Read, .., |_| {});
-        gpu.wait()?;
+        native.wait()?;
         let ticks = {
             let view = self.staging.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
             let ticks: &[u64] = bytemuck::cast_slice(&view);

@@ -1,6 +1,6 @@
 //! wgpu's objects, made of descriptions.
 
-use super::Gpu;
+use super::native::Native;
 use crate::work::{
     BindGroup, Binding, Buffer, ComputePipeline, Contents, Handle, Pipeline, RenderPipeline, Resources, ShaderResource,
     TextureResource,
@@ -39,22 +39,22 @@ pub(super) struct Scope<'a> {
 impl Objects {
     /// Makes the shaders and pipelines that are not made yet. `kept` are the objects that outlive these; none do where
     /// these are the ones.
-    pub(super) fn compile(&mut self, gpu: &Gpu, resources: &Resources, kept: Option<&Self>) {
+    pub(super) fn compile(&mut self, native: &Native, resources: &Resources, kept: Option<&Self>) {
         let described = &resources.shaders[self.shaders.len()..];
-        self.shaders.extend(described.iter().map(|described| shader(gpu, described)));
+        self.shaders.extend(described.iter().map(|described| shader(native, described)));
         let described = &resources.pipelines[self.pipelines.len()..];
-        let made: Vec<_> = described.iter().map(|described| pipeline(gpu, self.scope(kept), described)).collect();
+        let made: Vec<_> = described.iter().map(|described| pipeline(native, self.scope(kept), described)).collect();
         self.pipelines.extend(made);
     }
 
     /// The same with buffers, textures and bind groups.
-    pub(super) fn fill(&mut self, gpu: &Gpu, resources: &Resources, kept: Option<&Self>) {
+    pub(super) fn fill(&mut self, native: &Native, resources: &Resources, kept: Option<&Self>) {
         let described = &resources.buffers[self.buffers.len()..];
-        self.buffers.extend(described.iter().map(|described| buffer(gpu, described)));
+        self.buffers.extend(described.iter().map(|described| buffer(native, described)));
         let described = &resources.textures[self.textures.len()..];
-        self.textures.extend(described.iter().map(|described| texture(gpu, described)));
+        self.textures.extend(described.iter().map(|described| texture(native, described)));
         let described = &resources.groups[self.groups.len()..];
-        let made: Vec<_> = described.iter().map(|described| group(gpu, self.scope(kept), described)).collect();
+        let made: Vec<_> = described.iter().map(|described| group(native, self.scope(kept), described)).collect();
         self.groups.extend(made);
     }
 
@@ -110,23 +110,23 @@ impl<'a> Scope<'a> {
     }
 }
 
-fn shader(gpu: &Gpu, shader: &ShaderResource) -> wgpu::ShaderModule {
-    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+fn shader(native: &Native, shader: &ShaderResource) -> wgpu::ShaderModule {
+    native.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(&shader.label),
         source: wgpu::ShaderSource::Wgsl(shader.source.as_str().into()),
     })
 }
 
-fn pipeline(gpu: &Gpu, scope: Scope<'_>, pipeline: &Pipeline) -> PipelineObject {
+fn pipeline(native: &Native, scope: Scope<'_>, pipeline: &Pipeline) -> PipelineObject {
     match pipeline {
-        Pipeline::Compute(pipeline) => PipelineObject::Compute(compute_pipeline(gpu, scope, pipeline)),
-        Pipeline::Render(pipeline) => PipelineObject::Render(render_pipeline(gpu, scope, pipeline)),
+        Pipeline::Compute(pipeline) => PipelineObject::Compute(compute_pipeline(native, scope, pipeline)),
+        Pipeline::Render(pipeline) => PipelineObject::Render(render_pipeline(native, scope, pipeline)),
     }
 }
 
-fn compute_pipeline(gpu: &Gpu, scope: Scope<'_>, pipeline: &ComputePipeline) -> wgpu::ComputePipeline {
+fn compute_pipeline(native: &Native, scope: Scope<'_>, pipeline: &ComputePipeline) -> wgpu::ComputePipeline {
     let constants: Vec<(&str, f64)> = pipeline.constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+    native.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(&pipeline.label),
         layout: None,
         module: scope.shader(pipeline.shader),
@@ -136,11 +136,11 @@ fn compute_pipeline(gpu: &Gpu, scope: Scope<'_>, pipeline: &ComputePipeline) -> 
     })
 }
 
-fn render_pipeline(gpu: &Gpu, scope: Scope<'_>, pipeline: &RenderPipeline) -> wgpu::RenderPipeline {
+fn render_pipeline(native: &Native, scope: Scope<'_>, pipeline: &RenderPipeline) -> wgpu::RenderPipeline {
     let module = scope.shader(pipeline.shader);
     let layout = pipeline.layout.as_ref().map(|entries| {
-        let group = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries });
-        gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        let group = native.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries });
+        native.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             bind_group_layouts: &[Some(&group)],
             ..Default::default()
         })
@@ -157,7 +157,7 @@ fn render_pipeline(gpu: &Gpu, scope: Scope<'_>, pipeline: &RenderPipeline) -> wg
         })
         .collect();
     let targets: Vec<_> = pipeline.targets.iter().cloned().map(Some).collect();
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    native.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(&pipeline.label),
         layout: layout.as_ref(),
         vertex: wgpu::VertexState {
@@ -180,14 +180,14 @@ fn render_pipeline(gpu: &Gpu, scope: Scope<'_>, pipeline: &RenderPipeline) -> wg
     })
 }
 
-fn buffer(gpu: &Gpu, buffer: &Buffer) -> wgpu::Buffer {
+fn buffer(native: &Native, buffer: &Buffer) -> wgpu::Buffer {
     let create = |size: usize, usage: wgpu::BufferUsages| {
         let size = size as u64;
-        gpu.device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        native.device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
     };
     let filled = |bytes: &[u8]| {
         let made = create(bytes.len().max(Buffer::BYTES_LEAST), buffer.usage | wgpu::BufferUsages::COPY_DST);
-        gpu.queue.write_buffer(&made, 0, bytes);
+        native.queue.write_buffer(&made, 0, bytes);
         made
     };
     match &buffer.contents {
@@ -197,8 +197,8 @@ fn buffer(gpu: &Gpu, buffer: &Buffer) -> wgpu::Buffer {
     }
 }
 
-fn texture(gpu: &Gpu, described: &TextureResource) -> TextureObject {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+fn texture(native: &Native, described: &TextureResource) -> TextureObject {
+    let texture = native.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: described.width, height: described.height, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -208,12 +208,12 @@ fn texture(gpu: &Gpu, described: &TextureResource) -> TextureObject {
         usage: described.usage,
         view_formats: &[],
     });
-    upload(gpu, &texture, &described.contents.0);
+    upload(native, &texture, &described.contents.0);
     TextureObject { view: texture.create_view(&Default::default()), texture }
 }
 
 /// Fills a texture's first pixels, row after row.
-fn upload(gpu: &Gpu, texture: &wgpu::Texture, bytes: &[u8]) {
+fn upload(native: &Native, texture: &wgpu::Texture, bytes: &[u8]) {
     let pixel_bytes = pixel_bytes(texture);
     let (width, mut y) = (texture.width(), 0);
     let row_bytes = pixel_bytes * width as usize;
@@ -226,17 +226,22 @@ fn upload(gpu: &Gpu, texture: &wgpu::Texture, bytes: &[u8]) {
         let bytes_per_row = u32::try_from(row_bytes).ok();
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
         let size = wgpu::Extent3d { width: columns, height: rows, depth_or_array_layers: 1 };
-        gpu.queue.write_texture(place, part, layout, size);
+        native.queue.write_texture(place, part, layout, size);
         y += rows;
     }
 }
 
 /// Bytes of a pixel of a texture of one aspect; 4 of another, which is not copied.
 pub(super) fn pixel_bytes(texture: &wgpu::Texture) -> usize {
-    texture.format().block_copy_size(None).map_or(4, |bytes| bytes as usize)
+    bytes_of_pixel(texture.format())
 }
 
-fn group(gpu: &Gpu, scope: Scope<'_>, group: &BindGroup) -> wgpu::BindGroup {
+/// Bytes of a pixel of a format of one aspect; 4 of another, which is not copied.
+pub(super) fn bytes_of_pixel(format: wgpu::TextureFormat) -> usize {
+    format.block_copy_size(None).map_or(4, |bytes| bytes as usize)
+}
+
+fn group(native: &Native, scope: Scope<'_>, group: &BindGroup) -> wgpu::BindGroup {
     let layout = match scope.named(group.pipeline, |objects| &objects.pipelines) {
         PipelineObject::Compute(pipeline) => pipeline.get_bind_group_layout(0),
         PipelineObject::Render(pipeline) => pipeline.get_bind_group_layout(0),
@@ -255,5 +260,5 @@ fn group(gpu: &Gpu, scope: Scope<'_>, group: &BindGroup) -> wgpu::BindGroup {
         .iter()
         .map(|(number, binding)| wgpu::BindGroupEntry { binding: *number, resource: resource(binding) })
         .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries })
+    native.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries })
 }

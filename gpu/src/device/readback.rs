@@ -1,7 +1,9 @@
 //! Results on their way back from the device.
 
-use super::Gpu;
+use super::hosted::Asked;
+use super::native::Native;
 use super::objects::{Scope, pixel_bytes};
+use super::{Gpu, Place};
 use crate::error::GpuError;
 use crate::work::Read;
 use std::borrow::Cow;
@@ -9,7 +11,20 @@ use std::sync::mpsc;
 
 /// A result that the device is still working on.
 #[derive(Debug)]
-pub struct Pending {
+pub struct Pending(Way);
+
+/// Which way a result comes back.
+#[derive(Debug)]
+enum Way {
+    /// From wgpu's device.
+    Mapped(Mapped),
+    /// From a device elsewhere.
+    Asked(Asked),
+}
+
+/// A result that a buffer is mapped for.
+#[derive(Debug)]
+struct Mapped {
     submission: wgpu::SubmissionIndex,
     buffer: wgpu::Buffer,
     mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
@@ -38,7 +53,12 @@ impl Pending {
             // The receiver is gone only where nobody waits for the result any more.
             let _ = done.send(result);
         });
-        Self { submission, buffer, mapped, layout }
+        Self(Way::Mapped(Mapped { submission, buffer, mapped, layout }))
+    }
+
+    /// A result of a device elsewhere.
+    pub(super) const fn elsewhere(asked: Asked) -> Self {
+        Self(Way::Asked(asked))
     }
 
     /// The words that came back, read after read.
@@ -54,7 +74,19 @@ impl Pending {
     /// # Errors
     /// Where the device failed or was lost.
     pub(crate) fn map<T>(self, gpu: &Gpu, then: impl FnOnce(Cow<'_, [u32]>) -> T) -> Result<T, GpuError> {
-        gpu.wait_for(self.submission)?;
+        match (self.0, &gpu.place) {
+            (Way::Mapped(mapped), Place::Here(native)) => mapped.map(native, then),
+            (Way::Asked(asked), _) => asked.wait().map(|words| then(Cow::Owned(words))),
+            (Way::Mapped(_), Place::Hosted(_)) => {
+                unreachable!("a result is waited for on the device that it was asked of")
+            }
+        }
+    }
+}
+
+impl Mapped {
+    fn map<T>(self, native: &Native, then: impl FnOnce(Cow<'_, [u32]>) -> T) -> Result<T, GpuError> {
+        native.wait_for(self.submission)?;
         match self.mapped.recv() {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(GpuError::Device(error.to_string())),
@@ -84,8 +116,8 @@ impl Layout {
     }
 
     /// A buffer to read back through.
-    pub(super) fn buffer(&self, gpu: &Gpu) -> wgpu::Buffer {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+    pub(super) fn buffer(&self, native: &Native) -> wgpu::Buffer {
+        native.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
             size: self.bytes() as u64,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,

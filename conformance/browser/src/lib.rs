@@ -1,0 +1,14 @@
+//! A browser's GPU as a device: a page that runs work, and the server that hands it out.
+//!
+//! The page knows no formula. It asks the [`Server`] for pieces of work, as `lightmeter_gpu` describes them, runs them by WebGPU and sends
+//! back the bytes that come of it. What they mean, and whether they are right, is judged here. docs/browser.md has the protocol.
+
+mod chromium;
+mod server;
+mod session;
+#[cfg(test)]
+mod tests;
+
+pub use chromium::{Chromium, ChromiumError};
+pub use server::{Access, Server, ServerError};
+pub use session::{BrowserHello, PageGroup, PageState, Session};

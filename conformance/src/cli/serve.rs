@@ -1,0 +1,123 @@
+//! `lightmeter serve`.
+
+use super::run::{Prepared, Run};
+use super::{NothingToRun, Status, say};
+use clap::Args;
+use lightmeter::browser::{Server, Session};
+use lightmeter::subject_gpu::browser::of_session;
+use std::net::SocketAddr;
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// How often it is looked at whether a signal ends the command.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// Judge the GPU of a browser: a page that it opens computes what `run` asks, and what comes back is judged here.
+#[derive(Debug, Args)]
+pub(crate) struct Serve {
+    #[command(flatten)]
+    run: Run,
+    /// Where the page is served: an address of this machine, and a port; 0 is any that is free
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0")]
+    listen: SocketAddr,
+    /// Open the page in the default browser
+    #[arg(long)]
+    open: bool,
+    /// Stay when a browser was judged, for others, one after the other or at once; Ctrl-C ends it
+    #[arg(long)]
+    keep: bool,
+}
+
+impl Serve {
+    pub(crate) fn run(mut self) -> anyhow::Result<Status> {
+        if let Some(name) = self.run.adapters().first() {
+            anyhow::bail!(
+                "serve judges the browser that opens its page: leave --adapter out, or use `run --adapter {name}`"
+            );
+        }
+        let asked = self.run.clone();
+        let prepared = self.run.prepared()?;
+        let server = Server::start(self.listen)?;
+        let url = server.access().url();
+        say(&format!("open this page in the browser whose GPU is to be judged; Ctrl-C ends it\n  {url}"));
+        if self.open {
+            open(&url)?;
+        }
+        let stop = prepared.stop().clone();
+        let next = || loop {
+            if let Some(session) = server.next_browser(LOOK) {
+                return Some(session);
+            }
+            if stop.signal().is_some() {
+                return None;
+            }
+        };
+        if self.keep {
+            return judge_all(&asked, next);
+        }
+        let session = next().ok_or_else(|| NothingToRun("ended before a browser opened the page".into()))?;
+        judge(&self.run, prepared, &session, &mut vec![])
+    }
+}
+
+/// Judges all browsers that come, each as soon as it does, until a signal ends it.
+fn judge_all(asked: &Run, next: impl Fn() -> Option<Arc<Session>>) -> anyhow::Result<Status> {
+    let (mut names, mut runs): (Vec<String>, Vec<JoinHandle<anyhow::Result<Status>>>) = (vec![], vec![]);
+    while let Some(session) = next() {
+        let mut run = asked.clone().numbered(names.len() + 1);
+        let prepared = run.prepared()?;
+        let name = named(&session, &mut names);
+        runs.push(std::thread::spawn(move || judge_named(&run, prepared, &session, name)));
+    }
+    if runs.is_empty() {
+        return Err(NothingToRun("ended before a browser opened the page".into()).into());
+    }
+    let mut worst = Status::Success;
+    for run in runs {
+        let status = run.join().map_err(|_| anyhow::anyhow!("a run ended by a panic, which stands above"))??;
+        if (worst as u8) < status as u8 {
+            worst = status;
+        }
+    }
+    Ok(worst)
+}
+
+fn judge(run: &Run, prepared: Prepared, session: &Arc<Session>, names: &mut Vec<String>) -> anyhow::Result<Status> {
+    let name = named(session, names);
+    judge_named(run, prepared, session, name)
+}
+
+fn judge_named(run: &Run, prepared: Prepared, session: &Arc<Session>, name: String) -> anyhow::Result<Status> {
+    let judged = run.judged(prepared, vec![of_session(name, session.clone())], Some(session.clone()));
+    if let Err(error) = &judged {
+        session.tell_the_end(format!("The run ended before its time: {error}"), None);
+    }
+    judged
+}
+
+/// The browser's name as an adapter, which no other one of this run has: `chrome`, `firefox-2`.
+fn named(session: &Session, names: &mut Vec<String>) -> String {
+    let words = session.hello().browser.to_lowercase();
+    let words: Vec<&str> = words.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let name = if words.is_empty() { "browser".into() } else { words.join("-") };
+    names.push(name.clone());
+    match names.iter().filter(|other| **other == name).count() {
+        1 => name,
+        count => format!("{name}-{count}"),
+    }
+}
+
+/// Opens a page in the default browser.
+fn open(url: &str) -> anyhow::Result<()> {
+    let (program, arguments): (&str, &[&str]) = match std::env::consts::OS {
+        "macos" => ("open", &[]),
+        "windows" => ("cmd", &["/C", "start", ""]),
+        _ => ("xdg-open", &[]),
+    };
+    let started = Command::new(program).args(arguments).arg(url).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+    started
+        .map(drop)
+        .map_err(|error| anyhow::anyhow!("--open: {program} does not start: {error}; open the page by hand"))
+}

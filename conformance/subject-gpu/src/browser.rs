@@ -1,0 +1,30 @@
+//! Browsers as subjects.
+
+use crate::on_gpu;
+use lightmeter_browser::{BrowserHello, Chromium, Session};
+use lightmeter_document::run::Identity;
+use lightmeter_engine::subject::Subject;
+use lightmeter_gpu::{Gpu, Host};
+use lightmeter_judge::devices::Known;
+use std::sync::Arc;
+
+/// A headless Chromium as a subject, which ends with it.
+#[must_use]
+pub fn of_chromium(name: &str, chromium: Chromium) -> Subject {
+    let hello = chromium.hello().clone();
+    of_host(name.into(), &hello, Arc::new(chromium))
+}
+
+/// A browser that opened the page as a subject.
+#[must_use]
+pub fn of_session(name: String, session: Arc<Session>) -> Subject {
+    let hello = session.hello().clone();
+    of_host(name, &hello, session)
+}
+
+fn of_host(name: String, hello: &BrowserHello, host: Arc<dyn Host>) -> Subject {
+    let (device, driver) = (hello.device(), hello.driver());
+    // A browser tells neither the driver nor its version, so no deviation is granted, no record of special values holds, and a rasteriser has the
+    // 4 subpixel bits that are promised.
+    on_gpu(Identity { name, device, backend: "webgpu".into(), driver }, Known::default(), Gpu::hosted(host))
+}

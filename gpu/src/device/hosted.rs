@@ -1,0 +1,245 @@
+//! A device elsewhere, such as a browser's, which runs work that is handed to it as data.
+
+use super::clock::{Clock, ClockReading};
+use super::objects::bytes_of_pixel;
+use crate::error::GpuError;
+use crate::work::{Handle, Read, Resources, Submission, TextureResource};
+use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What a device elsewhere can do besides what WebGPU guarantees.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Abilities {
+    /// Whether it computes on the processor.
+    pub is_cpu: bool,
+    /// Pixels of a target's side, at most.
+    pub most_pixels: u32,
+    /// WebGPU's names of the optional features that the device was opened with.
+    pub features: Vec<String>,
+}
+
+/// A piece of work. An *executor* is a number that resources are kept under.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WorkPiece<'a> {
+    /// Makes further resources, which follow those that the executor keeps. What comes back has no bytes.
+    Make {
+        /// The executor.
+        executor: u64,
+        /// Those that are new.
+        resources: &'a Resources,
+    },
+    /// Drops an executor's pipelines and what they bind. Nothing else is dropped.
+    ForgetPipelines {
+        /// The executor.
+        executor: u64,
+    },
+    /// Drops all that an executor keeps.
+    Drop {
+        /// The executor.
+        executor: u64,
+    },
+    /// Runs a submission. What is read comes back.
+    Submit {
+        /// The executor.
+        executor: u64,
+        /// The submission.
+        work: &'a Submission,
+    },
+    /// Times a submission's steps on an idle device. What comes back are the first and the last timestamp in nanoseconds, which are 0 without
+    /// the feature, as 64-bit integers, and the seconds that went by as a 64-bit float; all of them little endian.
+    Time {
+        /// The executor.
+        executor: u64,
+        /// The submission.
+        work: &'a Submission,
+        /// How often the steps are repeated.
+        repeats: u32,
+    },
+    /// Destroys the device, as if it were lost.
+    Destroy,
+}
+
+/// What is asked for by a piece of work that was sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Ticket(pub u64);
+
+/// Why a piece of work came to nothing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum HostError {
+    /// A shader or a pipeline was refused.
+    Refused(String),
+    /// The device failed at something else, or was lost.
+    Failed(String),
+    /// There was no answer within so many seconds.
+    Silent(u64),
+}
+
+/// Whatever runs pieces of work on a device that it has: a browser's page.
+pub trait Host: Debug + Send + Sync {
+    /// What the device can do.
+    fn abilities(&self) -> Abilities;
+
+    /// Sends a piece of work. Pieces are begun in the order in which they are sent.
+    fn send(&self, piece: &WorkPiece<'_>) -> Ticket;
+
+    /// Waits for what comes back of a piece of work.
+    ///
+    /// # Errors
+    /// Where the device refuses it, fails, or does not answer.
+    fn wait(&self, ticket: Ticket) -> Result<Vec<u8>, HostError>;
+
+    /// Says that nobody will wait for what comes back of a piece of work.
+    fn forget(&self, ticket: Ticket);
+}
+
+/// What an executor keeps on a device elsewhere.
+#[derive(Debug)]
+pub(super) struct Kept {
+    host: Arc<dyn Host>,
+    executor: u64,
+    /// How many shaders, pipelines, buffers, textures and bind groups were made.
+    made: [usize; 5],
+    /// The bytes of each texture.
+    textures: Vec<usize>,
+}
+
+impl Abilities {
+    /// The features in wgpu's terms; those that the suite has no use for are left out.
+    pub(super) fn features(&self) -> wgpu::Features {
+        let of_name = |name: &String| match name.as_str() {
+            "float32-blendable" => wgpu::Features::FLOAT32_BLENDABLE,
+            "dual-source-blending" => wgpu::Features::DUAL_SOURCE_BLENDING,
+            "timestamp-query" => wgpu::Features::TIMESTAMP_QUERY,
+            "shader-f16" => wgpu::Features::SHADER_F16,
+            _ => wgpu::Features::empty(),
+        };
+        self.features.iter().map(of_name).fold(wgpu::Features::empty(), wgpu::Features::union)
+    }
+}
+
+impl HostError {
+    /// The same as an error of the GPU's side. What is refused is said of `file`.
+    fn said_of(self, file: &str) -> GpuError {
+        match self {
+            Self::Refused(message) => GpuError::Shader { file: file.into(), message },
+            other => other.said_of_the_device(),
+        }
+    }
+
+    /// The same of the device.
+    fn said_of_the_device(self) -> GpuError {
+        match self {
+            Self::Refused(message) | Self::Failed(message) => GpuError::Device(message),
+            Self::Silent(seconds) => GpuError::Timeout(seconds),
+        }
+    }
+}
+
+impl Kept {
+    pub(super) fn new(host: &Arc<dyn Host>) -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Self { host: host.clone(), executor: NEXT.fetch_add(1, Ordering::Relaxed), made: [0; 5], textures: vec![] }
+    }
+
+    /// Makes what is described and not made yet.
+    pub(super) fn make(&mut self, resources: &Resources, file: &str) -> Result<(), GpuError> {
+        let [shaders, pipelines, buffers, textures, groups] = self.made;
+        let new = Resources {
+            shaders: resources.shaders[shaders..].to_vec(),
+            pipelines: resources.pipelines[pipelines..].to_vec(),
+            buffers: resources.buffers[buffers..].to_vec(),
+            textures: resources.textures[textures..].to_vec(),
+            groups: resources.groups[groups..].to_vec(),
+        };
+        if new == Resources::default() {
+            return Ok(());
+        }
+        self.made = [
+            resources.shaders.len(),
+            resources.pipelines.len(),
+            resources.buffers.len(),
+            resources.textures.len(),
+            resources.groups.len(),
+        ];
+        self.textures.extend(new.textures.iter().map(texture_bytes));
+        let ticket = self.host.send(&WorkPiece::Make { executor: self.executor, resources: &new });
+        self.host.wait(ticket).map(drop).map_err(|error| error.said_of(file))
+    }
+
+    pub(super) fn forget_pipelines(&mut self) {
+        self.made[1] = 0;
+        let ticket = self.host.send(&WorkPiece::ForgetPipelines { executor: self.executor });
+        self.host.forget(ticket);
+    }
+
+    pub(super) fn submit(&self, work: &Submission) -> Asked {
+        let ticket = self.host.send(&WorkPiece::Submit { executor: self.executor, work });
+        let bytes = work.reads.iter().map(|read| self.bytes(work, read)).sum();
+        Asked { host: self.host.clone(), ticket, bytes, is_waited_for: false }
+    }
+
+    /// How many bytes a read of a submission gives.
+    fn bytes(&self, work: &Submission, read: &Read) -> usize {
+        match *read {
+            Read::Buffer { bytes, .. } => bytes,
+            Read::Texture(Handle::Kept(place)) => self.textures.get(place as usize).copied().unwrap_or_default(),
+            Read::Texture(Handle::Own(place)) => work.own.textures.get(place as usize).map_or(0, texture_bytes),
+        }
+    }
+
+    pub(super) fn time(&self, clock: &Clock, work: &Submission, repeats: u32) -> Result<ClockReading, GpuError> {
+        let ticket = self.host.send(&WorkPiece::Time { executor: self.executor, work, repeats });
+        let bytes = self.host.wait(ticket).map_err(HostError::said_of_the_device)?;
+        let parts: Option<[[u8; 8]; 3]> = bytes.as_chunks().0.try_into().ok();
+        let [start, end, wall] = parts.ok_or_else(|| GpuError::Device(format!("a time of {} bytes", bytes.len())))?;
+        Ok(clock.reading([start, end].map(u64::from_le_bytes), f64::from_le_bytes(wall)))
+    }
+}
+
+/// The bytes of a texture's pixels.
+fn texture_bytes(texture: &TextureResource) -> usize {
+    texture.width as usize * texture.height as usize * bytes_of_pixel(texture.format)
+}
+
+impl Drop for Kept {
+    fn drop(&mut self) {
+        let ticket = self.host.send(&WorkPiece::Drop { executor: self.executor });
+        self.host.forget(ticket);
+    }
+}
+
+/// A result that is still worked on elsewhere.
+#[derive(Debug)]
+pub(super) struct Asked {
+    host: Arc<dyn Host>,
+    ticket: Ticket,
+    /// How many bytes are to come back.
+    bytes: usize,
+    is_waited_for: bool,
+}
+
+impl Asked {
+    /// The words that come back.
+    pub(super) fn wait(mut self) -> Result<Vec<u32>, GpuError> {
+        self.is_waited_for = true;
+        let bytes = self.host.wait(self.ticket).map_err(HostError::said_of_the_device)?;
+        if bytes.len() != self.bytes {
+            let message = format!("{} bytes came back, where {} were asked for", bytes.len(), self.bytes);
+            return Err(GpuError::Device(message));
+        }
+        Ok(bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect())
+    }
+}
+
+impl Drop for Asked {
+    fn drop(&mut self) {
+        if !self.is_waited_for {
+            self.host.forget(self.ticket);
+        }
+    }
+}

@@ -1,0 +1,220 @@
+// Judges Chromium's GPU by `lightmeter serve`, as a person would, and as nobody should: SwiftShader computes, as nothing else is here.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+import axe from "axe-core";
+
+const [, , shots] = process.argv;
+const lightmeter = process.env.LIGHTMETER;
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--enable-unsafe-webgpu", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--use-webgpu-adapter=swiftshader"],
+});
+
+// Starts `lightmeter serve`; gives its page's address, and a promise of how it ends.
+async function serve(...args) {
+  const child = spawn(lightmeter, ["serve", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+  let [out, err] = ["", ""];
+  child.stdout.on("data", (data) => { out += data; });
+  const url = await new Promise((resolve, reject) => {
+    child.stderr.on("data", (data) => {
+      err += data;
+      const found = /http:\/\/\S+/.exec(err);
+      if (found) resolve(found[0]);
+    });
+    child.on("exit", (code) => reject(new Error(`ended with ${code}: ${err}`)));
+  });
+  const ended = new Promise((resolve) => child.on("close", (code) => resolve({ code, out, err })));
+  return { url, ended, child };
+}
+
+// A page of a context of its own, whose console must stay empty.
+async function open(url) {
+  const context = await browser.newContext({ viewport: { width: 1000, height: 800 } });
+  const page = await context.newPage();
+  page.on("console", (message) => { if (message.type() === "error") page.problems.push(message.text()); });
+  page.on("pageerror", (error) => page.problems.push(error.message));
+  page.problems = [];
+  await page.goto(url);
+  return page;
+}
+
+const isOver = (page) => page.waitForFunction(() => /right|wrong|before its time/.test(document.querySelector("#verdict").textContent), null, { timeout: 120_000 });
+const verdict = (page) => page.textContent("#verdict");
+
+async function aRunIsShownAndItsReportIsKept() {
+  const served = await serve("fog/*", "scene/phong", "blend/add/one/one", "--format", "json");
+  const page = await open(served.url);
+  await isOver(page);
+  assert.match(await verdict(page), /This GPU computes all of it right: [\d,]+ verdicts, 0 failed/);
+  const { code, out } = await served.ended;
+  assert.equal(code, 0);
+  const report = JSON.parse(out);
+  assert.equal(report.adapters[0].backend, "webgpu");
+  assert.equal(report.totals.failed, 0);
+  // The server has ended; what it gave stays.
+  for (const [link, file, holds] of [["#report", "lightmeter.html", "<!DOCTYPE html>"], ["#json", "lightmeter.json", "lightmeter.run/1"]]) {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click(link)]);
+    assert.equal(download.suggestedFilename(), file);
+    const text = readFileSync(await download.path(), "utf8");
+    assert.ok(text.includes(holds), text.slice(0, 200));
+  }
+  const rows = await page.locator("#groups tr").count();
+  assert.ok(rows >= 30, `${rows} rows`);
+  const { violations } = await page.evaluate(`${axe.source}; axe.run()`);
+  assert.deepEqual(violations.map(({ id, nodes }) => [id, nodes[0].html]), []);
+  if (shots) {
+    await page.screenshot({ path: `${shots}/serve-desktop.png` });
+    await page.emulateMedia({ colorScheme: "dark" });
+    await page.setViewportSize({ width: 390, height: 800 });
+    await page.screenshot({ path: `${shots}/serve-phone-dark.png` });
+  }
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
+  assert.equal(wide, false, "nothing is wider than a phone");
+  assert.deepEqual(page.problems, []);
+  await page.context().close();
+}
+
+async function aReloadLosesNothing() {
+  const served = await serve("lighting/*", "--format", "json");
+  const page = await open(served.url);
+  await page.waitForFunction(() => document.querySelectorAll("#groups tr").length > 4, null, { timeout: 60_000 });
+  await page.reload();
+  await isOver(page);
+  const { code, out } = await served.ended;
+  assert.equal(code, 0);
+  const [{ totals }, undisturbed] = [JSON.parse(out), JSON.parse((await run("lighting/*", "--format", "json")).out)];
+  assert.deepEqual(totals, undisturbed.totals, "a reload changes no count");
+  await page.context().close();
+}
+
+// What `run` gives of the same by the browser that it starts itself.
+async function run(...args) {
+  const child = spawn(lightmeter, ["run", "--adapter", "chromium", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+  let [out, err] = ["", ""];
+  child.stdout.on("data", (data) => { out += data; });
+  child.stderr.on("data", (data) => { err += data; });
+  return new Promise((resolve) => child.on("close", (code) => resolve({ code, out, err })));
+}
+
+async function aClosedTabEndsTheRun() {
+  const served = await serve("lighting/*");
+  const page = await open(served.url);
+  await page.waitForFunction(() => document.querySelectorAll("#groups tr").length > 4, null, { timeout: 60_000 });
+  await page.close({ runBeforeUnload: false });
+  const { code, err } = await served.ended;
+  assert.equal(code, 4, err);
+  assert.match(err, /its page was closed/);
+}
+
+async function twoBrowsersAtOnceAreJudgedEachByItself() {
+  const served = await serve("fog/*", "--keep", "--groups");
+  const pages = await Promise.all([open(served.url), open(served.url)]);
+  await Promise.all(pages.map(isOver));
+  const verdicts = await Promise.all(pages.map(verdict));
+  assert.equal(verdicts[0], verdicts[1]);
+  served.child.kill("SIGINT");
+  const { out } = await served.ended;
+  assert.match(out, /chromium: /);
+  assert.match(out, /chromium-2: /);
+  await Promise.all(pages.map((page) => page.context().close()));
+}
+
+// Asks for work as the page does, and answers what it likes.
+async function impostor(url, answer) {
+  const post = (path, body) => fetch(url + path, { method: "POST", body });
+  const hello = await post("hello", JSON.stringify({
+    session: null, vendor: "", architecture: "", model: "", description: "", platform: "", browser: "impostor", version: "0",
+    abilities: { is_cpu: false, most_pixels: 8192, features: [] },
+  }));
+  const { session, page } = await hello.json();
+  let after = 0;
+  for (;;) {
+    const response = await fetch(`${url}next?session=${session}&page=${page}&after=${after}`).catch(() => null);
+    if (!response?.ok) return;
+    const reply = await response.arrayBuffer();
+    const view = new DataView(reply);
+    for (let at = 0; at < reply.byteLength; at += 12 + view.getUint32(at + 8, true)) {
+      after = Number(view.getBigUint64(at, true));
+      await post(`answer?session=${session}&page=${page}&id=${after}&kind=done`, answer()).catch(() => null);
+    }
+  }
+}
+
+async function rubbishIsToldAndNothingIsJudgedByIt() {
+  const served = await serve("fog/exp");
+  await impostor(served.url, () => new Uint8Array(5));
+  const { code, err } = await served.ended;
+  assert.equal(code, 4);
+  assert.match(err, /5 bytes came back, where \d+ were asked for/);
+}
+
+async function aSlowBrowserIsWaitedFor() {
+  const served = await serve("fog/exp", "--cases", "64");
+  const context = await browser.newContext();
+  await context.route("**/answer*", async (route) => {
+    await new Promise((resolve) => setTimeout(resolve, 500));
+    await route.continue();
+  });
+  const page = await context.newPage();
+  await page.goto(served.url);
+  const { code } = await served.ended;
+  assert.equal(code, 0);
+  await context.close();
+}
+
+async function aBrowserWithoutWebGpuIsToldWhatToDo() {
+  const served = await serve("fog/exp");
+  const context = await browser.newContext();
+  await context.addInitScript(() => Object.defineProperty(Navigator.prototype, "gpu", { value: undefined }));
+  const page = await context.newPage();
+  await page.goto(served.url);
+  await page.waitForFunction(() => !document.querySelector("#notice").hidden);
+  assert.match(await page.textContent("#notice"), /This browser has no WebGPU/);
+  served.child.kill("SIGINT");
+  assert.equal((await served.ended).code, 3);
+  await context.close();
+}
+
+// Ten mistakes in a copy of the shaders: the formula that shows each, the file, what stands there, what takes its place, and the mistake's name.
+const MISTAKES = [
+  ["fog/exp-radial", "fog.wgsl", "return length(p);", "return abs(p.z);", "fog-planar"],
+  ["fog/exp", "fog.wgsl", "return clamp(exp(-(density * distance)), 0.0, 1.0);", "return 1.0 - clamp(exp(-(density * distance)), 0.0, 1.0);", "fog-inverted"],
+  ["fog/exp2-opengl", "fog.wgsl", "return clamp(exp(-(t * t)), 0.0, 1.0);", "return clamp(exp(-t), 0.0, 1.0);", "fog-exp-for-exp2"],
+  ["lighting/diffuse-toward", "lighting.wgsl", "return max(dot(l, n), 0.0);", "return dot(l, n);", "incidence-unclamped"],
+  ["lighting/diffuse-travel", "lighting.wgsl", "return max(dot(l, n), 0.0);", "return abs(dot(l, n));", "incidence-of-both-sides"],
+  ["lighting/phong", "lighting.wgsl", "return vector_cosine_power(vector_reflect(-l, n), v, shininess);", "return vector_cosine_power(n, vector_halfway(v, l), shininess);", "blinn-for-phong"],
+  ["lighting/blinn", "lighting.wgsl", "return vector_cosine_power(n, vector_halfway(v, l), shininess);", "return vector_cosine_power(n, vector_halfway(v, l), 4.0 * shininess);", "shininess-times-4"],
+  ["attenuation/point", "attenuation.wgsl", "return attenuation_polynomial(kc, kl, kq, distance(light, p));", "return min(attenuation_polynomial(kc, kl, kq, distance(light, p)), 1.0);", "attenuation-at-most-one"],
+  ["vector/reflect", "vector.wgsl", "return i - 2.0 * dot(i, n) * n;", "return i + 2.0 * dot(i, n) * n;", "reflect-with-plus"],
+  ["vector/halfway", "vector.wgsl", "return vector_normalize(v + l);", "return v + l;", "half-vector-not-normalised"],
+];
+
+async function mistakesAreNamedThroughTheBrowser() {
+  for (const [formula, file, right, wrong, name] of MISTAKES) {
+    const copy = mkdtempSync(join(tmpdir(), "lightmeter-shaders-"));
+    cpSync(new URL("../../gpu/src/shaders", import.meta.url), copy, { recursive: true });
+    const text = readFileSync(join(copy, file), "utf8");
+    assert.equal(text.split(right).length, 2, `${right} stands once in ${file}`);
+    writeFileSync(join(copy, file), text.replace(right, wrong));
+    const { code, out, err } = await run(formula, "--shaders", copy, "--cases", "512");
+    rmSync(copy, { recursive: true });
+    assert.equal(code, 1, `${formula}: ${out}${err}`);
+    assert.ok(out.includes(`(${name})`), `${formula}: ${name} is not named in\n${out}`);
+  }
+}
+
+const tests = [
+  aRunIsShownAndItsReportIsKept, aReloadLosesNothing, aClosedTabEndsTheRun, twoBrowsersAtOnceAreJudgedEachByItself,
+  rubbishIsToldAndNothingIsJudgedByIt, aSlowBrowserIsWaitedFor, aBrowserWithoutWebGpuIsToldWhatToDo,
+  mistakesAreNamedThroughTheBrowser,
+];
+for (const test of tests) {
+  const began = performance.now();
+  await test();
+  console.log(`ok ${test.name.replace(/[A-Z]/g, (letter) => ` ${letter.toLowerCase()}`)} (${((performance.now() - began) / 1000).toFixed(1)} s)`);
+}
+await browser.close();
