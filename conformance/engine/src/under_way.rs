@@ -11,7 +11,7 @@ pub(crate) fn tell(groups: &[Group], failures: &[Failure], is_scouted: bool, obs
         let is_of_group = |failure: &&Failure| {
             let place = (&failure.adapter, &failure.stage) == (&group.adapter, &group.stage);
             let smallest = group.by_case.as_ref().and_then(|counts| counts.smallest.as_ref());
-            let is_of_group = failure.id.starts_with(&group.id) || smallest == Some(&failure.id);
+            let is_of_group = group.has_case(&failure.id) || smallest == Some(&failure.id);
             place && failure.target == group.target && is_of_group
         };
         let failures = failures.iter().filter(is_of_group).collect();

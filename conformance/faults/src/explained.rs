@@ -43,7 +43,7 @@ fn explain_failures(failures: &[Failure], groups: &[Group], profile: &Profile) -
         }
         let Some(inputs) = inputs_of(failure, member) else { continue };
         let is_group = |group: &&Group| {
-            group.adapter == failure.adapter && group.stage == failure.stage && failure.id.starts_with(&group.id)
+            group.adapter == failure.adapter && group.stage == failure.stage && group.has_case(&failure.id)
         };
         let mistakes = groups.iter().find(is_group).map_or(&[][..], |group| &group.mistakes);
         explained.push(explained_case(&failure.id, member, &inputs, &failure.output, mistakes, profile));

@@ -79,7 +79,7 @@ pub fn of_run(report: &Report) -> String {
 
 fn is_of(failure: &Failure, group: &Group) -> bool {
     let place = (&failure.adapter, &failure.stage, &failure.target) == (&group.adapter, &group.stage, &group.target);
-    place && formula_of(failure).starts_with(&group.id)
+    place && group.has_case(formula_of(failure))
 }
 
 /// A failure on one line.

@@ -119,7 +119,7 @@ pub fn failures(report: &Report, level: Level, out: &mut impl Write) -> Result {
         groups.any(|group| {
             let is_of =
                 failure.adapter == group.adapter && failure.stage == group.stage && failure.target == group.target;
-            is_of && group.totals.failed > 0 && failure.id.starts_with(&group.id)
+            is_of && group.totals.failed > 0 && group.has_case(&failure.id)
         })
     };
     for failure in report.failures.iter().filter(fails) {

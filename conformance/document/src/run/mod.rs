@@ -209,6 +209,12 @@ impl ImageBias {
 }
 
 impl Group {
+    /// Whether the case of an id is one of the group's, which its name alone does not tell: `fog/exp` has none of `fog/exp-radial`.
+    #[must_use]
+    pub fn has_case(&self, id: &str) -> bool {
+        id.strip_prefix(&self.id).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+    }
+
     /// A group of nothing yet.
     #[must_use]
     pub fn new(id: String, adapter: String, stage: impl Into<Word>) -> Self {
@@ -601,5 +607,21 @@ impl Report {
             && self.regressions.is_empty()
             && self.passing_unexpectedly().next().is_none()
             && !self.groups.iter().any(is_failed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_group_has_its_own_cases_and_none_of_a_longer_name() {
+        let group = Group::new("fog/exp".into(), "adapter".into(), "compute");
+        for id in ["fog/exp", "fog/exp/random/000001", "fog/exp/hard/far"] {
+            assert!(group.has_case(id), "{id}");
+        }
+        for id in ["fog/exp-radial/random/000001", "fog/exp2-opengl", "fog", "fog/ex"] {
+            assert!(!group.has_case(id), "{id}");
+        }
     }
 }

@@ -109,9 +109,7 @@ fn card(report: &Report, wrong: &Wrong<'_>, is_open: bool) -> Markup {
     let [reference, result, error] =
         wrong.pictures.each_ref().map(|bytes| bytes.as_ref().map(|bytes| embedded("image/png", bytes)));
     let failure = report.failures.iter().find(|failure| {
-        failure.adapter == group.adapter
-            && failure.stage == group.stage
-            && failure.id.starts_with(&format!("{}/", group.id))
+        failure.adapter == group.adapter && failure.stage == group.stage && group.has_case(&failure.id)
     });
     html! {
         details.card.scene id=(wrong.anchor()) open[is_open] {
