@@ -460,30 +460,82 @@ mod tests {
     use super::*;
     use lightmeter_catalogue::select::catalogue;
 
-    /// Letters and digits in their order, those of raised and lowered characters too.
-    fn told(text: &str) -> String {
-        let plain = |c: char| match c {
-            '⁰' => '0',
-            '¹' => '1',
-            '²' => '2',
-            '³' => '3',
-            '⁴' => '4',
-            '⁵' => '5',
-            '⁶' => '6',
-            '⁷' => '7',
-            '⁸' => '8',
-            '⁹' => '9',
-            'ⁿ' | 'ₙ' => 'n',
-            'ᵏ' => 'k',
-            'ʲ' => 'j',
-            'ᵀ' => 'T',
-            'ᵢ' => 'i',
-            '₀' => '0',
-            '₁' => '1',
-            '₂' => '2',
-            c => c,
-        };
-        text.chars().map(plain).filter(|c| c.is_alphanumeric()).collect::<String>().replace('½', "12")
+    /// What a line says, without its spaces and its round brackets: a bar of a fraction and a place above the line may stand for these.
+    fn told(line: &str) -> String {
+        let mut told = String::new();
+        for c in line.chars().filter(|c| !c.is_whitespace() && !matches!(c, '(' | ')' | '^')) {
+            match c {
+                '⁰' => told.push('0'),
+                '¹' => told.push('1'),
+                '²' => told.push('2'),
+                '³' => told.push('3'),
+                '⁴' => told.push('4'),
+                '⁵' => told.push('5'),
+                '⁶' => told.push('6'),
+                '⁷' => told.push('7'),
+                '⁸' => told.push('8'),
+                '⁹' => told.push('9'),
+                '⁻' => told.push('−'),
+                'ⁿ' | 'ₙ' => told.push('n'),
+                'ᵏ' => told.push('k'),
+                'ʲ' => told.push('j'),
+                'ᵀ' => told.push('T'),
+                'ᵢ' => told.push('i'),
+                '₀' => told.push('0'),
+                '₁' => told.push('1'),
+                '₂' => told.push('2'),
+                '½' => told.push_str("1/2"),
+                '¼' => told.push_str("1/4"),
+                '_' => {}
+                '∗' => told.push('*'),
+                c => told.push(c),
+            }
+        }
+        told
+    }
+
+    /// The parts of an element, each with its tags.
+    fn parts(mathml: &str) -> Vec<&str> {
+        let (mut parts, mut depth, mut start) = (vec![], 0, 0);
+        for (at, _) in mathml.match_indices('<') {
+            if depth == 0 {
+                start = at;
+            }
+            depth += if mathml[at..].starts_with("</") { -1 } else { 1 };
+            if depth == 0 {
+                let end = at + mathml[at..].find('>').expect("a tag ends") + 1;
+                parts.push(&mathml[start..end]);
+            }
+        }
+        parts
+    }
+
+    /// MathML as a line again; fails where an element is empty or its fences have no partners.
+    fn line_of(mathml: &str) -> String {
+        let mut line = String::new();
+        for part in parts(mathml) {
+            let name = part[1..].split(['>', ' ']).next().unwrap_or_default();
+            let inner = &part[part.find('>').expect("a tag ends") + 1..part.rfind("</").expect("an element ends")];
+            match name {
+                "mi" | "mn" | "mo" | "mtext" => {
+                    line += &inner.replace("&lt;", "<").replace("&gt;", ">").replace("&#x2061;", "");
+                }
+                "mfrac" => {
+                    let [over, under] = parts(inner)[..] else { panic!("a fraction of two parts: {part}") };
+                    let [over, under] = [line_of(over), line_of(under)];
+                    assert!(!over.is_empty() && !under.is_empty(), "a fraction has an empty part: {mathml}");
+                    line += &format!("{over}/{under}");
+                }
+                "msqrt" => line += &format!("√{}", line_of(inner)),
+                "mrow" | "msup" | "msub" | "math" => {
+                    let own = line_of(inner);
+                    assert!(!own.is_empty(), "an element is empty: {mathml}");
+                    line += &own;
+                }
+                other => panic!("an element `{other}` in {mathml}"),
+            }
+        }
+        line
     }
 
     #[test]
@@ -516,23 +568,42 @@ mod tests {
         assert!(grids > 0 && plots > 0 && numbers > 0, "{grids} {plots} {numbers}");
     }
 
+    /// Whether each fence within a row has its partner there: an opening one comes first, and a closing one last.
+    fn is_fenced(mathml: &str) -> bool {
+        let is_fence = |part: &&str| part.starts_with("<mo ") && part.contains("fence=\"true\"");
+        parts(mathml).into_iter().filter(|part| !part.starts_with("<mo") && !part.starts_with("<mi")).all(|part| {
+            let inner = &part[part.find('>').expect("a tag ends") + 1..part.rfind("</").expect("an element ends")];
+            let inside = parts(inner);
+            let fences: Vec<&str> = inside.iter().copied().filter(is_fence).collect();
+            let sign = |part: &str| part.chars().find(|c| "()⟨⟩|".contains(*c));
+            let is_pair = match fences[..] {
+                [] => true,
+                [open, close] => {
+                    let pair = sign(open).zip(sign(close));
+                    matches!(pair, Some(('(', ')') | ('⟨', '⟩') | ('|', '|')))
+                        && is_fence(inside.first().expect("a row with fences"))
+                        && is_fence(inside.last().expect("a row with fences"))
+                        && inside.len() > 2
+                }
+                _ => false,
+            };
+            is_pair && is_fenced(inner)
+        })
+    }
+
     #[test]
     fn the_equation_of_every_formula_says_what_its_line_says() {
+        let mut set = 0;
         for member in catalogue() {
+            let (id, text) = (&member.spec.id, member.spec.text);
             let html = set_equation(&member.spec).0;
-            let set = html.split("</div>").next().unwrap_or_default();
-            let mut words = String::new();
-            let mut is_tag = false;
-            for c in set.replace("&#x2061;", "").replace("&lt;", "").chars() {
-                match c {
-                    '<' => is_tag = true,
-                    '>' => is_tag = false,
-                    c if !is_tag => words.push(c),
-                    _ => {}
-                }
-            }
-            assert_eq!(told(&words), told(member.spec.text), "{}", member.spec.id);
-            assert_eq!(set.contains("<math"), !is_sentence(member.spec.text), "{}", member.spec.id);
+            assert_eq!(html.contains("<math"), !is_sentence(text), "{id}");
+            let Some(from) = html.find("<math") else { continue };
+            let mathml = &html[from..html.find("</div>").expect("it ends")];
+            assert_eq!(told(&line_of(mathml).replace('\u{a0}', "")), told(&text.replace("; ", "")), "{id}: {mathml}");
+            assert!(is_fenced(mathml), "{id}: {mathml}");
+            set += 1;
         }
+        assert!(set > 70, "{set} formulas are set as mathematics");
     }
 }

@@ -59,7 +59,7 @@ const FAMILIES: &[&str] =
 #[must_use]
 pub fn equation(text: &str, names: &[&str]) -> Markup {
     let tokens = tokens(text, names);
-    let mut parser = Parser { tokens: &tokens, at: 0 };
+    let mut parser = Parser { tokens: &tokens, at: 0, is_in_bars: false };
     let mut rows = String::new();
     while parser.at < tokens.len() {
         rows += &parser.row(&[]);
@@ -94,6 +94,7 @@ fn tokens(text: &str, names: &[&str]) -> Vec<Token> {
             tokens.push(Token::Name(chars[at..at + count].iter().collect()));
             at += count;
         } else if is_letter(c) {
+            let start = at;
             let count = run(at, &|c| is_letter(c) || c.is_ascii_digit() || c == '_');
             let mut word: String = chars[at..at + count].iter().collect();
             at += count;
@@ -107,7 +108,15 @@ fn tokens(text: &str, names: &[&str]) -> Vec<Token> {
             let is_scripted = chars.get(at).is_some_and(|&c| lowered(ABOVE, c).or(lowered(BELOW, c)).is_some());
             let is_marked = is_scripted || word.contains(['′', '_']) || word.ends_with(|c: char| c.is_ascii_digit());
             let is_known = NAMES.contains(&word.as_str()) || names.contains(&word.as_str());
-            let is_name = is_variable || is_marked || is_known && !is_article;
+            // What an operator stands next to is an operand of it.
+            let is_operand = chars[..start].last().is_some_and(is_joining) || chars.get(at).is_some_and(is_joining);
+            // "light's" is a word, though "light" is a name.
+            let is_genitive = chars[at..].starts_with(&['\'', 's']);
+            if is_genitive {
+                word.push_str("'s");
+                at += 2;
+            }
+            let is_name = !is_genitive && (is_variable || is_marked || is_operand || is_known && !is_article);
             tokens.push(if is_name { Token::Name(word) } else { Token::Word(word) });
         } else if rest.starts_with(" / ") {
             tokens.push(Token::Wide);
@@ -130,7 +139,12 @@ fn tokens(text: &str, names: &[&str]) -> Vec<Token> {
 }
 
 fn is_letter(c: char) -> bool {
-    c.is_alphabetic() && lowered(ABOVE, c).is_none() && lowered(BELOW, c).is_none()
+    c != 'Σ' && c.is_alphabetic() && lowered(ABOVE, c).is_none() && lowered(BELOW, c).is_none()
+}
+
+/// Whether a sign joins what stands next to it without a space.
+const fn is_joining(sign: &char) -> bool {
+    matches!(sign, '·' | '/' | '^')
 }
 
 /// Whether "a" is the article: a word of at least two letters follows it.
@@ -143,6 +157,8 @@ fn is_article(rest: &[char]) -> bool {
 struct Parser<'a> {
     tokens: &'a [Token],
     at: usize,
+    /// Whether the innermost brackets are the bars of a length, so that the next bar closes them.
+    is_in_bars: bool,
 }
 
 /// Signs between terms, which no fraction reaches across.
@@ -212,7 +228,8 @@ impl Parser<'_> {
                     }
                     return chain;
                 }
-                Some(c @ ('·' | '*')) => {
+                // A sum is over all that follows, and so in no numerator.
+                Some(c @ ('·' | '*' | 'Σ')) => {
                     chain += &operator(if c == '*' { '∗' } else { c });
                     self.at += 1;
                 }
@@ -271,13 +288,13 @@ impl Parser<'_> {
             }
             Token::Sign('(') => self.fenced('(', ')'),
             Token::Sign('⟨') => self.fenced('⟨', '⟩'),
-            Token::Sign('|') => self.fenced('|', '|'),
+            Token::Sign('|') if !self.is_in_bars => self.fenced('|', '|'),
             Token::Sign('√') => {
                 self.at += 1;
                 let under = self.factor()?;
                 Factor { text: format!("<msqrt>{}</msqrt>", under.bare()), inner: None }
             }
-            Token::Sign(c @ ('Σ' | '½' | '¼' | '∞' | '′')) => {
+            Token::Sign(c @ ('½' | '¼' | '∞' | '′')) => {
                 self.at += 1;
                 let text = match c {
                     '½' => "<mfrac><mn>1</mn><mn>2</mn></mfrac>".to_owned(),
@@ -313,6 +330,8 @@ impl Parser<'_> {
     /// What stands between two brackets.
     fn fenced(&mut self, open: char, close: char) -> Factor {
         self.at += 1;
+        let was_in_bars = std::mem::replace(&mut self.is_in_bars, open == '|');
+        let start = self.at;
         let mut inner = self.row(&[close]);
         // What is left is shown as it stands.
         while self.at < self.tokens.len() && self.sign() != Some(close) {
@@ -323,11 +342,15 @@ impl Parser<'_> {
             };
             self.at += 1;
         }
+        // A product of names side by side, such as the triple product (a b c), is written with its brackets.
+        let is_of_names =
+            self.at - start > 1 && self.tokens[start..self.at].iter().all(|t| matches!(t, Token::Name(_)));
+        self.is_in_bars = was_in_bars;
         self.at += 1;
         let fence = |c: char| html! { mo stretchy="true" fence="true" { (c) } }.into_string();
         Factor {
             text: format!("<mrow>{}{inner}{}</mrow>", fence(open), fence(close)),
-            inner: (open == '(').then_some(inner),
+            inner: (open == '(' && !is_of_names).then_some(inner),
         }
     }
 }
@@ -400,5 +423,41 @@ mod tests {
         assert!(article.contains("<mi>a</mi>") && article.contains("a cone"), "{article}");
         let mark = set("a < b");
         assert!(mark.contains("<mo>&lt;</mo>"), "{mark}");
+    }
+
+    #[test]
+    fn bars_close_and_what_follows_them_is_outside() {
+        let bars = |inner: &str| {
+            let fence = "<mo stretchy=\"true\" fence=\"true\">|</mo>";
+            format!("{fence}{inner}{fence}")
+        };
+        let square = set("exp(−(density·|p|)²)");
+        assert!(square.contains(&bars("<mi>p</mi>")), "{square}");
+        assert!(square.contains(")</mo><mn>2</mn></msup>"), "{square}");
+        let under = set("v/|v|, 0 for the zero vector");
+        assert!(under.contains(&format!("{}</mfrac><mo>,</mo>", bars("<mi>v</mi>"))), "{under}");
+        let nested = set("|(a − p)·b|·c");
+        assert!(nested.ends_with("|</mo><mo>·</mo><mi>c</mi></math>"), "{nested}");
+        let within = set("|a·(|b| + c)|");
+        assert_eq!(within.matches("|</mo>").count(), 4, "{within}");
+    }
+
+    #[test]
+    fn a_sum_is_over_whole_quotients() {
+        let sum = set("Σ λᵢ·aᵢ/wᵢ / Σ λᵢ/wᵢ");
+        let quotient = |name: &str| {
+            format!("<mfrac><msub><mi>{name}</mi><mi>i</mi></msub><msub><mi>w</mi><mi>i</mi></msub></mfrac>")
+        };
+        assert!(sum.contains(&format!("<mo>Σ</mo>{}</mfrac></math>", quotient("λ"))), "{sum}");
+        assert!(sum.contains(&format!("<mo>·</mo>{}<mo>Σ</mo>", quotient("a"))), "{sum}");
+    }
+
+    #[test]
+    fn words_next_to_an_operator_are_its_operands() {
+        let words = set("n′ = cofactors·n/determinant, the fog's density");
+        assert!(words.contains("<mfrac><mi>n</mi><mi>determinant</mi></mfrac>"), "{words}");
+        assert!(words.contains("the fog's") && words.contains("<mi>density</mi>"), "{words}");
+        let triple = set("(a b p)/(a b c)");
+        assert_eq!(triple.matches("(</mo>").count(), 2, "{triple}");
     }
 }
