@@ -343,8 +343,10 @@ impl Parser<'_> {
             self.at += 1;
         }
         // A product of names side by side, such as the triple product (a b c), is written with its brackets.
-        let is_of_names =
-            self.at - start > 1 && self.tokens[start..self.at].iter().all(|t| matches!(t, Token::Name(_)));
+        let is_of_names = self
+            .tokens
+            .get(start..self.at)
+            .is_some_and(|all| all.len() > 1 && all.iter().all(|t| matches!(t, Token::Name(_))));
         self.is_in_bars = was_in_bars;
         self.at += 1;
         let fence = |c: char| html! { mo stretchy="true" fence="true" { (c) } }.into_string();
@@ -440,6 +442,13 @@ mod tests {
         assert!(nested.ends_with("|</mo><mo>·</mo><mi>c</mi></math>"), "{nested}");
         let within = set("|a·(|b| + c)|");
         assert_eq!(within.matches("|</mo>").count(), 4, "{within}");
+    }
+
+    #[test]
+    fn brackets_that_never_close_are_set_as_they_stand() {
+        for text in ["((a", "|(a", "(|a b", "⟨(", "|"] {
+            assert!(set(text).starts_with("<math"), "{text}");
+        }
     }
 
     #[test]
