@@ -6,6 +6,7 @@
 //!
 //! Each way describes what it does as data ([`work`]) and reads the words that come back. An executor, which keeps what
 //! outlives a submission, runs the descriptions on a device by wgpu; nothing else makes objects there or submits commands.
+//! Where the device is elsewhere, as a browser's is, the executor hands the descriptions to a [`Host`] instead.
 
 mod adapters;
 mod arithmetic;

@@ -44,7 +44,7 @@ pub struct BrowserHello {
 }
 
 impl BrowserHello {
-    /// The GPU by what is told of it.
+    /// The GPU's name: its description or model where the browser tells one, and otherwise its vendor and architecture.
     #[must_use]
     pub fn device(&self) -> String {
         let own = [&self.description, &self.model].into_iter().find(|text| !text.is_empty());
@@ -76,7 +76,7 @@ pub struct Session {
     board: Mutex<Board>,
 }
 
-/// What a page is told of its run.
+/// How far a run has come, as its page shows it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PageState {
     /// In words.
@@ -93,7 +93,7 @@ pub struct PageState {
     pub groups: Vec<PageGroup>,
 }
 
-/// What a page is told of a formula or a scene.
+/// The verdicts on one formula or scene, as a page shows them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct PageGroup {
     /// Its id.
@@ -106,7 +106,7 @@ pub struct PageGroup {
     pub failed: u64,
 }
 
-/// What a page is told, and the reports that it may take.
+/// How far the run has come, and the reports that the page may take at its end.
 #[derive(Debug, Default)]
 struct Board {
     told: PageState,

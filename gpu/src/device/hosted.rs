@@ -63,7 +63,7 @@ pub enum WorkPiece<'a> {
     Destroy,
 }
 
-/// What is asked for by a piece of work that was sent.
+/// The number of a piece of work that was sent, by which its result is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Ticket(pub u64);
 
@@ -75,7 +75,7 @@ pub enum HostError {
     Refused(String),
     /// The device failed at something else, or was lost.
     Failed(String),
-    /// There was no answer within so many seconds.
+    /// The device did not answer within this many seconds.
     Silent(u64),
 }
 
@@ -241,5 +241,107 @@ impl Drop for Asked {
         if !self.is_waited_for {
             self.host.forget(self.ticket);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::{Executor, Gpu};
+    use crate::work::{Buffer, Resources};
+    use std::sync::Mutex;
+    use wgpu_types::{BufferUsages, TextureFormat, TextureUsages};
+
+    /// A host that gives the same result for everything, and notes what is sent.
+    #[derive(Debug)]
+    struct Same(Result<Vec<u8>, HostError>, Mutex<Vec<String>>);
+
+    impl Host for Same {
+        fn abilities(&self) -> Abilities {
+            Abilities { is_cpu: true, most_pixels: 64, features: vec!["float32-blendable".into(), "unheard-of".into()] }
+        }
+
+        fn send(&self, piece: &WorkPiece<'_>) -> Ticket {
+            let mut sent = self.1.lock().expect("no test panics here");
+            sent.push(serde_json::to_string(piece).expect("a piece can be written"));
+            Ticket(sent.len() as u64)
+        }
+
+        fn wait(&self, _: Ticket) -> Result<Vec<u8>, HostError> {
+            self.0.clone()
+        }
+
+        fn forget(&self, _: Ticket) {}
+    }
+
+    fn host(result: Result<Vec<u8>, HostError>) -> (Arc<Same>, Gpu) {
+        let host = Arc::new(Same(result, Mutex::default()));
+        (host.clone(), Gpu::hosted(host))
+    }
+
+    /// A buffer of 16 bytes and a texture of 2 × 3 pixels of 4, which are read back.
+    fn work() -> Submission {
+        let mut work = Submission::default();
+        let buffer = work.buffer(Buffer::unwritten(16, BufferUsages::COPY_SRC));
+        let texture = TextureResource::target([2, 3], TextureFormat::R32Uint, TextureUsages::COPY_SRC);
+        let texture = work.texture(texture);
+        work.reads.extend([Read::Buffer { buffer, bytes: 16 }, Read::Texture(texture)]);
+        work
+    }
+
+    #[test]
+    fn bytes_of_another_length_than_asked_for_are_an_error() {
+        for (bytes, is_right) in [(40, true), (39, false), (0, false), (44, false)] {
+            let (_, gpu) = host(Ok(vec![7; bytes]));
+            let mut executor = Executor::default();
+            executor.make(&gpu, &Resources::default(), "some.wgsl").expect("nothing is to be made");
+            let words = executor.submit(&gpu, &work()).wait(&gpu);
+            match words {
+                Ok(words) => assert!(is_right && words == [0x0707_0707; 10], "{bytes}: {words:?}"),
+                Err(error) => assert!(!is_right && error.to_string().contains("where 40 were asked for"), "{error}"),
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_new_is_made_once_and_dropped_at_the_end() {
+        let (host, gpu) = host(Ok(vec![]));
+        let mut resources = Resources::default();
+        let mut executor = Executor::default();
+        resources.shader("first", "1".into());
+        executor.make(&gpu, &resources, "some.wgsl").expect("it is made");
+        executor.make(&gpu, &resources, "some.wgsl").expect("nothing is new");
+        resources.shader("second", "2".into());
+        executor.make(&gpu, &resources, "some.wgsl").expect("it is made");
+        drop(executor);
+        let sent = host.1.lock().expect("no test panics here");
+        let [first, second, dropped] = &sent[..] else { panic!("{sent:?}") };
+        assert!(first.contains("first") && !first.contains("second"), "{first}");
+        assert!(second.contains("second") && !second.contains("first"), "{second}");
+        assert!(dropped.contains("drop"), "{dropped}");
+    }
+
+    #[test]
+    fn what_is_refused_is_said_of_the_shader_and_what_fails_of_the_device() {
+        let mut resources = Resources::default();
+        resources.shader("a shader", "rubbish".into());
+        for (error, is_of_shader) in
+            [(HostError::Refused("1:1".into()), true), (HostError::Failed("gone".into()), false)]
+        {
+            let (_, gpu) = host(Err(error));
+            let made = Executor::default().make(&gpu, &resources, "some.wgsl").expect_err("it is refused");
+            assert_eq!(
+                matches!(made, GpuError::Shader { ref file, .. } if file == "some.wgsl"),
+                is_of_shader,
+                "{made}"
+            );
+        }
+    }
+
+    #[test]
+    fn abilities_are_wgpus_features_and_what_is_unheard_of_is_none() {
+        let (_, gpu) = host(Ok(vec![]));
+        assert!(gpu.has(wgpu::Features::FLOAT32_BLENDABLE) && !gpu.has_dual_source() && gpu.is_cpu());
+        assert_eq!(gpu.most_pixels(), 64);
     }
 }
