@@ -437,6 +437,30 @@ fn invalid_shaders_are_told_with_their_line() {
 }
 
 #[test]
+fn without_a_browser_nothing_can_run() {
+    let output = command(&["run", "fog/exp", "--adapter", "chromium"]).env("CHROMIUM", "/nowhere").output();
+    let output = output.expect("the binary starts");
+    let text = stderr(&output);
+    assert_eq!(code(&output), 3, "{text}");
+    assert!(text.contains("/nowhere does not start"), "{text}");
+}
+
+#[test]
+fn what_serve_cannot_judge_is_refused_before_a_page_is_served() {
+    for (arguments, says) in [
+        (&["fog/exp", "--adapter", "lavapipe"][..], "use `run --adapter lavapipe`"),
+        (&["fog/exq"], "did you mean `fog/exp`?"),
+        (&["fog/exp", "--listen", "0.0.0.0:0"], "this server speaks http"),
+        (&["fog/exp", "--listen", "nowhere"], "--listen"),
+    ] {
+        let output = command(&[&["serve"], arguments].concat()).output().expect("the binary starts");
+        let text = stderr(&output);
+        assert_eq!(code(&output), 2, "{arguments:?}: {text}");
+        assert!(text.contains(says) && !text.contains("open this page"), "{arguments:?}: {text}");
+    }
+}
+
+#[test]
 fn without_a_driver_nothing_can_run() {
     let output = command(&["run", "fog"])
         .env("VK_DRIVER_FILES", "/nowhere")

@@ -114,6 +114,12 @@ impl Chromium {
         Ok(Self { session, is_over, watch: Some(watch), _server: server })
     }
 
+    /// The program that [`Chromium::start`] starts; `None` where none is installed.
+    #[must_use]
+    pub fn program() -> Option<PathBuf> {
+        program()
+    }
+
     /// What its page said of itself.
     #[must_use]
     pub fn hello(&self) -> &crate::session::BrowserHello {

@@ -43,8 +43,8 @@ const REPORT_POLICY: &str = "frame-ancestors 'none'";
 pub enum ServerError {
     /// The address is not the machine's own.
     #[error(
-        "{0} is an address that other machines reach, where browsers give WebGPU to pages by https alone, and this server speaks http. Bind \
-         127.0.0.1, and bring it to a phone by `adb reverse tcp:PORT tcp:PORT`, or to another machine by `ssh -R PORT:127.0.0.1:PORT`"
+        "other machines reach {0}. Browsers give WebGPU to https pages alone there, and this server speaks http. Listen at 127.0.0.1, and \
+         bring it to a phone by `adb reverse tcp:PORT tcp:PORT`, or to another machine by `ssh -R PORT:127.0.0.1:PORT`"
     )]
     NotLoopback(IpAddr),
     /// The address cannot be bound.

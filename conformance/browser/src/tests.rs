@@ -75,7 +75,7 @@ fn the_page_is_served_and_what_nobody_should_ask_is_refused() {
 fn addresses_that_others_reach_are_refused_with_the_reason() {
     let refused = Server::start(([0, 0, 0, 0], 0).into()).expect_err("others reach it");
     assert!(matches!(refused, ServerError::NotLoopback(_)), "{refused}");
-    assert!(refused.to_string().contains("https alone"), "{refused}");
+    assert!(refused.to_string().contains("to https pages alone"), "{refused}");
 }
 
 /// A session with a page, and what makes something for its first executor.

@@ -4,6 +4,8 @@ use super::Status;
 use super::options::Format;
 use super::terminal::level;
 use clap::Args;
+use lightmeter::adapters::{CHROMIUM, EMBEDDED};
+use lightmeter::browser::Chromium;
 use lightmeter::devices::{BlendDeviation, Builtin, Deviation, known};
 use lightmeter::document::Document as _;
 use lightmeter::document::adapters::{
@@ -32,7 +34,8 @@ impl Adapters {
             Format::Text => {
                 let mut text = String::new();
                 if level() == Level::Quiet {
-                    let names = found.iter().map(|adapter| adapter.name.as_str()).chain(["cpu"]);
+                    let browser = Chromium::program().map(|_| CHROMIUM);
+                    let names = found.iter().map(|adapter| adapter.name.as_str()).chain([EMBEDDED]).chain(browser);
                     names.for_each(|name| text += &format!("{name}\n"));
                     return self.format.emit(&text, None).map(|()| Status::Success);
                 }
@@ -48,7 +51,11 @@ impl Adapters {
                         writeln!(text, "  blends on 8 linear bits as {} has it, bit for bit", model.name())?;
                     }
                 }
-                writeln!(text, "{:<14} {:<7} the reference's own formulas in f32: needs no driver", "cpu", "—")?;
+                writeln!(text, "{:<14} {:<7} the reference's own formulas in f32: needs no driver", EMBEDDED, "—")?;
+                if let Some(program) = Chromium::program() {
+                    let (name, program) = (CHROMIUM, program.display());
+                    writeln!(text, "{name:<14} {:<7} the GPU of {program}, which is started for it", "webgpu")?;
+                }
                 text
             }
         };

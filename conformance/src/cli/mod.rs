@@ -248,7 +248,7 @@ impl Status {
             return Self::Device;
         }
         let device = match error.downcast_ref::<AdapterError>() {
-            Some(AdapterError::NoDriver(_)) => return Self::Nothing,
+            Some(AdapterError::NoDriver(_) | AdapterError::Chromium(_)) => return Self::Nothing,
             Some(AdapterError::Device(error)) => Some(error),
             Some(_) => return Self::BadInput,
             None => error.downcast_ref::<DeviceError>(),
