@@ -15,7 +15,7 @@ fn main() -> ExitCode {
         cli::say(&format!("error: {error:#}"));
         cli::Status::of(&error)
     });
-    status.into()
+    cli::end(status)
 }
 
 /// Where no desktop runs, one of Mesa's layers complains on standard error unless this variable is set, which must be so when a process

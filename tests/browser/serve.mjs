@@ -1,13 +1,15 @@
 // Judges Chromium's GPU by `lightmeter serve`, as a person would, and as nobody should: SwiftShader computes, as nothing else is here.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
+import { spawn, spawnSync } from "node:child_process";
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { connect } from "node:tls";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
 import axe from "axe-core";
 
-const [, , shots] = process.argv;
+// The folder for screenshots, and the part of a test's name that is run alone.
+const [, , shots, only] = process.argv;
 const lightmeter = process.env.LIGHTMETER;
 const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
@@ -15,15 +17,19 @@ const browser = await chromium.launch({
 });
 
 // Starts `lightmeter serve`; gives its page's address, and a promise of how it ends.
-async function serve(...args) {
-  const child = spawn(lightmeter, ["serve", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+function serve(...args) {
+  return served(lightmeter, ["serve", ...args]);
+}
+
+async function served(program, args) {
+  const child = spawn(program, args, { stdio: ["ignore", "pipe", "pipe"] });
   let [out, err] = ["", ""];
   child.stdout.on("data", (data) => { out += data; });
   const url = await new Promise((resolve, reject) => {
     child.stderr.on("data", (data) => {
       err += data;
-      const found = /http:\/\/\S+/.exec(err);
-      if (found) resolve(found[0]);
+      const found = /https?:\/\/\S+/.exec(err);
+      if (found && err.endsWith("\n")) resolve(found[0]);
     });
     child.on("exit", (code) => reject(new Error(`ended with ${code}: ${err}`)));
   });
@@ -179,6 +185,57 @@ async function aBrowserWithoutWebGpuIsToldWhatToDo() {
   await context.close();
 }
 
+// What fails is shown with its cause, and a scene with its pictures, which stay once the server has ended.
+async function aSceneThatFailsIsShownWithItsPictures() {
+  const copy = shaders("scene_lighting.wgsl", "return sum.diffuse + sum.specular;", "return sum.diffuse + 0.8 * sum.specular;");
+  const images = mkdtempSync(join(tmpdir(), "lightmeter-images-"));
+  const served = await serve("scene/phong", "fog/exp", "--shaders", copy, "--images", images);
+  const page = await open(served.url);
+  await isOver(page);
+  const { code, err } = await served.ended;
+  assert.equal(code, 1, err);
+  assert.match(await page.textContent("#failures"), /scene\/phong \(/);
+  await page.waitForFunction(() => document.querySelectorAll("#failures img").length >= 3);
+  const sizes = await page.$$eval("#failures img", (images) => images.map((image) => [image.naturalWidth, image.naturalHeight, image.alt]));
+  for (const [width, height, alt] of sizes) assert.ok(width > 32 && height > 32 && alt.startsWith("scene/phong"), `${width} × ${height}: ${alt}`);
+  const { violations } = await page.evaluate(`${axe.source}; axe.run()`);
+  assert.deepEqual(violations.map(({ id, nodes }) => [id, nodes[0].html]), []);
+  if (shots) {
+    await page.screenshot({ path: `${shots}/serve-failing.png`, fullPage: true });
+    await page.emulateMedia({ colorScheme: "dark" });
+    await page.setViewportSize({ width: 390, height: 800 });
+    await page.screenshot({ path: `${shots}/serve-failing-phone-dark.png`, fullPage: true });
+  }
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
+  assert.equal(wide, false, "nothing is wider than a phone");
+  assert.deepEqual(page.problems, []);
+  await page.context().close();
+  for (const folder of [copy, images]) rmSync(folder, { recursive: true });
+}
+
+// Any command takes a browser that opens a page.
+async function aBenchWaitsForABrowserAndTellsTheStepsOfItsClock() {
+  const bench = await served(lightmeter, ["bench", "fog/exp", "--quick", "--adapter", "browser", "--format", "json"]);
+  const page = await open(bench.url);
+  const { code, out, err } = await bench.ended;
+  assert.equal(code, 0, err);
+  const [{ adapter, clock }] = JSON.parse(out).adapters;
+  assert.equal(adapter, "browser");
+  assert.ok(clock.grain_ns >= 1 && clock.grain_ns <= 1e6, `a step of ${clock.grain_ns} ns`);
+  await page.waitForFunction(() => /The command has ended/.test(document.querySelector("#verdict").textContent));
+  await page.context().close();
+}
+
+// A copy of the shaders with a mistake in one file.
+function shaders(file, right, wrong) {
+  const copy = mkdtempSync(join(tmpdir(), "lightmeter-shaders-"));
+  cpSync(new URL("../../gpu/src/shaders", import.meta.url), copy, { recursive: true });
+  const text = readFileSync(join(copy, file), "utf8");
+  assert.equal(text.split(right).length, 2, `${right} stands once in ${file}`);
+  writeFileSync(join(copy, file), text.replace(right, wrong));
+  return copy;
+}
+
 // Ten mistakes in a copy of the shaders: the formula that shows each, the file, what stands there, what takes its place, and the mistake's name.
 const MISTAKES = [
   ["fog/exp-radial", "fog.wgsl", "return length(p);", "return abs(p.z);", "fog-planar"],
@@ -195,11 +252,7 @@ const MISTAKES = [
 
 async function mistakesAreNamedThroughTheBrowser() {
   for (const [formula, file, right, wrong, name] of MISTAKES) {
-    const copy = mkdtempSync(join(tmpdir(), "lightmeter-shaders-"));
-    cpSync(new URL("../../gpu/src/shaders", import.meta.url), copy, { recursive: true });
-    const text = readFileSync(join(copy, file), "utf8");
-    assert.equal(text.split(right).length, 2, `${right} stands once in ${file}`);
-    writeFileSync(join(copy, file), text.replace(right, wrong));
+    const copy = shaders(file, right, wrong);
     const { code, out, err } = await run(formula, "--shaders", copy, "--cases", "512");
     rmSync(copy, { recursive: true });
     assert.equal(code, 1, `${formula}: ${out}${err}`);
@@ -207,14 +260,102 @@ async function mistakesAreNamedThroughTheBrowser() {
   }
 }
 
+// A network of its own, as another machine has, where this may be made: two addresses of a range that is meant for tests.
+function network() {
+  const [name, here, there] = ["lightmeter-tls", "198.18.77.1", "198.18.77.2"];
+  const ip = (...words) => spawnSync("ip", words, { encoding: "utf8" });
+  ip("netns", "delete", name);
+  for (const words of [
+    ["netns", "add", name],
+    ["link", "add", "lightmeter0", "type", "veth", "peer", "name", "lightmeter1", "netns", name],
+    ["address", "add", `${here}/30`, "dev", "lightmeter0"],
+    ["link", "set", "lightmeter0", "up"],
+    ["-n", name, "address", "add", `${there}/30`, "dev", "lightmeter1"],
+    ["-n", name, "link", "set", "lightmeter1", "up"],
+    ["-n", name, "link", "set", "lo", "up"],
+  ]) {
+    const { status, stderr, error } = ip(...words);
+    if (status !== 0) return { why: `ip ${words.join(" ")}: ${error ?? stderr.trim()}` };
+  }
+  return { there, inside: (...words) => ["ip", ["netns", "exec", name, ...words]], end: () => ip("netns", "delete", name) };
+}
+
+// The fingerprint of the certificate that a server shows.
+function fingerprint(url) {
+  const { hostname, port } = new URL(url);
+  return new Promise((resolve, reject) => {
+    const socket = connect({ host: hostname, port, rejectUnauthorized: false }, () => {
+      resolve(socket.getPeerCertificate().fingerprint256);
+      socket.destroy();
+    });
+    socket.on("error", reject);
+  });
+}
+
+async function anotherMachineReachesItByTlsAlone() {
+  const { why, there, inside, end } = network();
+  if (why) return `not tried, since no network namespace can be made here: ${why}`;
+  try {
+    const server = await served(...inside(lightmeter, "serve", "fog/*", "--format", "json", "--listen", `${there}:0`));
+    assert.match(server.url, new RegExp(`^https://${there.replaceAll(".", "[.]")}:\\d+/[0-9a-f]{32}/$`));
+    const plain = await fetch(server.url.replace("https:", "http:")).then(() => "answered", () => "nothing");
+    assert.equal(plain, "nothing", "http is not spoken");
+    const shown = await fingerprint(server.url);
+    const context = await browser.newContext({ ignoreHTTPSErrors: true });
+    const page = await context.newPage();
+    await page.goto(server.url);
+    await isOver(page);
+    const { code, out, err } = await server.ended;
+    assert.equal(code, 0, err);
+    assert.ok(err.includes(shown), `the printed fingerprint is ${shown}: ${err}`);
+    assert.equal(JSON.parse(out).totals.failed, 0);
+    await context.close();
+    // Without going on past the warning nothing is loaded.
+    const other = await served(...inside(lightmeter, "serve", "fog/exp", "--listen", `${there}:0`));
+    const strict = await browser.newContext();
+    const refused = await (await strict.newPage()).goto(other.url).then(() => "loaded", (error) => String(error));
+    assert.match(refused, /ERR_CERT_AUTHORITY_INVALID/);
+    await strict.close();
+    other.child.kill("SIGINT");
+    await other.ended;
+  } finally {
+    end();
+  }
+}
+
+// The process of Chromium that a `run` started itself, once it is there.
+function childOf(pid) {
+  return spawnSync("pgrep", ["--parent", String(pid)], { encoding: "utf8" }).stdout.trim().split("\n")[0];
+}
+
+async function aChromiumThatIsKilledEndsTheRunWithWhatWasJudged() {
+  const child = spawn(lightmeter, ["run", "--adapter", "chromium", "lighting/*", "--cases", "100000"], { stdio: ["ignore", "pipe", "pipe"] });
+  let [out, err] = ["", ""];
+  child.stdout.on("data", (data) => { out += data; });
+  child.stderr.on("data", (data) => { err += data; });
+  const ended = new Promise((resolve) => child.on("close", resolve));
+  let pid = "";
+  for (let k = 0; k < 200 && !pid; k++) {
+    await new Promise((resolve) => setTimeout(resolve, 100));
+    pid = childOf(child.pid);
+  }
+  assert.ok(pid, "Chromium is a child of the run");
+  await new Promise((resolve) => setTimeout(resolve, 5000));
+  process.kill(Number(pid), "SIGKILL");
+  assert.equal(await ended, 4, out + err);
+  assert.match(out + err, /Chromium ended with signal: 9/);
+  assert.match(out, /lighting\/|verdicts/);
+}
+
 const tests = [
   aRunIsShownAndItsReportIsKept, aReloadLosesNothing, aClosedTabEndsTheRun, twoBrowsersAtOnceAreJudgedEachByItself,
   rubbishIsToldAndNothingIsJudgedByIt, aSlowBrowserIsWaitedFor, aBrowserWithoutWebGpuIsToldWhatToDo,
-  mistakesAreNamedThroughTheBrowser,
+  mistakesAreNamedThroughTheBrowser, aSceneThatFailsIsShownWithItsPictures, aBenchWaitsForABrowserAndTellsTheStepsOfItsClock, anotherMachineReachesItByTlsAlone, aChromiumThatIsKilledEndsTheRunWithWhatWasJudged,
 ];
 for (const test of tests) {
+  if (only && !test.name.includes(only)) continue;
   const began = performance.now();
-  await test();
-  console.log(`ok ${test.name.replace(/[A-Z]/g, (letter) => ` ${letter.toLowerCase()}`)} (${((performance.now() - began) / 1000).toFixed(1)} s)`);
+  const not = await test();
+  console.log(`${not ?? "ok"} ${test.name.replace(/[A-Z]/g, (letter) => ` ${letter.toLowerCase()}`)} (${((performance.now() - began) / 1000).toFixed(1)} s)`);
 }
 await browser.close();

@@ -338,6 +338,7 @@ fn sitting(
         note: bench.clock.note().map(str::to_owned),
         readings: readings + of_drawing.0,
         rejected: rejected + of_drawing.1,
+        grain_ns: [bench.clock.grain_ns(), drawing.grain_ns()].into_iter().flatten().min(),
     };
     Ok(Sitting { groups, scalings, clock })
 }

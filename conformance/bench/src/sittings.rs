@@ -129,7 +129,7 @@ mod tests {
     }
 
     fn sitting(ns: f64, ratio: f64) -> Sitting {
-        let clock = ClockUse { kind: "timestamps".into(), note: None, readings: 10, rejected: 1 };
+        let clock = ClockUse { kind: "timestamps".into(), note: None, readings: 10, rejected: 1, grain_ns: None };
         Sitting { groups: vec![group(vec![row("f32", ns, 1.0), row("x", ns, ratio)])], scalings: vec![], clock }
     }
 

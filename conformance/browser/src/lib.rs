@@ -4,11 +4,15 @@
 //! back the bytes that come of it. What they mean, and whether they are right, is judged here. docs/browser.md has the protocol.
 
 mod chromium;
+mod http;
 mod server;
 mod session;
 #[cfg(test)]
 mod tests;
+mod tls;
+mod visitor;
 
 pub use chromium::{Chromium, ChromiumError};
 pub use server::{Access, Server, ServerError};
 pub use session::{BrowserHello, PageGroup, PageState, Session};
+pub use visitor::Visitor;

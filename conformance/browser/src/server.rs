@@ -1,26 +1,25 @@
-//! The server that hands work to pages, on the machine itself alone.
+//! The server that hands work to pages: by http on the machine itself, and by https to other machines.
 
+use crate::http::{Answers, Asked, Connections, Reply};
 use crate::session::{BrowserHello, Session, Superseded};
+use crate::tls::certified;
+use hyper::Method;
+use hyper::header::{HOST, HeaderMap, HeaderName, ORIGIN};
 use lightmeter_gpu::HostError;
 use serde::Serialize;
 use std::collections::{HashMap, VecDeque};
-use std::io::Read as _;
-use std::net::{IpAddr, SocketAddr};
+use std::net::{IpAddr, SocketAddr, TcpListener};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use tiny_http::{Header, Method, Request, Response};
 
 /// How long a page is kept waiting for work before it asks again.
 const LONG_POLL: Duration = Duration::from_secs(15);
 /// Bytes of an answer, at most.
-const ANSWER_MOST: u64 = 1 << 28;
+const ANSWER_MOST: usize = 1 << 28;
 /// Bytes of what a page says of itself or of an error, at most.
-const WORDS_MOST: u64 = 1 << 16;
+const WORDS_MOST: usize = 1 << 16;
 /// Sessions at once, at most.
 const SESSIONS_MOST: usize = 64;
-/// Requests that are answered side by side, but for those that wait for work.
-const WORKERS: usize = 4;
 
 /// The page's files, by their names.
 const FILES: [(&str, &str, &str); 5] = [
@@ -32,7 +31,7 @@ const FILES: [(&str, &str, &str); 5] = [
 ];
 
 /// Nothing but the server's own files, and no requests to anybody else.
-const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; \
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src blob:; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'";
 /// A report has its style and script within, by their hashes, as its own policy says.
 const REPORT_POLICY: &str = "frame-ancestors 'none'";
@@ -41,15 +40,18 @@ const REPORT_POLICY: &str = "frame-ancestors 'none'";
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ServerError {
-    /// The address is not the machine's own.
+    /// The address stands for all addresses of the machine, and a certificate is made for one.
     #[error(
-        "other machines reach {0}. Browsers give WebGPU to https pages alone there, and this server speaks http. Listen at 127.0.0.1, and \
-         bring it to a phone by `adb reverse tcp:PORT tcp:PORT`, or to another machine by `ssh -R PORT:127.0.0.1:PORT`"
+        "{0} is no address that a browser can open. Name the one by which the other machine reaches this one, as 192.168.1.20:8443, \
+         or 127.0.0.1 for this machine alone"
     )]
-    NotLoopback(IpAddr),
+    Unspecified(IpAddr),
     /// The address cannot be bound.
     #[error("cannot listen at {0}: {1}")]
     Bind(SocketAddr, String),
+    /// TLS cannot be had.
+    #[error("cannot serve https at {0}: {1}")]
+    Tls(SocketAddr, String),
     /// The system gives no random numbers.
     #[error("no random numbers are to be had for the address's token: {0}")]
     Random(String),
@@ -62,13 +64,35 @@ pub struct Access {
     pub address: SocketAddr,
     /// What the path begins with, so that nobody else finds the page.
     pub token: String,
+    /// SHA-256 of the certificate, as browsers show it, where the server speaks https.
+    pub fingerprint: Option<String>,
 }
 
 impl Access {
     /// The page's address.
     #[must_use]
     pub fn url(&self) -> String {
-        format!("http://{}/{}/", self.address, self.token)
+        format!("{}/{}/", self.origin(&self.hosts()[0]), self.token)
+    }
+
+    /// What a browser may call the server in the header `Host`. It leaves out the port that goes without saying.
+    pub(crate) fn hosts(&self) -> Vec<String> {
+        let (scheme_port, port) = (if self.fingerprint.is_some() { 443 } else { 80 }, self.address.port());
+        let full = self.address.to_string();
+        let mut hosts = vec![full.clone()];
+        if self.address.ip().is_loopback() {
+            hosts.push(format!("localhost:{port}"));
+        }
+        if port == scheme_port {
+            let bare = |host: &String| host.strip_suffix(&format!(":{port}")).map(str::to_owned);
+            hosts.extend(hosts.iter().filter_map(bare).collect::<Vec<_>>());
+        }
+        hosts
+    }
+
+    /// What a browser calls a page of one of these hosts in the header `Origin`.
+    fn origin(&self, host: &str) -> String {
+        format!("{}://{host}", if self.fingerprint.is_some() { "https" } else { "http" })
     }
 }
 
@@ -76,38 +100,20 @@ impl Access {
 #[derive(Debug)]
 pub struct Server {
     shared: Arc<Shared>,
-    workers: Vec<JoinHandle<()>>,
+    _connections: Connections,
 }
 
 #[derive(Debug)]
 struct Shared {
     access: Access,
-    http: HttpServer,
     sessions: Mutex<Sessions>,
     arrived: Condvar,
-}
-
-/// tiny_http's server, which has no `Debug`.
-struct HttpServer(tiny_http::Server);
-
-impl std::fmt::Debug for HttpServer {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("HttpServer")
-    }
 }
 
 #[derive(Debug, Default)]
 struct Sessions {
     all: HashMap<String, Arc<Session>>,
     waiting: VecDeque<Arc<Session>>,
-}
-
-/// An answer to a request: a status, a type and a body.
-struct Reply {
-    status: u16,
-    kind: &'static str,
-    body: Vec<u8>,
-    policy: &'static str,
 }
 
 impl Reply {
@@ -146,27 +152,25 @@ fn token() -> Result<String, ServerError> {
 }
 
 impl Server {
-    /// Listens at an address of the machine itself; port 0 is any that is free.
+    /// Listens at an address; port 0 is any that is free. Where other machines reach the address, the server speaks https, with a certificate of its own.
     ///
     /// # Errors
-    /// Where the address is one that others reach, or cannot be bound.
+    /// Where the address is none that a browser can open, or cannot be bound.
     pub fn start(address: SocketAddr) -> Result<Self, ServerError> {
-        if !address.ip().is_loopback() {
-            return Err(ServerError::NotLoopback(address.ip()));
+        if address.ip().is_unspecified() {
+            return Err(ServerError::Unspecified(address.ip()));
         }
-        let http = tiny_http::Server::http(address).map_err(|error| ServerError::Bind(address, error.to_string()))?;
-        let bound = http.server_addr().to_ip().unwrap_or(address);
-        let shared = Arc::new(Shared {
-            access: Access { address: bound, token: token()? },
-            http: HttpServer(http),
-            sessions: Mutex::default(),
-            arrived: Condvar::new(),
-        });
-        let worker = |_| {
-            let shared = shared.clone();
-            std::thread::spawn(move || shared.work())
-        };
-        Ok(Self { workers: (0..WORKERS).map(worker).collect(), shared })
+        let listener = TcpListener::bind(address).map_err(|error| ServerError::Bind(address, error.to_string()))?;
+        let bound = listener.local_addr().unwrap_or(address);
+        let is_own = address.ip().is_loopback();
+        let tls = if is_own { None } else { Some(certified(address.ip())) };
+        let tls = tls.transpose().map_err(|error| ServerError::Tls(address, error))?;
+        let (tls, fingerprint) = tls.unzip();
+        let access = Access { address: bound, token: token()?, fingerprint };
+        let shared = Arc::new(Shared { access, sessions: Mutex::default(), arrived: Condvar::new() });
+        let connections = Connections::take(listener, tls, shared.clone());
+        let connections = connections.map_err(|error| ServerError::Bind(address, error.to_string()))?;
+        Ok(Self { shared, _connections: connections })
     }
 
     /// Where pages find it.
@@ -198,89 +202,63 @@ impl Drop for Server {
         for session in locked(&self.shared.sessions).all.values() {
             session.end("the server has ended");
         }
-        for _ in 0..WORKERS {
-            self.shared.http.0.unblock();
-        }
-        for worker in self.workers.drain(..) {
-            // A worker that panicked has said so.
-            let _ = worker.join();
-        }
     }
 }
 
-impl Shared {
-    fn work(self: Arc<Self>) {
-        while let Ok(request) = self.http.0.recv() {
-            // What waits for work must not keep the others waiting.
-            if request.url().contains("/next?") {
-                let shared = self.clone();
-                std::thread::spawn(move || shared.handle(request));
-            } else {
-                self.handle(request);
-            }
-        }
-    }
-
-    fn handle(&self, mut request: Request) {
-        let reply = self.refusal(&request).unwrap_or_else(|| self.reply(&mut request));
-        let header = |name: &str, value: &str| Header::from_bytes(name, value).expect("a header of ASCII");
-        let response = Response::from_data(reply.body)
-            .with_status_code(reply.status)
-            .with_header(header("Content-Type", reply.kind))
-            .with_header(header("Content-Security-Policy", reply.policy))
-            .with_header(header("X-Content-Type-Options", "nosniff"))
-            .with_header(header("Referrer-Policy", "no-referrer"))
-            .with_header(header("Cache-Control", "no-store"));
-        // A page that is gone does not hear the answer.
-        let _ = request.respond(response);
-    }
-
-    /// Why a request is refused before its path is looked at: it names another host, or comes from another page.
-    fn refusal(&self, request: &Request) -> Option<Reply> {
-        let value = |name: &str| {
-            let named = |header: &&Header| header.field.as_str().as_str().eq_ignore_ascii_case(name);
-            request.headers().iter().find(named).map(|header| header.value.as_str().to_owned())
-        };
-        let port = self.access.address.port();
-        let own = [self.access.address.to_string(), format!("localhost:{port}")];
-        let host = value("host").unwrap_or_default();
-        if !own.contains(&host) {
+impl Answers for Shared {
+    fn refusal(&self, head: &HeaderMap) -> Option<Reply> {
+        let value =
+            |name: HeaderName| head.get(name).map(|value| String::from_utf8_lossy(value.as_bytes()).into_owned());
+        let hosts = self.access.hosts();
+        if !hosts.contains(&value(HOST).unwrap_or_default()) {
             return Some(Reply::refused(421, "the Host header is not this server's address"));
         }
-        let is_own = |origin: &String| own.iter().any(|own| *origin == format!("http://{own}"));
-        if value("origin").is_some_and(|origin| !is_own(&origin)) {
+        let is_own = |origin: &String| hosts.iter().any(|host| *origin == self.access.origin(host));
+        if value(ORIGIN).is_some_and(|origin| !is_own(&origin)) {
             return Some(Reply::refused(403, "another page's requests are refused"));
         }
         None
     }
 
-    fn reply(&self, request: &mut Request) -> Reply {
-        let url = request.url().to_owned();
-        let (path, query) = url.split_once('?').unwrap_or((&url, ""));
+    fn most_bytes(&self, asked: &Asked) -> usize {
+        let is_result =
+            asked.path == format!("/{}/answer", self.access.token) && asked.query().get("kind") == Some(&"done");
+        if is_result { ANSWER_MOST } else { WORDS_MOST }
+    }
+
+    fn reply(&self, asked: &Asked) -> Reply {
         let prefix = format!("/{}/", self.access.token);
-        let Some(name) = path.strip_prefix(&prefix) else {
+        let Some(name) = asked.path.strip_prefix(&prefix) else {
             return Reply::refused(
                 404,
                 "there is nothing here: open the address that lightmeter printed, with its token",
             );
         };
-        let query: HashMap<&str, &str> = query.split('&').filter_map(|part| part.split_once('=')).collect();
-        match (request.method(), name) {
-            (Method::Get, "report.html" | "report.json") => self.report(name, &query).unwrap_or_else(|reply| reply),
-            (Method::Get, "next") => self.next(&query).unwrap_or_else(|reply| reply),
-            (Method::Get, "state") => self.state(&query).unwrap_or_else(|reply| reply),
-            (Method::Get, _) => match FILES.iter().find(|(file, ..)| *file == name) {
-                Some((_, kind, text)) => Reply::new(200, kind, *text),
-                None => Reply::refused(404, "there is no such file"),
+        let query = asked.query();
+        let replied = match (&asked.method, name) {
+            (&Method::GET, "report.html" | "report.json") => self.report(name, &query),
+            (&Method::GET, "picture.png") => self.picture(&query),
+            (&Method::GET, "next") => self.next(&query),
+            (&Method::GET, "state") => self.state(&query),
+            (&Method::GET, _) => match FILES.iter().find(|(file, ..)| *file == name) {
+                Some((_, kind, text)) => Ok(Reply::new(200, kind, *text)),
+                None => Err(Reply::refused(404, "there is no such file")),
             },
-            (Method::Post, "hello") => self.hello(request).unwrap_or_else(|reply| reply),
-            (Method::Post, "answer") => self.answer(request, &query).unwrap_or_else(|reply| reply),
-            (Method::Post, "bye") => self.bye(&query).unwrap_or_else(|reply| reply),
-            (Method::Post, "lost") => self.lost(request, &query).unwrap_or_else(|reply| reply),
-            _ => Reply::refused(405, "expected GET of a file, or POST of hello, answer, lost or bye"),
-        }
+            (&Method::POST, "hello") => self.hello(&asked.body),
+            (&Method::POST, "answer") => self.answer(&asked.body, &query),
+            (&Method::POST, "bye") => self.bye(&query),
+            (&Method::POST, "lost") => self.lost(&asked.body, &query),
+            _ => Err(Reply::refused(405, "expected GET of a file, or POST of hello, answer, lost or bye")),
+        };
+        replied.unwrap_or_else(|reply| reply)
     }
 
+    fn refused(&self, status: u16, why: &str) -> Reply {
+        Reply::refused(status, why)
+    }
+}
+
+impl Shared {
     fn report(&self, name: &str, query: &HashMap<&str, &str>) -> Result<Reply, Reply> {
         let (session, _) = self.session(query)?;
         let (text, kind) = if name == "report.html" {
@@ -292,10 +270,16 @@ impl Shared {
         Ok(Reply { policy: REPORT_POLICY, ..Reply::new(200, kind, text) })
     }
 
-    fn hello(&self, request: &mut Request) -> Result<Reply, Reply> {
-        let body = body(request, WORDS_MOST)?;
+    fn picture(&self, query: &HashMap<&str, &str>) -> Result<Reply, Reply> {
+        let (session, _) = self.session(query)?;
+        let number = usize::try_from(number(query, "number")?).unwrap_or(usize::MAX);
+        let png = session.picture(number).ok_or_else(|| Reply::refused(404, "there is no such picture"))?;
+        Ok(Reply::new(200, "image/png", png))
+    }
+
+    fn hello(&self, body: &[u8]) -> Result<Reply, Reply> {
         let hello: BrowserHello =
-            serde_json::from_slice(&body).map_err(|error| Reply::refused(400, &format!("not a hello: {error}")))?;
+            serde_json::from_slice(body).map_err(|error| Reply::refused(400, &format!("not a hello: {error}")))?;
         let mut sessions = locked(&self.sessions);
         let known = hello.session.as_ref().and_then(|id| sessions.all.get(id)).cloned();
         let known = known.filter(|known| known.hello().abilities == hello.abilities);
@@ -323,26 +307,23 @@ impl Shared {
         Ok(Reply::new(status, "application/octet-stream", pieces))
     }
 
-    fn answer(&self, request: &mut Request, query: &HashMap<&str, &str>) -> Result<Reply, Reply> {
+    fn answer(&self, body: &[u8], query: &HashMap<&str, &str>) -> Result<Reply, Reply> {
         let (session, page) = self.session(query)?;
         let id = number(query, "id")?;
-        let is_done = query.get("kind") == Some(&"done");
-        let body = body(request, if is_done { ANSWER_MOST } else { WORDS_MOST })?;
-        let words = |body: Vec<u8>| String::from_utf8_lossy(&body).into_owned();
+        let words = || String::from_utf8_lossy(body).into_owned();
         let result = match query.get("kind") {
-            Some(&"done") => Ok(body),
-            Some(&"refused") => Err(HostError::Refused(words(body))),
-            Some(&"failed") => Err(HostError::Failed(words(body))),
+            Some(&"done") => Ok(body.to_vec()),
+            Some(&"refused") => Err(HostError::Refused(words())),
+            Some(&"failed") => Err(HostError::Failed(words())),
             _ => return Err(Reply::refused(400, "expected kind=done, refused or failed")),
         };
         session.answer(page, id, result)?;
         Ok(Reply::taken())
     }
 
-    fn lost(&self, request: &mut Request, query: &HashMap<&str, &str>) -> Result<Reply, Reply> {
+    fn lost(&self, message: &[u8], query: &HashMap<&str, &str>) -> Result<Reply, Reply> {
         let (session, page) = self.session(query)?;
-        let message = body(request, WORDS_MOST)?;
-        session.lose(page, &String::from_utf8_lossy(&message))?;
+        session.lose(page, &String::from_utf8_lossy(message))?;
         Ok(Reply::taken())
     }
 
@@ -366,18 +347,6 @@ impl Shared {
         let session = found.ok_or_else(|| Reply::refused(403, "there is no such session: load the page again"))?;
         Ok((session, number(query, "page")?))
     }
-}
-
-/// A request's body, which must not be longer than that.
-fn body(request: &mut Request, most: u64) -> Result<Vec<u8>, Reply> {
-    let too_long = || Reply::refused(413, &format!("at most {most} bytes are taken"));
-    if request.body_length().is_some_and(|bytes| bytes as u64 > most) {
-        return Err(too_long());
-    }
-    let mut body = vec![];
-    let read = request.as_reader().take(most + 1).read_to_end(&mut body);
-    read.map_err(|error| Reply::refused(400, &format!("the body ends early: {error}")))?;
-    if body.len() as u64 > most { Err(too_long()) } else { Ok(body) }
 }
 
 fn number(query: &HashMap<&str, &str>, name: &str) -> Result<u64, Reply> {

@@ -16,6 +16,8 @@ const RELOAD: Duration = Duration::from_secs(10);
 const GOODBYE: Duration = Duration::from_secs(3);
 /// Bytes of pieces that are handed over at once, at most, but for one that is longer.
 const AT_ONCE: usize = 8 << 20;
+/// Pictures that a page is shown, at most.
+const PICTURES_MOST: usize = 96;
 /// How often a device may be lost at the same piece of work.
 const LOSSES: u32 = 2;
 
@@ -104,12 +106,18 @@ pub struct PageGroup {
     pub verdicts: u64,
     /// Verdicts that failed.
     pub failed: u64,
+    /// Why they did, where that is known.
+    pub why: Option<String>,
+    /// The number of the first of its three pictures, reference, result and error map, where it has some.
+    pub picture: Option<usize>,
 }
 
 /// How far the run has come, and the reports that the page may take at its end.
 #[derive(Debug, Default)]
 struct Board {
     told: PageState,
+    /// PNG files.
+    pictures: Vec<Vec<u8>>,
     /// As a page and as JSON.
     reports: Option<[String; 2]>,
     /// Whether the page knows that the run is over.
@@ -262,6 +270,23 @@ impl Session {
         change(&mut self.board().told);
     }
 
+    /// Keeps pictures for the page, as PNG files. Gives the number of the first; `None` where there are enough.
+    #[must_use]
+    pub fn show(&self, pictures: Vec<Vec<u8>>) -> Option<usize> {
+        let mut board = self.board();
+        let first = board.pictures.len();
+        if pictures.is_empty() || first + pictures.len() > PICTURES_MOST {
+            return None;
+        }
+        board.pictures.extend(pictures);
+        Some(first)
+    }
+
+    /// One of them.
+    pub(crate) fn picture(&self, number: usize) -> Option<Vec<u8>> {
+        self.board().pictures.get(number).cloned()
+    }
+
     /// Tells the page that the run is over, in words, and gives it the report as a page and as JSON. Waits until the page knows, but not for long.
     pub fn tell_the_end(&self, says: String, reports: Option<[String; 2]>) {
         let mut board = self.board();
@@ -399,7 +424,7 @@ impl Host for Session {
     fn forget(&self, ticket: Ticket) {
         let mut state = self.state();
         if state.answers.remove(&ticket.0).is_none()
-            && state.open.get(&ticket.0).is_some_and(|open| open.role == Role::Once)
+            && state.open.get(&ticket.0).is_some_and(|open| matches!(open.role, Role::Once | Role::Makes))
         {
             state.forgotten.insert(ticket.0);
         }

@@ -1,6 +1,6 @@
 //! The server and its sessions, asked as pages ask, and as nobody should.
 
-use crate::server::{Server, ServerError};
+use crate::server::{Access, Server, ServerError};
 use crate::session::{BrowserHello, Session};
 use lightmeter_gpu::work::{Resources, Submission};
 use lightmeter_gpu::{Host as _, HostError, WorkPiece};
@@ -72,10 +72,32 @@ fn the_page_is_served_and_what_nobody_should_ask_is_refused() {
 }
 
 #[test]
-fn addresses_that_others_reach_are_refused_with_the_reason() {
-    let refused = Server::start(([0, 0, 0, 0], 0).into()).expect_err("others reach it");
-    assert!(matches!(refused, ServerError::NotLoopback(_)), "{refused}");
-    assert!(refused.to_string().contains("to https pages alone"), "{refused}");
+fn an_address_that_stands_for_all_is_refused_with_what_would_be_right() {
+    let refused = Server::start(([0, 0, 0, 0], 0).into()).expect_err("no browser opens it");
+    assert!(matches!(refused, ServerError::Unspecified(_)), "{refused}");
+    assert!(refused.to_string().contains("192.168.1.20:8443"), "{refused}");
+}
+
+#[test]
+fn a_page_is_called_by_its_scheme_and_without_the_port_that_goes_without_saying() {
+    let access = |address: &str, fingerprint: Option<&str>| Access {
+        address: address.parse().expect("an address"),
+        token: "t".into(),
+        fingerprint: fingerprint.map(str::to_owned),
+    };
+    for (access, url, hosts) in [
+        (access("127.0.0.1:8080", None), "http://127.0.0.1:8080/t/", &["127.0.0.1:8080", "localhost:8080"][..]),
+        (
+            access("127.0.0.1:80", None),
+            "http://127.0.0.1:80/t/",
+            &["127.0.0.1:80", "localhost:80", "127.0.0.1", "localhost"],
+        ),
+        (access("192.0.2.5:443", Some("AB")), "https://192.0.2.5:443/t/", &["192.0.2.5:443", "192.0.2.5"]),
+        (access("[2001:db8::5]:8443", Some("AB")), "https://[2001:db8::5]:8443/t/", &["[2001:db8::5]:8443"]),
+    ] {
+        assert_eq!(access.url(), url);
+        assert_eq!(access.hosts(), hosts, "{url}");
+    }
 }
 
 /// A session with a page, and what makes something for its first executor.

@@ -4,7 +4,7 @@ use super::Status;
 use super::options::Format;
 use super::terminal::level;
 use clap::Args;
-use lightmeter::adapters::{CHROMIUM, EMBEDDED};
+use lightmeter::adapters::{BROWSER, CHROMIUM, EMBEDDED};
 use lightmeter::browser::Chromium;
 use lightmeter::devices::{BlendDeviation, Builtin, Deviation, known};
 use lightmeter::document::Document as _;
@@ -56,6 +56,11 @@ impl Adapters {
                     let (name, program) = (CHROMIUM, program.display());
                     writeln!(text, "{name:<14} {:<7} the GPU of {program}, which is started for it", "webgpu")?;
                 }
+                writeln!(
+                    text,
+                    "{BROWSER:<14} {:<7} the GPU of whatever browser opens the page that is served for it",
+                    "webgpu"
+                )?;
                 text
             }
         };

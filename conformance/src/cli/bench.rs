@@ -5,9 +5,9 @@ use super::progress::Bar;
 use super::shader::ShaderChoice;
 use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
+use super::visit::opened;
 use super::{NothingToRun, Status, emit, show, writable};
 use clap::{Args, ValueEnum};
-use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
 use lightmeter::bench::{BenchOptions, bench};
 use lightmeter::document::Document as _;
@@ -127,7 +127,7 @@ impl Bench {
             anyhow::bail!("a recommendation is written as text or json");
         }
         writable(self.out.as_deref())?;
-        let subjects = adapters::open(&self.adapter)?;
+        let subjects = opened(&self.adapter)?;
         if self.adapter == ["cpu"] && !self.measures_formulas(&options.filter) {
             let message = "the embedded implementation has no shaders: formulas alone are measured of it";
             return Err(NothingToRun(message.into()).into());

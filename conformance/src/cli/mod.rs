@@ -33,16 +33,19 @@ mod start;
 mod sweep;
 mod terminal;
 mod values;
+mod visit;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 use lightmeter::adapters::AdapterError;
 use lightmeter::device::DeviceError;
 use lightmeter::files::{can_be_written, lines, whole};
+use lightmeter::subject::Subject;
 use signal_hook::consts::SIGTERM;
 use signals::SIGHUP;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Tells whether a renderer computes classical lighting, fog and blending right, and how close it comes.
 #[derive(Debug, Parser)]
@@ -216,6 +219,32 @@ pub(crate) enum Status {
     Interrupted = 130,
     /// SIGTERM did.
     Terminated = 143,
+}
+
+/// Whether devices were left at work.
+static IS_ABANDONED: AtomicBool = AtomicBool::new(false);
+
+/// Leaves devices at whatever they are at work on: to close one that hangs or compiles could take minutes. A browser is closed, since it would go on by
+/// itself.
+pub(crate) fn abandon(subjects: Vec<Subject>) {
+    for subject in subjects {
+        if subject.identity.backend == "webgpu" {
+            drop(subject);
+        } else {
+            IS_ABANDONED.store(true, Ordering::Relaxed);
+            std::mem::forget(subject);
+        }
+    }
+}
+
+/// The end of the process. Where devices were left at work it takes nothing down, since drivers crash whose compilers are taken from under their threads.
+pub(crate) fn end(status: Status) -> ExitCode {
+    if IS_ABANDONED.load(Ordering::Relaxed) {
+        // Whoever does not read any more reads the exit code.
+        let _ = std::io::stdout().flush();
+        signal_hook::low_level::exit(i32::from(status as u8));
+    }
+    status.into()
 }
 
 impl From<Status> for ExitCode {

@@ -1,9 +1,9 @@
 //! Options that several commands share, read into what the library takes.
 
 use super::shader::ShaderChoice;
+use super::visit::opened;
 use super::{Status, emit, say, show};
 use clap::Args;
-use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
 use lightmeter::device::Code;
 use lightmeter::document::by_case::Coverage;
@@ -188,7 +188,7 @@ impl Choice {
 
     /// The subjects that were asked for, opened.
     pub(crate) fn subjects(&self) -> anyhow::Result<Vec<Subject>> {
-        Ok(adapters::open(&self.adapter)?)
+        opened(&self.adapter)
     }
 }
 

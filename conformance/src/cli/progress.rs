@@ -64,7 +64,8 @@ impl Bar {
 impl Observer for Bar {
     fn see(&mut self, event: &Event<'_>) {
         if let Some(session) = &self.session {
-            session.tell(|told| note(told, event));
+            let picture = session.show(pictures(event));
+            session.tell(|told| note(told, event, picture));
         }
         match event {
             Event::Begun(work) => self.bar.set_length(*work),
@@ -98,8 +99,16 @@ impl Observer for Bar {
     }
 }
 
+/// Reference, result and error map of an image that failed, as files. What cannot be read is not shown: the report has it.
+fn pictures(event: &Event<'_>) -> Vec<Vec<u8>> {
+    let Event::Judged { group, is_scouted: false, .. } = event else { return vec![] };
+    let files = group.image.iter().flat_map(|image| &image.files);
+    let pictures: Vec<Vec<u8>> = files.filter_map(|file| std::fs::read(file).ok()).collect();
+    if pictures.len() == 3 { pictures } else { vec![] }
+}
+
 /// Notes for a page what is seen of a run.
-fn note(told: &mut PageState, event: &Event<'_>) {
+fn note(told: &mut PageState, event: &Event<'_>, picture: Option<usize>) {
     match event {
         Event::Begun(work) => told.of = *work,
         Event::Group(id) => told.says = format!("{id} is judged."),
@@ -110,7 +119,14 @@ fn note(told: &mut PageState, event: &Event<'_>) {
             let stage = std::iter::once(group.stage.to_string()).chain(target).collect();
             let failed = group.totals.failed;
             told.failed += u64::from(failed > 0 || group.problem.is_some());
-            told.groups.push(PageGroup { id: group.id.clone(), stage, verdicts: group.totals.verdicts, failed });
+            told.groups.push(PageGroup {
+                id: group.id.clone(),
+                stage,
+                verdicts: group.totals.verdicts,
+                failed,
+                why: group.problem.clone().or_else(|| group.explanation.clone()),
+                picture,
+            });
         }
     }
 }

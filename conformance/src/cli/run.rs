@@ -7,7 +7,7 @@ use super::progress::{Bar, Stream};
 use super::say;
 use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
-use super::{Status, command, writable};
+use super::{Status, abandon, command, writable};
 use clap::Args;
 use lightmeter::browser::Session;
 use lightmeter::cases::GENERATOR_VERSION;
@@ -165,7 +165,7 @@ impl Run {
         let report = match report {
             // Closing a device that hangs would hang as well.
             Err(error) if error.is_of_device() => {
-                std::mem::forget(subjects);
+                abandon(subjects);
                 return Err(error.into());
             }
             report => report?,
@@ -188,7 +188,7 @@ impl Run {
             say(self.choice.shaders.own.suggested(&options.adapted, &report)?.trim_end());
         }
         if report.interrupted.is_some() {
-            std::mem::forget(subjects);
+            abandon(subjects);
         }
         regressions?;
         self.comparison.update(&report)?;

@@ -1,7 +1,8 @@
 //! `lightmeter serve`.
 
 use super::run::{Prepared, Run};
-use super::{NothingToRun, Status, say};
+use super::visit::{awaited, tell_of};
+use super::{NothingToRun, Status};
 use clap::Args;
 use lightmeter::browser::{Server, Session};
 use lightmeter::subject_gpu::browser::of_session;
@@ -9,17 +10,13 @@ use std::net::SocketAddr;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Duration;
-
-/// How often it is looked at whether a signal ends the command.
-const LOOK: Duration = Duration::from_millis(200);
 
 /// Judge the GPU of a browser: a page that it opens computes what `run` asks, and what comes back is judged here.
 #[derive(Debug, Args)]
 pub(crate) struct Serve {
     #[command(flatten)]
     run: Run,
-    /// Where the page is served: an address of this machine, and a port; 0 is any that is free
+    /// Where the page is served: an address of this machine, and a port; 0 is any that is free. Other machines reach it by https alone
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0")]
     listen: SocketAddr,
     /// Open the page in the default browser
@@ -40,20 +37,12 @@ impl Serve {
         let asked = self.run.clone();
         let prepared = self.run.prepared()?;
         let server = Server::start(self.listen)?;
-        let url = server.access().url();
-        say(&format!("open this page in the browser whose GPU is to be judged; Ctrl-C ends it\n  {url}"));
+        tell_of(&server);
         if self.open {
-            open(&url)?;
+            open(&server.access().url())?;
         }
         let stop = prepared.stop().clone();
-        let next = || loop {
-            if let Some(session) = server.next_browser(LOOK) {
-                return Some(session);
-            }
-            if stop.signal().is_some() {
-                return None;
-            }
-        };
+        let next = || awaited(&server, &stop);
         if self.keep {
             return judge_all(&asked, next);
         }

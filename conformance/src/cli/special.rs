@@ -3,10 +3,10 @@
 use super::options::Format;
 use super::progress::Bar;
 use super::signals::{status_of, stopped_by_signals};
+use super::visit::opened;
 use super::{NothingToRun, Status, emit, foreign, writable};
 use anyhow::Context as _;
 use clap::Args;
-use lightmeter::adapters;
 use lightmeter::document::Document as _;
 use lightmeter::document::special::SpecialReport;
 use lightmeter::document::special::record::SpecialRecord;
@@ -45,7 +45,7 @@ impl Special {
             foreign::accept(folder, &self.adapter, false)?;
         }
         let code = code_of(self.shaders.as_deref())?;
-        let subjects = adapters::open(&self.adapter)?;
+        let subjects = opened(&self.adapter)?;
         let mut bar = Bar::new(None, "adapters");
         let report = run(&subjects, &code, &stop, &mut bar);
         bar.bar.finish_and_clear();

@@ -6,7 +6,7 @@ use super::say;
 use super::shader::ShaderChoice;
 use super::signals::stopped_by_signals;
 use super::values::{float, setting};
-use super::{NothingToRun, Status, writable};
+use super::{NothingToRun, Status, abandon, writable};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
@@ -131,7 +131,7 @@ impl Sweep {
                     say(&format!("{done} of {blocks} blocks were done, which are in {}", path.display()));
                 }
                 // Closing a device that hangs would hang as well.
-                std::mem::forget(subjects);
+                abandon(subjects);
                 Err(error.into())
             }
             Err(error @ SweepError::Lacks { .. }) => Err(NothingToRun(error.to_string()).into()),

@@ -2,16 +2,20 @@
 
 use super::browser;
 use super::open_device;
-use lightmeter_browser::{Chromium, ChromiumError};
+use lightmeter_browser::{Chromium, ChromiumError, Server, ServerError, Session, Visitor};
 use lightmeter_catalogue::nearest::did_you_mean;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Adapter, native_adapters};
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::Arc;
 
 /// The name of the embedded implementation, which needs no driver.
 pub const EMBEDDED: &str = "cpu";
 /// The name of a headless Chromium, which is started for it.
 pub const CHROMIUM: &str = "chromium";
+/// The name of whatever browser opens the page that is served for it, at an address of this machine; `browser@ADDRESS:PORT` serves it at another one.
+pub const BROWSER: &str = "browser";
 /// The name that stands for every adapter there is; a browser is none.
 pub const ALL: &str = "all";
 
@@ -29,7 +33,7 @@ pub enum AdapterError {
     )]
     NoDriver(String),
     /// No adapter has that name.
-    #[error("no adapter `{name}`{meant} There are {there}, cpu, chromium and all")]
+    #[error("no adapter `{name}`{meant} There are {there}, cpu, chromium, browser and all")]
     Unknown {
         /// What was asked for.
         name: String,
@@ -41,6 +45,15 @@ pub enum AdapterError {
     /// There is no Chromium, or it gives no WebGPU.
     #[error(transparent)]
     Chromium(#[from] ChromiumError),
+    /// What follows `browser@` is no address.
+    #[error("`{0}` names no address; expected browser, or browser@ADDRESS:PORT as browser@192.168.1.20:8443")]
+    Address(String),
+    /// The page cannot be served.
+    #[error(transparent)]
+    Server(#[from] ServerError),
+    /// No browser opened the page.
+    #[error("no browser opened the page")]
+    NoBrowser,
     /// The driver gave no device, or the device failed.
     #[error(transparent)]
     Device(#[from] DeviceError),
@@ -55,16 +68,25 @@ impl AdapterError {
 /// The adapters of those names, opened, each once; without any, lavapipe or the first there is.
 ///
 /// # Errors
-/// Where there is no driver, no adapter of a name, or an adapter that gives no device.
+/// Where there is no driver, no adapter of a name, or an adapter that gives no device. A browser is waited for by [`open_with`] alone.
 pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
+    open_with(asked, &mut |_| None)
+}
+
+/// The same. `visited` is handed the server of a page, tells somebody where it is, and gives the browser that opens it.
+///
+/// # Errors
+/// As [`open`], and where no browser opens the page.
+pub fn open_with(
+    asked: &[String],
+    visited: &mut dyn FnMut(&Server) -> Option<Arc<Session>>,
+) -> Result<Vec<Subject>, AdapterError> {
     if asked.is_empty() {
         return Ok(vec![open_device(&first()?)?]);
     }
-    let needs_none = asked.iter().all(|name| [EMBEDDED, CHROMIUM].contains(&name.as_str()));
+    let needs_none = asked.iter().all(|name| needs_no_driver(name));
     let mut found = if needs_none { vec![] } else { native_adapters() };
-    let known = |found: &[Adapter], name: &String| {
-        [EMBEDDED, CHROMIUM].contains(&name.as_str()) || found.iter().any(|a| a.name == *name)
-    };
+    let known = |found: &[Adapter], name: &String| needs_no_driver(name) || found.iter().any(|a| a.name == *name);
     if !asked.iter().all(|name| known(&found, name)) {
         found = lightmeter_gpu::adapters();
     }
@@ -82,7 +104,10 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
                     subjects.push(open_device(adapter)?);
                 }
             }
-            name => subjects.push(open_device(named(&found, name)?)?),
+            name => match address(name) {
+                Some(address) => subjects.push(visitor(name, address?, visited)?),
+                None => subjects.push(open_device(named(&found, name)?)?),
+            },
         }
     }
     let mut seen = std::collections::HashSet::new();
@@ -96,10 +121,37 @@ pub fn open(asked: &[String]) -> Result<Vec<Subject>, AdapterError> {
 /// Where there is no adapter of a name, or no driver.
 pub fn known(asked: &[String]) -> Result<(), AdapterError> {
     let mut found = None;
-    for name in asked.iter().filter(|name| ![EMBEDDED, CHROMIUM, ALL].contains(&name.as_str())) {
+    for name in asked.iter().filter(|name| *name != ALL && !needs_no_driver(name)) {
         named(found.get_or_insert_with(lightmeter_gpu::adapters), name)?;
     }
     Ok(())
+}
+
+/// Whether an adapter of that name is none of this machine's drivers.
+#[must_use]
+pub fn needs_no_driver(name: &str) -> bool {
+    [EMBEDDED, CHROMIUM].contains(&name) || address(name).is_some()
+}
+
+/// Where the page of a browser is served; `None` where the name is not a browser's.
+fn address(name: &str) -> Option<Result<SocketAddr, AdapterError>> {
+    let rest = name.strip_prefix(BROWSER)?;
+    if rest.is_empty() {
+        return Some(Ok(SocketAddr::from((Ipv4Addr::LOCALHOST, 0))));
+    }
+    let parsed = rest.strip_prefix('@')?.parse();
+    Some(parsed.map_err(|_| AdapterError::Address(name.into())))
+}
+
+/// The browser that opens a page, as a subject.
+fn visitor(
+    name: &str,
+    address: SocketAddr,
+    visited: &mut dyn FnMut(&Server) -> Option<Arc<Session>>,
+) -> Result<Subject, AdapterError> {
+    let server = Server::start(address)?;
+    let session = visited(&server).ok_or(AdapterError::NoBrowser)?;
+    Ok(browser::of_visitor(name.into(), Visitor::new(session, server)))
 }
 
 /// The names of all adapters. No device is opened.

@@ -1,7 +1,7 @@
 //! Browsers as subjects.
 
 use crate::on_gpu;
-use lightmeter_browser::{BrowserHello, Chromium, Session};
+use lightmeter_browser::{BrowserHello, Chromium, Session, Visitor};
 use lightmeter_document::run::Identity;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Gpu, Host};
@@ -20,6 +20,13 @@ pub fn of_chromium(name: &str, chromium: Chromium) -> Subject {
 pub fn of_session(name: String, session: Arc<Session>) -> Subject {
     let hello = session.hello().clone();
     of_host(name, &hello, session)
+}
+
+/// The same, whose page is served as long as the subject lives.
+#[must_use]
+pub fn of_visitor(name: String, visitor: Visitor) -> Subject {
+    let hello = visitor.hello().clone();
+    of_host(name, &hello, Arc::new(visitor))
 }
 
 fn of_host(name: String, hello: &BrowserHello, host: Arc<dyn Host>) -> Subject {

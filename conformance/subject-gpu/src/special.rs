@@ -2,7 +2,7 @@
 
 use lightmeter_catalogue::special::{Probe, Way};
 use lightmeter_engine::device::Probed;
-use lightmeter_gpu::{ArithmeticPipeline, Gpu, GpuError, Kernel, Programmable, RasterPipeline, Shaders};
+use lightmeter_gpu::{ArithmeticPipeline, Gpu, GpuError, Kernel, Pending, Programmable, RasterPipeline, Shaders};
 use lightmeter_scene::raster::{Provoking, Raster, Topology};
 
 /// The shader file of the functions.
@@ -15,10 +15,18 @@ pub(super) fn special(gpu: &Gpu, shaders: &Shaders, probes: &[&'static Probe]) -
         .map(|function| Ok((function, Kernel::new(shaders, FILE, function)?)))
         .collect::<Result<Vec<_>, GpuError>>()?;
     let mut probed = Probed::default();
+    // All are handed over before the first is waited for, since a device elsewhere takes its time over each answer.
+    let mut shaded = vec![];
     for (stage, name) in [(Programmable::Compute, "compute"), (Programmable::Fragment, "fragment")] {
         for (function, kernel) in &kernels {
-            shade(gpu, kernel, &of_function(probes, function), (stage, name), &mut probed)?;
+            match Shaded::begin(gpu, kernel, of_function(probes, function), (stage, name))? {
+                Ok(begun) => shaded.push(begun),
+                Err(reason) => skip(&mut probed, name, reason),
+            }
         }
+    }
+    for begun in shaded {
+        begun.end(gpu, &mut probed)?;
     }
     for flat in [false, true] {
         let carried: Vec<&'static Probe> =
@@ -53,27 +61,38 @@ fn of_function(probes: &[&'static Probe], function: &str) -> Vec<&'static Probe>
     probes.iter().copied().filter(|probe| matches!(probe.way, Way::Function(name) if name == function)).collect()
 }
 
-/// The probes of one function in one stage.
-fn shade(
-    gpu: &Gpu,
-    kernel: &Kernel,
-    probes: &[&'static Probe],
-    (stage, name): (Programmable, &'static str),
-    probed: &mut Probed,
-) -> Result<(), GpuError> {
-    let rows: Vec<f32> = probes.iter().flat_map(|probe| probe.inputs).map(|bits| f32::from_bits(*bits)).collect();
-    let pipeline = match ArithmeticPipeline::new(gpu, kernel, stage)? {
-        Ok(pipeline) => pipeline,
-        Err(reason) => {
-            skip(probed, name, reason);
-            return Ok(());
-        }
-    };
-    let words = pipeline.submit(gpu, &rows).wait(gpu)?;
-    for (probe, bits) in probes.iter().zip(pipeline.outputs(words, probes.len())) {
-        probed.words.push((probe, name, bits));
+/// The probes of one function in one stage, which the device evaluates.
+struct Shaded {
+    probes: Vec<&'static Probe>,
+    stage: &'static str,
+    pipeline: ArithmeticPipeline,
+    pending: Pending,
+}
+
+impl Shaded {
+    /// Hands the probes over; `Ok(Err(reason))` where the device lacks the stage.
+    fn begin(
+        gpu: &Gpu,
+        kernel: &Kernel,
+        probes: Vec<&'static Probe>,
+        (programmable, stage): (Programmable, &'static str),
+    ) -> Result<Result<Self, &'static str>, GpuError> {
+        let rows: Vec<f32> = probes.iter().flat_map(|probe| probe.inputs).map(|bits| f32::from_bits(*bits)).collect();
+        let made = ArithmeticPipeline::new(gpu, kernel, programmable)?;
+        Ok(made.map(|pipeline| {
+            let pending = pipeline.submit(gpu, &rows);
+            Self { probes, stage, pipeline, pending }
+        }))
     }
-    Ok(())
+
+    /// Waits for what came out.
+    fn end(self, gpu: &Gpu, probed: &mut Probed) -> Result<(), GpuError> {
+        let words = self.pending.wait(gpu)?;
+        for (probe, bits) in self.probes.iter().zip(self.pipeline.outputs(words, self.probes.len())) {
+            probed.words.push((probe, self.stage, bits));
+        }
+        Ok(())
+    }
 }
 
 /// The probes of an attribute: every vertex has the value, and the pixel in the primitive's middle is read.
@@ -97,7 +116,7 @@ fn carry(
             return Ok(());
         }
     };
-    for probe in probes {
+    let draw = |&probe: &&'static Probe| {
         let value = f32::from_bits(probe.inputs[0]);
         let row = if flat {
             // Six attributes, the primitive that is looked at, the pixel.
@@ -106,7 +125,11 @@ fn carry(
             let corners = [-1.0, -1.0, 0.5, 1.0, 3.0, -1.0, 0.5, 1.0, -1.0, 3.0, 0.5, 1.0];
             [&corners[..], &[value; 3], &[128.0, 128.0]].concat()
         };
-        let (count, pending) = pipeline.submit(gpu, &row);
+        let drawn = pipeline.submit(gpu, &row);
+        (probe, row, drawn)
+    };
+    let drawn: Vec<_> = probes.iter().map(draw).collect();
+    for (probe, row, (count, pending)) in drawn {
         let outputs = pipeline.outputs(&pending.wait(gpu)?, &row, count);
         probed.words.push((probe, STAGE, outputs[0]));
     }

@@ -9,6 +9,8 @@ use std::time::Instant;
 /// Seconds that a submission and the wait for its end may take besides what is timed: far more than any driver needs. Mesa 22.3's
 /// llvmpipe notes the timestamps around a dispatch both at its end, once a frame was drawn by the same device.
 const SLACK: f64 = 0.05;
+/// Readings that are needed to tell in what steps a clock tells time: the chance that so many multiples of a step have a larger divisor in common is 1 in 2^15.
+const READINGS_FOR_GRAIN: u64 = 16;
 
 /// How a clock tells time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +86,8 @@ pub struct Clock {
     note: Option<String>,
     readings: AtomicU64,
     rejected: AtomicU64,
+    /// What all readings so far are multiples of, in nanoseconds; 0 before the first.
+    grain_ns: AtomicU64,
 }
 
 #[derive(Debug)]
@@ -157,8 +161,9 @@ impl Clock {
 
     /// The clock on the wall, and why it is that.
     #[must_use]
-    pub const fn wall(note: Option<String>) -> Self {
-        Self { kind: ClockKind::Wall, stamps: None, note, readings: AtomicU64::new(0), rejected: AtomicU64::new(0) }
+    pub fn wall(note: Option<String>) -> Self {
+        let [readings, rejected, grain_ns] = Default::default();
+        Self { kind: ClockKind::Wall, stamps: None, note, readings, rejected, grain_ns }
     }
 
     /// How it tells time.
@@ -171,6 +176,14 @@ impl Clock {
     #[must_use]
     pub fn readings(&self) -> (u64, u64) {
         (self.readings.load(Ordering::Relaxed), self.rejected.load(Ordering::Relaxed))
+    }
+
+    /// The steps in which a clock elsewhere tells time, in nanoseconds: what all its readings are multiples of. Browsers round time, so that pages
+    /// cannot spy by it. `None` of a clock that is here, and where too few readings were taken to tell.
+    #[must_use]
+    pub fn grain_ns(&self) -> Option<u64> {
+        let grain = self.grain_ns.load(Ordering::Relaxed);
+        (grain > 0 && self.readings.load(Ordering::Relaxed) >= READINGS_FOR_GRAIN).then_some(grain)
     }
 
     /// Why it is the clock on the wall.
@@ -205,6 +218,11 @@ impl Clock {
 
     /// What a device elsewhere tells of work: two timestamps in nanoseconds, and the seconds that went by on the wall.
     pub(super) fn reading(&self, nanoseconds: [u64; 2], wall: f64) -> ClockReading {
+        let told = match self.kind {
+            ClockKind::Wall => nanoseconds_of(wall),
+            ClockKind::Timestamps => nanoseconds[1].saturating_sub(nanoseconds[0]),
+        };
+        self.grain_ns.store(common(self.grain_ns.load(Ordering::Relaxed), told), Ordering::Relaxed);
         self.noted(match self.kind {
             ClockKind::Wall => ClockReading::Seconds(wall),
             ClockKind::Timestamps => ClockReading::of_ticks(nanoseconds, 1e-9, wall),
@@ -217,6 +235,21 @@ impl Clock {
         self.rejected.fetch_add(u64::from(reading.seconds().is_none()), Ordering::Relaxed);
         reading
     }
+}
+
+/// A time in whole nanoseconds; a page's clock has rounding errors far below one.
+fn nanoseconds_of(seconds: f64) -> u64 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
+    let whole = (seconds * 1e9).round() as u64;
+    whole
+}
+
+/// The greatest common divisor.
+const fn common(mut a: u64, mut b: u64) -> u64 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 impl Stamps {
@@ -258,6 +291,23 @@ impl Stamps {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_clock_elsewhere_tells_in_what_steps_it_goes() {
+        for (kind, grain_ns) in [(ClockKind::Wall, 100_000), (ClockKind::Wall, 5_000), (ClockKind::Timestamps, 65_536)]
+        {
+            let clock = Clock { kind, ..Clock::wall(None) };
+            for k in 0..READINGS_FOR_GRAIN {
+                assert_eq!(clock.grain_ns(), None, "too few readings");
+                let steps = 7 + k * k;
+                #[expect(clippy::cast_precision_loss, reason = "a page's clock counts milliseconds in binary64")]
+                let [start, end] = [1_234_567 * grain_ns, (1_234_567 + steps) * grain_ns].map(|ns| ns as f64 / 1e6);
+                clock.reading([grain_ns, (1 + steps) * grain_ns], (end - start) / 1e3);
+            }
+            assert_eq!(clock.grain_ns(), Some(grain_ns), "{kind:?}");
+        }
+        assert_eq!(Clock::wall(None).grain_ns(), None);
+    }
 
     #[test]
     fn what_cannot_be_true_is_rejected() {

@@ -25,7 +25,7 @@ impl Executor {
     ///
     /// # Errors
     /// Where the device refuses a shader or a pipeline, which is said of `file`, or fails at something else. What was
-    /// refused has its place all the same.
+    /// refused has its place all the same. A device elsewhere makes it while this goes on: its errors are those of the next result.
     pub(crate) fn make(&mut self, gpu: &Gpu, resources: &Resources, file: &str) -> Result<(), GpuError> {
         match &gpu.place {
             Place::Here(native) => {
@@ -34,7 +34,10 @@ impl Executor {
                 self.kept.fill(native, resources, None);
                 native.check()
             }
-            Place::Hosted(host) => self.elsewhere.get_or_insert_with(|| Kept::new(host)).make(resources, file),
+            Place::Hosted(host) => {
+                self.elsewhere.get_or_insert_with(|| Kept::new(host)).make(resources, file);
+                Ok(())
+            }
         }
     }
 

@@ -6,8 +6,8 @@ use crate::error::GpuError;
 use crate::work::{Handle, Read, Resources, Submission, TextureResource};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a device elsewhere can do besides what WebGPU guarantees.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -104,8 +104,45 @@ pub(super) struct Kept {
     executor: u64,
     /// How many shaders, pipelines, buffers, textures and bind groups were made.
     made: [usize; 5],
+    /// What of them nobody has waited for yet.
+    unsettled: Arc<Unsettled>,
     /// The bytes of each texture.
     textures: Vec<usize>,
+}
+
+/// What is made and was not waited for. The device makes it while others are judged; what it refused is told with the first result that needs it.
+#[derive(Debug)]
+struct Unsettled {
+    host: Arc<dyn Host>,
+    /// Each piece with the file that what it makes is of.
+    made: Mutex<Vec<(Ticket, String)>>,
+}
+
+impl Unsettled {
+    fn tickets(&self) -> Vec<(Ticket, String)> {
+        std::mem::take(&mut *self.made.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Waits until all of it is made.
+    fn settle(&self) -> Result<(), GpuError> {
+        let mut settled = Ok(());
+        for (ticket, file) in self.tickets() {
+            if settled.is_ok() {
+                settled = self.host.wait(ticket).map(drop).map_err(|error| error.said_of(&file));
+            } else {
+                self.host.forget(ticket);
+            }
+        }
+        settled
+    }
+}
+
+impl Drop for Unsettled {
+    fn drop(&mut self) {
+        for (ticket, _) in self.tickets() {
+            self.host.forget(ticket);
+        }
+    }
 }
 
 impl Abilities {
@@ -143,11 +180,13 @@ impl HostError {
 impl Kept {
     pub(super) fn new(host: &Arc<dyn Host>) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
-        Self { host: host.clone(), executor: NEXT.fetch_add(1, Ordering::Relaxed), made: [0; 5], textures: vec![] }
+        let unsettled = Arc::new(Unsettled { host: host.clone(), made: Mutex::default() });
+        let executor = NEXT.fetch_add(1, Ordering::Relaxed);
+        Self { host: host.clone(), executor, made: [0; 5], unsettled, textures: vec![] }
     }
 
-    /// Makes what is described and not made yet.
-    pub(super) fn make(&mut self, resources: &Resources, file: &str) -> Result<(), GpuError> {
+    /// Has what is described and not made yet made. What the device refuses of it is told with the next result.
+    pub(super) fn make(&mut self, resources: &Resources, file: &str) {
         let [shaders, pipelines, buffers, textures, groups] = self.made;
         let new = Resources {
             shaders: resources.shaders[shaders..].to_vec(),
@@ -157,7 +196,7 @@ impl Kept {
             groups: resources.groups[groups..].to_vec(),
         };
         if new == Resources::default() {
-            return Ok(());
+            return;
         }
         self.made = [
             resources.shaders.len(),
@@ -168,7 +207,7 @@ impl Kept {
         ];
         self.textures.extend(new.textures.iter().map(texture_bytes));
         let ticket = self.host.send(&WorkPiece::Make { executor: self.executor, resources: &new });
-        self.host.wait(ticket).map(drop).map_err(|error| error.said_of(file))
+        self.unsettled.made.lock().unwrap_or_else(PoisonError::into_inner).push((ticket, file.into()));
     }
 
     pub(super) fn forget_pipelines(&mut self) {
@@ -180,7 +219,7 @@ impl Kept {
     pub(super) fn submit(&self, work: &Submission) -> Asked {
         let ticket = self.host.send(&WorkPiece::Submit { executor: self.executor, work });
         let bytes = work.reads.iter().map(|read| self.bytes(work, read)).sum();
-        Asked { host: self.host.clone(), ticket, bytes, is_waited_for: false }
+        Asked { host: self.host.clone(), unsettled: self.unsettled.clone(), ticket, bytes, is_waited_for: false }
     }
 
     /// How many bytes a read of a submission gives.
@@ -193,6 +232,7 @@ impl Kept {
     }
 
     pub(super) fn time(&self, clock: &Clock, work: &Submission, repeats: u32) -> Result<ClockReading, GpuError> {
+        self.unsettled.settle()?;
         let ticket = self.host.send(&WorkPiece::Time { executor: self.executor, work, repeats });
         let bytes = self.host.wait(ticket).map_err(HostError::said_of_the_device)?;
         let parts: Option<[[u8; 8]; 3]> = bytes.as_chunks().0.try_into().ok();
@@ -217,6 +257,8 @@ impl Drop for Kept {
 #[derive(Debug)]
 pub(super) struct Asked {
     host: Arc<dyn Host>,
+    /// What it needs.
+    unsettled: Arc<Unsettled>,
     ticket: Ticket,
     /// How many bytes are to come back.
     bytes: usize,
@@ -226,6 +268,7 @@ pub(super) struct Asked {
 impl Asked {
     /// The words that come back.
     pub(super) fn wait(mut self) -> Result<Vec<u32>, GpuError> {
+        self.unsettled.settle()?;
         self.is_waited_for = true;
         let bytes = self.host.wait(self.ticket).map_err(HostError::said_of_the_device)?;
         if bytes.len() != self.bytes {
@@ -249,7 +292,6 @@ mod tests {
     use super::*;
     use crate::device::{Executor, Gpu};
     use crate::work::{Buffer, Resources};
-    use std::sync::Mutex;
     use wgpu_types::{BufferUsages, TextureFormat, TextureUsages};
 
     /// A host that gives the same result for everything, and notes what is sent.
@@ -329,7 +371,9 @@ mod tests {
             [(HostError::Refused("1:1".into()), true), (HostError::Failed("gone".into()), false)]
         {
             let (_, gpu) = host(Err(error));
-            let made = Executor::default().make(&gpu, &resources, "some.wgsl").expect_err("it is refused");
+            let mut executor = Executor::default();
+            executor.make(&gpu, &resources, "some.wgsl").expect("it is told with the next result");
+            let made = executor.submit(&gpu, &Submission::default()).wait(&gpu).expect_err("it is refused");
             assert_eq!(
                 matches!(made, GpuError::Shader { ref file, .. } if file == "some.wgsl"),
                 is_of_shader,

@@ -37,60 +37,82 @@ export class Executors {
     this.device = device;
     this.kept = new Map();
     this.staging = [];
+    // What an executor was asked last. The next thing waits for it; what others are asked goes on beside it.
+    this.last = new Map();
   }
 
-  // Begins a piece of work. Resolves once the next one may begin, to an object whose `done` resolves to the bytes that come back.
-  async begin(piece) {
+  // Runs a piece of work after those of the same executor, and resolves to the bytes that come back; `null` where nothing does.
+  run(piece) {
     const [kind] = Object.keys(piece);
     const asked = piece[kind];
+    const before = kind === "time" ? Promise.allSettled(this.last.values()) : this.last.get(asked.executor);
+    const begun = Promise.resolve(before).then(() => this.begin(kind, asked));
+    const quiet = begun.catch(() => {});
+    this.last.set(asked.executor, quiet);
+    if (kind === "drop") quiet.then(() => { if (this.last.get(asked.executor) === quiet) this.last.delete(asked.executor); });
+    return begun.then((done) => done());
+  }
+
+  // Begins a piece of work. Resolves once the next one of its executor may begin, to what gives a promise of the bytes.
+  async begin(kind, asked) {
     switch (kind) {
       case "make": {
         if (!this.kept.has(asked.executor)) this.kept.set(asked.executor, nothing());
         const kept = this.kept.get(asked.executor);
-        await this.guarded(() => this.make(asked.resources, new Scope(kept, kept), kept));
-        return { done: Promise.resolve(new Uint8Array()) };
+        await this.make(asked.resources, new Scope(kept, kept), kept);
+        return async () => new Uint8Array();
       }
       case "forget-pipelines":
         if (this.kept.has(asked.executor)) this.kept.get(asked.executor).pipelines = [];
-        return {};
+        return async () => null;
       case "drop":
         release(this.kept.get(asked.executor));
         this.kept.delete(asked.executor);
-        return {};
+        return async () => null;
       case "submit":
         return this.submit(asked);
-      case "time":
-        return { done: Promise.resolve(await this.time(asked)) };
+      case "time": {
+        const bytes = await this.time(asked);
+        return async () => bytes;
+      }
       default:
         throw new Error(`there is no work of the kind ${kind}`);
     }
   }
 
-  // Does something under a scope that catches what the device objects to.
-  async guarded(act) {
+  // Does something at once, and resolves to what the device objects to in it, or to `null`. Scopes are a stack that all share, so nothing may wait in between.
+  guarded(act) {
     const { device } = this;
     device.pushErrorScope("out-of-memory");
     device.pushErrorScope("validation");
     let thrown = null;
-    let result;
     try {
-      result = await act();
+      act();
     } catch (error) {
       thrown = error;
     }
-    const errors = await Promise.all([device.popErrorScope(), device.popErrorScope()]);
-    if (thrown) throw thrown;
-    const error = errors.find((error) => error !== null);
+    const scopes = Promise.all([device.popErrorScope(), device.popErrorScope()]);
+    return scopes.then((errors) => {
+      if (thrown) throw thrown;
+      return errors.find((error) => error !== null) ?? null;
+    });
+  }
+
+  // The same, where an objection is an error.
+  async checked(act) {
+    const error = await this.guarded(act);
     if (error) throw new Error(error.message);
-    return result;
   }
 
   // Makes resources at the ends of the lists in `into`.
   async make(described, scope, into) {
-    for (const shader of described.shaders) into.shaders.push(await this.shader(shader));
-    const pipelines = await Promise.all(described.pipelines.map((pipeline) => this.pipeline(pipeline, scope)));
-    into.pipelines.push(...pipelines);
-    this.fill(described, scope, into);
+    await this.compile(described, scope, into);
+    await this.checked(() => this.fill(described, scope, into));
+  }
+
+  async compile(described, scope, into) {
+    if (described.shaders.length > 0) into.shaders.push(...(await Promise.all(described.shaders.map((shader) => this.shader(shader)))));
+    if (described.pipelines.length > 0) into.pipelines.push(...(await Promise.all(described.pipelines.map((pipeline) => this.pipeline(pipeline, scope)))));
   }
 
   fill(described, scope, into) {
@@ -100,12 +122,15 @@ export class Executors {
   }
 
   async shader({ label, source }) {
-    const module = this.device.createShaderModule({ label, code: source });
+    let module;
+    const objection = this.guarded(() => { module = this.device.createShaderModule({ label, code: source }); });
     const { messages } = await module.getCompilationInfo();
     const errors = messages.filter(({ type }) => type === "error");
     if (errors.length > 0) {
       throw new Refused(errors.map(({ lineNum, linePos, message }) => `${lineNum}:${linePos}: ${message}`).join("\n"));
     }
+    const error = await objection;
+    if (error) throw new Refused(error.message);
     return module;
   }
 
@@ -179,53 +204,56 @@ export class Executors {
     return this.device.createBindGroup({ layout: scope.named("pipelines", pipeline).getBindGroupLayout(0), entries });
   }
 
-  // Makes what ends with a submission, and writes what is to be written before it.
-  async prepare({ executor, work }) {
-    const kept = this.kept.get(executor) ?? nothing();
+  // What a submission names. Shaders and pipelines that end with it are compiled; all else is made by `fill`.
+  async named({ executor, work }) {
     const own = nothing();
-    const scope = new Scope(kept, own);
-    if (work.own.shaders.length + work.own.pipelines.length > 0) await this.make(work.own, scope, own);
-    else this.fill(work.own, scope, own);
-    for (const { buffer, contents } of work.writes) this.device.queue.writeBuffer(scope.named("buffers", buffer), 0, contents);
+    const scope = new Scope(this.kept.get(executor) ?? nothing(), own);
+    await this.compile(work.own, scope, own);
     return scope;
   }
 
-  // Submits. Resolves once that is done, to a promise of the bytes in `done`.
-  async submit(asked) {
-    const { device } = this;
-    device.pushErrorScope("out-of-memory");
-    device.pushErrorScope("validation");
-    let failed = null;
-    let read = null;
-    let scope = null;
-    try {
-      scope = await this.prepare(asked);
-      const encoder = device.createCommandEncoder();
-      for (const step of asked.work.steps) encode(encoder, step, scope);
-      const parts = asked.work.reads.map((read) => part(read, scope));
-      const bytes = parts.reduce((sum, { rows, stride }) => sum + rows * stride, 0);
-      const staging = this.stagingOf(bytes);
-      let offset = 0;
-      for (const part of parts) {
-        part.copy(encoder, staging, offset);
-        part.offset = offset;
-        offset += part.rows * part.stride;
-      }
-      device.queue.submit([encoder.finish()]);
-      read = { parts, bytes, staging, mapped: staging.mapAsync(GPUMapMode.READ, 0, roundUp(bytes, 4)) };
-      read.mapped.catch(() => {});
-    } catch (error) {
-      failed = error;
-    }
-    const errors = [device.popErrorScope(), device.popErrorScope()];
-    return { done: this.finish(failed, errors, read, scope) };
+  // Makes what else ends with a submission, and writes what is to be written before it.
+  prepare(work, scope) {
+    this.fill(work.own, scope, scope.own);
+    for (const { buffer, contents } of work.writes) this.device.queue.writeBuffer(scope.named("buffers", buffer), 0, contents);
   }
 
-  async finish(failed, scopes, read, scope) {
-    const error = (await Promise.all(scopes)).find((error) => error !== null);
-    if (error) throw new Error(error.message);
-    if (failed) throw failed;
-    const { parts, bytes, staging, mapped } = read;
+  // Submits. Resolves once that is done, to what gives a promise of the bytes.
+  async submit(asked) {
+    const scope = await this.named(asked);
+    let read;
+    const objection = this.guarded(() => { read = this.submitted(asked.work, scope); });
+    const done = objection.then((error) => {
+      if (error) throw new Error(error.message);
+      return this.finish(read, scope);
+    });
+    done.catch(() => {});
+    return () => done;
+  }
+
+  // Submits the work, and asks for what is read back.
+  submitted(work, scope) {
+    const { device } = this;
+    this.prepare(work, scope);
+    const encoder = device.createCommandEncoder();
+    for (const step of work.steps) encode(encoder, step, scope);
+    const parts = work.reads.map((read) => part(read, scope));
+    const bytes = parts.reduce((sum, { rows, stride }) => sum + rows * stride, 0);
+    const staging = this.stagingOf(bytes);
+    let offset = 0;
+    for (const part of parts) {
+      part.copy(encoder, staging, offset);
+      part.offset = offset;
+      offset += part.rows * part.stride;
+    }
+    device.queue.submit([encoder.finish()]);
+    const mapped = staging.mapAsync(GPUMapMode.READ, 0, roundUp(bytes, 4));
+    mapped.catch(() => {});
+    return { parts, bytes, staging, mapped };
+  }
+
+  // Waits for what is read back, row by row.
+  async finish({ parts, bytes, staging, mapped }, scope) {
     await mapped;
     const range = new Uint8Array(staging.getMappedRange(0, roundUp(bytes, 4)));
     const result = new Uint8Array(parts.reduce((sum, { rows, rowBytes }) => sum + rows * rowBytes, 0));
@@ -253,44 +281,50 @@ export class Executors {
   // Two timestamps in nanoseconds, and the seconds that went by on the wall.
   async time(asked) {
     const { device } = this;
-    return this.guarded(async () => {
-      const scope = await this.prepare(asked);
-      const stamps = device.features.has("timestamp-query") ? device.createQuerySet({ type: "timestamp", count: 2 }) : null;
-      const resolved = device.createBuffer({ size: 16, usage: GPUBufferUsage.QUERY_RESOLVE | GPUBufferUsage.COPY_SRC });
-      const staging = device.createBuffer({ size: 16, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
-      const encoder = device.createCommandEncoder();
-      const { steps } = asked.work;
-      for (let turn = 0; turn < asked.repeats; turn++) {
-        steps.forEach((step, k) => {
-          const begins = stamps && turn === 0 && k === 0;
-          const ends = stamps && turn + 1 === asked.repeats && k + 1 === steps.length;
-          const writes = begins || ends ? { querySet: stamps } : undefined;
-          if (begins) writes.beginningOfPassWriteIndex = 0;
-          if (ends) writes.endOfPassWriteIndex = 1;
-          encode(encoder, step, scope, writes);
-        });
-      }
-      if (stamps) {
-        encoder.resolveQuerySet(stamps, 0, 2, resolved, 0);
-        encoder.copyBufferToBuffer(resolved, 0, staging, 0, 16);
-      }
-      const commands = encoder.finish();
-      await device.queue.onSubmittedWorkDone();
-      const start = performance.now();
-      device.queue.submit([commands]);
-      await device.queue.onSubmittedWorkDone();
-      const seconds = (performance.now() - start) / 1000;
-      const result = new Uint8Array(24);
-      if (stamps) {
-        await staging.mapAsync(GPUMapMode.READ);
-        result.set(new Uint8Array(staging.getMappedRange()));
-        staging.unmap();
-      }
-      new DataView(result.buffer).setFloat64(16, seconds, true);
-      for (const object of [stamps, resolved, staging]) object?.destroy();
-      release(scope.own);
-      return result;
-    });
+    const scope = await this.named(asked);
+    const stamps = device.features.has("timestamp-query") ? device.createQuerySet({ type: "timestamp", count: 2 }) : null;
+    const resolved = device.createBuffer({ size: 16, usage: GPUBufferUsage.QUERY_RESOLVE | GPUBufferUsage.COPY_SRC });
+    const staging = device.createBuffer({ size: 16, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
+    let commands;
+    await this.checked(() => { commands = this.repeated(asked, scope, { stamps, resolved, staging }); });
+    await device.queue.onSubmittedWorkDone();
+    const start = performance.now();
+    const submitted = this.checked(() => device.queue.submit([commands]));
+    await device.queue.onSubmittedWorkDone();
+    const seconds = (performance.now() - start) / 1000;
+    await submitted;
+    const result = new Uint8Array(24);
+    if (stamps) {
+      await staging.mapAsync(GPUMapMode.READ);
+      result.set(new Uint8Array(staging.getMappedRange()));
+      staging.unmap();
+    }
+    new DataView(result.buffer).setFloat64(16, seconds, true);
+    for (const object of [stamps, resolved, staging]) object?.destroy();
+    release(scope.own);
+    return result;
+  }
+
+  // The commands of a submission's steps, repeated between two timestamps.
+  repeated({ work, repeats }, scope, { stamps, resolved, staging }) {
+    this.prepare(work, scope);
+    const encoder = this.device.createCommandEncoder();
+    const { steps } = work;
+    for (let turn = 0; turn < repeats; turn++) {
+      steps.forEach((step, k) => {
+        const begins = stamps && turn === 0 && k === 0;
+        const ends = stamps && turn + 1 === repeats && k + 1 === steps.length;
+        const writes = begins || ends ? { querySet: stamps } : undefined;
+        if (begins) writes.beginningOfPassWriteIndex = 0;
+        if (ends) writes.endOfPassWriteIndex = 1;
+        encode(encoder, step, scope, writes);
+      });
+    }
+    if (stamps) {
+      encoder.resolveQuerySet(stamps, 0, 2, resolved, 0);
+      encoder.copyBufferToBuffer(resolved, 0, staging, 0, 16);
+    }
+    return encoder.finish();
   }
 }
 

@@ -1,6 +1,6 @@
 // Asks the server for work, runs it on this browser's GPU and sends back what came of it.
 //
-// One request for work is under way at a time. Pieces are begun in order; several may be unfinished at once. What could not be sent is sent again,
+// One request for work is under way at a time. Pieces of one executor are begun in order, those of several side by side. What could not be sent is sent again,
 // and what came of a piece twice is counted once by the server. After a lost device or a reload the server hands out again what is needed.
 
 import { decode } from "./cbor.js";
@@ -124,17 +124,41 @@ async function serve(page) {
         device.destroy();
         return;
       }
-      let done;
-      try {
-        ({ done } = await executors.begin(piece));
-      } catch (error) {
-        done = Promise.reject(error);
-      }
-      if (!done) continue;
+      const done = executors.run(piece);
+      if ("forget-pipelines" in piece || "drop" in piece) continue;
       const sent = send(id, done).catch((error) => page.stop(error)).finally(() => underWay.delete(sent));
       underWay.add(sent);
       while (underWay.size >= UNDER_WAY) await Promise.race(underWay);
     }
+  }
+}
+
+// What went wrong in a group: why, and the pictures of a scene. They are kept in the page, since the server may end with the run.
+async function failure({ id, stage, why, picture }, page) {
+  const card = document.createElement("article");
+  const title = document.createElement("h3");
+  title.textContent = `${id} (${stage})`;
+  card.append(title);
+  if (why) {
+    const text = document.createElement("p");
+    text.textContent = why;
+    card.append(text);
+  }
+  shown("failures").append(card);
+  shown("failed").hidden = false;
+  if (picture === null) return;
+  const row = document.createElement("div");
+  row.className = "pictures";
+  card.append(row);
+  for (const [k, what] of ["the reference", "the result", "the error map: the brighter, the farther from what is legal"].entries()) {
+    const response = await fetch(`picture.png?${page.session}&number=${picture + k}`);
+    if (!response.ok) return;
+    const [figure, image, caption] = ["figure", "img", "figcaption"].map((name) => document.createElement(name));
+    image.src = URL.createObjectURL(await response.blob());
+    image.alt = `${id}: ${what}`;
+    caption.textContent = what;
+    figure.append(image, caption);
+    row.append(figure);
   }
 }
 
@@ -166,7 +190,10 @@ async function tell(page) {
   while (!page.isOver) {
     const response = await persistently(`state?${page.session}&groups=${groups}`, {});
     const state = await response.json();
-    for (const group of state.groups) shown("groups").append(row(group));
+    for (const group of state.groups) {
+      shown("groups").append(row(group));
+      if (group.failed > 0 || group.why) await failure(group, page);
+    }
     groups += state.groups.length;
     const { done, of, failed } = state;
     const verdict = shown("verdict");

@@ -96,6 +96,10 @@ const RULES: &[(&str, &str)] = &[
         "interpolation/front-facing interpolation/raster-facing",
         "counter-clockwise is as it is seen on the screen, on which y points down; a triangle without area does not face front",
     ),
+    (
+        "interpolation/front-facing",
+        "the sides are taken from a, the first vertex: from another one they round otherwise, which shows where the triangle has next to no area",
+    ),
     // The rasteriser.
     (
         "interpolation/raster-* interpolation/cull-* depth/same-geometry-*",

@@ -78,6 +78,9 @@ pub struct ClockUse {
     pub readings: u64,
     /// Of them, those that could not be true: in no figure.
     pub rejected: u64,
+    /// The steps in which a browser's clock tells time, in nanoseconds, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grain_ns: Option<u64>,
 }
 
 impl ClockUse {

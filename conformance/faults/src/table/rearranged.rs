@@ -34,6 +34,7 @@ pub(super) const FAULTS: &[Fault] = &[
             &[form("edge", Form::EdgeFromItsEnd), form("2·area", Form::EdgeFromItsEnd)],
             &[form("edge", Form::EdgeFromItsEnd)],
             &[form("(b − a)×(c − a)", Form::EdgeFromItsEnd)],
+            &[form("2·area", Form::EdgeFromItsEnd)],
         ],
     )
     .rounding(),
@@ -44,6 +45,7 @@ pub(super) const FAULTS: &[Fault] = &[
             &[form("edge", Form::EdgeFromThePoint), form("2·area", Form::EdgeFromThePoint)],
             &[form("edge", Form::EdgeFromThePoint)],
             &[form("(b − a)×(c − a)", Form::EdgeFromThePoint)],
+            &[form("2·area", Form::EdgeFromThePoint)],
         ],
     )
     .rounding(),

@@ -68,13 +68,23 @@ fn made(document: &BenchDocument, out: &mut impl Write) -> Result {
             n => format!("{} of them could not be true and are in no figure", thousands(n)),
         };
         let (kind, readings) = (clock_name(&clock.kind), thousands(clock.readings));
+        let grain = clock.grain_ns.map(|ns| format!(" in steps of {}", grain(ns))).unwrap_or_default();
         writeln!(
             out,
-            "* **{adapter}**: {device}, {backend}, {driver}{processor}. Clock: {kind}{note}; {readings} readings, {rejected}.{}",
+            "* **{adapter}**: {device}, {backend}, {driver}{processor}. Clock: {kind}{grain}{note}; {readings} readings, {rejected}.{}",
             compilation(measured).map(|told| format!(" Compilation is in no time: {told}.")).unwrap_or_default()
         )?;
     }
     Ok(())
+}
+
+/// A step of a clock.
+fn grain(ns: u64) -> String {
+    match ns {
+        0..1_000 => format!("{ns} ns"),
+        1_000..1_000_000 => format!("{} µs", f64::from(u32::try_from(ns).unwrap_or(u32::MAX)) / 1e3),
+        _ => format!("{} ms", f64::from(u32::try_from(ns / 1_000).unwrap_or(u32::MAX)) / 1e3),
+    }
 }
 
 /// A clock's name in a sentence.
@@ -556,7 +566,7 @@ mod tests {
             "2 cores of the processor",
             "41,234 readings, 3 of them could not be true",
             "it computes on the processor",
-            "Clock: the clock on the wall (timestamps stood still",
+            "Clock: the clock on the wall in steps of 100 µs (timestamps stood still",
             "lavapipe: *holds*. infinite takes 0.70 times as long as local, and is off by 3.2/255 at most (ratio 0.700, 0.679–0.721).",
             "*does not hold*",
             "*left open by a tie*",

@@ -168,7 +168,7 @@ pub(crate) fn document() -> BenchDocument {
     first.is_cpu = true;
     first.device = "llvmpipe (LLVM 15.0.6, 256 bits)".into();
     first.driver = "llvmpipe, Mesa 22.3.6 (LLVM 15.0.6)".into();
-    first.clock = ClockUse { kind: "timestamps".into(), note: None, readings: 41_234, rejected: 3 };
+    first.clock = ClockUse { kind: "timestamps".into(), note: None, readings: 41_234, rejected: 3, grain_ns: None };
     let why = "the driver has no shader-f16";
     first.rungs.iter_mut().filter(|rung| rung.name == "f16").for_each(|rung| rung.unavailable = Some(why.into()));
     for group in &mut first.groups {
@@ -181,7 +181,13 @@ pub(crate) fn document() -> BenchDocument {
     second.driver = "NVIDIA, 550.54".into();
     let note =
         "timestamps stood still in 4 of 5 trials, so times are those of the clock on the wall around a submission";
-    second.clock = ClockUse { kind: "wall".into(), note: Some(note.into()), readings: 40_002, rejected: 0 };
+    second.clock = ClockUse {
+        kind: "wall".into(),
+        note: Some(note.into()),
+        readings: 40_002,
+        rejected: 0,
+        grain_ns: Some(100_000),
+    };
     let times = second.groups.iter_mut().flat_map(|group| &mut group.rows).filter_map(|row| row.time.as_mut());
     times.filter(|time| time.clock == "timestamps").for_each(|time| time.clock = "wall".into());
     BenchDocument {
@@ -241,7 +247,7 @@ fn measured(adapter: &str, scale: f64, draw: &mut SyntheticDraw) -> Measured {
         backend: "vulkan".into(),
         driver: String::new(),
         is_cpu: false,
-        clock: ClockUse { kind: String::new(), note: None, readings: 0, rejected: 0 },
+        clock: ClockUse { kind: String::new(), note: None, readings: 0, rejected: 0, grain_ns: None },
         rungs: rungs.collect(),
         families: families(&groups),
         groups,
