@@ -1,6 +1,6 @@
 //! What became of a gate: `lightmeter.gate/1`.
 
-use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, RendererUse, is_zero};
+use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, RendererUse, SourcePlace, is_zero};
 pub use crate::by_case::{KnownFailure, Problems, RendererIdentity};
 use crate::explained::Explained;
 use crate::pack::Choice;
@@ -42,6 +42,12 @@ pub struct GateReport {
     /// Who answered.
     #[serde(default)]
     pub renderer: RendererIdentity,
+    /// What its hello declared besides, by the hello's fields; those that say nothing are left out.
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
+    pub declares: serde_json::Map<String, serde_json::Value>,
+    /// What makes the verdicts doubtful, though nothing failed by it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// How long it took.
     #[serde(default)]
     pub seconds: f64,
@@ -196,6 +202,9 @@ pub struct GateGroup {
     /// Of a scene whose image is wrong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image: Option<ImageUse>,
+    /// Where the renderer's code of it stands, where its hello says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<SourcePlace>,
 }
 
 impl GateGroup {
@@ -245,6 +254,7 @@ impl GateGroup {
             mistakes: group.mistakes.clone(),
             smallest: counts.smallest.clone(),
             image: group.image.clone().filter(|image| !image.pixels.is_empty()),
+            source: group.source.clone(),
         }
     }
 }
@@ -304,6 +314,8 @@ impl GateReport {
             compared_by: report.compared_by.clone(),
             profile: report.profile.to_string(),
             renderer: renderer.identity,
+            declares: renderer.declares,
+            warnings: renderer.warnings,
             seconds: report.seconds,
             totals,
             problems: renderer.problems,
@@ -393,6 +405,8 @@ impl From<GateReport> for Report {
             problems: gate.problems,
             incidents: gate.incidents,
             expected_incidents: gate.expected_incidents,
+            declares: gate.declares,
+            warnings: gate.warnings,
         };
         let name = &identity.name;
         Self {
@@ -461,6 +475,7 @@ impl GateGroup {
             expected_problem: self.expected_problem,
             by_case: Some(counts),
             image: self.image,
+            source: self.source,
             ..Group::new(self.id, adapter.to_owned(), "answer")
         }
     }

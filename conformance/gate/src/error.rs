@@ -47,6 +47,14 @@ pub enum ProcessError {
         /// Why that is refused.
         why: String,
     },
+    /// It says of its code's place what cannot be.
+    #[error("the renderer's hello: in `sources` of `{id}` {why}")]
+    Source {
+        /// The glob.
+        id: String,
+        /// What is wrong, and what would be right.
+        why: &'static str,
+    },
     /// It asks for accuracy rules that are unknown.
     #[error("the renderer's hello: no profile `{0}`; expected {profiles}", profiles = lightmeter_arithmetic::profile::PROFILES.map(|profile| profile.name).join(", "))]
     Profile(String),

@@ -118,8 +118,9 @@ impl GatePlan {
             let member = &self.member(formula).spec.id;
             filter.selects(member) || filter.reaches_below(member) || is_random(member) || {
                 let cases = 0..self.formulas[formula].count();
-                let is_below = id.starts_with(member.as_str()) || id.starts_with(self.member(formula).spec.group());
-                is_below && cases.into_iter().any(|case| filter.selects(&self.id(CasePlace::Case { formula, case })))
+                let is_of = |ancestor: &str| id.strip_prefix(ancestor).is_some_and(|rest| rest.starts_with('/'));
+                (is_of(member) || is_of(self.member(formula).spec.group()))
+                    && cases.into_iter().any(|case| filter.selects(&self.id(CasePlace::Case { formula, case })))
             }
         });
         let has_scene = || (0..self.scenes.len()).any(|scene| filter.selects(&self.id(CasePlace::Scene(scene))));

@@ -65,6 +65,7 @@ pub fn text(report: &GateReport, style: &GateStyle, out: &mut impl Write) -> Res
     listed("crashes and hangs are expected", &report.expected_incidents, out)?;
     listed("went wrong with the process", &report.incidents, out)?;
     problems(&report.problems, out)?;
+    report.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))?;
     if let Some(why) = &report.interrupted {
         writeln!(out, "\n{}", interrupted(why))?;
     }
@@ -193,6 +194,9 @@ pub fn told(group: &GateGroup, failures: &[GateFailure], style: &GateStyle, out:
         failed => (failed, "fail"),
     };
     writeln!(out, "\n✗ {}: {count} of {} {what}", group.name(), cases(group.asked))?;
+    if let Some(source) = &group.source {
+        writeln!(out, "  source {source}")?;
+    }
     if group.missing > 0 {
         let was = if group.missing == 1 { "was" } else { "were" };
         writeln!(out, "  {} {was} never answered: {}", cases(group.missing), missing(group))?;
