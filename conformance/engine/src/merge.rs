@@ -2,15 +2,18 @@
 //! which reports do not hold: the mistake that explains what fails, and what is wrong with all values of a formula together. They are those of
 //! the shard that fails most. How the values of a group are stored is told anew from the counts of all shards.
 
+mod differences;
+
 use crate::expected::expect_problems;
 use crate::run::routes;
+use differences::differences;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::scene_id;
 use lightmeter_catalogue::select::{CaseRef, catalogue};
 use lightmeter_catalogue::special::Class;
 use lightmeter_document::Number;
-use lightmeter_document::by_case::{CaseCounts, ComparedBy, KnownFailure, RendererUse};
-use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, ShaderUse, StoreUse, Totals};
+use lightmeter_document::by_case::{CaseCounts, RendererUse};
+use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, StoreUse, Totals};
 use lightmeter_judge::blend_unit::store::problem_of;
 use lightmeter_judge::cases::joined;
 use lightmeter_judge::tally::{KEPT, KEPT_FAILURES};
@@ -72,45 +75,27 @@ fn add_places(whole: &mut Report, part: &Report) {
     }
 }
 
-/// Whether two runs were asked the same and held against the same, which all shards of a run are.
-fn are_of_one_run(a: &Report, b: &Report) -> bool {
-    let compared_by = |report: &Report| report.compared_by.clone().map(|by| ComparedBy { shard: None, ..by });
-    let expected = |report: &Report| -> Vec<KnownFailure> {
-        report.expectations.iter().map(|one| KnownFailure { failed: 0, passed: 0, ..one.clone() }).collect()
-    };
-    let shader = |report: &Report| report.shader.as_ref().map(ShaderUse::without_mistakes);
-    let all = |report| (compared_by(report), shader(report), expected(report));
-    (all(a), &a.profile, &a.adapters) == (all(b), &b.profile, &b.adapters)
-}
-
 /// Checks that the parts are all shards of one run.
 fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
     let no_whole = |message: String| Err(NoWhole(message));
-    let [(first_path, first), ..] = parts else {
+    let [(first_path, _), ..] = parts else {
         return no_whole("there is nothing to merge; expected the results of each shard".into());
     };
     let mut seen: BTreeMap<u64, &PathBuf> = BTreeMap::new();
     let mut count = None;
+    are_of_one_run(parts)?;
     for (path, part) in parts {
         let (a, b) = (first_path.display(), path.display());
-        let Some(ComparedBy { shard: Some(shard), .. }) = &part.compared_by else {
-            return no_whole(format!(
-                "{b} is no shard of a run; expected the JSON of `run` or `gate` with --shard I/N"
-            ));
-        };
-        if let Some(interrupted) = &part.interrupted {
-            return no_whole(format!("{b} is not finished: {}", interrupted.message));
-        }
-        if !are_of_one_run(first, part) {
-            let expected = "expected the same cases, seed, targets, profile, adapters, shader and known failures";
-            return no_whole(format!("{a} and {b} are of different runs: {expected}"));
-        }
+        let shard = part.compared_by.as_ref().and_then(|by| by.shard.as_deref()).unwrap_or_default();
         let read = shard.split_once('/').and_then(|(i, n)| Some((i.parse::<u64>().ok()?, n.parse::<u64>().ok()?)));
         let Some((index, shards)) = read.filter(|&(index, shards)| (1..=shards).contains(&index)) else {
             return no_whole(format!("{b}: `{shard}` is no shard; expected I/N"));
         };
-        if *count.get_or_insert(shards) != shards {
-            return no_whole(format!("{a} and {b} overlap: expected shards of the same number"));
+        let of = *count.get_or_insert(shards);
+        if of != shards {
+            return no_whole(format!(
+                "{a} is one of {of} shards and {b} one of {shards}; expected shards of the same number"
+            ));
         }
         if let Some(twice) = seen.insert(index, path) {
             return no_whole(format!("{} and {b} overlap: both are shard {shard}", twice.display()));
@@ -121,6 +106,28 @@ fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
     let missing: Vec<String> =
         (1..=count).filter(is_missing).map(|index| format!("{index}/{count}")).take(MOST_NAMED).collect();
     if missing.is_empty() { Ok(()) } else { no_whole(format!("there is no result of shard {}", missing.join(", "))) }
+}
+
+/// Checks that the parts are finished shards, and that all that must be the same in shards of one run is.
+fn are_of_one_run(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
+    let no_whole = |message: String| Err(NoWhole(message));
+    for (path, part) in parts {
+        if part.compared_by.as_ref().is_none_or(|by| by.shard.is_none()) {
+            return no_whole(format!(
+                "{} is no shard of a run; expected the JSON of `run` or `gate` with --shard I/N",
+                path.display()
+            ));
+        }
+        if let Some(interrupted) = &part.interrupted {
+            return no_whole(format!("{} is not finished: {}", path.display(), interrupted.message));
+        }
+    }
+    match differences(parts) {
+        None => Ok(()),
+        Some(fields) => {
+            no_whole(format!("the files are of different runs; expected the same in all of them:\n{fields}"))
+        }
+    }
 }
 
 /// The order of reports, by the ids of groups, formulas, hard cases and scenes.
@@ -288,6 +295,8 @@ fn add_deviations(whole: &mut Report, deviations: Vec<DeviationUse>) {
 
 fn add_renderer(known: &mut RendererUse, more: RendererUse) {
     known.starts += more.starts;
+    let new = more.warnings.into_iter().filter(|warning| !known.warnings.contains(warning)).collect::<Vec<_>>();
+    known.warnings.extend(new);
     known.incidents.extend(more.incidents);
     known.expected_incidents.extend(more.expected_incidents);
     known.problems.first.extend(more.problems.first);
