@@ -98,6 +98,9 @@ fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
             ));
         }
         if let Some(twice) = seen.insert(index, path) {
+            if twice == path {
+                return no_whole(format!("{b} overlaps itself: it is given twice, as shard {shard}"));
+            }
             return no_whole(format!("{} and {b} overlap: both are shard {shard}", twice.display()));
         }
     }

@@ -367,8 +367,13 @@ const EXPECTED: &str = "an answer such as {\"id\": \"fog/exp/random/000017\", \"
 #[must_use]
 pub fn is_hello(line: &[u8]) -> bool {
     serde_json::from_slice::<serde_json::Value>(line.trim_ascii())
-        .is_ok_and(|value| value["id"].is_null() && (value["hello"].is_string() || value["renderer"].is_string()))
+        .is_ok_and(|value| value["id"].is_null() && (!value["hello"].is_null() || !value["renderer"].is_null()))
 }
+
+/// What an entry of `skips` says.
+const SKIPS: &str = "[{\"id\": \"fog/exp\", \"reason\": \"not built\"}]";
+/// What an entry of `sources` says.
+const SOURCES: &str = "[{\"id\": \"fog/exp\", \"file\": \"src/fog.glsl\", \"line\": 12}]";
 
 fn hello(text: &str) -> Result<Line<'_>, String> {
     #[derive(Deserialize)]
@@ -394,12 +399,16 @@ fn hello(text: &str) -> Result<Line<'_>, String> {
         let is_list =
             matches!(name.as_str(), "formulas" | "scenes" | "excludes" | "formats" | "effects" | "targets" | "sources");
         if is_list && !value.is_array() && !value.is_null() {
-            let example = if name == "sources" {
-                "[{\"id\": \"fog/exp\", \"file\": \"src/fog.glsl\", \"line\": 12}]"
-            } else {
-                "[\"fog/*\", \"lighting/blinn\"]"
-            };
+            let example = if name == "sources" { SOURCES } else { "[\"fog/*\", \"lighting/blinn\"]" };
             return Err(format!("said a hello in which `{name}` is no list; expected such as {example}"));
+        }
+        let unread = match name.as_str() {
+            "skips" => serde_json::from_value::<Vec<DeclaredSkip>>(value.clone()).err().map(|why| (why, SKIPS)),
+            "sources" => serde_json::from_value::<Vec<DeclaredSource>>(value.clone()).err().map(|why| (why, SOURCES)),
+            _ => None,
+        };
+        if let Some((why, example)) = unread {
+            return Err(format!("said a hello in which `{name}` cannot be read: {why}; expected such as {example}"));
         }
         let example = match name.as_str() {
             "version" => "1.2",
@@ -466,7 +475,7 @@ pub enum Unread {
     #[error("a line of more than {} bytes", MOST_BYTES)]
     TooLong,
     /// The stream failed.
-    #[error("{0}")]
+    #[error(transparent)]
     Io(#[from] std::io::Error),
 }
 
@@ -583,7 +592,15 @@ mod tests {
             (br#"{"renderer":"r","exclude":["fog"]}"#, "unknown field `exclude`; did you mean `excludes`?"),
             (br#"{"renderer":"r","xyzzy":1}"#, "unknown field `xyzzy`; expected one of renderer, version, device"),
             (br#"{"renderer":"r","sources":"a.c"}"#, "`sources` is no list; expected such as [{\"id\""),
-            (br#"{"renderer":"r","sources":[{"id":"fog"}]}"#, "missing field `file`"),
+            (
+                br#"{"renderer":"r","sources":[{"id":"fog"}]}"#,
+                "`sources` cannot be read: missing field `file`; expected such as",
+            ),
+            (
+                br#"{"renderer":"r","skips":[{"id":"fog"}]}"#,
+                "`skips` cannot be read: missing field `reason`; expected such as",
+            ),
+            (br#"{"renderer":5}"#, "said a hello that cannot be read: invalid type: integer `5`, expected a string"),
         ] {
             let error = read(line).expect_err(said);
             assert!(error.contains(said), "{error}");

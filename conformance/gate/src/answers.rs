@@ -35,6 +35,8 @@ use std::sync::Arc;
 
 /// The name of a folder's answers.
 pub const ANSWERS: &str = "answers.jsonl";
+/// What is expected in the place of a file that cannot be read.
+const EXPECTED: &str = "expected a file of JSON lines, or a folder with answers.jsonl";
 /// Components of a pixel.
 const COMPONENTS: usize = 4;
 /// Lines that are read at once.
@@ -64,14 +66,17 @@ impl AnswerFile {
         let path = if answers.is_dir() { answers.join(ANSWERS) } else { answers.to_owned() };
         let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
         let file = lightmeter_files::read::open(&path)
-            .map_err(|error| PackError::Read { path: path.clone(), message: error.to_string() })?;
+            .map_err(|error| PackError::Read { path: path.clone(), message: format!("{error}; {EXPECTED}") })?;
         let stream = BufReader::with_capacity(1 << 20, file);
         let mut opened = Self { path, stream, folder, number: 0, first: vec![], hello: None };
         if let Some(Ok(line)) = opened.next()? {
             match answer::read(&line) {
                 Ok(Line::Hello(hello)) => opened.hello = Some(*hello),
                 Err(message) if answer::is_hello(&line) => {
-                    return Err(PackError::Manifest { path: opened.path, message: format!("line 1: {message}") });
+                    return Err(PackError::Manifest {
+                        path: opened.path,
+                        message: format!("line 1: the renderer {message}"),
+                    });
                 }
                 _ => opened.first.push((opened.number, line)),
             }
@@ -310,10 +315,10 @@ enum Read {
 #[non_exhaustive]
 pub enum FilesError {
     /// A file cannot be read.
-    #[error("{0}")]
+    #[error(transparent)]
     File(#[from] PackError),
     /// What the first line declares cannot be read.
-    #[error("{0}")]
+    #[error(transparent)]
     Hello(#[from] ProcessError),
 }
 

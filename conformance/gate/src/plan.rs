@@ -42,7 +42,7 @@ pub struct GatePlan {
 #[non_exhaustive]
 pub enum PlanError {
     /// A glob cannot be read.
-    #[error("{0}")]
+    #[error(transparent)]
     Filter(#[from] FilterError),
     /// A target is unknown.
     #[error("no target `{0}`; expected {formats}", formats = TargetFormat::ALL.map(TargetFormat::name).join(", "))]

@@ -177,3 +177,40 @@ fn a_line_may_skip_a_whole_formula() {
     let (status, report) = judged(&pack, &saying(""), &[]);
     assert!(status == 1 && count(&report, "undeclared") == count(&report, "skipped"), "{report}");
 }
+
+#[test]
+fn an_error_is_told_once_and_says_what_would_be_right() {
+    let (pack, answers) = answered("told-once", &["fog/exp"]);
+    let folder = pack.with_file_name("told-once-answers");
+    std::fs::create_dir_all(folder.join("columns/fog/exp")).expect("a folder can be made");
+    std::fs::write(folder.join("columns/fog/exp/f.npy"), "no array").expect("it can be written");
+    std::fs::write(folder.join("answers.jsonl"), "").expect("it can be written");
+    let nowhere = pack.with_file_name("nowhere.jsonl");
+    let file = |name: &str, hello: &str| {
+        let path = pack.with_file_name(name);
+        std::fs::write(&path, hello.to_owned() + "\n").expect("it can be written");
+        path
+    };
+    for (given, said) in [
+        (file("glob.jsonl", r#"{"renderer": "r", "formulas": ["fog/["]}"#), "is not a glob"),
+        (file("target.jsonl", r#"{"renderer": "r", "targets": ["rgb"]}"#), "no target `rgb`; expected rgba32float"),
+        (file("number.jsonl", r#"{"renderer": 5}"#), "line 1: the renderer said a hello that cannot be read"),
+        (
+            file("skip.jsonl", r#"{"renderer": "r", "skips": [{"id": "fog"}]}"#),
+            "missing field `reason`; expected such as",
+        ),
+        (folder, "`color.npy` is missing; expected f.npy, color.npy"),
+        (nowhere, "expected a file of JSON lines, or a folder with answers.jsonl"),
+    ] {
+        let output = lightmeter(&["gate", text(&pack), text(&given)]);
+        let told = stderr(&output);
+        assert!(code(&output) == 2 && told.matches(said).count() == 1, "`{said}`: {told}");
+    }
+    for (args, said) in [
+        (&["merge", text(&answers)][..], "it is no result; expected the JSON that `run`, `gate` or `sweep` writes"),
+        (&["gate", text(&pack), text(&answers), "--expect", "/nowhere"], "/nowhere: it cannot be read: No such file"),
+    ] {
+        let output = lightmeter(args);
+        assert!(code(&output) == 2 && stderr(&output).contains(said), "{}", stderr(&output));
+    }
+}
