@@ -583,7 +583,16 @@ mod tests {
             (br#"{"id":"fog/exp","skip":"no fog","rows":[-1]}"#, "its `rows`"),
             (br#"[1]"#, "expected an answer"),
             (b"\xff", "UTF-8"),
-            (br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#, "expected `lightmeter.protocol/1`"),
+        ] {
+            let error = read(line).expect_err(said);
+            assert!(error.contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_hello_is_said() {
+        for (line, said) in [
+            (&br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#[..], "expected `lightmeter.protocol/1`"),
             (br#"{"renderer":"r","formulas":"fog"}"#, "`formulas` is no list"),
             (br#"{"renderer":"r","version":1.2}"#, "`version` is no string"),
             (br#"{"renderer":"r","driver":["Mesa"]}"#, "`driver` is no string; expected such as \"Mesa 22.3.6\""),
