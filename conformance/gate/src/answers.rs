@@ -247,12 +247,12 @@ impl FileRenderer {
     /// That files do not say which pack they answer, where some do not: random cases of another pack may have the same ids.
     fn warning(&self) -> Option<String> {
         let files: Vec<String> = self.of_any_pack.iter().map(|path| path.display().to_string()).collect();
-        let (verb, own) = (if files.len() == 1 { "does" } else { "do" }, self.plan.pack());
+        let (of, own) =
+            (if self.are_many { format!(" ({})", files.join(", ")) } else { String::new() }, self.plan.pack());
         (!files.is_empty()).then(|| {
             format!(
-                "{} {verb} not say which pack was answered; if it was another pack, cases of the same ids are judged by the wrong \
-                 inputs: have the first line say `\"pack\": \"{own}\"`, as this pack's manifest does",
-                files.join(", ")
+                "the answers do not say which pack they answer{of}; if it is another one, cases of the same ids are judged by the \
+                 wrong inputs: have the first line say `\"pack\": \"{own}\"`, as this pack's manifest does"
             )
         })
     }

@@ -149,7 +149,7 @@ fn answers_that_do_not_say_which_pack_they_answer_are_warned_of() {
     };
     let warnings = warned(&answers);
     let said = warnings[0].as_str().unwrap_or_default();
-    assert!(warnings.len() == 1 && said.contains("does not say which pack") && said.contains(own), "{warnings:?}");
+    assert!(warnings.len() == 1 && said.contains("do not say which pack") && said.contains(own), "{warnings:?}");
     let hello = format!("{{\"renderer\": \"r\", \"formulas\": [\"fog\"], \"pack\": \"{own}\"}}\n");
     let file = edit(&answers, |k, line| if k == 0 { hello.clone() } else { String::new() } + line + "\n");
     assert_eq!(warned(&file), [serde_json::Value::Null; 0]);
