@@ -17,6 +17,7 @@ const MOST_FAILURES: usize = 1000;
 
 /// A gate's result. What a baseline is compared by is required of a file; the rest may be missing.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct GateReport {
     /// `lightmeter.gate/1`.
     #[schemars(extend("const" = SCHEMA))]
@@ -101,6 +102,7 @@ pub struct GateReport {
 
 /// Counts of cases, but for the verdicts, which are of scalars.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct GateTotals {
     /// Asked for.
     pub asked: u64,
@@ -134,6 +136,7 @@ pub struct GateTotals {
 
 /// A formula or a scene.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct GateGroup {
     /// Its id.
     pub id: String,
@@ -530,6 +533,7 @@ fn failures(report: &Report) -> Vec<GateFailure> {
 
 /// A case that failed.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct GateFailure {
     /// The case.
     pub id: String,

@@ -470,6 +470,7 @@ fn clipped_to(words: &str, most: usize) -> String {
 
 /// Why a line cannot be had.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Unread {
     /// It is longer than any answer is.
     #[error("a line of more than {} bytes", MOST_BYTES)]

@@ -72,6 +72,7 @@ pub struct PlannedFormula {
 
 /// A case of the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum CasePlace {
     /// The formula's place among the plan's, and the case's among its own.
     Case {
