@@ -68,6 +68,35 @@ fn a_result_is_a_page_at_once_and_later() {
 }
 
 #[test]
+fn the_page_of_a_sweep_has_the_command_that_made_it() {
+    let asked = ["sweep", "fog/exp", "--adapter", "cpu", "--from", "-8.01", "--to", "-8", "--set", "density=0.0625"];
+    let page = stdout(&lightmeter(&[&asked[..], &["--profile", "vulkan", "--format", "html"]].concat()));
+    let command = "lightmeter sweep fog/exp --adapter cpu --from -8.01 --to -8 --set density=0.0625 --profile vulkan";
+    assert!(page.contains(command), "{page}");
+    // What the ready-made sweep shows is said of its own inputs alone.
+    let preset = PRESETS.iter().find(|preset| preset.formula == "fog/exp").expect("there is one");
+    assert!(!page.contains(preset.what), "{page}");
+}
+
+#[test]
+fn a_gate_that_judges_too_little_fails_in_its_page() {
+    let exec = gate::process::command_of("formulas=fog/exp");
+    let page = stdout(&lightmeter(&[
+        "gate",
+        "fog/*",
+        "--exec",
+        &exec,
+        "--cases",
+        "16",
+        "--require",
+        "0.9",
+        "--format",
+        "html",
+    ]));
+    assert!(page.contains("✗ fails") && page.contains("part of 0.9"), "{page}");
+}
+
+#[test]
 fn a_matrix_has_a_column_for_each_subject() {
     let [a, b] = ["a", "b"].map(|name| path(&format!("matrix-{name}.json")));
     let run = ["run", "fog/*", "--adapter", "cpu", "--cases", "16", "--format", "json", "--out"];

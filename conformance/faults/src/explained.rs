@@ -7,7 +7,9 @@ use lightmeter_arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter_catalogue::cases::{Domain, Kind};
 use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
 use lightmeter_document::Number;
-use lightmeter_document::explained::{CoursePoint, Explained, MistakenStep, OutputCourse, ShownMistake, ShownStep};
+use lightmeter_document::explained::{
+    CoursePoint, Explained, HeldNumber, MistakenStep, OutputCourse, ShownMistake, ShownStep,
+};
 use lightmeter_document::run::{Failure, Group, Report};
 use std::collections::HashSet;
 
@@ -108,11 +110,6 @@ fn explained_case(
     let spec = &member.spec;
     let mut outputs = vec![Trace { value: 0.0, interval: Accept::ANY }; spec.output_len()];
     let ((), steps) = trace::record(|| member.formula.trace(inputs, profile, &mut outputs));
-    let step = |step: trace::TraceStep| ShownStep {
-        name: step.name.into(),
-        value: Number(step.result.value),
-        interval: bounds(&step.result.interval),
-    };
     let faults: Vec<&'static Fault> = mistakes.iter().filter_map(|name| Fault::by_name(name)).collect();
     let variation = if faults.is_empty() { None } else { Variation::new(member, &faults) };
     let place = (0..spec.output_len()).find(|&k| spec.output_name(k) == output).unwrap_or_default();
@@ -121,10 +118,27 @@ fn explained_case(
         formula: spec.text.into(),
         rules: spec.rules().into_iter().map(|rule| rule.to_string().into()).collect(),
         source: spec.source.into(),
-        steps: steps.into_iter().map(step).collect(),
+        steps: steps.iter().map(shown_step).collect(),
         mistake: variation.as_ref().map(|variation| shown_mistake(variation, member, inputs, profile)),
         course: best_course(member, inputs, place, variation.as_ref(), profile),
     }
+}
+
+/// A step with the component that it is of a vector, `x`, or of a colour, `r`.
+#[must_use]
+pub fn shown_step(step: &trace::TraceStep) -> ShownStep {
+    let letters = if is_colour(step.name) { ["r", "g", "b", "a"] } else { ["x", "y", "z", "w"] };
+    ShownStep {
+        name: step.name.into(),
+        component: step.component.and_then(|place| letters.get(place)).map(|&letter| letter.into()),
+        value: Number(step.result.value),
+        interval: bounds(&step.result.interval),
+    }
+}
+
+/// Whether a step of several numbers is a colour: the terms of lighting and blending, and what is made of a colour.
+fn is_colour(name: &str) -> bool {
+    name.starts_with('C') || name.contains("color") || ["I", "S", "D", "mix", "encoded", "decoded"].contains(&name)
 }
 
 fn bounds(interval: &Accept) -> [Number; 2] {
@@ -140,6 +154,7 @@ pub fn shown_mistake(variation: &Variation<'_>, member: &Member, inputs: &[f32],
     variation.interval(inputs, profile, &mut legal);
     let output = |k: usize| ShownStep {
         name: member.spec.output_name(k).into(),
+        component: None,
         value: Number(value[k]),
         interval: bounds(&legal[k]),
     };
@@ -266,9 +281,22 @@ fn course(
         unit: (!unit.is_empty()).then(|| unit.into()),
         output: spec.output_name(output),
         at: Number(at.into()),
+        held: held(member, inputs, input),
         is_logarithmic,
         points: xs.into_iter().map(&mut point).collect(),
     })
+}
+
+/// All numbers of the inputs but the one that changes.
+fn held(member: &Member, inputs: &[f32], free: usize) -> Vec<HeldNumber> {
+    let spec = &member.spec;
+    let units = spec.inputs.iter().flat_map(|input| vec![input.unit; input.shape.components()]);
+    let number = |(place, (unit, &value)): (usize, (&'static str, &f32))| HeldNumber {
+        name: spec.input_name(place),
+        value: Number(value.into()),
+        unit: (!unit.is_empty()).then(|| unit.into()),
+    };
+    units.zip(inputs).enumerate().filter(|(place, _)| *place != free).map(number).collect()
 }
 
 /// From where to where a number of the inputs goes, whether by its logarithm, and its unit.
