@@ -16,7 +16,7 @@ mod scene;
 mod verdict;
 
 pub use equation::equation;
-pub use markdown::markdown;
+pub use markdown::{markdown, own_markdown};
 pub use page::{PageKind, embedded, page, prose};
 pub use plot::course as course_plot;
 
