@@ -223,12 +223,38 @@ fn clarity(course: &OutputCourse) -> f64 {
     };
     let finite = || points().map(|point| point.reference.0).filter(|x| x.is_finite());
     let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-    // A colour goes straight up with most of the colours that it is made of, which tells little.
-    let weight = if course.unit.as_deref() == Some("color") { 0.25 } else { 1.0 };
+    // A colour goes straight up with most of the colours that it is made of, and so does anything with what it is a multiple of: that tells
+    // little. So does a pole, beside which all else is level.
+    let is_plain = course.unit.as_deref() == Some("color") || is_straight(course);
+    let weight = if is_plain { 0.25 } else { 1.0 } * evenness(course);
     let variation = if most > least { weight * ((most - least) / most.abs().max(least.abs())).min(1.0) } else { 0.0 };
     #[expect(clippy::cast_precision_loss, reason = "a hundred points")]
     let telling = points().filter(tells).count() as f64 / f64::from(POINTS);
     if variation > 0.0 || telling > 0.0 { telling + variation } else { 0.0 }
+}
+
+/// Whether an output goes along a straight line, as far as is seen.
+fn is_straight(course: &OutputCourse) -> bool {
+    const SEEN: f64 = 0.01;
+    let (Some(first), Some(last)) = (course.points.first(), course.points.last()) else { return true };
+    let [from, to] = [first, last].map(|point| point.x.0);
+    let share =
+        |x: f64| if course.is_logarithmic { (x / from).ln() / (to / from).ln() } else { (x - from) / (to - from) };
+    let [a, b] = [first, last].map(|point| point.reference.0);
+    let off = |point: &CoursePoint| (point.reference.0 - (a + (b - a) * share(point.x.0))).abs();
+    course.points.iter().all(|point| off(point) <= SEEN * (b - a).abs())
+}
+
+/// The share of the span of an output's values that nine tenths of them fill.
+fn evenness(course: &OutputCourse) -> f64 {
+    let mut values: Vec<f64> = course.points.iter().map(|point| point.reference.0).filter(|x| x.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    let (Some(least), Some(most)) = (values.first(), values.last()) else { return 0.0 };
+    let outer = values.len() / 20;
+    let inner = values[values.len() - 1 - outer] - values[outer];
+    // A course that is level but for a narrow peak is still one.
+    const LEAST: f64 = 0.1;
+    if most > least { (inner / (most - least)).max(LEAST) } else { 1.0 }
 }
 
 /// An output along a number of the inputs; `None` where that is drawn from no range.

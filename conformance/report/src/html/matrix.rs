@@ -120,16 +120,20 @@ fn share(margin: Number) -> String {
     if margin.0 == 0.0 { "0".into() } else { short(margin.0) }
 }
 
-/// A number in three digits.
+/// A number in about three digits, with a minus sign where it is negative.
 pub(super) fn short(x: f64) -> String {
-    match x.abs() {
+    let written = match x.abs() {
         _ if !x.is_finite() => Number(x).to_string(),
         0.0 => "0".into(),
         small if small < 0.001 => format!("{x:.1e}"),
         small if small < 10.0 => format!("{x:.2}"),
+        middle if middle < 100.0 => format!("{x:.1}"),
         middle if middle < 1e5 => format!("{x:.0}"),
         _ => format!("{x:.2e}"),
-    }
+    };
+    let is_decimal = written.contains('.') && !written.contains('e');
+    let written = if is_decimal { written.trim_end_matches('0').trim_end_matches('.') } else { &written };
+    written.replace('-', "−")
 }
 
 /// The filters, whose state the page keeps in its address.
