@@ -138,7 +138,7 @@ fn formula(explained: &Explained) -> Markup {
     html! {
         p.formula { (explained.formula) }
         @if !explained.rules.is_empty() { ul.rules { @for rule in &explained.rules { li { (prose(rule)) } } } }
-        p.quiet { "source: " (explained.source) }
+        p.quiet { "Source: " (prose(&explained.source)) }
     }
 }
 
