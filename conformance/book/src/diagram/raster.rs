@@ -138,7 +138,7 @@ fn flat(topology: Topology, provoking: Provoking) -> Markup {
     let at = |k: usize| {
         #[expect(clippy::cast_precision_loss, reason = "six vertices")]
         let x = 60.0 + 55.0 * k as f64;
-        [x, if k % 2 == 0 { 125.0 } else { 45.0 }]
+        [x, if k.is_multiple_of(2) { 125.0 } else { 45.0 }]
     };
     const VERTICES: usize = 6;
     let corners = topology.corners() as usize;
