@@ -93,7 +93,7 @@ impl FormulaPage<'_> {
             div.wide tabindex="0" role="group" aria-label="inputs and outputs" { table {
                 thead { tr { th scope="col" { "value" } th scope="col" { "shape" } th scope="col" { "unit" } th scope="col" { "meaning" } th scope="col" { "random cases draw" } } }
                 tbody {
-                    @for input in spec.inputs { tr { th scope="row" { code { (input.name) } } td { (input.shape.name()) } td { (unit(input.unit)) } td { (prose(spec.input_means(input))) } td { (input.domain) } } }
+                    @for input in spec.inputs { tr { th scope="row" { code { (input.name) } } td { (input.shape.name()) } td { (unit(input.unit)) } td { (prose(spec.input_means(input))) } td { (with_minus(&input.domain.to_string())) } } }
                     @for output in spec.outputs { tr { th scope="row" { "→ " code { (output.name) } } td { (output.shape.name()) } td { (unit(output.unit)) } td { (prose(spec.output_means(output))) } td {} } }
                 }
             } }
@@ -462,6 +462,19 @@ fn number(x: f64) -> String {
     }
 }
 
+/// A text whose negative numbers have a minus sign.
+fn with_minus(text: &str) -> String {
+    let mut written = String::new();
+    let mut chars = text.chars().peekable();
+    let mut before = ' ';
+    while let Some(c) = chars.next() {
+        let is_minus = c == '-' && !before.is_alphanumeric() && chars.peek().is_some_and(char::is_ascii_digit);
+        written.push(if is_minus { '−' } else { c });
+        before = c;
+    }
+    written
+}
+
 /// An error in ULP, in a few digits.
 fn ulp(x: f64) -> String {
     if x.is_infinite() || x.is_nan() { number(x) } else { short((x * 100.0).round() / 100.0) }
@@ -628,6 +641,12 @@ mod tests {
             };
             is_pair && is_fenced(inner)
         })
+    }
+
+    #[test]
+    fn negative_numbers_have_a_minus_sign_and_words_their_hyphens() {
+        let written = ["-2 to 2", "(-1, -0.5)", "half-way to -1", "1e-4"].map(with_minus);
+        assert_eq!(written, ["−2 to 2", "(−1, −0.5)", "half-way to −1", "1e-4"]);
     }
 
     #[test]

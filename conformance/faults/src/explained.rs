@@ -225,8 +225,8 @@ fn clarity(course: &OutputCourse) -> f64 {
     let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
     // A colour goes straight up with most of the colours that it is made of, and so does anything with what it is a multiple of: that tells
     // little. So does a pole, beside which all else is level.
-    let is_plain = course.unit.as_deref() == Some("color") || is_straight(course);
-    let weight = if is_plain { 0.25 } else { 1.0 } * evenness(course);
+    let plain = |is_plain: bool| if is_plain { 0.25 } else { 1.0 };
+    let weight = plain(course.unit.as_deref() == Some("color")) * plain(is_straight(course)) * evenness(course);
     let variation = if most > least { weight * ((most - least) / most.abs().max(least.abs())).min(1.0) } else { 0.0 };
     #[expect(clippy::cast_precision_loss, reason = "a hundred points")]
     let telling = points().filter(tells).count() as f64 / f64::from(POINTS);

@@ -156,7 +156,8 @@ fn flat(topology: Topology, provoking: Provoking) -> Markup {
             @let own: Vec<[f64; 2]> = (first..first + corners).map(at).collect();
             @let middle = [0, 1].map(|axis| own.iter().map(|corner| corner[axis]).sum::<f64>() / f64::from(topology.corners()));
             @let from = match provoking { Provoking::First => first, Provoking::Last => first + corners - 1 };
-            text x=(fixed(middle[0])) y=(fixed(middle[1] + 4.0)) text-anchor="middle" { (m) ": a" (from) }
+            @let beside = if corners == 2 { 24.0 } else { 0.0 };
+            text x=(fixed(middle[0] + beside)) y=(fixed(middle[1] + 4.0)) text-anchor="middle" { (m) ": a" (from) }
         }
     };
     let says = match (corners, provoking) {

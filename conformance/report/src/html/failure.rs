@@ -177,7 +177,7 @@ fn verdict(failure: &Failure) -> Markup {
                     @let is_out = value.is_none_or(|value| !(interval[0].0 <= value.0 && value.0 <= interval[1].0));
                     tr class=[is_out.then_some("fail")] {
                         th scope="row" { (name) }
-                        td.number { @if let Some(value) = value { (value) } @else { "—" } }
+                        td.number { @if let Some(value) = value { (value.narrow()) } @else { "—" } }
                         td.number { (legal(interval)) }
                         td.number { @if let Some(reference) = answer.reference.get(k) { (reference) } }
                     }
@@ -188,7 +188,7 @@ fn verdict(failure: &Failure) -> Markup {
     }
     html! {
         p {
-            code { (failure.output) } " is " b.fail { (failure.value) } @if failure.unwritten { " (it was never written)" }
+            code { (failure.output) } " is " b.fail { (failure.value.narrow()) } @if failure.unwritten { " (it was never written)" }
             "; " @match &failure.promise { Some(promise) => { "legal is " (promise) } None => { (legal_are(failure.interval)) ", the reference is " (failure.reference) } }
             @if failure.error_ulp.0.is_finite() { ", from which it is " (short(failure.error_ulp.0)) " ULP" }
             "."

@@ -150,7 +150,7 @@ pub fn course(course: &OutputCourse, value: Option<f64>) -> Markup {
                 @if let Some(value) = value.filter(|value| value.is_finite()) { circle.value cx=(x(course.at.0)) cy=(axis.y(value)) r="4" {} }
                 text.name x=(LEFT) y=(AROUND - 4.0) { (course.output) }
                 @if let Some((axis, band, path, dot)) = &errors {
-                    (ticks(axis, &[axis.values[0], 0.0, axis.values[1]], unfolded))
+                    (ticks(axis, &margin_ticks(axis), unfolded))
                     (frame(axis.top))
                     path.band d=(band) {}
                     path.mistaken d=(path) {}
@@ -168,7 +168,7 @@ pub fn course(course: &OutputCourse, value: Option<f64>) -> Markup {
                 @if has_band || errors.is_some() { span.key-band {} " legal  " }
                 @if has_mistake { span.key-mistaken {} " with the mistake  " }
                 @if value.is_some() { span.key-value {} " the answer  " }
-                @if !has_band { span.quiet { "What is legal is narrower than the line." } }
+                @if !has_band { div.quiet { "What is legal is narrower than the line." } }
             }
             (held(course))
         }
@@ -237,10 +237,21 @@ fn errors_of(course: &OutputCourse, value: Option<f64>) -> Option<(Axis, String,
     Some((axis, band, path, dot))
 }
 
-/// A folded margin as it is written.
+/// The margins that are written beside an axis: 0, and to each side the end of what is legal, or the whole power of ten that is next to the end of
+/// the axis.
+fn margin_ticks(axis: &Axis) -> [f64; 3] {
+    let end = |folded: f64| if folded.abs() < 2.0 { 1.0_f64.copysign(folded) } else { folded.trunc() };
+    [end(axis.values[0]), 0.0, end(axis.values[1])]
+}
+
+/// A folded margin as it is written. The greatest stands for all beyond it.
 fn unfolded(folded: f64) -> String {
     let size = folded.abs();
-    let written = if size <= 1.0 { short(size) } else { format!("10^{:.0}", size - 1.0) };
+    let written = match size - 1.0 {
+        power if power <= 0.0 => short(size),
+        power if power >= MOST_POWER => format!("≥ 10^{MOST_POWER}"),
+        power => format!("10^{power:.0}"),
+    };
     if folded < 0.0 && size > 0.0 { format!("−{written}") } else { written }
 }
 
@@ -307,5 +318,58 @@ pub(super) fn errors(document: &SweepDocument) -> Markup {
             }
             figcaption { (sweep.formula) ": errors of " (sweep.output) " along " (sweep.over) "; parts in which a value is not legal are red. " @if has_margins { span.key-band {} " legal" } }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_document::Number;
+    use lightmeter_document::explained::HeldNumber;
+
+    fn point(x: f64, reference: f64, reach: f64) -> CoursePoint {
+        let interval = [Number(reference - reach), Number(reference + reach)];
+        CoursePoint { x: Number(x), reference: Number(reference), interval, mistaken: None }
+    }
+
+    fn plotted(reach: f64) -> OutputCourse {
+        let held =
+            |name: &str, value| HeldNumber { name: name.into(), value: Number(value), unit: Some("unit".into()) };
+        OutputCourse {
+            input: "density".into(),
+            unit: None,
+            output: "f".into(),
+            at: Number(0.5),
+            held: vec![held("p.x", -1.0), held("p.y", 0.25), held("fog", 3.0)],
+            is_logarithmic: false,
+            points: (0..5).map(|k| point(f64::from(k), f64::from(k) / 4.0, reach)).collect(),
+        }
+    }
+
+    #[test]
+    fn a_plot_tells_the_inputs_that_it_holds_and_what_is_legal_where_that_is_seen() {
+        let html = course(&plotted(0.1), None).0;
+        assert!(html.contains("p = (−1, 0.25) unit; fog = 3 unit"), "{html}");
+        assert!(html.contains("legal  ") && !html.contains("narrower"), "{html}");
+        let narrow = course(&plotted(1e-9), None).0;
+        assert!(narrow.contains("narrower than the line") && !narrow.contains("legal  "), "{narrow}");
+    }
+
+    #[test]
+    fn an_axis_has_room_for_what_is_legal_and_is_marked_at_its_values() {
+        let axis = Axis::with_band(&plotted(0.1), None).expect("it has values");
+        assert!(axis.least <= -0.1 && axis.most >= 1.1, "{} to {}", axis.least, axis.most);
+        let wide = Axis::with_band(&plotted(100.0), None).expect("it has values");
+        assert_eq!(wide.values.map(short), ["0", "1"]);
+        assert_eq!(wide.ticks().into_iter().map(short).collect::<Vec<_>>(), ["0", "0.5", "1"]);
+    }
+
+    #[test]
+    fn errors_over_tolerance_are_written_as_they_are() {
+        let axis = |values| Axis { values, least: values[0], most: values[1], top: 0.0 };
+        let written = |values| margin_ticks(&axis(values)).map(unfolded);
+        assert_eq!(written([-1.5, 1.5]), ["−1", "0", "1"]);
+        assert_eq!(written([-1.5, 4.6]), ["−1", "0", "10^3"]);
+        assert_eq!(written([-3.0, 1.0 + MOST_POWER]), ["−10^2", "0", "≥ 10^8"]);
     }
 }
