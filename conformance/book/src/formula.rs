@@ -14,9 +14,10 @@ use lightmeter_catalogue::dialects::{DIALECTS, DialectForm, Dialects};
 use lightmeter_catalogue::rulings::RULINGS;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::mistakes::MistakeLook;
+use lightmeter_document::thousands;
 use lightmeter_faults::{Fault, Variation, concerning, look, typical_course};
 use lightmeter_gpu::Shaders;
-use lightmeter_report::html::{course_plot, equation, prose};
+use lightmeter_report::html::{course_plot, equation, prose, written};
 use maud::{Markup, html};
 use std::collections::HashSet;
 
@@ -93,7 +94,7 @@ impl FormulaPage<'_> {
             div.wide tabindex="0" role="group" aria-label="inputs and outputs" { table {
                 thead { tr { th scope="col" { "value" } th scope="col" { "shape" } th scope="col" { "unit" } th scope="col" { "meaning" } th scope="col" { "random cases draw" } } }
                 tbody {
-                    @for input in spec.inputs { tr { th scope="row" { code { (input.name) } } td { (input.shape.name()) } td { (unit(input.unit)) } td { (prose(spec.input_means(input))) } td { (with_minus(&input.domain.to_string())) } } }
+                    @for input in spec.inputs { tr { th scope="row" { code { (input.name) } } td { (input.shape.name()) } td { (unit(input.unit)) } td { (prose(spec.input_means(input))) } td { (written(&input.domain.to_string())) } } }
                     @for output in spec.outputs { tr { th scope="row" { "→ " code { (output.name) } } td { (output.shape.name()) } td { (unit(output.unit)) } td { (prose(spec.output_means(output))) } td {} } }
                 }
             } }
@@ -140,7 +141,7 @@ impl FormulaPage<'_> {
             @if !found.is_empty() {
                 h2 #accuracy { "How accurate it is in 32 bits" }
                 p {
-                    "Computed in binary32 as it is written, each operation rounded once, at " (CASES) " random cases"
+                    "Computed in binary32 as it is written, each operation rounded once, at " (thousands(CASES)) " random cases"
                     @if !self.member.spec.hard.is_empty() { " and at the hard cases with what lies near them" }
                     ". Errors are in ULP of binary32. “Legal” is how far WGSL's rules permit a result to be from the exact one."
                 }
@@ -174,7 +175,7 @@ impl FormulaPage<'_> {
             @if spec.stable.is_some() || !better.is_empty() {
                 h2 #stable { "The stable form" }
                 @if let Some(stable) = spec.stable {
-                    p { "This is a stable form. At its hard cases and near them it errs by at most " (stable.bound) " roundings: " (stable.because) "." }
+                    p { "This is a stable form. At its hard cases and near them it errs by at most " (written(&stable.bound.to_string())) " roundings: " (stable.because) "." }
                 }
                 @if !better.is_empty() {
                     p { "This form fails where another one does not:" }
@@ -210,7 +211,7 @@ impl FormulaPage<'_> {
             }
             @if !boundaries.is_empty() {
                 h2 #boundaries { "Close to where it decides" }
-                p { (DRAWN) " cases each come close to a place where the formula decides something or degenerates: at distances from ½ to 2⁻²⁴, at a distance of 0, and together with another of these: " }
+                p { (thousands(DRAWN)) " cases each come close to a place where the formula decides something or degenerates: at distances from ½ to 2⁻²⁴, at a distance of 0, and together with another of these: " }
                 p { @for (k, name) in boundaries.iter().enumerate() { @if k > 0 { " · " } (name) } }
             }
         }
@@ -462,19 +463,6 @@ fn number(x: f64) -> String {
     }
 }
 
-/// A text whose negative numbers have a minus sign.
-fn with_minus(text: &str) -> String {
-    let mut written = String::new();
-    let mut chars = text.chars().peekable();
-    let mut before = ' ';
-    while let Some(c) = chars.next() {
-        let is_minus = c == '-' && !before.is_alphanumeric() && chars.peek().is_some_and(char::is_ascii_digit);
-        written.push(if is_minus { '−' } else { c });
-        before = c;
-    }
-    written
-}
-
 /// An error in ULP, in a few digits.
 fn ulp(x: f64) -> String {
     if x.is_infinite() || x.is_nan() { number(x) } else { short((x * 100.0).round() / 100.0) }
@@ -494,7 +482,7 @@ pub(crate) fn sentence(words: &str) -> String {
 fn looks(look: &MistakeLook) -> String {
     let outputs: Vec<&str> = look.outputs.iter().map(|name| &**name).collect();
     if look.failing == 0 {
-        return format!("None of {} cases goes wrong: it takes inputs that are drawn for it.", look.cases);
+        return written(&format!("None of {} cases goes wrong: it takes inputs that are drawn for it.", look.cases));
     }
     let side = match (look.too_great, look.too_small) {
         (0, 0) => String::new(),
@@ -504,7 +492,9 @@ fn looks(look: &MistakeLook) -> String {
         (great, small) if small > 4 * great => ", mostly too small".into(),
         _ => ", too great or too small".into(),
     };
-    format!("{} of {} cases go wrong, in {}{side}.", look.failing, look.cases, outputs.join(", "))
+    let go = if look.failing == 1 { "goes" } else { "go" };
+    let counts = written(&format!("{} of {}", look.failing, look.cases));
+    format!("{counts} cases {go} wrong, in {}{side}.", outputs.join(", "))
 }
 
 #[cfg(test)]
@@ -641,12 +631,6 @@ mod tests {
             };
             is_pair && is_fenced(inner)
         })
-    }
-
-    #[test]
-    fn negative_numbers_have_a_minus_sign_and_words_their_hyphens() {
-        let written = ["-2 to 2", "(-1, -0.5)", "half-way to -1", "1e-4"].map(with_minus);
-        assert_eq!(written, ["−2 to 2", "(−1, −0.5)", "half-way to −1", "1e-4"]);
     }
 
     #[test]

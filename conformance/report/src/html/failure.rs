@@ -2,6 +2,7 @@
 
 use super::card::{Card, failing_share, judged};
 use super::matrix::{card_id, is_failing, short, unanswered};
+use super::number::written;
 use super::page::prose;
 use super::plot;
 use crate::text::{made_at, plain};
@@ -120,7 +121,7 @@ fn card(report: &Report, groups: &[&Group], is_open: bool) -> Markup {
             @for (place, own) in groups.iter().enumerate() {
                 @for what in own.explanation.iter().chain(&own.problem) {
                     @if place == 0 || !groups[..place].iter().any(|other| other.explanation.as_ref() == Some(what) || other.problem.as_ref() == Some(what)) {
-                        p.cause { (what) }
+                        p.cause { (written(what)) }
                     }
                 }
                 @if let Some(why) = why_unanswered(own) { p.cause { (why) } }

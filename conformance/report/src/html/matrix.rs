@@ -1,6 +1,7 @@
 //! Formulas by subjects: a cell says whether it passes, and how near its values come to the edge of what is legal.
 
 use super::card::judged;
+use super::number::written as as_written;
 use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::gate::cases;
 use lightmeter_document::run::{Group, Report};
@@ -133,7 +134,7 @@ pub(super) fn short(x: f64) -> String {
     };
     let is_decimal = written.contains('.') && !written.contains('e');
     let written = if is_decimal { written.trim_end_matches('0').trim_end_matches('.') } else { &written };
-    written.replace('-', "−")
+    as_written(written)
 }
 
 /// The filters, whose state the page keeps in its address.

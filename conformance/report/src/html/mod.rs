@@ -9,6 +9,7 @@ mod equation;
 mod failure;
 mod markdown;
 mod matrix;
+mod number;
 mod overview;
 mod page;
 mod plot;
@@ -17,6 +18,7 @@ mod verdict;
 
 pub use equation::equation;
 pub use markdown::{markdown, own_markdown};
+pub use number::written;
 pub use page::{PageKind, embedded, page, prose};
 pub use plot::course as course_plot;
 
@@ -98,7 +100,7 @@ fn list(cards: &[Card]) -> Markup {
                 th scope="row" { a href={ "#" (card.anchor) } { (card.name) } }
                 td { (card.place) }
                 td { (percent(card.share)) }
-                td { @match &card.cause { Some(cause) => (cause), None => span.quiet { "no known mistake explains it" } } }
+                td { @match &card.cause { Some(cause) => (written(cause)), None => span.quiet { "no known mistake explains it" } } }
             } } }
         } }
     }
