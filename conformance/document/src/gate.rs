@@ -52,6 +52,9 @@ pub struct GateReport {
     /// How long it took.
     #[serde(default)]
     pub seconds: f64,
+    /// The part of the chosen cases that had to be judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub required: Option<Number>,
     /// Counts over all groups.
     pub totals: GateTotals,
     /// Lines that cannot be read as answers, or answer what nobody asked.
@@ -320,6 +323,7 @@ impl GateReport {
             declares: renderer.declares,
             warnings: renderer.warnings,
             seconds: report.seconds,
+            required: report.required,
             totals,
             problems: renderer.problems,
             incidents: renderer.incidents,
@@ -416,6 +420,7 @@ impl From<GateReport> for Report {
             groups: gate.groups.into_iter().map(|group| group.of_run(name)).collect(),
             failures: gate.failures.into_iter().map(|failure| failure.of_run(name, gate.again.as_deref())).collect(),
             seconds: gate.seconds,
+            required: gate.required,
             renderer: Some(renderer),
             unstable: gate.totals.unstable,
             unstable_cases: gate.unstable,

@@ -308,13 +308,57 @@ fn add_renderer(known: &mut RendererUse, more: RendererUse) {
     }
 }
 
+/// What explains failures, with its counts.
+struct CountedExplanation<'a> {
+    /// Failing cases that it explains, those that were looked at, and all.
+    counts: [u64; 3],
+    /// What explains them.
+    by: &'a str,
+}
+
+impl<'a> CountedExplanation<'a> {
+    /// `2 of 3 failing cases are explained by: …`, behind `of 9 failing cases 3 were looked at: ` where not all were.
+    fn read(said: &'a str) -> Option<Self> {
+        let number = |text: &str| text.replace(',', "").parse::<u64>().ok();
+        let (all, said) = match said.strip_prefix("of ") {
+            Some(rest) => {
+                let (all, rest) = rest.split_once(" failing cases ")?;
+                let (_, rest) = rest.split_once(" looked at: ")?;
+                (Some(number(all)?), rest)
+            }
+            None => (None, said),
+        };
+        let (explained, rest) = said.split_once(" of ")?;
+        let (there, rest) = rest.split_once(" failing case")?;
+        let by = rest.strip_prefix("s are explained by: ").or_else(|| rest.strip_prefix(" is explained by: "))?;
+        let there = number(there)?;
+        Some(Self { counts: [number(explained)?, there, all.unwrap_or(there)], by })
+    }
+}
+
+/// What explains the failures of two parts, which is the same in both, with the counts of both; `None` where it is not the same.
+fn joined_explanation(own: &str, more: &str) -> Option<String> {
+    let [own, more] = [CountedExplanation::read(own)?, CountedExplanation::read(more)?];
+    if own.by != more.by {
+        return None;
+    }
+    let [explained, there, all] = [0, 1, 2].map(|k| own.counts[k] + more.counts[k]);
+    let told = format!("{explained} of {there} failing cases are explained by: {}", own.by);
+    Some(if there < all { format!("of {all} failing cases {there} were looked at: {told}") } else { told })
+}
+
 fn add_group(known: &mut Group, more: Group, order: &Order, most: &mut u64) {
     let fails_more = more.totals.failed > *most;
     *most = more.totals.failed.max(*most);
-    if more.explanation.is_some() && (known.explanation.is_none() || fails_more) {
-        known.explanation = more.explanation;
-        known.cause = more.cause;
-        known.mistakes = more.mistakes;
+    if let Some(said) = more.explanation {
+        let joined = known.explanation.as_deref().and_then(|own| joined_explanation(own, &said));
+        if joined.is_some() {
+            known.explanation = joined;
+        } else if known.explanation.is_none() || fails_more {
+            known.explanation = Some(said);
+            known.cause = more.cause;
+            known.mistakes = more.mistakes;
+        }
     }
     if more.problem.is_some() && (known.problem.is_none() || fails_more) {
         known.problem = more.problem;
@@ -448,4 +492,29 @@ fn simplicity(failure: &Failure) -> u32 {
         inputs = answer.inputs.iter().map(|number| number.0 as f32).collect();
     }
     telling(&inputs, !failure.id.contains("/hard/"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::joined_explanation;
+
+    #[test]
+    fn an_explanation_of_all_shards_counts_the_cases_of_all() {
+        let by = "explained by: fog is a power of 2 where it is to be one of e (fog-base-two)";
+        let said = |counts: &str| format!("{counts} {by}");
+        for (own, more, expected) in [
+            ("626 of 626 failing cases are", "600 of 626 failing cases are", "1226 of 1252 failing cases are"),
+            ("1 of 1 failing case is", "1 of 1 failing case is", "2 of 2 failing cases are"),
+            (
+                "of 3114 failing cases 2048 were looked at: 2048 of 2048 failing cases are",
+                "10 of 10 failing cases are",
+                "of 3124 failing cases 2058 were looked at: 2058 of 2058 failing cases are",
+            ),
+        ] {
+            assert_eq!(joined_explanation(&said(own), &said(more)), Some(said(expected)), "{own}, {more}");
+        }
+        let other = "1 of 1 failing case is explained by: fog uses radial distance (fog-radial)";
+        assert_eq!(joined_explanation(&said("1 of 1 failing case is"), other), None);
+        assert_eq!(joined_explanation("its red is too great", "its red is too great"), None);
+    }
 }

@@ -193,7 +193,7 @@ pub fn told(group: &GateGroup, failures: &[GateFailure], style: &GateStyle, out:
         1 => (1, "fails"),
         failed => (failed, "fail"),
     };
-    writeln!(out, "\n✗ {}: {count} of {} {what}", group.name(), cases(group.asked))?;
+    writeln!(out, "\n✗ {}: {} of {} {what}", group.name(), thousands(count), cases(group.asked))?;
     if let Some(source) = &group.source {
         writeln!(out, "  source {source}")?;
     }
@@ -207,7 +207,7 @@ pub fn told(group: &GateGroup, failures: &[GateFailure], style: &GateStyle, out:
         writeln!(out, "  declare such cases by `skips` in the hello, or by [[skipped]] in a file of expectations")?;
     }
     if group.broken > 0 {
-        writeln!(out, "  at {} of them it ended or hung", group.broken)?;
+        writeln!(out, "  at {} of them it ended or hung", thousands(group.broken))?;
     }
     for what in group.diagnosis.iter().chain(&group.problem) {
         writeln!(out, "  {what}")?;
@@ -289,12 +289,12 @@ fn brief(x: f64) -> String {
 
 /// What is wrong with a group, on one line.
 pub(crate) fn sentence(group: &GateGroup) -> String {
-    let mut said = format!("{} of {} fail", group.failed, cases(group.asked));
+    let mut said = format!("{} of {} fail", thousands(group.failed), cases(group.asked));
     if group.broken > 0 {
-        said += &format!(", at {} of them it ended or hung", group.broken);
+        said += &format!(", at {} of them it ended or hung", thousands(group.broken));
     }
     if group.missing > 0 {
-        said += &format!(", {} never answered: {}", group.missing, missing(group));
+        said += &format!(", {} never answered: {}", thousands(group.missing), missing(group));
     }
     for more in group.diagnosis.iter().chain(&group.problem) {
         said += &format!("; {more}");

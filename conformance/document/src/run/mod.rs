@@ -457,6 +457,9 @@ pub struct Report {
     pub filter: Vec<String>,
     /// What was judged.
     pub adapters: Vec<Identity>,
+    /// The part of the chosen cases that had to be judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub required: Option<Number>,
     /// The sum over the groups.
     pub totals: Totals,
     /// States judged under another's name: how many of the selected.
@@ -549,6 +552,7 @@ impl Report {
             profile,
             filter,
             adapters,
+            required: None,
             totals: Totals::default(),
             aliases: 0,
             routes: serde_json::Map::new(),
