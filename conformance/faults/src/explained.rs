@@ -226,7 +226,10 @@ fn clarity(course: &OutputCourse) -> f64 {
     // A colour goes straight up with most of the colours that it is made of, and so does anything with what it is a multiple of: that tells
     // little. So does a pole, beside which all else is level.
     let plain = |is_plain: bool| if is_plain { 0.25 } else { 1.0 };
-    let weight = plain(course.unit.as_deref() == Some("color")) * plain(is_straight(course)) * evenness(course);
+    let weight = plain(course.unit.as_deref() == Some("color"))
+        * plain(is_straight(course))
+        * evenness(course)
+        * smoothness(course);
     let variation = if most > least { weight * ((most - least) / most.abs().max(least.abs())).min(1.0) } else { 0.0 };
     #[expect(clippy::cast_precision_loss, reason = "a hundred points")]
     let telling = points().filter(tells).count() as f64 / f64::from(POINTS);
@@ -255,6 +258,16 @@ fn evenness(course: &OutputCourse) -> f64 {
     // A course that is level but for a narrow peak is still one.
     const LEAST: f64 = 0.1;
     if most > least { (inner / (most - least)).max(LEAST) } else { 1.0 }
+}
+
+/// 1, or less where one step from a point to the next is most of what an output varies: such a course is two level lines.
+fn smoothness(course: &OutputCourse) -> f64 {
+    const OF_A_JUMP: f64 = 0.4;
+    let finite = || course.points.iter().map(|point| point.reference.0).filter(|x| x.is_finite());
+    let values: Vec<f64> = finite().collect();
+    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let step = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+    if step > 0.5 * (most - least) { OF_A_JUMP } else { 1.0 }
 }
 
 /// An output along a number of the inputs; `None` where that is drawn from no range.
@@ -344,4 +357,56 @@ fn range(member: &Member, inputs: &[f32], number: usize) -> Option<(f64, f64, bo
         start = end;
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn along(value: impl Fn(f64) -> f64) -> OutputCourse {
+        let point = |k: u32| {
+            let x = f64::from(k) / 96.0;
+            let reference = Number(value(x));
+            CoursePoint { x: Number(x), reference, interval: [reference; 2], mistaken: None }
+        };
+        OutputCourse {
+            input: "x".into(),
+            unit: None,
+            output: "f".into(),
+            at: Number(0.0),
+            held: vec![],
+            is_logarithmic: false,
+            points: (0..97).map(point).collect(),
+        }
+    }
+
+    #[test]
+    fn a_curve_is_clearer_than_a_line_a_pole_or_a_jump() {
+        let curve = clarity(&along(|x| (-4.0 * x).exp()));
+        for (what, other) in [
+            ("a line", clarity(&along(|x| x))),
+            ("a pole", clarity(&along(|x| 1.0 / (x - 0.501)))),
+            ("a jump", clarity(&along(|x| if x < 0.5 { 0.75 } else { 0.25 }))),
+        ] {
+            assert!(other > 0.0 && other < 0.6 * curve, "{what}: {other} beside {curve}");
+        }
+    }
+
+    #[test]
+    fn all_other_numbers_of_the_inputs_are_told() {
+        let catalogue = catalogue();
+        let member = catalogue.iter().find(|member| member.spec.id == "fog/exp").expect("there is one");
+        let told = held(member, &[1.0, 2.0, 3.0, 0.5, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6], 3);
+        let names: Vec<&str> = told.iter().map(|one| one.name.as_str()).collect();
+        assert_eq!(names[..4], ["p.x", "p.y", "p.z", "fog.r"]);
+        assert_eq!(told.len(), 9);
+    }
+
+    #[test]
+    fn components_of_steps_are_of_a_vector_or_of_a_colour() {
+        for (name, is_color) in [("CD", true), ("color", true), ("texel·color", true), ("n", false), ("⟨v⟩", false)]
+        {
+            assert_eq!(is_colour(name), is_color, "{name}");
+        }
+    }
 }
