@@ -1,4 +1,4 @@
-/* A renderer's side of lightmeter.protocol/1 in one file of C99, without dependencies. In one source file:
+/* A renderer's side of lightmeter.protocol/1 in one file of C99 that C++ takes too, without dependencies. In one source file:
  *
  *     #define LIGHTMETER_IMPLEMENTATION
  *     #include "lightmeter.h"
@@ -22,6 +22,11 @@
 #define LIGHTMETER_H
 
 #include <stddef.h>
+
+/* Both halves of this file are C99, and C++ as well. */
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define LIGHTMETER_PROTOCOL "lightmeter.protocol/1"
 /* A line of the protocol is 1 MiB at most. */
@@ -56,6 +61,14 @@ typedef struct {
 /* The numbers of an input, of which there are `count`. Where the formula has no such input, zeros, and the case is answered as an error. */
 const float *lightmeter_input(const lightmeter_case *asked, const char *name, size_t count);
 
+/* Where the code of a formula stands: the file as it is called from the root of the repository, and the line, 0 for the whole file. */
+typedef struct {
+    /* An id or a filter. */
+    const char *id;
+    const char *file;
+    unsigned line;
+} lightmeter_source;
+
 /* What a renderer says of itself. All but the name may be NULL. */
 typedef struct {
     const char *name, *version;
@@ -63,6 +76,8 @@ typedef struct {
     const char *device, *driver;
     /* What is left out of the formulas: ids or filters, as "blend/min", or entries such as "shape:mat4". The list ends with NULL. */
     const char *const *excludes;
+    /* Where the code of formulas stands, for annotations. The list ends with an entry whose id is NULL. */
+    const lightmeter_source *sources;
 } lightmeter_about;
 
 /* Answers until standard input ends; what `main` returns. */
@@ -70,6 +85,10 @@ int lightmeter_serve(const char *name, const char *version, const lightmeter_for
 
 /* The same, with more about the renderer. */
 int lightmeter_serve_as(const lightmeter_about *about, const lightmeter_formula *formulas, size_t count);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
 
@@ -86,7 +105,7 @@ int lightmeter_serve_as(const lightmeter_about *about, const lightmeter_formula 
 
 const float *lightmeter_input(const lightmeter_case *asked, const char *name, size_t count)
 {
-    static const float none[LIGHTMETER_NUMBERS];
+    static const float none[LIGHTMETER_NUMBERS] = {0};
     for (size_t k = 0; k < asked->input_count; ++k)
         if (strcmp(asked->inputs[k].name, name) == 0 && asked->inputs[k].count == count)
             return asked->numbers + asked->inputs[k].first;
@@ -336,7 +355,7 @@ static int lightmeter_answer_columns(lightmeter_case *asked, const lightmeter_co
         return 0;
     if (columns->bytes != sizeof(float) * count * asked->number_count)
         return 0;
-    float *given = malloc(columns->bytes + 1), *answers = calloc(count * outputs + 1, sizeof(float));
+    float *given = (float *)malloc(columns->bytes + 1), *answers = (float *)calloc(count * outputs + 1, sizeof(float));
     int is_read = given && answers && fread(given, 1, columns->bytes, stdin) == columns->bytes;
     if (!is_read) {
         free(given);
@@ -417,20 +436,30 @@ static void lightmeter_hello(const lightmeter_about *about, const lightmeter_for
         fputs(k ? ", " : "", stdout);
         lightmeter_write(formulas[k].id);
     }
+    printf("], \"sources\": [");
+    for (size_t k = 0; about->sources && about->sources[k].id; ++k) {
+        const lightmeter_source *source = about->sources + k;
+        fputs(k ? ", {\"id\": " : "{\"id\": ", stdout);
+        lightmeter_write(source->id);
+        lightmeter_field("file", source->file);
+        if (source->line)
+            printf(", \"line\": %u", source->line);
+        putchar('}');
+    }
     printf("]}\n");
     fflush(stdout);
 }
 
 int lightmeter_serve(const char *name, const char *version, const lightmeter_formula *formulas, size_t count)
 {
-    lightmeter_about about = {name, version, NULL, NULL, NULL};
+    lightmeter_about about = {name, version, NULL, NULL, NULL, NULL};
     return lightmeter_serve_as(&about, formulas, count);
 }
 
 int lightmeter_serve_as(const lightmeter_about *about, const lightmeter_formula *formulas, size_t count)
 {
-    char *line = malloc(LIGHTMETER_LINE + 2);
-    lightmeter_case *asked = malloc(sizeof *asked);
+    char *line = (char *)malloc(LIGHTMETER_LINE + 2);
+    lightmeter_case *asked = (lightmeter_case *)malloc(sizeof *asked);
     lightmeter_columns columns;
     if (!line || !asked)
         return 1;

@@ -22,7 +22,9 @@ Python has an underscore behind it (`lambda_`).
 import fnmatch
 import json
 import keyword
+import os
 import re
+import shutil
 import sys
 import traceback
 from pathlib import Path
@@ -34,6 +36,8 @@ PROTOCOL = "lightmeter.protocol/1"
 NAMED = {"NaN": float("nan"), "Inf": float("inf"), "-Inf": float("-inf")}
 
 
+# Rows of columns that a line skips at most.
+ROWS = 1 << 14
 SIZES = {"scalar": 1, "vec2": 2, "vec3": 3, "vec4": 4, "mat3": 9, "mat4": 16}
 
 
@@ -140,14 +144,40 @@ def apart(values, sizes):
     return [part[:, 0] if size == 1 else part for size, part in zip(sizes, parts)]
 
 
+def skipped_rows(values, size):
+    """The values of all cases with NaN in the place of each `Skip`, and the rows of these by their reasons."""
+    if not isinstance(values, (list, tuple)) or not any(isinstance(value, Skip) for value in values):
+        return values, {}
+    rows = {}
+    for row, value in enumerate(values):
+        if isinstance(value, Skip):
+            rows.setdefault(str(value), []).append(row)
+    return [np.full(size, np.nan) if isinstance(value, Skip) else np.ravel(value) for value in values], rows
+
+
+def source(pattern, function):
+    """Where a function stands: an entry of the hello's `sources`, its file as it is called from the working directory; nothing of a
+    function that stands elsewhere, or that was not written in Python."""
+    code = getattr(function, "__code__", None)
+    if code is None:
+        return []
+    try:
+        file = os.path.relpath(code.co_filename)
+    except ValueError:  # Another drive of Windows.
+        return []
+    if file.startswith(os.pardir) or not os.path.isfile(file):
+        return []
+    return [{"id": pattern, "file": file.replace(os.sep, "/"), "line": code.co_firstlineno}]
+
+
 class Renderer:
-    """What a renderer can do. `declares` is said in its hello as it is: `profile`, `formats`, `effects`, `skips`, `excludes` and others
-    of docs/protocol.md. With `describe=True` the gate describes each formula before its first case: `described`, by id."""
+    """What a renderer can do. `declares` is said in its hello as it is: `profile`, `formats`, `effects`, `skips`, `excludes`, `sources` and
+    others of docs/protocol.md. Without `sources`, the functions of `formula` and `scene` are named with their lines, for reports. With `describe=True` the gate describes each formula before its first case: `described`, by id."""
 
     def __init__(self, name, version="", **declares):
         self.hello = {"hello": PROTOCOL, "renderer": name, "version": version, **declares}
         self.functions, self.scenes, self.draw = {}, [], None
-        self.described = {}
+        self.described, self.sources = {}, []
         self.columns = True
 
     def formula(self, formula, dtype=np.float32):
@@ -156,6 +186,7 @@ class Renderer:
 
         def given(function):
             self.formulas(formula, lambda _: function, dtype)
+            self.sources += source(formula, function)
             return function
 
         return given
@@ -177,17 +208,20 @@ class Renderer:
         def given(function):
             self.scenes.append(pattern)
             self.draw = function
+            self.sources += source(pattern, function)
             return function
 
         return given
 
     def answer_pack(self, pack, answers):
         """Answers a pack of columns, `lightmeter pack DIR --columns`, by files in another folder, of which
-        `lightmeter gate DIR ANSWERS` judges all. Memory holds one formula at a time."""
+        `lightmeter gate DIR ANSWERS` judges all. A function that raises `Skip` skips its formula, and a `Skip` in the place of a case's
+        value that case. Memory holds one formula at a time."""
         pack, answers = Path(pack), Path(answers)
         manifest = json.loads((pack / "manifest.json").read_text())
         if not manifest.get("columns"):
             sys.exit(f"{pack} has no columns; expected a pack of `lightmeter pack {pack} --columns`")
+        lines = [{"formulas": list(self.functions), "sources": self.sources, **self.hello, "pack": manifest["pack"]}]
         for formula in manifest["formulas"]:
             name = formula["id"]
             function = next((f for pattern, f in self.functions.items() if matches(pattern, name)), None)
@@ -195,14 +229,24 @@ class Renderer:
                 continue
             inputs = {x["name"]: np.load(pack / "columns" / name / f"{x['name']}.npy") for x in formula["inputs"]}
             sizes = [SIZES[output["shape"]] for output in formula["outputs"]]
-            parts = apart(function(Cases.of_columns(name, inputs)), sizes)
             folder = answers / "columns" / name
-            folder.mkdir(parents=True, exist_ok=True)
+            # What an earlier call left of the formula answers nothing now.
+            shutil.rmtree(folder, ignore_errors=True)
+            try:
+                values, skipped = skipped_rows(function(Cases.of_columns(name, inputs)), sum(sizes))
+            except Skip as skip:
+                lines.append({"id": name, "skip": str(skip)})
+                continue
+            parts = apart(values, sizes)
+            for reason, rows in skipped.items():
+                # A line of the gate is 1 MiB at most.
+                pieces = [rows[first : first + ROWS] for first in range(0, len(rows), ROWS)]
+                lines += [{"id": name, "skip": reason, "rows": piece} for piece in pieces]
+            folder.mkdir(parents=True)
             for output, part in zip(formula["outputs"], parts):
                 np.save(folder / f"{output['name']}.npy", part)
         answers.mkdir(parents=True, exist_ok=True)
-        hello = {"formulas": list(self.functions), **self.hello, "pack": manifest["pack"]}
-        (answers / "answers.jsonl").write_text(json.dumps(hello) + "\n")
+        (answers / "answers.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
 
     def serve(self):
         """Answers until standard input ends."""
@@ -213,7 +257,7 @@ class Renderer:
                 if request["hello"] != PROTOCOL:
                     sys.exit(f"the gate speaks {request['hello']}, and this client {PROTOCOL}")
                 folder = request["folder"]
-                declared = {"formulas": list(self.functions), "scenes": self.scenes, "columns": self.columns}
+                declared = {"formulas": list(self.functions), "scenes": self.scenes, "columns": self.columns, "sources": self.sources}
                 print(json.dumps({**declared, **self.hello}), flush=True)
             elif "describe" in request:
                 self.described[request["describe"]["id"]] = request["describe"]

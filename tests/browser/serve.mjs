@@ -347,10 +347,25 @@ async function aChromiumThatIsKilledEndsTheRunWithWhatWasJudged() {
   assert.match(out, /lighting\/|verdicts/);
 }
 
+// How many browsers run that a `lightmeter` started: their profiles are named after it.
+function startedBrowsers() {
+  return spawnSync("pgrep", ["--full", "--count", "user-data-dir=.*/lightmeter-chromium-"], { encoding: "utf8" }).stdout.trim();
+}
+
+async function aRunThatEndsAtItsFirstFailureEndsItsChromium() {
+  const before = startedBrowsers();
+  const copy = shaders("fog.wgsl", "return clamp(exp(-(density * distance)), 0.0, 1.0);", "return 0.5;");
+  const { code, out } = await run("fog/*", "--shaders", copy, "--fail-fast");
+  rmSync(copy, { recursive: true });
+  assert.equal(code, 1, out);
+  assert.equal(startedBrowsers(), before, "the Chromium that was started has ended");
+}
+
 const tests = [
   aRunIsShownAndItsReportIsKept, aReloadLosesNothing, aClosedTabEndsTheRun, twoBrowsersAtOnceAreJudgedEachByItself,
   rubbishIsToldAndNothingIsJudgedByIt, aSlowBrowserIsWaitedFor, aBrowserWithoutWebGpuIsToldWhatToDo,
   mistakesAreNamedThroughTheBrowser, aSceneThatFailsIsShownWithItsPictures, aBenchWaitsForABrowserAndTellsTheStepsOfItsClock, anotherMachineReachesItByTlsAlone, aChromiumThatIsKilledEndsTheRunWithWhatWasJudged,
+  aRunThatEndsAtItsFirstFailureEndsItsChromium,
 ];
 for (const test of tests) {
   if (only && !test.name.includes(only)) continue;

@@ -68,6 +68,35 @@ fn a_result_is_a_page_at_once_and_later() {
 }
 
 #[test]
+fn the_page_of_a_sweep_has_the_command_that_made_it() {
+    let asked = ["sweep", "fog/exp", "--adapter", "cpu", "--from", "-8.01", "--to", "-8", "--set", "density=0.0625"];
+    let page = stdout(&lightmeter(&[&asked[..], &["--profile", "vulkan", "--format", "html"]].concat()));
+    let command = "lightmeter sweep fog/exp --adapter cpu --from -8.01 --to -8 --set density=0.0625 --profile vulkan";
+    assert!(page.contains(command), "{page}");
+    // What the ready-made sweep shows is said of its own inputs alone.
+    let preset = PRESETS.iter().find(|preset| preset.formula == "fog/exp").expect("there is one");
+    assert!(!page.contains(preset.what), "{page}");
+}
+
+#[test]
+fn a_gate_that_judges_too_little_fails_in_its_page() {
+    let exec = gate::process::command_of("formulas=fog/exp");
+    let page = stdout(&lightmeter(&[
+        "gate",
+        "fog/*",
+        "--exec",
+        &exec,
+        "--cases",
+        "16",
+        "--require",
+        "0.9",
+        "--format",
+        "html",
+    ]));
+    assert!(page.contains("✗ fails") && page.contains("part of 0.9"), "{page}");
+}
+
+#[test]
 fn a_matrix_has_a_column_for_each_subject() {
     let [a, b] = ["a", "b"].map(|name| path(&format!("matrix-{name}.json")));
     let run = ["run", "fog/*", "--adapter", "cpu", "--cases", "16", "--format", "json", "--out"];
@@ -137,6 +166,47 @@ fn docs(name: &str) -> String {
 fn the_page_of_rulings_is_current() {
     let page = stdout(&lightmeter(&["page", "rulings"]));
     assert!(page == docs("rulings.md"), "docs/rulings.md is another: `lightmeter page rulings --out docs/rulings.md`");
+}
+
+/// The rows of a table of Markdown, each cell without its emphasis.
+fn rows(text: &str) -> Vec<Vec<String>> {
+    let cell = |cell: &str| cell.trim().trim_matches(['*', '`', '✗', ' ']).to_owned();
+    let row = |line: &str| line.trim_matches('|').split('|').map(cell).collect();
+    text.lines().filter(|line| line.starts_with('|')).map(row).collect()
+}
+
+/// The guide's table of costs is a part of the page of a bench, and the chapter on cost tells its extremes.
+#[test]
+fn figures_of_costs_are_those_of_the_page_of_the_bench() {
+    let (bench, guide, chapter) = (docs("bench.md"), docs("guide.md"), docs("book/cost.md"));
+    let (_, every) = bench.split_once("### Every formula").expect("the page has a section of every formula");
+    let (_, scenes) = bench.split_once("### Scenes").expect("the page has a section of scenes");
+    let (formulas, scenes) = (rows(every), rows(scenes.split("\n### ").next().unwrap_or_default()));
+    let (_, told) = guide.split_once("| formula or scene | f16 |").expect("the guide has a table of costs");
+    let told = rows(&format!("| formula or scene | f16 |{}", told.split("\n\n").next().unwrap_or_default()));
+    for row in &told[2..] {
+        let (id, time) = row[0].split_once("` (").expect("an id and a time");
+        let of = if id.starts_with("scene/") { &scenes } else { &formulas };
+        let known = of.iter().find(|known| known[0] == id.trim_start_matches("scene/")).expect("the page has it");
+        assert_eq!(time, format!("{} in f32)", known[1]), "{id}");
+        for (name, cell) in told[0].iter().zip(row).skip(1) {
+            let column = of[0].iter().position(|head| head == name).expect("the page has the column");
+            let known = known[column].split(" · ").take(2).collect::<Vec<_>>().join(" · ");
+            assert_eq!(cell, known.trim_matches(['*', ' ']), "{name} of {id}");
+        }
+    }
+    for (column, digits) in [("f32-cheap", [2, 1]), ("f32-stable", [2, 1])] {
+        let column = formulas[0].iter().position(|head| head == column).expect("the page has the column");
+        let ratio = |row: &Vec<String>| Some((row[column].split(" · ").next()?.parse::<f64>().ok()?, row[0].clone()));
+        let ratios: Vec<(f64, String)> = formulas[2..].iter().filter_map(ratio).collect();
+        let least = ratios.iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("there are some");
+        let most = ratios.iter().max_by(|a, b| a.0.total_cmp(&b.0)).expect("there are some");
+        for ((ratio, id), digits) in [least, most].into_iter().zip(digits) {
+            let told = format!("{ratio:.digits$}");
+            let line = chapter.lines().find(|line| line.contains(&format!("`{id}`"))).unwrap_or_default();
+            assert!(line.contains(&format!(" {told} ")), "docs/book/cost.md does not have {told} of {id}");
+        }
+    }
 }
 
 /// Pages of measurements are made from runs of some time. Each formula, state and sweep that there is today has its place there.

@@ -1,7 +1,7 @@
 //! An f64 value and its acceptance interval side by side, which records the steps that a formula names.
 
 use super::Accept;
-use lightmeter_reference::{Components, Real};
+use lightmeter_reference::{Components, NamedStep, Parts, Real};
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -19,19 +19,33 @@ pub struct Trace {
 pub struct TraceStep {
     /// The formula's own name for it.
     pub name: &'static str,
+    /// Which number it is of a step that has several, from 0; `None` of a number alone.
+    pub component: Option<usize>,
     /// What it was.
     pub result: Trace,
+    /// Whether it was recorded with all numbers of its step, so that the component is known.
+    is_whole: bool,
 }
 
 thread_local! {
     static STEPS: RefCell<Vec<TraceStep>> = const { RefCell::new(Vec::new()) };
 }
 
+/// The most components of a vector.
+const MOST_COMPONENTS: usize = 4;
+
 /// Runs `f` and returns what it named, in order, beside its result.
 pub fn record<T>(f: impl FnOnce() -> T) -> (T, Vec<TraceStep>) {
     STEPS.with_borrow_mut(Vec::clear);
     let result = f();
-    (result, STEPS.with_borrow_mut(std::mem::take))
+    let mut steps = STEPS.with_borrow_mut(std::mem::take);
+    for run in steps.chunk_by_mut(|a, b| a.name == b.name && !a.is_whole && !b.is_whole) {
+        // A vector is named component by component.
+        if !run[0].is_whole && (2..=MOST_COMPONENTS).contains(&run.len()) {
+            run.iter_mut().enumerate().for_each(|(place, step)| step.component = Some(place));
+        }
+    }
+    (result, steps)
 }
 
 macro_rules! both {
@@ -155,7 +169,21 @@ impl Real for Trace {
         }
     }
     fn named(self, name: &'static str) -> Self {
-        STEPS.with_borrow_mut(|steps| steps.push(TraceStep { name, result: self }));
+        STEPS.with_borrow_mut(|steps| steps.push(TraceStep { name, component: None, result: self, is_whole: false }));
         self
+    }
+    fn step<A: Parts<Self>, T: Parts<Self>>(step: &'static NamedStep, from: A, compute: impl Fn(A) -> T) -> T {
+        let result = compute(from);
+        if step.is_quiet {
+            return result;
+        }
+        let is_vector = (2..=MOST_COMPONENTS).contains(&T::COUNT);
+        let mut place = 0;
+        result.each(|result| {
+            let component = is_vector.then_some(place);
+            place += 1;
+            STEPS.with_borrow_mut(|steps| steps.push(TraceStep { name: step.name, component, result, is_whole: true }));
+            result
+        })
     }
 }

@@ -9,6 +9,9 @@ const NEAR: u64 = 8;
 /// Random cases that are tried.
 const RANDOM: u64 = 500;
 
+/// Pixels of a plot upwards.
+const PIXELS: f64 = 90.0;
+
 /// The case at which a mistake shows best in binary32.
 pub(crate) struct Apart {
     case: String,
@@ -55,11 +58,18 @@ fn share(right: f32, mistaken: f32) -> f64 {
 }
 
 impl Apart {
+    /// Whether the two numbers would be one in a plot that goes from 0 to the greater of them.
+    fn is_below_a_pixel(&self) -> bool {
+        let [right, mistaken] = [self.right, self.mistaken].map(f64::from);
+        (right - mistaken).abs() < right.abs().max(mistaken.abs()) / PIXELS
+    }
+
     /// In words.
     pub(crate) fn html(&self) -> Markup {
         html! {
             p.hint {
-                "A plot is too coarse for it. At " code { (self.case) } ", " code { (self.output) } " is "
+                @if self.is_below_a_pixel() { "The difference is too small for a plot. " }
+                "At " code { (self.case) } ", " code { (self.output) } " is "
                 code { (self.right) } " in binary32, and " code { (self.mistaken) } " with the mistake."
             }
         }
@@ -68,7 +78,15 @@ impl Apart {
 
 #[cfg(test)]
 mod tests {
-    use super::share;
+    use super::{Apart, share};
+
+    #[test]
+    fn a_plot_is_too_coarse_for_what_is_less_than_a_pixel_apart() {
+        let apart = |right, mistaken| Apart { case: "a".into(), output: "f".into(), right, mistaken };
+        let says = |right, mistaken| apart(right, mistaken).html().0.contains("too small for a plot");
+        assert!(says(1.0, 1.001) && says(-0.5, -0.5001));
+        assert!(!says(1.0, 0.5) && !says(0.0, 1e-30) && !says(0.0, f32::NAN) && !says(1.0, f32::INFINITY));
+    }
 
     #[test]
     fn what_is_no_number_is_farthest_and_what_is_the_same_is_not_apart() {

@@ -34,7 +34,7 @@ pub(crate) fn of_equation(one: Equation, catalogue: &[Member], shaders: &Shaders
     html! {
         h1 { "The blend equation " code { (one.name()) } }
         (page.statement())
-        (diagram::blend())
+        (diagram::blend(one))
         p {
             @if one.ignores_factors() { "The factors are ignored: all 225 pairs of factors are the same state. A driver that multiplies by them first is wrong, and the suite has cases of its own for that." }
             @else { "S and D are factors, each one of " a href=(place.to("formula/index.html#factors")) { "fifteen" } ". All 225 pairs are judged. The figures below are those of " code { (member.spec.id) } "." }
@@ -71,7 +71,7 @@ pub(crate) fn of_factor(factor: Factor, catalogue: &[Member], shaders: &Shaders,
             "Cs and As are the colour and the alpha of the source, Cd and Ad those of the destination, Cc and Ac those of the blend constant."
             @if factor.reads_constant_alpha() { " WebGPU has no factor that is the constant's alpha in the colour: there the suite reaches the state by a constant whose colour is its alpha." }
         }
-        (diagram::blend())
+        (diagram::blend(Equation::Add))
         (names(&format!("GL_{}", factor.name()), factor.name(), &format!("VK_BLEND_FACTOR_{}", factor.name()), false))
         div.pictures {
             @for (member, what) in pictures {

@@ -14,9 +14,10 @@ use lightmeter_catalogue::dialects::{DIALECTS, DialectForm, Dialects};
 use lightmeter_catalogue::rulings::RULINGS;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::mistakes::MistakeLook;
+use lightmeter_document::thousands;
 use lightmeter_faults::{Fault, Variation, concerning, look, typical_course};
 use lightmeter_gpu::Shaders;
-use lightmeter_report::html::{course_plot, equation, prose};
+use lightmeter_report::html::{course_plot, equation, prose, written};
 use maud::{Markup, html};
 use std::collections::HashSet;
 
@@ -80,8 +81,8 @@ impl FormulaPage<'_> {
                 @if k > 0 { "; " }
                 @let numbers: Vec<u32> = part.strip_prefix("ruling").into_iter().flat_map(|rest| rest.split(|c: char| !c.is_ascii_digit())).filter_map(|word| word.parse().ok()).collect();
                 @match numbers.first() {
-                    Some(number) => a href={ (self.place.to("rulings.html")) "#ruling-" (number) } { (part) },
-                    None => (part),
+                    Some(number) => a href={ (self.place.to("rulings.html")) "#ruling-" (number) } { (prose(part)) },
+                    None => (prose(part)),
                 }
             }
         }
@@ -93,7 +94,7 @@ impl FormulaPage<'_> {
             div.wide tabindex="0" role="group" aria-label="inputs and outputs" { table {
                 thead { tr { th scope="col" { "value" } th scope="col" { "shape" } th scope="col" { "unit" } th scope="col" { "meaning" } th scope="col" { "random cases draw" } } }
                 tbody {
-                    @for input in spec.inputs { tr { th scope="row" { code { (input.name) } } td { (input.shape.name()) } td { (unit(input.unit)) } td { (prose(spec.input_means(input))) } td { (input.domain) } } }
+                    @for input in spec.inputs { tr { th scope="row" { code { (input.name) } } td { (input.shape.name()) } td { (unit(input.unit)) } td { (prose(spec.input_means(input))) } td { (written(&input.domain.to_string())) } } }
                     @for output in spec.outputs { tr { th scope="row" { "→ " code { (output.name) } } td { (output.shape.name()) } td { (unit(output.unit)) } td { (prose(spec.output_means(output))) } td {} } }
                 }
             } }
@@ -140,7 +141,7 @@ impl FormulaPage<'_> {
             @if !found.is_empty() {
                 h2 #accuracy { "How accurate it is in 32 bits" }
                 p {
-                    "Computed in binary32 as it is written, each operation rounded once, at " (CASES) " random cases"
+                    "Computed in binary32 as it is written, each operation rounded once, at " (thousands(CASES)) " random cases"
                     @if !self.member.spec.hard.is_empty() { " and at the hard cases with what lies near them" }
                     ". Errors are in ULP of binary32. “Legal” is how far WGSL's rules permit a result to be from the exact one."
                 }
@@ -174,7 +175,7 @@ impl FormulaPage<'_> {
             @if spec.stable.is_some() || !better.is_empty() {
                 h2 #stable { "The stable form" }
                 @if let Some(stable) = spec.stable {
-                    p { "This is a stable form. At its hard cases and near them it errs by at most " (stable.bound) " roundings: " (stable.because) "." }
+                    p { "This is a stable form. At its hard cases and near them it errs by at most " (written(&stable.bound.to_string())) " roundings: " (stable.because) "." }
                 }
                 @if !better.is_empty() {
                     p { "This form fails where another one does not:" }
@@ -210,7 +211,7 @@ impl FormulaPage<'_> {
             }
             @if !boundaries.is_empty() {
                 h2 #boundaries { "Close to where it decides" }
-                p { (DRAWN) " cases each come close to a place where the formula decides something or degenerates: at distances from ½ to 2⁻²⁴, at a distance of 0, and together with another of these: " }
+                p { (thousands(DRAWN)) " cases each come close to a place where the formula decides something or degenerates: at distances from ½ to 2⁻²⁴, at a distance of 0, and together with another of these: " }
                 p { @for (k, name) in boundaries.iter().enumerate() { @if k > 0 { " · " } (name) } }
             }
         }
@@ -349,25 +350,64 @@ fn chapter(spec: &Spec) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// Whether the formula on a line is a sentence, or mostly one: as mathematics it would be hard to read.
-fn is_sentence(text: &str) -> bool {
-    const ORDINARY: [&str; 19] = [
-        "the", "of", "is", "with", "it", "by", "as", "how", "that", "which", "in", "on", "and", "its", "against",
-        "passes", "where", "if", "else",
-    ];
-    const LEAST: usize = 3;
-    text.split(|c: char| !c.is_alphabetic()).filter(|word| ORDINARY.contains(word)).count() >= LEAST
+/// Words that make a line a sentence.
+const ORDINARY: [&str; 19] = [
+    "the", "of", "is", "with", "it", "by", "as", "how", "that", "which", "in", "on", "and", "its", "against", "passes",
+    "where", "if", "else",
+];
+/// Signs of which an equation has one at least.
+const OPERATORS: &str = "=·⟨√^+|Σ×/";
+
+/// How many words of a sentence a line has.
+fn ordinary(text: &str) -> usize {
+    text.split(|c: char| !c.is_alphabetic()).filter(|word| ORDINARY.contains(word)).count()
 }
 
-/// The formula as mathematics, a line for each of its statements, and as it stands in reports; a sentence as it is.
-pub(crate) fn set_equation(spec: &Spec) -> Markup {
-    if is_sentence(spec.text) {
-        return html! { p.equation.said { (prose(spec.text)) } };
+/// Whether the formula on a line is a sentence, or mostly one: as mathematics it would be hard to read.
+fn is_sentence(text: &str) -> bool {
+    const LEAST: usize = 3;
+    let words = ordinary(text);
+    words >= LEAST || words > 0 && !text.contains(|c| OPERATORS.contains(c))
+}
+
+/// The equation at the beginning of a line that is a sentence otherwise, and the rest: `color = max(src, dst)` and `, with the factors …`.
+fn split_equation(text: &str) -> Option<(&str, &str)> {
+    let (mut depth, mut start, mut end) = (0_i32, 0, None);
+    let is_equation = |part: &str| part.contains(|c| OPERATORS.contains(c)) && ordinary(part) == 0;
+    for (at, c) in text.char_indices() {
+        depth += match c {
+            '(' | '[' | '⟨' => 1,
+            ')' | ']' | '⟩' => -1,
+            _ => 0,
+        };
+        let ends =
+            [", ", "; ", " where ", " with ", " of ", " as "].into_iter().find(|end| text[at..].starts_with(end));
+        let Some(separator) = ends.filter(|_| depth == 0 && at >= start) else { continue };
+        if !is_equation(&text[start..at]) {
+            break;
+        }
+        end = Some(at);
+        start = at + separator.len();
     }
+    end.map(|end| text.split_at(end))
+}
+
+/// The formula as mathematics, a line for each of its statements, and as it stands in reports; a sentence as it is, below the equation that it
+/// begins with.
+pub(crate) fn set_equation(spec: &Spec) -> Markup {
+    let (line, says) = if is_sentence(spec.text) {
+        match split_equation(spec.text) {
+            Some(parts) => parts,
+            None => return html! { p.equation.said { (prose(spec.text)) } },
+        }
+    } else {
+        (spec.text, "")
+    };
     let names: Vec<&str> =
         spec.inputs.iter().map(|input| input.name).chain(spec.outputs.iter().map(|output| output.name)).collect();
     html! {
-        div.equation tabindex="0" role="group" aria-label="the formula" { @for line in spec.text.split("; ") { (equation(line, &names)) } }
+        div.equation tabindex="0" role="group" aria-label="the formula" { @for line in line.split("; ") { (equation(line, &names)) } }
+        @if !says.is_empty() { p { "… " (prose(says.trim_start_matches([',', ';', ' ']))) "." } }
         p.quiet { "As reports write it: " code { (spec.text) } }
     }
 }
@@ -442,7 +482,7 @@ pub(crate) fn sentence(words: &str) -> String {
 fn looks(look: &MistakeLook) -> String {
     let outputs: Vec<&str> = look.outputs.iter().map(|name| &**name).collect();
     if look.failing == 0 {
-        return format!("None of {} cases goes wrong: it takes inputs that are drawn for it.", look.cases);
+        return written(&format!("None of {} cases goes wrong: it takes inputs that are drawn for it.", look.cases));
     }
     let side = match (look.too_great, look.too_small) {
         (0, 0) => String::new(),
@@ -452,7 +492,9 @@ fn looks(look: &MistakeLook) -> String {
         (great, small) if small > 4 * great => ", mostly too small".into(),
         _ => ", too great or too small".into(),
     };
-    format!("{} of {} cases go wrong, in {}{side}.", look.failing, look.cases, outputs.join(", "))
+    let go = if look.failing == 1 { "goes" } else { "go" };
+    let counts = written(&format!("{} of {}", look.failing, look.cases));
+    format!("{counts} cases {go} wrong, in {}{side}.", outputs.join(", "))
 }
 
 #[cfg(test)]
@@ -592,15 +634,34 @@ mod tests {
     }
 
     #[test]
+    fn a_sentence_is_set_below_the_equation_that_it_begins_with() {
+        for (text, expected) in [
+            ("color = max(src, dst), with the factors S = constant and D = 1", Some("color = max(src, dst)")),
+            ("color = src·As + dst·(1 − As) where it is written, dst elsewhere", Some("color = src·As + dst·(1 − As)")),
+            (
+                "FS = exp(e·ln(1 − q)), q = ½|a − b|²; as published for e of 64",
+                Some("FS = exp(e·ln(1 − q)), q = ½|a − b|²"),
+            ),
+            ("⟨v·2ᵏ⟩ with the largest component in [2⁻²⁰, 2²⁰)", Some("⟨v·2ᵏ⟩")),
+            ("I of n, l and v interpolated from the vertices", None),
+            ("seen = 2 if a triangle that is drawn again passes against itself, else 1", None),
+        ] {
+            assert_eq!(split_equation(text).map(|(line, _)| line), expected, "{text}");
+        }
+        assert!(is_sentence("1 where a triangle survives: back faces culled, counter-clockwise is front"));
+    }
+
+    #[test]
     fn the_equation_of_every_formula_says_what_its_line_says() {
         let mut set = 0;
         for member in catalogue() {
             let (id, text) = (&member.spec.id, member.spec.text);
             let html = set_equation(&member.spec).0;
-            assert_eq!(html.contains("<math"), !is_sentence(text), "{id}");
-            let Some(from) = html.find("<math") else { continue };
+            let line = if is_sentence(text) { split_equation(text).map(|(line, _)| line) } else { Some(text) };
+            assert_eq!(html.contains("<math"), line.is_some(), "{id}");
+            let (Some(from), Some(line)) = (html.find("<math"), line) else { continue };
             let mathml = &html[from..html.find("</div>").expect("it ends")];
-            assert_eq!(told(&line_of(mathml).replace('\u{a0}', "")), told(&text.replace("; ", "")), "{id}: {mathml}");
+            assert_eq!(told(&line_of(mathml).replace('\u{a0}', "")), told(&line.replace("; ", "")), "{id}: {mathml}");
             assert!(is_fenced(mathml), "{id}: {mathml}");
             set += 1;
         }

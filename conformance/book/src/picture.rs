@@ -95,11 +95,27 @@ impl Picture {
         match self.subject {
             Subject::Sphere => "a sphere, lit by the formula at every pixel".into(),
             Subject::Strip { input } => format!("the colour as {} grows, left to right", member.spec.input_name(input)),
+            Subject::Card if self.is_level(member) => {
+                "an orange card over colours, left to right; the alpha of the card changes nothing".into()
+            }
             Subject::Card => {
                 "an orange card, alpha 0 above and 1 below, over colours whose alpha falls from 1 to ½, left to right"
                     .into()
             }
         }
+    }
+
+    /// Whether the colours are the same from the upper edge to the lower one.
+    fn is_level(&self, member: &Member) -> bool {
+        let mut out = vec![0.0; member.spec.output_len()];
+        let mut color = |at: usize| {
+            self.rows[at].as_ref().map(|row| {
+                member.formula.reference(row, &mut out);
+                self.rgb(&out).map(f64::to_bits)
+            })
+        };
+        let [width, height] = self.size;
+        (0..width).all(|x| color(x) == color((height - 1) * width + x))
     }
 
     /// The picture by the formula itself, as a file of PNG.

@@ -3,6 +3,7 @@
 use lightmeter_catalogue::cases::Domain;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_faults::Variation;
+use lightmeter_report::html::written;
 use maud::{Markup, html};
 use std::collections::HashSet;
 
@@ -233,7 +234,7 @@ impl Sketch {
 pub(crate) fn short(x: f64) -> String {
     if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
         let text = format!("{x:.4}");
-        text.trim_end_matches('0').trim_end_matches('.').replace('-', "−")
+        written(text.trim_end_matches('0').trim_end_matches('.'))
     } else {
         format!("{x:.2e}").replace('-', "−")
     }

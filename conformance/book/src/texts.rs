@@ -4,7 +4,7 @@ use crate::BookError;
 use crate::contents::Place;
 use crate::figure::{FIGURE, with_figures};
 use lightmeter_files::read;
-use lightmeter_report::html::markdown;
+use lightmeter_report::html::own_markdown;
 use maud::{Markup, PreEscaped};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -60,7 +60,7 @@ impl Text {
             shown.insert(if self.folder.is_empty() { name } else { format!("{}/{name}", self.folder) });
         }
         pictures.extend(shown);
-        let html = markdown(&self.text, &picture);
+        let html = own_markdown(&self.text, &picture);
         PreEscaped(links(&with_figures(&html.0), place))
     }
 }

@@ -139,6 +139,12 @@ pub struct RendererUse {
     pub incidents: Vec<String>,
     /// Crashes and hangs that are expected.
     pub expected_incidents: Vec<String>,
+    /// What its hello declared besides, by the hello's fields; those that say nothing are left out.
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
+    pub declares: serde_json::Map<String, serde_json::Value>,
+    /// What makes the verdicts doubtful, though nothing failed by it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
 impl RendererUse {
@@ -174,6 +180,23 @@ impl fmt::Display for RendererIdentity {
             }
         }
         Ok(())
+    }
+}
+
+/// Where a renderer's code of a formula or a scene stands, as its hello says.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct SourcePlace {
+    /// The file, as it is called from the root of the repository where annotations are to stand in it.
+    pub file: String,
+    /// The line, from 1; the whole file is meant where it is missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<u64>,
+}
+
+impl fmt::Display for SourcePlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.file)?;
+        self.line.map_or(Ok(()), |line| write!(f, ":{line}"))
     }
 }
 

@@ -31,6 +31,9 @@ pub struct Explained {
 pub struct ShownStep {
     /// The name of the step; the components of a vector have the same one.
     pub name: Word,
+    /// Which component of a vector it is, such as `x`, or of a colour, such as `r`; missing for a number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub component: Option<Word>,
     /// The f64 reference.
     pub value: Number,
     /// The least and the greatest legal value.
@@ -74,10 +77,25 @@ pub struct OutputCourse {
     pub output: String,
     /// What the input is in the case.
     pub at: Number,
+    /// What all other numbers of the inputs are, which are the same at each point.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub held: Vec<HeldNumber>,
     /// Whether inputs are spaced by their logarithms.
     pub is_logarithmic: bool,
     /// The points, from the least input to the greatest.
     pub points: Vec<CoursePoint>,
+}
+
+/// A number of the inputs that is the same along a course.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HeldNumber {
+    /// Its name, such as `p.z`.
+    pub name: String,
+    /// Its value.
+    pub value: Number,
+    /// Its unit, where it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Word>,
 }
 
 /// A point of a course.

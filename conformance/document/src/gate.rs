@@ -1,6 +1,6 @@
 //! What became of a gate: `lightmeter.gate/1`.
 
-use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, RendererUse, is_zero};
+use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, RendererUse, SourcePlace, is_zero};
 pub use crate::by_case::{KnownFailure, Problems, RendererIdentity};
 use crate::explained::Explained;
 use crate::pack::Choice;
@@ -17,6 +17,7 @@ const MOST_FAILURES: usize = 1000;
 
 /// A gate's result. What a baseline is compared by is required of a file; the rest may be missing.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct GateReport {
     /// `lightmeter.gate/1`.
     #[schemars(extend("const" = SCHEMA))]
@@ -42,9 +43,18 @@ pub struct GateReport {
     /// Who answered.
     #[serde(default)]
     pub renderer: RendererIdentity,
+    /// What its hello declared besides, by the hello's fields; those that say nothing are left out.
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
+    pub declares: serde_json::Map<String, serde_json::Value>,
+    /// What makes the verdicts doubtful, though nothing failed by it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// How long it took.
     #[serde(default)]
     pub seconds: f64,
+    /// The part of the chosen cases that had to be judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub required: Option<Number>,
     /// Counts over all groups.
     pub totals: GateTotals,
     /// Lines that cannot be read as answers, or answer what nobody asked.
@@ -95,6 +105,7 @@ pub struct GateReport {
 
 /// Counts of cases, but for the verdicts, which are of scalars.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct GateTotals {
     /// Asked for.
     pub asked: u64,
@@ -128,6 +139,7 @@ pub struct GateTotals {
 
 /// A formula or a scene.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct GateGroup {
     /// Its id.
     pub id: String,
@@ -196,6 +208,9 @@ pub struct GateGroup {
     /// Of a scene whose image is wrong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image: Option<ImageUse>,
+    /// Where the renderer's code of it stands, where its hello says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<SourcePlace>,
 }
 
 impl GateGroup {
@@ -245,6 +260,7 @@ impl GateGroup {
             mistakes: group.mistakes.clone(),
             smallest: counts.smallest.clone(),
             image: group.image.clone().filter(|image| !image.pixels.is_empty()),
+            source: group.source.clone(),
         }
     }
 }
@@ -304,7 +320,10 @@ impl GateReport {
             compared_by: report.compared_by.clone(),
             profile: report.profile.to_string(),
             renderer: renderer.identity,
+            declares: renderer.declares,
+            warnings: renderer.warnings,
             seconds: report.seconds,
+            required: report.required,
             totals,
             problems: renderer.problems,
             incidents: renderer.incidents,
@@ -393,12 +412,15 @@ impl From<GateReport> for Report {
             problems: gate.problems,
             incidents: gate.incidents,
             expected_incidents: gate.expected_incidents,
+            declares: gate.declares,
+            warnings: gate.warnings,
         };
         let name = &identity.name;
         Self {
             groups: gate.groups.into_iter().map(|group| group.of_run(name)).collect(),
             failures: gate.failures.into_iter().map(|failure| failure.of_run(name, gate.again.as_deref())).collect(),
             seconds: gate.seconds,
+            required: gate.required,
             renderer: Some(renderer),
             unstable: gate.totals.unstable,
             unstable_cases: gate.unstable,
@@ -461,6 +483,7 @@ impl GateGroup {
             expected_problem: self.expected_problem,
             by_case: Some(counts),
             image: self.image,
+            source: self.source,
             ..Group::new(self.id, adapter.to_owned(), "answer")
         }
     }
@@ -515,6 +538,7 @@ fn failures(report: &Report) -> Vec<GateFailure> {
 
 /// A case that failed.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub struct GateFailure {
     /// The case.
     pub id: String,

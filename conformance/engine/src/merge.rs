@@ -2,15 +2,18 @@
 //! which reports do not hold: the mistake that explains what fails, and what is wrong with all values of a formula together. They are those of
 //! the shard that fails most. How the values of a group are stored is told anew from the counts of all shards.
 
+mod differences;
+
 use crate::expected::expect_problems;
 use crate::run::routes;
+use differences::differences;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::select::scene_id;
 use lightmeter_catalogue::select::{CaseRef, catalogue};
 use lightmeter_catalogue::special::Class;
 use lightmeter_document::Number;
-use lightmeter_document::by_case::{CaseCounts, ComparedBy, KnownFailure, RendererUse};
-use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, ShaderUse, StoreUse, Totals};
+use lightmeter_document::by_case::{CaseCounts, RendererUse};
+use lightmeter_document::run::{BlendState, DeviationUse, Failure, Group, Report, StoreUse, Totals};
 use lightmeter_judge::blend_unit::store::problem_of;
 use lightmeter_judge::cases::joined;
 use lightmeter_judge::tally::{KEPT, KEPT_FAILURES};
@@ -72,47 +75,32 @@ fn add_places(whole: &mut Report, part: &Report) {
     }
 }
 
-/// Whether two runs were asked the same and held against the same, which all shards of a run are.
-fn are_of_one_run(a: &Report, b: &Report) -> bool {
-    let compared_by = |report: &Report| report.compared_by.clone().map(|by| ComparedBy { shard: None, ..by });
-    let expected = |report: &Report| -> Vec<KnownFailure> {
-        report.expectations.iter().map(|one| KnownFailure { failed: 0, passed: 0, ..one.clone() }).collect()
-    };
-    let shader = |report: &Report| report.shader.as_ref().map(ShaderUse::without_mistakes);
-    let all = |report| (compared_by(report), shader(report), expected(report));
-    (all(a), &a.profile, &a.adapters) == (all(b), &b.profile, &b.adapters)
-}
-
 /// Checks that the parts are all shards of one run.
 fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
     let no_whole = |message: String| Err(NoWhole(message));
-    let [(first_path, first), ..] = parts else {
+    let [(first_path, _), ..] = parts else {
         return no_whole("there is nothing to merge; expected the results of each shard".into());
     };
     let mut seen: BTreeMap<u64, &PathBuf> = BTreeMap::new();
     let mut count = None;
+    are_of_one_run(parts)?;
     for (path, part) in parts {
         let (a, b) = (first_path.display(), path.display());
-        let Some(ComparedBy { shard: Some(shard), .. }) = &part.compared_by else {
-            return no_whole(format!(
-                "{b} is no shard of a run; expected the JSON of `run` or `gate` with --shard I/N"
-            ));
-        };
-        if let Some(interrupted) = &part.interrupted {
-            return no_whole(format!("{b} is not finished: {}", interrupted.message));
-        }
-        if !are_of_one_run(first, part) {
-            let expected = "expected the same cases, seed, targets, profile, adapters, shader and known failures";
-            return no_whole(format!("{a} and {b} are of different runs: {expected}"));
-        }
+        let shard = part.compared_by.as_ref().and_then(|by| by.shard.as_deref()).unwrap_or_default();
         let read = shard.split_once('/').and_then(|(i, n)| Some((i.parse::<u64>().ok()?, n.parse::<u64>().ok()?)));
         let Some((index, shards)) = read.filter(|&(index, shards)| (1..=shards).contains(&index)) else {
             return no_whole(format!("{b}: `{shard}` is no shard; expected I/N"));
         };
-        if *count.get_or_insert(shards) != shards {
-            return no_whole(format!("{a} and {b} overlap: expected shards of the same number"));
+        let of = *count.get_or_insert(shards);
+        if of != shards {
+            return no_whole(format!(
+                "{a} is one of {of} shards and {b} one of {shards}; expected shards of the same number"
+            ));
         }
         if let Some(twice) = seen.insert(index, path) {
+            if twice == path {
+                return no_whole(format!("{b} overlaps itself: it is given twice, as shard {shard}"));
+            }
             return no_whole(format!("{} and {b} overlap: both are shard {shard}", twice.display()));
         }
     }
@@ -121,6 +109,28 @@ fn check(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
     let missing: Vec<String> =
         (1..=count).filter(is_missing).map(|index| format!("{index}/{count}")).take(MOST_NAMED).collect();
     if missing.is_empty() { Ok(()) } else { no_whole(format!("there is no result of shard {}", missing.join(", "))) }
+}
+
+/// Checks that the parts are finished shards, and that all that must be the same in shards of one run is.
+fn are_of_one_run(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
+    let no_whole = |message: String| Err(NoWhole(message));
+    for (path, part) in parts {
+        if part.compared_by.as_ref().is_none_or(|by| by.shard.is_none()) {
+            return no_whole(format!(
+                "{} is no shard of a run; expected the JSON of `run` or `gate` with --shard I/N",
+                path.display()
+            ));
+        }
+        if let Some(interrupted) = &part.interrupted {
+            return no_whole(format!("{} is not finished: {}", path.display(), interrupted.message));
+        }
+    }
+    match differences(parts) {
+        None => Ok(()),
+        Some(fields) => {
+            no_whole(format!("the files are of different runs; expected the same in all of them:\n{fields}"))
+        }
+    }
 }
 
 /// The order of reports, by the ids of groups, formulas, hard cases and scenes.
@@ -288,6 +298,8 @@ fn add_deviations(whole: &mut Report, deviations: Vec<DeviationUse>) {
 
 fn add_renderer(known: &mut RendererUse, more: RendererUse) {
     known.starts += more.starts;
+    let new = more.warnings.into_iter().filter(|warning| !known.warnings.contains(warning)).collect::<Vec<_>>();
+    known.warnings.extend(new);
     known.incidents.extend(more.incidents);
     known.expected_incidents.extend(more.expected_incidents);
     known.problems.first.extend(more.problems.first);
@@ -296,13 +308,57 @@ fn add_renderer(known: &mut RendererUse, more: RendererUse) {
     }
 }
 
+/// What explains failures, with its counts.
+struct CountedExplanation<'a> {
+    /// Failing cases that it explains, those that were looked at, and all.
+    counts: [u64; 3],
+    /// What explains them.
+    by: &'a str,
+}
+
+impl<'a> CountedExplanation<'a> {
+    /// `2 of 3 failing cases are explained by: …`, behind `of 9 failing cases 3 were looked at: ` where not all were.
+    fn read(said: &'a str) -> Option<Self> {
+        let number = |text: &str| text.replace(',', "").parse::<u64>().ok();
+        let (all, said) = match said.strip_prefix("of ") {
+            Some(rest) => {
+                let (all, rest) = rest.split_once(" failing cases ")?;
+                let (_, rest) = rest.split_once(" looked at: ")?;
+                (Some(number(all)?), rest)
+            }
+            None => (None, said),
+        };
+        let (explained, rest) = said.split_once(" of ")?;
+        let (there, rest) = rest.split_once(" failing case")?;
+        let by = rest.strip_prefix("s are explained by: ").or_else(|| rest.strip_prefix(" is explained by: "))?;
+        let there = number(there)?;
+        Some(Self { counts: [number(explained)?, there, all.unwrap_or(there)], by })
+    }
+}
+
+/// What explains the failures of two parts, which is the same in both, with the counts of both; `None` where it is not the same.
+fn joined_explanation(own: &str, more: &str) -> Option<String> {
+    let [own, more] = [CountedExplanation::read(own)?, CountedExplanation::read(more)?];
+    if own.by != more.by {
+        return None;
+    }
+    let [explained, there, all] = [0, 1, 2].map(|k| own.counts[k] + more.counts[k]);
+    let told = format!("{explained} of {there} failing cases are explained by: {}", own.by);
+    Some(if there < all { format!("of {all} failing cases {there} were looked at: {told}") } else { told })
+}
+
 fn add_group(known: &mut Group, more: Group, order: &Order, most: &mut u64) {
     let fails_more = more.totals.failed > *most;
     *most = more.totals.failed.max(*most);
-    if more.explanation.is_some() && (known.explanation.is_none() || fails_more) {
-        known.explanation = more.explanation;
-        known.cause = more.cause;
-        known.mistakes = more.mistakes;
+    if let Some(said) = more.explanation {
+        let joined = known.explanation.as_deref().and_then(|own| joined_explanation(own, &said));
+        if joined.is_some() {
+            known.explanation = joined;
+        } else if known.explanation.is_none() || fails_more {
+            known.explanation = Some(said);
+            known.cause = more.cause;
+            known.mistakes = more.mistakes;
+        }
     }
     if more.problem.is_some() && (known.problem.is_none() || fails_more) {
         known.problem = more.problem;
@@ -436,4 +492,29 @@ fn simplicity(failure: &Failure) -> u32 {
         inputs = answer.inputs.iter().map(|number| number.0 as f32).collect();
     }
     telling(&inputs, !failure.id.contains("/hard/"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::joined_explanation;
+
+    #[test]
+    fn an_explanation_of_all_shards_counts_the_cases_of_all() {
+        let by = "explained by: fog is a power of 2 where it is to be one of e (fog-base-two)";
+        let said = |counts: &str| format!("{counts} {by}");
+        for (own, more, expected) in [
+            ("626 of 626 failing cases are", "600 of 626 failing cases are", "1226 of 1252 failing cases are"),
+            ("1 of 1 failing case is", "1 of 1 failing case is", "2 of 2 failing cases are"),
+            (
+                "of 3114 failing cases 2048 were looked at: 2048 of 2048 failing cases are",
+                "10 of 10 failing cases are",
+                "of 3124 failing cases 2058 were looked at: 2058 of 2058 failing cases are",
+            ),
+        ] {
+            assert_eq!(joined_explanation(&said(own), &said(more)), Some(said(expected)), "{own}, {more}");
+        }
+        let other = "1 of 1 failing case is explained by: fog uses radial distance (fog-radial)";
+        assert_eq!(joined_explanation(&said("1 of 1 failing case is"), other), None);
+        assert_eq!(joined_explanation("its red is too great", "its red is too great"), None);
+    }
 }

@@ -6,7 +6,7 @@ use crate::rows::Rows;
 use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_catalogue::special::Probe;
-use lightmeter_document::by_case::RendererUse;
+use lightmeter_document::by_case::{RendererUse, SourcePlace};
 use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_judge::image::file::StoredImage;
@@ -70,6 +70,12 @@ pub trait AskedRenderer: Send + Sync {
 
     /// Why it cannot draw a frame; `None` where it can.
     fn lacks_frame(&self, frame: &Frame) -> Option<String>;
+
+    /// Where its code of the formula or the scene of this id stands; `None` where it does not say so.
+    fn source(&self, id: &str) -> Option<SourcePlace> {
+        let _ = id;
+        None
+    }
 
     /// What it gives to cases of formulas. `advanced` hears of each number of cases that are done.
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError>;

@@ -146,6 +146,7 @@ fn judge_in_turn(
         let result = result.map(|of_turn| noted.push((turn, of_turn)));
         let (mut groups, failures) = (std::mem::take(&mut report.groups), std::mem::take(&mut report.failures));
         expect_problems(&mut groups, &mut report.expectations);
+        find_sources(&mut groups, subjects);
         tell(&groups, &failures, false, observer);
         judged.push((place, groups, failures));
         // Of a renderer everything is reported: what it was not asked is missing.
@@ -163,6 +164,12 @@ fn judge_in_turn(
         report.failures.extend(failures);
     }
     Ok(())
+}
+
+/// Notes where a renderer's code of each group stands, as far as it says so.
+fn find_sources(groups: &mut [Group], subjects: &[Subject]) {
+    let Some(renderer) = subjects.iter().find_map(Subject::asked) else { return };
+    groups.iter_mut().for_each(|group| group.source = renderer.source(&group.id));
 }
 
 /// Cases that are to be judged, for the progress: those of a formula once for its stages that take rows, and once for each

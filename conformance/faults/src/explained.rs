@@ -7,7 +7,9 @@ use lightmeter_arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter_catalogue::cases::{Domain, Kind};
 use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
 use lightmeter_document::Number;
-use lightmeter_document::explained::{CoursePoint, Explained, MistakenStep, OutputCourse, ShownMistake, ShownStep};
+use lightmeter_document::explained::{
+    CoursePoint, Explained, HeldNumber, MistakenStep, OutputCourse, ShownMistake, ShownStep,
+};
 use lightmeter_document::run::{Failure, Group, Report};
 use std::collections::HashSet;
 
@@ -108,11 +110,6 @@ fn explained_case(
     let spec = &member.spec;
     let mut outputs = vec![Trace { value: 0.0, interval: Accept::ANY }; spec.output_len()];
     let ((), steps) = trace::record(|| member.formula.trace(inputs, profile, &mut outputs));
-    let step = |step: trace::TraceStep| ShownStep {
-        name: step.name.into(),
-        value: Number(step.result.value),
-        interval: bounds(&step.result.interval),
-    };
     let faults: Vec<&'static Fault> = mistakes.iter().filter_map(|name| Fault::by_name(name)).collect();
     let variation = if faults.is_empty() { None } else { Variation::new(member, &faults) };
     let place = (0..spec.output_len()).find(|&k| spec.output_name(k) == output).unwrap_or_default();
@@ -121,10 +118,27 @@ fn explained_case(
         formula: spec.text.into(),
         rules: spec.rules().into_iter().map(|rule| rule.to_string().into()).collect(),
         source: spec.source.into(),
-        steps: steps.into_iter().map(step).collect(),
+        steps: steps.iter().map(shown_step).collect(),
         mistake: variation.as_ref().map(|variation| shown_mistake(variation, member, inputs, profile)),
         course: best_course(member, inputs, place, variation.as_ref(), profile),
     }
+}
+
+/// A step with the component that it is of a vector, `x`, or of a colour, `r`.
+#[must_use]
+pub fn shown_step(step: &trace::TraceStep) -> ShownStep {
+    let letters = if is_colour(step.name) { ["r", "g", "b", "a"] } else { ["x", "y", "z", "w"] };
+    ShownStep {
+        name: step.name.into(),
+        component: step.component.and_then(|place| letters.get(place)).map(|&letter| letter.into()),
+        value: Number(step.result.value),
+        interval: bounds(&step.result.interval),
+    }
+}
+
+/// Whether a step of several numbers is a colour: the terms of lighting and blending, and what is made of a colour.
+fn is_colour(name: &str) -> bool {
+    name.starts_with('C') || name.contains("color") || ["I", "S", "D", "mix", "encoded", "decoded"].contains(&name)
 }
 
 fn bounds(interval: &Accept) -> [Number; 2] {
@@ -140,6 +154,7 @@ pub fn shown_mistake(variation: &Variation<'_>, member: &Member, inputs: &[f32],
     variation.interval(inputs, profile, &mut legal);
     let output = |k: usize| ShownStep {
         name: member.spec.output_name(k).into(),
+        component: None,
         value: Number(value[k]),
         interval: bounds(&legal[k]),
     };
@@ -208,12 +223,51 @@ fn clarity(course: &OutputCourse) -> f64 {
     };
     let finite = || points().map(|point| point.reference.0).filter(|x| x.is_finite());
     let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-    // A colour goes straight up with most of the colours that it is made of, which tells little.
-    let weight = if course.unit.as_deref() == Some("color") { 0.25 } else { 1.0 };
+    // A colour goes straight up with most of the colours that it is made of, and so does anything with what it is a multiple of: that tells
+    // little. So does a pole, beside which all else is level.
+    let plain = |is_plain: bool| if is_plain { 0.25 } else { 1.0 };
+    let weight = plain(course.unit.as_deref() == Some("color"))
+        * plain(is_straight(course))
+        * evenness(course)
+        * smoothness(course);
     let variation = if most > least { weight * ((most - least) / most.abs().max(least.abs())).min(1.0) } else { 0.0 };
     #[expect(clippy::cast_precision_loss, reason = "a hundred points")]
     let telling = points().filter(tells).count() as f64 / f64::from(POINTS);
     if variation > 0.0 || telling > 0.0 { telling + variation } else { 0.0 }
+}
+
+/// Whether an output goes along a straight line, as far as is seen.
+fn is_straight(course: &OutputCourse) -> bool {
+    const SEEN: f64 = 0.01;
+    let (Some(first), Some(last)) = (course.points.first(), course.points.last()) else { return true };
+    let [from, to] = [first, last].map(|point| point.x.0);
+    let share =
+        |x: f64| if course.is_logarithmic { (x / from).ln() / (to / from).ln() } else { (x - from) / (to - from) };
+    let [a, b] = [first, last].map(|point| point.reference.0);
+    let off = |point: &CoursePoint| (point.reference.0 - (a + (b - a) * share(point.x.0))).abs();
+    course.points.iter().all(|point| off(point) <= SEEN * (b - a).abs())
+}
+
+/// The share of the span of an output's values that nine tenths of them fill.
+fn evenness(course: &OutputCourse) -> f64 {
+    let mut values: Vec<f64> = course.points.iter().map(|point| point.reference.0).filter(|x| x.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    let (Some(least), Some(most)) = (values.first(), values.last()) else { return 0.0 };
+    let outer = values.len() / 20;
+    let inner = values[values.len() - 1 - outer] - values[outer];
+    // A course that is level but for a narrow peak is still one.
+    const LEAST: f64 = 0.1;
+    if most > least { (inner / (most - least)).max(LEAST) } else { 1.0 }
+}
+
+/// 1, or less where one step from a point to the next is most of what an output varies: such a course is two level lines.
+fn smoothness(course: &OutputCourse) -> f64 {
+    const OF_A_JUMP: f64 = 0.4;
+    let finite = || course.points.iter().map(|point| point.reference.0).filter(|x| x.is_finite());
+    let values: Vec<f64> = finite().collect();
+    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let step = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+    if step > 0.5 * (most - least) { OF_A_JUMP } else { 1.0 }
 }
 
 /// An output along a number of the inputs; `None` where that is drawn from no range.
@@ -266,9 +320,22 @@ fn course(
         unit: (!unit.is_empty()).then(|| unit.into()),
         output: spec.output_name(output),
         at: Number(at.into()),
+        held: held(member, inputs, input),
         is_logarithmic,
         points: xs.into_iter().map(&mut point).collect(),
     })
+}
+
+/// All numbers of the inputs but the one that changes.
+fn held(member: &Member, inputs: &[f32], free: usize) -> Vec<HeldNumber> {
+    let spec = &member.spec;
+    let units = spec.inputs.iter().flat_map(|input| vec![input.unit; input.shape.components()]);
+    let number = |(place, (unit, &value)): (usize, (&'static str, &f32))| HeldNumber {
+        name: spec.input_name(place),
+        value: Number(value.into()),
+        unit: (!unit.is_empty()).then(|| unit.into()),
+    };
+    units.zip(inputs).enumerate().filter(|(place, _)| *place != free).map(number).collect()
 }
 
 /// From where to where a number of the inputs goes, whether by its logarithm, and its unit.
@@ -290,4 +357,56 @@ fn range(member: &Member, inputs: &[f32], number: usize) -> Option<(f64, f64, bo
         start = end;
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn along(value: impl Fn(f64) -> f64) -> OutputCourse {
+        let point = |k: u32| {
+            let x = f64::from(k) / 96.0;
+            let reference = Number(value(x));
+            CoursePoint { x: Number(x), reference, interval: [reference; 2], mistaken: None }
+        };
+        OutputCourse {
+            input: "x".into(),
+            unit: None,
+            output: "f".into(),
+            at: Number(0.0),
+            held: vec![],
+            is_logarithmic: false,
+            points: (0..97).map(point).collect(),
+        }
+    }
+
+    #[test]
+    fn a_curve_is_clearer_than_a_line_a_pole_or_a_jump() {
+        let curve = clarity(&along(|x| (-4.0 * x).exp()));
+        for (what, other) in [
+            ("a line", clarity(&along(|x| x))),
+            ("a pole", clarity(&along(|x| 1.0 / (x - 0.501)))),
+            ("a jump", clarity(&along(|x| if x < 0.5 { 0.75 } else { 0.25 }))),
+        ] {
+            assert!(other > 0.0 && other < 0.6 * curve, "{what}: {other} beside {curve}");
+        }
+    }
+
+    #[test]
+    fn all_other_numbers_of_the_inputs_are_told() {
+        let catalogue = catalogue();
+        let member = catalogue.iter().find(|member| member.spec.id == "fog/exp").expect("there is one");
+        let told = held(member, &[1.0, 2.0, 3.0, 0.5, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6], 3);
+        let names: Vec<&str> = told.iter().map(|one| one.name.as_str()).collect();
+        assert_eq!(names[..4], ["p.x", "p.y", "p.z", "fog.r"]);
+        assert_eq!(told.len(), 9);
+    }
+
+    #[test]
+    fn components_of_steps_are_of_a_vector_or_of_a_colour() {
+        for (name, is_color) in [("CD", true), ("color", true), ("texel·color", true), ("n", false), ("⟨v⟩", false)]
+        {
+            assert_eq!(is_colour(name), is_color, "{name}");
+        }
+    }
 }

@@ -32,7 +32,7 @@ mod variation;
 pub use catalogue::faults;
 pub use concerned::concerning;
 pub use diagnose::diagnose;
-pub use explained::{explain, shown_mistake, typical_course};
+pub use explained::{explain, shown_mistake, shown_step, typical_course};
 pub use explanation::{Diagnosis, Explanation};
 pub use factor::Scaled;
 pub use fault::Fault;

@@ -5,6 +5,7 @@ use super::frame;
 use lightmeter_arithmetic::Profile;
 use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::filter::Filter;
+use lightmeter_catalogue::nearest::did_you_mean;
 use lightmeter_document::gate::RendererIdentity;
 use lightmeter_document::protocol::PROTOCOL;
 use lightmeter_scene::frame::Frame;
@@ -54,6 +55,24 @@ pub struct Hello {
     pub describe: bool,
     /// Whether it is asked for special values: NaN, infinity, subnormals, signed zero and rounding, an operation at a time.
     pub special: bool,
+    /// Where its code of formulas and scenes stands, which annotations point to.
+    pub sources: Vec<DeclaredSource>,
+}
+
+/// Where a renderer's code of formulas or scenes stands.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a source such as {\"id\": \"fog/exp\", \"file\": \"src/fog.glsl\", \"line\": 12}"
+)]
+pub struct DeclaredSource {
+    /// A glob of formulas or scenes.
+    pub id: String,
+    /// The file, as it is called from the root of the repository.
+    pub file: String,
+    /// The line, from 1; `None` for the whole file.
+    #[serde(default)]
+    pub line: Option<u64>,
 }
 
 /// Cases that a renderer may skip.
@@ -82,6 +101,27 @@ impl Hello {
             version: clipped(&self.version),
             device: told(&self.device),
             driver: told(&self.driver),
+        }
+    }
+
+    /// What it declares besides its name and version, as reports have it: the fields that say something, but for where its code stands.
+    #[must_use]
+    pub fn declares(&self) -> serde_json::Map<String, serde_json::Value> {
+        let says_nothing = |value: &serde_json::Value| {
+            value.is_null() || value == &serde_json::json!([]) || value == &serde_json::json!(false)
+        };
+        let mut fields = self.fields();
+        fields.retain(|name, value| {
+            !says_nothing(value) && !["renderer", "version", "device", "driver", "sources"].contains(&name.as_str())
+        });
+        fields
+    }
+
+    /// All fields, by their names.
+    fn fields(&self) -> serde_json::Map<String, serde_json::Value> {
+        match serde_json::to_value(self) {
+            Ok(serde_json::Value::Object(fields)) => fields,
+            _ => unreachable!("a hello is an object of strings, lists and truth values"),
         }
     }
 
@@ -123,6 +163,7 @@ impl Hello {
 
 /// What a line says.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Line<'a> {
     /// Who answers.
     Hello(Box<Hello>),
@@ -134,6 +175,8 @@ pub enum Line<'a> {
     Image(Cow<'a, str>, Cow<'a, str>),
     /// The renderer does not do this, and why.
     Skip(Cow<'a, str>, Cow<'a, str>),
+    /// The renderer does not do these rows of a formula's columns, and why: said in a file of answers.
+    SkipRows(Cow<'a, str>, Vec<usize>, Cow<'a, str>),
     /// The renderer could not do this, and why.
     Error(Cow<'a, str>, Cow<'a, str>),
 }
@@ -144,9 +187,12 @@ impl Line<'_> {
     pub fn id(&self) -> Option<&str> {
         match self {
             Self::Hello(_) => None,
-            Self::Value(id, _) | Self::Hex(id, _) | Self::Image(id, _) | Self::Skip(id, _) | Self::Error(id, _) => {
-                Some(id)
-            }
+            Self::SkipRows(id, ..)
+            | Self::Value(id, _)
+            | Self::Hex(id, _)
+            | Self::Image(id, _)
+            | Self::Skip(id, _)
+            | Self::Error(id, _) => Some(id),
         }
     }
 }
@@ -163,6 +209,8 @@ struct Raw<'a> {
     image: Option<Cow<'a, str>>,
     #[serde(borrow)]
     skip: Option<Cow<'a, str>>,
+    /// Beside a skip alone: the rows of columns that it is of.
+    rows: Option<serde_json::Value>,
     #[serde(borrow)]
     error: Option<Cow<'a, str>>,
 }
@@ -285,7 +333,12 @@ fn told(raw: Raw<'_>) -> Result<Line<'_>, String> {
         (Some(Values(values)), None, None, None, None) => Ok(Line::Value(id, values)),
         (None, Some(digits), None, None, None) => Ok(Line::Hex(id, digits)),
         (None, None, Some(file), None, None) => Ok(Line::Image(id, file)),
-        (None, None, None, Some(reason), None) => Ok(Line::Skip(id, reason)),
+        (None, None, None, Some(reason), None) => match raw.rows {
+            None => Ok(Line::Skip(id, reason)),
+            Some(rows) => serde_json::from_value(rows)
+                .map(|rows| Line::SkipRows(id, rows, reason))
+                .map_err(|error| format!("its `rows`: {error}; expected such as [0, 17]")),
+        },
         (None, None, None, None, Some(reason)) => Ok(Line::Error(id, reason)),
         _ => Err(format!(
             "it has none, or more than one, of `value`, `hex`, `image`, `skip` and `error`; expected {EXPECTED}"
@@ -302,6 +355,7 @@ impl Line<'_> {
             Self::Hex(id, digits) => Line::Hex(own(id), own(digits)),
             Self::Image(id, file) => Line::Image(own(id), own(file)),
             Self::Skip(id, reason) => Line::Skip(own(id), own(reason)),
+            Self::SkipRows(id, rows, reason) => Line::SkipRows(own(id), rows, own(reason)),
             Self::Error(id, reason) => Line::Error(own(id), own(reason)),
         }
     }
@@ -313,8 +367,13 @@ const EXPECTED: &str = "an answer such as {\"id\": \"fog/exp/random/000017\", \"
 #[must_use]
 pub fn is_hello(line: &[u8]) -> bool {
     serde_json::from_slice::<serde_json::Value>(line.trim_ascii())
-        .is_ok_and(|value| value["id"].is_null() && (value["hello"].is_string() || value["renderer"].is_string()))
+        .is_ok_and(|value| value["id"].is_null() && (!value["hello"].is_null() || !value["renderer"].is_null()))
 }
+
+/// What an entry of `skips` says.
+const SKIPS: &str = "[{\"id\": \"fog/exp\", \"reason\": \"not built\"}]";
+/// What an entry of `sources` says.
+const SOURCES: &str = "[{\"id\": \"fog/exp\", \"file\": \"src/fog.glsl\", \"line\": 12}]";
 
 fn hello(text: &str) -> Result<Line<'_>, String> {
     #[derive(Deserialize)]
@@ -330,12 +389,26 @@ fn hello(text: &str) -> Result<Line<'_>, String> {
     if let Some(protocol) = hello.filter(|protocol| protocol != PROTOCOL) {
         return Err(format!("said a hello of `{}`; expected `{PROTOCOL}`", clipped(&protocol)));
     }
+    let known = Hello::default().fields();
     for (name, value) in &rest {
-        let is_list = matches!(name.as_str(), "formulas" | "scenes" | "excludes" | "formats" | "effects" | "targets");
+        if !known.contains_key(name) {
+            let meant = did_you_mean(name, known.keys().map(String::as_str));
+            let meant = if meant == "." { format!("; expected one of {}", listed(&known)) } else { meant };
+            return Err(format!("said a hello with the unknown field `{}`{meant}", clipped(name)));
+        }
+        let is_list =
+            matches!(name.as_str(), "formulas" | "scenes" | "excludes" | "formats" | "effects" | "targets" | "sources");
         if is_list && !value.is_array() && !value.is_null() {
-            return Err(format!(
-                "said a hello in which `{name}` is no list; expected such as [\"fog/*\", \"lighting/blinn\"]"
-            ));
+            let example = if name == "sources" { SOURCES } else { "[\"fog/*\", \"lighting/blinn\"]" };
+            return Err(format!("said a hello in which `{name}` is no list; expected such as {example}"));
+        }
+        let unread = match name.as_str() {
+            "skips" => serde_json::from_value::<Vec<DeclaredSkip>>(value.clone()).err().map(|why| (why, SKIPS)),
+            "sources" => serde_json::from_value::<Vec<DeclaredSource>>(value.clone()).err().map(|why| (why, SOURCES)),
+            _ => None,
+        };
+        if let Some((why, example)) = unread {
+            return Err(format!("said a hello in which `{name}` cannot be read: {why}; expected such as {example}"));
         }
         let example = match name.as_str() {
             "version" => "1.2",
@@ -349,6 +422,11 @@ fn hello(text: &str) -> Result<Line<'_>, String> {
     }
     let hello: Hello = serde_json::from_value(rest.into()).map_err(wrong)?;
     Ok(Line::Hello(Box::new(Hello { renderer: clipped(&renderer), version: clipped(&hello.version), ..hello })))
+}
+
+/// The names of fields, in a row.
+fn listed(fields: &serde_json::Map<String, serde_json::Value>) -> String {
+    fields.keys().map(String::as_str).collect::<Vec<_>>().join(", ")
 }
 
 /// The id of an answer, whatever else is wrong with it: where it is no JSON, the string behind the first `"id":`.
@@ -392,12 +470,13 @@ fn clipped_to(words: &str, most: usize) -> String {
 
 /// Why a line cannot be had.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Unread {
     /// It is longer than any answer is.
     #[error("a line of more than {} bytes", MOST_BYTES)]
     TooLong,
     /// The stream failed.
-    #[error("{0}")]
+    #[error(transparent)]
     Io(#[from] std::io::Error),
 }
 
@@ -466,8 +545,9 @@ mod tests {
         assert_eq!(read(br#"{"id":"a","hex":"0x7fc00000"}"#), Ok(Line::Hex("a".into(), "0x7fc00000".into())));
         assert_eq!(read(br#"{"id":"s","image":"s.png"}"#), Ok(Line::Image("s".into(), "s.png".into())));
         assert_eq!(read(br#"{"id":"s","skip":"no fog"}"#), Ok(Line::Skip("s".into(), "no fog".into())));
-        let hello =
-            read(br#"{"hello":"lightmeter.protocol/1","renderer":"r","version":"2","formulas":["fog"],"extra":1}"#);
+        let skipped = Line::SkipRows("fog/exp".into(), vec![0, 17], "no fog".into());
+        assert_eq!(read(br#"{"id":"fog/exp","skip":"no fog","rows":[0,17]}"#), Ok(skipped));
+        let hello = read(br#"{"hello":"lightmeter.protocol/1","renderer":"r","version":"2","formulas":["fog"]}"#);
         let Ok(Line::Hello(hello)) = hello else { panic!("{hello:?}") };
         assert_eq!((hello.renderer.as_str(), hello.formulas.as_slice()), ("r", ["fog".to_owned()].as_slice()));
         for bare in [
@@ -501,14 +581,36 @@ mod tests {
             (br#"{"id":"a","value":[1],"skip":"x"}"#, "none, or more than one"),
             (br#"{"id":"a","value":[1],"hex":"0x1"}"#, "none, or more than one"),
             (br#"{"id":"a","values":[1]}"#, "none, or more than one"),
+            (br#"{"id":"fog/exp","skip":"no fog","rows":[-1]}"#, "its `rows`"),
             (br#"[1]"#, "expected an answer"),
             (b"\xff", "UTF-8"),
-            (br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#, "expected `lightmeter.protocol/1`"),
+        ] {
+            let error = read(line).expect_err(said);
+            assert!(error.contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_hello_is_said() {
+        for (line, said) in [
+            (&br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#[..], "expected `lightmeter.protocol/1`"),
             (br#"{"renderer":"r","formulas":"fog"}"#, "`formulas` is no list"),
             (br#"{"renderer":"r","version":1.2}"#, "`version` is no string"),
             (br#"{"renderer":"r","driver":["Mesa"]}"#, "`driver` is no string; expected such as \"Mesa 22.3.6\""),
             (br#"{"renderer":"r","excludes":"fog"}"#, "`excludes` is no list"),
             (br#"{"renderer":"r","special":"yes"}"#, "expected a boolean"),
+            (br#"{"renderer":"r","exclude":["fog"]}"#, "unknown field `exclude`; did you mean `excludes`?"),
+            (br#"{"renderer":"r","xyzzy":1}"#, "unknown field `xyzzy`; expected one of renderer, version, device"),
+            (br#"{"renderer":"r","sources":"a.c"}"#, "`sources` is no list; expected such as [{\"id\""),
+            (
+                br#"{"renderer":"r","sources":[{"id":"fog"}]}"#,
+                "`sources` cannot be read: missing field `file`; expected such as",
+            ),
+            (
+                br#"{"renderer":"r","skips":[{"id":"fog"}]}"#,
+                "`skips` cannot be read: missing field `reason`; expected such as",
+            ),
+            (br#"{"renderer":5}"#, "said a hello that cannot be read: invalid type: integer `5`, expected a string"),
         ] {
             let error = read(line).expect_err(said);
             assert!(error.contains(said), "{error}");

@@ -4,6 +4,7 @@ use super::answer::{self, Hello, Line, Unread, clipped};
 use super::columns::Columns;
 use super::error::ProcessError;
 use super::expectations::Expectations;
+use super::formula_skips::{FormulaSkip, FormulaSkips};
 use super::given::{Asks, Declared, Given, given, word};
 use super::pack::PackError;
 use super::picture;
@@ -12,7 +13,7 @@ use super::problems::note;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::select::CaseRef;
 use lightmeter_catalogue::special::Probe;
-use lightmeter_document::by_case::RendererUse;
+use lightmeter_document::by_case::{RendererUse, SourcePlace};
 use lightmeter_document::event::Stop;
 use lightmeter_document::gate::Problems;
 use lightmeter_document::run::Identity;
@@ -34,6 +35,8 @@ use std::sync::Arc;
 
 /// The name of a folder's answers.
 pub const ANSWERS: &str = "answers.jsonl";
+/// What is expected in the place of a file that cannot be read.
+const EXPECTED: &str = "expected a file of JSON lines, or a folder with answers.jsonl";
 /// Components of a pixel.
 const COMPONENTS: usize = 4;
 /// Lines that are read at once.
@@ -63,14 +66,17 @@ impl AnswerFile {
         let path = if answers.is_dir() { answers.join(ANSWERS) } else { answers.to_owned() };
         let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
         let file = lightmeter_files::read::open(&path)
-            .map_err(|error| PackError::Read { path: path.clone(), message: error.to_string() })?;
+            .map_err(|error| PackError::Read { path: path.clone(), message: format!("{error}; {EXPECTED}") })?;
         let stream = BufReader::with_capacity(1 << 20, file);
         let mut opened = Self { path, stream, folder, number: 0, first: vec![], hello: None };
         if let Some(Ok(line)) = opened.next()? {
             match answer::read(&line) {
                 Ok(Line::Hello(hello)) => opened.hello = Some(*hello),
                 Err(message) if answer::is_hello(&line) => {
-                    return Err(PackError::Manifest { path: opened.path, message: format!("line 1: {message}") });
+                    return Err(PackError::Manifest {
+                        path: opened.path,
+                        message: format!("line 1: the renderer {message}"),
+                    });
                 }
                 _ => opened.first.push((opened.number, line)),
             }
@@ -114,6 +120,8 @@ struct Contents {
     scenes: HashMap<usize, Given>,
     /// What is answered by arrays.
     columns: Columns,
+    /// Formulas, and rows of them, that are skipped.
+    skips: FormulaSkips,
     /// Where images lie.
     folder: PathBuf,
 }
@@ -127,6 +135,8 @@ pub struct FileRenderer {
     are_many: bool,
     contents: Contents,
     problems: Problems,
+    /// The files that do not say which pack they answer.
+    of_any_pack: Vec<PathBuf>,
     stop: Stop,
 }
 
@@ -159,6 +169,7 @@ impl FileRenderer {
             are_many,
             contents: Contents::default(),
             problems: Problems::default(),
+            of_any_pack: vec![],
             stop,
         };
         renderer.read_next()?;
@@ -182,6 +193,9 @@ impl FileRenderer {
         let Some(mut file) = self.files.pop_front() else { return Ok(()) };
         let columns = Columns::open(&file.folder, &self.plan)?;
         self.is_of_this_pack(&file, &columns)?;
+        if file.hello.as_ref().is_none_or(|hello| hello.pack.is_none()) {
+            self.of_any_pack.push(file.path.clone());
+        }
         for formula in columns.formulas() {
             let id = &self.plan.member(formula).spec.id;
             if self.declared.lacks(id).is_some() {
@@ -230,6 +244,19 @@ impl FileRenderer {
         Err(PackError::Manifest { path: file.path.clone(), message })
     }
 
+    /// That files do not say which pack they answer, where some do not: random cases of another pack may have the same ids.
+    fn warning(&self) -> Option<String> {
+        let files: Vec<String> = self.of_any_pack.iter().map(|path| path.display().to_string()).collect();
+        let (of, own) =
+            (if self.are_many { format!(" ({})", files.join(", ")) } else { String::new() }, self.plan.pack());
+        (!files.is_empty()).then(|| {
+            format!(
+                "the answers do not say which pack they answer{of}; if it is another one, cases of the same ids are judged by the \
+                 wrong inputs: have the first line say `\"pack\": \"{own}\"`, as this pack's manifest does"
+            )
+        })
+    }
+
     /// Takes lines for answers to cases of the plan. What answers none of them is a problem.
     fn take(&mut self, lines: &[(u64, Vec<u8>)], source: Option<&str>, told: &dyn Fn(u64) -> String) {
         let (plan, declared) = (&self.plan, &self.declared);
@@ -241,6 +268,10 @@ impl FileRenderer {
                     note(&mut self.problems, kind, || format!("{}: {what}", told(number)));
                     continue;
                 }
+                Read::Skips(formula, skip) => {
+                    self.skip(formula, skip, &told(number));
+                    continue;
+                }
                 Read::Answer(place, given) => (place, given),
             };
             if !self.contents.put(&self.plan, place, given) {
@@ -250,11 +281,32 @@ impl FileRenderer {
             }
         }
     }
+
+    /// Notes that cases of a formula are skipped. Columns answer every row, so that their skips must name rows.
+    fn skip(&mut self, formula: usize, skip: FormulaSkip, line: &str) {
+        let (id, count) = (&self.plan.member(formula).spec.id, self.plan.formulas[formula].count());
+        let has_columns = self.contents.columns.has(formula);
+        match &skip.rows {
+            Some(rows) if rows.iter().any(|&row| row >= count) => {
+                note(&mut self.problems, "unknown", || format!("{line}: {id} has {count} rows, counted from 0"));
+            }
+            Some(_) if !has_columns => {
+                note(&mut self.problems, "unknown", || {
+                    format!("{line}: {id} has no columns whose rows could be skipped")
+                });
+            }
+            None if has_columns => note(&mut self.problems, "duplicate", || {
+                format!("{line}: {id} is answered by columns; a skip of some of its cases names them by `rows`")
+            }),
+            _ => self.contents.skips.add(formula, skip),
+        }
+    }
 }
 
 /// What a line comes to.
 enum Read {
     Answer(CasePlace, Given),
+    Skips(usize, FormulaSkip),
     Problem(&'static str, String),
 }
 
@@ -263,10 +315,10 @@ enum Read {
 #[non_exhaustive]
 pub enum FilesError {
     /// A file cannot be read.
-    #[error("{0}")]
+    #[error(transparent)]
     File(#[from] PackError),
     /// What the first line declares cannot be read.
-    #[error("{0}")]
+    #[error(transparent)]
     Hello(#[from] ProcessError),
 }
 
@@ -279,6 +331,17 @@ impl Read {
         let Some(id) = line.id() else {
             return Self::Problem("malformed", "a hello, which is said once and first".into());
         };
+        if let (None, Some(formula)) = (plan.find(id), plan.formula(id)) {
+            let (rows, reason) = match &line {
+                Line::Skip(_, reason) => (None, reason),
+                Line::SkipRows(_, rows, reason) => (Some(rows.iter().copied().collect()), reason),
+                _ => return Self::Problem("unknown", format!("`{id}` is a formula; expected the id of a case")),
+            };
+            if declared.lacks(id).is_some() {
+                return Self::Problem("unknown", format!("`{id}` is not among what the renderer declares"));
+            }
+            return Self::Skips(formula, FormulaSkip { rows, reason: clipped(reason) });
+        }
         let Some(place) = plan.find(id) else {
             return Self::Problem("unknown", format!("no case `{}` was asked for", clipped(id)));
         };
@@ -371,6 +434,10 @@ impl AskedRenderer for FileRenderer {
         self.declared.lacks_frame(frame)
     }
 
+    fn source(&self, id: &str) -> Option<SourcePlace> {
+        self.declared.source(id)
+    }
+
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
         let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
         let formula = self.plan.formula(&rows.members[0].spec.id);
@@ -378,23 +445,32 @@ impl AskedRenderer for FileRenderer {
             for (place, (&case, words)) in
                 rows.cases.iter().zip(answers.words.chunks_exact_mut(rows.outputs)).enumerate()
             {
-                match self.plan.formulas[formula].place(case) {
-                    Some(case) => self
-                        .contents
-                        .columns
-                        .read(formula, case, words)
-                        .map_err(|error| DeviceError::Refused(Box::new(error)))?,
-                    None => drop(answers.unanswered.insert(place, Unanswered::Missing)),
+                let Some(row) = self.plan.formulas[formula].place(case) else {
+                    answers.unanswered.insert(place, Unanswered::Missing);
+                    continue;
+                };
+                if let Some(reason) = self.contents.skips.of_row(formula, row) {
+                    let id = rows.members[rows.of[place]].case_id(case);
+                    answers.unanswered.insert(place, self.declared.skips.skipped(&id, reason.to_owned()));
+                    continue;
                 }
+                let read = self.contents.columns.read(formula, row, words);
+                read.map_err(|error| DeviceError::Refused(Box::new(error)))?;
             }
             advanced(rows.of.len() as u64);
             return Ok(answers);
         }
         let column = formula.and_then(|formula| Some((formula, self.contents.formulas.get(&formula)?)));
+        let skipped = formula.and_then(|formula| self.contents.skips.of_all(formula));
         for (place, (&case, words)) in rows.cases.iter().zip(answers.words.chunks_exact_mut(rows.outputs)).enumerate() {
             let found = column.and_then(|(formula, column)| Some((column, self.plan.formulas[formula].place(case)?)));
             match found.map_or(Err(Unanswered::Missing), |(column, case)| column.get(case, rows.outputs)) {
                 Ok(answered) => words.copy_from_slice(answered),
+                Err(Unanswered::Missing) if skipped.is_some() => {
+                    let reason = skipped.unwrap_or_default().to_owned();
+                    let id = rows.members[rows.of[place]].case_id(case);
+                    answers.unanswered.insert(place, self.declared.skips.skipped(&id, reason));
+                }
                 Err(why) => drop(answers.unanswered.insert(place, why)),
             }
         }
@@ -461,6 +537,7 @@ impl AskedRenderer for FileRenderer {
     }
 
     fn used(&mut self) -> RendererUse {
-        RendererUse { problems: std::mem::take(&mut self.problems), ..self.declared.used() }
+        let warnings = self.warning().into_iter().collect();
+        RendererUse { problems: std::mem::take(&mut self.problems), warnings, ..self.declared.used() }
     }
 }

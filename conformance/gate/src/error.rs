@@ -1,6 +1,7 @@
 //! Why a renderer could not be asked.
 
 use super::pack;
+use lightmeter_catalogue::filter::FilterError;
 use lightmeter_scene::target::TargetFormat;
 use std::path::PathBuf;
 
@@ -18,7 +19,7 @@ pub enum ProcessError {
     },
     /// What it declares cannot be read.
     #[error("the renderer's hello: {0}")]
-    Hello(#[from] lightmeter_catalogue::filter::FilterError),
+    Hello(FilterError),
     /// It declares what there is not.
     #[error("the renderer's hello: `{glob}` matches no {what}{meant} `lightmeter list` lists them all")]
     Unmatched {
@@ -47,6 +48,14 @@ pub enum ProcessError {
         /// Why that is refused.
         why: String,
     },
+    /// It says of its code's place what cannot be.
+    #[error("the renderer's hello: in `sources` of `{id}` {why}")]
+    Source {
+        /// The glob.
+        id: String,
+        /// What is wrong, and what would be right.
+        why: &'static str,
+    },
     /// It asks for accuracy rules that are unknown.
     #[error("the renderer's hello: no profile `{0}`; expected {profiles}", profiles = lightmeter_arithmetic::profile::PROFILES.map(|profile| profile.name).join(", "))]
     Profile(String),
@@ -54,10 +63,10 @@ pub enum ProcessError {
     #[error("the renderer's hello: no target `{0}`; expected {formats}", formats = TargetFormat::ALL.map(TargetFormat::name).join(", "))]
     Target(String),
     /// A scene is refused, which a test rules out.
-    #[error("{0}")]
+    #[error(transparent)]
     Scene(#[from] lightmeter_catalogue::scene::SceneError),
     /// A pack's or a scene's file cannot be written.
-    #[error("{0}")]
+    #[error(transparent)]
     Pack(#[from] pack::PackError),
     /// A folder for images cannot be made.
     #[error("cannot write {}: {message}", .path.display())]
@@ -67,6 +76,13 @@ pub enum ProcessError {
         /// Why.
         message: String,
     },
+}
+
+// The message has the whole of it, so that it is no source besides, which would be told once more.
+impl From<FilterError> for ProcessError {
+    fn from(error: FilterError) -> Self {
+        Self::Hello(error)
+    }
 }
 
 /// Why a pack was not written or read.

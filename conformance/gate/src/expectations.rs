@@ -94,7 +94,8 @@ impl Expectations {
     /// Where it cannot be read, or says what nothing can be made of.
     pub fn read(path: &Path) -> Result<Self, ExpectationError> {
         let refused = |message: String| ExpectationError { path: path.into(), message };
-        let text = lightmeter_files::read::text(path, MOST_TEXT).map_err(|error| refused(error.to_string()))?;
+        let text = lightmeter_files::read::text(path, MOST_TEXT)
+            .map_err(|error| refused(format!("it cannot be read: {error}")))?;
         Self::parse(&text).map_err(refused)
     }
 

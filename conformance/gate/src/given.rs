@@ -1,6 +1,6 @@
 //! What a renderer gave to a question, read from a line.
 
-use super::answer::{DeclaredSkip, Hello, Line, clipped};
+use super::answer::{DeclaredSkip, DeclaredSource, Hello, Line, clipped};
 use super::error::ProcessError;
 use super::excludes::Excludes;
 use super::plan::unmatched;
@@ -13,7 +13,7 @@ use lightmeter_catalogue::scene::select::scene_id;
 use lightmeter_catalogue::select::catalogue;
 use lightmeter_catalogue::special::{Gives, PROBES, Probe};
 use lightmeter_document::Number;
-use lightmeter_document::by_case::RendererUse;
+use lightmeter_document::by_case::{RendererUse, SourcePlace};
 use lightmeter_document::run::Identity;
 use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, Unanswered};
@@ -67,7 +67,9 @@ pub(super) fn given(line: Line<'_>, asks: Asks<'_>) -> Given {
         Asks::Image => (0, vec![]),
     };
     match (line, asks) {
-        (Line::Skip(_, reason), _) => Given::Nothing(Unanswered::Skipped(clipped(&reason))),
+        (Line::Skip(_, reason) | Line::SkipRows(_, _, reason), _) => {
+            Given::Nothing(Unanswered::Skipped(clipped(&reason)))
+        }
         (Line::Error(_, reason), _) => unjudged(clipped(&reason)),
         (Line::Image(_, file), Asks::Image) => Given::Image(file.into_owned()),
         (Line::Value(..) | Line::Hex(..), Asks::Image) => unjudged("a scene is answered by `image`".into()),
@@ -203,11 +205,14 @@ pub(super) struct Declared {
     excludes: Excludes,
     pub(super) skips: Skips,
     pub(super) targets: Vec<TargetFormat>,
+    /// Where its code stands, by filters.
+    sources: Vec<(Filter, SourcePlace)>,
 }
 
 /// A name that is misspelt would leave out what it was to declare, and nobody would see it.
 fn matches_something(hello: &Hello) -> Result<(), ProcessError> {
-    if hello.formulas.is_empty() && hello.scenes.is_empty() && hello.excludes.is_empty() {
+    let has_none = hello.formulas.is_empty() && hello.scenes.is_empty();
+    if has_none && hello.excludes.is_empty() && hello.sources.is_empty() {
         return Ok(());
     }
     let members = catalogue();
@@ -223,6 +228,7 @@ fn matches_something(hello: &Hello) -> Result<(), ProcessError> {
         ("formula", &hello.formulas, &formulas),
         ("scene", &hello.scenes, &scenes),
         ("formula or scene", &Excludes::globs(&hello.excludes).cloned().collect(), &both),
+        ("formula or scene", &hello.sources.iter().map(|source| source.id.clone()).collect(), &both),
     ] {
         for glob in globs {
             let filter = Filter::new(std::slice::from_ref(glob))?;
@@ -235,6 +241,19 @@ fn matches_something(hello: &Hello) -> Result<(), ProcessError> {
     Ok(())
 }
 
+/// An entry of a hello's `sources`.
+fn source(declared: &DeclaredSource) -> Result<(Filter, SourcePlace), ProcessError> {
+    let DeclaredSource { id, file, line } = declared;
+    let wrong = |why: &'static str| ProcessError::Source { id: clipped(id), why };
+    if file.trim().is_empty() {
+        return Err(wrong("`file` is empty; expected such as \"src/fog.glsl\""));
+    }
+    if *line == Some(0) {
+        return Err(wrong("`line` is 0; expected 1 or more"));
+    }
+    Ok((Filter::new(std::slice::from_ref(id))?, SourcePlace { file: clipped(file), line: *line }))
+}
+
 impl Declared {
     /// Reads what a hello declares.
     pub(super) fn new(hello: Hello) -> Result<Self, ProcessError> {
@@ -245,7 +264,13 @@ impl Declared {
         let mut targets = hello.targets.iter().map(format).collect::<Result<Vec<_>, _>>()?;
         targets.retain(|&target| !excludes.has_format(target));
         let skips = Skips::of(&hello)?;
-        Ok(Self { hello, formulas, scenes, excludes, skips, targets })
+        let sources = hello.sources.iter().map(source).collect::<Result<_, _>>()?;
+        Ok(Self { hello, formulas, scenes, excludes, skips, targets, sources })
+    }
+
+    /// Where its code of a formula or a scene stands: as the first entry says that selects it.
+    pub(super) fn source(&self, id: &str) -> Option<SourcePlace> {
+        self.sources.iter().find(|(filter, _)| filter.selects(id)).map(|(_, place)| place.clone())
     }
 
     /// Why a formula or a scene is not asked; `None` where it is.
@@ -267,7 +292,7 @@ impl Declared {
 
     /// What a report says of it, where nothing went wrong.
     pub(super) fn used(&self) -> RendererUse {
-        RendererUse { identity: self.hello.identity(), ..RendererUse::default() }
+        RendererUse { identity: self.hello.identity(), declares: self.hello.declares(), ..RendererUse::default() }
     }
 
     /// Why a frame is not asked for; `None` where it is.

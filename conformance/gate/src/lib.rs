@@ -14,6 +14,7 @@ mod columns;
 pub mod error;
 mod excludes;
 pub mod expectations;
+mod formula_skips;
 pub mod frame;
 mod given;
 pub mod pack;

@@ -42,7 +42,7 @@ pub struct GatePlan {
 #[non_exhaustive]
 pub enum PlanError {
     /// A glob cannot be read.
-    #[error("{0}")]
+    #[error(transparent)]
     Filter(#[from] FilterError),
     /// A target is unknown.
     #[error("no target `{0}`; expected {formats}", formats = TargetFormat::ALL.map(TargetFormat::name).join(", "))]
@@ -72,6 +72,7 @@ pub struct PlannedFormula {
 
 /// A case of the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum CasePlace {
     /// The formula's place among the plan's, and the case's among its own.
     Case {
@@ -118,8 +119,9 @@ impl GatePlan {
             let member = &self.member(formula).spec.id;
             filter.selects(member) || filter.reaches_below(member) || is_random(member) || {
                 let cases = 0..self.formulas[formula].count();
-                let is_below = id.starts_with(member.as_str()) || id.starts_with(self.member(formula).spec.group());
-                is_below && cases.into_iter().any(|case| filter.selects(&self.id(CasePlace::Case { formula, case })))
+                let is_of = |ancestor: &str| id.strip_prefix(ancestor).is_some_and(|rest| rest.starts_with('/'));
+                (is_of(member) || is_of(self.member(formula).spec.group()))
+                    && cases.into_iter().any(|case| filter.selects(&self.id(CasePlace::Case { formula, case })))
             }
         });
         let has_scene = || (0..self.scenes.len()).any(|scene| filter.selects(&self.id(CasePlace::Scene(scene))));

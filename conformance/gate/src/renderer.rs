@@ -2,13 +2,14 @@
 
 use super::answer::{Hello, Line, clipped};
 use super::error::ProcessError;
-use super::given::{Asks, Declared, given, put};
+use super::expectations::Expectations;
+use super::given::{Asks, Declared, Given, given, put};
 use super::picture;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_catalogue::select::CaseRef;
 use lightmeter_catalogue::special::Probe;
-use lightmeter_document::by_case::RendererUse;
+use lightmeter_document::by_case::{RendererUse, SourcePlace};
 use lightmeter_document::run::Identity;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
@@ -18,7 +19,9 @@ use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::target::TargetFormat;
+use std::any::Any;
 use std::borrow::Cow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -27,7 +30,7 @@ pub trait Renderer {
     /// Who it is, and what it is to be asked.
     fn hello(&self) -> Hello;
 
-    /// The outputs of a formula for a row of inputs, in the order of its description.
+    /// The outputs of a formula for a row of inputs, in the order of its description. Where it panics, the case fails and the rest goes on.
     ///
     /// # Errors
     /// Why it does not evaluate this.
@@ -61,6 +64,15 @@ pub trait Renderer {
     }
 }
 
+/// Cases of a formula at which a function may panic before no more of them are evaluated: each panic prints a message of its own.
+const MOST_PANICS: usize = 3;
+
+/// What a panic says.
+fn said(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("it says nothing")
+}
+
 /// A renderer in this process, as a subject of the engine. Images go to a folder.
 pub struct InProcess<R> {
     renderer: Mutex<R>,
@@ -76,6 +88,13 @@ impl<R: Renderer + Send> InProcess<R> {
     pub fn new(renderer: R, folder: PathBuf) -> Result<Self, ProcessError> {
         let declared = Declared::new(renderer.hello())?;
         Ok(Self { renderer: Mutex::new(renderer), declared, folder })
+    }
+
+    /// Some of its cases are known to be skipped.
+    pub fn expect(&mut self, expectations: &Expectations) {
+        let Hello { renderer, version, .. } = &self.declared.hello;
+        let known = expectations.skips_of(renderer, version);
+        self.declared.skips.extend(known);
     }
 
     /// How it is named in reports.
@@ -98,15 +117,27 @@ impl<R: Renderer + Send> AskedRenderer for InProcess<R> {
         self.declared.lacks_frame(frame)
     }
 
+    fn source(&self, id: &str) -> Option<SourcePlace> {
+        self.declared.source(id)
+    }
+
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
         let skips = self.declared.skips.clone();
         let renderer = self.renderer();
         let each = rows.of.iter().zip(rows.cases).zip(rows.inputs.chunks_exact(rows.stride()));
+        let mut panics = 0;
         let given = each.map(|((&of, &case), inputs)| {
             let (spec, id) = (&rows.members[of].spec, rows.members[of].case_id(case));
-            let line = match renderer.evaluate(spec, inputs) {
-                Ok(values) => Line::Value(Cow::Borrowed(""), values.into_iter().map(f64::from).collect()),
-                Err(reason) => Line::Skip(Cow::Borrowed(""), Cow::Owned(reason)),
+            if panics >= MOST_PANICS {
+                return Given::Nothing(Unanswered::Unasked);
+            }
+            let line = match catch_unwind(AssertUnwindSafe(|| renderer.evaluate(spec, inputs))) {
+                Ok(Ok(values)) => Line::Value(Cow::Borrowed(""), values.into_iter().map(f64::from).collect()),
+                Ok(Err(reason)) => Line::Skip(Cow::Borrowed(""), Cow::Owned(reason)),
+                Err(panic) => {
+                    panics += 1;
+                    Line::Error(Cow::Borrowed(""), Cow::Owned(format!("the function panicked: {}", said(&*panic))))
+                }
             };
             skips.settled(&id, given(line, Asks::Outputs(spec)))
         });

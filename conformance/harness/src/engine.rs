@@ -2,8 +2,10 @@
 
 use crate::values::{FormulaInputs, FormulaOutputs};
 use lightmeter_catalogue::cases::Spec;
-use lightmeter_gate::answer::Hello;
+use lightmeter_document::by_case::SourcePlace;
+use lightmeter_gate::answer::{DeclaredSource, Hello};
 use lightmeter_gate::renderer::Renderer;
+use std::panic::Location;
 use std::sync::Arc;
 
 /// An engine that evaluates formulas.
@@ -19,10 +21,16 @@ pub trait Engine: Send + Sync + 'static {
     /// The ids of the formulas that it evaluates, or globs of them: `fog/exp`, `vector/*`.
     fn formulas(&self) -> Vec<String>;
 
-    /// The outputs of a formula.
+    /// Where its code of a formula stands, which reports show; `None` where that is not told.
+    fn source(&self, formula: &str) -> Option<SourcePlace> {
+        let _ = formula;
+        None
+    }
+
+    /// The outputs of a formula. Where it panics, the case fails and is told with its inputs.
     ///
     /// # Errors
-    /// Why it does not evaluate this one, which fails the formula's test.
+    /// Why it does not evaluate this one, which fails the formula's test unless a file of expectations has it among `[[skipped]]`.
     fn evaluate(&self, formula: &str, inputs: &FormulaInputs<'_>) -> Result<FormulaOutputs, String>;
 }
 
@@ -32,7 +40,7 @@ type Function = Box<dyn Fn(&FormulaInputs<'_>) -> FormulaOutputs + Send + Sync>;
 pub struct Formulas {
     name: String,
     version: String,
-    functions: Vec<(String, Function)>,
+    functions: Vec<(String, Function, SourcePlace)>,
 }
 
 impl Formulas {
@@ -42,14 +50,17 @@ impl Formulas {
         Self { name: name.into(), version: version.into(), functions: vec![] }
     }
 
-    /// The same with the function of one more formula.
+    /// The same with the function of one more formula. Reports show the line that calls this.
     #[must_use]
+    #[track_caller]
     pub fn with<O: Into<FormulaOutputs>>(
         mut self,
         formula: &str,
         function: impl Fn(&FormulaInputs<'_>) -> O + Send + Sync + 'static,
     ) -> Self {
-        self.functions.push((formula.into(), Box::new(move |inputs| function(inputs).into())));
+        let caller = Location::caller();
+        let source = SourcePlace { file: caller.file().into(), line: Some(caller.line().into()) };
+        self.functions.push((formula.into(), Box::new(move |inputs| function(inputs).into()), source));
         self
     }
 }
@@ -64,12 +75,16 @@ impl Engine for Formulas {
     }
 
     fn formulas(&self) -> Vec<String> {
-        self.functions.iter().map(|(formula, _)| formula.clone()).collect()
+        self.functions.iter().map(|(formula, ..)| formula.clone()).collect()
+    }
+
+    fn source(&self, formula: &str) -> Option<SourcePlace> {
+        self.functions.iter().find(|(own, ..)| own == formula).map(|(.., source)| source.clone())
     }
 
     fn evaluate(&self, formula: &str, inputs: &FormulaInputs<'_>) -> Result<FormulaOutputs, String> {
-        match self.functions.iter().find(|(own, _)| own == formula) {
-            Some((_, function)) => Ok(function(inputs)),
+        match self.functions.iter().find(|(own, ..)| own == formula) {
+            Some((_, function, _)) => Ok(function(inputs)),
             None => Err(format!("{} has no {formula}", self.name)),
         }
     }
@@ -81,7 +96,13 @@ pub(crate) struct AskedEngine<E>(pub(crate) Arc<E>);
 impl<E: Engine> Renderer for AskedEngine<E> {
     fn hello(&self) -> Hello {
         let Self(engine) = self;
-        Hello { renderer: engine.name(), version: engine.version(), formulas: engine.formulas(), ..Hello::default() }
+        let source = |id: &String| {
+            let SourcePlace { file, line } = engine.source(id)?;
+            Some(DeclaredSource { id: id.clone(), file, line })
+        };
+        let formulas = engine.formulas();
+        let sources = formulas.iter().filter_map(source).collect();
+        Hello { renderer: engine.name(), version: engine.version(), formulas, sources, ..Hello::default() }
     }
 
     fn evaluate(&mut self, spec: &Spec, inputs: &[f32]) -> Result<Vec<f32>, String> {

@@ -22,10 +22,14 @@ use lightmeter_gate::plan::unmatched;
 use lightmeter_gate::renderer::InProcess;
 use lightmeter_report::gate::{GateStyle, text};
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// By how much an error may grow against a baseline, as of `lightmeter gate`.
 const GROWTH: f64 = 2.0;
+
+/// The variable that renews the baseline instead of comparing with it.
+pub(crate) const UPDATE: &str = "LIGHTMETER_UPDATE_BASELINE";
 
 /// Why an engine cannot be judged.
 #[derive(Debug, thiserror::Error)]
@@ -40,6 +44,12 @@ pub enum HarnessError {
     /// A baseline.
     #[error(transparent)]
     Baseline(#[from] BaselineError),
+    /// There is no baseline where one is to be.
+    #[error(
+        "there is no baseline {}; expected an earlier result, which a run with {UPDATE}=1 writes there",
+        .0.display()
+    )]
+    NoBaseline(PathBuf),
     /// The suite itself.
     #[error("{0}")]
     Suite(String),
@@ -67,6 +77,8 @@ pub(crate) struct Judged {
     choice: Choice,
     baseline: Option<(PathBuf, Baseline)>,
     pub(crate) parts: Vec<SelectionPart>,
+    /// Whether a case of any part was judged.
+    has_judged: AtomicBool,
 }
 
 impl Criteria {
@@ -81,9 +93,10 @@ impl Criteria {
             )));
         }
         let (name, version) = (engine.name(), engine.version());
-        let renderer = InProcess::new(AskedEngine(engine), PathBuf::new()).map_err(|error| engine_error(&error))?;
+        let mut renderer = InProcess::new(AskedEngine(engine), PathBuf::new()).map_err(|error| engine_error(&error))?;
         let identity = renderer.identity();
         let expectations = self.expectations.as_deref().map(Expectations::read).transpose()?.unwrap_or_default();
+        renderer.expect(&expectations);
         if let Some(id) = unmatched(expectations.ids()) {
             return Err(HarnessError::Engine(format!(
                 "the expectation `{id}` matches no case of any formula: see `lightmeter list`"
@@ -102,13 +115,17 @@ impl Criteria {
         let mut selection = Selection::of_renderer(&options);
         (selection.scenes, selection.blended) = (vec![], vec![]);
         let parts = selection.parts();
-        let baseline = self.baseline.as_ref().filter(|path| path.exists());
-        let baseline = baseline.map(|path| Ok::<_, BaselineError>((path.clone(), Baseline::of_gate(path)?)));
+        let earlier = |path: &PathBuf| match path.exists() {
+            true => Ok((path.clone(), Baseline::of_gate(path)?)),
+            false => Err(HarnessError::NoBaseline(path.clone())),
+        };
+        let baseline = self.baseline.as_ref().map(earlier).transpose()?;
         Ok(Judged {
             subject: Mutex::new(Subject::renderer(identity, Box::new(renderer))),
             choice: Choice { filter: formulas, cases: self.cases, seed: self.seed, ..Choice::default() },
             options,
-            baseline: baseline.transpose()?,
+            baseline,
+            has_judged: AtomicBool::new(false),
             parts,
         })
     }
@@ -132,10 +149,17 @@ impl Judged {
     pub(crate) fn of(&self, part: &SelectionPart) -> Result<GateReport, HarnessError> {
         let choice = Choice { filter: part.filters.clone(), ..self.choice.clone() };
         let mut report = self.report(&part.selection, &choice)?;
+        self.has_judged.fetch_or(report.has_judged(), Ordering::Relaxed);
         if let Some((path, baseline)) = &self.baseline {
             report.regressions = baseline.compare(&Standard::from(&report), GROWTH, false, path)?;
         }
         Ok(report)
+    }
+
+    /// Whether a case of any part was judged so far.
+    #[cfg(feature = "suite")]
+    pub(crate) fn has_judged(&self) -> bool {
+        self.has_judged.load(Ordering::Relaxed)
     }
 
     fn report(&self, selection: &Selection, choice: &Choice) -> Result<GateReport, HarnessError> {
@@ -149,10 +173,13 @@ impl Judged {
     }
 }
 
-/// What `lightmeter gate` prints of a result, where it is none that passes.
+/// What `lightmeter gate` prints of a result, where it is none that passes. A formula that is skipped passes where a file of expectations
+/// says that it is; whether anything was judged at all is seen to by whoever judges several.
 pub(crate) fn complaint(report: &GateReport) -> Option<String> {
-    let is_covered = report.coverage().is_enough(Coverage::REQUIRED);
-    if !report.is_failed() && !report.is_broken() && report.has_judged() && is_covered {
+    let Coverage { chosen, judged, .. } = report.coverage();
+    let is_covered = report.has_judged() && report.coverage().is_enough(Coverage::REQUIRED);
+    let is_skipped = report.totals.skipped > 0 && judged + report.totals.skipped == chosen;
+    if !report.is_failed() && !report.is_broken() && (is_covered || is_skipped) {
         return None;
     }
     let mut told = String::new();

@@ -41,6 +41,7 @@ mod values;
 
 pub use engine::{Engine, Formulas};
 pub use judging::HarnessError;
+pub use lightmeter_document::by_case::SourcePlace;
 pub use one::assert_formula;
 #[cfg(feature = "suite")]
 pub use suite::Suite;

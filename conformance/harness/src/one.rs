@@ -8,8 +8,8 @@ use std::sync::Arc;
 /// Judges one formula, within an ordinary test.
 ///
 /// # Panics
-/// Where the formula fails, with what `lightmeter gate` prints of it; where there is no such formula; and where the function
-/// panics.
+/// Where the formula fails, with what `lightmeter gate` prints of it: the case, its inputs, and what the function said where it panics
+/// itself; and where there is no such formula.
 #[track_caller]
 pub fn assert_formula<O: Into<FormulaOutputs>>(
     formula: &str,
@@ -118,6 +118,12 @@ mod tests {
         assert!(told.contains("has no input `k`; its inputs are"), "{told}");
         let told = said(|| assert_formula("fog/exp", |inputs| inputs.float("p")));
         assert!(told.contains("`p` has 3 numbers, and a float has 1"), "{told}");
+        // The panic is told with the formula, the case and its inputs.
+        let of = ["\u{2717} fog/exp: ", "fog/exp/", "the function panicked: density is too small", "density "];
+        let told = said(|| assert_formula("fog/exp", |_| -> f32 { panic!("density is too small") }));
+        for what in of {
+            assert!(told.contains(what), "no {what} in {told}");
+        }
         let told = said(|| assert_formula("fog/exp", |_| [1.0, 2.0]));
         assert!(told.contains("2 numbers; expected 4"), "{told}");
     }

@@ -1,7 +1,7 @@
 //! Tests of an engine, one for each formula.
 
 use crate::engine::Engine;
-use crate::judging::{Criteria, HarnessError, complaint};
+use crate::judging::{Criteria, HarnessError, Judged, UPDATE, complaint};
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -11,8 +11,6 @@ use std::sync::Arc;
 const ROOT: &str = "lightmeter";
 /// The exit code where a test failed, as of every Rust test.
 const FAILED: u8 = 101;
-/// The variable that renews the baseline instead of comparing with it.
-const UPDATE: &str = "LIGHTMETER_UPDATE_BASELINE";
 
 /// The tests of an engine.
 pub struct Suite<E> {
@@ -41,15 +39,16 @@ impl<E: Engine> Suite<E> {
         self
     }
 
-    /// With known failures, a TOML file as `lightmeter gate --expect` reads it.
+    /// With known failures and skips, a TOML file as `lightmeter gate --expect` reads it. A formula whose cases are all among `[[skipped]]`
+    /// and for which [`Engine::evaluate`] gives a reason passes, unless no formula is judged at all.
     #[must_use]
     pub fn expectations(mut self, path: impl Into<PathBuf>) -> Self {
         self.judge.expectations = Some(path.into());
         self
     }
 
-    /// With an earlier result, than which nothing may be worse. Where the file is not there nothing is compared; with the variable
-    /// `LIGHTMETER_UPDATE_BASELINE` set the result is written to it.
+    /// With an earlier result, than which nothing may be worse. With the variable `LIGHTMETER_UPDATE_BASELINE` set the result is written
+    /// to the file; without it, a file that is not there is an error.
     #[must_use]
     pub fn baseline(mut self, path: impl Into<PathBuf>) -> Self {
         self.judge.baseline = Some(path.into());
@@ -66,8 +65,8 @@ impl<E: Engine> Suite<E> {
         if std::env::var_os(UPDATE).is_some_and(|value| !value.is_empty()) && !arguments.list {
             return self.renew();
         }
-        match self.trials() {
-            Ok(trials) => libtest_mimic::run(&arguments, trials).exit_code(),
+        match self.judge.begin(self.engine) {
+            Ok(judged) => run(&arguments, &Arc::new(judged)),
             Err(error) => {
                 eprintln!("{ROOT}: {error}");
                 ExitCode::from(FAILED)
@@ -93,17 +92,31 @@ impl<E: Engine> Suite<E> {
     /// # Errors
     /// Where the engine declares what there is not, or a file cannot be read.
     pub fn trials(self) -> Result<Vec<Trial>, HarnessError> {
-        let judged = Arc::new(self.judge.begin(self.engine)?);
-        let trial = |place: usize| {
-            let judged_ = Arc::clone(&judged);
-            let name = format!("{ROOT}::{}", judged.parts[place].path.replace('/', "::"));
-            Trial::test(name, move || {
-                let report = judged_.of(&judged_.parts[place]).map_err(|error| Failed::from(error.to_string()))?;
-                complaint(&report).map_or(Ok(()), |complaint| Err(Failed::from(complaint)))
-            })
-        };
-        Ok((0..judged.parts.len()).map(trial).collect())
+        Ok(trials(&Arc::new(self.judge.begin(self.engine)?)))
     }
+}
+
+/// A test for each formula of an engine.
+fn trials(judged: &Arc<Judged>) -> Vec<Trial> {
+    let trial = |place: usize| {
+        let judged_ = Arc::clone(judged);
+        let name = format!("{ROOT}::{}", judged.parts[place].path.replace('/', "::"));
+        Trial::test(name, move || {
+            let report = judged_.of(&judged_.parts[place]).map_err(|error| Failed::from(error.to_string()))?;
+            complaint(&report).map_or(Ok(()), |complaint| Err(Failed::from(complaint)))
+        })
+    };
+    (0..judged.parts.len()).map(trial).collect()
+}
+
+/// Runs the tests that were asked for. Where formulas pass only because all of them are skipped, that is no success.
+fn run(arguments: &Arguments, judged: &Arc<Judged>) -> ExitCode {
+    let conclusion = libtest_mimic::run(arguments, trials(judged));
+    if conclusion.num_passed > 0 && !arguments.list && !judged.has_judged() {
+        eprintln!("{ROOT}: nothing was judged: the engine skips all cases of these tests");
+        return ExitCode::from(FAILED);
+    }
+    conclusion.exit_code()
 }
 
 #[cfg(test)]
@@ -111,6 +124,7 @@ mod tests {
     use super::*;
     use crate::engine::Formulas;
     use crate::values::FormulaInputs;
+    use crate::values::FormulaOutputs;
 
     fn fog(inputs: &FormulaInputs<'_>, base: f32) -> (f32, [f32; 3]) {
         let f = base.powf(-inputs.float("density") * inputs.vec3("p")[2].abs()).clamp(0.0, 1.0);
@@ -147,6 +161,57 @@ mod tests {
         assert_eq!(outcomes(suite(2.0, 64)).1.num_failed, 1);
         // A baseline of other cases is told, by every test that is compared with it.
         assert_eq!(outcomes(suite(std::f32::consts::E, 65)).1.num_failed, 2);
+        let missing = suite(std::f32::consts::E, 64).baseline(folder.join("basline.json")).trials();
+        let error = missing.err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(error.contains("there is no baseline") && error.contains("basline.json"), "{error}");
+        let _ = std::fs::remove_dir_all(&folder);
+    }
+
+    /// An engine that skips a formula, and has another one.
+    struct Skipping;
+
+    impl Engine for Skipping {
+        fn name(&self) -> String {
+            "skipping".into()
+        }
+
+        fn version(&self) -> String {
+            "1.2".into()
+        }
+
+        fn formulas(&self) -> Vec<String> {
+            vec!["fog/exp".into(), "color/modulate".into()]
+        }
+
+        fn evaluate(&self, formula: &str, inputs: &FormulaInputs<'_>) -> Result<FormulaOutputs, String> {
+            if formula == "fog/exp" {
+                return Err("it has no fog".into());
+            }
+            let (texel, color) = (inputs.vec4("texel"), inputs.vec4("color"));
+            Ok([0, 1, 2, 3].map(|k| texel[k] * color[k]).into())
+        }
+    }
+
+    #[test]
+    fn skips_that_the_file_of_expectations_names_are_honoured_and_no_others() {
+        let folder = std::env::temp_dir().join(format!("lightmeter-harness-skips-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        let file = folder.join("expected.toml");
+        let ran = |of: &str, filter: &str| {
+            let text = format!("[[skipped]]\nid = \"fog/exp\"\nreason = \"not built\"\n{of}");
+            std::fs::write(&file, text).expect("it can be written");
+            let judge = Suite::new(Skipping).cases(16).expectations(&file).judge;
+            let judged = Arc::new(judge.begin(Arc::new(Skipping)).expect("the engine can be judged"));
+            let filter = (!filter.is_empty()).then(|| filter.to_owned());
+            let arguments = Arguments { quiet: true, test_threads: Some(1), filter, ..Arguments::default() };
+            run(&arguments, &judged)
+        };
+        let codes =
+            [ran("version = \">=1, <2\"\n", ""), ran("", "modulate"), ran("version = \">=2\"\n", ""), ran("", "fog")];
+        // The last one judges nothing.
+        let failed = ExitCode::from(FAILED);
+        let expected = [ExitCode::SUCCESS, ExitCode::SUCCESS, failed, failed];
+        assert_eq!(format!("{codes:?}"), format!("{expected:?}"));
         let _ = std::fs::remove_dir_all(&folder);
     }
 }

@@ -44,6 +44,12 @@ static const lightmeter_formula formulas[] = {
 
 int main(void)
 {
-    const lightmeter_about about = {.name = "example-c", .version = "1.0", .device = "the processor"};
+    static const lightmeter_source sources[] = {
+        {"vector/reflect", "conformance/renderers/example/renderer.c", 14},
+        {"fog/exp", "conformance/renderers/example/renderer.c", 21},
+        {"lighting/diffuse-toward", "conformance/renderers/example/renderer.c", 31},
+        {NULL, NULL, 0},
+    };
+    const lightmeter_about about = {.name = "example-c", .version = "1.0", .device = "the processor", .sources = sources};
     return lightmeter_serve_as(&about, formulas, sizeof formulas / sizeof formulas[0]);
 }

@@ -65,6 +65,7 @@ pub fn text(report: &GateReport, style: &GateStyle, out: &mut impl Write) -> Res
     listed("crashes and hangs are expected", &report.expected_incidents, out)?;
     listed("went wrong with the process", &report.incidents, out)?;
     problems(&report.problems, out)?;
+    report.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))?;
     if let Some(why) = &report.interrupted {
         writeln!(out, "\n{}", interrupted(why))?;
     }
@@ -192,7 +193,10 @@ pub fn told(group: &GateGroup, failures: &[GateFailure], style: &GateStyle, out:
         1 => (1, "fails"),
         failed => (failed, "fail"),
     };
-    writeln!(out, "\n✗ {}: {count} of {} {what}", group.name(), cases(group.asked))?;
+    writeln!(out, "\n✗ {}: {} of {} {what}", group.name(), thousands(count), cases(group.asked))?;
+    if let Some(source) = &group.source {
+        writeln!(out, "  source {source}")?;
+    }
     if group.missing > 0 {
         let was = if group.missing == 1 { "was" } else { "were" };
         writeln!(out, "  {} {was} never answered: {}", cases(group.missing), missing(group))?;
@@ -203,7 +207,7 @@ pub fn told(group: &GateGroup, failures: &[GateFailure], style: &GateStyle, out:
         writeln!(out, "  declare such cases by `skips` in the hello, or by [[skipped]] in a file of expectations")?;
     }
     if group.broken > 0 {
-        writeln!(out, "  at {} of them it ended or hung", group.broken)?;
+        writeln!(out, "  at {} of them it ended or hung", thousands(group.broken))?;
     }
     for what in group.diagnosis.iter().chain(&group.problem) {
         writeln!(out, "  {what}")?;
@@ -285,12 +289,12 @@ fn brief(x: f64) -> String {
 
 /// What is wrong with a group, on one line.
 pub(crate) fn sentence(group: &GateGroup) -> String {
-    let mut said = format!("{} of {} fail", group.failed, cases(group.asked));
+    let mut said = format!("{} of {} fail", thousands(group.failed), cases(group.asked));
     if group.broken > 0 {
-        said += &format!(", at {} of them it ended or hung", group.broken);
+        said += &format!(", at {} of them it ended or hung", thousands(group.broken));
     }
     if group.missing > 0 {
-        said += &format!(", {} never answered: {}", group.missing, missing(group));
+        said += &format!(", {} never answered: {}", thousands(group.missing), missing(group));
     }
     for more in group.diagnosis.iter().chain(&group.problem) {
         said += &format!("; {more}");

@@ -3,6 +3,7 @@
 use crate::against::Against;
 use crate::gate::{sentence, smallest, whole};
 use crate::text::{failing_group, formula_of, plain};
+use lightmeter_document::by_case::SourcePlace;
 use lightmeter_document::gate::{GateReport, cases};
 use lightmeter_document::run::{Failure, Group, Report, ShaderUse};
 
@@ -25,6 +26,13 @@ fn at_line(shader: &ShaderUse, id: &str) -> String {
     format!("error file={}{line}", property(&shader.file))
 }
 
+/// An error at the line where the renderer's code of a group stands, as far as its hello says so.
+fn at_source(source: Option<&SourcePlace>) -> String {
+    let Some(SourcePlace { file, line }) = source else { return "error".into() };
+    let line = line.map_or_else(String::new, |line| format!(",line={line}"));
+    format!("error file={}{line}", property(file))
+}
+
 /// The annotations of a gate.
 #[must_use]
 pub fn of_gate(report: &GateReport) -> String {
@@ -34,7 +42,10 @@ pub fn of_gate(report: &GateReport) -> String {
     }
     for group in report.groups.iter().filter(|group| group.is_failed()) {
         let case = smallest(group, report).map_or_else(String::new, |case| format!("\nsmallest failing case {case}"));
-        out += &annotation("error", &group.name(), &(sentence(group) + &case));
+        out += &annotation(&at_source(group.source.as_ref()), &group.name(), &(sentence(group) + &case));
+    }
+    for warning in &report.warnings {
+        out += &annotation("warning", "doubtful", warning);
     }
     for (title, what) in whole(report) {
         out += &annotation("error", &title, &what);

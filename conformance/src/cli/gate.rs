@@ -128,6 +128,7 @@ impl Gate {
             (report, _) => report?,
         };
         report.seconds = start.elapsed().as_secs_f64();
+        report.required = Some(self.required.part());
         // What was asked is told, even where the baseline turns out to be of other accuracy rules.
         // What was not asked for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());

@@ -12,11 +12,11 @@ use lightmeter::document::gate::GateReport;
 use lightmeter::document::run::Report;
 use lightmeter::document::sweep::{ExactFloat, SweepDocument};
 use lightmeter::faults::explain;
-use lightmeter::files::{lines, read};
+use lightmeter::files::{lines, read, shown};
 use lightmeter::merge::merge;
 use lightmeter::report::{gate as outputs, github, html, junit, text};
 use lightmeter::sweep::file;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Join the results of the shards of a run, of a gate or of a sweep.
 #[derive(Debug, Args)]
@@ -43,20 +43,26 @@ impl Merge {
         for path in &self.results {
             parts.push((path.clone(), file::read(path)?));
         }
-        let whole = file::merge(&parts)?;
+        let whole = SweepDocument { command: Some(command()), ..file::merge(&parts)? };
         self.format.emit(&written(&whole, self.of_sweep()?, &rerun(&whole))?, self.out.as_deref())?;
         Ok(status(&whole))
     }
 }
 
 impl Merge {
-    /// Joins the shards of a run or of a gate; `None` where the first file is neither.
+    /// Joins the shards of a run or of a gate; `None` where the first file is one of a sweep.
     fn of_runs(&self) -> anyhow::Result<Option<Status>> {
-        let first = self.results.first().and_then(|path| read::text(path, read::MOST_TEXT).ok()).unwrap_or_default();
-        let is_gate = GateReport::read(&first).is_ok();
-        if !is_gate && Report::read(&first).is_err() {
-            return Ok(None);
-        }
+        let Some(first) = self.results.first() else { return Ok(None) };
+        let is_gate = match schema(first)?.as_str() {
+            lightmeter::document::gate::SCHEMA => true,
+            lightmeter::document::run::SCHEMA => false,
+            lightmeter::document::sweep::SCHEMA => return Ok(None),
+            other => bail!(
+                "{}: {}; expected the JSON that `run`, `gate` or `sweep` writes with --shard I/N and --format json",
+                first.display(),
+                if other.is_empty() { "it is no result".to_owned() } else { format!("its schema is `{other}`") }
+            ),
+        };
         let (mut parts, mut again) = (vec![], None);
         for path in &self.results {
             let failed = || format!("cannot read {}", path.display());
@@ -73,7 +79,7 @@ impl Merge {
         let whole = merge(parts)?;
         // What explains the first failing or the worst case of each formula: of the whole, which may be another one than a shard's.
         let explained = Profile::by_name(&whole.profile).map_or_else(Vec::new, |profile| explain(&whole, profile));
-        let whole = Report { command: Some(command()), explained, ..whole };
+        let whole = Report { command: Some(command()), explained, required: Some(self.required.part()), ..whole };
         if is_gate {
             let gate = GateReport::of(&whole, command(), again);
             self.format.emit(&self.written_gate(&gate)?, self.out.as_deref())?;
@@ -123,6 +129,13 @@ impl Merge {
             }
         })
     }
+}
+
+/// The schema that a file names; nothing where it is not JSON, or names none.
+fn schema(path: &Path) -> anyhow::Result<String> {
+    let text = read::text(path, read::MOST_TEXT).with_context(|| format!("cannot read {}", path.display()))?;
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    Ok(shown(value["schema"].as_str().unwrap_or_default()).into_owned())
 }
 
 /// What a command that sweeps one input again is given besides the formula and the range: all that the results tell, which is

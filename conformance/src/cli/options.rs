@@ -7,7 +7,7 @@ use clap::Args;
 use lightmeter::arithmetic::Profile;
 use lightmeter::device::Code;
 use lightmeter::document::by_case::Coverage;
-use lightmeter::document::thousands;
+use lightmeter::document::{Number, thousands};
 use lightmeter::filter::Filter;
 use lightmeter::nearest::did_you_mean;
 use lightmeter::options::{DEFAULT_CASES, DEFAULT_TARGETS, MOST_CASES, Options};
@@ -212,6 +212,11 @@ impl Default for Required {
 }
 
 impl Required {
+    /// The part, as a result says it.
+    pub(crate) const fn part(self) -> Number {
+        Number(self.require)
+    }
+
     /// Success where enough was judged.
     pub(crate) fn status(self, coverage: Coverage) -> Status {
         let Coverage { chosen, judged, excluded } = coverage;

@@ -208,7 +208,9 @@ pub(crate) fn swept(document: SweepDocument) -> Swept {
     let is_ready_made = preset.is_some()
         && SweepPlan::new(&catalogue(), formula, &Asked::default())
             .is_ok_and(|plan| is_over_inputs_of(&document.sweep, &plan));
-    Swept { what: preset.map(|preset| preset.what), is_ready_made, document }
+    // What the ready-made one shows is true of its own inputs alone.
+    let what = preset.filter(|_| is_ready_made).map(|preset| preset.what);
+    Swept { what, is_ready_made, document }
 }
 
 /// The page of any result, by what its JSON says that it is. The pictures that it names lie where it says, or so from the folder of its file.

@@ -124,7 +124,7 @@ fn note(told: &mut PageState, event: &Event<'_>, picture: Option<usize>) {
                 stage,
                 verdicts: group.totals.verdicts,
                 failed,
-                why: group.problem.clone().or_else(|| group.explanation.clone()),
+                why: [&group.cause, &group.problem, &group.explanation].into_iter().find_map(Clone::clone),
                 picture,
             });
         }

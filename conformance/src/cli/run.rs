@@ -172,7 +172,8 @@ impl Run {
         };
         let shader = self.choice.shaders.own.used(&options.adapted, &report);
         let command = Some(command());
-        let mut report = Report { compared_by: Some(compared_by), config: used(), shader, command, ..report };
+        let required = Some(self.required.part());
+        let mut report = Report { compared_by: Some(compared_by), config: used(), shader, command, required, ..report };
         report.explained = explain(&report, options.profile);
         // What was not judged for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());

@@ -6,7 +6,7 @@ use super::say;
 use super::shader::ShaderChoice;
 use super::signals::stopped_by_signals;
 use super::values::{float, setting};
-use super::{NothingToRun, Status, abandon, writable};
+use super::{NothingToRun, Status, abandon, command, writable};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
@@ -104,6 +104,7 @@ impl Sweep {
             bail!("a sweep runs on exactly one adapter; name it with --adapter");
         };
         let mut document = self.start(describe(&plan, subject, self.profile, &code))?;
+        document.command = Some(command());
 
         writable(self.out.as_deref())?;
         let stop = stopped_by_signals()?;

@@ -200,3 +200,30 @@ fn a_process_is_asked_in_columns() {
         }
     }
 }
+
+#[test]
+fn rows_of_columns_are_skipped_by_a_line() {
+    let (pack, answers) = answered("columns-skips", false);
+    let judged = |more: &[Value]| {
+        let manifest = std::fs::read_to_string(pack.join("manifest.json")).expect("there is a manifest");
+        let manifest: Value = serde_json::from_str(&manifest).expect("it is JSON");
+        let skips = json!([{ "id": "fog/exp", "reason": "known" }]);
+        let hello = json!({ "renderer": "columns", "formulas": ["**"], "pack": manifest["pack"], "skips": skips });
+        let lines: Vec<String> = std::iter::once(&hello).chain(more).map(|line| format!("{line}\n")).collect();
+        std::fs::write(answers.join("answers.jsonl"), lines.concat()).expect("it can be written");
+        report(&lightmeter(&["gate", text(&pack), text(&answers), "--format", "json"]))
+    };
+    let (status, report) = judged(&[json!({ "id": "fog/exp", "skip": "no fog", "rows": [0, 3, 3] })]);
+    assert_eq!((status, count(&report, "skipped"), &report["totals"]["undeclared"]), (0, 2, &Value::Null), "{report}");
+    let (status, report) = judged(&[json!({ "id": "vector/reflect", "skip": "none", "rows": [1] })]);
+    assert_eq!((status, count(&report, "skipped"), count(&report, "undeclared")), (1, 1, 1), "{report}");
+    for (line, kind, said) in [
+        (json!({ "id": "fog/exp", "skip": "no fog" }), "duplicate", "names them by `rows`"),
+        (json!({ "id": "fog/exp", "skip": "no fog", "rows": [100_000] }), "unknown", "rows, counted from 0"),
+        (json!({ "id": "fog/exp", "value": [1] }), "unknown", "is a formula; expected the id of a case"),
+    ] {
+        let (status, report) = judged(&[line]);
+        let problems = &report["problems"];
+        assert!(status == 4 && problems["counts"][kind] == 1 && problems.to_string().contains(said), "{problems}");
+    }
+}

@@ -2,6 +2,7 @@
 
 mod columns;
 mod hello;
+mod merged;
 pub(crate) mod process;
 mod special;
 mod targets;

@@ -8,7 +8,7 @@ pub use blend::{BlendPromise, BlendState, SpecialUse, StoreUse, StoresOfShard, T
 pub use shader::{BoundVariable, FoundBy, JudgedAs, MistakePlace, ShaderUse};
 pub use stability::{Cost, Examined, StableForm};
 
-use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, KnownFailure, RendererUse};
+use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, KnownFailure, RendererUse, SourcePlace};
 use crate::explained::Explained;
 use crate::{Number, Word};
 use schemars::JsonSchema;
@@ -131,6 +131,9 @@ pub struct Group {
     /// The same counted by cases, where that was asked for: of renderers always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by_case: Option<CaseCounts>,
+    /// Where the renderer's code of it stands, where its hello says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<SourcePlace>,
 }
 
 /// An image of a scene.
@@ -240,6 +243,7 @@ impl Group {
             expected_problem: None,
             image: None,
             by_case: None,
+            source: None,
         }
     }
 
@@ -453,6 +457,9 @@ pub struct Report {
     pub filter: Vec<String>,
     /// What was judged.
     pub adapters: Vec<Identity>,
+    /// The part of the chosen cases that had to be judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub required: Option<Number>,
     /// The sum over the groups.
     pub totals: Totals,
     /// States judged under another's name: how many of the selected.
@@ -545,6 +552,7 @@ impl Report {
             profile,
             filter,
             adapters,
+            required: None,
             totals: Totals::default(),
             aliases: 0,
             routes: serde_json::Map::new(),

@@ -23,6 +23,9 @@ pub struct SweepDocument {
     /// `lightmeter.sweep/1`.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
+    /// The command, but for where its result goes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub command: Option<String>,
     /// What is swept.
     pub sweep: Description,
     /// Which part of it, as `2/8`.

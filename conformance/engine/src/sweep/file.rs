@@ -59,6 +59,7 @@ pub fn begun(sweep: Description, shard: Shard) -> SweepDocument {
     let blocks = span(&sweep).blocks_of(shard);
     SweepDocument {
         schema: SCHEMA.into(),
+        command: None,
         sweep,
         shard: name_of(shard),
         done: 0,

@@ -18,7 +18,7 @@ use super::given::{Asks, Declared, Given, pixel, put, word};
 use super::{frame, pack, picture};
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::Document as _;
-use lightmeter_document::by_case::RendererUse;
+use lightmeter_document::by_case::{RendererUse, SourcePlace};
 use lightmeter_document::event::Stop;
 use lightmeter_document::protocol::SceneRequest;
 use lightmeter_document::run::Identity;
@@ -161,6 +161,10 @@ impl AskedRenderer for ProcessRenderer {
 
     fn lacks_frame(&self, frame: &Frame) -> Option<String> {
         self.declared.lacks_frame(frame)
+    }
+
+    fn source(&self, id: &str) -> Option<SourcePlace> {
+        self.declared.source(id)
     }
 
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {

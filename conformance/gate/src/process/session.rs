@@ -218,7 +218,8 @@ impl Session {
     /// Ends it, and tells who it was and what went wrong.
     pub(super) fn end_well(&mut self) -> RendererUse {
         self.finish();
-        RendererUse { identity: self.hello.identity(), ..self.used.clone() }
+        let (identity, declares) = (self.hello.identity(), self.hello.declares());
+        RendererUse { identity, declares, ..self.used.clone() }
     }
 
     /// Ends it at once; what it ended by, and what it complained of.

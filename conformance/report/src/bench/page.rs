@@ -159,7 +159,7 @@ fn head(first: &str, names: &[&str], out: &mut impl Write) -> Result {
 }
 
 fn ladder(measured: &Measured, out: &mut impl Write) -> Result {
-    writeln!(out, "\n### The ladder\n\n| rung | | |\n|---|---|---|")?;
+    writeln!(out, "\n### The ladder\n\n| rung | what it is | why it was not measured |\n|---|---|---|")?;
     for rung in &measured.rungs {
         let why = rung.unavailable.as_ref().map(|why| format!("unavailable: {}", plain(why))).unwrap_or_default();
         writeln!(out, "| {} | {} | {why} |", rung.name, plain(&rung.what))?;
@@ -215,7 +215,7 @@ fn techniques<W: Write>(measured: &Measured, picture: &impl Fn(&str, &mut W) -> 
         )?;
         writeln!(
             out,
-            "| | what | time | ratio | spread | | ULP, largest | 99 % | mean | absolute | 1/255 | hard, ULP | hard, absolute |"
+            "| row | what | time | ratio | spread | against the baseline | ULP, largest | 99 % | mean | absolute | 1/255 | hard, ULP | hard, absolute |"
         )?;
         writeln!(out, "|---|---|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|--:|")?;
         for row in &group.rows {
@@ -268,7 +268,10 @@ fn stable_forms(measured: &Measured, out: &mut impl Write) -> Result {
     }
     writeln!(out, "\n### Published and stable forms of hard cases\n")?;
     writeln!(out, "The largest error on random inputs and on hard cases, in ULP.\n")?;
-    writeln!(out, "| case | form | time | ratio | spread | | random | hard |\n|---|---|--:|--:|--:|---|--:|--:|")?;
+    writeln!(
+        out,
+        "| case | form | time | ratio | spread | against the baseline | random | hard |\n|---|---|--:|--:|--:|---|--:|--:|"
+    )?;
     for group in groups {
         for (place, row) in group.rows.iter().enumerate() {
             let id = if place == 0 { format!("`{}`", group.id) } else { String::new() };
@@ -335,7 +338,10 @@ fn growth(measured: &Measured, out: &mut impl Write) -> Result {
         return Ok(());
     }
     writeln!(out, "\n### Growth of time with work\n")?;
-    writeln!(out, "| | what | steps | clock | law | exponent | not reached |\n|---|---|---|---|---|--:|---|")?;
+    writeln!(
+        out,
+        "| work that grows | what | steps | clock | law | exponent | not reached |\n|---|---|---|---|---|--:|---|"
+    )?;
     for scaling in &measured.scalings {
         let exponent = scaling.fit.as_ref().map_or_else(|| "—".into(), |fit| format!("{:.3}", fit.exponent));
         let lacking = scaling.unavailable.iter().map(|(work, why)| format!("{}: {}", thousands(*work), plain(why)));
@@ -576,6 +582,20 @@ mod tests {
             "* table-64: differs from its own formula by 0.02 beyond z = 80: the table ends there (technique/fog-exp)",
         ] {
             assert!(page.contains(expected), "no {expected:?}");
+        }
+    }
+
+    #[test]
+    fn every_column_of_every_table_has_a_heading() {
+        let document = document();
+        let mut text = String::new();
+        markdown(&document, &[], "", &mut text).expect("a string takes all");
+        let lines: Vec<&str> = text.lines().collect();
+        let heads: Vec<&&str> =
+            lines.windows(2).filter(|pair| pair[1].starts_with("|---")).map(|pair| &pair[0]).collect();
+        assert!(heads.len() > 5, "{} tables", heads.len());
+        for head in heads {
+            assert!(head.trim_matches('|').split('|').all(|cell| !cell.trim().is_empty()), "{head}");
         }
     }
 

@@ -19,15 +19,23 @@ pub(super) struct Card {
     pub(super) body: Markup,
 }
 
-/// How many failed, and of how many: verdicts, or whole cases where a renderer was asked. An image is one case, and counts by its values.
+/// How many failed that were not expected to, and of how many: verdicts, or whole cases where a renderer was asked. An image is one case,
+/// and counts by its values.
 pub(super) fn judged(group: &Group) -> (u64, u64) {
     let by_case = group.by_case.as_ref().filter(|_| group.image.is_none());
-    by_case.map_or((group.totals.failed, group.totals.verdicts), |counts| (counts.failed, counts.asked))
+    by_case.map_or((group.totals.failed, group.totals.verdicts), |counts| {
+        (counts.failed.saturating_sub(counts.expected_failures), counts.asked)
+    })
 }
 
-/// The share of groups' verdicts that fail, by which the worst comes first.
+/// The share of groups' verdicts that fail or are missing, by which the worst comes first.
 pub(super) fn failing_share(groups: &[&Group]) -> f64 {
-    let (failed, verdicts) = groups.iter().map(|group| judged(group)).fold((0, 0), |(f, v), (a, b)| (f + a, v + b));
+    let unanswered = |group: &Group| group.by_case.as_ref().map_or(0, |counts| counts.missing + counts.undeclared);
+    let count = |group: &Group| {
+        let (failed, of) = judged(group);
+        (failed + unanswered(group), of)
+    };
+    let (failed, verdicts) = groups.iter().map(|group| count(group)).fold((0, 0), |(f, v), (a, b)| (f + a, v + b));
     #[expect(clippy::cast_precision_loss, reason = "shares")]
     (failed as f64 / verdicts.max(1) as f64)
 }

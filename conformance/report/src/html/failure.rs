@@ -1,17 +1,22 @@
 //! The card of a formula that fails: what it computes, of which inputs, where it departs, why, and how to see it again.
 
 use super::card::{Card, failing_share, judged};
-use super::matrix::{card_id, is_failing, short};
+use super::matrix::{card_id, is_failing, short, unanswered};
+use super::number::written;
 use super::page::prose;
 use super::plot;
 use crate::text::{made_at, plain};
-use lightmeter_document::explained::{Explained, ShownMistake};
+use lightmeter_document::explained::{Explained, ShownMistake, ShownStep};
 use lightmeter_document::run::{Failure, Group, Report};
 use lightmeter_document::{Number, is_worse, thousands};
 use maud::{Markup, html};
 
 /// The most cards of a page.
 const MOST: usize = 400;
+/// What is legal where both ends are a zero.
+const ZEROS: &str = "0 or −0";
+/// Cases that were not answered, or rows of them, that are named.
+const MOST_NAMED: usize = 8;
 /// Cards that are open at first.
 const OPEN: usize = 3;
 
@@ -36,7 +41,13 @@ pub(super) fn cards(report: &Report) -> (Vec<Card>, usize) {
         name: groups[0].id.clone(),
         place: format!("{}, {}", groups[0].adapter, stages(groups)),
         share: failing_share(groups),
-        cause: groups.iter().find_map(|group| group.cause.clone().or_else(|| group.problem.clone())),
+        cause: groups.iter().find_map(|group| {
+            group
+                .cause
+                .clone()
+                .or_else(|| group.problem.clone())
+                .or_else(|| group.by_case.as_ref().and_then(unanswered))
+        }),
         body: card(report, groups, place < OPEN),
     };
     (formulas.iter().take(MOST).enumerate().map(told).collect(), formulas.len().saturating_sub(MOST))
@@ -67,7 +78,30 @@ pub(super) fn passing_cards(report: &Report) -> Vec<Markup> {
 fn failed_of(group: &Group) -> String {
     let (failed, of) = judged(group);
     let what = if group.by_case.is_some() { "cases" } else { "values" };
-    format!("{} of {} {what} fail.", thousands(failed), thousands(of))
+    let unanswered = group.by_case.as_ref().and_then(unanswered);
+    match unanswered {
+        Some(unanswered) if failed == 0 => unanswered,
+        Some(unanswered) => format!("{} of {} {what} fail. {unanswered}", thousands(failed), thousands(of)),
+        None => format!("{} of {} {what} fail.", thousands(failed), thousands(of)),
+    }
+}
+
+/// Why cases of a group were not answered, or which these are.
+fn why_unanswered(group: &Group) -> Option<String> {
+    let counts = group.by_case.as_ref().filter(|counts| counts.missing + counts.undeclared > 0)?;
+    let mut said = vec![];
+    if let Some(named) = counts.not_passed.get("missing").filter(|_| counts.missing > 0) {
+        let more = if named.len() > MOST_NAMED { ", …" } else { "" };
+        said.push(format!(
+            "never answered: {}{more}",
+            named.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ")
+        ));
+    }
+    if counts.undeclared > 0 {
+        let why = counts.reason.as_deref().unwrap_or("no reason was given");
+        said.push(format!("skipped without having been declared: {why}"));
+    }
+    (!said.is_empty()).then(|| said.join("; "))
 }
 
 fn card(report: &Report, groups: &[&Group], is_open: bool) -> Markup {
@@ -87,9 +121,10 @@ fn card(report: &Report, groups: &[&Group], is_open: bool) -> Markup {
             @for (place, own) in groups.iter().enumerate() {
                 @for what in own.explanation.iter().chain(&own.problem) {
                     @if place == 0 || !groups[..place].iter().any(|other| other.explanation.as_ref() == Some(what) || other.problem.as_ref() == Some(what)) {
-                        p.cause { (what) }
+                        p.cause { (written(what)) }
                     }
                 }
+                @if let Some(why) = why_unanswered(own) { p.cause { (why) } }
             }
             @if let Some(shader) = &report.shader {
                 @for place in shader.places(&group.id) { pre { (made_at(shader, place)) } }
@@ -104,7 +139,7 @@ fn formula(explained: &Explained) -> Markup {
     html! {
         p.formula { (explained.formula) }
         @if !explained.rules.is_empty() { ul.rules { @for rule in &explained.rules { li { (prose(rule)) } } } }
-        p.quiet { "source: " (explained.source) }
+        p.quiet { "Source: " (prose(&explained.source)) }
     }
 }
 
@@ -138,13 +173,13 @@ fn verdict(failure: &Failure) -> Markup {
             div.wide tabindex="0" role="group" aria-label="outputs" { table {
                 thead { tr { th scope="col" { "output" } th scope="col" { "answer" } th scope="col" { "legal" } th scope="col" { "reference" } } }
                 @for (k, name) in answer.outputs.iter().enumerate() {
-                    @let legal = answer.interval.get(k).copied().unwrap_or([Number(f64::NAN); 2]);
+                    @let interval = answer.interval.get(k).copied().unwrap_or([Number(f64::NAN); 2]);
                     @let value = answer.value.get(k).copied();
-                    @let is_out = value.is_none_or(|value| !(legal[0].0 <= value.0 && value.0 <= legal[1].0));
+                    @let is_out = value.is_none_or(|value| !(interval[0].0 <= value.0 && value.0 <= interval[1].0));
                     tr class=[is_out.then_some("fail")] {
                         th scope="row" { (name) }
-                        td.number { @if let Some(value) = value { (value) } @else { "—" } }
-                        td.number { (legal[0]) " to " (legal[1]) }
+                        td.number { @if let Some(value) = value { (value.narrow()) } @else { "—" } }
+                        td.number { (legal(interval)) }
                         td.number { @if let Some(reference) = answer.reference.get(k) { (reference) } }
                     }
                 }
@@ -154,12 +189,31 @@ fn verdict(failure: &Failure) -> Markup {
     }
     html! {
         p {
-            code { (failure.output) } " is " b.fail { (failure.value) } @if failure.unwritten { " (it was never written)" }
-            "; legal " @match &failure.promise { Some(promise) => { "is " (promise) } None => { "are " (low) " to " (high) ", the reference is " (failure.reference) } }
+            code { (failure.output) } " is " b.fail { (failure.value.narrow()) } @if failure.unwritten { " (it was never written)" }
+            "; " @match &failure.promise { Some(promise) => { "legal is " (promise) } None => { (legal_are(failure.interval)) ", the reference is " (failure.reference) } }
             @if failure.error_ulp.0.is_finite() { ", from which it is " (short(failure.error_ulp.0)) " ULP" }
             "."
         }
         @if failure.promise.is_none() { (plot::line(low.0, high.0, failure.reference.0, failure.value.0)) }
+    }
+}
+
+/// The legal values, from the least to the greatest; either zero alone where no other value is legal.
+fn legal([low, high]: [Number; 2]) -> String {
+    if low.0 == 0.0 && high.0 == 0.0 {
+        return ZEROS.into();
+    }
+    let [low, high] = [low, high].map(Number::narrow);
+    if low == high { format!("{low} alone") } else { format!("{low} to {high}") }
+}
+
+/// The same in a sentence.
+fn legal_are(interval: [Number; 2]) -> String {
+    let [low, high] = interval.map(Number::narrow);
+    match legal(interval) {
+        zeros if zeros == ZEROS => "0 and −0 alone are legal".into(),
+        _ if low == high => format!("{low} alone is legal"),
+        range => format!("legal are {range}"),
     }
 }
 
@@ -178,11 +232,26 @@ enum Hint {
 fn hint_of(groups: &[&Group], explained: Option<&Explained>) -> Hint {
     if explained.is_some_and(|explained| explained.mistake.is_some()) {
         Hint::InTheResult
-    } else if groups.iter().any(|group| group.explanation.is_some()) {
+    } else if groups.iter().any(|group| group.cause.is_some() || group.explanation.is_some()) {
         Hint::AsTheCauseSays
     } else {
         Hint::Unknown
     }
+}
+
+/// The names of steps, with their components. What is computed several times, such as for each of two lights, is numbered.
+fn step_names(steps: &[ShownStep]) -> Vec<String> {
+    let name = |step: &ShownStep| match &step.component {
+        Some(component) => format!("{}.{component}", step.name),
+        None => step.name.to_string(),
+    };
+    let names: Vec<String> = steps.iter().map(name).collect();
+    let count = |among: &[String], name: &String| among.iter().filter(|other| *other == name).count();
+    let numbered = |(place, name): (usize, &String)| match count(&names, name) {
+        1 => name.clone(),
+        _ => format!("{name} ({})", count(&names[..=place], name)),
+    };
+    names.iter().enumerate().map(numbered).collect()
 }
 
 /// The steps with what is legal of each, beside what they are with the mistake; the first that departs is marked.
@@ -202,19 +271,7 @@ fn steps(explained: &Explained, hint: &Hint) -> Markup {
         let [low, high] = explained.steps[place].interval;
         made(place).is_some_and(|made| is_worse(made.0, high.0) || is_worse(low.0, made.0))
     });
-    // The components of a vector are told apart.
-    let names: Vec<String> = (0..explained.steps.len())
-        .map(|place| {
-            let is_same = |k: &usize| explained.steps[*k].name == explained.steps[place].name;
-            let all: Vec<usize> = (0..explained.steps.len()).filter(is_same).collect();
-            let nth = all.iter().position(|&k| k == place).unwrap_or_default();
-            let name = &explained.steps[place].name;
-            match "xyzw".chars().nth(nth) {
-                Some(component) if (2..=4).contains(&all.len()) => format!("{name}.{component}"),
-                _ => name.to_string(),
-            }
-        })
-        .collect();
+    let names = step_names(&explained.steps);
     html! {
         h4 { "steps" }
         div.wide tabindex="0" role="group" aria-label="steps" { table.steps {
@@ -226,7 +283,7 @@ fn steps(explained: &Explained, hint: &Hint) -> Markup {
                 tr class=[(departs == Some(place)).then_some("departs")] {
                     th scope="row" { (names[place]) @if departs == Some(place) { " ← departs here" } }
                     td.number { (step.value.narrow()) }
-                    td.number { (step.interval[0].narrow()) " to " (step.interval[1].narrow()) }
+                    td.number { (legal(step.interval)) }
                     @if mistake.is_some() { td.number { @if let Some(made) = made(place) { (made.narrow()) } } }
                 }
             }
@@ -239,5 +296,46 @@ fn steps(explained: &Explained, hint: &Hint) -> Markup {
                 Hint::Unknown => { p.hint { "Only the result is known of whoever answered, and no mistake by name explains it, so no step can be said to be the first that departs." } }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(name: &'static str, component: Option<&'static str>) -> ShownStep {
+        let value = Number(0.0);
+        ShownStep { name: name.into(), component: component.map(Into::into), value, interval: [value; 2] }
+    }
+
+    #[test]
+    fn steps_have_their_components_and_what_is_computed_twice_is_numbered() {
+        let steps = [
+            step("l·n", None),
+            step("CD", Some("r")),
+            step("CD", Some("g")),
+            step("l·n", None),
+            step("CD", Some("r")),
+            step("CD", Some("g")),
+            step("CF", Some("r")),
+        ];
+        let expected = ["l·n (1)", "CD.r (1)", "CD.g (1)", "l·n (2)", "CD.r (2)", "CD.g (2)", "CF.r"];
+        assert_eq!(step_names(&steps), expected);
+    }
+
+    #[test]
+    fn what_is_legal_is_a_range_or_one_value() {
+        let said = |low, high| (legal([Number(low), Number(high)]), legal_are([Number(low), Number(high)]));
+        assert_eq!(said(0.0, -0.0), ("0 or −0".into(), "0 and −0 alone are legal".into()));
+        assert_eq!(said(0.5, 0.5), ("0.5 alone".into(), "0.5 alone is legal".into()));
+        assert_eq!(said(0.25, 0.5), ("0.25 to 0.5".into(), "legal are 0.25 to 0.5".into()));
+    }
+
+    #[test]
+    fn a_cause_that_is_known_is_not_called_unknown() {
+        let mut group = Group::new("fog/exp".into(), "renderer".into(), "answer");
+        assert!(matches!(hint_of(&[&group], None), Hint::Unknown));
+        group.cause = Some("fog uses radial distance (fog-radial)".into());
+        assert!(matches!(hint_of(&[&group], None), Hint::AsTheCauseSays));
     }
 }

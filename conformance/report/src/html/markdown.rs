@@ -3,14 +3,34 @@
 use maud::{Markup, PreEscaped};
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html::push_html};
 
+/// A text of the suite's own as HTML: an empty `<a id="name"></a>` is a place that links lead to. Other markup is text.
+#[must_use]
+pub fn own_markdown(text: &str, picture: &dyn Fn(&str) -> Option<String>) -> Markup {
+    converted(text, picture, true)
+}
+
 /// A text as HTML. `picture` gives the address of a picture where it is another than the text's; links keep theirs.
 #[must_use]
 pub fn markdown(text: &str, picture: &dyn Fn(&str) -> Option<String>) -> Markup {
+    converted(text, picture, false)
+}
+
+/// The opening tag of a place that links lead to.
+fn is_place(tag: &str) -> bool {
+    let name = tag.strip_prefix("<a id=\"").and_then(|rest| rest.strip_suffix("\">"));
+    name.is_some_and(|name| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-'))
+}
+
+fn converted(text: &str, picture: &dyn Fn(&str) -> Option<String>, has_places: bool) -> Markup {
     let parser = Parser::new_ext(text, Options::ENABLE_TABLES | Options::ENABLE_HEADING_ATTRIBUTES);
     let (mut events, mut tables) = (vec![], 0);
     let mut heading: Option<(usize, String)> = None;
     for event in parser {
+        let ends_place = has_places
+            && matches!(&event, Event::InlineHtml(tag) if &**tag == "</a>")
+            && matches!(events.last(), Some(Event::InlineHtml(tag)) if is_place(tag));
         let event = match event {
+            Event::InlineHtml(tag) if ends_place || has_places && is_place(&tag) => Event::InlineHtml(tag),
             Event::Html(text) | Event::InlineHtml(text) => Event::Text(text),
             Event::Start(Tag::Image { link_type, dest_url, title, id }) => {
                 let dest_url = picture(&dest_url).map_or(dest_url, CowStr::from);
@@ -71,7 +91,16 @@ fn anchor(words: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::markdown;
+    use super::{markdown, own_markdown};
+
+    #[test]
+    fn places_that_links_lead_to_are_kept_in_texts_of_our_own() {
+        let text = "| a |\n|---|\n| <a id=\"ruling-3\"></a>3: b <a href=\"x\">y</a> |\n";
+        let own = own_markdown(text, &|_| None).0;
+        assert!(own.contains("<a id=\"ruling-3\"></a>3: b") && !own.contains("<a href"), "{own}");
+        let other = markdown(text, &|_| None).0;
+        assert!(!other.contains("<a id"), "{other}");
+    }
 
     #[test]
     fn markup_is_text_and_headings_can_be_linked() {

@@ -1,5 +1,9 @@
 //! Formulas by subjects: a cell says whether it passes, and how near its values come to the edge of what is legal.
 
+use super::card::judged;
+use super::number::written as as_written;
+use lightmeter_document::by_case::CaseCounts;
+use lightmeter_document::gate::cases;
 use lightmeter_document::run::{Group, Report};
 use lightmeter_document::{Number, thousands};
 use maud::{Markup, html};
@@ -15,9 +19,23 @@ pub(super) struct Column<'a> {
     groups: BTreeMap<&'a str, &'a Group>,
 }
 
-/// Whether a group is wrong.
+/// Whether a group is wrong: a value of it, the whole, or a case that was not answered though it was to be.
 pub(super) fn is_failing(group: &Group) -> bool {
-    group.totals.failed > 0 || group.problem.is_some()
+    group.totals.failed > 0 || group.problem.is_some() || group.by_case.as_ref().is_some_and(CaseCounts::is_failed)
+}
+
+/// What of a group's cases was not answered though it was to be, in sentences.
+pub(super) fn unanswered(counts: &CaseCounts) -> Option<String> {
+    let said: Vec<String> =
+        [(counts.missing, "never answered"), (counts.undeclared, "skipped without having been declared")]
+            .into_iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, what)| {
+                let was = if count == 1 { "was" } else { "were" };
+                format!("{} of {} {was} {what}.", thousands(count), cases(counts.asked))
+            })
+            .collect();
+    (!said.is_empty()).then(|| said.join(" "))
 }
 
 /// The columns of results.
@@ -69,13 +87,25 @@ fn cell(group: &Group) -> (&'static str, String, String) {
         share(group.margin_max)
     );
     if is_failing(group) {
+        let not_answered = group.by_case.as_ref().filter(|_| totals.failed == 0 && group.problem.is_none());
+        if let Some(says) = not_answered.and_then(unanswered) {
+            let count = group.by_case.as_ref().map_or(0, |counts| counts.missing + counts.undeclared);
+            return ("fail", format!("✗ {}", thousands(count)), says);
+        }
         let what = if totals.failed > 0 { format!("✗ {}", thousands(totals.failed)) } else { "✗ all".into() };
-        return ("fail", what, format!("{} of {} fail; {says}", thousands(totals.failed), thousands(totals.verdicts)));
+        let (failed, of) = judged(group);
+        return ("fail", what, format!("{} of {} fail; {says}", thousands(failed), thousands(of)));
     }
     if totals.expected_failures > 0 || group.expected_problem.is_some() {
         return ("known", format!("≈ {}", thousands(totals.expected_failures)), format!("as known; {says}"));
     }
-    if totals.verdicts > 0 && totals.verdicts == totals.indeterminate {
+    if totals.verdicts == 0 {
+        let reason =
+            group.by_case.as_ref().and_then(|counts| counts.reason.as_deref()).unwrap_or("no reason was given");
+        let what = if totals.skipped > 0 { "skipped" } else { "not asked" };
+        return ("skip", "–".into(), format!("{what}: {reason}"));
+    }
+    if totals.verdicts == totals.indeterminate {
         return ("skip", "?".into(), "the accuracy rules permit anything".into());
     }
     ("pass", share(group.margin_max), says)
@@ -91,16 +121,20 @@ fn share(margin: Number) -> String {
     if margin.0 == 0.0 { "0".into() } else { short(margin.0) }
 }
 
-/// A number in three digits.
+/// A number in about three digits, with a minus sign where it is negative.
 pub(super) fn short(x: f64) -> String {
-    match x.abs() {
+    let written = match x.abs() {
         _ if !x.is_finite() => Number(x).to_string(),
         0.0 => "0".into(),
         small if small < 0.001 => format!("{x:.1e}"),
         small if small < 10.0 => format!("{x:.2}"),
+        middle if middle < 100.0 => format!("{x:.1}"),
         middle if middle < 1e5 => format!("{x:.0}"),
         _ => format!("{x:.2e}"),
-    }
+    };
+    let is_decimal = written.contains('.') && !written.contains('e');
+    let written = if is_decimal { written.trim_end_matches('0').trim_end_matches('.') } else { &written };
+    as_written(written)
 }
 
 /// The filters, whose state the page keeps in its address.
@@ -158,7 +192,7 @@ pub(super) fn table(columns: &[Column<'_>], has_cards: bool) -> Markup {
                 }
             }
         }
-        p.hint { "A number is the greatest error as a share of what is legal: 1 is the edge. ✗ fails, ≈ fails as is known, – was skipped, ? may be anything." }
+        p.hint { "A number is the greatest error as a share of what is legal: 1 is the edge. ✗ fails, ≈ fails as is known, – was skipped or not asked, ? may be anything." }
     }
 }
 
@@ -219,4 +253,28 @@ pub(super) fn write_markdown(columns: &[Column<'_>], out: &mut impl Write) -> Re
         writeln!(out)?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_document::run::Totals;
+
+    fn cell_of(verdicts: u64, counts: CaseCounts) -> (&'static str, String, String) {
+        let totals = Totals { cases: counts.asked, verdicts, ..Totals::default() };
+        cell(&Group { totals, by_case: Some(counts), ..Group::new("fog/exp".into(), "renderer".into(), "answer") })
+    }
+
+    #[test]
+    fn what_was_not_answered_or_not_asked_does_not_pass() {
+        let missing = cell_of(0, CaseCounts { asked: 3, missing: 3, ..CaseCounts::default() });
+        assert_eq!(missing, ("fail", "✗ 3".into(), "3 of 3 cases were never answered.".into()));
+        let partly = cell_of(2, CaseCounts { asked: 3, passed: 2, missing: 1, ..CaseCounts::default() });
+        assert_eq!(partly, ("fail", "✗ 1".into(), "1 of 3 cases was never answered.".into()));
+        let reason = Some("the renderer does not declare it".to_owned());
+        let not_asked = cell_of(0, CaseCounts { not_asked: 3, reason, ..CaseCounts::default() });
+        assert_eq!(not_asked, ("skip", "–".into(), "not asked: the renderer does not declare it".into()));
+        let passing = cell_of(3, CaseCounts { asked: 3, passed: 3, ..CaseCounts::default() });
+        assert_eq!((passing.0, passing.1.as_str()), ("pass", "0"));
+    }
 }

@@ -9,13 +9,16 @@ mod equation;
 mod failure;
 mod markdown;
 mod matrix;
+mod number;
 mod overview;
 mod page;
 mod plot;
 mod scene;
+mod verdict;
 
 pub use equation::equation;
-pub use markdown::markdown;
+pub use markdown::{markdown, own_markdown};
+pub use number::written;
 pub use page::{PageKind, embedded, page, prose};
 pub use plot::course as course_plot;
 
@@ -32,11 +35,12 @@ use matrix::Column;
 use maud::{Markup, html};
 use overview::Facts;
 use std::fmt;
+use verdict::Verdict;
 
 /// The page of a run.
 #[must_use]
 pub fn of_run(report: &Report) -> String {
-    run_page(report, report.is_success(), &[])
+    run_page(report, Verdict::of_run(report), &[])
 }
 
 /// The page of a gate, whose counts are of cases.
@@ -44,11 +48,12 @@ pub fn of_run(report: &Report) -> String {
 pub fn of_gate(gate: &GateReport) -> String {
     let report = Report::from(gate.clone());
     let incidents: Vec<String> = gate.incidents.iter().chain(&gate.problems.first).cloned().collect();
-    run_page(&report, !gate.is_failed() && !gate.is_broken() && gate.has_judged(), &incidents)
+    let verdict = Verdict::of_gate(gate, &report);
+    run_page(&report, verdict, &incidents)
 }
 
-fn run_page(report: &Report, is_success: bool, incidents: &[String]) -> String {
-    let facts = Facts::of_run(report, is_success);
+fn run_page(report: &Report, verdict: Verdict, incidents: &[String]) -> String {
+    let facts = Facts::of_run(report, verdict);
     let columns = matrix::columns(&[("", report)]);
     let passing = failure::passing_cards(report);
     let body = html! {
@@ -95,7 +100,7 @@ fn list(cards: &[Card]) -> Markup {
                 th scope="row" { a href={ "#" (card.anchor) } { (card.name) } }
                 td { (card.place) }
                 td { (percent(card.share)) }
-                td { @match &card.cause { Some(cause) => (cause), None => span.quiet { "no known mistake explains it" } } }
+                td { @match &card.cause { Some(cause) => (written(cause)), None => span.quiet { "no known mistake explains it" } } }
             } } }
         } }
     }

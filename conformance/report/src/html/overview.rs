@@ -1,5 +1,7 @@
 //! What a result came to, before anything else: the verdict, of what, and by which command; and at the end what else there is to know.
 
+use super::page::prose;
+use super::verdict::Verdict;
 use crate::page::selftest::SelftestRun;
 use crate::page::sweep::{Swept, command};
 use crate::text::unbound;
@@ -13,37 +15,27 @@ pub(super) struct Facts {
     pub(super) title: String,
     /// Whether all is well; `None` where that is not the question.
     is_success: Option<bool>,
-    /// What it came to, in a sentence.
-    says: String,
+    /// What it came to, in sentences.
+    says: Vec<String>,
     command: Option<String>,
     /// Names with what they are.
     facts: Vec<(String, String)>,
 }
 
 fn device(adapter: &Identity) -> (String, String) {
-    (adapter.name.clone(), format!("{}, {}, {}", adapter.device, adapter.backend, adapter.driver))
+    // A renderer need not say what it runs on.
+    let known: Vec<&str> =
+        [&*adapter.device, &adapter.backend, &adapter.driver].into_iter().filter(|what| !what.is_empty()).collect();
+    (adapter.name.clone(), known.join(", "))
 }
 
 impl Facts {
-    pub(super) fn of_run(report: &Report, is_success: bool) -> Self {
+    pub(super) fn of_run(report: &Report, verdict: Verdict) -> Self {
         let subject = match (&report.renderer, report.adapters.as_slice()) {
             (Some(renderer), _) => format!("{} {}", renderer.identity.name, renderer.identity.version),
             (None, [one]) => one.name.clone(),
             (None, several) => format!("{} adapters", several.len()),
         };
-        let failing = report.groups.iter().filter(|group| super::matrix::is_failing(group)).count();
-        let verdicts = report.groups.iter().map(|group| group.totals.verdicts).sum::<u64>();
-        let cases = report.groups.iter().map(|group| group.totals.cases).sum::<u64>();
-        let mut says = format!("{} verdicts on {} cases", thousands(verdicts), thousands(cases));
-        says += &match failing {
-            0 if is_success => ": all are legal.".into(),
-            0 => ": each is legal, but not everything is as expected.".into(),
-            1 => ". One group of cases fails.".into(),
-            several => format!(". {several} groups of cases fail."),
-        };
-        if let Some(interrupted) = &report.interrupted {
-            says += &format!(" It was interrupted: {interrupted}.");
-        }
         let mut facts: Vec<(String, String)> = report.adapters.iter().map(device).collect();
         if let Some(shader) = &report.shader {
             let of = shader.function.as_ref().map_or_else(String::new, |function| format!("function {function} of "));
@@ -57,8 +49,8 @@ impl Facts {
         facts.extend(report.config.iter().map(|config| ("settings".into(), config.to_string())));
         Self {
             title: format!("lightmeter: {subject}"),
-            is_success: Some(is_success),
-            says,
+            is_success: Some(verdict.is_success),
+            says: verdict.sentences,
             command: report.command.clone(),
             facts,
         }
@@ -78,9 +70,9 @@ impl Facts {
         Self {
             title: format!("lightmeter sweep: {}", names.join(", ")),
             is_success: Some(is_success),
-            says: format!("{} inputs, of which {} give what is not legal.", thousands(inputs), thousands(failed)),
+            says: vec![format!("{} inputs, of which {} give what is not legal.", thousands(inputs), thousands(failed))],
             command: match sweeps {
-                [one] => Some(format!("lightmeter sweep {}", command(one))),
+                [one] => Some(one.command.clone().unwrap_or_else(|| format!("lightmeter sweep {}", command(one)))),
                 _ => None,
             },
             facts,
@@ -101,10 +93,10 @@ impl Facts {
         Self {
             title: "lightmeter bench".into(),
             is_success: None,
-            says: match groups {
+            says: vec![match groups {
                 1 => "What accuracy costs in time: one group of techniques and arithmetics.".into(),
                 _ => format!("What accuracy costs in time: {groups} groups of techniques and arithmetics."),
-            },
+            }],
             command: Some(document.command.clone()),
             facts,
         }
@@ -114,7 +106,7 @@ impl Facts {
         Self {
             title: "lightmeter selftest".into(),
             is_success: Some(run.is_good()),
-            says: "What the suite catches of the mistakes that it knows, and how small an error it names.".into(),
+            says: vec!["What the suite catches of the mistakes that it knows, and how small an error it names.".into()],
             command: run.command.clone(),
             facts: run.seed.iter().map(|seed| ("seed".into(), seed.to_string())).collect(),
         }
@@ -131,7 +123,7 @@ pub(super) fn head(facts: &Facts) -> Markup {
     html! {
         header class=(class) {
             h1 { @if !mark.is_empty() { span.mark { (mark) } " " } (facts.title) }
-            p { (facts.says) }
+            @for sentence in &facts.says { p { (prose(sentence)) } }
             @if let Some(command) = &facts.command { (super::failure::command(command)) }
         }
         @if !facts.facts.is_empty() {

@@ -34,8 +34,10 @@ pub(super) fn line(low: f64, high: f64, reference: f64, value: f64) -> Markup {
     }
 }
 
-/// What is shown upwards, and how far it goes.
+/// What is shown upwards, and how far it goes: a little farther than its values.
 struct Axis {
+    /// The least and the greatest value.
+    values: [f64; 2],
     least: f64,
     most: f64,
     top: f64,
@@ -52,7 +54,30 @@ impl Axis {
             return None;
         }
         let room = if most > least { 0.05 * (most - least) } else { 0.5 * most.abs().max(1.0) };
-        Some(Self { least: least - room, most: most + room, top })
+        Some(Self { values: [least, most], least: least - room, most: most + room, top })
+    }
+
+    /// The axis of values, and of what is legal beside them where that does not push them together.
+    fn with_band(course: &OutputCourse, value: Option<f64>) -> Option<Self> {
+        const MOST_TIMES: f64 = 2.0;
+        let values = || {
+            let own = |point: &CoursePoint| [Some(point.reference.0), point.mistaken.map(|x| x.0)];
+            course.points.iter().flat_map(own).flatten().chain(value)
+        };
+        let plain = Self::of(values(), AROUND)?;
+        let ends = course.points.iter().flat_map(|point| point.interval).map(|end| end.0);
+        let whole = Self::of(values().chain(ends), AROUND)?;
+        Some(if whole.span() <= MOST_TIMES * plain.span() { whole } else { plain })
+    }
+
+    fn span(&self) -> f64 {
+        self.values[1] - self.values[0]
+    }
+
+    /// The values that are written beside it: the least, the middle and the greatest, or the only one.
+    fn ticks(&self) -> Vec<f64> {
+        let [least, most] = self.values;
+        if least < most { vec![least, f64::midpoint(least, most), most] } else { vec![least] }
     }
 
     fn y(&self, value: f64) -> f64 {
@@ -101,9 +126,8 @@ fn folded(margin: f64) -> f64 {
 /// An output along an input: what it is to be, what the mistake makes of it, and by how many tolerances that is off.
 #[must_use]
 pub fn course(course: &OutputCourse, value: Option<f64>) -> Markup {
-    let values =
-        course.points.iter().flat_map(|point| [Some(point.reference.0), point.mistaken.map(|x| x.0)]).flatten();
-    let Some(axis) = Axis::of(values.chain(value), AROUND) else { return html! {} };
+    let Some(axis) = Axis::with_band(course, value) else { return html! {} };
+    let has_band = is_band_seen(course, &axis);
     let x = |x: f64| across(course, x);
     let has_mistake = course.points.iter().any(|point| point.mistaken.is_some());
     let band = band(course, &axis);
@@ -118,20 +142,20 @@ pub fn course(course: &OutputCourse, value: Option<f64>) -> Markup {
     html! {
         figure.plot {
             svg viewBox={ "0 0 " (WIDTH) " " (whole) } role="img" aria-label={ (course.output) " along " (course.input) } {
-                (ticks(&axis, &[axis.least, f64::midpoint(axis.least, axis.most), axis.most], short))
+                (ticks(&axis, &axis.ticks(), short))
                 (frame(AROUND))
                 path.band d=(band) {}
                 path.reference d=(reference) {}
                 @if has_mistake { path.mistaken d=(mistaken) {} }
                 @if let Some(value) = value.filter(|value| value.is_finite()) { circle.value cx=(x(course.at.0)) cy=(axis.y(value)) r="4" {} }
-                text.name x=(LEFT + 6.0) y=(AROUND + 14.0) { (course.output) }
+                text.name x=(LEFT) y=(AROUND - 4.0) { (course.output) }
                 @if let Some((axis, band, path, dot)) = &errors {
-                    (ticks(axis, &[axis.least, 0.0, axis.most], unfolded))
+                    (ticks(axis, &margin_ticks(axis), unfolded))
                     (frame(axis.top))
                     path.band d=(band) {}
                     path.mistaken d=(path) {}
                     @if let Some(dot) = dot { circle.value cx=(x(course.at.0)) cy=(dot) r="4" {} }
-                    text.name x=(LEFT + 6.0) y=(axis.top + 14.0) { "error over tolerance" }
+                    text.name x=(LEFT) y=(axis.top - 4.0) { "error over tolerance" }
                 }
                 @for (place, anchor) in [(0.0, "start"), (1.0, "end")] {
                     @let end = if place == 0.0 { course.points.first() } else { course.points.last() };
@@ -140,12 +164,45 @@ pub fn course(course: &OutputCourse, value: Option<f64>) -> Markup {
                 text.name x=(f64::midpoint(LEFT, WIDTH)) y=(whole - 6.0) text-anchor="middle" { (course.input) (unit) @if course.is_logarithmic { ", by its logarithm" } }
             }
             figcaption {
-                span.key-reference {} " reference  " span.key-band {} " legal  "
+                span.key-reference {} " reference  "
+                @if has_band || errors.is_some() { span.key-band {} " legal  " }
                 @if has_mistake { span.key-mistaken {} " with the mistake  " }
-                @if value.is_some() { span.key-value {} " the answer" }
+                @if value.is_some() { span.key-value {} " the answer  " }
+                @if !has_band { div.quiet { "What is legal is narrower than the line." } }
             }
+            (held(course))
         }
     }
+}
+
+/// The inputs that are the same at each point, each with its numbers together.
+fn held(course: &OutputCourse) -> Markup {
+    let mut inputs: Vec<(&str, Vec<String>, Option<&str>)> = vec![];
+    for one in &course.held {
+        let name = one.name.split('.').next().unwrap_or_default();
+        match inputs.last_mut().filter(|(last, ..)| *last == name) {
+            Some((_, numbers, _)) => numbers.push(short(one.value.0)),
+            None => inputs.push((name, vec![short(one.value.0)], one.unit.as_deref())),
+        }
+    }
+    let written = |(name, numbers, unit): (&str, Vec<String>, Option<&str>)| {
+        let value = if let [one] = numbers.as_slice() { one.clone() } else { format!("({})", numbers.join(", ")) };
+        match unit.filter(|unit| !matches!(*unit, "1" | "color")) {
+            Some(unit) => format!("{name} = {value} {unit}"),
+            None => format!("{name} = {value}"),
+        }
+    };
+    let written: Vec<String> = inputs.into_iter().map(written).collect();
+    html! { @if !written.is_empty() {
+        details.held { summary { "The other inputs, which are the same at each point" } p { (written.join("; ")) } }
+    } }
+}
+
+/// Whether the legal values are wide enough somewhere to be seen.
+fn is_band_seen(course: &OutputCourse, axis: &Axis) -> bool {
+    const LEAST_PIXELS: f64 = 0.5;
+    let height = |point: &CoursePoint| (axis.y(point.interval[0].0) - axis.y(point.interval[1].0)).abs();
+    course.points.iter().map(height).any(|pixels| pixels >= LEAST_PIXELS)
 }
 
 /// The legal values as an area.
@@ -180,10 +237,21 @@ fn errors_of(course: &OutputCourse, value: Option<f64>) -> Option<(Axis, String,
     Some((axis, band, path, dot))
 }
 
-/// A folded margin as it is written.
+/// The margins that are written beside an axis: 0, and to each side the end of what is legal, or the whole power of ten that is next to the end of
+/// the axis.
+fn margin_ticks(axis: &Axis) -> [f64; 3] {
+    let end = |folded: f64| if folded.abs() < 2.0 { 1.0_f64.copysign(folded) } else { folded.trunc() };
+    [end(axis.values[0]), 0.0, end(axis.values[1])]
+}
+
+/// A folded margin as it is written. The greatest stands for all beyond it.
 fn unfolded(folded: f64) -> String {
     let size = folded.abs();
-    let written = if size <= 1.0 { short(size) } else { format!("10^{:.0}", size - 1.0) };
+    let written = match size - 1.0 {
+        power if power <= 0.0 => short(size),
+        power if power >= MOST_POWER => format!("≥ 10^{MOST_POWER}"),
+        power => format!("10^{power:.0}"),
+    };
     if folded < 0.0 && size > 0.0 { format!("−{written}") } else { written }
 }
 
@@ -210,12 +278,13 @@ pub(super) fn errors(document: &SweepDocument) -> Markup {
     let parts = along.iter().map(|part| part.part + 1).max().unwrap_or(1).max(256);
     #[expect(clippy::cast_precision_loss, reason = "parts of a sweep")]
     let x = |part: usize| LEFT + (WIDTH - LEFT - AROUND) * part as f64 / parts as f64;
-    let axis = Axis { least: 0.0, most: if most > 0.0 { most } else { 1.0 }, top: AROUND };
+    let most = if most > 0.0 { most } else { 1.0 };
+    let axis = Axis { values: [0.0, most], least: 0.0, most, top: AROUND };
     let height = |error: f64| if error.is_finite() { AROUND + HEIGHT - axis.y(error) } else { HEIGHT };
     // The legal band goes up to a margin of 1.
     let margin = |part: &SweepPart| folded(part.margin_max.0).min(1.0 + MOST_POWER);
     let most = along.iter().map(margin).filter(|x| x.is_finite()).fold(1.2, f64::max);
-    let margins = Axis { least: 0.0, most, top: AROUND + HEIGHT + 18.0 };
+    let margins = Axis { values: [0.0, most], least: 0.0, most, top: AROUND + HEIGHT + 18.0 };
     let bottom = margins.top + HEIGHT;
     let has_margins = along.iter().any(|part| part.margin_max.0 > 0.0);
     let whole = if has_margins { bottom } else { AROUND + HEIGHT };
@@ -249,5 +318,58 @@ pub(super) fn errors(document: &SweepDocument) -> Markup {
             }
             figcaption { (sweep.formula) ": errors of " (sweep.output) " along " (sweep.over) "; parts in which a value is not legal are red. " @if has_margins { span.key-band {} " legal" } }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_document::Number;
+    use lightmeter_document::explained::HeldNumber;
+
+    fn point(x: f64, reference: f64, reach: f64) -> CoursePoint {
+        let interval = [Number(reference - reach), Number(reference + reach)];
+        CoursePoint { x: Number(x), reference: Number(reference), interval, mistaken: None }
+    }
+
+    fn plotted(reach: f64) -> OutputCourse {
+        let held =
+            |name: &str, value| HeldNumber { name: name.into(), value: Number(value), unit: Some("unit".into()) };
+        OutputCourse {
+            input: "density".into(),
+            unit: None,
+            output: "f".into(),
+            at: Number(0.5),
+            held: vec![held("p.x", -1.0), held("p.y", 0.25), held("fog", 3.0)],
+            is_logarithmic: false,
+            points: (0..5).map(|k| point(f64::from(k), f64::from(k) / 4.0, reach)).collect(),
+        }
+    }
+
+    #[test]
+    fn a_plot_tells_the_inputs_that_it_holds_and_what_is_legal_where_that_is_seen() {
+        let html = course(&plotted(0.1), None).0;
+        assert!(html.contains("p = (−1, 0.25) unit; fog = 3 unit"), "{html}");
+        assert!(html.contains("legal  ") && !html.contains("narrower"), "{html}");
+        let narrow = course(&plotted(1e-9), None).0;
+        assert!(narrow.contains("narrower than the line") && !narrow.contains("legal  "), "{narrow}");
+    }
+
+    #[test]
+    fn an_axis_has_room_for_what_is_legal_and_is_marked_at_its_values() {
+        let axis = Axis::with_band(&plotted(0.1), None).expect("it has values");
+        assert!(axis.least <= -0.1 && axis.most >= 1.1, "{} to {}", axis.least, axis.most);
+        let wide = Axis::with_band(&plotted(100.0), None).expect("it has values");
+        assert_eq!(wide.values.map(short), ["0", "1"]);
+        assert_eq!(wide.ticks().into_iter().map(short).collect::<Vec<_>>(), ["0", "0.5", "1"]);
+    }
+
+    #[test]
+    fn errors_over_tolerance_are_written_as_they_are() {
+        let axis = |values| Axis { values, least: values[0], most: values[1], top: 0.0 };
+        let written = |values| margin_ticks(&axis(values)).map(unfolded);
+        assert_eq!(written([-1.5, 1.5]), ["−1", "0", "1"]);
+        assert_eq!(written([-1.5, 4.6]), ["−1", "0", "10^3"]);
+        assert_eq!(written([-3.0, 1.0 + MOST_POWER]), ["−10^2", "0", "≥ 10^8"]);
     }
 }

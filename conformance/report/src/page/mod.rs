@@ -214,7 +214,7 @@ fn route_table(out: &mut impl Write) -> Result {
         "WebGPU has no factor of the constant's alpha. A state reaches the unit by one of these routes, the same on every"
     )?;
     writeln!(out, "driver; MIN and MAX are native and ignore their factors.\n")?;
-    writeln!(out, "| | route | |\n|---|---|---|")?;
+    writeln!(out, "| letter | route | what it does |\n|---|---|---|")?;
     writeln!(out, "| N | native | the unit's own factors |")?;
     writeln!(out, "| R | constant replicated | the constant is given as its alpha in all four components |")?;
     writeln!(

@@ -134,7 +134,7 @@ fn matrix(SelftestRun { record, mistakes, .. }: &SelftestRun, out: &mut impl Wri
         .into_iter()
         .filter(|family| record.kills.iter().any(|kill| family_of(&kill.formula) == *family))
         .collect();
-    writeln!(out, "| mistake | | {} | cases | most | seen in |", families.join(" | "))?;
+    writeln!(out, "| mistake | what it does | {} | cases | most | seen in |", families.join(" | "))?;
     writeln!(out, "|---|---|{}--:|--:|---|", "--:|".repeat(families.len()))?;
     for fault in mistakes {
         let kills: Vec<&Kill> = record.kills.iter().filter(|kill| kill.fault == fault.name).collect();
@@ -218,7 +218,10 @@ fn drawn(record: &SceneRecord, out: &mut impl Write) -> Written {
         record.rows.len(),
         percent(named, caught)
     )?;
-    writeln!(out, "| mistake | | scenes that catch it | named in | taken for another in |\n|---|---|--:|--:|---|")?;
+    writeln!(
+        out,
+        "| mistake | what it does | scenes that catch it | named in | taken for another in |\n|---|---|--:|--:|---|"
+    )?;
     for row in &record.rows {
         let others: Vec<&str> = row.others.iter().filter_map(|other| other.split(':').next()).collect();
         let [caught, named] = [row.caught.len(), row.named.len()];

@@ -2,13 +2,14 @@
 
 use super::unit::{UnitAnswer, unit_answer};
 use super::{Answer, Known, outcome};
-use lightmeter::arithmetic::{Accept, trace};
+use lightmeter::arithmetic::Accept;
 use lightmeter::cases::Input;
 use lightmeter::document::run::Examined;
 use lightmeter::document::show::{
-    SCHEMA, ShownAnswer, ShownCase, ShownConditioning, ShownMeaning, ShownOutput, ShownStanding, ShownStep, ShownValue,
+    SCHEMA, ShownAnswer, ShownCase, ShownConditioning, ShownMeaning, ShownOutput, ShownStanding, ShownValue,
 };
 use lightmeter::document::{Number, Word};
+use lightmeter::faults::shown_step;
 use lightmeter::formula::by_name;
 use lightmeter::select::{CaseRef, Member};
 use lightmeter::stability::{Conditioning, FormStanding};
@@ -42,7 +43,7 @@ pub(super) fn case(
         inputs_mean: spec.inputs.iter().map(meaning).collect(),
         inputs: by_name(member, &known.inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         inputs_hex: by_name(member, &known.inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
-        steps: known.steps.iter().map(step).collect(),
+        steps: known.steps.iter().map(shown_step).collect(),
         outputs: (0..known.outputs.len()).map(output).collect(),
         conditioning: conditioning(&known.conditioning),
         answers: rows.chain(unit.iter().map(unit_answer)).collect(),
@@ -53,11 +54,6 @@ pub(super) fn case(
 
 fn bounds(interval: &Accept) -> [Number; 2] {
     [Number(interval.low()), Number(interval.high())]
-}
-
-fn step(step: &trace::TraceStep) -> ShownStep {
-    let value = Number(step.result.value);
-    ShownStep { name: step.name.into(), value, interval: bounds(&step.result.interval) }
 }
 
 fn conditioning(conditioning: &Conditioning) -> ShownConditioning {

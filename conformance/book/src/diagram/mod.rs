@@ -1,7 +1,9 @@
 //! Diagrams of formulas: points, vectors and quantities, chosen and labelled by the names of the inputs.
 
+mod raster;
+
 use lightmeter_catalogue::cases::{Kind, Spec};
-use lightmeter_scene::raster::Raster;
+use lightmeter_scene::blend::Equation;
 use maud::{Markup, html};
 
 /// The diagram of a formula.
@@ -9,12 +11,11 @@ pub(crate) fn diagram(spec: &Spec) -> Markup {
     let has = |name: &str| spec.inputs.iter().any(|input| input.name == name);
     let of = |names: &[&str]| names.iter().any(|name| has(name));
     match (spec.kind, spec.family()) {
-        (Kind::Raster(Raster::Flat { .. }), _) => stream(),
-        (Kind::Raster(_), _) => pixels(),
-        (Kind::Blend(_), _) => blend(),
+        (Kind::Raster(raster), _) => raster::raster(raster).unwrap_or_else(|| flow(spec)),
+        (Kind::Blend(program), _) => blend(program.layer(0).0.color.equation),
+        (Kind::Depth(test), _) => raster::depth_test(test.compare),
         (_, "fog") => fog(spec),
         (_, "depth") if of(&["near"]) => frustum(),
-        (_, "depth") => depth_test(),
         (_, "attenuation") if has("axis") => surface(spec),
         (_, "attenuation") => falloff(spec),
         (_, "interpolation") if has("clip") => viewport(),
@@ -203,32 +204,6 @@ fn viewport() -> Markup {
     figure(420, 170, "From the clip volume to the pixels of a viewport", &body)
 }
 
-fn pixels() -> Markup {
-    let inside = |x: f64, y: f64| {
-        let side = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
-        let corners = [[70.0, 25.0], [330.0, 75.0], [150.0, 172.0]];
-        (0..3).all(|k| side(corners[k], corners[(k + 1) % 3]) > 0.0)
-    };
-    let body = html! {
-        @for row in 0..6 { @for column in 0..12 {
-            @let (x, y) = (50 + 25 * column, 25 + 25 * row);
-            rect class=(if inside(f64::from(x) + 12.5, f64::from(y) + 12.5) { "cell in" } else { "cell" }) x=(x) y=(y) width="25" height="25" {}
-            circle.center cx=(f64::from(x) + 12.5) cy=(f64::from(y) + 12.5) r="1.5" {}
-        } }
-        polygon.outline points="70,25 330,75 150,172" {}
-    };
-    figure(400, 190, "A pixel is covered where its centre lies inside", &body)
-}
-
-fn stream() -> Markup {
-    let at = |k: i32| [60.0 + 50.0 * f64::from(k), if k % 2 == 0 { 120.0 } else { 40.0 }];
-    let body = html! {
-        @for k in 0..4 { polygon class=(if k % 2 == 0 { "part-a" } else { "part-b" }) points=((k..k + 3).map(|k| format!("{},{}", at(k)[0], at(k)[1])).collect::<Vec<_>>().join(" ")) {} }
-        @for k in 0..6 { (dot(at(k), &format!("a{k}"))) }
-    };
-    figure(400, 150, "A primitive has the attribute of its provoking vertex, the first or the last", &body)
-}
-
 fn vertices() -> Markup {
     let body = html! {
         path.surface d="M60 150 Q200 60 340 150" fill="none" {}
@@ -278,17 +253,11 @@ fn frustum() -> Markup {
     figure(400, 212, "Depth is 0 at one plane and 1 at the other, and not even between them", &body)
 }
 
-fn depth_test() -> Markup {
-    let body = html! {
-        line.surface x1="40" y1="90" x2="370" y2="90" {} text x="40" y="112" { "0" } text x="362" y="112" { "1" }
-        line.mark x1="150" y1="50" x2="150" y2="100" {} text x="136" y="42" { "new" } line.mark x1="250" y1="50" x2="250" y2="100" {} text x="240" y="42" { "old" }
-        text x="205" y="130" text-anchor="middle" { "is new drawn, by the comparison with old?" }
-    };
-    figure(400, 145, "The depth that is drawn is compared with the one that is there", &body)
-}
-
 /// The blend unit.
-pub(crate) fn blend() -> Markup {
+pub(crate) fn blend(equation: Equation) -> Markup {
+    if equation.ignores_factors() {
+        return blend_without_factors(equation);
+    }
     let frame = |x: u32, y: u32, width: u32, name: &str| {
         html! { rect.outline x=(x) y=(y) width=(width) height="34" rx="5" {} text x=(x + width / 2) y=(y + 22) text-anchor="middle" { (name) } }
     };
@@ -299,6 +268,19 @@ pub(crate) fn blend() -> Markup {
         path.helper d="M405 99 V160 H65 V146" fill="none" {}
     };
     figure(460, 170, "What is drawn and what is there, each times its factor, come together by the equation", &body)
+}
+
+/// The blend unit where the equation takes no factors.
+fn blend_without_factors(equation: Equation) -> Markup {
+    let frame = |x: u32, y: u32, width: u32, name: &str| {
+        html! { rect.outline x=(x) y=(y) width=(width) height="34" rx="5" {} text x=(x + width / 2) y=(y + 22) text-anchor="middle" { (name) } }
+    };
+    let body = html! {
+        (frame(20, 20, 90, "src")) (frame(20, 110, 90, "dst")) (frame(200, 65, 80, equation.name())) (frame(340, 65, 70, "target"))
+        (arrow([110.0, 37.0], [198.0, 72.0], "", "main")) (arrow([110.0, 127.0], [198.0, 92.0], "", "main")) (arrow([280.0, 82.0], [338.0, 82.0], "", "main"))
+        path.helper d="M375 99 V160 H65 V146" fill="none" {}
+    };
+    figure(440, 170, "What is drawn and what is there, component by component, without factors", &body)
 }
 
 /// What goes in and what comes out.

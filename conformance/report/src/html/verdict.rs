@@ -1,0 +1,234 @@
+//! Whether a result passes, and the sentences that say why not: as the exit code of the command that wrote it has it.
+
+use lightmeter_document::by_case::{CaseCounts, Coverage};
+use lightmeter_document::gate::{GateReport, cases};
+use lightmeter_document::run::Report;
+use lightmeter_document::thousands;
+
+/// Whether all is well, and what was counted, in sentences.
+pub(super) struct Verdict {
+    pub(super) is_success: bool,
+    /// What must be read first, such as the end of a renderer; then the counts; then what else fails.
+    pub(super) sentences: Vec<String>,
+}
+
+impl Verdict {
+    /// Of a run.
+    pub(super) fn of_run(report: &Report) -> Self {
+        let totals = &report.totals;
+        let only_witnesses = totals.cases == 0 && !report.deviations.is_empty();
+        let has_judged = totals.passed + totals.expected_failures > 0 || only_witnesses;
+        Self::new(report, report.is_success(), has_judged, report.coverage())
+    }
+
+    /// Of a gate, which is counted by its cases; `report` is the same as a run.
+    pub(super) fn of_gate(gate: &GateReport, report: &Report) -> Self {
+        let is_right = gate.interrupted.is_none() && !gate.is_failed() && !gate.is_broken();
+        Self::new(report, is_right, gate.has_judged(), gate.coverage())
+    }
+
+    fn new(report: &Report, is_right: bool, has_judged: bool, coverage: Coverage) -> Self {
+        let lacking = report.required.filter(|required| !coverage.is_enough(required.0)).map(|required| {
+            let Coverage { chosen, judged, excluded } = coverage;
+            let [chosen, judged, excluded] = [chosen, judged, excluded].map(thousands);
+            format!(
+                "Of {chosen} chosen cases {judged} were judged and {excluded} excluded, which is less than the part of {required} \
+                 that `--require` asks for."
+            )
+        });
+        let mut sentences = ended(report);
+        sentences.push(counted(report, is_right));
+        sentences.extend(wrong(report));
+        if !has_judged && report.interrupted.is_none() && is_right {
+            sentences.push("That is not a pass.".into());
+        }
+        let is_success = is_right && has_judged && lacking.is_none();
+        // Where cases fail, what was left out is not why.
+        sentences.extend(lacking.filter(|_| is_right && has_judged));
+        Self { is_success, sentences }
+    }
+}
+
+/// What ended a result before its time.
+fn ended(report: &Report) -> Vec<String> {
+    let mut said = vec![];
+    if let Some(renderer) = report.renderer.as_ref().filter(|renderer| renderer.is_broken()) {
+        if let Some((first, more)) = renderer.incidents.split_first() {
+            said.push(format!("The renderer broke off: {first}."));
+            match more.len() {
+                0 => {}
+                1 => said.push("One more incident is listed below.".into()),
+                several => said.push(format!("{} more incidents are listed below.", thousands(several as u64))),
+            }
+        }
+        let unread = renderer.problems.counts.values().sum::<u64>();
+        said.extend((unread > 0).then(|| match unread {
+            1 => "One line that it wrote cannot be read as an answer.".into(),
+            several => format!("{} lines that it wrote cannot be read as answers.", thousands(several)),
+        }));
+    }
+    said.extend(report.interrupted.as_ref().map(|interrupted| format!("It was interrupted: {interrupted}.")));
+    said
+}
+
+/// The sum of a count of cases, where cases were counted.
+fn sum(report: &Report, count: fn(&CaseCounts) -> u64) -> u64 {
+    report.groups.iter().filter_map(|group| group.by_case.as_ref()).map(count).sum()
+}
+
+/// How many verdicts there are, on how many cases, and how many of them are not legal though that is expected.
+fn counted(report: &Report, is_right: bool) -> String {
+    let verdicts = report.groups.iter().map(|group| group.totals.verdicts).sum::<u64>();
+    let all = report.groups.iter().map(|group| group.totals.cases).sum::<u64>();
+    let left_out = report.groups.iter().map(|group| group.totals.skipped).sum::<u64>() + sum(report, |of| of.missing);
+    let mut said = match verdicts {
+        0 => "No value was judged".to_owned(),
+        _ => format!("{} verdicts on {}", thousands(verdicts), cases(all.saturating_sub(left_out))),
+    };
+    let failing = report.groups.iter().filter(|group| group.totals.failed > 0 || group.problem.is_some()).count();
+    let (by_verdict, by_case) = (
+        report.groups.iter().map(|group| group.totals.expected_failures).sum::<u64>(),
+        sum(report, |of| of.expected_failures),
+    );
+    let expected = match (by_case, by_verdict) {
+        (0, 0) => None,
+        (0, 1) => Some("one verdict fails as expected".to_owned()),
+        (0, several) => Some(format!("{} verdicts fail as expected", thousands(several))),
+        (1, _) => Some("one case fails as expected".to_owned()),
+        (several, _) => Some(format!("{} cases fail as expected", thousands(several))),
+    };
+    let as_whole = report.groups.iter().filter(|group| group.expected_problem.is_some()).count();
+    let expected = expected.or_else(|| match as_whole {
+        0 => None,
+        1 => Some("one group fails as a whole, as expected".to_owned()),
+        several => Some(format!("{several} groups fail as a whole, as expected")),
+    });
+    said += &match (failing, expected) {
+        (0, None) if verdicts == 0 => ".".to_owned(),
+        (0, None) if is_right => ": all are legal.".to_owned(),
+        (0, None) => ": each of them is legal.".to_owned(),
+        (0, Some(expected)) => format!(": {expected}, and all others are legal."),
+        (1, None) => ". One group of cases fails.".to_owned(),
+        (several, None) => format!(". {several} groups of cases fail."),
+        (1, Some(expected)) => format!(". One group of cases fails; besides, {expected}."),
+        (several, Some(expected)) => format!(". {several} groups of cases fail; besides, {expected}."),
+    };
+    said
+}
+
+/// What is wrong besides values that are not legal.
+fn wrong(report: &Report) -> Vec<String> {
+    let [missing, undeclared] = [sum(report, |of| of.missing), sum(report, |of| of.undeclared)];
+    let not_needed = report.deviations.iter().filter(|deviation| !deviation.still_needed).count() as u64;
+    let [worse, unexpected] = [report.regressions.len(), report.passing_unexpectedly().count()].map(|n| n as u64);
+    [
+        (missing, " was never answered.", " were never answered.", "case"),
+        (
+            undeclared,
+            " was skipped without having been declared.",
+            " were skipped without having been declared.",
+            "case",
+        ),
+        (
+            report.unstable,
+            " was answered in another way when it was asked again.",
+            " were answered in another way when they were asked again.",
+            "case",
+        ),
+        (worse, " is worse than in the baseline.", " are worse than in the baseline.", "result"),
+        (unexpected, " passes that is expected to fail.", " pass that are expected to fail.", "known failure"),
+        (not_needed, " is no longer seen.", " are no longer seen.", "named deviation"),
+    ]
+    .into_iter()
+    .filter(|(count, ..)| *count > 0)
+    .map(|(count, one, several, what)| match count {
+        1 => format!("One {what}{one}"),
+        _ => format!("{} {what}s{several}", thousands(count)),
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_document::Number;
+    use lightmeter_document::by_case::{KnownFailure, RendererUse};
+    use lightmeter_document::run::{Group, Totals};
+
+    /// A group of a gate: cases that pass, fail, are expected to, were never answered, and were not asked.
+    fn group([passed, failed, expected, missing, not_asked]: [u64; 5]) -> Group {
+        let asked = passed + failed + expected + missing;
+        let by_case = CaseCounts {
+            asked,
+            not_asked,
+            passed,
+            failed: failed + expected,
+            expected_failures: expected,
+            missing,
+            ..CaseCounts::default()
+        };
+        let totals = Totals { cases: asked, verdicts: asked - missing, failed, ..Totals::default() };
+        Group { totals, by_case: Some(by_case), ..Group::new("fog/exp".into(), "renderer".into(), "answer") }
+    }
+
+    fn said(group: Group, change: impl FnOnce(&mut Report)) -> (bool, String) {
+        let renderer = Some(RendererUse::default());
+        let required = Some(Number(0.5));
+        let mut report =
+            Report { groups: vec![group], renderer, required, ..Report::empty(1, "wgsl".into(), vec![], vec![]) };
+        change(&mut report);
+        let gate = GateReport::of(&report, String::new(), None);
+        let verdict = Verdict::of_gate(&gate, &report);
+        (verdict.is_success, verdict.sentences.join(" "))
+    }
+
+    #[test]
+    fn a_verdict_says_what_passes_and_why_it_fails() {
+        for (counts, is_success, expected) in [
+            ([9, 0, 0, 0, 0], true, "9 verdicts on 9 cases: all are legal."),
+            ([9, 1, 0, 0, 0], false, "10 verdicts on 10 cases. One group of cases fails."),
+            ([9, 0, 1, 0, 0], true, "10 verdicts on 10 cases: one case fails as expected, and all others are legal."),
+            (
+                [9, 1, 2, 0, 0],
+                false,
+                "12 verdicts on 12 cases. One group of cases fails; besides, 2 cases fail as expected.",
+            ),
+            ([9, 0, 0, 2, 0], false, "9 verdicts on 9 cases: each of them is legal. 2 cases were never answered."),
+            ([0, 0, 0, 2, 0], false, "No value was judged. 2 cases were never answered."),
+            (
+                [9, 0, 0, 0, 10],
+                false,
+                "9 verdicts on 9 cases: all are legal. Of 19 chosen cases 9 were judged and 10 excluded, which is less than the \
+                 part of 0.5 that `--require` asks for.",
+            ),
+            ([0, 0, 0, 0, 10], false, "No value was judged. That is not a pass."),
+        ] {
+            assert_eq!(said(group(counts), |_| {}), (is_success, expected.into()), "{counts:?}");
+        }
+    }
+
+    #[test]
+    fn a_renderer_that_ended_is_told_first() {
+        let (is_success, sentences) = said(group([9, 0, 0, 0, 0]), |report| {
+            let incidents = vec!["it ended at fog/exp/random/000003".to_owned()];
+            report.renderer = Some(RendererUse { incidents, ..RendererUse::default() });
+        });
+        assert!(
+            !is_success && sentences.starts_with("The renderer broke off: it ended at fog/exp/random/000003."),
+            "{sentences}"
+        );
+    }
+
+    #[test]
+    fn known_failures_that_pass_fail() {
+        let (is_success, sentences) = said(group([9, 0, 0, 0, 0]), |report| {
+            let (id, reason) = ("fog/*".to_owned(), "a reason".to_owned());
+            report.expectations =
+                vec![KnownFailure { id, reason, on: None, failed: 0, passed: 9, crash: false, may_pass: false }];
+        });
+        assert!(
+            !is_success && sentences.ends_with("One known failure passes that is expected to fail."),
+            "{sentences}"
+        );
+    }
+}
