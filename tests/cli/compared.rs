@@ -170,6 +170,28 @@ fn differences(a: &Value, b: &Value, path: &str, out: &mut Vec<String>) {
 }
 
 #[test]
+fn shards_of_shaders_that_differ_in_their_text_alone_are_no_run() {
+    let folder = file("merge-shaders");
+    std::fs::create_dir_all(&folder).expect("the folder can be made");
+    let shader = folder.join("fog.glsl");
+    let judged = |text: &str, shard: &str| {
+        let text = format!("float f(float density, float distance) {{ return {text}; }}");
+        std::fs::write(&shader, text).expect("the file can be written");
+        let out = folder.join(format!("{}.json", &shard[..1])).display().to_string();
+        let function = format!("f@{}", shader.display());
+        let command = ["run", "fog/exp", "--function", &function, "--cases", "64", "--format", "json"];
+        lightmeter(&[&command[..], &["--shard", shard, "--out", &out]].concat());
+        out
+    };
+    let first = judged("clamp(exp(-density * distance), 0.0, 1.0)", "1/2");
+    let same = judged("clamp(exp(-density * distance), 0.0, 1.0)", "2/2");
+    assert_eq!(code(&lightmeter(&["merge", &first, &same])), 0);
+    let other = judged("clamp(exp2(-density * distance), 0.0, 1.0)", "2/2");
+    let output = lightmeter(&["merge", &first, &other]);
+    assert!(code(&output) == 2 && stderr(&output).contains("shaders_hash"), "{}", stderr(&output));
+}
+
+#[test]
 fn shards_of_a_run_and_of_a_gate_merge_into_the_whole() {
     let exec = gate::process::command_of("targets=all wrong-at=fog/exp/random/000017");
     let run =

@@ -5,6 +5,7 @@ use super::config::used;
 use super::options::{Amount, Choice, ReportFormat, Required};
 use super::progress::{Bar, Stream};
 use super::say;
+use super::shader::hash_of;
 use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
 use super::{Status, abandon, command, writable};
@@ -174,6 +175,7 @@ impl Run {
         let command = Some(command());
         let required = Some(self.required.part());
         let mut report = Report { compared_by: Some(compared_by), config: used(), shader, command, required, ..report };
+        report.shaders_hash = hash_of(&options.code)?;
         report.explained = explain(&report, options.profile);
         // What was not judged for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());

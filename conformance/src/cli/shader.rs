@@ -10,6 +10,7 @@ use lightmeter::bench::OwnShader as Beside;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::Code;
 use lightmeter::document::run::{BoundVariable, FoundBy, JudgedAs, MistakePlace, Report, ShaderUse};
+use lightmeter::document::sweep::hash;
 use lightmeter::faults::{Fault, Touched};
 use lightmeter::filter::Filter;
 use lightmeter::options::{Adapted, Constant};
@@ -109,6 +110,15 @@ fn tell_unjudged(folder: &Path) -> anyhow::Result<()> {
         }
     }
     Ok(())
+}
+
+/// The hash of all files of a set of shaders, by their names and texts; `None` of the built-in ones.
+pub(crate) fn hash_of(code: &Code) -> anyhow::Result<Option<String>> {
+    let Some(shaders) = code.get::<Shaders>() else { return Ok(None) };
+    let texts =
+        |shaders: &Shaders| -> String { shaders.texts().map(|(name, text)| format!("{name}\0{text}\0")).collect() };
+    let (own, built_in) = (texts(shaders), texts(&Shaders::built_in()?));
+    Ok((own != built_in).then(|| hash(own.as_bytes())))
 }
 
 impl ShaderChoice {

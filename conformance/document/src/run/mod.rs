@@ -532,6 +532,9 @@ pub struct Report {
     /// The shader that was judged in the place of the suite's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shader: Option<ShaderUse>,
+    /// The hash of the text of all shader files, where some were judged that are not the suite's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shaders_hash: Option<String>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
@@ -579,6 +582,7 @@ impl Report {
             compared_by: None,
             config: None,
             shader: None,
+            shaders_hash: None,
         }
     }
 

@@ -83,6 +83,7 @@ fn facts(report: &Report) -> Vec<(String, String)> {
     let expected: Vec<KnownFailure> =
         report.expectations.iter().map(|one| KnownFailure { failed: 0, passed: 0, ..one.clone() }).collect();
     add("expectations", json!(expected));
+    add("shaders_hash", json!(report.shaders_hash));
     add("shader", json!(report.shader.as_ref().map(ShaderUse::without_mistakes)));
     out
 }

@@ -51,7 +51,7 @@ fn wrong(report: &Report) -> Vec<Wrong<'_>> {
     let mut all: Vec<Wrong<'_>> = vec![];
     for group in report.groups.iter().filter(|group| is_failing(group)) {
         let Some(image) = group.image.as_ref().filter(|image| !image.files.is_empty()) else { continue };
-        let pictures = PICTURES.map(|what| picture(image, what));
+        let pictures = PICTURES.map(|what| picture(image, what).filter(|png| is_of(image, what, png)));
         let is_its = |other: &&mut Wrong<'_>| other.group.id == group.id && other.group.adapter == group.adapter;
         let is_same = |other: &&mut Wrong<'_>| is_its(other) && pictures[1].is_some() && other.pictures == pictures;
         match all.iter_mut().find(is_same) {
@@ -88,6 +88,14 @@ fn picture(image: &ImageUse, what: &str) -> Option<Vec<u8>> {
     let is_small = std::fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() <= MOST_BYTES);
     let bytes = is_small.then(|| std::fs::read(path).ok()).flatten()?;
     bytes.starts_with(b"\x89PNG\r\n\x1a\n").then_some(bytes)
+}
+
+/// Whether a picture has the size of the image that was judged; the map has a legend below it. A later run of the same scene may have overwritten it.
+fn is_of(image: &ImageUse, what: &str, png: &[u8]) -> bool {
+    let number = |at: usize| Some(u32::from_be_bytes(png.get(at..at + 4)?.try_into().ok()?) as usize);
+    let (width, height) = (number(16), number(20));
+    width == Some(image.width)
+        && if what == "error" { height > Some(image.height) } else { height == Some(image.height) }
 }
 
 /// The map without the legend that stands below it in its file, and a legend beside it.
@@ -209,4 +217,28 @@ fn four(pixel: &PixelUse, numbers: &[Number; 4]) -> String {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few decimals")]
     let decimals = (1.0 - least.log10()).ceil().clamp(0.0, 8.0) as usize;
     numbers.map(|x| if x.0.is_finite() { format!("{:.decimals$}", x.0) } else { x.to_string() }).join("  ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_of_another_size_than_the_image_are_of_another_run() {
+        let image: ImageUse =
+            serde_json::from_value(json!({ "width": 256, "height": 128, "marked": 0 })).expect("it is an image");
+        let png = |width: u32, height: u32| {
+            [&b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"[..], &width.to_be_bytes(), &height.to_be_bytes()].concat()
+        };
+        for (what, size, is_its) in [
+            ("result", (256, 128), true),
+            ("result", (512, 128), false),
+            ("reference", (256, 512), false),
+            ("error", (256, 140), true),
+            ("error", (512, 300), false),
+        ] {
+            assert_eq!(is_of(&image, what, &png(size.0, size.1)), is_its, "{what} {size:?}");
+        }
+        assert!(!is_of(&image, "result", b"\x89PNG"));
+    }
 }

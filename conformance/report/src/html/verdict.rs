@@ -103,16 +103,35 @@ fn counted(report: &Report, is_right: bool) -> String {
         1 => Some("one group fails as a whole, as expected".to_owned()),
         several => Some(format!("{several} groups fail as a whole, as expected")),
     });
+    let undecided = report.groups.iter().map(|group| group.totals.indeterminate).sum::<u64>();
     said += &match (failing, expected) {
         (0, None) if verdicts == 0 => ".".to_owned(),
+        (0, None) if undecided == verdicts => ": none is decided.".to_owned(),
+        (0, None) if undecided > 0 => format!(": {} are legal.", thousands(verdicts - undecided)),
         (0, None) if is_right => ": all are legal.".to_owned(),
         (0, None) => ": each of them is legal.".to_owned(),
+        (0, Some(expected)) if undecided > 0 => format!(": {expected}, and all others that are decided are legal."),
         (0, Some(expected)) => format!(": {expected}, and all others are legal."),
         (1, None) => ". One group of cases fails.".to_owned(),
         (several, None) => format!(". {several} groups of cases fail."),
         (1, Some(expected)) => format!(". One group of cases fails; besides, {expected}."),
         (several, Some(expected)) => format!(". {several} groups of cases fail; besides, {expected}."),
     };
+    said + &left_open(report, undecided)
+}
+
+/// What the counts leave open: verdicts that nothing decides, and the other shards of a run.
+fn left_open(report: &Report, undecided: u64) -> String {
+    let mut said = match undecided {
+        0 => String::new(),
+        1 => " One verdict is undecided: there the accuracy rules permit any value.".into(),
+        several => {
+            format!(" {} verdicts are undecided: there the accuracy rules permit any value.", thousands(several))
+        }
+    };
+    if let Some(shard) = report.compared_by.as_ref().and_then(|by| by.shard.as_ref()) {
+        said += &format!(" This is shard {shard} of a run, and not the whole.");
+    }
     said
 }
 
@@ -152,7 +171,7 @@ fn wrong(report: &Report) -> Vec<String> {
 mod tests {
     use super::*;
     use lightmeter_document::Number;
-    use lightmeter_document::by_case::{KnownFailure, RendererUse};
+    use lightmeter_document::by_case::{ComparedBy, KnownFailure, RendererUse};
     use lightmeter_document::run::{Group, Totals};
 
     /// A group of a gate: cases that pass, fail, are expected to, were never answered, and were not asked.
@@ -180,6 +199,26 @@ mod tests {
         let gate = GateReport::of(&report, String::new(), None);
         let verdict = Verdict::of_gate(&gate, &report);
         (verdict.is_success, verdict.sentences.join(" "))
+    }
+
+    #[test]
+    fn what_is_undecided_is_not_called_legal_and_a_shard_not_the_whole() {
+        let undecided = |count| {
+            let mut undecided = group([9, 0, 0, 0, 0]);
+            undecided.totals.indeterminate = count;
+            undecided
+        };
+        let why = "undecided: there the accuracy rules permit any value.";
+        assert_eq!(said(undecided(0), |_| {}).1, "9 verdicts on 9 cases: all are legal.");
+        let one = format!("9 verdicts on 9 cases: 8 are legal. One verdict is {why}");
+        assert_eq!(said(undecided(1), |_| {}).1, one);
+        let all = format!("9 verdicts on 9 cases: none is decided. 9 verdicts are {why}");
+        assert!(said(undecided(9), |_| {}).1.starts_with(&all));
+        let shard = |report: &mut Report| {
+            report.compared_by = Some(ComparedBy { shard: Some("1/2".into()), ..ComparedBy::default() });
+        };
+        let said = said(undecided(0), shard).1;
+        assert!(said.ends_with("all are legal. This is shard 1/2 of a run, and not the whole."), "{said}");
     }
 
     #[test]
