@@ -487,7 +487,10 @@ int lightmeter_serve_as(const lightmeter_about *about, const lightmeter_formula 
             lightmeter_answer(asked, lightmeter_find(asked->formula, formulas, count));
             break;
         case LIGHTMETER_OTHER:
-            fprintf(stderr, "a line is none of " LIGHTMETER_PROTOCOL ": %.200s\n", line);
+            if (strstr(line, "\"hello\"") && strstr(line, "lightmeter.protocol/"))
+                fprintf(stderr, "the gate speaks another version than " LIGHTMETER_PROTOCOL ", which this client speaks: %.200s\n", line);
+            else
+                fprintf(stderr, "a line is none of " LIGHTMETER_PROTOCOL ": %.200s\n", line);
             free(asked);
             free(line);
             return 1;

@@ -159,7 +159,7 @@ pub fn of_matrix(reports: &[(&str, &Report)]) -> String {
         dl.facts {
             @for (name, report) in reports {
                 dt { (name) }
-                dd { @for adapter in &report.adapters { (adapter.name) ": " (adapter.device) ", " (adapter.driver) br; } "seed " (report.seed) ", profile " (report.profile) }
+                dd { @for adapter in &report.adapters { (adapter.name) ": " (adapter.device) ", " (adapter.driver) br; } "seed " (report.seed) ", profile " (report.profile) @if let Some(interrupted) = &report.interrupted { br; b { "It was interrupted: " (interrupted) "." } } }
             }
         }
         (all(&columns, false))
