@@ -450,7 +450,7 @@ fn what_serve_cannot_judge_is_refused_before_a_page_is_served() {
     for (arguments, says) in [
         (&["fog/exp", "--adapter", "lavapipe"][..], "use `run --adapter lavapipe`"),
         (&["fog/exq"], "did you mean `fog/exp`?"),
-        (&["fog/exp", "--listen", "0.0.0.0:0"], "this server speaks http"),
+        (&["fog/exp", "--listen", "0.0.0.0:0"], "as 192.168.1.20:8443, or 127.0.0.1"),
         (&["fog/exp", "--listen", "nowhere"], "--listen"),
     ] {
         let output = command(&[&["serve"], arguments].concat()).output().expect("the binary starts");

@@ -104,7 +104,7 @@ fn of_book(address: &str) -> Option<String> {
     }
     let (path, fragment) =
         address.split_once('#').map_or((address, String::new()), |(path, at)| (path, format!("#{at}")));
-    let name = path.trim_start_matches("../").trim_start_matches("docs/");
+    let name = path.trim_start_matches("../").trim_start_matches("docs/").trim_start_matches("book/");
     if let Some((_, page)) = PAGES.iter().find(|(own, _)| own.trim_start_matches("../") == name) {
         return Some(format!("{page}{fragment}"));
     }
@@ -132,6 +132,7 @@ mod tests {
         assert_eq!(of_book("formula/fog/exp.md").as_deref(), Some("formula/fog/exp.html"));
         assert_eq!(of_book("schemas/frame.json").as_deref(), Some("reference/schema/frame.html"));
         assert_eq!(of_book("../README.md"), None);
+        assert_eq!(of_book("../../docs/book/in-ci.md#x").as_deref(), Some("in-ci.html#x"));
         assert_eq!(of_book("../../examples/engine/README.md").as_deref(), Some("rust-engine.html"));
         let html = links(
             r##"<p><a href="gate.md">g</a> <a href="../README.md">r</a> <a href="#x">x</a></p>"##,
