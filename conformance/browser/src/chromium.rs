@@ -2,7 +2,6 @@
 
 use crate::server::{Server, ServerError};
 use crate::session::Session;
-use lightmeter_gpu::{Abilities, Host, HostError, Ticket, WorkPiece};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
@@ -66,14 +65,11 @@ pub enum ChromiumError {
     Server(#[from] ServerError),
 }
 
-/// A Chromium that answers, with the server of its page. Both end with this.
+/// A Chromium that runs, which ends with this.
 #[derive(Debug)]
-pub struct Chromium {
-    session: Arc<Session>,
+pub(crate) struct RunningChromium {
     is_over: Arc<AtomicBool>,
     watch: Option<JoinHandle<()>>,
-    /// Ends last: until then the page finds it.
-    _server: Server,
 }
 
 /// A running process, which ends with this.
@@ -85,12 +81,12 @@ struct Process {
     _profile: tempfile::TempDir,
 }
 
-impl Chromium {
-    /// Starts one, and waits until its page says hello.
+impl RunningChromium {
+    /// Starts one and the server of its page, and waits until its page says hello.
     ///
     /// # Errors
     /// Where none is installed, it does not start, or its page does not say hello.
-    pub fn start() -> Result<Self, ChromiumError> {
+    pub(crate) fn start() -> Result<(Server, Arc<Session>, Self), ChromiumError> {
         let server = Server::start(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)))?;
         let mut process = Process::start(&server.access().url())?;
         let until = Instant::now() + PATIENCE;
@@ -111,23 +107,11 @@ impl Chromium {
             let (is_over, session) = (is_over.clone(), session.clone());
             move || process.watch(&is_over, &session)
         });
-        Ok(Self { session, is_over, watch: Some(watch), _server: server })
-    }
-
-    /// The program that [`Chromium::start`] starts; `None` where none is installed.
-    #[must_use]
-    pub fn program() -> Option<PathBuf> {
-        program()
-    }
-
-    /// What its page said of itself.
-    #[must_use]
-    pub fn hello(&self) -> &crate::session::BrowserHello {
-        self.session.hello()
+        Ok((server, session, Self { is_over, watch: Some(watch) }))
     }
 }
 
-impl Drop for Chromium {
+impl Drop for RunningChromium {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
         if let Some(watch) = self.watch.take() {
@@ -137,27 +121,9 @@ impl Drop for Chromium {
     }
 }
 
-impl Host for Chromium {
-    fn abilities(&self) -> Abilities {
-        self.session.abilities()
-    }
-
-    fn send(&self, piece: &WorkPiece<'_>) -> Ticket {
-        self.session.send(piece)
-    }
-
-    fn wait(&self, ticket: Ticket) -> Result<Vec<u8>, HostError> {
-        self.session.wait(ticket)
-    }
-
-    fn forget(&self, ticket: Ticket) {
-        self.session.forget(ticket);
-    }
-}
-
 impl Process {
     fn start(url: &str) -> Result<Self, ChromiumError> {
-        let path = program().ok_or(ChromiumError::Missing)?;
+        let path = chromium_program().ok_or(ChromiumError::Missing)?;
         let failed = |source| ChromiumError::Start { path: path.clone(), source };
         let profile = tempfile::Builder::new().prefix("lightmeter-chromium-").tempdir().map_err(failed)?;
         let mut command = Command::new(&path);
@@ -191,8 +157,9 @@ impl Drop for Process {
     }
 }
 
-/// The program that CHROMIUM names, or the first that is on the PATH.
-fn program() -> Option<PathBuf> {
+/// The program that is started: the one that CHROMIUM names, or the first that is on the PATH. `None` where none is installed.
+#[must_use]
+pub fn chromium_program() -> Option<PathBuf> {
     if let Some(named) = std::env::var_os("CHROMIUM").filter(|path| !path.is_empty()) {
         return Some(named.into());
     }

@@ -5,14 +5,14 @@
 
 mod chromium;
 mod http;
+mod served;
 mod server;
 mod session;
 #[cfg(test)]
 mod tests;
 mod tls;
-mod visitor;
 
-pub use chromium::{Chromium, ChromiumError};
+pub use chromium::{ChromiumError, chromium_program};
+pub use served::ServedBrowser;
 pub use server::{Access, Server, ServerError};
 pub use session::{BrowserHello, PageGroup, PageState, Session};
-pub use visitor::Visitor;

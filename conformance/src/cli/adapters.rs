@@ -5,7 +5,7 @@ use super::options::Format;
 use super::terminal::level;
 use clap::Args;
 use lightmeter::adapters::{BROWSER, CHROMIUM, EMBEDDED};
-use lightmeter::browser::Chromium;
+use lightmeter::browser::chromium_program;
 use lightmeter::devices::{BlendDeviation, Builtin, Deviation, known};
 use lightmeter::document::Document as _;
 use lightmeter::document::adapters::{
@@ -34,7 +34,7 @@ impl Adapters {
             Format::Text => {
                 let mut text = String::new();
                 if level() == Level::Quiet {
-                    let browser = Chromium::program().map(|_| CHROMIUM);
+                    let browser = chromium_program().map(|_| CHROMIUM);
                     let names = found.iter().map(|adapter| adapter.name.as_str()).chain([EMBEDDED]).chain(browser);
                     names.for_each(|name| text += &format!("{name}\n"));
                     return self.format.emit(&text, None).map(|()| Status::Success);
@@ -52,7 +52,7 @@ impl Adapters {
                     }
                 }
                 writeln!(text, "{:<14} {:<7} the reference's own formulas in f32: needs no driver", EMBEDDED, "—")?;
-                if let Some(program) = Chromium::program() {
+                if let Some(program) = chromium_program() {
                     let (name, program) = (CHROMIUM, program.display());
                     writeln!(text, "{name:<14} {:<7} the GPU of {program}, which is started for it", "webgpu")?;
                 }

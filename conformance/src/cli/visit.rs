@@ -12,7 +12,7 @@ use std::time::Duration;
 /// How often it is looked at whether a signal ends the command.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// The adapters of those names, opened. Where one is a browser, the page is told of and waited for.
+/// Opens the adapters of those names. For one that is a browser, this prints the address of its page and waits until a browser opens the page.
 pub(super) fn opened(names: &[String]) -> anyhow::Result<Vec<Subject>> {
     let stop = stopped_by_signals()?;
     let mut visited = |server: &Server| {

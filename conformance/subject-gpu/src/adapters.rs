@@ -2,7 +2,7 @@
 
 use super::browser;
 use super::open_device;
-use lightmeter_browser::{Chromium, ChromiumError, Server, ServerError, Session, Visitor};
+use lightmeter_browser::{ChromiumError, ServedBrowser, Server, ServerError, Session};
 use lightmeter_catalogue::nearest::did_you_mean;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::subject::Subject;
@@ -94,7 +94,7 @@ pub fn open_with(
     for name in asked {
         match name.as_str() {
             EMBEDDED => subjects.push(Subject::embedded()),
-            CHROMIUM => subjects.push(browser::of_chromium(CHROMIUM, Chromium::start()?)),
+            CHROMIUM => subjects.push(browser::of_served(CHROMIUM.into(), ServedBrowser::chromium()?)),
             ALL => {
                 drivers_named(&found)?;
                 if found.is_empty() {
@@ -151,7 +151,7 @@ fn visitor(
 ) -> Result<Subject, AdapterError> {
     let server = Server::start(address)?;
     let session = visited(&server).ok_or(AdapterError::NoBrowser)?;
-    Ok(browser::of_visitor(name.into(), Visitor::new(session, server)))
+    Ok(browser::of_served(name.into(), ServedBrowser::opened(session, server)))
 }
 
 /// The names of all adapters. No device is opened.

@@ -1,19 +1,12 @@
 //! Browsers as subjects.
 
 use crate::on_gpu;
-use lightmeter_browser::{BrowserHello, Chromium, Session, Visitor};
+use lightmeter_browser::{BrowserHello, ServedBrowser, Session};
 use lightmeter_document::run::Identity;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Gpu, Host};
 use lightmeter_judge::devices::Known;
 use std::sync::Arc;
-
-/// A headless Chromium as a subject, which ends with it.
-#[must_use]
-pub fn of_chromium(name: &str, chromium: Chromium) -> Subject {
-    let hello = chromium.hello().clone();
-    of_host(name.into(), &hello, Arc::new(chromium))
-}
 
 /// A browser that opened the page as a subject.
 #[must_use]
@@ -24,9 +17,9 @@ pub fn of_session(name: String, session: Arc<Session>) -> Subject {
 
 /// The same, whose page is served as long as the subject lives.
 #[must_use]
-pub fn of_visitor(name: String, visitor: Visitor) -> Subject {
-    let hello = visitor.hello().clone();
-    of_host(name, &hello, Arc::new(visitor))
+pub fn of_served(name: String, browser: ServedBrowser) -> Subject {
+    let hello = browser.hello().clone();
+    of_host(name, &hello, Arc::new(browser))
 }
 
 fn of_host(name: String, hello: &BrowserHello, host: Arc<dyn Host>) -> Subject {

@@ -9,7 +9,8 @@ use std::time::Instant;
 /// Seconds that a submission and the wait for its end may take besides what is timed: far more than any driver needs. Mesa 22.3's
 /// llvmpipe notes the timestamps around a dispatch both at its end, once a frame was drawn by the same device.
 const SLACK: f64 = 0.05;
-/// Readings that are needed to tell in what steps a clock tells time: the chance that so many multiples of a step have a larger divisor in common is 1 in 2^15.
+/// After this many readings their greatest common divisor is taken for the clock's step. All of them are even multiples of the step, and the divisor so
+/// twice the step or more, with a probability of about 1 in 2^16.
 const READINGS_FOR_GRAIN: u64 = 16;
 
 /// How a clock tells time.
