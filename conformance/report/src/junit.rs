@@ -108,7 +108,14 @@ pub fn of_gate(report: &GateReport) -> Result<String, SerializeError> {
         }
         let mut case = TestCase::new(group.name(), status);
         case.set_classname(group.id.split('/').next().unwrap_or_default());
+        if let Some(source) = &group.source {
+            case.extra.insert("file".into(), source.file.as_str().into());
+            case.extra.extend(source.line.map(|line| ("line".into(), line.to_string().into())));
+        }
         suite.add_test_case(case);
+    }
+    if !report.warnings.is_empty() {
+        suite.set_system_out(report.warnings.join("\n"));
     }
     for (title, what) in whole(report) {
         let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);

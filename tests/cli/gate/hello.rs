@@ -121,6 +121,10 @@ fn annotations_and_the_report_name_the_file_and_line_that_a_hello_names() {
     let output = stdout(&lightmeter(&["gate", text(&pack), text(&file), "--format", "github"]));
     assert!(output.contains("::error file=src/a%2C b.glsl,line=12,title=fog/exp::"), "{output}");
     assert!(output.contains("::error file=src/fog.glsl,title=fog/linear::"), "{output}");
+    let output = stdout(&lightmeter(&["gate", text(&pack), text(&file), "--format", "junit"]));
+    assert!(output.contains("file=\"src/a, b.glsl\"") && output.contains("line=\"12\""), "{output}");
+    let output = stdout(&lightmeter(&["gate", text(&pack), text(&file), "--format", "html"]));
+    assert!(output.contains(", src/a, b.glsl:12"), "{output}");
     let output = stdout(&lightmeter(&["gate", text(&pack), text(&file)]));
     assert!(output.contains("  source src/a, b.glsl:12\n") && output.contains("  source src/fog.glsl\n"), "{output}");
     for (sources, said) in [
@@ -144,7 +148,10 @@ fn answers_that_do_not_say_which_pack_they_answer_are_warned_of() {
         let output = lightmeter(&["gate", text(&pack), text(file)]);
         assert_eq!((status, code(&output)), (0, 0), "{report}");
         let warnings = report["warnings"].as_array().cloned().unwrap_or_default();
-        assert_eq!(stdout(&output).contains("warning: "), !warnings.is_empty(), "{}", stdout(&output));
+        for (format, says) in [("text", "warning: "), ("junit", "which pack"), ("html", "which pack")] {
+            let output = stdout(&lightmeter(&["gate", text(&pack), text(file), "--format", format]));
+            assert_eq!(output.contains(says), !warnings.is_empty(), "{format}: {output}");
+        }
         warnings
     };
     let warnings = warned(&answers);

@@ -19,6 +19,11 @@ pub(super) struct Card {
     pub(super) body: Markup,
 }
 
+/// Where the renderer's code of a group stands, behind a comma, where its hello says so.
+pub(super) fn source_of(group: &Group) -> String {
+    group.source.as_ref().map(|source| format!(", {source}")).unwrap_or_default()
+}
+
 /// How many failed that were not expected to, and of how many: verdicts, or whole cases where a renderer was asked. An image is one case,
 /// and counts by its values.
 pub(super) fn judged(group: &Group) -> (u64, u64) {

@@ -1,6 +1,6 @@
 //! The card of a formula that fails: what it computes, of which inputs, where it departs, why, and how to see it again.
 
-use super::card::{Card, failing_share, judged};
+use super::card::{Card, failing_share, judged, source_of};
 use super::matrix::{card_id, is_failing, short, unanswered};
 use super::number::written;
 use super::page::prose;
@@ -39,7 +39,7 @@ pub(super) fn cards(report: &Report) -> (Vec<Card>, usize) {
     let told = |(place, groups): (usize, &Vec<&Group>)| Card {
         anchor: card_id(&groups[0].id, &groups[0].adapter),
         name: groups[0].id.clone(),
-        place: format!("{}, {}", groups[0].adapter, stages(groups)),
+        place: format!("{}, {}{}", groups[0].adapter, stages(groups), source_of(groups[0])),
         share: failing_share(groups),
         cause: groups.iter().find_map(|group| {
             group

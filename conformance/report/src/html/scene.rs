@@ -1,6 +1,6 @@
 //! The card of a scene whose image is wrong: reference and result behind a slider, the error map, and the pixels' values.
 
-use super::card::{Card, failing_share};
+use super::card::{Card, failing_share, source_of};
 use super::failure::command;
 use super::matrix::{card_id, is_failing};
 use super::page::embedded;
@@ -74,7 +74,7 @@ pub(super) fn cards(report: &Report) -> Vec<Card> {
     let told = |(place, wrong): (usize, &Wrong<'_>)| Card {
         anchor: wrong.anchor(),
         name: wrong.group.id.clone(),
-        place: format!("{}, {}", wrong.group.adapter, wrong.places()),
+        place: format!("{}, {}{}", wrong.group.adapter, wrong.places(), source_of(wrong.group)),
         share: failing_share(&[wrong.group]),
         cause: wrong.group.cause.clone(),
         body: card(report, wrong, place < OPEN),

@@ -39,6 +39,8 @@ impl Verdict {
         let mut sentences = ended(report);
         sentences.push(counted(report, is_right));
         sentences.extend(wrong(report));
+        let warnings = report.renderer.iter().flat_map(|renderer| &renderer.warnings);
+        sentences.extend(warnings.map(|warning| format!("Warning: {warning}.")));
         if !has_judged && report.interrupted.is_none() && is_right {
             sentences.push("That is not a pass.".into());
         }
@@ -199,6 +201,16 @@ mod tests {
         let gate = GateReport::of(&report, String::new(), None);
         let verdict = Verdict::of_gate(&gate, &report);
         (verdict.is_success, verdict.sentences.join(" "))
+    }
+
+    #[test]
+    fn a_warning_stands_in_the_verdict() {
+        let warned = |report: &mut Report| {
+            let warnings = vec!["the answers name no pack".into()];
+            report.renderer = Some(RendererUse { warnings, ..RendererUse::default() });
+        };
+        let expected = "9 verdicts on 9 cases: all are legal. Warning: the answers name no pack.";
+        assert_eq!(said(group([9, 0, 0, 0, 0]), warned), (true, expected.into()));
     }
 
     #[test]
