@@ -27,6 +27,7 @@ formula!(
         Hard::new("far", "d² overflows: nothing is promised", &[("d", &[2e19]), ("kq", &[1.0])]),
         Hard::new("no-falloff", "kc = 1 alone gives 1", &[("kc", &[1.0]), ("kl", &[0.0]), ("kq", &[0.0])]),
         Hard::new("a-long-way-off", "no distance is too long", &[("kc", &[1.0]), ("kl", &[0.1]), ("kq", &[0.1]), ("d", &[1e5])]),
+        Hard::new("as-far-as-it-squares", "no distance is too long whose square is a number", &[("kc", &[1.0]), ("kl", &[0.1]), ("kq", &[1e-20]), ("d", &[1e12])]),
     ],
 );
 formula!(
@@ -66,6 +67,10 @@ formula!(
     [KC, KL, KQ, Input::position("light"), Input::position("p")] -> [ATTEN],
     fit fit::light,
     |kc, kl, kq, light, p; out| { out.scalar(attenuation::point(kc, kl, kq, light, p)); },
+    hard [
+        Hard::new("close-to-the-light", "1e5: no distance is too short", &[("kc", &[0.0]), ("kl", &[1.0]), ("kq", &[0.0]), ("light", &[0.0, 6e-6, 8e-6]), ("p", &[0.0, 0.0, 0.0])]),
+        Hard::new("a-long-way-off", "no distance is too long", &[("kc", &[1.0]), ("kl", &[0.1]), ("kq", &[0.1]), ("light", &[0.0, 6e8, 8e8]), ("p", &[0.0, 0.0, 0.0])]),
+    ],
 );
 formula!(
     /// A spotlight's cone.
@@ -91,6 +96,7 @@ formula!(
         Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("l", &[0.0, 0.0, -1.0]), ("axis", &[0.0, 0.0, 1.5]), ("cutoff_cosine", &[0.5]), ("exponent", &[2.0])]),
         Hard::new("slight-exponent", "an exponent of 0.0005 is not 0", SLIGHT),
         Hard::new("barely-before-it", "however small, a cosine above 0 counts", &[("l", &[0.999_999_9, 0.0, -9e-5]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[0.5])]),
+        Hard::new("least-before-it", "1e-12 is above 0, too", &[("l", &[1.0, 0.0, -1e-12]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[1.0])]),
         Hard::new("no-exponent-behind", "evenly lit where the cone reaches behind the light too", BEHIND),
         Hard::new("behind", "0 behind the light with the widest cone", &[("l", &[0.0, 0.0, 1.0]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[2.0])]),
     ],

@@ -67,6 +67,39 @@ const BEHIND: [(&str, &[f32]); 20] = [
     ("c", &[0.0, 1.0, 4.95]),
 ];
 
+/// A surface that is lit and seen from its front. Each axis lies on the lit side of its normal and of the mirrored ray, so that whatever direction
+/// a shader takes in the place of a vector that is missing shows.
+const FRONT: [(&str, &[f32]); 11] = [
+    ("p", AT),
+    ("position", &[1.42, 0.44, 0.2]),
+    ("normal", &[0.36, 0.48, 0.8]),
+    ("direction", &[-0.48, -0.36, -0.8]),
+    ("pa", AT),
+    ("pb", &[-0.25, -0.75, -3.5]),
+    ("na", &[0.36, 0.48, 0.8]),
+    ("nb", &[0.48, 0.36, 0.8]),
+    ("a", AT),
+    ("b", &[1.0, -0.5, -3.5]),
+    ("c", &[-0.25, 1.0, -3.25]),
+];
+/// The same surface turned round and lit from behind: it shows an axis that is taken the other way round, and a normal without direction, through
+/// which the mirrored ray goes straight on to the eye.
+const TURNED: [(&str, &[f32]); 11] = [
+    ("p", AT),
+    ("position", &[-2.42, -2.44, -6.2]),
+    ("normal", &[-0.36, -0.48, -0.8]),
+    ("direction", &[0.48, 0.36, 0.8]),
+    ("pa", AT),
+    ("pb", &[-0.25, -0.75, -3.5]),
+    ("na", &[-0.36, -0.48, -0.8]),
+    ("nb", &[-0.48, -0.36, -0.8]),
+    ("a", AT),
+    ("b", &[-0.25, 1.0, -3.25]),
+    ("c", &[1.0, -0.5, -3.5]),
+];
+const AT: &[f32] = &[-0.5, -1.0, -3.0];
+const ZERO: &[f32] = &[0.0, 0.0, 0.0];
+
 /// What is asked of a surface that is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
@@ -76,6 +109,98 @@ pub enum Surface {
     Short,
     /// It is seen from behind.
     Behind,
+    /// A vector of it has length 0, and it is lit from its front or from behind.
+    Lacks(Lacking, Side),
+}
+
+/// The vector of length 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lacking {
+    /// The normal.
+    Normal,
+    /// The vector to the light.
+    Light,
+    /// The vector to the viewer.
+    View,
+}
+
+/// Where the light comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The viewer's side.
+    Front,
+    /// The side that the viewer does not see.
+    Behind,
+}
+
+impl Surface {
+    /// No normal, lit from the front.
+    pub const NO_NORMAL: Self = Self::Lacks(Lacking::Normal, Side::Front);
+    /// No normal, lit from behind.
+    pub const NO_NORMAL_BEHIND: Self = Self::Lacks(Lacking::Normal, Side::Behind);
+    /// No light, the normal towards the front.
+    pub const NO_LIGHT: Self = Self::Lacks(Lacking::Light, Side::Front);
+    /// No light, the normal turned away.
+    pub const NO_LIGHT_BEHIND: Self = Self::Lacks(Lacking::Light, Side::Behind);
+    /// No viewer, lit from the front.
+    pub const NO_VIEW: Self = Self::Lacks(Lacking::View, Side::Front);
+    /// No viewer, lit from behind.
+    pub const NO_VIEW_BEHIND: Self = Self::Lacks(Lacking::View, Side::Behind);
+
+    /// What an input is in whose place a vector of length 0 comes.
+    const fn in_place_of(self, input: &Input) -> Option<&'static [f32]> {
+        let (name, is_any_length) = (input.name, matches!(input.domain, Domain::Vector(..)));
+        let Self::Lacks(vector, side) = self else { return None };
+        match vector {
+            Lacking::Normal if is_any_length && (is_same(name, "normal") || is_same(name, "na") || is_same(name, "nb")) => {
+                Some(ZERO)
+            }
+            // A face without area.
+            Lacking::Normal if !is_any_length && is_same(name, "b") => Some(AT),
+            Lacking::Light if is_any_length && is_same(name, "direction") => Some(ZERO),
+            Lacking::Light if is_same(name, "position") || is_same(name, "pb") => Some(AT),
+            Lacking::View if is_same(name, "p") || is_same(name, "pa") || is_same(name, "pb") || is_same(name, "a") => {
+                Some(ZERO)
+            }
+            // The light as it lies from the surface elsewhere.
+            Lacking::View if is_same(name, "position") => match side {
+                Side::Front => Some(&[1.92, 1.44, 3.2]),
+                Side::Behind => Some(&[-1.92, -1.44, -3.2]),
+            },
+            _ => None,
+        }
+    }
+
+    /// Whether the formula normalises the vector that is missing. Where a point light lies at the surface its attenuation may be anything.
+    const fn can_be_asked(self, inputs: &[Input]) -> bool {
+        let (is_point_light, mut k) = (has(inputs, "kc"), 0);
+        while k < inputs.len() {
+            let input = &inputs[k];
+            k += 1;
+            let is_asked = match self {
+                Self::Lacks(Lacking::Light, _) => {
+                    is_same(input.name, "direction") || is_same(input.name, "position") && !is_point_light
+                }
+                Self::Lacks(Lacking::View, _) => !is_same(input.name, "position"),
+                _ => true,
+            };
+            if is_asked && matches!(input.shape, ValueShape::Vec3) && self.in_place_of(input).is_some() {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+const fn has(inputs: &[Input], name: &str) -> bool {
+    let mut k = 0;
+    while k < inputs.len() {
+        if is_same(inputs[k].name, name) {
+            return true;
+        }
+        k += 1;
+    }
+    false
 }
 
 const fn is_same(a: &str, b: &str) -> bool {
@@ -101,6 +226,11 @@ impl Input {
             },
             Surface::Lit | Surface::Short => find(&LIT, self.name),
             Surface::Behind => find(&BEHIND, self.name),
+            Surface::Lacks(_, side) => match (surface.in_place_of(self), side) {
+                (Some(missing), _) => Some(missing),
+                (None, Side::Front) => find(&FRONT, self.name),
+                (None, Side::Behind) => find(&TURNED, self.name),
+            },
         }
     }
 }
@@ -171,7 +301,7 @@ pub const fn given_placed(inputs: &[Input], surface: Surface, has_shininess: boo
         };
         k += 1;
     }
-    if is_asked { count } else { 0 }
+    if is_asked && (!matches!(surface, Surface::Lacks(..)) || surface.can_be_asked(inputs)) { count } else { 0 }
 }
 
 /// A surface that is lit, with a shininess if one is given; `N` is [`given_placed`].
@@ -199,30 +329,78 @@ pub const fn placed<const N: usize>(
     values
 }
 
-/// The hard cases of a formula: its own, one with colours below black and above white if it takes colours, three with a shininess
-/// of 0 and of ½ if it takes a shininess, and one with short vectors if it takes any of any length. `N` is how many there are in all.
+/// The hard cases that a formula has in common with others: values of inputs, none where there is no such case.
+#[derive(Clone, Copy, Debug)]
+pub struct Common {
+    /// Colours below black and above white.
+    pub beyond: Values,
+    /// A shininess of 0.
+    pub no_shininess: Values,
+    /// A shininess of ½.
+    pub half: Values,
+    /// Seen from behind.
+    pub behind: Values,
+    /// Short vectors.
+    pub short: Values,
+    /// No normal, no light and no viewer, each lit from the front and from behind.
+    pub lacking: [[Values; 2]; 3],
+}
+
+impl Common {
+    const fn all(&self, has_colors: bool) -> [(bool, Hard); 11] {
+        const NOT_AN_AXIS: &str = "the zero vector is normalised to 0: not to NaN, and not to a direction of its own";
+        let [normal, light, view] = self.lacking;
+        [
+            (has_colors, Hard::new("beyond-black-and-white", "colours below 0 and above 1 count as they are", self.beyond)),
+            given(Hard::new("shininess-of-0", "1 wherever the cosine is above 0", self.no_shininess)),
+            given(Hard::new("shininess-of-half", "the square root of the cosine", self.half)),
+            given(Hard::new(
+                "seen-from-behind",
+                "no highlight where its cosine is below 0, however low the exponent",
+                self.behind,
+            )),
+            given(Hard::new("short-vectors", "a vector has its direction, however short it is", self.short)),
+            given(Hard::new("no-normal", NOT_AN_AXIS, normal[0])),
+            given(Hard::new("no-normal-lit-from-behind", NOT_AN_AXIS, normal[1])),
+            given(Hard::new("no-light", NOT_AN_AXIS, light[0])),
+            given(Hard::new("no-light-from-behind", NOT_AN_AXIS, light[1])),
+            given(Hard::new("no-view", NOT_AN_AXIS, view[0])),
+            given(Hard::new("no-view-lit-from-behind", NOT_AN_AXIS, view[1])),
+        ]
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub const fn count(&self, has_colors: bool) -> usize {
+        let (all, mut k, mut count) = (self.all(has_colors), 0, 0);
+        while k < all.len() {
+            count += all[k].0 as usize;
+            k += 1;
+        }
+        count
+    }
+}
+
+const fn given(hard: Hard) -> (bool, Hard) {
+    (!hard.inputs.is_empty(), hard)
+}
+
+/// The hard cases of a formula: its own, and those in common with others. `N` is how many there are in all.
 #[must_use]
-pub const fn and_common<const N: usize>(
-    own: &[Hard],
-    has_colors: bool,
-    [beyond, none, half, behind, short]: [Values; 5],
-) -> [Hard; N] {
-    let mut all = [Hard::new("beyond-black-and-white", "colours below 0 and above 1 count as they are", beyond); N];
-    let mut k = 0;
-    while k < own.len() {
-        all[k] = own[k];
+pub const fn and_common<const N: usize>(own: &[Hard], has_colors: bool, common: &Common) -> [Hard; N] {
+    let mut all = [Hard::new("beyond-black-and-white", "", common.beyond); N];
+    let mut count = 0;
+    while count < own.len() {
+        all[count] = own[count];
+        count += 1;
+    }
+    let (common, mut k) = (common.all(has_colors), 0);
+    while k < common.len() {
+        if common[k].0 {
+            all[count] = common[k].1;
+            count += 1;
+        }
         k += 1;
-    }
-    k += has_colors as usize;
-    if !none.is_empty() {
-        all[k] = Hard::new("shininess-of-0", "1 wherever the cosine is above 0", none);
-        all[k + 1] = Hard::new("shininess-of-half", "the square root of the cosine", half);
-        all[k + 2] =
-            Hard::new("seen-from-behind", "no highlight where its cosine is below 0, however low the exponent", behind);
-        k += 3;
-    }
-    if k < N {
-        all[k] = Hard::new("short-vectors", "a vector has its direction, however short it is", short);
     }
     all
 }

@@ -288,20 +288,23 @@ macro_rules! formula {
                 const COLORS: usize = $crate::cases::colors($name::INPUTS);
                 const GIVEN: usize = $crate::cases::given_beyond($name::INPUTS);
                 const BEYOND: [(&str, &[f32]); GIVEN] = $crate::cases::beyond($name::INPUTS);
-                const DULL: usize = $crate::cases::given_placed($name::INPUTS, $crate::cases::Surface::Lit, true);
-                const NONE: [(&str, &[f32]); DULL] =
-                    $crate::cases::placed($name::INPUTS, $crate::cases::Surface::Lit, Some(&[0.0]));
-                const HALF: [(&str, &[f32]); DULL] =
-                    $crate::cases::placed($name::INPUTS, $crate::cases::Surface::Lit, Some(&[0.5]));
-                const FROM_BEHIND: [(&str, &[f32]); DULL] =
-                    $crate::cases::placed($name::INPUTS, $crate::cases::Surface::Behind, Some(&[0.5]));
-                const BRIEF: usize = $crate::cases::given_placed($name::INPUTS, $crate::cases::Surface::Short, false);
-                const SHORT: [(&str, &[f32]); BRIEF] =
-                    $crate::cases::placed($name::INPUTS, $crate::cases::Surface::Short, None);
-                const COMMON: usize = (COLORS > 0) as usize + if DULL > 0 { 3 } else { 0 } + (BRIEF > 0) as usize;
+                $crate::cases::formula::placed!(
+                    $name; NONE Lit Some(&[0.0]); HALF Lit Some(&[0.5]); FROM_BEHIND Behind Some(&[0.5]); SHORT Short None;
+                    NO_NORMAL NO_NORMAL Some(&[2.0]); NO_NORMAL_BEHIND NO_NORMAL_BEHIND Some(&[2.0]);
+                    NO_LIGHT NO_LIGHT Some(&[2.0]); NO_LIGHT_BEHIND NO_LIGHT_BEHIND Some(&[2.0]);
+                    NO_VIEW NO_VIEW Some(&[2.0]); NO_VIEW_BEHIND NO_VIEW_BEHIND Some(&[2.0])
+                );
+                const COMMON: $crate::cases::Common = $crate::cases::Common {
+                    beyond: &BEYOND,
+                    no_shininess: NONE,
+                    half: HALF,
+                    behind: FROM_BEHIND,
+                    short: SHORT,
+                    lacking: [[NO_NORMAL, NO_NORMAL_BEHIND], [NO_LIGHT, NO_LIGHT_BEHIND], [NO_VIEW, NO_VIEW_BEHIND]],
+                };
                 const HARD: &[$crate::cases::Hard] = &{
-                    const ALL: [$crate::cases::Hard; OWN.len() + COMMON] =
-                        $crate::cases::and_common(OWN, COLORS > 0, [&BEYOND, &NONE, &HALF, &FROM_BEHIND, &SHORT]);
+                    const ALL: [$crate::cases::Hard; OWN.len() + COMMON.count(COLORS > 0)] =
+                        $crate::cases::and_common(OWN, COLORS > 0, &COMMON);
                     ALL
                 };
                 const STABLE: &[$crate::cases::Stable] = &[
@@ -336,3 +339,22 @@ macro_rules! formula {
     };
 }
 pub use formula;
+
+/// Constants of the inputs of hard cases that a formula has in common with others: name, surface and shininess of each.
+#[macro_export]
+macro_rules! placed {
+    ($formula:ident; $($name:ident $surface:ident $shininess:expr);+) => {
+        $(
+            const $name: $crate::cases::Values = &{
+                const SURFACE: $crate::cases::Surface = $crate::cases::Surface::$surface;
+                const SHININESS: Option<&[f32]> = $shininess;
+                const GIVEN: usize =
+                    $crate::cases::given_placed($formula::INPUTS, SURFACE, SHININESS.is_some());
+                const PLACED: [(&str, &[f32]); GIVEN] =
+                    $crate::cases::placed($formula::INPUTS, SURFACE, SHININESS);
+                PLACED
+            };
+        )+
+    };
+}
+pub use placed;

@@ -92,6 +92,8 @@ formula!(
         Hard::new("equal-w", "the same as linear", &[("w", &[4.0, 4.0, 4.0])]),
         Hard::new("near-w", "a vertex 20 times nearer", &[("lambda", &[0.5, 0.25, 0.25]), ("w", &[0.05, 1.0, 1.0]), ("attr", &[2.0, -2.0, 1.0])]),
         Hard::new("nearest-w", "a vertex 100,000 times nearer", &[("lambda", &[0.5, 0.25, 0.25]), ("w", &[1e-5, 1.0, 1.0]), ("attr", &[2.0, -2.0, 1.0])]),
+        Hard::new("all-near", "however small the three are", &[("lambda", &[0.5, 0.25, 0.25]), ("w", &[1e-12, 2e-12, 5e-12]), ("attr", &[2.0, -2.0, 1.0])]),
+        Hard::new("all-far", "however great the three are", &[("lambda", &[0.5, 0.25, 0.25]), ("w", &[1e12, 2e12, 5e12]), ("attr", &[2.0, -2.0, 1.0])]),
     ],
 );
 formula!(
@@ -106,6 +108,8 @@ formula!(
     |t, w, attr; out| { out.scalar(interpolation::perspective_line(t, w, attr)); },
     hard [
         Hard::new("at-the-second-vertex", "its attribute, though the first one's is a million times as great", &[("t", &[1.0]), ("w", &[2.0, 3.0]), ("attr", &[1000.0, 0.000_7])]),
+        Hard::new("both-near", "however small the two are", &[("t", &[0.5]), ("w", &[1e-12, 3e-12]), ("attr", &[2.0, -2.0])]),
+        Hard::new("both-far", "however great the two are", &[("t", &[0.5]), ("w", &[1e12, 3e12]), ("attr", &[2.0, -2.0])]),
     ],
 );
 formula!(
@@ -165,6 +169,9 @@ macro_rules! viewport {
                 ]),
                 Hard::new("behind-the-eye", "a negative w divides as any other", &[
                     ("clip", &[0.5, -0.75, 1.25, -2.0]), ("origin", &[10.0, 20.0]), ("size", &[640.0, 480.0]), ("depth", &[0.25, 0.75]),
+                ]),
+                Hard::new("nearly-in-the-eyes-plane", "however small, w divides", &[
+                    ("clip", &[5e-13, -7e-13, 6e-13, 1e-12]), ("origin", &[10.0, 20.0]), ("size", &[640.0, 480.0]), ("depth", &[0.25, 0.75]),
                 ]),
                 Hard::new("beside-the-screen", "nothing is clamped", &[
                     ("clip", &[5.0, -7.0, 3.0, 2.0]), ("origin", &[10.0, 20.0]), ("size", &[640.0, 480.0]), ("depth", &[0.25, 0.75]),

@@ -57,6 +57,7 @@ formula!(
     |ld, md, l, n; out| { out.vector(lighting::diffuse_toward(ld, md, l, n)); },
     hard [
         Hard::new("edge-on", "0 at a right angle", &[("l", &[1.0, 0.0, 0.0]), ("n", &[0.0, 0.0, 1.0])]),
+        Hard::new("least-lit", "1e-12 is above 0, too", &[("ld", WHITE), ("md", WHITE), ("l", &[1.0, 0.0, 1e-12]), ("n", &[0.0, 0.0, 1.0])]),
         Hard::new("from-behind", "max, not abs and not the bare product", &[("l", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.0])]),
         Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("l", &[0.0, 0.0, 1.0]), ("n", &[0.0, 0.0, 1.5])]),
     ],
@@ -67,7 +68,10 @@ formula!(
     "CD = LD * MD * max((−i)·n, 0)", "000 §6.3; rulings 5, 13, 16",
     [LD, MD, Input::direction("i"), Input::direction("n")] -> [RGB],
     |ld, md, i, n; out| { out.vector(lighting::diffuse_travel(ld, md, i, n)); },
-    hard [Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("i", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.5])])],
+    hard [
+        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("i", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.5])]),
+        Hard::new("least-lit", "1e-12 is above 0, too", &[("ld", WHITE), ("md", WHITE), ("i", &[1.0, 0.0, -1e-12]), ("n", &[0.0, 0.0, 1.0])]),
+    ],
 );
 formula!(
     /// Phong's highlight.
@@ -81,6 +85,7 @@ formula!(
         Hard::new("slightly-above-one", "a cosine a few ULP above 1 under a great power", &[("r", &[0.0, 0.0, 1.000_000_2]), ("v", &[0.0, 0.0, 1.000_000_2]), ("shininess", &[1e6])]),
         Hard::new("edge-on", "0 at a right angle", &[("r", &[1.0, 0.0, 0.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
         Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("r", &[0.999_999_9, 0.0, 6e-5]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
+        Hard::new("least-lit", "1e-12 is above 0, too", &[("ls", WHITE), ("ms", WHITE), ("r", &[1.0, 0.0, 1e-12]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
         Hard::new("no-shininess-edge-on", "0 and 1 are both legal: 0 to the power 0", &[("r", &[1.0, 0.0, 0.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[0.0])]),
         Hard::new("no-shininess", "1 for a cosine above 0", &[("r", &[0.0, 0.6, 0.8]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[0.0])]),
         Hard::new("behind", "0, never the even power of a negative cosine", &[("r", &[0.0, 0.0, -1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[2.0])]),
@@ -95,6 +100,7 @@ formula!(
     |ls, ms, n, h, shininess; out| { out.vector(lighting::specular_blinn(ls, ms, n, h, shininess)); },
     hard [
         Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("n", &[0.999_999_9, 0.0, 6e-5]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
+        Hard::new("least-lit", "1e-12 is above 0, too", &[("ls", WHITE), ("ms", WHITE), ("n", &[1.0, 0.0, 1e-12]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
         Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("n", &[0.0, 0.0, 1.5]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[4.0])]),
     ],
 );
@@ -142,8 +148,6 @@ directional!(
     "CF = LA*MA + LD*MD·max(l·n, 0) + LS*MS·max(r·v, 0)^shininess, everything normalised", "000 §6.3",
     hard [
         Hard::new("light-behind-the-surface", "the documents light the highlight; ruling 9", &[("p", &[0.0, 0.0, -1.0]), ("normal", &[0.0, 0.0, 1.0]), ("direction", &[-1.0, 0.0, 0.05]), ("shininess", &[1.0])]),
-        Hard::new("eye-on-the-surface", "no view vector: 0, not NaN", &[("p", &[0.0, 0.0, 0.0])]),
-        Hard::new("no-normal", "ambient alone, not NaN", &[("normal", &[0.0, 0.0, 0.0])]),
         Hard::new("low-shininess", "an exponent of ½ widens the highlight", &[("ls", WHITE), ("ms", WHITE), ("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.5, 1.0]), ("direction", &[0.0, 0.0, -1.0]), ("shininess", &[0.5])]),
         Hard::new("high-shininess", "an exponent of 300", &[("ls", WHITE), ("ms", WHITE), ("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.1, 1.0]), ("direction", &[0.0, 0.0, -1.0]), ("shininess", &[300.0])]),
     ]
@@ -281,6 +285,8 @@ formula!(
     },
     hard [
         Hard::new("no-exponent-behind", "evenly lit where the cone reaches behind the light too", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[0.0, 0.0, -2.0]), ("axis", &[0.953_939_2, 0.0, 0.3]), ("cutoff_cosine", &[-0.5]), ("exponent", &[0.0])]),
+        Hard::new("no-axis", "−l·axis is 0: outside of a cone of 72°", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[-2.0, -2.0, -2.0]), ("axis", &[0.0, 0.0, 0.0]), ("cutoff_cosine", &[0.3]), ("exponent", &[1.0])]),
+        Hard::new("no-axis-all-round", "−l·axis is 0: within a cone that reaches behind the light, and evenly lit without an exponent", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[-2.0, -2.0, -2.0]), ("axis", &[0.0, 0.0, 0.0]), ("cutoff_cosine", &[-0.5]), ("exponent", &[0.0])]),
         Hard::new("just-outside-the-cone", "ambient light alone, however low the exponent", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[0.0, 0.0, -2.0]), ("axis", &[0.6, 0.0, -0.8]), ("cutoff_cosine", &[0.81]), ("exponent", &[0.5])]),
     ],
 );
@@ -424,6 +430,8 @@ const POWER: Output = Output::new("fs", ValueShape::Scalar, "1");
 const MIRROR: &[f32] = &[0.6, 0.0, 0.8];
 /// Vectors at 89.997° to each other.
 const BARELY: &[(&str, &[f32])] = &[("a", &[0.999_999_9, 0.0, 6e-5]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[1.0])];
+/// Vectors as nearly at right angles as anybody would cut off.
+const LEAST: &[(&str, &[f32])] = &[("a", &[1.0, 0.0, 1e-12]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[1.0])];
 
 formula!(
     /// A highlight's power.
@@ -434,6 +442,7 @@ formula!(
     |a, b, exponent; out| { out.scalar(lighting::cosine_power(a, b, exponent)); },
     hard [
         Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY),
+        Hard::new("least-lit", "1e-12 is above 0, too", LEAST),
         Hard::new("no-exponent", "1 for a cosine above 0", &[("a", &[0.0, 0.6, 0.8]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[0.0])]),
         Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("a", &[0.0, 0.0, 1.5]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[4.0])]),
     ],
@@ -445,7 +454,10 @@ formula!(
     [Input::direction("a"), Input::direction("b"), Input::scalar("exponent", "1", Domain::LogUniform(1.0, 256.0))] -> [POWER],
     fit toward_each_other_only,
     |a, b, exponent; out| { out.scalar(lighting::cosine_power_unguarded(a, b, exponent)); },
-    hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY)],
+    hard [
+        Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY),
+        Hard::new("least-lit", "1e-12 is above 0, too", LEAST),
+    ],
 );
 formula!(
     /// A highlight's power by the chord.
@@ -473,6 +485,7 @@ formula!(
         Hard::new("half-1e6", "half as bright at 0.07°", &[("a", &[0.0, 0.0, 1.0]), ("b", &[0.001_177_4, 0.0, 0.999_999_3]), ("exponent", &[1e6])])
             .naive("lighting/cosine-power", "a·b near 1 has no digits for the angle, which a − b keeps", 1e5),
         Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY),
+        Hard::new("least-lit", "1e-12 is above 0, too", LEAST),
         Hard::new("no-exponent", "1 for a cosine above 0", &[("a", &[0.0, 0.6, 0.8]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[0.0])]),
         Hard::new("behind-even", "0, never the even power of a negative cosine", &[("a", &[0.0, 0.0, -1.0]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[2.0])])
             .naive("lighting/cosine-power-unguarded", "NaN, or 1", 1e6),

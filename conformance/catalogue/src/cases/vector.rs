@@ -68,6 +68,8 @@ formula!(
         Hard::new("huge", "the square overflows: nothing is promised of the published form", &[("v", &[1.9e19, 0.0, 0.0])]),
         Hard::new("smallest-promised", "the square is just normal", &[("v", &[2e-19, 0.0, 0.0])]),
         Hard::new("axis", "stays what it is", &[("v", &[0.0, -1.0, 0.0])]),
+        Hard::new("nearly-an-axis", "a component counts, however small", &[("v", &[3e-13, -2.0, 4e-20])]),
+        Hard::new("longest-promised", "the square is just a number", &[("v", &[6e18, -8e18, 0.0])]),
     ],
 );
 formula!(
@@ -85,6 +87,7 @@ formula!(
     |modelview, n; out| { out.vector(vector::normal_inverse_transpose(&modelview, n)); },
     hard [
         Hard::new("reflection", "a negative determinant", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]), ("n", &[0.6, 0.0, 0.8])]),
+        Hard::new("nearly-a-rotation", "a determinant of 1.00005 divides as any other", &[("modelview", &[0.6, 0.8, 0.0, -0.8, 0.6, 0.0, 0.0, 0.0, 1.000_05]), ("n", &[0.6, 0.0, 0.8])]),
         Hard::new("flat", "a scale of 1e-3 along one axis", &[("modelview", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-3]), ("n", &[0.6, 0.0, 0.8])]),
     ],
 );
