@@ -114,7 +114,7 @@ pub fn highlight<R: Real>(model: Specular, n: Vec3<R>, l: Vec3<R>, v: Vec3<R>, s
         Specular::Blinn => step!("n·h", |n, l, v| n.dot(halfway(v, l))),
         Specular::BlinnUnnormalised => step!("n·(v + l)", |n, l, v| n.dot(halfway_unnormalised(v, l))),
     };
-    power(cosine, shininess)
+    power(cosine, shininess).or_dark([n.0, l.0, v.0])
 }
 
 /// `CS = LS * MS * FS` with Phong's `FS = max(r·v, 0)^S`. Source: 000 §6.3.
@@ -254,7 +254,7 @@ pub fn nonlocal<R: Real>(light: &Light<R>, material: &Material<R>, n: Vec3<R>, d
     let v = Vector([0.0, 0.0, 1.0].map(R::literal));
     let cosine = cosine(l, n);
     let incidence = lit_side(cosine);
-    let highlight = || power(step!("r·v", |n, l, v| reflect(-l, n).z()), material.shininess);
+    let highlight = || power(step!("r·v", |n, l, v| reflect(-l, n).z()), material.shininess).or_dark([n.0, l.0, v.0]);
     let fs = gated(SpecularGate::Documents, cosine, highlight);
     let (ambient, shininess) = (ambient(light.ambient, material.ambient), material.shininess);
     let diffuse = diffuse_of(light.diffuse, material.diffuse, incidence);

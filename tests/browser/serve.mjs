@@ -361,11 +361,71 @@ async function aRunThatEndsAtItsFirstFailureEndsItsChromium() {
   assert.equal(startedBrowsers(), before, "the Chromium that was started has ended");
 }
 
+async function shadersAreJudgedAsTheyAreTyped() {
+  const { url, ended, child } = await serve("--playground");
+  const page = await open(url);
+  const said = (pattern) => page.waitForFunction((source) => new RegExp(source).test(document.querySelector("#played").textContent), pattern.source, { timeout: 60_000 }).catch(async () => assert.match(await page.textContent("#played"), pattern));
+  await page.waitForSelector("#playground:not([hidden])");
+  // Each example says in its title whether it is right.
+  const examples = await page.locator("#example option:not([value=''])").allTextContents();
+  assert.ok(examples.length >= 5, String(examples));
+  for (const title of examples) {
+    await page.evaluate(() => { document.querySelector("#played").textContent = ""; });
+    await page.selectOption("#example", title);
+    await said(title.includes("right") ? /^✓ This is [a-z0-9/-]+: [\d,]+ values, all legal/ : /^✗ [^]*explained by/);
+    assert.equal(await page.locator("#drawn img").count(), 3, title);
+    const wrong = /([\d,]+) of [\d,]+ pixels are wrong/.exec(await page.textContent("#drawn-says"))[1];
+    assert.equal(wrong === "0", title.includes("right"), `${title}: ${wrong} pixels are wrong`);
+    const sizes = await page.locator("#drawn img").evaluateAll((images) => images.map(({ naturalWidth }) => naturalWidth));
+    assert.ok(sizes.every((width) => width >= 96), `the pictures are shown: ${sizes}`);
+  }
+  // A mistake is named, and gone when it is mended.
+  await page.selectOption("#example", examples[0]);
+  await said(/^✓ This is lighting.blinn/);
+  const right = await page.inputValue("#text");
+  await page.fill("#text", right.replace("normalize(l + v)", "normalize(v - l)"));
+  await said(/half-vector-by-difference/);
+  if (shots) await page.screenshot({ path: `${shots}/playground-desktop.png`, fullPage: true });
+  // The address holds the shader: another page that opens it has the same one.
+  const link = await page.evaluate(() => location.href);
+  const other = await open(link);
+  await other.waitForFunction(() => /half-vector-by-difference/.test(document.querySelector("#played").textContent), null, { timeout: 60_000 });
+  assert.equal(await other.inputValue("#text"), await page.inputValue("#text"));
+  assert.deepEqual(other.problems, []);
+  await other.context().close();
+  // No formula chosen: the nearest one is found.
+  await page.fill("#text", right);
+  await page.selectOption("#formula", "");
+  await said(/^✓ This is lighting.blinn/);
+  // What cannot be judged is refused in words that name no file of this machine, and the next shader is judged.
+  for (const [text, pattern] of [["void main() { not glsl }", /^Not judged: /], ["(".repeat(30_000), /^Not judged: /], ["x".repeat(70_000), /65536 bytes/]]) {
+    await page.fill("#text", text);
+    await said(pattern);
+    assert.doesNotMatch(await page.textContent("#played"), /\/tmp/);
+  }
+  const endless = right.replace("vec3 h =", "float x = 0.0; for (int i = 0; x < 1.0; i++) { x = x * 0.5; } vec3 h =");
+  await page.fill("#text", endless);
+  await said(/^✗ The nearest is lighting[^]*is NaN/);
+  await page.fill("#text", right);
+  await said(/^✓ This is lighting.blinn/);
+  const { violations } = await page.evaluate(`${axe.source}; axe.run()`);
+  assert.deepEqual(violations.map(({ id, nodes }) => [id, nodes[0].html]), []);
+  await page.emulateMedia({ colorScheme: "dark" });
+  await page.setViewportSize({ width: 390, height: 800 });
+  if (shots) await page.screenshot({ path: `${shots}/playground-phone-dark.png`, fullPage: true });
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth > innerWidth), false, "nothing is wider than a phone");
+  // The refused message of 70,000 bytes is the browser's only complaint.
+  assert.deepEqual(page.problems.filter((problem) => !problem.includes("413")), []);
+  child.kill("SIGINT");
+  assert.equal((await ended).code, 0);
+  await page.context().close();
+}
+
 const tests = [
   aRunIsShownAndItsReportIsKept, aReloadLosesNothing, aClosedTabEndsTheRun, twoBrowsersAtOnceAreJudgedEachByItself,
   rubbishIsToldAndNothingIsJudgedByIt, aSlowBrowserIsWaitedFor, aBrowserWithoutWebGpuIsToldWhatToDo,
   mistakesAreNamedThroughTheBrowser, aSceneThatFailsIsShownWithItsPictures, aBenchWaitsForABrowserAndTellsTheStepsOfItsClock, anotherMachineReachesItByTlsAlone, aChromiumThatIsKilledEndsTheRunWithWhatWasJudged,
-  aRunThatEndsAtItsFirstFailureEndsItsChromium,
+  aRunThatEndsAtItsFirstFailureEndsItsChromium, shadersAreJudgedAsTheyAreTyped,
 ];
 for (const test of tests) {
   if (only && !test.name.includes(only)) continue;

@@ -7,9 +7,9 @@ use lightmeter_catalogue::cases::Spec;
 use lightmeter_gpu::Shaders;
 use std::fmt::Write as _;
 
-/// The value of a case that has none, NaN in each of its `numbers` components.
+/// The value of a case that has none, NaN in each of its `numbers` components. It is read from a variable, since browsers refuse a constant NaN.
 fn nothing_of(numbers: usize) -> String {
-    const NAN: &str = "bitcast<f32>(0x7fc00000u)";
+    const NAN: &str = "bitcast<f32>(user_nothing)";
     if numbers == 1 { NAN.into() } else { format!("vec{numbers}f({NAN})") }
 }
 
@@ -102,6 +102,9 @@ fn wrapper(signature: &Signature, program: &ShaderProgram, spec: &Spec, binding:
     let _ = writeln!(text, "    {}", program.call);
     let names: Vec<String> = (0..signature.parameters.len()).map(|k| format!("user_in{k}x")).collect();
     let _ = writeln!(text, "    let user_own = user_own_{function}({});", names.join(", "));
+    if program.unanswered.flag.is_some() {
+        text += "    var user_nothing = 0x7fc00000u;\n";
+    }
     let given = |value: &str, numbers: usize| match &program.unanswered.flag {
         None => value.to_owned(),
         Some(flag) => format!("select({value}, {}, {flag})", nothing_of(numbers)),

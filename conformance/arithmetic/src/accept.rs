@@ -493,6 +493,11 @@ impl<F: Format> Real for Accept<F> {
         expanded.hull(c0 + x * (c1 + x * c2))
     }
 
+    fn or_dark(self, vectors: [[Self; 3]; 3]) -> Self {
+        let is_nothing = |v: &[Self; 3]| v.iter().all(|x| x.low >= 0.0 && x.high <= 0.0);
+        if !self.is_any() && vectors.iter().any(is_nothing) { self.hull(Self::exactly(0.0)) } else { self }
+    }
+
     fn lobe(self, exponent: Self) -> Self {
         if self.is_any() || exponent.is_any() || exponent.low < 0.0 {
             return Self::ANY;

@@ -253,6 +253,9 @@ impl<R: Alter> Real for Mistaken<R> {
     fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
         R::normalize(v.map(|x| x.0)).map(Self)
     }
+    fn or_dark(self, vectors: [[Self; 3]; 3]) -> Self {
+        Self(self.0.or_dark(vectors.map(|v| v.map(|x| x.0))))
+    }
     fn quadratic(c: [Self; 3], x: Self) -> Self {
         Self(R::quadratic(c.map(|c| c.0), x.0))
     }

@@ -273,6 +273,10 @@ impl Real for RandomLegal {
             v.map(|x| x * inverse)
         }
     }
+    fn or_dark(self, vectors: [[Self; 3]; 3]) -> Self {
+        let is_nothing = |v: &[Self; 3]| v.iter().all(|x| x.value == 0.0);
+        if vectors.iter().any(is_nothing) && coin() { Self::of(0.0) } else { self }
+    }
     fn quadratic([c0, c1, c2]: [Self; 3], x: Self) -> Self {
         if coin() { c0 + x * (c1 + x * c2) } else { Self::sum([c0, c1 * x, Self::product([c2, x, x])]) }
     }

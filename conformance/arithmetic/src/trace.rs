@@ -162,6 +162,9 @@ impl Real for Trace {
         let intervals = Accept::normalize(v.map(|x| x.interval));
         std::array::from_fn(|k| Self { value: values[k], interval: intervals[k] })
     }
+    fn or_dark(self, vectors: [[Self; 3]; 3]) -> Self {
+        Self { interval: self.interval.or_dark(vectors.map(|v| v.map(|x| x.interval))), ..self }
+    }
     fn quadratic(c: [Self; 3], x: Self) -> Self {
         Self {
             value: Real::quadratic(c.map(|c| c.value), x.value),

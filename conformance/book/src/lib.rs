@@ -12,7 +12,7 @@ mod figure;
 mod formula;
 mod grid;
 mod lookup;
-mod picture;
+pub mod picture;
 mod scenes;
 mod search;
 mod sketch;

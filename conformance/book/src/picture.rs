@@ -29,7 +29,8 @@ enum Subject {
 }
 
 /// A picture that a formula makes, as rows of inputs.
-pub(crate) struct Picture {
+#[derive(Clone, Debug)]
+pub struct Picture {
     subject: Subject,
     size: [usize; 2],
     /// A row of inputs for each pixel; none where nothing is drawn.
@@ -41,7 +42,8 @@ pub(crate) struct Picture {
 
 impl Picture {
     /// The picture of a formula; `None` where it gives no colour of which one can be drawn.
-    pub(crate) fn of(member: &Member) -> Option<Self> {
+    #[must_use]
+    pub fn of(member: &Member) -> Option<Self> {
         let spec = &member.spec;
         let color = spec.outputs.iter().position(|output| output.unit == "color" && output.shape.components() >= 3);
         let place = |k: usize| spec.outputs[..k].iter().map(|output| output.shape.components()).sum();
@@ -91,7 +93,8 @@ impl Picture {
     }
 
     /// What is to be seen, as a caption.
-    pub(crate) fn caption(&self, member: &Member) -> String {
+    #[must_use]
+    pub fn caption(&self, member: &Member) -> String {
         match self.subject {
             Subject::Sphere => "a sphere, lit by the formula at every pixel".into(),
             Subject::Strip { input } => format!("the colour as {} grows, left to right", member.spec.input_name(input)),
@@ -118,6 +121,30 @@ impl Picture {
         (0..width).all(|x| color(x) == color((height - 1) * width + x))
     }
 
+    /// The inputs of the pixels that are drawn, row after row.
+    pub fn rows(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
+        self.rows.iter_mut().flatten()
+    }
+
+    /// The colours that come of the outputs of these rows, of all pixels of a line after the other; none where nothing is drawn. And the pixels of a line.
+    #[must_use]
+    pub fn colors(&self, outputs: &[f64], of_each: usize) -> (usize, Vec<Option<[f64; 3]>>) {
+        let mut drawn = outputs.chunks_exact(of_each);
+        let color = |row: &Option<Vec<f32>>| row.as_ref().and_then(|_| drawn.next()).map(|out| self.rgb(out));
+        let mut colors: Vec<Option<[f64; 3]>> = self.rows.iter().map(color).collect();
+        if matches!(self.subject, Subject::Strip { .. }) {
+            colors = colors.repeat(STRIP[1]);
+        }
+        (self.size[0], colors)
+    }
+
+    /// Whether the colour is among the outputs that are missing.
+    #[must_use]
+    pub fn lacks(&self, missing: &[usize]) -> bool {
+        let components = if self.is_grey { 1 } else { 3 };
+        missing.iter().any(|place| (self.color..self.color + components).contains(place))
+    }
+
     /// The picture by the formula itself, as a file of PNG.
     fn right(&self, member: &Member) -> Vec<u8> {
         let mut out = vec![0.0; member.spec.output_len()];
@@ -140,27 +167,12 @@ impl Picture {
     }
 
     fn png(&self, mut color: impl FnMut(&[f32]) -> [f64; 3]) -> Vec<u8> {
-        let mut bytes = Vec::with_capacity(self.size[0] * self.size[1] * 4);
-        for row in &self.rows {
-            match row {
-                None => bytes.extend([0; 4]),
-                Some(row) => {
-                    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
-                    bytes.extend(
-                        color(row).map(|c| if c.is_nan() { 255 } else { (255.0 * c.clamp(0.0, 1.0)).round() as u8 }),
-                    );
-                    bytes.push(255);
-                }
-            }
-        }
+        let mut colors: Vec<Option<[f64; 3]>> =
+            self.rows.iter().map(|row| row.as_ref().map(|row| color(row))).collect();
         if matches!(self.subject, Subject::Strip { .. }) {
-            bytes = bytes.repeat(STRIP[1]);
+            colors = colors.repeat(STRIP[1]);
         }
-        let mut file = vec![];
-        let [width, height] = self.size.map(|side| u32::try_from(side).unwrap_or(1));
-        let encoded = PngEncoder::new(&mut file).write_image(&bytes, width, height, ExtendedColorType::Rgba8);
-        debug_assert!(encoded.is_ok(), "memory takes any picture");
-        file
+        png(self.size[0], &colors)
     }
 
     /// The picture for a page.
@@ -174,6 +186,20 @@ impl Picture {
         (mistaken != self.right(member))
             .then(|| image(&mistaken, &format!("the same if {}", variation.says()), self.size))
     }
+}
+
+/// Colours as a file of PNG: clear where there is none, white where a component is NaN.
+#[must_use]
+pub fn png(width: usize, colors: &[Option<[f64; 3]>]) -> Vec<u8> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
+    let byte = |c: f64| if c.is_nan() { 255 } else { (255.0 * c.clamp(0.0, 1.0)).round() as u8 };
+    let pixel = |color: &Option<[f64; 3]>| color.map_or([0; 4], |[r, g, b]| [byte(r), byte(g), byte(b), 255]);
+    let bytes: Vec<u8> = colors.iter().flat_map(pixel).collect();
+    let mut file = vec![];
+    let [width, height] = [width, colors.len() / width].map(|side| u32::try_from(side).unwrap_or(1));
+    let encoded = PngEncoder::new(&mut file).write_image(&bytes, width, height, ExtendedColorType::Rgba8);
+    debug_assert!(encoded.is_ok(), "memory takes any picture");
+    file
 }
 
 fn image(png: &[u8], alt: &str, [width, height]: [usize; 2]) -> Markup {

@@ -5,6 +5,7 @@
 
 mod chromium;
 mod http;
+mod play;
 mod served;
 mod server;
 mod session;
@@ -13,6 +14,7 @@ mod tests;
 mod tls;
 
 pub use chromium::{ChromiumError, chromium_program};
+pub use play::{PlayedFormula, PlayedLanguage, PlayedPicture, PlayedResult, PlayedShader};
 pub use served::ServedBrowser;
 pub use server::{Access, Server, ServerError};
 pub use session::{BrowserHello, PageGroup, PageState, Session};

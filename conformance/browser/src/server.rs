@@ -1,6 +1,7 @@
 //! The server that hands work to pages: by http on the machine itself, and by https to other machines.
 
 use crate::http::{Answers, Asked, Connections, Reply};
+use crate::play::{PlayReply, PlayedShader};
 use crate::session::{BrowserHello, Session, Superseded};
 use crate::tls::certified;
 use hyper::Method;
@@ -14,6 +15,8 @@ use std::time::{Duration, Instant};
 
 /// How long a page is kept waiting for work before it asks again.
 const LONG_POLL: Duration = Duration::from_secs(15);
+/// How long a page is kept waiting for what becomes of a shader.
+const PLAY: Duration = Duration::from_secs(120);
 /// Bytes of an answer, at most.
 const ANSWER_MOST: usize = 1 << 28;
 /// Bytes of what a page says of itself or of an error, at most.
@@ -22,16 +25,18 @@ const WORDS_MOST: usize = 1 << 16;
 const SESSIONS_MOST: usize = 64;
 
 /// The page's files, by their names.
-const FILES: [(&str, &str, &str); 5] = [
+const FILES: [(&str, &str, &str); 7] = [
     ("", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("style.css", "text/css", include_str!("page/style.css")),
     ("page.js", "text/javascript", include_str!("page/page.js")),
+    ("playground.js", "text/javascript", include_str!("page/playground.js")),
+    ("examples.js", "text/javascript", include_str!("page/examples.js")),
     ("executor.js", "text/javascript", include_str!("page/executor.js")),
     ("cbor.js", "text/javascript", include_str!("page/cbor.js")),
 ];
 
 /// Nothing but the server's own files, and no requests to anybody else.
-const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src blob:; base-uri 'none'; form-action 'none'; \
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src blob: data:; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'";
 /// A report has its style and script within, by their hashes, as its own policy says.
 const REPORT_POLICY: &str = "frame-ancestors 'none'";
@@ -248,7 +253,8 @@ impl Answers for Shared {
             (&Method::POST, "answer") => self.answer(&asked.body, &query),
             (&Method::POST, "bye") => self.bye(&query),
             (&Method::POST, "lost") => self.lost(&asked.body, &query),
-            _ => Err(Reply::refused(405, "expected GET of a file, or POST of hello, answer, lost or bye")),
+            (&Method::POST, "play") => self.play(&asked.body, &query),
+            _ => Err(Reply::refused(405, "expected GET of a file, or POST of hello, answer, play, lost or bye")),
         };
         replied.unwrap_or_else(|reply| reply)
     }
@@ -325,6 +331,22 @@ impl Shared {
         let (session, page) = self.session(query)?;
         session.lose(page, &String::from_utf8_lossy(message))?;
         Ok(Reply::taken())
+    }
+
+    /// A shader that was typed into the page; the reply is what becomes of it.
+    fn play(&self, body: &[u8], query: &HashMap<&str, &str>) -> Result<Reply, Reply> {
+        let (session, page) = self.session(query)?;
+        session.see(page)?;
+        if session.told(usize::MAX).playground.is_empty() {
+            return Err(Reply::refused(404, "there is no playground: start it by `lightmeter serve --playground`"));
+        }
+        let shader: PlayedShader =
+            serde_json::from_slice(body).map_err(|error| Reply::refused(400, &format!("not a shader: {error}")))?;
+        match session.play(shader, PLAY) {
+            PlayReply::Done(result) => Ok(Reply::new(200, "application/json", result)),
+            PlayReply::Superseded => Ok(Reply::new(204, "application/json", "")),
+            PlayReply::Late => Err(Reply::refused(503, "the shader is not judged in time")),
+        }
     }
 
     /// A page is closed or loaded again.

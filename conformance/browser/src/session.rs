@@ -1,5 +1,6 @@
 //! The work of one browser: pieces on their way to its page, and what came of them.
 
+use crate::play::{PlayReply, PlayedResult, PlayedShader, Plays};
 use lightmeter_gpu::{Abilities, Host, HostError, Ticket, WorkPiece};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -76,6 +77,7 @@ pub struct Session {
     state: Mutex<State>,
     changed: Condvar,
     board: Mutex<Board>,
+    plays: Plays,
 }
 
 /// How far a run has come, as its page shows it.
@@ -93,6 +95,8 @@ pub struct PageState {
     pub is_over: bool,
     /// What was judged, one after the other.
     pub groups: Vec<PageGroup>,
+    /// The formulas that shaders typed into the page are judged by; empty where the page takes none.
+    pub playground: Vec<String>,
 }
 
 /// The verdicts on one formula or scene, as a page shows them.
@@ -182,7 +186,14 @@ impl Session {
             lost_at: (0, 0),
             ended: None,
         };
-        Self { id, hello, state: Mutex::new(state), changed: Condvar::new(), board: Mutex::default() }
+        Self {
+            id,
+            hello,
+            state: Mutex::new(state),
+            changed: Condvar::new(),
+            board: Mutex::default(),
+            plays: Plays::default(),
+        }
     }
 
     /// What the page said of itself.
@@ -270,6 +281,29 @@ impl Session {
         change(&mut self.board().told);
     }
 
+    /// The next shader that was typed into the page; `None` where none comes in time.
+    #[must_use]
+    pub fn next_shader(&self, patience: Duration) -> Option<PlayedShader> {
+        self.plays.next(patience)
+    }
+
+    /// Hands over what became of that shader.
+    pub fn tell_of_shader(&self, result: &PlayedResult) {
+        self.plays.done(result);
+    }
+
+    /// Has a shader judged, and waits for the result.
+    pub(crate) fn play(&self, shader: PlayedShader, patience: Duration) -> PlayReply {
+        self.plays.ask(shader, patience)
+    }
+
+    /// Whether nothing is to be expected of the browser any more.
+    #[must_use]
+    pub fn is_gone(&self) -> bool {
+        let state = self.state();
+        state.ended.is_some() || Instant::now() > state.gone_at
+    }
+
     /// Keeps pictures for the page, as PNG files. Gives the number of the first; `None` where there are enough.
     #[must_use]
     pub fn show(&self, pictures: Vec<Vec<u8>>) -> Option<usize> {
@@ -304,7 +338,7 @@ impl Session {
     pub(crate) fn told(&self, from: usize) -> PageState {
         let mut board = self.board();
         board.is_known |= board.told.is_over && board.reports.is_none();
-        let PageState { ref says, done, of, failed, is_over, ref groups } = board.told;
+        let PageState { ref says, done, of, failed, is_over, ref groups, ref playground } = board.told;
         PageState {
             says: says.clone(),
             done,
@@ -312,6 +346,7 @@ impl Session {
             failed,
             is_over,
             groups: groups.get(from..).unwrap_or_default().to_vec(),
+            playground: playground.clone(),
         }
     }
 

@@ -119,10 +119,15 @@ impl Member {
     pub fn inputs(&self, case: CaseRef, seed: u64, row: &mut Vec<f32>) {
         let start = row.len();
         self.drawn(case, seed, row);
+        self.hold(&mut row[start..]);
+    }
+
+    /// Sets the inputs of a row that are held.
+    pub fn hold(&self, row: &mut [f32]) {
         for &(place, held) in &self.held {
-            row[start + place] = match held {
+            row[place] = match held {
                 Held::Number(value) => value,
-                Held::SameAs(other) => row[start + other],
+                Held::SameAs(other) => row[other],
             };
         }
     }

@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Random cases of each formula: mistakes show in as many.
-const CASES: u64 = 256;
+pub(super) const CASES: u64 = 256;
 /// Formulas that are told besides the ones that it is, or the nearest one.
 const MOST_TOLD: usize = 3;
 
@@ -108,33 +108,7 @@ impl Identify {
     }
 
     fn document(&self, file: &Path, report: &Report, adapted: &[Adapted]) -> IdentifyDocument {
-        let mut candidates: Vec<FormulaCandidate> = vec![];
-        for Adapted { id, missing, .. } in adapted {
-            let mut candidate =
-                FormulaCandidate { formula: id.clone(), missing: missing.clone(), ..FormulaCandidate::default() };
-            for group in report.groups.iter().filter(|group| group.id == *id) {
-                candidate.verdicts += group.totals.verdicts - group.totals.indeterminate;
-                candidate.failed += group.totals.failed + u64::from(group.problem.is_some());
-                candidate.explanation = candidate.explanation.or_else(|| group.explanation.clone());
-                if candidate.mistakes.is_empty() {
-                    candidate.mistakes.clone_from(&group.mistakes);
-                }
-            }
-            candidates.push(candidate);
-        }
-        // What has a name is nearer than what has none, and one mistake nearer than two. Shares of what fails are compared in quarters: they
-        // depend on which hard cases a formula has, and where they are alike the formula that is listed first is the more common one.
-        let steps = |candidate: &FormulaCandidate| match (candidate.failed, candidate.mistakes.len()) {
-            (0, _) => 0,
-            (_, 0) => usize::MAX,
-            (_, mistakes) => mistakes,
-        };
-        #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
-        let share =
-            |candidate: &FormulaCandidate| (4.0 * candidate.failed as f64 / candidate.verdicts.max(1) as f64).round();
-        candidates.sort_by(|a, b| {
-            steps(a).cmp(&steps(b)).then(a.missing.len().cmp(&b.missing.len())).then(share(a).total_cmp(&share(b)))
-        });
+        let candidates = candidates(report, adapted);
         let is = |candidate: &&FormulaCandidate| candidate.failed == 0 && candidate.verdicts > 0;
         IdentifyDocument {
             schema: SCHEMA.into(),
@@ -145,6 +119,38 @@ impl Identify {
             candidates,
         }
     }
+}
+
+/// The formulas that a shader was judged by, the nearest one first.
+pub(super) fn candidates(report: &Report, adapted: &[Adapted]) -> Vec<FormulaCandidate> {
+    let mut candidates: Vec<FormulaCandidate> = vec![];
+    for Adapted { id, missing, .. } in adapted {
+        let mut candidate =
+            FormulaCandidate { formula: id.clone(), missing: missing.clone(), ..FormulaCandidate::default() };
+        for group in report.groups.iter().filter(|group| group.id == *id) {
+            candidate.verdicts += group.totals.verdicts - group.totals.indeterminate;
+            candidate.failed += group.totals.failed + u64::from(group.problem.is_some());
+            candidate.explanation = candidate.explanation.or_else(|| group.explanation.clone());
+            if candidate.mistakes.is_empty() {
+                candidate.mistakes.clone_from(&group.mistakes);
+            }
+        }
+        candidates.push(candidate);
+    }
+    // What has a name is nearer than what has none, and one mistake nearer than two. Shares of what fails are compared in quarters: they
+    // depend on which hard cases a formula has, and where they are alike the formula that is listed first is the more common one.
+    let steps = |candidate: &FormulaCandidate| match (candidate.failed, candidate.mistakes.len()) {
+        (0, _) => 0,
+        (_, 0) => usize::MAX,
+        (_, mistakes) => mistakes,
+    };
+    #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
+    let share =
+        |candidate: &FormulaCandidate| (4.0 * candidate.failed as f64 / candidate.verdicts.max(1) as f64).round();
+    candidates.sort_by(|a, b| {
+        steps(a).cmp(&steps(b)).then(a.missing.len().cmp(&b.missing.len())).then(share(a).total_cmp(&share(b)))
+    });
+    candidates
 }
 
 /// The names of variables that are understood, as a table.

@@ -18,6 +18,7 @@ mod mistakes;
 mod options;
 mod pack;
 mod page;
+mod playground;
 mod progress;
 mod render;
 mod run;

@@ -10,6 +10,7 @@ use super::signals::{status_of, stopped_by_signals};
 use super::terminal::level;
 use super::{Status, abandon, command, writable};
 use clap::Args;
+use lightmeter::arithmetic::Profile;
 use lightmeter::browser::Session;
 use lightmeter::cases::GENERATOR_VERSION;
 use lightmeter::cases::blend::{Samples, separate_of, written_state};
@@ -102,6 +103,11 @@ impl Run {
     /// The adapters that were named.
     pub(crate) fn adapters(&self) -> &[String] {
         self.choice.adapters()
+    }
+
+    /// The accuracy rules.
+    pub(crate) const fn profile(&self) -> &'static Profile {
+        self.choice.profile
     }
 
     /// The same, whose result does not overwrite that of the runs before.

@@ -1,5 +1,6 @@
 //! `lightmeter serve`.
 
+use super::playground::play;
 use super::run::{Prepared, Run};
 use super::visit::{awaited, tell_of};
 use super::{NothingToRun, Status};
@@ -25,6 +26,9 @@ pub(crate) struct Serve {
     /// Stay when a browser was judged, for others, one after the other or at once; Ctrl-C ends it
     #[arg(long)]
     keep: bool,
+    /// Judge shaders that are typed into the page, as they are typed, and nothing else; Ctrl-C ends it
+    #[arg(long, conflicts_with_all = ["filter", "blend", "keep", "shaders", "shader", "function", "bind", "constant", "out", "format"])]
+    playground: bool,
 }
 
 impl Serve {
@@ -43,6 +47,9 @@ impl Serve {
         }
         let stop = prepared.stop().clone();
         let next = || awaited(&server, &stop);
+        if self.playground {
+            return play(next, &stop, self.run.profile());
+        }
         if self.keep {
             return judge_all(&asked, next);
         }

@@ -26,6 +26,7 @@ use lightmeter_gpu::Shaders;
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The file of the formulas that a shader was bound to, and how (`[JudgedAs]` as JSON), in the folder of what it was made to.
 const BOUND: &str = "bound.json";
@@ -150,7 +151,7 @@ impl ShaderChoice {
 }
 
 /// Whether a shader can be this formula: one of arithmetic alone.
-fn is_identified(spec: &Spec) -> bool {
+pub(super) fn is_identified(spec: &Spec) -> bool {
     IDENTIFIED.contains(&spec.family())
         && !spec.function.is_empty()
         && spec.selectors.is_empty()
@@ -237,7 +238,21 @@ impl OwnShader {
 
     /// Has processes of their own make it the function of formulas, of every one that it can be bound to where none is named.
     pub(crate) fn adapted_to(&self, formulas: &[String], adapters: &[String]) -> anyhow::Result<Accepted> {
-        let folder = std::env::temp_dir().join(format!("lightmeter-shader-{}", std::process::id()));
+        let (accepted, told) = self.made_functions_of(formulas)?;
+        if level() > Level::Quiet && !formulas.is_empty() {
+            say(told.trim_end());
+        }
+        if !accepted.adapted.is_empty() {
+            foreign::accept(accepted.folder.as_deref().unwrap_or(Path::new("")), adapters, false)?;
+        }
+        Ok(accepted)
+    }
+
+    /// The same without compiling it here, and what was told of its variables.
+    pub(super) fn made_functions_of(&self, formulas: &[String]) -> anyhow::Result<(Accepted, String)> {
+        static MADE: AtomicU64 = AtomicU64::new(0);
+        let name = format!("lightmeter-shader-{}-{}", std::process::id(), MADE.fetch_add(1, Ordering::Relaxed));
+        let folder = std::env::temp_dir().join(name);
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot write {}", folder.display()))?;
         let mut accepted = Accepted { folder: Some(folder.clone()), is_made: true, adapted: vec![] };
         let mut given = vec![OsString::from("adapt-shader"), folder.clone().into_os_string()];
@@ -245,15 +260,9 @@ impl OwnShader {
         given.extend(formulas.iter().map(OsString::from));
         given.extend(formulas.is_empty().then(|| OsString::from("--every")));
         let told = foreign::watched_child(&given, &self.part()?.1)?;
-        if level() > Level::Quiet && !formulas.is_empty() {
-            say(told.trim_end());
-        }
         let [bound, judged] = [BOUND, JUDGED].map(|name| std::fs::read_to_string(folder.join(name)));
         accepted.adapted = self.adapted(serde_json::from_str(&bound?)?, &judged?);
-        if !accepted.adapted.is_empty() {
-            foreign::accept(&folder, adapters, false)?;
-        }
-        Ok(accepted)
+        Ok((accepted, told))
     }
 
     /// The same as words of a command line; `None` where no shader is given.
@@ -302,7 +311,7 @@ impl OwnShader {
     }
 
     /// Refuses constants that are no inputs, or of another size.
-    fn check_constants(&self, formulas: &[String]) -> anyhow::Result<()> {
+    pub(super) fn check_constants(&self, formulas: &[String]) -> anyhow::Result<()> {
         let catalogue = catalogue();
         for spec in catalogue.iter().map(|member| &member.spec).filter(|spec| formulas.contains(&spec.id)) {
             let components = |name: &str, of: &str| {

@@ -5,6 +5,7 @@
 
 import { decode } from "./cbor.js";
 import { Executors, Refused } from "./executor.js";
+import { openPlayground } from "./playground.js";
 
 // Pieces whose results are awaited at once.
 const UNDER_WAY = 12;
@@ -195,6 +196,7 @@ async function tell(page) {
       if (group.failed > 0 || group.why) await failure(group, page);
     }
     groups += state.groups.length;
+    if (state.playground.length > 0) openPlayground(state.playground, (shader) => post(`play?${page.session}`, JSON.stringify(shader)));
     const { done, of, failed } = state;
     const verdict = shown("verdict");
     verdict.textContent = state.says;
@@ -207,7 +209,7 @@ async function tell(page) {
     last = { done, now };
     if (state.is_over) {
       page.isOver = true;
-      await offer(page);
+      if (state.playground.length === 0) await offer(page);
       shown("rate").textContent = "";
       return;
     }

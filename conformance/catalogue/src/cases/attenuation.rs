@@ -68,7 +68,7 @@ formula!(
     fit fit::light,
     |kc, kl, kq, light, p; out| { out.scalar(attenuation::point(kc, kl, kq, light, p)); },
     hard [
-        Hard::new("close-to-the-light", "1e5: no distance is too short", &[("kc", &[0.0]), ("kl", &[1.0]), ("kq", &[0.0]), ("light", &[0.0, 6e-6, 8e-6]), ("p", &[0.0, 0.0, 0.0])]),
+        Hard::new("close-to-the-light", "1e5: no distance is too short", &[("kc", &[0.0]), ("kl", &[1.0]), ("kq", &[0.0]), ("light", &[0.0, 6e-6, -0.000_992]), ("p", &[0.0, 0.0, -0.001])]),
         Hard::new("a-long-way-off", "no distance is too long", &[("kc", &[1.0]), ("kl", &[0.1]), ("kq", &[0.1]), ("light", &[0.0, 6e8, 8e8]), ("p", &[0.0, 0.0, 0.0])]),
     ],
 );

@@ -131,6 +131,8 @@ pub enum Side {
     Front,
     /// The side that the viewer does not see.
     Behind,
+    /// Nearly within the surface: its highlight is dark, and would be brighter of a viewer along any axis.
+    Grazing,
 }
 
 impl Surface {
@@ -146,13 +148,17 @@ impl Surface {
     pub const NO_VIEW: Self = Self::Lacks(Lacking::View, Side::Front);
     /// No viewer, lit from behind.
     pub const NO_VIEW_BEHIND: Self = Self::Lacks(Lacking::View, Side::Behind);
+    /// No viewer, lit from the side.
+    pub const NO_VIEW_GRAZING: Self = Self::Lacks(Lacking::View, Side::Grazing);
 
     /// What an input is in whose place a vector of length 0 comes.
     const fn in_place_of(self, input: &Input) -> Option<&'static [f32]> {
         let (name, is_any_length) = (input.name, matches!(input.domain, Domain::Vector(..)));
         let Self::Lacks(vector, side) = self else { return None };
         match vector {
-            Lacking::Normal if is_any_length && (is_same(name, "normal") || is_same(name, "na") || is_same(name, "nb")) => {
+            Lacking::Normal
+                if is_any_length && (is_same(name, "normal") || is_same(name, "na") || is_same(name, "nb")) =>
+            {
                 Some(ZERO)
             }
             // A face without area.
@@ -166,7 +172,9 @@ impl Surface {
             Lacking::View if is_same(name, "position") => match side {
                 Side::Front => Some(&[1.92, 1.44, 3.2]),
                 Side::Behind => Some(&[-1.92, -1.44, -3.2]),
+                Side::Grazing => Some(&[3.2, -2.4, 0.4]),
             },
+            Lacking::View if matches!(side, Side::Grazing) && is_same(name, "direction") => Some(&[-0.8, 0.6, -0.1]),
             _ => None,
         }
     }
@@ -181,7 +189,7 @@ impl Surface {
                 Self::Lacks(Lacking::Light, _) => {
                     is_same(input.name, "direction") || is_same(input.name, "position") && !is_point_light
                 }
-                Self::Lacks(Lacking::View, _) => !is_same(input.name, "position"),
+                Self::Lacks(Lacking::View, _) => !is_same(input.name, "position") && !is_same(input.name, "direction"),
                 _ => true,
             };
             if is_asked && matches!(input.shape, ValueShape::Vec3) && self.in_place_of(input).is_some() {
@@ -228,7 +236,7 @@ impl Input {
             Surface::Behind => find(&BEHIND, self.name),
             Surface::Lacks(_, side) => match (surface.in_place_of(self), side) {
                 (Some(missing), _) => Some(missing),
-                (None, Side::Front) => find(&FRONT, self.name),
+                (None, Side::Front | Side::Grazing) => find(&FRONT, self.name),
                 (None, Side::Behind) => find(&TURNED, self.name),
             },
         }
@@ -344,14 +352,19 @@ pub struct Common {
     pub short: Values,
     /// No normal, no light and no viewer, each lit from the front and from behind.
     pub lacking: [[Values; 2]; 3],
+    /// No viewer, lit from the side.
+    pub grazing: Values,
 }
 
 impl Common {
-    const fn all(&self, has_colors: bool) -> [(bool, Hard); 11] {
-        const NOT_AN_AXIS: &str = "the zero vector is normalised to 0: not to NaN, and not to a direction of its own";
+    const fn all(&self, has_colors: bool) -> [(bool, Hard); 12] {
+        const NOT_AN_AXIS: &str = "a vector of length 0 has no direction, and no axis stands in for it";
         let [normal, light, view] = self.lacking;
         [
-            (has_colors, Hard::new("beyond-black-and-white", "colours below 0 and above 1 count as they are", self.beyond)),
+            (
+                has_colors,
+                Hard::new("beyond-black-and-white", "colours below 0 and above 1 count as they are", self.beyond),
+            ),
             given(Hard::new("shininess-of-0", "1 wherever the cosine is above 0", self.no_shininess)),
             given(Hard::new("shininess-of-half", "the square root of the cosine", self.half)),
             given(Hard::new(
@@ -366,6 +379,7 @@ impl Common {
             given(Hard::new("no-light-from-behind", NOT_AN_AXIS, light[1])),
             given(Hard::new("no-view", NOT_AN_AXIS, view[0])),
             given(Hard::new("no-view-lit-from-behind", NOT_AN_AXIS, view[1])),
+            given(Hard::new("no-view-lit-from-the-side", NOT_AN_AXIS, self.grazing)),
         ]
     }
 

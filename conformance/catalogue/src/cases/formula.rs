@@ -292,7 +292,8 @@ macro_rules! formula {
                     $name; NONE Lit Some(&[0.0]); HALF Lit Some(&[0.5]); FROM_BEHIND Behind Some(&[0.5]); SHORT Short None;
                     NO_NORMAL NO_NORMAL Some(&[2.0]); NO_NORMAL_BEHIND NO_NORMAL_BEHIND Some(&[2.0]);
                     NO_LIGHT NO_LIGHT Some(&[2.0]); NO_LIGHT_BEHIND NO_LIGHT_BEHIND Some(&[2.0]);
-                    NO_VIEW NO_VIEW Some(&[2.0]); NO_VIEW_BEHIND NO_VIEW_BEHIND Some(&[2.0])
+                    NO_VIEW NO_VIEW Some(&[2.0]); NO_VIEW_BEHIND NO_VIEW_BEHIND Some(&[2.0]);
+                    NO_VIEW_GRAZING NO_VIEW_GRAZING Some(&[2.0])
                 );
                 const COMMON: $crate::cases::Common = $crate::cases::Common {
                     beyond: &BEYOND,
@@ -301,6 +302,7 @@ macro_rules! formula {
                     behind: FROM_BEHIND,
                     short: SHORT,
                     lacking: [[NO_NORMAL, NO_NORMAL_BEHIND], [NO_LIGHT, NO_LIGHT_BEHIND], [NO_VIEW, NO_VIEW_BEHIND]],
+                    grazing: NO_VIEW_GRAZING,
                 };
                 const HARD: &[$crate::cases::Hard] = &{
                     const ALL: [$crate::cases::Hard; OWN.len() + COMMON.count(COLORS > 0)] =

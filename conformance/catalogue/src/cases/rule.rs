@@ -251,7 +251,11 @@ const RULES: &[(&str, &str)] = &[
     ),
     (
         "lighting/phong lighting/blinn lighting/blinn-unnormalised lighting/phong-gated lighting/phong-unit-light lighting/phong-nonlocal lighting/point-* lighting/spot lighting/scalar-material lighting/two-lights lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat lighting/blinn-stable",
-        "the zero vector is normalised to 0, not to NaN: a normal or a light vector of length 0 has l·n = 0",
+        "the zero vector is normalised to 0, not to NaN and not to a direction of its own: a normal or a light vector of length 0 has l·n = 0",
+    ),
+    (
+        "lighting/phong lighting/blinn lighting/blinn-unnormalised lighting/phong-gated lighting/phong-unit-light lighting/phong-nonlocal lighting/point-* lighting/spot lighting/scalar-material lighting/two-lights lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
+        "where the normal, the vector to the light or the vector to the eye has length 0, the highlight may also be anything from there to 0: what normalize gives for such a vector is open in shading languages, and max makes 0 of NaN",
     ),
     (
         "lighting/phong lighting/phong-unit-light lighting/phong-nonlocal lighting/point-phong lighting/spot lighting/scalar-material lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",

@@ -1,11 +1,11 @@
 //! The page on the self-test, made from the JSON of `lightmeter selftest`: the kill matrix, and the suite's resolution.
 
 use crate::selftest::{percent, smallest};
-use lightmeter_document::Document as _;
 use lightmeter_document::selftest::{
     Clean, Finding, Kill, Mistake, NamedFrom, OffBy, Record, Resolution, SceneRecord, SceneResolution,
     SelftestDocument, UnitFinding, UnitRow, family_of,
 };
+use lightmeter_document::{Document as _, thousands};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
 
@@ -114,11 +114,15 @@ fn totals(record: &Record, out: &mut impl Write) -> Written {
     let made: BTreeSet<&str> = record.kills.iter().map(|kill| kill.fault.as_str()).collect();
     writeln!(
         out,
-        "{} mistakes make {total} combinations with the formulas that they concern: {} are caught, {survived} survive. The\n\
-         first diagnosis is the right one for {named}, {percent:.1} %; in {aliases} of these it is one of the same values in every \
+        "{} mistakes make {} combinations with the formulas that they concern: {} are caught, {} survive. The\n\
+         first diagnosis is the right one for {}, {percent:.1} %; in {} of these it is one of the same values in every \
          case.\n",
-        made.len(),
-        total - survived,
+        thousands(made.len() as u64),
+        thousands(total as u64),
+        thousands((total - survived) as u64),
+        thousands(survived as u64),
+        thousands(named as u64),
+        thousands(aliases as u64),
     )
 }
 

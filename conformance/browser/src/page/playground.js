@@ -1,0 +1,142 @@
+// Shaders that are typed into the page: each change is sent to the server, which has this browser's GPU judge it, and the result is shown.
+//
+// One shader is under way at a time; what was typed meanwhile is sent when its result is there. The address's fragment holds the shader, so that a
+// link opens it again.
+
+import { EXAMPLES } from "./examples.js";
+
+const shown = (id) => document.getElementById(id);
+// Milliseconds without a change until a shader is sent.
+const PAUSE = 500;
+const FIELDS = ["language", "formula", "function", "text", "bind", "constant"];
+const PICTURES = ["the reference", "your shader, on this GPU", "the error map: blue is legal, yellow to violet is wrong"];
+
+let send = null;
+let [timer, isUnderWay, isChanged] = [0, false, false];
+
+const typed = () => Object.fromEntries(FIELDS.map((name) => [name, shown(name).value]));
+const listed = (text) => text.split("\n").map((line) => line.trim()).filter((line) => line);
+const count = (number, noun) => `${number.toLocaleString("en")} ${noun}${number === 1 ? "" : "s"}`;
+
+// Text as base64 for addresses, and back.
+function packed(value) {
+  const bytes = new TextEncoder().encode(JSON.stringify(value));
+  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+function unpacked(text) {
+  const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
+  return JSON.parse(new TextDecoder().decode(bytes));
+}
+
+function fill(values) {
+  for (const name of FIELDS) shown(name).value = typeof values[name] === "string" ? values[name] : "";
+  // A formula or a language that is none of the list leaves none chosen.
+  if (shown("language").selectedIndex < 0) shown("language").value = "glsl";
+  if (shown("formula").selectedIndex < 0) shown("formula").value = "";
+}
+
+function say(text, state) {
+  shown("played").textContent = text;
+  shown("played").className = state;
+}
+
+function show({ refused, told, formulas, result, picture }) {
+  const [nearest, ...others] = formulas;
+  if (refused !== null) say(`Not judged: ${refused}`, "failed");
+  else if (!nearest) say("Nothing was judged.", "failed");
+  else if (nearest.failed === 0) say(`✓ This is ${nearest.id}: ${count(nearest.verdicts, "value")}, all legal.`, "passed");
+  else {
+    const why = nearest.why ?? "No mistake of the catalogue explains them.";
+    say(`✗ The nearest is ${nearest.id}: ${nearest.failed.toLocaleString("en")} of ${count(nearest.verdicts, "value")} are wrong.\n${why}`, "failed");
+  }
+  shown("nearest").replaceChildren(...others.map(({ id, verdicts, failed, why }) => {
+    const line = document.createElement("li");
+    line.textContent = failed === 0 ? `It is ${id}, too.` : `By ${id} ${failed.toLocaleString("en")} of ${count(verdicts, "value")} are wrong${why ? `: ${why}` : "."}`;
+    return line;
+  }));
+  shown("drawn").replaceChildren(...(picture?.files ?? []).map((file, k) => {
+    const [figure, image, caption] = ["figure", "img", "figcaption"].map((name) => document.createElement(name));
+    image.src = file;
+    image.alt = `${picture.caption}: ${PICTURES[k]}`;
+    caption.textContent = PICTURES[k];
+    figure.append(image, caption);
+    return figure;
+  }));
+  shown("drawn-says").textContent = picture ? `${picture.caption}. ${picture.wrong.toLocaleString("en")} of ${count(picture.drawn, "pixel")} are wrong.` : "";
+  for (const [place, inside, text] of [["whole", "result", result], ["taken", "told", told]]) {
+    shown(inside).textContent = text;
+    shown(place).hidden = text === "";
+  }
+}
+
+async function judge() {
+  if (isUnderWay) {
+    isChanged = true;
+    return;
+  }
+  const shader = typed();
+  if (shader.text.trim() === "") return;
+  isUnderWay = true;
+  say("Judging …", "");
+  try {
+    const response = await send({ ...shader, bind: listed(shader.bind), constant: listed(shader.constant) });
+    if (response.status === 200) show(await response.json());
+  } catch (error) {
+    say(error.message, "failed");
+  }
+  isUnderWay = false;
+  if (isChanged) {
+    isChanged = false;
+    judge();
+  }
+}
+
+function changed() {
+  const values = typed();
+  history.replaceState(null, "", values.text === "" ? "#" : `#shader=${packed(values)}`);
+  shown("copied").textContent = "";
+  clearTimeout(timer);
+  timer = setTimeout(judge, PAUSE);
+}
+
+function offerExamples() {
+  for (const [k, { title }] of EXAMPLES.entries()) shown("example").append(new Option(title, k));
+  shown("example").addEventListener("change", ({ target }) => {
+    if (target.value === "") return;
+    fill(EXAMPLES[target.value]);
+    changed();
+  });
+}
+
+// What the address's fragment holds; an address that somebody spoilt holds nothing.
+function fromAddress() {
+  const found = /^#shader=([\w-]+)$/.exec(location.hash);
+  if (!found) return;
+  try {
+    fill(unpacked(found[1]));
+  } catch {
+    say("The link's shader cannot be read.", "failed");
+  }
+  judge();
+}
+
+export function openPlayground(formulas, sender) {
+  send = sender;
+  if (!shown("playground").hidden) return;
+  for (const id of formulas) shown("formula").append(new Option(id, id));
+  offerExamples();
+  for (const name of FIELDS) shown(name).addEventListener("input", changed);
+  shown("copy").addEventListener("click", async () => {
+    try {
+      await navigator.clipboard.writeText(location.href);
+      shown("copied").textContent = "Copied. It opens as long as lightmeter serves this page; what follows # is the shader, and opens in later playgrounds too.";
+    } catch {
+      shown("copied").textContent = "The browser lets no page copy: the address of this page is the link.";
+    }
+  });
+  addEventListener("hashchange", fromAddress);
+  shown("playground").hidden = false;
+  for (const place of ["progress", "judged"]) shown(place).hidden = true;
+  fromAddress();
+}

@@ -1,0 +1,223 @@
+//! `lightmeter serve --playground`: judges shaders as they are typed into a browser's page, on that browser's GPU.
+
+use super::identify::{CASES, candidates};
+use super::shader::{OwnShader, constant, is_identified};
+use super::{NothingToRun, Status};
+use anyhow::Context as _;
+use lightmeter::arithmetic::Profile;
+use lightmeter::book::picture::{Picture, png};
+use lightmeter::browser::{PlayedFormula, PlayedLanguage, PlayedPicture, PlayedResult, PlayedShader, Session};
+use lightmeter::device::DeviceError;
+use lightmeter::document::event::{Silent, Stop};
+use lightmeter::faults::Mistakes;
+use lightmeter::files::lines;
+use lightmeter::filter::Filter;
+use lightmeter::image::LegalPixel;
+use lightmeter::image::file::StoredImage;
+use lightmeter::image::map::error_map;
+use lightmeter::options::Options;
+use lightmeter::report::html::embedded;
+use lightmeter::report::{Level, text};
+use lightmeter::rows::Rows;
+use lightmeter::run::run;
+use lightmeter::select::{Member, catalogue};
+use lightmeter::subject::Subject;
+use lightmeter::subject_gpu::browser::of_session;
+use lightmeter_scene::target::TargetFormat;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// How often it is looked at whether the playground ends.
+const LOOK: Duration = Duration::from_millis(200);
+/// Formulas that are told besides the nearest one.
+const MOST_TOLD: usize = 4;
+
+/// Judges what is typed into the pages of all browsers that come, until a signal ends it.
+pub(super) fn play(
+    next: impl Fn() -> Option<Arc<Session>>,
+    stop: &Stop,
+    profile: &'static Profile,
+) -> anyhow::Result<Status> {
+    let mut tables = vec![];
+    while let Some(session) = next() {
+        let stop = stop.clone();
+        tables.push(std::thread::spawn(move || Playground::new(session, stop, profile).serve()));
+    }
+    if tables.is_empty() {
+        return Err(NothingToRun("ended before a browser opened the page".into()).into());
+    }
+    for table in tables {
+        table.join().map_err(|_| anyhow::anyhow!("a playground ended by a panic, which stands above"))?;
+    }
+    Ok(Status::Success)
+}
+
+/// The playground of one browser.
+struct Playground {
+    session: Arc<Session>,
+    subject: Subject,
+    stop: Stop,
+    profile: &'static Profile,
+}
+
+impl Playground {
+    fn new(session: Arc<Session>, stop: Stop, profile: &'static Profile) -> Self {
+        let formulas = catalogue().into_iter().map(|member| member.spec).filter(is_identified).map(|spec| spec.id);
+        session.tell(|told| {
+            told.says = "Type or paste a shader below.".into();
+            told.playground = formulas.collect();
+        });
+        Self { subject: subject(&session), session, stop, profile }
+    }
+
+    fn serve(mut self) {
+        while self.stop.signal().is_none() && !self.session.is_gone() {
+            let Some(shader) = self.session.next_shader(LOOK) else { continue };
+            let result = self.judged(&shader).unwrap_or_else(|error| {
+                if error.downcast_ref().is_some_and(DeviceError::is_of_device) {
+                    self.subject = subject(&self.session);
+                }
+                PlayedResult { refused: Some(format!("{error:#}")), ..PlayedResult::default() }
+            });
+            self.session.tell_of_shader(&result);
+        }
+        self.session.tell_the_end("The command has ended: nothing is judged any more.".into(), None);
+    }
+
+    /// Judges a shader by the formula that was chosen, or by all that its variables can be bound to.
+    fn judged(&mut self, shader: &PlayedShader) -> anyhow::Result<PlayedResult> {
+        let folder = tempfile::tempdir().context("cannot write a folder of its own")?;
+        let name = match shader.language {
+            PlayedLanguage::Wgsl => "shader.wgsl",
+            PlayedLanguage::Glsl => "shader.frag",
+        };
+        let file = folder.path().join(name);
+        std::fs::write(&file, &shader.text)?;
+        // Messages name the file, of which people know nothing.
+        let bare = |text: &str| lines(text).replace(&format!("{}/", folder.path().display()), "");
+        let judged = self.judged_file(shader, &file);
+        match judged {
+            Ok(result) => Ok(PlayedResult { told: bare(&result.told), result: bare(&result.result), ..result }),
+            Err(error) if error.downcast_ref::<DeviceError>().is_some() => Err(error),
+            Err(error) => Ok(PlayedResult { refused: Some(bare(&format!("{error:#}"))), ..PlayedResult::default() }),
+        }
+    }
+
+    fn judged_file(&mut self, shader: &PlayedShader, file: &Path) -> anyhow::Result<PlayedResult> {
+        let constants = shader.constant.iter().map(|text| constant(text).map_err(anyhow::Error::msg));
+        let function = Some(shader.function.as_str()).filter(|name| !name.is_empty());
+        let own = OwnShader::new(file.into(), function, shader.bind.clone(), constants.collect::<Result<_, _>>()?);
+        let formulas: Vec<String> = Some(shader.formula.clone()).filter(|id| !id.is_empty()).into_iter().collect();
+        own.check_constants(&formulas)?;
+        let (accepted, told) = own.made_functions_of(&formulas)?;
+        let mut options = Options::by(accepted.code()?, None, 1, self.profile);
+        let ids: Vec<&str> = accepted.adapted.iter().map(|adapted| adapted.id.as_str()).collect();
+        options.filter = Filter::new(&ids)?;
+        options.cases = CASES;
+        options.diagnose = Some(&Mistakes);
+        options.adapted.clone_from(&accepted.adapted);
+        options.stop = self.stop.clone();
+        let report = run(std::slice::from_mut(&mut self.subject), &options, &mut Silent)?;
+        let candidates = candidates(&report, &accepted.adapted);
+        let nearest = candidates.first().map(|candidate| candidate.formula.as_str());
+        let picture = match accepted.adapted.iter().find(|adapted| Some(adapted.id.as_str()) == nearest) {
+            Some(adapted) => {
+                let member = catalogue().into_iter().find(|member| member.spec.id == adapted.id);
+                member.map(|member| self.picture(&adapted.applied(member), &options)).transpose()?.flatten()
+            }
+            None => None,
+        };
+        let told_of = candidates.iter().take(1 + MOST_TOLD).map(|candidate| PlayedFormula {
+            id: candidate.formula.clone(),
+            verdicts: candidate.verdicts,
+            failed: candidate.failed,
+            why: candidate.explanation.clone(),
+        });
+        let mut result = String::new();
+        let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false, level: Level::Normal };
+        text::write(&report, style, &mut result)?;
+        // What the variables of twenty formulas were taken for, nobody reads.
+        let told = if formulas.is_empty() { String::new() } else { told };
+        Ok(PlayedResult { refused: None, told, formulas: told_of.collect(), result, picture })
+    }
+
+    /// What a formula draws by the reference and by the shader; `None` where it gives no colour.
+    fn picture(&mut self, member: &Member, options: &Options) -> Result<Option<PlayedPicture>, DeviceError> {
+        let Some(mut picture) = Picture::of(member).filter(|picture| !picture.lacks(&member.missing)) else {
+            return Ok(None);
+        };
+        picture.rows().for_each(|row| member.hold(row));
+        let inputs: Vec<f32> = picture.rows().flat_map(|row| row.iter().copied()).collect();
+        let (stride, of_each) = (member.spec.input_len(), member.spec.output_len());
+        let count = inputs.len() / stride;
+        let Some(values) = self.values(member, options, &inputs, count)? else { return Ok(None) };
+        let mut exact = vec![0.0; count * of_each];
+        for (row, out) in inputs.chunks_exact(stride).zip(exact.chunks_exact_mut(of_each)) {
+            member.formula.reference(row, out);
+        }
+        let mut legal = vec![lightmeter::arithmetic::Accept::ANY; count * of_each];
+        member.formula.intervals(&inputs, stride, options.profile, &mut legal);
+        let [low, high]: [Vec<f64>; 2] =
+            [legal.iter().map(|legal| legal.low()).collect(), legal.iter().map(|legal| legal.high()).collect()];
+        let of = |outputs: &[f64]| picture.colors(outputs, of_each);
+        let (width, [exact, values, low, high]) = (of(&exact).0, [&exact, &values, &low, &high].map(|all| of(all).1));
+        let stored = |colors: &[Option<[f64; 3]>]| StoredImage {
+            width,
+            format: TargetFormat::Rgba32Float,
+            pixels: colors.iter().map(units).collect(),
+        };
+        let expected: Vec<LegalPixel> = low
+            .iter()
+            .zip(&high)
+            .map(|(low, high)| LegalPixel { low: units(low), high: units(high), is_marked: false })
+            .collect();
+        let map = error_map(&stored(&values), &stored(&exact), &expected);
+        let of_map =
+            |(pixel, drawn): (&[f64; 4], &Option<[f64; 3]>)| drawn.map(|_| std::array::from_fn(|k| pixel[k] / 255.0));
+        let errors = map.pixels.iter().zip(&exact).map(of_map).collect();
+        let is_wrong = |(k, value): (usize, &[f64; 4])| {
+            (0..4).any(|c| !(expected[k].low[c] <= value[c] && value[c] <= expected[k].high[c]))
+        };
+        Ok(Some(PlayedPicture {
+            caption: picture.caption(member),
+            wrong: stored(&values).pixels.iter().enumerate().filter(|&(k, value)| is_wrong((k, value))).count(),
+            drawn: exact.iter().flatten().count(),
+            files: [exact, values, errors].map(|colors| embedded("image/png", &png(width, &colors))),
+        }))
+    }
+
+    /// The outputs of rows by the shader; `None` where no stage takes them.
+    fn values(
+        &mut self,
+        member: &Member,
+        options: &Options,
+        inputs: &[f32],
+        count: usize,
+    ) -> Result<Option<Vec<f64>>, DeviceError> {
+        let Some(device) = self.subject.device_mut() else { return Ok(None) };
+        let stages = device.compile(&options.code, member)?;
+        let Some(work) = stages.into_iter().find_map(|(_, work)| work.ok()) else { return Ok(None) };
+        let of = vec![0; count];
+        let rows = Rows {
+            members: &[member],
+            of: &of,
+            cases: &[],
+            inputs,
+            selected: inputs,
+            outputs: member.spec.output_len(),
+        };
+        let job = device.submit(&work, &rows)?;
+        let words = device.finish(&work, job, &rows)?;
+        Ok(Some(words.into_iter().map(|word| f32::from_bits(word).into()).collect()))
+    }
+}
+
+fn subject(session: &Arc<Session>) -> Subject {
+    of_session("browser".into(), session.clone())
+}
+
+/// A colour as a pixel; what is not drawn is clear.
+fn units(color: &Option<[f64; 3]>) -> [f64; 4] {
+    color.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0])
+}
