@@ -288,7 +288,7 @@ impl Shared {
             serde_json::from_slice(body).map_err(|error| Reply::refused(400, &format!("not a hello: {error}")))?;
         let mut sessions = locked(&self.sessions);
         let known = hello.session.as_ref().and_then(|id| sessions.all.get(id)).cloned();
-        let known = known.filter(|known| known.hello().abilities == hello.abilities);
+        let known = known.filter(|known| known.hello().abilities == hello.abilities && !known.has_ended());
         let session = match known {
             Some(session) => session,
             None if sessions.all.len() >= SESSIONS_MOST => {

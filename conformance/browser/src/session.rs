@@ -299,9 +299,8 @@ impl Session {
 
     /// Whether nothing is to be expected of the browser any more.
     #[must_use]
-    pub fn is_gone(&self) -> bool {
-        let state = self.state();
-        state.ended.is_some() || Instant::now() > state.gone_at
+    pub fn has_ended(&self) -> bool {
+        self.state().ended.is_some()
     }
 
     /// Keeps pictures for the page, as PNG files. Gives the number of the first; `None` where there are enough.

@@ -72,7 +72,7 @@ impl Playground {
     }
 
     fn serve(mut self) {
-        while self.stop.signal().is_none() && !self.session.is_gone() {
+        while self.stop.signal().is_none() && !self.session.has_ended() {
             let Some(shader) = self.session.next_shader(LOOK) else { continue };
             let result = self.judged(&shader).unwrap_or_else(|error| {
                 if error.downcast_ref().is_some_and(DeviceError::is_of_device) {
