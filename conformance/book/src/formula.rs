@@ -6,6 +6,7 @@ use crate::diagram::diagram;
 use crate::errors::{CASES, errors};
 use crate::grid::{grid, plain};
 use crate::picture::Picture;
+use crate::rule::rule;
 use crate::sketch::{short, sketch};
 use lightmeter_arithmetic::profile::WGSL;
 use lightmeter_catalogue::cases::blend::COMMON;
@@ -398,17 +399,29 @@ pub(crate) fn set_equation(spec: &Spec) -> Markup {
     let (line, says) = if is_sentence(spec.text) {
         match split_equation(spec.text) {
             Some(parts) => parts,
-            None => return html! { p.equation.said { (prose(spec.text)) } },
+            None => {
+                return html! {
+                    @if let Some(rule) = rule(&spec.id) { (set_lines(spec, &rule)) }
+                    p.equation.said { (prose(spec.text)) }
+                };
+            }
         }
     } else {
         (spec.text, "")
     };
+    html! {
+        (set_lines(spec, line))
+        @if !says.is_empty() { p { "… " (prose(says.trim_start_matches([',', ';', ' ']))) "." } }
+        p.quiet { "As reports write it: " code { (spec.text) } }
+    }
+}
+
+/// Statements as mathematics, a line for each.
+fn set_lines(spec: &Spec, lines: &str) -> Markup {
     let names: Vec<&str> =
         spec.inputs.iter().map(|input| input.name).chain(spec.outputs.iter().map(|output| output.name)).collect();
     html! {
-        div.equation tabindex="0" role="group" aria-label="the formula" { @for line in line.split("; ") { (equation(line, &names)) } }
-        @if !says.is_empty() { p { "… " (prose(says.trim_start_matches([',', ';', ' ']))) "." } }
-        p.quiet { "As reports write it: " code { (spec.text) } }
+        div.equation tabindex="0" role="group" aria-label="the formula" { @for line in lines.split("; ") { (equation(line, &names)) } }
     }
 }
 
@@ -657,7 +670,12 @@ mod tests {
         for member in catalogue() {
             let (id, text) = (&member.spec.id, member.spec.text);
             let html = set_equation(&member.spec).0;
-            let line = if is_sentence(text) { split_equation(text).map(|(line, _)| line) } else { Some(text) };
+            let own = rule(id);
+            let line = if is_sentence(text) {
+                split_equation(text).map_or(own.as_deref(), |(line, _)| Some(line))
+            } else {
+                Some(text)
+            };
             assert_eq!(html.contains("<math"), line.is_some(), "{id}");
             let (Some(from), Some(line)) = (html.find("<math"), line) else { continue };
             let mathml = &html[from..html.find("</div>").expect("it ends")];

@@ -9,13 +9,13 @@ const MOST_COUNTED: f64 = 1e6;
 /// The least power of ten between a value and its reference that is told.
 const LEAST_POWER: i32 = 3;
 
-/// An error in its unit for people, such as `3.25 ULP`. What is so large that no digit of the value is right is told as that.
+/// An error in its unit for people, such as `3.25 ULP`. What is so large that no digit of the value is right is told by that.
 #[must_use]
 pub fn error_told(Number(error): Number, unit: &str) -> String {
     match error {
         _ if error.is_nan() => "no number".into(),
         _ if error.is_infinite() => "infinite".into(),
-        _ if error >= MOST_ULP => format!("more than 2²⁴ {unit}, so that no digit is right"),
+        _ if error >= MOST_ULP => format!("more than 2²⁴ {unit}, more than the number itself"),
         _ => format!("{} {unit}", figure(error)),
     }
 }
@@ -86,7 +86,7 @@ mod tests {
             ["0 ULP", "0.50 ULP", "3.25 ULP", "998.70 ULP", "12,346 ULP"]
         );
         assert_eq!(told(16_777_215.0), "16,777,215 ULP");
-        assert_eq!(told(7.134e44), "more than 2²⁴ ULP, so that no digit is right");
+        assert_eq!(told(7.134e44), "more than 2²⁴ ULP, more than the number itself");
         assert_eq!([f64::INFINITY, f64::NAN].map(told), ["infinite", "no number"]);
         let cells = [7.134e44, 1_234.0, f64::INFINITY, 1e-4].map(|error| error_figure(Number(error)));
         assert_eq!(cells, ["> 2²⁴", "1,234", "∞", "1.0e-4"]);
