@@ -22,6 +22,9 @@ use lightmeter_report::html::{course_plot, equation, prose, written};
 use maud::{Markup, html};
 use std::collections::HashSet;
 
+/// Mistakes that a page shows at once; the others are folded.
+const SHOWN: usize = 8;
+
 /// What the page of a formula is made of.
 pub(crate) struct FormulaPage<'a> {
     /// The formula.
@@ -232,7 +235,13 @@ impl FormulaPage<'_> {
                     @if is_drawn { "On the left is what is right, on the right what the mistake makes of it; in a plot the solid and the dashed line." }
                     @else { "The solid line is what is right, the dashed one what the mistake makes of it." }
                 }
-                div.mistakes { @for section in sections { (section) } }
+                div.mistakes { @for section in sections.iter().take(SHOWN) { (section) } }
+                @if sections.len() > SHOWN {
+                    details.section {
+                        summary { (sections.len() - SHOWN) " more" }
+                        div.mistakes { @for section in &sections[SHOWN..] { (section) } }
+                    }
+                }
             }
         }
     }
