@@ -15,17 +15,27 @@ struct Quotation {
     args: &'static [&'static str],
     /// The line of the block, or how another block begins, that the command reads.
     reads: Option<&'static str>,
+    /// A file that the command reads, and how the block begins that it is.
+    file: Option<(&'static str, &'static str)>,
 }
 
 const fn of(page: &'static str, begins: &'static str, args: &'static [&'static str]) -> Quotation {
-    Quotation { page, begins, args, reads: None }
+    Quotation { page, begins, args, reads: None, file: None }
 }
 
 const fn eval(page: &'static str, begins: &'static str, reads: &'static str) -> Quotation {
-    Quotation { page, begins, args: &["eval"], reads: Some(reads) }
+    Quotation { page, begins, args: &["eval"], reads: Some(reads), file: None }
 }
 
 const QUOTATIONS: &[Quotation] = &[
+    Quotation {
+        file: Some(("fog.glsl", "vec3 applyFog(")),
+        ..of(
+            "docs/book/what-it-tells-you.md",
+            "✗ fog/exp2-opengl on lavapipe",
+            &["run", "fog/exp2-opengl", "--function", "applyFog@fog.glsl"],
+        )
+    },
     of(
         "docs/book/a-rasterisers-freedom.md",
         "lightmeter run interpolation/raster-top-left",
@@ -89,7 +99,15 @@ fn block(page: &str, begins: &str) -> String {
 /// What a command prints on both streams.
 fn printed(quotation: &Quotation, given: &str) -> String {
     let mut asked = command(quotation.args);
-    asked.current_dir(root()).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("quoted");
+    if let Some((name, begins)) = quotation.file {
+        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        std::fs::write(folder.join(name), block(quotation.page, begins)).expect("it can be written");
+        asked.current_dir(&folder);
+    } else {
+        asked.current_dir(root());
+    }
+    asked.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut running = asked.spawn().expect("the binary starts");
     running.stdin.take().expect("it is piped").write_all(given.as_bytes()).expect("it reads");
     let output = running.wait_with_output().expect("it ends");
