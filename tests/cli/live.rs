@@ -22,6 +22,12 @@ fn what_fails_is_told_first_with_its_cause_and_counted_once() {
     assert_eq!(text.matches("FAIL fog/linear/").count(), 1, "one failing case of a formula is told: {text}");
     let fails = text.find("FAIL fog/linear/random/").expect("an ordinary case");
     assert!(fails < text.find("   family  ").expect("the table comes at the end"), "{text}");
+    // What was told is not told again: the end has a line for each formula.
+    let heads = text.lines().filter(|line| line.starts_with("✗ fog/linear on ")).count();
+    let places = text.lines().filter(|line| line.starts_with("✗  fog ")).count();
+    assert_eq!(heads, places, "a head for each stage: {text}");
+    let end = text.split("failed, as is told above\n").nth(1).expect("the end says what failed");
+    assert!(end.starts_with("  fog/linear on ") && end.contains(" (fog-from-the-eye)"), "{end}");
     // For programs the result is alone on standard output, and what fails is told beside it.
     let output = lightmeter(&[&args[..], &["--format", "json"]].concat());
     let report: Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");

@@ -14,6 +14,7 @@ mod live;
 mod mistakes;
 mod pages;
 mod project;
+mod quoted;
 mod scene;
 mod selftest;
 mod shader;

@@ -96,6 +96,42 @@ fn a_gate_that_judges_too_little_fails_in_its_page() {
     assert!(page.contains("✗ fails") && page.contains("part of 0.9"), "{page}");
 }
 
+/// Who, when, by what and how it ended stands at the top of each page.
+#[test]
+fn every_page_begins_with_the_same_head() {
+    let run = path("head-run.json");
+    let ran = lightmeter(&["run", "fog/exp", "--adapter", "cpu", "--cases", "16", "--format", "json", "--out", &run]);
+    assert_eq!(code(&ran), 0);
+    let html = path("head-matrix.html");
+    assert_eq!(code(&lightmeter(&["page", "matrix", &run, "--out", &html])), 0);
+    let sweep = ["sweep", "fog/exp", "--adapter", "cpu", "--from", "-8.01", "--to", "-8", "--format", "html"];
+    let selftest = ["selftest", "color/replace", "--only", "formulas", "--format", "html"];
+    for (name, page) in [
+        ("run", stdout(&lightmeter(&["page", "report", &run]))),
+        ("matrix", std::fs::read_to_string(html).expect("it was written")),
+        ("sweep", stdout(&lightmeter(&sweep))),
+        ("selftest", stdout(&lightmeter(&selftest))),
+    ] {
+        let head = page.split("<body>").nth(1).and_then(|body| body.split("</dl>").next()).expect("it has a head");
+        for what in ["class=\"head good\"", "✓ passes", "lightmeter ", "0.1.0", "made at", " UTC", "seed"] {
+            assert!(head.contains(what), "no {what} in the head of the page of a {name}: {head}");
+        }
+    }
+}
+
+/// The card of what passes shows what was answered to its worst case, as the card of what fails does.
+#[test]
+fn a_passing_card_has_inputs_and_the_answer() {
+    let page = stdout(&lightmeter(&["run", "fog/exp", "--adapter", "cpu", "--cases", "16", "--format", "html"]));
+    let card = page.split("class=\"card passing\"").nth(1).and_then(|rest| rest.split("</details>").next());
+    let card = card.expect("it has a card");
+    for what in
+        ["on cpu, compute", "aria-label=\"inputs\"", "the reference is", "<b class=\"pass\">", "the answer", "r=\"4\""]
+    {
+        assert!(card.contains(what), "no {what} in {card}");
+    }
+}
+
 #[test]
 fn a_matrix_has_a_column_for_each_subject() {
     let [a, b] = ["a", "b"].map(|name| path(&format!("matrix-{name}.json")));

@@ -167,6 +167,7 @@ pub fn bench(
         schema: SCHEMA.into(),
         command: options.command.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
+        made_at: None,
         quick: options.quick,
         seed: options.seed,
         seconds: start.elapsed().as_secs_f64(),

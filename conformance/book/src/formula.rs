@@ -6,6 +6,7 @@ use crate::diagram::diagram;
 use crate::errors::{CASES, errors};
 use crate::grid::{grid, plain};
 use crate::picture::Picture;
+use crate::rule::rule;
 use crate::sketch::{short, sketch};
 use lightmeter_arithmetic::profile::WGSL;
 use lightmeter_catalogue::cases::blend::COMMON;
@@ -20,6 +21,9 @@ use lightmeter_gpu::Shaders;
 use lightmeter_report::html::{course_plot, equation, prose, written};
 use maud::{Markup, html};
 use std::collections::HashSet;
+
+/// Mistakes that a page shows at once; the others are folded.
+const SHOWN: usize = 8;
 
 /// What the page of a formula is made of.
 pub(crate) struct FormulaPage<'a> {
@@ -231,7 +235,13 @@ impl FormulaPage<'_> {
                     @if is_drawn { "On the left is what is right, on the right what the mistake makes of it; in a plot the solid and the dashed line." }
                     @else { "The solid line is what is right, the dashed one what the mistake makes of it." }
                 }
-                div.mistakes { @for section in sections { (section) } }
+                div.mistakes { @for section in sections.iter().take(SHOWN) { (section) } }
+                @if sections.len() > SHOWN {
+                    details.section {
+                        summary { (sections.len() - SHOWN) " more" }
+                        div.mistakes { @for section in &sections[SHOWN..] { (section) } }
+                    }
+                }
             }
         }
     }
@@ -398,17 +408,29 @@ pub(crate) fn set_equation(spec: &Spec) -> Markup {
     let (line, says) = if is_sentence(spec.text) {
         match split_equation(spec.text) {
             Some(parts) => parts,
-            None => return html! { p.equation.said { (prose(spec.text)) } },
+            None => {
+                return html! {
+                    @if let Some(rule) = rule(&spec.id) { (set_lines(spec, &rule)) }
+                    p.equation.said { (prose(spec.text)) }
+                };
+            }
         }
     } else {
         (spec.text, "")
     };
+    html! {
+        (set_lines(spec, line))
+        @if !says.is_empty() { p { "… " (prose(says.trim_start_matches([',', ';', ' ']))) "." } }
+        p.quiet { "As reports write it: " code { (spec.text) } }
+    }
+}
+
+/// Statements as mathematics, a line for each.
+fn set_lines(spec: &Spec, lines: &str) -> Markup {
     let names: Vec<&str> =
         spec.inputs.iter().map(|input| input.name).chain(spec.outputs.iter().map(|output| output.name)).collect();
     html! {
-        div.equation tabindex="0" role="group" aria-label="the formula" { @for line in line.split("; ") { (equation(line, &names)) } }
-        @if !says.is_empty() { p { "… " (prose(says.trim_start_matches([',', ';', ' ']))) "." } }
-        p.quiet { "As reports write it: " code { (spec.text) } }
+        div.equation tabindex="0" role="group" aria-label="the formula" { @for line in lines.split("; ") { (equation(line, &names)) } }
     }
 }
 
@@ -657,7 +679,12 @@ mod tests {
         for member in catalogue() {
             let (id, text) = (&member.spec.id, member.spec.text);
             let html = set_equation(&member.spec).0;
-            let line = if is_sentence(text) { split_equation(text).map(|(line, _)| line) } else { Some(text) };
+            let own = rule(id);
+            let line = if is_sentence(text) {
+                split_equation(text).map_or(own.as_deref(), |(line, _)| Some(line))
+            } else {
+                Some(text)
+            };
             assert_eq!(html.contains("<math"), line.is_some(), "{id}");
             let (Some(from), Some(line)) = (html.find("<math"), line) else { continue };
             let mathml = &html[from..html.find("</div>").expect("it ends")];

@@ -13,6 +13,7 @@ mod formula;
 mod grid;
 mod lookup;
 pub mod picture;
+mod rule;
 mod scenes;
 mod search;
 mod sketch;

@@ -61,8 +61,33 @@ impl Text {
         }
         pictures.extend(shown);
         let html = own_markdown(&self.text, &picture);
-        PreEscaped(links(&with_figures(&html.0), place))
+        PreEscaped(folded(&links(&with_figures(&html.0), place)))
     }
+}
+
+/// From this many characters on, the sections of a text are folded: nobody scrolls through more.
+const LONG: usize = 150_000;
+
+/// A long text with the sections below its headings of the third order folded, each under its heading.
+fn folded(html: &str) -> String {
+    if html.len() < LONG {
+        return html.to_owned();
+    }
+    let (mut out, mut rest) = (String::new(), html);
+    while let Some(at) = rest.find("<h3 ") {
+        let (before, section) = rest.split_at(at);
+        let Some(heading) = section.find("</h3>").map(|end| end + "</h3>".len()) else { break };
+        let ends = ["<h2 ", "<h3 "].into_iter().filter_map(|next| section[heading..].find(next)).min();
+        let end = ends.map_or(section.len(), |next| heading + next);
+        out += before;
+        out += &format!(
+            "<details class=\"section\"><summary>{}</summary>{}</details>",
+            &section[..heading],
+            &section[heading..end]
+        );
+        rest = &section[end..];
+    }
+    out + rest
 }
 
 /// The name of a picture in the book's one folder of pictures.
@@ -123,7 +148,7 @@ fn of_book(address: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{flat, images, links, of_book};
+    use super::*;
     use crate::contents::Place;
 
     #[test]
@@ -145,5 +170,24 @@ mod tests {
     fn pictures_are_found() {
         assert_eq!(images("a ![x](bench/a.svg) b ![y](https://z)").collect::<Vec<_>>(), ["bench/a.svg"]);
         assert_eq!(flat("bench/a.svg"), "bench-a.svg");
+    }
+
+    #[test]
+    fn the_sections_of_a_long_text_are_folded_and_nothing_is_lost() {
+        let rows = "<p>a row</p>".repeat(LONG / 20);
+        let text = format!(
+            "<h2 id=\"a\">A</h2><p>before</p><h3 id=\"b\">B</h3>{rows}<h3 id=\"c\">C</h3>{rows}<h2 id=\"d\">D</h2>after"
+        );
+        let html = folded(&text);
+        assert_eq!(html.matches("<details").count(), 2, "{html:.300}");
+        assert!(
+            html.contains("<summary><h3 id=\"b\">B</h3></summary><p>a row")
+                && html.ends_with("</details><h2 id=\"d\">D</h2>after")
+        );
+        let bare = ["<details class=\"section\">", "</details>", "<summary>", "</summary>"]
+            .iter()
+            .fold(html, |html, tag| html.replace(tag, ""));
+        assert_eq!(bare, text);
+        assert_eq!(folded("<h3 id=\"b\">B</h3>short"), "<h3 id=\"b\">B</h3>short");
     }
 }

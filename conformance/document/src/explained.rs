@@ -3,6 +3,7 @@
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// What explains a failing case, worked out without the renderer.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -16,6 +17,12 @@ pub struct Explained {
     pub rules: Vec<Word>,
     /// Where the formula is from.
     pub source: Word,
+    /// The inputs by name, where no failure has them.
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
+    pub inputs: serde_json::Map<String, serde_json::Value>,
+    /// The units of those that have one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub units: BTreeMap<String, Word>,
     /// The steps that the formula names.
     pub steps: Vec<ShownStep>,
     /// What a renderer with the mistake gives that explains the failure.

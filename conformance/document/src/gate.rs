@@ -4,7 +4,9 @@ use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, RendererUse
 pub use crate::by_case::{KnownFailure, Problems, RendererIdentity};
 use crate::explained::Explained;
 use crate::pack::Choice;
-use crate::run::{ConfigUse, Failure, Group, Identity, ImageUse, Interrupted, Report, StoresOfShard, Totals};
+use crate::run::{
+    ConfigUse, Failure, Group, Identity, ImageUse, Interrupted, Report, StoresOfShard, Totals, WorstAnswer,
+};
 use crate::{Number, Word, thousands};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -31,6 +33,9 @@ pub struct GateReport {
     /// The version of lightmeter.
     #[serde(default)]
     pub version: Word,
+    /// When it was made, in UTC, such as `2026-05-01T12:00:00Z`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_at: Option<String>,
     /// What chose the cases.
     pub choice: Choice,
     /// The version of what draws them.
@@ -185,6 +190,9 @@ pub struct GateGroup {
     pub margin_max: Number,
     /// The case that it is of.
     pub worst: Option<String>,
+    /// What was answered to it, at the output that the margin is of; missing where no row of inputs was answered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worst_answer: Option<WorstAnswer>,
     /// The cases that were asked and did not pass, by `failed`, `skipped` and `missing`: each by the end of its id, cases in a row
     /// as `random/000003..000017`.
     pub not_passed: BTreeMap<String, Vec<String>>,
@@ -251,6 +259,7 @@ impl GateGroup {
             errors: counts.errors,
             margin_max: group.margin_max,
             worst: group.worst.clone(),
+            worst_answer: group.worst_answer.clone(),
             not_passed: counts.not_passed.clone(),
             reason: counts.reason.clone(),
             problem: group.problem.clone(),
@@ -315,6 +324,7 @@ impl GateReport {
             command,
             again,
             version: env!("CARGO_PKG_VERSION").into(),
+            made_at: report.made_at.clone(),
             choice: compared_by.choice,
             generator: compared_by.generator,
             compared_by: report.compared_by.clone(),
@@ -431,6 +441,7 @@ impl From<GateReport> for Report {
             explained: gate.explained,
             command: Some(gate.command),
             version: Some(gate.version),
+            made_at: gate.made_at,
             config: gate.config,
             interrupted,
             compared_by: Some(compared_by),
@@ -476,6 +487,7 @@ impl GateGroup {
             error_ulp_max: self.error_max,
             margin_max: self.margin_max,
             worst: self.worst,
+            worst_answer: self.worst_answer,
             explanation: self.diagnosis,
             cause: self.cause,
             mistakes: self.mistakes,

@@ -6,11 +6,13 @@ pub mod adapters;
 pub mod bench;
 pub mod by_case;
 pub mod effects;
+mod error;
 pub mod eval;
 pub mod event;
 pub mod explained;
 pub mod frame;
 pub mod gate;
+mod hash;
 pub mod identify;
 pub mod list;
 pub mod made_by;
@@ -31,6 +33,8 @@ use schemars::{JsonSchema, Schema};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+pub use error::{distance_told, error_figure, error_told, superscript};
+pub use hash::hash;
 pub use number::{Number, is_worse, thousands, worse};
 pub use unique::Unique;
 

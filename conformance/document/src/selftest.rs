@@ -17,6 +17,12 @@ pub struct SelftestDocument {
     /// The command, but for where its result goes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub command: Option<String>,
+    /// The version of lightmeter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub version: Option<Word>,
+    /// When it was made, in UTC, such as `2026-05-01T12:00:00Z`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_at: Option<String>,
     /// The seed of the random cases.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,

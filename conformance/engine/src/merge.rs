@@ -371,6 +371,7 @@ fn add_group(known: &mut Group, more: Group, order: &Order, most: &mut u64) {
             && more.worst.as_deref().map(|id| order.of_case(id)) < known.worst.as_deref().map(|id| order.of_case(id)));
     if known.worst.is_none() || (more.worst.is_some() && is_worst) {
         known.worst = more.worst;
+        known.worst_answer = more.worst_answer;
     }
     known.margin_max = Number(worse(known.margin_max.0, more.margin_max.0));
     known.seconds += more.seconds;

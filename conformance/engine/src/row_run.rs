@@ -280,6 +280,7 @@ impl<'a> RowRun<'a> {
             error_ulp_max: Number(tally.error_max),
             margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
             worst: tally.worst.as_ref().map(|(_, place)| name_of(place)),
+            worst_answer: standing.worst_answer(self.members, stage, by),
             explanation,
             cause,
             mistakes,

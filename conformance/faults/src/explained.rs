@@ -11,7 +11,8 @@ use lightmeter_document::explained::{
     CoursePoint, Explained, HeldNumber, MistakenStep, OutputCourse, ShownMistake, ShownStep,
 };
 use lightmeter_document::run::{Failure, Group, Report};
-use std::collections::HashSet;
+use lightmeter_judge::formula::{by_name, units};
+use std::collections::{BTreeMap, HashSet};
 
 /// Points of a course.
 const POINTS: u32 = 97;
@@ -75,7 +76,11 @@ fn explain_worst(groups: &[Group], seed: u64, profile: &Profile) -> Vec<Explaine
         let member = catalogue.iter().find(|member| member.spec.id == group.id)?;
         let mut inputs = vec![];
         member.inputs(member.case(id)?, seed, &mut inputs);
-        Some(explained_case(id, member, &inputs, "", &[], profile))
+        // The output that comes nearest, where it is known.
+        let output = group.worst_answer.as_ref().map_or("", |answer| &answer.output);
+        let explained = explained_case(id, member, &inputs, output, &[], profile);
+        let inputs = by_name(member, &inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default());
+        Some(Explained { inputs, units: units(member), ..explained })
     };
     formulas.into_iter().filter_map(explained).collect()
 }
@@ -116,6 +121,8 @@ fn explained_case(
     Explained {
         id: id.to_owned(),
         formula: spec.text.into(),
+        inputs: serde_json::Map::new(),
+        units: BTreeMap::new(),
         rules: spec.rules().into_iter().map(|rule| rule.to_string().into()).collect(),
         source: spec.source.into(),
         steps: steps.iter().map(shown_step).collect(),

@@ -10,7 +10,7 @@ use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::by_case::FailedAnswer;
-use lightmeter_document::run::Failure;
+use lightmeter_document::run::{Failure, WorstAnswer};
 use lightmeter_document::{Number, Word};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -60,6 +60,8 @@ pub const KEPT_PASSING: usize = 8192;
 pub struct RowStanding {
     /// The verdicts.
     pub tally: RowTally,
+    /// The bits of the value that has the greatest margin.
+    worst_bits: u32,
     /// How many rows of each formula fail.
     pub failing: BTreeMap<usize, u64>,
     /// Some of them.
@@ -77,6 +79,7 @@ impl RowStanding {
         let outputs = outputs.max(1);
         Self {
             tally: RowTally::default(),
+            worst_bits: 0,
             failing: BTreeMap::new(),
             wrong: Sample::new(outputs, KEPT_FAILING),
             right: Sample::new(outputs, KEPT_PASSING / outputs),
@@ -87,6 +90,7 @@ impl RowStanding {
     fn part(&self) -> Self {
         Self {
             tally: RowTally::default(),
+            worst_bits: 0,
             failing: BTreeMap::new(),
             wrong: self.wrong.part(),
             right: self.right.part(),
@@ -107,7 +111,11 @@ impl RowStanding {
             })
             .collect();
         for part in parts {
+            let worst = part.tally.worst;
             self.tally.add(part.tally);
+            if worst.is_some_and(|(_, place)| self.tally.worst.is_some_and(|(_, own)| own == place)) {
+                self.worst_bits = part.worst_bits;
+            }
             for (member, count) in part.failing {
                 *self.failing.entry(member).or_default() += count;
             }
@@ -140,6 +148,20 @@ impl RowStanding {
             self.tally.totals.failed -= failed;
             self.tally.totals.expected_failures += failed;
         }
+    }
+
+    /// What was answered to the case of the greatest margin.
+    #[must_use]
+    pub fn worst_answer(&self, members: &[&Member], stage: Stage, by: &Judging<'_>) -> Option<WorstAnswer> {
+        let (_, place) = self.tally.worst?;
+        let (member, k) = (members[place.member], place.output);
+        let (_, reference, legal) = legal_case(member, place.case, stage, by);
+        Some(WorstAnswer {
+            output: member.spec.output_name(k),
+            value: Number(f32::from_bits(self.worst_bits).into()),
+            reference: Number(reference[k]),
+            interval: [Number(legal[k].low()), Number(legal[k].high())],
+        })
     }
 
     /// The failures that are reported, one of each case: the case of the simplest inputs first.
@@ -217,7 +239,9 @@ fn judge_values(
             tally.fail(place, telling(chunk.inputs_of(case), is_random), || words[range.clone()].to_vec());
         }
         tally.see_error(verdict.error);
-        tally.see_margin(verdict.margin, place);
+        if tally.see_margin(verdict.margin, place) {
+            standing.worst_bits = bits;
+        }
         greatest = worse(greatest, verdict.error);
         if verdict.error.is_finite() {
             errors = (errors.0 + verdict.error, errors.1 + 1);
@@ -261,14 +285,20 @@ fn excuse(
     })
 }
 
-/// A row that fails at an output. Of a renderer that answers by cases all outputs are told.
-fn failure(member: &Member, place: RowPlace, words: &[u32], stage: Stage, by: &Judging<'_>) -> Failure {
+/// A case's inputs, the reference of its outputs and what is legal of them.
+fn legal_case(member: &Member, case: CaseRef, stage: Stage, by: &Judging<'_>) -> (Vec<f32>, Vec<f64>, Vec<Accept>) {
     let mut inputs = Vec::with_capacity(member.spec.input_len());
-    member.inputs(place.case, by.seed, &mut inputs);
-    let mut reference = vec![0.0; words.len()];
-    let mut legal = vec![Accept::ANY; words.len()];
+    member.inputs(case, by.seed, &mut inputs);
+    let mut reference = vec![0.0; member.spec.output_len()];
+    let mut legal = vec![Accept::ANY; member.spec.output_len()];
     member.formula.reference(&inputs, &mut reference);
     intervals(member, &inputs, stage, by.known, by.profile, &mut legal);
+    (inputs, reference, legal)
+}
+
+/// A row that fails at an output. Of a renderer that answers by cases all outputs are told.
+fn failure(member: &Member, place: RowPlace, words: &[u32], stage: Stage, by: &Judging<'_>) -> Failure {
+    let (inputs, reference, legal) = legal_case(member, place.case, stage, by);
     let (k, values) = (place.output, words.iter().map(|&bits| f32::from_bits(bits)));
     let error = |k: usize| judge(words[k], reference[k], &legal[k]).error;
     let interval = |legal: &Accept| [Number(legal.low()), Number(legal.high())];

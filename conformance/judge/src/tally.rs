@@ -80,13 +80,16 @@ impl<P: Ord + Clone, F: Clone> Tally<P, F> {
         self.error_max = worse(self.error_max, error);
     }
 
-    /// Keeps a margin where it is the greatest.
-    pub fn see_margin(&mut self, margin: f64, place: P) {
+    /// Keeps a margin where it is the greatest, and says whether it is.
+    pub fn see_margin(&mut self, margin: f64, place: P) -> bool {
         match &self.worst {
             // Most margins are smaller: told by one comparison.
-            Some((most, _)) if margin < *most => {}
-            Some((most, first)) if !is_worse(margin, *most) && (is_worse(*most, margin) || place >= *first) => {}
-            _ => self.worst = Some((margin, place)),
+            Some((most, _)) if margin < *most => false,
+            Some((most, first)) if !is_worse(margin, *most) && (is_worse(*most, margin) || place >= *first) => false,
+            _ => {
+                self.worst = Some((margin, place));
+                true
+            }
         }
     }
 

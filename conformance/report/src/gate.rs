@@ -7,7 +7,7 @@ use crate::text::plain;
 use lightmeter_document::by_case::Coverage;
 use lightmeter_document::gate::{GateFailure, GateGroup, GateReport, Problems, RendererIdentity, cases};
 use lightmeter_document::run::Interrupted;
-use lightmeter_document::{Number, thousands};
+use lightmeter_document::{Number, error_told, thousands};
 use std::fmt::{Result, Write};
 
 /// Missing cases, or rows of them, that are named.
@@ -166,7 +166,9 @@ fn families(report: &GateReport, level: Level, out: &mut impl Write) -> Result {
         } else if level == Level::Verbose && failing == 0 {
             let error = of.iter().map(|group| group.error_max.0).fold(0.0, lightmeter_document::worse);
             let margin = of.iter().map(|group| group.margin_max.0).fold(0.0, lightmeter_document::worse);
-            notes.push(format!("errors up to {} ULP, {} % of what is legal", short(error), short(100.0 * margin)));
+            let unit = if name == "scene" { "ULP or steps" } else { "ULP" };
+            let error = error_told(Number(error), unit);
+            notes.push(format!("errors up to {error}, {} % of what is legal", short(100.0 * margin)));
         }
         let count = format!("{} {}", of.len(), whats[usize::from(of.len() != 1)]);
         table.row([mark.into(), name, thousands(asked), "cases".into(), count, notes.join(", ")]);

@@ -4,7 +4,7 @@ use lightmeter_document::run::Identity;
 use lightmeter_document::sweep::{
     Description, ExactFloat, Statistics, StoreCounts, SweepDocument, SweepInput, SweepVerdict,
 };
-use lightmeter_document::{Number, thousands};
+use lightmeter_document::{Number, error_told, is_worse, thousands};
 use std::fmt::{Result, Write};
 
 /// Characters of the longest bar.
@@ -20,7 +20,10 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
     inputs(sweep, out)?;
     place_and_progress(document, out)?;
     verdicts(found, out)?;
-    for (what, seen) in [("worst", &found.worst), ("at limit", &found.nearest_to_limit)] {
+    // What is beyond its limit is not at it.
+    let is_beyond = found.nearest_to_limit.is_some_and(|seen| is_worse(seen.margin.0, 1.0));
+    let nearest = if is_beyond { "farthest" } else { "at limit" };
+    for (what, seen) in [("worst", &found.worst), (nearest, &found.nearest_to_limit)] {
         if let Some(seen) = seen {
             write_seen(document, &format!("{what:<10}"), seen, rerun, out)?;
         }
@@ -58,7 +61,7 @@ fn inputs(sweep: &Description, out: &mut impl Write) -> Result {
         )?,
     }
     let fixed: Vec<String> =
-        sweep.fixed.iter().map(|(name, ExactFloat(x))| format!("{name} {}", Number((*x).into()))).collect();
+        sweep.fixed.iter().map(|(name, ExactFloat(x))| format!("{name} {}", Number((*x).into()).narrow())).collect();
     if fixed.is_empty() { Ok(()) } else { writeln!(out, "fixed      {}", fixed.join(", ")) }
 }
 
@@ -122,7 +125,7 @@ fn write_seen(document: &SweepDocument, what: &str, seen: &SweepVerdict, rerun: 
     // An error of many ULP is legal where, for instance, a subnormal number may be flushed to 0.
     let is_legal = if seen.margin.0 <= 1.0 { "legal there" } else { "not legal" };
     let share = margin(seen.margin);
-    writeln!(out, "\n{what} {} {}: {is_legal}, {share} of the tolerance", error(seen.error), sweep.unit)?;
+    writeln!(out, "\n{what} {}: {is_legal}, {share} of the tolerance", error_told(seen.error, &sweep.unit))?;
     let ExactFloat(value) = seen.value;
     let unwritten = if value.to_bits() == lightmeter_scene::target::SENTINEL { ", never written" } else { "" };
     writeln!(out, "  input      {}", place(&sweep.over, seen.input))?;
@@ -185,18 +188,6 @@ pub fn bars(document: &SweepDocument, out: &mut impl Write) -> Result {
 )]
 pub fn rate(document: &SweepDocument) -> u64 {
     (document.statistics.inputs as f64 / document.seconds.max(1e-9)) as u64
-}
-
-/// An error or a margin as it is told.
-#[must_use]
-pub fn error(Number(x): Number) -> String {
-    if x.is_finite() && x < 1e7 {
-        format!("{x:.2}")
-    } else if x.is_finite() {
-        format!("{x:.1e}")
-    } else {
-        Number(x).to_string()
-    }
 }
 
 /// A margin: 1 is the end of what is legal.

@@ -6,7 +6,7 @@ use crate::table::{Align, TextTable};
 use lightmeter_document::run::{
     BlendState, DeviationUse, Failure, Group, ImageUse, JudgedAs, MistakePlace, Report, ShaderUse, Tiers, Totals,
 };
-use lightmeter_document::{Number, Word, is_worse, thousands, worse};
+use lightmeter_document::{Number, Word, distance_told, error_told, is_worse, thousands, worse};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
 use std::collections::BTreeMap;
@@ -57,7 +57,7 @@ pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
         }
     }
     if style.is_told {
-        failing_groups(report, out)?;
+        told_above(report, out)?;
     } else {
         failures(report, style.level, out)?;
     }
@@ -133,9 +133,37 @@ pub fn failures(report: &Report, level: Level, out: &mut impl Write) -> Result {
     Ok(())
 }
 
+/// A line for each formula or scene that fails on an adapter, where all that is known of it was told as it was judged.
+fn told_above(report: &Report, out: &mut impl Write) -> Result {
+    let mut formulas: Vec<Vec<&Group>> = vec![];
+    for group in report.groups.iter().filter(|group| is_failing(group)) {
+        match formulas.iter_mut().find(|own| own[0].id == group.id && own[0].adapter == group.adapter) {
+            Some(own) => own.push(group),
+            None => formulas.push(vec![group]),
+        }
+    }
+    if formulas.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nfailed, as is told above")?;
+    for groups in formulas {
+        let places: Vec<String> = groups.iter().map(|group| group.place()).collect();
+        let sum = |count: fn(&Totals) -> u64| thousands(groups.iter().map(|group| count(&group.totals)).sum());
+        let (failed, verdicts) = (sum(|totals| totals.failed), sum(|totals| totals.verdicts));
+        let cause = groups.iter().find_map(|group| group.cause.as_ref().or(group.problem.as_ref()));
+        let cause = cause.map_or_else(String::new, |cause| format!(": {cause}"));
+        let (id, adapter) = (&groups[0].id, &groups[0].adapter);
+        writeln!(out, "  {id} on {adapter}, {}: {failed} of {verdicts}{cause}", places.join(" and "))?;
+    }
+    Ok(())
+}
+
+fn is_failing(group: &Group) -> bool {
+    group.totals.failed > 0 || group.problem.is_some()
+}
+
 fn failing_groups(report: &Report, out: &mut impl Write) -> Result {
-    let fails = |group: &&Group| group.totals.failed > 0 || group.problem.is_some();
-    for (place, group) in report.groups.iter().filter(fails).enumerate() {
+    for (place, group) in report.groups.iter().filter(|group| is_failing(group)).enumerate() {
         if place == 0 {
             writeln!(out)?;
         }
@@ -470,6 +498,7 @@ struct TableRow {
     groups: usize,
     totals: Totals,
     error_ulp_max: f64,
+    unit: &'static str,
     margin_max: f64,
     worst: Option<String>,
     seconds: f64,
@@ -485,6 +514,7 @@ impl TableRow {
             groups: 1,
             totals: group.totals,
             error_ulp_max: group.error_ulp_max.0,
+            unit: unit_on(group.target.as_deref()),
             margin_max: group.margin_max.0,
             worst: group.worst.clone(),
             seconds: group.seconds,
@@ -545,8 +575,8 @@ fn table(rows: &[TableRow], has_adapters: bool, level: Level, out: &mut impl Wri
         if level == Level::Verbose
             && let Some(worst) = &row.worst
         {
-            let (margin, error) = (short(100.0 * row.margin_max), short(row.error_ulp_max));
-            writeln!(out, "    {worst} takes {margin} % of its tolerance, the largest error is {error} ULP")?;
+            let (margin, error) = (short(100.0 * row.margin_max), error_told(Number(row.error_ulp_max), row.unit));
+            writeln!(out, "    {worst} takes {margin} % of its tolerance, the largest error is {error}")?;
         }
     }
     Ok(())
@@ -558,8 +588,6 @@ fn table(rows: &[TableRow], has_adapters: bool, level: Level, out: &mut impl Wri
 /// Where the writer fails.
 pub fn failure(failure: &Failure, level: Level, out: &mut impl Write) -> Result {
     let Failure { id, adapter, stage, output, .. } = failure;
-    let is_unorm = failure.target.as_deref().and_then(TargetFormat::by_name).is_some_and(TargetFormat::is_unorm);
-    let unit = if is_unorm { "steps" } else { "ULP" };
     let target = failure.target.as_ref().map(|target| format!(" on {target}")).unwrap_or_default();
     writeln!(out, "FAIL {id} on {adapter}, {stage}{target}: {output}")?;
     // NaNs differ only in their bits, so the bits are shown.
@@ -583,17 +611,21 @@ pub fn failure(failure: &Failure, level: Level, out: &mut impl Write) -> Result 
         writeln!(out, "  {:<14} {}  {}", "value", failure.value, failure.value_hex)?;
     } else {
         let bits = if has_bits { format!("  {}", failure.value_hex) } else { String::new() };
-        let off = match failure.error_ulp.0 {
-            error if error < MOST_ULP => format!("{} {unit} from the reference", short(error)),
-            _ => format!("off by {}", Number(failure.value.0 - failure.reference.0)),
-        };
+        let off = distance_told(failure.error_ulp, unit_of(failure), failure.value, failure.reference);
         writeln!(out, "  {:<14} {}{bits}, {off}", "value", failure.value.narrow())?;
     }
     writeln!(out, "  {:<14} {}", "again", failure.rerun)
 }
 
-/// Errors beyond are told as differences, since such a number of ULP says nothing more.
-const MOST_ULP: f64 = 1e6;
+/// What the error of a failure is counted in.
+pub(crate) fn unit_of(failure: &Failure) -> &'static str {
+    unit_on(failure.target.as_deref())
+}
+
+/// What errors on a target are counted in; without a target there are no steps.
+fn unit_on(target: Option<&str>) -> &'static str {
+    if target.and_then(TargetFormat::by_name).is_some_and(TargetFormat::is_unorm) { "steps" } else { "ULP" }
+}
 
 /// JSON without quotes and commas: `[0.5 1]`.
 pub(crate) fn plain(value: &serde_json::Value) -> String {

@@ -1,5 +1,6 @@
 //! `lightmeter bench`.
 
+use super::clock::now;
 use super::options::Choice;
 use super::progress::Bar;
 use super::shader::ShaderChoice;
@@ -135,7 +136,7 @@ impl Bench {
         let mut bar = Bar::new(None, "groups");
         let document = bench(&subjects, &options, &mut bar);
         bar.bar.finish_and_clear();
-        let document = document.map_err(device_error)?;
+        let document = BenchDocument { made_at: now(), ..document.map_err(device_error)? };
         let is_whole = document.interrupted.is_none();
         if is_whole && document.adapters.iter().all(|adapter| adapter.groups.is_empty() && adapter.scalings.is_empty())
         {

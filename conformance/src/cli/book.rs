@@ -5,7 +5,7 @@ use super::{Cli, EXIT_CODES, Status, say, schema};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::book::{BookSources, CommandHelp, write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Write the book: pages that explain, one for each formula, pictures, and all there is to look up
 ///
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// all else is made from what this binary judges.
 #[derive(Debug, Args)]
 pub(crate) struct Book {
-    /// The folder to write it to; files of an earlier book in it are replaced
+    /// The folder to write it to: a new or an empty one, or that of an earlier book, whose files are replaced
     #[arg(long, value_name = "DIR", default_value = "book")]
     out: PathBuf,
     /// The folder of the documentation, `docs` of a checkout
@@ -29,6 +29,7 @@ impl Book {
                 self.docs.join("book").display()
             );
         }
+        own(&self.out)?;
         std::fs::create_dir_all(&self.out).with_context(|| format!("cannot make the folder {}", self.out.display()))?;
         let sources = BookSources {
             docs: self.docs,
@@ -47,6 +48,22 @@ impl Book {
     }
 }
 
+/// Files that every book has, of any version.
+const OF_A_BOOK: [&str; 3] = ["index.html", "search.html", "formula/index.html"];
+
+/// Whether a book may be written to a folder: it is not there, has nothing in it, or is an earlier book.
+fn own(folder: &Path) -> anyhow::Result<()> {
+    let is_empty = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
+    if is_empty || !folder.exists() || OF_A_BOOK.iter().all(|file| folder.join(file).is_file()) {
+        return Ok(());
+    }
+    bail!(
+        "{} is not empty and no book: it lacks one of {}; give `--out` a folder that is new, empty or an earlier book",
+        folder.display(),
+        OF_A_BOOK.join(", ")
+    );
+}
+
 /// What the command line says of its commands.
 fn commands() -> Vec<CommandHelp> {
     let mut told = Cli::told();
@@ -59,4 +76,28 @@ fn commands() -> Vec<CommandHelp> {
             help: one.clone().term_width(100).render_long_help().to_string(),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_book_is_written_to_a_new_folder_an_empty_one_or_a_book() {
+        let folder = std::env::temp_dir().join(format!("lightmeter-book-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&folder);
+        own(&folder).expect("it is not there");
+        std::fs::create_dir_all(folder.join("formula")).expect("a folder can be made");
+        let refused = own(&folder).expect_err("it has a folder in it").to_string();
+        assert!(refused.contains("is not empty and no book") && refused.contains("an earlier book"), "{refused}");
+        for file in OF_A_BOOK {
+            assert!(own(&folder).is_err(), "it has no {file}");
+            std::fs::write(folder.join(file), "").expect("it can be written");
+        }
+        own(&folder).expect("it is a book");
+        std::fs::remove_dir_all(&folder).expect("it is there");
+        std::fs::create_dir(&folder).expect("a folder can be made");
+        own(&folder).expect("it is empty");
+        std::fs::remove_dir(&folder).expect("it is there");
+    }
 }

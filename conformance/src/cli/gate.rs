@@ -1,5 +1,6 @@
 //! `lightmeter gate`.
 
+use super::clock::now;
 use super::comparison::{Comparison, Earlier, matches_something};
 use super::config::used;
 use super::options::{ReportFormat, Required, ShardArgument, Targets};
@@ -257,7 +258,7 @@ impl Gate {
         };
         let report = report?;
         let explained = explain(&report, options.profile);
-        let report = Report { compared_by: Some(compared_by), config: used(), explained, ..report };
+        let report = Report { compared_by: Some(compared_by), config: used(), made_at: now(), explained, ..report };
         Ok(GateReport::of(&report, command(), self.again()))
     }
 

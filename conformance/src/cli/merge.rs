@@ -1,5 +1,6 @@
 //! `lightmeter merge`.
 
+use super::clock::now;
 use super::options::{PageFormat, ReportFormat, Required};
 use super::sweep::{status, written};
 use super::terminal::level;
@@ -43,7 +44,7 @@ impl Merge {
         for path in &self.results {
             parts.push((path.clone(), file::read(path)?));
         }
-        let whole = SweepDocument { command: Some(command()), ..file::merge(&parts)? };
+        let whole = SweepDocument { command: Some(command()), made_at: now(), ..file::merge(&parts)? };
         self.format.emit(&written(&whole, self.of_sweep()?, &rerun(&whole))?, self.out.as_deref())?;
         Ok(status(&whole))
     }
@@ -79,7 +80,13 @@ impl Merge {
         let whole = merge(parts)?;
         // What explains the first failing or the worst case of each formula: of the whole, which may be another one than a shard's.
         let explained = Profile::by_name(&whole.profile).map_or_else(Vec::new, |profile| explain(&whole, profile));
-        let whole = Report { command: Some(command()), explained, required: Some(self.required.part()), ..whole };
+        let whole = Report {
+            command: Some(command()),
+            made_at: now(),
+            explained,
+            required: Some(self.required.part()),
+            ..whole
+        };
         if is_gate {
             let gate = GateReport::of(&whole, command(), again);
             self.format.emit(&self.written_gate(&gate)?, self.out.as_deref())?;

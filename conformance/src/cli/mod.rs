@@ -3,6 +3,7 @@
 mod adapters;
 mod bench;
 mod book;
+mod clock;
 mod comparison;
 pub(crate) mod config;
 mod contact_sheet;

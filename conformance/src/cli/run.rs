@@ -1,5 +1,6 @@
 //! `lightmeter run`.
 
+use super::clock::now;
 use super::comparison::{Comparison, Earlier, matches_something};
 use super::config::used;
 use super::options::{Amount, Choice, ReportFormat, Required};
@@ -180,7 +181,15 @@ impl Run {
         let shader = self.choice.shaders.own.used(&options.adapted, &report);
         let command = Some(command());
         let required = Some(self.required.part());
-        let mut report = Report { compared_by: Some(compared_by), config: used(), shader, command, required, ..report };
+        let mut report = Report {
+            compared_by: Some(compared_by),
+            config: used(),
+            made_at: now(),
+            shader,
+            command,
+            required,
+            ..report
+        };
         report.shaders_hash = hash_of(&options.code)?;
         report.explained = explain(&report, options.profile);
         // What was not judged for want of time is no regression.

@@ -1,5 +1,6 @@
 //! `lightmeter selftest`.
 
+use super::clock::now;
 use super::options::{Choice, PageFormat, Targets};
 use super::signals::{status_of, stopped_by_signals};
 use super::{Status, writable};
@@ -121,6 +122,8 @@ impl Selftest {
         let document = SelftestDocument {
             schema: SCHEMA.into(),
             command: Some(super::command()),
+            version: Some(env!("CARGO_PKG_VERSION").into()),
+            made_at: now(),
             seed: Some(self.seed),
             rows: tested.unit.clone().unwrap_or_default(),
             kills: tested.formulas.as_ref().map(|record| record.kills.clone()),

@@ -1,5 +1,6 @@
 //! `lightmeter sweep`.
 
+use super::clock::now;
 use super::options::{Choice, PageFormat, ShardArgument};
 use super::page::swept;
 use super::say;
@@ -105,6 +106,7 @@ impl Sweep {
         };
         let mut document = self.start(describe(&plan, subject, self.profile, &code))?;
         document.command = Some(command());
+        document.made_at = now();
 
         writable(self.out.as_deref())?;
         let stop = stopped_by_signals()?;

@@ -25,6 +25,9 @@ pub struct BenchDocument {
     pub command: String,
     /// The suite's version.
     pub version: String,
+    /// When it was made, in UTC, such as `2026-05-01T12:00:00Z`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_at: Option<String>,
     /// Whether it was a quick one: fewer formulas, fewer turns.
     pub quick: bool,
     /// What inputs are drawn from.

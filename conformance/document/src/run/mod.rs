@@ -10,6 +10,7 @@ pub use stability::{Cost, Examined, StableForm};
 
 use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, KnownFailure, RendererUse, SourcePlace};
 use crate::explained::Explained;
+use crate::hash::hash;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -107,6 +108,9 @@ pub struct Group {
     /// The case of the greatest margin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worst: Option<String>,
+    /// What was answered to it, at the output that the margin is of; missing where no row of inputs was answered, as by a blend unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worst_answer: Option<WorstAnswer>,
     /// Why the group is skipped.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip_reason: Option<Word>,
@@ -136,6 +140,19 @@ pub struct Group {
     pub source: Option<SourcePlace>,
 }
 
+/// What was answered to the case of the greatest margin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WorstAnswer {
+    /// The scalar output's name.
+    pub output: String,
+    /// What came out.
+    pub value: Number,
+    /// The f64 reference.
+    pub reference: Number,
+    /// The least and the greatest legal value.
+    pub interval: [Number; 2],
+}
+
 /// An image of a scene.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ImageUse {
@@ -160,9 +177,20 @@ pub struct ImageUse {
     /// Reference, result and error map of a wrong image.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<String>,
+    /// The hash of each of these files in turn, by which they are told from those of a later run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub hashes: Vec<String>,
     /// Of a wrong image: the pixels that are farthest off, worst first, and then marked ones.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pixels: Vec<PixelUse>,
+}
+
+impl ImageUse {
+    /// Whether bytes are those of the file at a place of `files`. Of a document without hashes, as older versions wrote them, nobody can tell.
+    #[must_use]
+    pub fn is_its_file(&self, place: usize, bytes: &[u8]) -> Option<bool> {
+        self.hashes.get(place).map(|own| *own == hash(bytes))
+    }
 }
 
 /// A pixel of a wrong image, in the target's values, or in steps where it has 8 bits.
@@ -235,6 +263,7 @@ impl Group {
             seconds: 0.0,
             seconds_warm: None,
             worst: None,
+            worst_answer: None,
             skip_reason: None,
             explanation: None,
             cause: None,
@@ -447,6 +476,9 @@ pub struct Report {
     /// The version of lightmeter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub version: Option<Word>,
+    /// When it was made, in UTC, such as `2026-05-01T12:00:00Z`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_at: Option<String>,
     /// The seed of random cases.
     pub seed: u64,
     /// Wall time.
@@ -550,6 +582,7 @@ impl Report {
             schema: SCHEMA.into(),
             command: None,
             version: Some(env!("CARGO_PKG_VERSION").into()),
+            made_at: None,
             seed,
             seconds: 0.0,
             profile,

@@ -9,6 +9,7 @@ pub use histogram::Histogram;
 pub use statistics::{ExactFloat, Statistics, StoreStatistics, SweepInput, SweepPart, SweepVerdict};
 
 use crate::Word;
+use crate::hash::hash;
 use crate::run::Identity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -26,6 +27,12 @@ pub struct SweepDocument {
     /// The command, but for where its result goes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub command: Option<String>,
+    /// The version of lightmeter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub version: Option<Word>,
+    /// When it was made, in UTC, such as `2026-05-01T12:00:00Z`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_at: Option<String>,
     /// What is swept.
     pub sweep: Description,
     /// Which part of it, as `2/8`.
@@ -94,13 +101,4 @@ impl SweepDocument {
         let unsigned = Self { checksum: String::new(), ..self.clone() };
         Ok(hash(serde_json::to_string(&unsigned)?.as_bytes()))
     }
-}
-
-/// FNV-1a of 64 bits: against damage and mix-ups, not against forgery.
-#[must_use]
-pub fn hash(bytes: &[u8]) -> String {
-    let hash = bytes
-        .iter()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
-    format!("fnv1a:{hash:016x}")
 }

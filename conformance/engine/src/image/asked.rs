@@ -151,9 +151,9 @@ impl Scene<'_> {
             counts.smallest = Some(failure.id.clone());
             self.report.failures.push(failure);
         }
-        let (mut files, mut pixels) = (vec![], vec![]);
+        let (mut files, mut hashes, mut pixels) = (vec![], vec![], vec![]);
         if has_failed {
-            files = scene.write_files(self.options, &self.subject.identity.name, STAGE, image, &profile);
+            (files, hashes) = scene.write_files(self.options, &self.subject.identity.name, STAGE, image, &profile);
             pixels = scene.told_pixels(image, &judged, &profile);
         }
         let mut totals = Totals { cases: 1, failed_groups: u64::from(problem.is_some()), ..verdicts.totals };
@@ -179,6 +179,7 @@ impl Scene<'_> {
                 bias,
                 departs_in: None,
                 files,
+                hashes,
                 pixels,
             }),
             by_case: Some(counts),

@@ -7,9 +7,9 @@ use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
-use lightmeter_document::Number;
 use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::run::{Failure, Group, ImageBias, ImageUse, PixelUse, Report, Totals};
+use lightmeter_document::{Number, hash};
 use lightmeter_judge::cases::ending;
 use lightmeter_judge::devices::Deviation;
 use lightmeter_judge::diagnose::Cause;
@@ -209,6 +209,7 @@ impl<'a> JudgedScene<'a> {
             bias: None,
             departs_in: None,
             files: vec![],
+            hashes: vec![],
             pixels: vec![],
         }
     }
@@ -225,7 +226,7 @@ impl<'a> JudgedScene<'a> {
         let departure = self.departure(drawn, named, judged)?;
         used.departs_in = departure.map(|departure| departure.stage.into());
         let departure = departure.map_or_else(String::new, |departure| format!("; {departure}"));
-        used.files = self.write(drawn);
+        (used.files, used.hashes) = self.write(drawn);
         used.pixels = self.told_pixels(drawn.image, judged, &drawn.profile);
         let kept = judged.misses.iter().filter(|miss| miss.component == 0 || **miss != worst).take(KEPT_FAILURES);
         for miss in std::iter::once(worst).chain(kept.copied()).take(KEPT_FAILURES) {
@@ -284,12 +285,12 @@ impl<'a> JudgedScene<'a> {
     }
 
     /// Reference, result and error map; nothing where files are not asked for or cannot be written.
-    fn write(&self, drawn: &Drawn<'_>) -> Vec<String> {
+    fn write(&self, drawn: &Drawn<'_>) -> (Vec<String>, Vec<String>) {
         let (image, options) = (drawn.image, drawn.options);
         self.write_files(options, &drawn.subject.identity.name, stage(drawn.picture), image, &drawn.profile)
     }
 
-    /// The same of an image of whoever drew it.
+    /// The same of an image of whoever drew it: the files, and the hash of each.
     pub(super) fn write_files(
         &self,
         options: &Options,
@@ -297,8 +298,8 @@ impl<'a> JudgedScene<'a> {
         stage: &str,
         image: &StoredImage,
         profile: &Profile,
-    ) -> Vec<String> {
-        let Some(folder) = &options.images else { return vec![] };
+    ) -> (Vec<String>, Vec<String>) {
+        let Some(folder) = &options.images else { return (vec![], vec![]) };
         let rounded = StoredImage::of(&render::<f64>(self.frame, None, None), self.frame.target.format);
         let map = with_legend(&error_map(image, &self.reference, self.expected(profile)));
         // A renderer may have any name.
@@ -306,17 +307,21 @@ impl<'a> JudgedScene<'a> {
         let adapter: String = adapter.chars().map(|c| if is_plain(c) { c } else { '-' }).collect();
         let place = format!("{}-{adapter}-{stage}", self.id.replace('/', "-"));
         let _ = std::fs::create_dir_all(folder);
-        let mut files = vec![];
+        let (mut files, mut hashes) = (vec![], vec![]);
         for (what, image) in [("reference", &rounded), ("result", image), ("error", &map)] {
             let path = folder.join(format!("{place}-{what}.png"));
             match image.write(&path) {
-                Ok(()) => files.push(path.display().to_string()),
+                Ok(()) => {
+                    // What cannot be read again has the hash of nothing, so that no later picture is taken for it.
+                    hashes.push(hash(&std::fs::read(&path).unwrap_or_default()));
+                    files.push(path.display().to_string());
+                }
                 Err(error) => {
                     let _: ImageFileError = error;
                 }
             }
         }
-        files
+        (files, hashes)
     }
 
     fn rerun(&self, command: &str, drawn: &Drawn<'_>, pixel: usize) -> String {

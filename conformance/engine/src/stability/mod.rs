@@ -12,8 +12,8 @@ use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::{Naive, Stable};
 use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
-use lightmeter_document::Number;
 use lightmeter_document::run::{Cost, Examined, Report, StableForm};
+use lightmeter_document::{Number, error_told};
 use std::collections::BTreeMap;
 
 /// The rows of a hard case: itself, and those near it.
@@ -224,11 +224,11 @@ pub fn problem(examined: &[Examined], group: &str, adapter: &str, stage: &str) -
     let broken: Vec<&Examined> = examined.iter().filter(of_group).filter(|one| !one.is_stable()).collect();
     let worst = broken.iter().max_by(|a, b| (a.stable.0 / a.bound).total_cmp(&(b.stable.0 / b.bound)))?;
     Some(format!(
-        "unstable at {} hard case{}: at {} it errs by {} roundings, where the form claims {}; {} is the form that makes no such claim",
+        "unstable at {} hard case{}: at {} it errs by {}, where the form claims {}; {} is the form that makes no such claim",
         broken.len(),
         if broken.len() == 1 { "" } else { "s" },
         worst.stable_at,
-        Number(worst.stable.0.round()),
+        error_told(Number(worst.stable.0.round()), "roundings"),
         worst.bound,
         worst.naive_formula
     ))

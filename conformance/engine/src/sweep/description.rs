@@ -5,7 +5,8 @@ use super::span::Span;
 use crate::device::Code;
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
-use lightmeter_document::sweep::{Description, ExactFloat, hash};
+use lightmeter_document::hash;
+use lightmeter_document::sweep::{Description, ExactFloat};
 
 /// The shader that hands source colours to the blend unit.
 const BLEND_FILE: &str = "blend_unit.wgsl";

@@ -60,6 +60,8 @@ pub fn begun(sweep: Description, shard: Shard) -> SweepDocument {
     SweepDocument {
         schema: SCHEMA.into(),
         command: None,
+        version: Some(env!("CARGO_PKG_VERSION").into()),
+        made_at: None,
         sweep,
         shard: name_of(shard),
         done: 0,

@@ -2,6 +2,7 @@
 
 use lightmeter_document::bench::ladder::median;
 use lightmeter_document::bench::{Measured, Rank, Time};
+use lightmeter_document::{superscript, thousands};
 
 /// How long compilation took, rung by rung.
 pub(super) fn compilation(measured: &Measured) -> Option<String> {
@@ -37,7 +38,8 @@ pub(super) fn digits(x: f64) -> String {
     match x.abs() {
         y if !y.is_finite() => error(x),
         0.0 => "0".into(),
-        y if !(1e-3..1e5).contains(&y) => format!("{x:.1e}"),
+        y if !(1e-3..99_999.5).contains(&y) => scientific(x),
+        y if y >= 999.5 => grouped(x),
         y if y >= 99.95 => format!("{x:.0}"),
         y if y >= 9.995 => format!("{x:.1}"),
         y if y >= 0.9995 => format!("{x:.2}"),
@@ -54,12 +56,27 @@ pub(super) fn error(x: f64) -> String {
         f64::INFINITY => "∞".into(),
         f64::NEG_INFINITY => "−∞".into(),
         0.0 => "0".into(),
-        x if !(1e-2..1e5).contains(&x.abs()) => format!("{x:.1e}"),
+        x if !(1e-2..99_999.5).contains(&x.abs()) => scientific(x),
+        x if x.abs() >= 999.5 => grouped(x),
         x if x.abs() >= 9.95 => format!("{x:.0}"),
         x if x.abs() >= 0.995 => format!("{x:.1}"),
         x if x.abs() >= 0.0995 => format!("{x:.2}"),
         x => format!("{x:.3}"),
     }
+}
+
+/// A whole number in groups of three digits.
+pub(crate) fn grouped(x: f64) -> String {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 10⁵")]
+    let whole = thousands(x.abs().round() as u64);
+    if x < 0.0 { format!("−{whole}") } else { whole }
+}
+
+/// Two digits and a power of ten.
+pub(crate) fn scientific(x: f64) -> String {
+    let written = format!("{x:.1e}");
+    let (digits, power) = written.split_once('e').unwrap_or((&written, "0"));
+    format!("{digits}·10{}", superscript(power.parse().unwrap_or_default()))
 }
 
 /// From where to where a ratio goes.
@@ -102,7 +119,7 @@ mod tests {
             ["0 ns", "12.3 ps", "0.412 ns", "10.0 ns", "100 ns", "1.23 µs", "3.21 ms", "4.00 s", "-0.500 ns", "∞ s"];
         assert_eq!(times, expected);
         let errors = [0.0, 0.5, 0.031, 0.999, 3.21, 9.96, 1234.0, 1.7e7, 1e-3, f64::INFINITY, f64::NAN].map(error);
-        assert_eq!(errors, ["0", "0.50", "0.031", "1.0", "3.2", "10", "1234", "1.7e7", "1.0e-3", "∞", "NaN"]);
+        assert_eq!(errors, ["0", "0.50", "0.031", "1.0", "3.2", "10", "1,234", "1.7·10⁷", "1.0·10⁻³", "∞", "NaN"]);
         assert_eq!(spread([0.98, 1.021]), "0.980–1.02");
     }
 }

@@ -1,6 +1,6 @@
 //! What a bench found, from its document alone: text, pages, pictures and recommendations.
 
-mod figures;
+pub(crate) mod figures;
 pub mod page;
 pub mod plot;
 pub mod recommend;

@@ -194,6 +194,7 @@ pub(crate) fn document() -> BenchDocument {
         schema: SCHEMA.into(),
         command: "./x bench --adapter all --format json --out bench.json".into(),
         version: "0.1.0".into(),
+        made_at: None,
         quick: false,
         seed: 1,
         seconds: 512.3,

@@ -1,15 +1,16 @@
 //! The card of a formula that fails: what it computes, of which inputs, where it departs, why, and how to see it again.
 
 use super::card::{Card, failing_share, judged, source_of};
-use super::matrix::{card_id, is_failing, short, unanswered};
+use super::matrix::{card_id, is_failing, unanswered};
 use super::number::written;
 use super::page::prose;
 use super::plot;
-use crate::text::{made_at, plain};
+use crate::text::{made_at, plain, unit_of};
 use lightmeter_document::explained::{Explained, ShownMistake, ShownStep};
-use lightmeter_document::run::{Failure, Group, Report};
-use lightmeter_document::{Number, is_worse, thousands};
+use lightmeter_document::run::{Failure, Group, Report, WorstAnswer};
+use lightmeter_document::{Number, Word, distance_told, is_worse, thousands};
 use maud::{Markup, html};
+use std::collections::BTreeMap;
 
 /// The most cards of a page.
 const MOST: usize = 400;
@@ -62,17 +63,66 @@ fn stages(groups: &[&Group]) -> String {
 pub(super) fn passing_cards(report: &Report) -> Vec<Markup> {
     let is_of_a_failure = |one: &&Explained| report.failures.iter().any(|failure| failure.id == one.id);
     let card = |one: &Explained| {
+        let answered = answer_of(report, one);
+        let answer = answered.and_then(|group| group.worst_answer.as_ref());
         html! {
             details.card.passing {
-                summary { span.pass { "✓" } " its worst case: " b { (one.id) } }
+                summary {
+                    span.pass { "✓" } " its worst case: " b { (one.id) }
+                    @if let Some(group) = answered { " " span.quiet { "on " (group.adapter) ", " (group.place()) } }
+                }
                 (formula(one))
-                @if !one.steps.is_empty() { (steps(one, &Hint::None)) }
-                @if let Some(course) = &one.course { (plot::course(course, None)) }
+                @if let Some(answer) = answer { (worst_answer(answer)) }
+                (inputs_and_steps(&one.inputs, &one.units, Some(one), &Hint::None))
+                @if let Some(course) = &one.course {
+                    (plot::course(course, answer.filter(|answer| answer.output == course.output).map(|answer| answer.value.0)))
+                }
                 (command(&format!("lightmeter show {}", one.id)))
             }
         }
     };
     report.explained.iter().filter(|one| !is_of_a_failure(one)).map(card).collect()
+}
+
+/// The group whose worst case is explained, and which knows what was answered to it: of several the nearest to what is illegal.
+fn answer_of<'a>(report: &'a Report, one: &Explained) -> Option<&'a Group> {
+    let is_its = |group: &&Group| group.worst.as_ref() == Some(&one.id) && group.worst_answer.is_some();
+    // Of equals the last of the reversed ones, which is the first.
+    report.groups.iter().rev().filter(is_its).max_by(|a, b| a.margin_max.0.total_cmp(&b.margin_max.0))
+}
+
+/// What was answered to the worst case of a formula that passes.
+fn worst_answer(answer: &WorstAnswer) -> Markup {
+    let [low, high] = answer.interval;
+    html! {
+        p {
+            code { (answer.output) } " is " b.pass { (answer.value.narrow()) } "; " (legal_are(answer.interval))
+            ", the reference is " (answer.reference) "."
+        }
+        (plot::line(low.0, high.0, answer.reference.0, answer.value.0))
+    }
+}
+
+/// The inputs of a case, and beside them the steps of its formula.
+fn inputs_and_steps(
+    inputs: &serde_json::Map<String, serde_json::Value>,
+    units: &BTreeMap<String, Word>,
+    explained: Option<&Explained>,
+    hint: &Hint,
+) -> Markup {
+    html! {
+        div.columns {
+            @if !inputs.is_empty() { div {
+                h4 { "inputs" }
+                div.wide tabindex="0" role="group" aria-label="inputs" { table.inputs {
+                    @for (name, value) in inputs {
+                        tr { th scope="row" { (name) } td.number { (plain(value)) } td.quiet { @if let Some(unit) = units.get(name).filter(|unit| &***unit != "1") { (unit) } } }
+                    }
+                } }
+            } }
+            @if let Some(explained) = explained.filter(|explained| !explained.steps.is_empty()) { div { (steps(explained, hint)) } }
+        }
+    }
 }
 
 fn failed_of(group: &Group) -> String {
@@ -148,17 +198,7 @@ fn case(failure: &Failure, explained: Option<&Explained>, hint: &Hint) -> Markup
     html! {
         h3 { "A failing case: " code { (failure.id) } }
         (verdict(failure))
-        div.columns {
-            div {
-                h4 { "inputs" }
-                div.wide tabindex="0" role="group" aria-label="inputs" { table.inputs {
-                    @for (name, value) in &failure.inputs {
-                        tr { th scope="row" { (name) } td.number { (plain(value)) } td.quiet { @if let Some(unit) = failure.units.get(name).filter(|unit| &***unit != "1") { (unit) } } }
-                    }
-                } }
-            }
-            @if let Some(explained) = explained.filter(|explained| !explained.steps.is_empty()) { div { (steps(explained, hint)) } }
-        }
+        (inputs_and_steps(&failure.inputs, &failure.units, explained, hint))
         @if let Some(course) = explained.and_then(|explained| explained.course.as_ref()) {
             (plot::course(course, (course.output == failure.output).then_some(failure.value.0)))
         }
@@ -191,7 +231,7 @@ fn verdict(failure: &Failure) -> Markup {
         p {
             code { (failure.output) } " is " b.fail { (failure.value.narrow()) } @if failure.unwritten { " (it was never written)" }
             "; " @match &failure.promise { Some(promise) => { "legal is " (promise) } None => { (legal_are(failure.interval)) ", the reference is " (failure.reference) } }
-            @if failure.error_ulp.0.is_finite() { ", from which it is " (short(failure.error_ulp.0)) " ULP" }
+            ", so that it is " (written(&distance_told(failure.error_ulp, unit_of(failure), failure.value, failure.reference)))
             "."
         }
         @if failure.promise.is_none() { (plot::line(low.0, high.0, failure.reference.0, failure.value.0)) }

@@ -5,10 +5,13 @@ use super::number::written as as_written;
 use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::gate::cases;
 use lightmeter_document::run::{Group, Report};
-use lightmeter_document::{Number, thousands};
+use lightmeter_document::{Number, error_told, thousands};
 use maud::{Markup, html};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result, Write};
+
+/// The greatest share of what is legal that is told from more.
+const MOST_SHARE: f64 = 1_000.0;
 
 /// A stage of a subject.
 pub(super) struct Column<'a> {
@@ -76,49 +79,64 @@ fn family(id: &str) -> &str {
 
 /// What a cell is: its class, what it shows, and what it says in full.
 fn cell(group: &Group) -> (&'static str, String, String) {
+    let totals = &group.totals;
+    if let Some(reason) = not_had(group) {
+        return ("skip", String::new(), reason);
+    }
     if let Some(reason) = &group.skip_reason {
         return ("skip", "–".into(), format!("skipped: {reason}"));
     }
-    let totals = &group.totals;
-    let says = format!(
-        "{} cases; greatest error {}, {} of what is legal",
-        thousands(totals.cases),
-        error(group),
-        share(group.margin_max)
-    );
+    let (number, error) = (share(group.margin_max), error_told(group.error_ulp_max, unit(group)));
+    let says = format!("{} cases; greatest error {error}, {number} of what is legal", thousands(totals.cases));
     if is_failing(group) {
         let not_answered = group.by_case.as_ref().filter(|_| totals.failed == 0 && group.problem.is_none());
         if let Some(says) = not_answered.and_then(unanswered) {
-            let count = group.by_case.as_ref().map_or(0, |counts| counts.missing + counts.undeclared);
-            return ("fail", format!("✗ {}", thousands(count)), says);
+            return ("fail", "✗".into(), says);
         }
-        let what = if totals.failed > 0 { format!("✗ {}", thousands(totals.failed)) } else { "✗ all".into() };
         let (failed, of) = judged(group);
-        return ("fail", what, format!("{} of {} fail; {says}", thousands(failed), thousands(of)));
+        let what = match totals.failed {
+            0 => "as a whole it fails".into(),
+            _ => format!("{} of {} fail", thousands(failed), thousands(of)),
+        };
+        return ("fail", format!("✗ {number}"), format!("{what}; {says}"));
     }
     if totals.expected_failures > 0 || group.expected_problem.is_some() {
-        return ("known", format!("≈ {}", thousands(totals.expected_failures)), format!("as known; {says}"));
+        let what = match totals.expected_failures {
+            0 => "as a whole it fails as known".into(),
+            count => format!("{} fail as known", thousands(count)),
+        };
+        return ("known", format!("≈ {number}"), format!("{what}; {says}"));
     }
     if totals.verdicts == 0 {
         let reason =
             group.by_case.as_ref().and_then(|counts| counts.reason.as_deref()).unwrap_or("no reason was given");
-        let what = if totals.skipped > 0 { "skipped" } else { "not asked" };
-        return ("skip", "–".into(), format!("{what}: {reason}"));
+        return ("skip", "–".into(), format!("skipped: {reason}"));
     }
     if totals.verdicts == totals.indeterminate {
         return ("skip", "?".into(), "the accuracy rules permit anything".into());
     }
-    ("pass", share(group.margin_max), says)
+    ("pass", number, says)
 }
 
-/// An error in its unit.
-fn error(group: &Group) -> String {
-    let unit = if group.target.as_deref().is_some_and(|target| target.contains('8')) { "steps" } else { "ULP" };
-    format!("{} {unit}", short(group.error_ulp_max.0))
+/// Why a group is no cell of its subject: it was not asked, since the subject does not have it.
+fn not_had(group: &Group) -> Option<String> {
+    let counts = group.by_case.as_ref().filter(|counts| counts.asked == 0 && counts.not_asked > 0)?;
+    let reason = counts.reason.as_deref().or(group.skip_reason.as_deref()).unwrap_or("no reason was given");
+    Some(format!("not asked: {reason}"))
 }
 
+/// What errors are counted in.
+fn unit(group: &Group) -> &'static str {
+    if group.target.as_deref().is_some_and(|target| target.contains('8')) { "steps" } else { "ULP" }
+}
+
+/// The greatest error as a share of what is legal. How far beyond a thousand it goes tells nobody anything.
 fn share(margin: Number) -> String {
-    if margin.0 == 0.0 { "0".into() } else { short(margin.0) }
+    match margin.0 {
+        0.0 => "0".into(),
+        beyond if beyond > MOST_SHARE => "> 1,000".into(),
+        other => short(other),
+    }
 }
 
 /// A number in about three digits, with a minus sign where it is negative.
@@ -185,19 +203,26 @@ pub(super) fn table(columns: &[Column<'_>], has_cards: bool) -> Markup {
                 tbody {
                     @for id in ids(columns) {
                         tr data-family=(family(id)) {
-                            th scope="row" { (id) }
+                            th scope="row" { (broken(id)) }
                             @for column in columns { (told(id, column, has_cards)) }
                         }
                     }
                 }
             }
         }
-        p.hint { "A number is the greatest error as a share of what is legal: 1 is the edge. ✗ fails, ≈ fails as is known, – was skipped or not asked, ? may be anything." }
+        p.hint { "The number of a cell is the greatest error as a share of what is legal: 1 is the edge. ✗ fails, ≈ fails as is known, – was skipped, ? may be anything; an empty cell was not asked. A cell's title has how many cases there are, and how many fail." }
     }
 }
 
+/// An id that a narrow window breaks behind a slash.
+fn broken(id: &str) -> Markup {
+    html! { @for (place, part) in id.split('/').enumerate() { @if place > 0 { "/" wbr; } (part) } }
+}
+
 fn told(id: &str, column: &Column<'_>, has_cards: bool) -> Markup {
-    let Some(group) = column.groups.get(id) else { return html! { td data-subject=(column.subject) {} } };
+    let Some(group) = column.groups.get(id) else {
+        return html! { td title="this result does not have it" data-subject=(column.subject) {} };
+    };
     let (class, shows, says) = cell(group);
     let card = (has_cards && class == "fail").then(|| card_id(id, &group.adapter));
     html! {
@@ -216,7 +241,10 @@ pub(super) fn card_id(id: &str, adapter: &str) -> String {
 /// The table in Markdown: the counts of each family, and each formula that fails, is expected to, or was skipped somewhere.
 pub(super) fn write_markdown(columns: &[Column<'_>], out: &mut impl Write) -> Result {
     writeln!(out, "# Formulas by subjects\n")?;
-    writeln!(out, "Each cell has how many formulas pass, and of how many.\n")?;
+    writeln!(
+        out,
+        "Each cell has how many formulas pass, of those that were judged. It is empty where the subject has none of the family.\n"
+    )?;
     write!(out, "| family |")?;
     columns.iter().try_for_each(|column| write!(out, " {}, {} |", column.subject, column.place))?;
     writeln!(out, "\n|---|{}", "--:|".repeat(columns.len()))?;
@@ -226,7 +254,7 @@ pub(super) fn write_markdown(columns: &[Column<'_>], out: &mut impl Write) -> Re
         write!(out, "| {name} |")?;
         for column in columns {
             let own: Vec<&&Group> =
-                column.groups.iter().filter(|(id, _)| family(id) == name).map(|(_, group)| group).collect();
+                column.groups.values().filter(|group| family(&group.id) == name && not_had(group).is_none()).collect();
             let passing = own.iter().filter(|group| cell(group).0 == "pass").count();
             if own.is_empty() { write!(out, " |")? } else { write!(out, " {passing}/{} |", own.len())? }
         }
@@ -242,7 +270,12 @@ pub(super) fn write_markdown(columns: &[Column<'_>], out: &mut impl Write) -> Re
     if told.is_empty() {
         return Ok(());
     }
-    write!(out, "\n## What fails\n\n| formula |")?;
+    writeln!(out, "\n## What fails\n")?;
+    writeln!(
+        out,
+        "A number is the greatest error as a share of what is legal: 1 is the edge. ✗ fails, ≈ fails as is known.\n"
+    )?;
+    write!(out, "| formula |")?;
     columns.iter().try_for_each(|column| write!(out, " {}, {} |", column.subject, column.place))?;
     writeln!(out, "\n|---|{}", "--:|".repeat(columns.len()))?;
     for id in told {
@@ -268,13 +301,51 @@ mod tests {
     #[test]
     fn what_was_not_answered_or_not_asked_does_not_pass() {
         let missing = cell_of(0, CaseCounts { asked: 3, missing: 3, ..CaseCounts::default() });
-        assert_eq!(missing, ("fail", "✗ 3".into(), "3 of 3 cases were never answered.".into()));
+        assert_eq!(missing, ("fail", "✗".into(), "3 of 3 cases were never answered.".into()));
         let partly = cell_of(2, CaseCounts { asked: 3, passed: 2, missing: 1, ..CaseCounts::default() });
-        assert_eq!(partly, ("fail", "✗ 1".into(), "1 of 3 cases was never answered.".into()));
+        assert_eq!(partly, ("fail", "✗".into(), "1 of 3 cases was never answered.".into()));
         let reason = Some("the renderer does not declare it".to_owned());
         let not_asked = cell_of(0, CaseCounts { not_asked: 3, reason, ..CaseCounts::default() });
-        assert_eq!(not_asked, ("skip", "–".into(), "not asked: the renderer does not declare it".into()));
+        assert_eq!(not_asked, ("skip", String::new(), "not asked: the renderer does not declare it".into()));
         let passing = cell_of(3, CaseCounts { asked: 3, passed: 3, ..CaseCounts::default() });
         assert_eq!((passing.0, passing.1.as_str()), ("pass", "0"));
+    }
+
+    /// What stands in a cell, and in its title, of a group whose greatest error is this share of what is legal.
+    fn told_of(margin: f64, failed: u64, expected: u64) -> (String, String) {
+        let totals = Totals { cases: 9, verdicts: 9, failed, expected_failures: expected, ..Totals::default() };
+        let group = Group {
+            totals,
+            margin_max: Number(margin),
+            error_ulp_max: Number(7.134e44),
+            ..Group::new("fog/exp".into(), "lavapipe".into(), "compute")
+        };
+        let (_, shows, says) = cell(&group);
+        (shows, says)
+    }
+
+    #[test]
+    fn the_number_of_every_cell_is_a_share_of_what_is_legal_and_counts_are_in_its_title() {
+        let (fails, says) = told_of(3.25, 2, 0);
+        assert_eq!(fails, "✗ 3.25");
+        assert!(says.starts_with("2 of 9 fail; ") && says.contains("more than 2²⁴ ULP"), "{says}");
+        let (known, says) = told_of(2e43, 0, 4);
+        assert_eq!(known, "≈ > 1,000");
+        assert!(says.starts_with("4 fail as known; "), "{says}");
+        assert_eq!(told_of(0.5, 0, 0).0, "0.5");
+    }
+
+    #[test]
+    fn formulas_that_a_renderer_does_not_have_are_counted_nowhere() {
+        let reason = Some("the renderer does not declare it".to_owned());
+        let counts = CaseCounts { not_asked: 3, reason, ..CaseCounts::default() };
+        let lacks = Group { by_case: Some(counts), ..Group::new("fog/exp".into(), "renderer".into(), "answer") };
+        let totals = Totals { cases: 1, verdicts: 1, ..Totals::default() };
+        let has = Group { totals, ..Group::new("vector/dot".into(), "renderer".into(), "answer") };
+        let groups = BTreeMap::from([("fog/exp", &lacks), ("vector/dot", &has)]);
+        let column = Column { subject: "r".into(), place: "answer".into(), groups };
+        let mut text = String::new();
+        write_markdown(&[column], &mut text).expect("a string takes all");
+        assert!(text.contains("| fog | |\n") && text.contains("| vector | 1/1 |\n"), "{text}");
     }
 }

@@ -153,18 +153,9 @@ fn against(report: &Report, incidents: &[String]) -> Markup {
 #[must_use]
 pub fn of_matrix(reports: &[(&str, &Report)]) -> String {
     let columns = matrix::columns(reports);
-    let title = "Formulas by subjects";
-    let body = html! {
-        header.head { h1 { (title) } p { "One column for each stage of each subject. A number is the greatest error as a share of what is legal." } }
-        dl.facts {
-            @for (name, report) in reports {
-                dt { (name) }
-                dd { @for adapter in &report.adapters { (adapter.name) ": " (adapter.device) ", " (adapter.driver) br; } "seed " (report.seed) ", profile " (report.profile) @if let Some(interrupted) = &report.interrupted { br; b { "It was interrupted: " (interrupted) "." } } }
-            }
-        }
-        (all(&columns, false))
-    };
-    page(title, PageKind::Report, &body)
+    let facts = Facts::of_matrix(reports);
+    let body = html! { (overview::head(&facts)) (all(&columns, false)) };
+    page(&facts.title, PageKind::Report, &body)
 }
 
 /// The same matrix in Markdown: a row for each formula that does not simply pass everywhere, and the counts of the others.

@@ -6,9 +6,11 @@ use crate::page::selftest::SelftestRun;
 use crate::page::sweep::{Swept, command};
 use crate::text::unbound;
 use lightmeter_document::bench::BenchDocument;
+use lightmeter_document::gate::GateReport;
 use lightmeter_document::run::{Identity, Report};
 use lightmeter_document::thousands;
 use maud::{Markup, html};
+use std::collections::BTreeSet;
 
 /// What is said first.
 pub(super) struct Facts {
@@ -29,6 +31,16 @@ fn device(adapter: &Identity) -> (String, String) {
     (adapter.name.clone(), known.join(", "))
 }
 
+/// By which version a result was made, when, and how long that took, as far as it says.
+fn made(version: Option<&str>, at: Option<&str>, seconds: Option<f64>) -> Vec<(String, String)> {
+    let mut facts = vec![];
+    facts.extend(version.map(|version| ("lightmeter".to_owned(), version.to_owned())));
+    // `2026-05-01T12:00:00Z` as people write it.
+    facts.extend(at.map(|at| ("made at".to_owned(), at.replace('T', " ").replace('Z', " UTC"))));
+    facts.extend(seconds.map(|seconds| ("took".to_owned(), format!("{seconds:.1} s"))));
+    facts
+}
+
 impl Facts {
     pub(super) fn of_run(report: &Report, verdict: Verdict) -> Self {
         let subject = match (&report.renderer, report.adapters.as_slice()) {
@@ -44,8 +56,7 @@ impl Facts {
         }
         facts.push(("seed".into(), report.seed.to_string()));
         facts.push(("profile".into(), report.profile.to_string()));
-        facts.push(("time".into(), format!("{:.1} s", report.seconds)));
-        facts.extend(report.version.iter().map(|version| ("lightmeter".into(), version.to_string())));
+        facts.extend(made(report.version.as_deref(), report.made_at.as_deref(), Some(report.seconds)));
         facts.extend(report.config.iter().map(|config| ("settings".into(), config.to_string())));
         Self {
             title: format!("lightmeter: {subject}"),
@@ -66,6 +77,15 @@ impl Facts {
                 facts.push(fact);
             }
         }
+        facts.push(("seed".into(), "none: every input of the range is tried".into()));
+        let profiles: BTreeSet<&str> = sweeps.iter().map(|swept| swept.document.sweep.profile.as_str()).collect();
+        facts.push(("profile".into(), profiles.into_iter().collect::<Vec<_>>().join(", ")));
+        let last = sweeps.iter().max_by(|a, b| a.document.made_at.cmp(&b.document.made_at));
+        let [version, made_at] = [
+            last.and_then(|swept| swept.document.version.as_deref()),
+            last.and_then(|swept| swept.document.made_at.as_deref()),
+        ];
+        facts.extend(made(version, made_at, Some(sweeps.iter().map(|swept| swept.document.seconds).sum())));
         let names: Vec<&str> = sweeps.iter().map(|swept| swept.document.sweep.formula.as_str()).collect();
         Self {
             title: format!("lightmeter sweep: {}", names.join(", ")),
@@ -87,8 +107,7 @@ impl Facts {
             .collect();
         facts.push(("seed".into(), document.seed.to_string()));
         facts.push(("cores".into(), document.cores.to_string()));
-        facts.push(("time".into(), format!("{:.0} s", document.seconds)));
-        facts.push(("lightmeter".into(), document.version.to_string()));
+        facts.extend(made(Some(&document.version), document.made_at.as_deref(), Some(document.seconds)));
         let groups = document.adapters.iter().map(|adapter| adapter.groups.len()).sum::<usize>();
         Self {
             title: "lightmeter bench".into(),
@@ -103,12 +122,57 @@ impl Facts {
     }
 
     pub(super) fn of_selftest(run: &SelftestRun) -> Self {
+        let mut facts = vec![("device".into(), "none: the embedded implementation makes every mistake".into())];
+        facts.extend(run.seed.iter().map(|seed| ("seed".into(), seed.to_string())));
+        facts.extend(made(run.version.as_deref(), run.made_at.as_deref(), None));
         Self {
             title: "lightmeter selftest".into(),
             is_success: Some(run.is_good()),
-            says: vec!["What the suite catches of the mistakes that it knows, and how small an error it names.".into()],
+            says: vec![
+                run.counted(),
+                "The page shows what the suite catches of the mistakes that it knows, and how small an error it names."
+                    .into(),
+            ],
             command: run.command.clone(),
-            facts: run.seed.iter().map(|seed| ("seed".into(), seed.to_string())).collect(),
+            facts,
+        }
+    }
+
+    /// Of several results side by side.
+    pub(super) fn of_matrix(reports: &[(&str, &Report)]) -> Self {
+        let verdict = |report: &Report| match report.renderer {
+            Some(_) => Verdict::of_gate(&GateReport::of(report, String::new(), None), report),
+            None => Verdict::of_run(report),
+        };
+        let verdicts: Vec<Verdict> = reports.iter().map(|(_, report)| verdict(report)).collect();
+        let passing = verdicts.iter().filter(|verdict| verdict.is_success).count();
+        let says = match (passing, verdicts.len()) {
+            (1, 1) => "The result passes.".into(),
+            (0, 1) => "The result fails.".into(),
+            (all, of) if all == of => format!("All {of} results pass."),
+            (0, of) => format!("None of {of} results passes."),
+            (1, of) => format!("One of {of} results passes."),
+            (several, of) => format!("{several} of {of} results pass."),
+        };
+        let facts = reports.iter().zip(&verdicts).map(|((name, report), verdict)| {
+            let mark = if verdict.is_success { "✓ passes" } else { "✗ fails" };
+            let mut lines = vec![format!("{mark}: {}", verdict.sentences.join(" "))];
+            lines.extend(report.adapters.iter().map(device).map(|(name, what)| format!("{name}: {what}")));
+            lines.push(format!("seed {}, profile {}", report.seed, report.profile));
+            let made = made(report.version.as_deref(), report.made_at.as_deref(), Some(report.seconds));
+            lines.push(made.iter().map(|(name, what)| format!("{name} {what}")).collect::<Vec<_>>().join(", "));
+            lines.extend(report.command.clone());
+            ((*name).to_owned(), lines.join("\n"))
+        });
+        Self {
+            title: "lightmeter: formulas by subjects".into(),
+            is_success: Some(passing == verdicts.len()),
+            says: vec![
+                says,
+                "One column for each stage of each subject. A number is the greatest error as a share of what is legal.".into(),
+            ],
+            command: None,
+            facts: facts.collect(),
         }
     }
 }
@@ -127,7 +191,7 @@ pub(super) fn head(facts: &Facts) -> Markup {
             @if let Some(command) = &facts.command { (super::failure::command(command)) }
         }
         @if !facts.facts.is_empty() {
-            dl.facts { @for (name, what) in &facts.facts { dt { (name) } dd { (what) } } }
+            dl.facts { @for (name, what) in &facts.facts { dt { (name) } dd { @for (place, line) in what.lines().enumerate() { @if place > 0 { br; } (line) } } } }
         }
     }
 }
@@ -145,11 +209,11 @@ pub(super) fn notes(report: &Report) -> Markup {
     html! {
         @if has_notes {
             section #notes {
-                h2 { "What was granted, expected or left out" }
+                h2 { "What was excused, expected or left out" }
                 ul {
                     @for deviation in &report.deviations {
                         li { b { (deviation.name) } " of " (deviation.adapter) ": " (deviation.reason) "; "
-                            (thousands(deviation.excused)) " verdicts are granted by it, and its witness "
+                            "it excuses " (thousands(deviation.excused)) " verdicts, and its witness "
                             @if deviation.still_needed { "still shows it." } @else { "no longer shows it." } }
                     }
                     @for known in &report.expectations {

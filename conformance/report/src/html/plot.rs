@@ -2,6 +2,7 @@
 
 use super::matrix::short;
 use lightmeter_document::explained::{CoursePoint, OutputCourse};
+use lightmeter_document::superscript;
 use lightmeter_document::sweep::{SweepDocument, SweepPart};
 use maud::{Markup, html};
 
@@ -135,7 +136,8 @@ pub fn course(course: &OutputCourse, value: Option<f64>) -> Markup {
     let mistaken = path(
         course.points.iter().map(|point| (x(point.x.0), point.mistaken.map_or(f64::NAN, |value| axis.y(value.0)))),
     );
-    let unit = course.unit.as_ref().map_or_else(String::new, |unit| format!(" ({unit})"));
+    let unit = course.unit.as_ref().filter(|unit| !matches!(&***unit, "1" | "color"));
+    let unit = unit.map_or_else(String::new, |unit| format!(" ({unit})"));
     let below = AROUND + HEIGHT + 30.0;
     let errors = errors_of(course, value);
     let whole = if errors.is_some() { below + HEIGHT + 44.0 } else { below + 14.0 };
@@ -249,10 +251,18 @@ fn unfolded(folded: f64) -> String {
     let size = folded.abs();
     let written = match size - 1.0 {
         power if power <= 0.0 => short(size),
-        power if power >= MOST_POWER => format!("≥ 10^{MOST_POWER}"),
-        power => format!("10^{power:.0}"),
+        power => {
+            #[expect(clippy::cast_possible_truncation, reason = "at most eight")]
+            let raised = superscript(power.min(MOST_POWER).round() as i32);
+            if power >= MOST_POWER { format!("≥ 10{raised}") } else { format!("10{raised}") }
+        }
     };
     if folded < 0.0 && size > 0.0 { format!("−{written}") } else { written }
+}
+
+/// The margins beside an axis from 0: the end of what is legal, and the power of ten at the end of the axis, where it goes beyond the first.
+fn tolerances(most: f64) -> Vec<f64> {
+    if most < 2.0 { vec![0.0, 1.0] } else { vec![0.0, 1.0, most] }
 }
 
 fn frame(top: f64) -> Markup {
@@ -301,7 +311,7 @@ pub(super) fn errors(document: &SweepDocument) -> Markup {
                 }
                 text.name x=(LEFT + 6.0) y=(AROUND - 3.0) { "greatest error, " (sweep.unit) }
                 @if has_margins {
-                    (ticks(&margins, &[0.0, 1.0, margins.most], unfolded))
+                    (ticks(&margins, &tolerances(margins.most), unfolded))
                     (frame(margins.top))
                     rect.band x=(LEFT) width=(WIDTH - LEFT - AROUND) y=(format!("{:.1}", margins.y(1.0))) height=(format!("{:.1}", bottom - margins.y(1.0))) {}
                     @for (k, part) in along.iter().enumerate().filter(|(_, part)| margin(part).is_finite()) {
@@ -369,7 +379,12 @@ mod tests {
         let axis = |values| Axis { values, least: values[0], most: values[1], top: 0.0 };
         let written = |values| margin_ticks(&axis(values)).map(unfolded);
         assert_eq!(written([-1.5, 1.5]), ["−1", "0", "1"]);
-        assert_eq!(written([-1.5, 4.6]), ["−1", "0", "10^3"]);
-        assert_eq!(written([-3.0, 1.0 + MOST_POWER]), ["−10^2", "0", "≥ 10^8"]);
+        assert_eq!(written([-1.5, 4.6]), ["−1", "0", "10³"]);
+        assert_eq!(written([-3.0, 1.0 + MOST_POWER]), ["−10²", "0", "≥ 10⁸"]);
+        let beside = |most| tolerances(most).into_iter().map(unfolded).collect::<Vec<_>>();
+        assert_eq!(
+            (beside(1.2), beside(4.0)),
+            (vec!["0".into(), "1".into()], vec!["0".into(), "1".into(), "10³".into()])
+        );
     }
 }

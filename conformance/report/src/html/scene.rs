@@ -21,11 +21,32 @@ const APART: usize = 3;
 /// Reference, result and error map of a wrong image.
 const PICTURES: [&str; 3] = ["reference", "result", "error"];
 
+/// What was found where a picture is to be.
+#[derive(PartialEq, Eq)]
+enum Picture {
+    /// The file that the result's run wrote.
+    Own(Vec<u8>),
+    /// A picture that another run wrote under this name.
+    OfAnother(String),
+    /// Nothing, or what is no picture.
+    Missing(String),
+}
+
+impl Picture {
+    /// The address of the picture itself.
+    fn embedded(&self) -> Option<String> {
+        match self {
+            Self::Own(png) => Some(embedded("image/png", png)),
+            Self::OfAnother(_) | Self::Missing(_) => None,
+        }
+    }
+}
+
 /// A wrong image, and the stages that drew it in the same way.
 struct Wrong<'a> {
     group: &'a Group,
     image: &'a ImageUse,
-    pictures: [Option<Vec<u8>>; 3],
+    pictures: [Picture; 3],
     /// Other stages, whose pictures are the same to the last bit.
     alike: Vec<&'a Group>,
     /// Whether it is the scene's worst card of its adapter, to which links lead.
@@ -51,9 +72,11 @@ fn wrong(report: &Report) -> Vec<Wrong<'_>> {
     let mut all: Vec<Wrong<'_>> = vec![];
     for group in report.groups.iter().filter(|group| is_failing(group)) {
         let Some(image) = group.image.as_ref().filter(|image| !image.files.is_empty()) else { continue };
-        let pictures = PICTURES.map(|what| picture(image, what).filter(|png| is_of(image, what, png)));
+        let pictures = PICTURES.map(|what| picture(image, what));
         let is_its = |other: &&mut Wrong<'_>| other.group.id == group.id && other.group.adapter == group.adapter;
-        let is_same = |other: &&mut Wrong<'_>| is_its(other) && pictures[1].is_some() && other.pictures == pictures;
+        let is_same = |other: &&mut Wrong<'_>| {
+            is_its(other) && matches!(pictures[1], Picture::Own(_)) && other.pictures == pictures
+        };
         match all.iter_mut().find(is_same) {
             Some(other) => other.alike.push(group),
             None => all.push(Wrong { group, image, pictures, alike: vec![], is_first: false }),
@@ -82,15 +105,22 @@ pub(super) fn cards(report: &Report) -> Vec<Card> {
     wrong(report).iter().enumerate().map(told).collect()
 }
 
-/// A PNG that the report names; nothing where it is none.
-fn picture(image: &ImageUse, what: &str) -> Option<Vec<u8>> {
-    let path = image.files.iter().find(|file| file.ends_with(&format!("-{what}.png")))?;
+/// A PNG that the report names. A later run of the same scene may have written another one under its name.
+fn picture(image: &ImageUse, what: &str) -> Picture {
+    let named = |file: &String| file.ends_with(&format!("-{what}.png"));
+    let Some(place) = image.files.iter().position(named) else { return Picture::Missing(format!("-{what}.png")) };
+    let path = &image.files[place];
     let is_small = std::fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() <= MOST_BYTES);
-    let bytes = is_small.then(|| std::fs::read(path).ok()).flatten()?;
-    bytes.starts_with(b"\x89PNG\r\n\x1a\n").then_some(bytes)
+    let bytes = is_small.then(|| std::fs::read(path).ok()).flatten();
+    match bytes.filter(|bytes| bytes.starts_with(b"\x89PNG\r\n\x1a\n")) {
+        None => Picture::Missing(path.clone()),
+        Some(png) if image.is_its_file(place, &png).unwrap_or_else(|| is_of(image, what, &png)) => Picture::Own(png),
+        Some(_) => Picture::OfAnother(path.clone()),
+    }
 }
 
-/// Whether a picture has the size of the image that was judged; the map has a legend below it. A later run of the same scene may have overwritten it.
+/// Whether a picture has the size of the image that was judged; the map has a legend below it. It is all that tells pictures of a document
+/// without hashes.
 fn is_of(image: &ImageUse, what: &str, png: &[u8]) -> bool {
     let number = |at: usize| Some(u32::from_be_bytes(png.get(at..at + 4)?.try_into().ok()?) as usize);
     let (width, height) = (number(16), number(20));
@@ -114,8 +144,7 @@ fn map(wrong: &Wrong<'_>, error: &str) -> Markup {
 
 fn card(report: &Report, wrong: &Wrong<'_>, is_open: bool) -> Markup {
     let Wrong { group, image, .. } = *wrong;
-    let [reference, result, error] =
-        wrong.pictures.each_ref().map(|bytes| bytes.as_ref().map(|bytes| embedded("image/png", bytes)));
+    let [reference, result, error] = wrong.pictures.each_ref().map(Picture::embedded);
     let failure = report.failures.iter().find(|failure| {
         failure.adapter == group.adapter && failure.stage == group.stage && group.has_case(&failure.id)
     });
@@ -149,11 +178,23 @@ fn card(report: &Report, wrong: &Wrong<'_>, is_open: bool) -> Markup {
                     @if let Some(error) = &error { (map(wrong, error)) }
                 }
                 output.pixel role="status" { "Point at a pixel, or choose one below, to see its values." }
-            } @else {
-                p.hint { "The pictures of this scene were not found when the page was made: " (image.files.join(", ")) }
             }
+            (lacking(&wrong.pictures))
             (pixels(image))
             @if let Some(Failure { rerun, .. }) = failure { @if !rerun.is_empty() { (command(rerun)) } }
+        }
+    }
+}
+
+/// Which pictures are not shown, and why.
+fn lacking(pictures: &[Picture]) -> Markup {
+    let files = |is: fn(&Picture) -> Option<&str>| pictures.iter().filter_map(is).collect::<Vec<_>>().join(", ");
+    let missing = files(|picture| if let Picture::Missing(file) = picture { Some(file) } else { None });
+    let others = files(|picture| if let Picture::OfAnother(file) = picture { Some(file) } else { None });
+    html! {
+        @if !missing.is_empty() { p.hint { "These pictures of this scene were not found when the page was made: " (missing) } }
+        @if !others.is_empty() {
+            p.cause { "These pictures are not shown, because another run wrote them under the same name after this one: " (others) }
         }
     }
 }
@@ -222,6 +263,7 @@ fn four(pixel: &PixelUse, numbers: &[Number; 4]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lightmeter_document::hash;
 
     #[test]
     fn pictures_of_another_size_than_the_image_are_of_another_run() {
@@ -240,5 +282,29 @@ mod tests {
             assert_eq!(is_of(&image, what, &png(size.0, size.1)), is_its, "{what} {size:?}");
         }
         assert!(!is_of(&image, "result", b"\x89PNG"));
+    }
+
+    #[test]
+    fn a_picture_of_a_later_run_is_not_shown_and_is_told() {
+        let folder = std::env::temp_dir().join(format!("lightmeter-pictures-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        let path = folder.join("scene-result.png");
+        let png = |last: u8| [&b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x08\0\0\0\x08"[..], &[last]].concat();
+        let file = path.display().to_string();
+        let mut image: ImageUse = serde_json::from_value(
+            json!({ "width": 8, "height": 8, "marked": 0, "files": [file], "hashes": [hash(&png(1))] }),
+        )
+        .expect("it is an image");
+        std::fs::write(&path, png(1)).expect("it can be written");
+        assert!(picture(&image, "result") == Picture::Own(png(1)));
+        std::fs::write(&path, png(2)).expect("it can be written");
+        let later = picture(&image, "result");
+        assert!(later == Picture::OfAnother(path.display().to_string()));
+        assert!(lacking(&[later]).0.contains("another run wrote them"));
+        // An older document has no hashes: the size is all that tells.
+        image.hashes.clear();
+        assert!(picture(&image, "result") == Picture::Own(png(2)));
+        std::fs::remove_dir_all(&folder).expect("it is there");
+        assert!(matches!(picture(&image, "result"), Picture::Missing(_)));
     }
 }

@@ -5,7 +5,7 @@ use lightmeter_document::selftest::{
     Clean, Finding, Kill, Mistake, NamedFrom, OffBy, Record, Resolution, SceneRecord, SceneResolution,
     SelftestDocument, UnitFinding, UnitRow, family_of,
 };
-use lightmeter_document::{Document as _, thousands};
+use lightmeter_document::{Document as _, Word, thousands};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
 
@@ -23,6 +23,10 @@ pub struct SelftestRun {
     pub(crate) command: Option<String>,
     /// The seed of the random cases, likewise.
     pub(crate) seed: Option<u64>,
+    /// The version of lightmeter.
+    pub(crate) version: Option<Word>,
+    /// When it was made.
+    pub(crate) made_at: Option<String>,
 }
 
 impl SelftestRun {
@@ -51,6 +55,8 @@ impl SelftestRun {
             scene_calibration: document.scene_calibration,
             command: document.command,
             seed: document.seed,
+            version: document.version,
+            made_at: document.made_at,
         };
         let is_told = |kill: &&Kill| run.mistakes.iter().any(|mistake| mistake.name == kill.fault);
         match run.record.kills.iter().find(|kill| !is_told(kill)) {
@@ -65,6 +71,17 @@ impl SelftestRun {
     #[must_use]
     pub fn is_good(&self) -> bool {
         self.record.is_good()
+    }
+
+    /// How many mistakes in formulas are caught, in a sentence.
+    pub(crate) fn counted(&self) -> String {
+        let kills = &self.record.kills;
+        let caught = kills.iter().filter(|kill| kill.finding != Finding::Survived).count();
+        let flagged = self.record.clean.iter().filter(|clean| clean.failed > 0 || clean.systematic.is_some()).count();
+        let [caught, tried, flagged] = [caught, kills.len(), flagged].map(|count| thousands(count as u64));
+        format!(
+            "{caught} of {tried} combinations of a mistake and a formula are caught; {flagged} formulas without a mistake are flagged."
+        )
     }
 }
 

@@ -1,6 +1,7 @@
 //! The page on hard cases, made from a run's JSON: naive against stable error with condition numbers, what stable forms
 //! claim and cost, and a picture of both errors against the condition.
 
+use crate::bench::figures::{grouped, scientific};
 use crate::plot::{Chart, Quantity, Series, Undrawn, marker};
 use lightmeter_document::Document as _;
 use lightmeter_document::run::{Examined, Report, StableForm};
@@ -199,7 +200,8 @@ fn short(x: f64) -> String {
     match x {
         x if x.is_infinite() => "no number".into(),
         0.0 => "0".into(),
-        x if !(1e-2..1e5).contains(&x) => format!("{x:.1e}"),
+        x if !(1e-2..99_999.5).contains(&x) => scientific(x),
+        x if x >= 999.5 => grouped(x),
         x if x >= 10.0 => format!("{x:.0}"),
         x => format!("{x:.1}"),
     }

@@ -1,8 +1,8 @@
 //! The page on sweeps, made from their results.
 
-use crate::sweep::{bars, error, likeliest, margin, rate};
+use crate::sweep::{bars, likeliest, margin, rate};
 use lightmeter_document::sweep::{Description, ExactFloat, SweepDocument, SweepInput, SweepVerdict};
-use lightmeter_document::{Number, thousands};
+use lightmeter_document::{Number, distance_told, error_figure, is_worse, thousands};
 use std::fmt::{Result, Write};
 use std::ops::Deref;
 
@@ -36,6 +36,14 @@ pub fn markdown(results: &[Swept], out: &mut impl Write) -> Result {
         writeln!(out, "./x sweep {} --format json --out {}.json", command(result), stem(results, place))?;
     }
     writeln!(out, "./x page sweep *.json --out docs/sweep.md\n```\n")?;
+    let mut adapters: Vec<_> = results.iter().map(|result| &result.sweep.adapter).collect();
+    adapters.dedup();
+    for (place, adapter) in adapters.iter().enumerate() {
+        if !adapters[..place].contains(adapter) {
+            writeln!(out, "* **{}**: {}, {}, {}", adapter.name, adapter.device, adapter.backend, adapter.driver)?;
+        }
+    }
+    writeln!(out)?;
     body(results, out)
 }
 
@@ -44,16 +52,9 @@ pub fn markdown(results: &[Swept], out: &mut impl Write) -> Result {
 /// # Errors
 /// Where the writer fails.
 pub fn body(results: &[Swept], out: &mut impl Write) -> Result {
-    let mut adapters: Vec<_> = results.iter().map(|result| &result.sweep.adapter).collect();
-    adapters.dedup();
-    for (place, adapter) in adapters.iter().enumerate() {
-        if !adapters[..place].contains(adapter) {
-            writeln!(out, "* **{}**: {}, {}, {}", adapter.name, adapter.device, adapter.backend, adapter.driver)?;
-        }
-    }
     writeln!(
         out,
-        "\nAn error is in ULP at the reference, and in steps of 1/255 where the blend unit stores. A value is *outside* where no"
+        "An error is in ULP at the reference, and in steps of 1/255 where the blend unit stores. A value is *outside* where no"
     )?;
     writeln!(
         out,
@@ -115,7 +116,7 @@ fn table(results: &[Swept], out: &mut impl Write) -> Result {
     writeln!(out, "|---|---|---|--:|--:|--:|--:|--:|--:|---|--:|--:|")?;
     for result in results {
         let (sweep, found) = (&result.sweep, &result.statistics);
-        let worst = found.worst.map_or("".into(), |seen| format!("{} {}", error(seen.error), sweep.unit));
+        let worst = found.worst.map_or("".into(), |seen| format!("{} {}", error_figure(seen.error), sweep.unit));
         writeln!(
             out,
             "| {} | {} | {}, {} | {} | {} | {} | {} | {} | {worst} | {} | {} | {} |",
@@ -141,7 +142,7 @@ fn range(result: &Swept) -> String {
     let part = if result.shard == "1/1" { String::new() } else { format!(", shard {}", result.shard) };
     match (sweep.from, sweep.to) {
         (Some(ExactFloat(from)), Some(ExactFloat(to))) => {
-            format!("{} from {} to {}{part}", sweep.over, Number(from.into()), Number(to.into()))
+            format!("{} from {} to {}{part}", sweep.over, Number(from.into()).narrow(), Number(to.into()).narrow())
         }
         _ => format!("{}{part}", sweep.over),
     }
@@ -149,7 +150,7 @@ fn range(result: &Swept) -> String {
 
 fn place(seen: &SweepVerdict) -> String {
     match seen.input {
-        SweepInput::Float(ExactFloat(x)) => format!("{} `0x{:08x}`", Number(x.into()), x.to_bits()),
+        SweepInput::Float(ExactFloat(x)) => format!("{} `0x{:08x}`", Number(x.into()).narrow(), x.to_bits()),
         SweepInput::Bytes { source, destination, alpha } => format!("{source}, {destination}, {alpha}"),
     }
 }
@@ -158,22 +159,24 @@ fn section(result: &Swept, out: &mut impl Write) -> Result {
     let (sweep, found) = (&result.sweep, &result.statistics);
     writeln!(out, "\n## {} on {}, {}\n", sweep.formula, sweep.adapter.name, sweep.stage)?;
     let fixed: Vec<String> =
-        sweep.fixed.iter().map(|(name, ExactFloat(x))| format!("{name} {}", Number((*x).into()))).collect();
+        sweep.fixed.iter().map(|(name, ExactFloat(x))| format!("{name} {}", Number((*x).into()).narrow())).collect();
     let fixed = if fixed.is_empty() { String::new() } else { format!("; {}", fixed.join(", ")) };
     let what = result.what.map_or(String::new(), |what| format!("{what}: "));
     writeln!(out, "{what}{}, output {}{fixed}.\n", range(result), sweep.output)?;
-    for (name, seen) in [("Worst", found.worst), ("Nearest to its limit", found.nearest_to_limit)] {
+    // What is beyond its limit is not near to it.
+    let is_beyond = found.nearest_to_limit.is_some_and(|seen| is_worse(seen.margin.0, 1.0));
+    let nearest = if is_beyond { "Farthest beyond its limit" } else { "Nearest to its limit" };
+    for (name, seen) in [("Greatest error", found.worst), (nearest, found.nearest_to_limit)] {
         if let Some(seen) = seen {
             let (ExactFloat(value), at) = (seen.value, place(&seen));
             writeln!(
                 out,
-                "{name}: at {at} the value is {}, the reference {}, legal {} to {}: {} {}, margin {}.",
-                Number(value.into()),
+                "{name}: at {at} the value is {}, the reference {}, legal {} to {}: {}, margin {}.",
+                Number(value.into()).narrow(),
                 seen.reference,
-                seen.low,
-                seen.high,
-                error(seen.error),
-                sweep.unit,
+                seen.low.narrow(),
+                seen.high.narrow(),
+                distance_told(seen.error, &sweep.unit, Number(value.into()), seen.reference),
                 margin(seen.margin)
             )?;
         }

@@ -1,5 +1,6 @@
 //! Logarithmic axes, with a band at an end for what has no logarithm.
 
+use lightmeter_document::{superscript, thousands};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use std::ops::Range;
 
@@ -145,17 +146,13 @@ fn decimal(mantissa: f64, power: i32) -> f64 {
 pub(crate) fn power(value: f64) -> String {
     let value: f64 = format!("{value:.6e}").parse().unwrap_or(value);
     if (1e-2..1e4).contains(&value) {
-        return value.to_string();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 10⁴")]
+        return if value < 1e3 { value.to_string() } else { thousands(value.round() as u64) };
     }
     let written = format!("{value:e}");
     let (mantissa, power) = written.split_once('e').unwrap_or((&written, "0"));
-    let power: String = power.chars().map(raised).collect();
+    let power = superscript(power.parse().unwrap_or_default());
     if mantissa == "1" { format!("10{power}") } else { format!("{mantissa}·10{power}") }
-}
-
-fn raised(digit: char) -> char {
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    digit.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize])
 }
 
 #[cfg(test)]
@@ -169,7 +166,7 @@ mod tests {
         let named = |axis: Axis, most| axis.round(most).into_iter().map(power).collect::<Vec<_>>().join(" ");
         assert_eq!(named(over(0.5, 2.1), 8), "0.5 0.7 1 1.5 2");
         assert_eq!(named(over(0.5, 900.0), 5), "1 10 100");
-        assert_eq!(named(over(1e-4, 2e5), 10), "10⁻⁴ 10⁻³ 0.01 0.1 1 10 100 1000 10⁴ 10⁵");
+        assert_eq!(named(over(1e-4, 2e5), 10), "10⁻⁴ 10⁻³ 0.01 0.1 1 10 100 1,000 10⁴ 10⁵");
         assert_eq!(named(over(1e-3, 5e-3), 8), "10⁻³ 1.5·10⁻³ 2·10⁻³ 3·10⁻³ 4·10⁻³ 5·10⁻³");
         assert_eq!(named(over(0.1, 1e45), 8), "1 10¹⁰ 10²⁰ 10³⁰ 10⁴⁰");
     }

@@ -17,7 +17,7 @@ use lightmeter::cases::blend::{Samples, separate_of, written_state};
 use lightmeter::cases::{Kind, boundary_name};
 use lightmeter::document::run::Examined;
 use lightmeter::document::show::{ShowDocument, ShownCase, ShownMistake};
-use lightmeter::document::{Document as _, Number};
+use lightmeter::document::{Document as _, Number, error_told};
 use lightmeter::evaluate::Evaluator;
 use lightmeter::faults::{Fault, Variation, shown_mistake};
 use lightmeter::filter::Filter;
@@ -369,8 +369,8 @@ fn answer_text(member: &Member, known: &Known, answer: &Answer) -> anyhow::Resul
                 let name = member.spec.output_name(k);
                 writeln!(
                     text,
-                    "  {name:<18} {value:<14} 0x{bits:08x}  {outcome}, {} ULP; legal {}",
-                    Number(error),
+                    "  {name:<18} {value:<14} 0x{bits:08x}  {outcome}, {}; legal {}",
+                    error_told(Number(error), "ULP"),
                     range(legal)
                 )?;
             }
