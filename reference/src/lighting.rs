@@ -303,7 +303,7 @@ pub fn spot<R: Real>(
 ) -> Rgba<R> {
     let l = toward(position, p);
     let axis = step!("axis", |axis| axis.normalize());
-    let cone = Some(attenuation::spot_exponent(l, axis, cutoff_cosine, exponent));
+    let cone = Some(attenuation::spot_exponent(l, axis, cutoff_cosine, exponent).or_dark([axis.0; 3]));
     let atten = attenuation::point(falloff.kc, falloff.kl, falloff.kq, position, p);
     let vectors = [normal(n), l, to_eye(p)];
     let dialect = (Specular::Phong, SpecularGate::Documents);

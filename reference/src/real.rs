@@ -129,7 +129,7 @@ pub trait Real:
         Self::if_ge(zero, self, || zero, || self.pow(exponent))
     }
 
-    /// A highlight of a normal, a vector to the light and one to the viewer. Where one of them has length 0, a dark highlight is legal too: shading
+    /// A highlight of a normal, a vector to the light and one to the viewer, or a cone about an axis. Where one of them has length 0, 0 is legal too: shading
     /// languages leave open what `normalize` gives for such a vector, and most shaders come to NaN, of which `max(x, 0)` makes 0.
     #[must_use]
     fn or_dark(self, _vectors: [[Self; 3]; 3]) -> Self {

@@ -39,16 +39,16 @@ pub(super) fn play(
     stop: &Stop,
     profile: &'static Profile,
 ) -> anyhow::Result<Status> {
-    let mut tables = vec![];
+    let mut playgrounds = vec![];
     while let Some(session) = next() {
         let stop = stop.clone();
-        tables.push(std::thread::spawn(move || Playground::new(session, stop, profile).serve()));
+        playgrounds.push(std::thread::spawn(move || Playground::new(session, stop, profile).serve()));
     }
-    if tables.is_empty() {
+    if playgrounds.is_empty() {
         return Err(NothingToRun("ended before a browser opened the page".into()).into());
     }
-    for table in tables {
-        table.join().map_err(|_| anyhow::anyhow!("a playground ended by a panic, which stands above"))?;
+    for playground in playgrounds {
+        playground.join().map_err(|_| anyhow::anyhow!("a playground ended by a panic, which stands above"))?;
     }
     Ok(Status::Success)
 }

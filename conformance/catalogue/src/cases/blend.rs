@@ -81,6 +81,19 @@ const OVER: &[Hard] = &[
     ),
 ];
 
+const BEYOND: &[Hard] = &[
+    Hard::new(
+        "both-below-black",
+        "the comparison goes on below 0",
+        &[("src", &[-0.5, -2.0, -0.25, -0.5]), ("dst", &[-1.5, -0.75, -0.125, -0.75])],
+    ),
+    Hard::new(
+        "both-above-white",
+        "the comparison goes on above 1",
+        &[("src", &[1.5, 2.0, 1.25, 1.5]), ("dst", &[2.5, 1.75, 1.125, 1.75])],
+    ),
+];
+
 fn hard(state: State) -> &'static [Hard] {
     match (state.equation, state.src, state.dst) {
         (Equation::Add, Factor::SrcAlpha, Factor::OneMinusSrcAlpha) => OVER,
@@ -109,22 +122,7 @@ fn hard(state: State) -> &'static [Hard] {
                 )]
             }
         }
-        (Equation::Min | Equation::Max, Factor::One, Factor::One) => {
-            const {
-                &[
-                    Hard::new(
-                        "both-below-black",
-                        "the comparison goes on below 0",
-                        &[("src", &[-0.5, -2.0, -0.25, -0.5]), ("dst", &[-1.5, -0.75, -0.125, -0.75])],
-                    ),
-                    Hard::new(
-                        "both-above-white",
-                        "the comparison goes on above 1",
-                        &[("src", &[1.5, 2.0, 1.25, 1.5]), ("dst", &[2.5, 1.75, 1.125, 1.75])],
-                    ),
-                ]
-            }
-        }
+        (Equation::Min | Equation::Max, Factor::One, Factor::One) => BEYOND,
         (Equation::Add, Factor::One, Factor::Zero) => {
             const {
                 &[Hard::new(

@@ -286,7 +286,6 @@ formula!(
     hard [
         Hard::new("no-exponent-behind", "evenly lit where the cone reaches behind the light too", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[0.0, 0.0, -2.0]), ("axis", &[0.953_939_2, 0.0, 0.3]), ("cutoff_cosine", &[-0.5]), ("exponent", &[0.0])]),
         Hard::new("no-axis", "−l·axis is 0: outside of a cone of 72°", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[-2.0, -2.0, -2.0]), ("axis", &[0.0, 0.0, 0.0]), ("cutoff_cosine", &[0.3]), ("exponent", &[1.0])]),
-        Hard::new("no-axis-all-round", "−l·axis is 0: within a cone that reaches behind the light, and evenly lit without an exponent", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[-2.0, -2.0, -2.0]), ("axis", &[0.0, 0.0, 0.0]), ("cutoff_cosine", &[-0.5]), ("exponent", &[0.0])]),
         Hard::new("just-outside-the-cone", "ambient light alone, however low the exponent", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[0.0, 0.0, -2.0]), ("axis", &[0.6, 0.0, -0.8]), ("cutoff_cosine", &[0.81]), ("exponent", &[0.5])]),
     ],
 );

@@ -297,7 +297,7 @@ const RULES: &[(&str, &str)] = &[
         "lighting/spot attenuation/spot-exponent*",
         "with an exponent of 0 the whole cone has 1, where −l·axis ≤ 0 too; with one above 0 spot is 0 where −l·axis ≤ 0",
     ),
-    ("lighting/spot", "an axis of length 0 has −l·axis = 0 everywhere"),
+    ("lighting/spot", "an axis of length 0 has −l·axis = 0 everywhere, and the cone may be dark"),
     (
         "lighting/scalar-material lighting/two-lights lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
         "lights are not attenuated",
