@@ -3,7 +3,7 @@
 use crate::contents::Place;
 use crate::diagram;
 use crate::formula::{FormulaPage, dialect, sentence};
-use crate::picture::Picture;
+use crate::picture::FormulaPicture;
 use lightmeter_catalogue::cases::blend::COMMON;
 use lightmeter_catalogue::dialects::DIALECTS;
 use lightmeter_catalogue::select::Member;
@@ -30,7 +30,7 @@ pub(crate) fn of_equation(one: Equation, catalogue: &[Member], shaders: &Shaders
     let state = shown_by(one);
     let Some(member) = member_of(catalogue, state) else { return html! {} };
     let page = FormulaPage { member, catalogue, shaders, place };
-    let picture = Picture::of(member);
+    let picture = FormulaPicture::of(member);
     html! {
         h1 { "The blend equation " code { (one.name()) } }
         (page.statement())
@@ -75,14 +75,14 @@ pub(crate) fn of_factor(factor: Factor, catalogue: &[Member], shaders: &Shaders,
         (names(&format!("GL_{}", factor.name()), factor.name(), &format!("VK_BLEND_FACTOR_{}", factor.name()), false))
         div.pictures {
             @for (member, what) in pictures {
-                @if let Some(picture) = Picture::of(member) { figure.picture { (picture.img(member)) figcaption { (what) ": " (picture.caption(member)) } } }
+                @if let Some(picture) = FormulaPicture::of(member) { figure.picture { (picture.img(member)) figcaption { (what) ": " (picture.caption(member)) } } }
             }
         }
         (page.course())
         @for one in DIALECTS.iter().filter(|one| one.title.to_lowercase().replace('_', "-") == factor.name()) { h2 #dialects { "Who computes what" } (dialect(one, &place, catalogue)) }
         (page.code())
         (page.accuracy())
-        (page.mistakes(Picture::of(as_source).as_ref()))
+        (page.mistakes(FormulaPicture::of(as_source).as_ref()))
         (commons(|state| state.src == factor || state.dst == factor, &place))
         pre tabindex="0" { code { "lightmeter run 'blend/*/" (factor.name()) "/*' 'blend/*/*/" (factor.name()) "'" } }
     }

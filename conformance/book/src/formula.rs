@@ -5,7 +5,7 @@ use crate::contents::Place;
 use crate::diagram::diagram;
 use crate::errors::{CASES, errors};
 use crate::grid::{grid, plain};
-use crate::picture::Picture;
+use crate::picture::FormulaPicture;
 use crate::rule::rule;
 use crate::sketch::{short, sketch};
 use lightmeter_arithmetic::profile::WGSL;
@@ -41,7 +41,7 @@ impl FormulaPage<'_> {
     /// All of the page but its frame.
     pub(crate) fn body(&self) -> Markup {
         let spec = &self.member.spec;
-        let picture = Picture::of(self.member);
+        let picture = FormulaPicture::of(self.member);
         html! {
             h1 { code { (spec.id) } }
             (self.statement())
@@ -221,7 +221,7 @@ impl FormulaPage<'_> {
         }
     }
 
-    pub(crate) fn mistakes(&self, picture: Option<&Picture>) -> Markup {
+    pub(crate) fn mistakes(&self, picture: Option<&FormulaPicture>) -> Markup {
         let faults = concerning(self.member);
         let is_drawn = matches!(self.member.spec.kind, Kind::Raster(_) | Kind::Depth(_));
         let mut shown = HashSet::new();
@@ -246,7 +246,12 @@ impl FormulaPage<'_> {
         }
     }
 
-    fn mistake(&self, fault: &'static Fault, picture: Option<&Picture>, shown: &mut HashSet<Vec<i32>>) -> Markup {
+    fn mistake(
+        &self,
+        fault: &'static Fault,
+        picture: Option<&FormulaPicture>,
+        shown: &mut HashSet<Vec<i32>>,
+    ) -> Markup {
         let Some(variation) = Variation::new(self.member, &[fault]) else { return html! {} };
         let grid = grid(self.member, &variation);
         let plot = if grid.is_some() { None } else { sketch(self.member, &variation, shown) };

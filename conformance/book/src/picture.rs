@@ -30,7 +30,7 @@ enum Subject {
 
 /// A picture that a formula makes, as rows of inputs.
 #[derive(Clone, Debug)]
-pub struct Picture {
+pub struct FormulaPicture {
     subject: Subject,
     size: [usize; 2],
     /// A row of inputs for each pixel; none where nothing is drawn.
@@ -40,7 +40,7 @@ pub struct Picture {
     is_grey: bool,
 }
 
-impl Picture {
+impl FormulaPicture {
     /// The picture of a formula; `None` where it gives no colour of which one can be drawn.
     #[must_use]
     pub fn of(member: &Member) -> Option<Self> {

@@ -5,7 +5,7 @@ use super::shader::{OwnShader, constant, is_identified};
 use super::{NothingToRun, Status};
 use anyhow::Context as _;
 use lightmeter::arithmetic::Profile;
-use lightmeter::book::picture::{Picture, png};
+use lightmeter::book::picture::{FormulaPicture, png};
 use lightmeter::browser::{PlayedFormula, PlayedLanguage, PlayedPicture, PlayedResult, PlayedShader, Session};
 use lightmeter::device::DeviceError;
 use lightmeter::document::event::{Silent, Stop};
@@ -144,7 +144,7 @@ impl Playground {
 
     /// What a formula draws by the reference and by the shader; `None` where it gives no colour.
     fn picture(&mut self, member: &Member, options: &Options) -> Result<Option<PlayedPicture>, DeviceError> {
-        let Some(mut picture) = Picture::of(member).filter(|picture| !picture.lacks(&member.missing)) else {
+        let Some(mut picture) = FormulaPicture::of(member).filter(|picture| !picture.lacks(&member.missing)) else {
             return Ok(None);
         };
         picture.rows().for_each(|row| member.hold(row));

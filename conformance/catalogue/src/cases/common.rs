@@ -339,7 +339,7 @@ pub const fn placed<const N: usize>(
 
 /// The hard cases that a formula has in common with others: values of inputs, none where there is no such case.
 #[derive(Clone, Copy, Debug)]
-pub struct Common {
+pub struct CommonCases {
     /// Colours below black and above white.
     pub beyond: Values,
     /// A shininess of 0.
@@ -356,7 +356,7 @@ pub struct Common {
     pub grazing: Values,
 }
 
-impl Common {
+impl CommonCases {
     const fn all(&self, has_colors: bool) -> [(bool, Hard); 12] {
         const NOT_AN_AXIS: &str = "a vector of length 0 has no direction, and no axis stands in for it";
         let [normal, light, view] = self.lacking;
@@ -401,7 +401,7 @@ const fn given(hard: Hard) -> (bool, Hard) {
 
 /// The hard cases of a formula: its own, and those in common with others. `N` is how many there are in all.
 #[must_use]
-pub const fn and_common<const N: usize>(own: &[Hard], has_colors: bool, common: &Common) -> [Hard; N] {
+pub const fn and_common<const N: usize>(own: &[Hard], has_colors: bool, common: &CommonCases) -> [Hard; N] {
     let mut all = [Hard::new("beyond-black-and-white", "", common.beyond); N];
     let mut count = 0;
     while count < own.len() {

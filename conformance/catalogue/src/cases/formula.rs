@@ -295,7 +295,7 @@ macro_rules! formula {
                     NO_VIEW NO_VIEW Some(&[2.0]); NO_VIEW_BEHIND NO_VIEW_BEHIND Some(&[2.0]);
                     NO_VIEW_GRAZING NO_VIEW_GRAZING Some(&[2.0])
                 );
-                const COMMON: $crate::cases::Common = $crate::cases::Common {
+                const COMMON: $crate::cases::CommonCases = $crate::cases::CommonCases {
                     beyond: &BEYOND,
                     no_shininess: NONE,
                     half: HALF,

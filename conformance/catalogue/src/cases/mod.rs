@@ -26,7 +26,7 @@ mod rule;
 mod spec;
 
 pub use boundary::{DRAWN, boundary_cases, boundary_inputs, boundary_name, boundary_names};
-pub use common::{Common, Lacking, Side, Surface, and_common, beyond, colors, given_beyond, given_placed, placed};
+pub use common::{CommonCases, Lacking, Side, Surface, and_common, beyond, colors, given_beyond, given_placed, placed};
 pub use draw::{GENERATOR_VERSION, inputs, mix, move_by_ulps};
 pub use formula::{AnyFormula, Formula, Visitor};
 pub use partial::Partial;
