@@ -143,9 +143,11 @@ impl Plays {
 
     /// The shader that is judged next.
     pub(crate) fn next(&self, patience: Duration) -> Option<PlayedShader> {
-        let (number, shader) = self.until(patience, |state| state.waiting.take())?;
-        self.state().under_way = Some(number);
-        Some(shader)
+        self.until(patience, |state| {
+            let (number, shader) = state.waiting.take()?;
+            state.under_way = Some(number);
+            Some(shader)
+        })
     }
 
     /// Notes what became of the shader under way.

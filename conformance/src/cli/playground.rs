@@ -119,6 +119,11 @@ impl Playground {
         options.adapted.clone_from(&accepted.adapted);
         options.stop = self.stop.clone();
         let report = run(std::slice::from_mut(&mut self.subject), &options, &mut Silent)?;
+        if let Some(interrupted) = &report.interrupted {
+            return Err(
+                DeviceError::Failed(format!("the shader was not judged to its end: {}", interrupted.message)).into()
+            );
+        }
         let candidates = candidates(&report, &accepted.adapted);
         let nearest = candidates.first().map(|candidate| candidate.formula.as_str());
         let picture = match accepted.adapted.iter().find(|adapted| Some(adapted.id.as_str()) == nearest) {

@@ -45,6 +45,7 @@ function show({ refused, told, formulas, result, picture }) {
   const [nearest, ...others] = formulas;
   if (refused !== null) say(`Not judged: ${refused}`, "failed");
   else if (!nearest) say("Nothing was judged.", "failed");
+  else if (nearest.verdicts === 0) say(`Nothing of ${nearest.id} was judged: of these inputs nothing is promised, or the device refused the shader.`, "failed");
   else if (nearest.failed === 0) say(`✓ This is ${nearest.id}: ${count(nearest.verdicts, "value")}, all legal.`, "passed");
   else {
     const why = nearest.why ?? "No mistake of the catalogue explains them.";
@@ -82,6 +83,7 @@ async function judge() {
   try {
     const response = await send({ ...shader, bind: listed(shader.bind), constant: listed(shader.constant) });
     if (response.status === 200) show(await response.json());
+    else isChanged = true;
   } catch (error) {
     say(error.message, "failed");
   }
