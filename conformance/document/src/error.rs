@@ -9,7 +9,7 @@ const MOST_COUNTED: f64 = 1e6;
 /// The least power of ten between a value and its reference that is told.
 const LEAST_POWER: i32 = 3;
 
-/// An error in its unit for people, such as `3.25 ULP`. What is so large that no digit of the value is right is told by that.
+/// An error with its unit, as text for people: `3.25 ULP`. From 2²⁴ ULP on, where no digit of the value is right, the text says so instead of the figure.
 #[must_use]
 pub fn error_told(Number(error): Number, unit: &str) -> String {
     match error {
