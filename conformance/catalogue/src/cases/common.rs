@@ -69,11 +69,12 @@ const BEHIND: [(&str, &[f32]); 20] = [
 
 /// A surface that is lit and seen from its front. Each axis lies on the lit side of its normal and of the mirrored ray, so that whatever direction
 /// a shader takes in the place of a vector that is missing shows.
-const FRONT: [(&str, &[f32]); 11] = [
+const FRONT: [(&str, &[f32]); 12] = [
     ("p", AT),
     ("position", &[1.42, 0.44, 0.2]),
     ("normal", &[0.36, 0.48, 0.8]),
     ("direction", &[-0.48, -0.36, -0.8]),
+    ("axis", &[-0.48, -0.36, -0.8]),
     ("pa", AT),
     ("pb", &[-0.25, -0.75, -3.5]),
     ("na", &[0.36, 0.48, 0.8]),
@@ -84,11 +85,12 @@ const FRONT: [(&str, &[f32]); 11] = [
 ];
 /// The same surface turned round and lit from behind: it shows an axis that is taken the other way round, and a normal without direction, through
 /// which the mirrored ray goes straight on to the eye.
-const TURNED: [(&str, &[f32]); 11] = [
+const TURNED: [(&str, &[f32]); 12] = [
     ("p", AT),
     ("position", &[-2.42, -2.44, -6.2]),
     ("normal", &[-0.36, -0.48, -0.8]),
     ("direction", &[0.48, 0.36, 0.8]),
+    ("axis", &[0.48, 0.36, 0.8]),
     ("pa", AT),
     ("pb", &[-0.25, -0.75, -3.5]),
     ("na", &[-0.36, -0.48, -0.8]),
@@ -174,7 +176,9 @@ impl Surface {
                 Side::Behind => Some(&[-1.92, -1.44, -3.2]),
                 Side::Grazing => Some(&[3.2, -2.4, 0.4]),
             },
-            Lacking::View if matches!(side, Side::Grazing) && is_same(name, "direction") => Some(&[-0.8, 0.6, -0.1]),
+            Lacking::View if matches!(side, Side::Grazing) && (is_same(name, "direction") || is_same(name, "axis")) => {
+                Some(&[-0.8, 0.6, -0.1])
+            }
             _ => None,
         }
     }
@@ -220,7 +224,13 @@ const fn is_same(a: &str, b: &str) -> bool {
 }
 
 impl Input {
-    /// Where it is, of a surface that is lit.
+    /// Where it is, of a surface that is lit and seen from its front; `None` of what places no surface.
+    #[must_use]
+    pub const fn lit(&self) -> Option<&'static [f32]> {
+        self.placed(Surface::Lit)
+    }
+
+    /// Where it is, of a surface.
     const fn placed(&self, surface: Surface) -> Option<&'static [f32]> {
         let is_vector = matches!(self.domain, Domain::Vector(..));
         let is_position = matches!(self.domain, Domain::Uniform(..));
