@@ -191,7 +191,8 @@ fn best_course(
     first_best(courses)
 }
 
-/// A formula's first output along the input on which it varies most, at the middle of its domain or at one of its random cases.
+/// A formula's first output along the input on which it varies most, of a surface that is lit, with the middle of the domain of everything else, or
+/// at one of its random cases.
 #[must_use]
 pub fn typical_course(member: &Member, profile: &Profile) -> Option<OutputCourse> {
     const CASES: u64 = 3;
@@ -200,10 +201,14 @@ pub fn typical_course(member: &Member, profile: &Profile) -> Option<OutputCourse
         member.inputs(case, 1, &mut row);
         row
     };
-    let mut middle = vec![];
-    member.spec.inputs.iter().for_each(|input| input.middle(&mut middle));
-    let rows: Vec<Vec<f32>> =
-        std::iter::once(middle).chain((0..CASES).map(|case| row(CaseRef::Random(case)))).collect();
+    let mut lit = vec![];
+    for input in member.spec.inputs {
+        match input.lit() {
+            Some(place) => lit.extend_from_slice(place),
+            None => input.middle(&mut lit),
+        }
+    }
+    let rows: Vec<Vec<f32>> = std::iter::once(lit).chain((0..CASES).map(|case| row(CaseRef::Random(case)))).collect();
     // The first output, or another where that one does not vary.
     (0..member.spec.output_len())
         .find_map(|output| first_best(rows.iter().filter_map(|row| best_course(member, row, output, None, profile))))

@@ -55,9 +55,36 @@ const NAMES: &[&str] = &[
 const FAMILIES: &[&str] =
     &["lighting/", "attenuation/", "vector/", "fog/", "color/", "interpolation/", "depth/", "blend/"];
 
-/// A formula on a line, as mathematics. `names` are those of its inputs and outputs.
+/// Characters of a line that are set in one row, at most, where it has parts.
+const ROW: usize = 60;
+
+/// A formula on a line, as mathematics. `names` are those of its inputs and outputs. The parts of a long line are set in rows of their own, so that it
+/// fits where it stands.
 #[must_use]
 pub fn equation(text: &str, names: &[&str]) -> Markup {
+    let rows = if text.chars().count() > ROW { parts(text) } else { vec![text] };
+    html! { @for text in rows { (row(text, names)) } }
+}
+
+/// A line cut behind the commas and semicolons that stand in no brackets.
+fn parts(text: &str) -> Vec<&str> {
+    let (mut parts, mut from, mut depth) = (vec![], 0, 0);
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' | '[' | '{' | '⟨' => depth += 1,
+            ')' | ']' | '}' | '⟩' => depth -= 1,
+            ',' | ';' if depth == 0 && text[at + 1..].starts_with(' ') => {
+                parts.push(text[from..=at].trim());
+                from = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(text[from..].trim());
+    parts
+}
+
+fn row(text: &str, names: &[&str]) -> Markup {
     let tokens = tokens(text, names);
     let mut parser = Parser { tokens: &tokens, at: 0, is_in_bars: false };
     let mut rows = String::new();
@@ -401,6 +428,18 @@ mod tests {
 
     fn set(text: &str) -> String {
         equation(text, &["density", "dmin", "dmax", "fog", "shaded"]).0.replace("<mrow>", "").replace("</mrow>", "")
+    }
+
+    #[test]
+    fn the_parts_of_a_long_line_are_rows_of_their_own() {
+        let rows = |text: &str| equation(text, &[]).0.matches("<math").count();
+        assert_eq!(rows("CF = LA*MA + LD*MD·max(l·n, 0) + LS*MS·max(n·h, 0)^shininess, everything normalised"), 2);
+        assert_eq!(rows("r = i − 2(i·n)n, i = −l"), 1, "a short line is one row");
+        assert_eq!(
+            rows("f(a, b, c) = (a, b, c) + (a, b, c) + (a, b, c) + (a, b, c) + (a, b, c)"),
+            1,
+            "brackets are not cut"
+        );
     }
 
     #[test]
