@@ -397,6 +397,37 @@ async function shadersAreJudgedAsTheyAreTyped() {
   await page.fill("#text", right);
   await page.selectOption("#formula", "");
   await said(/^✓ This is lighting.blinn/);
+  assert.match(await page.textContent("#told"), /What its variables are taken to be/);
+  assert.doesNotMatch(await page.textContent("#result"), /lightmeter run/, "what was typed has no command line");
+  // An example that was changed can be chosen again.
+  await page.selectOption("#example", examples[0]);
+  await page.fill("#text", `${right}\n`);
+  assert.equal(await page.inputValue("#example"), "");
+  await page.selectOption("#example", examples[0]);
+  assert.equal(await page.inputValue("#text"), right);
+  await page.selectOption("#formula", "");
+  // What is no name of a function, no input and no formula is said to be none.
+  await page.evaluate(() => { for (const place of document.querySelectorAll("details")) place.open = true; });
+  for (const [field, text, pattern] of [["function", "--shader=/etc/passwd", /is no function's name/], ["constant", "glossiness=3", /the constant `glossiness=3` is an input of no formula/]]) {
+    await page.fill(`#${field}`, text);
+    await said(pattern);
+    assert.equal(await page.locator("#drawn img").count(), 0, "no picture of an earlier shader is left");
+    await page.fill(`#${field}`, "");
+  }
+  await said(/^✓ This is lighting.blinn/);
+  const refused = await page.evaluate(async (text) => {
+    const session = performance.getEntriesByType("resource").map(({ name }) => /state\?(session=\w+&page=\d+)/.exec(name)).filter((found) => found).pop()[1];
+    const shader = { language: "glsl", text, function: "", formula: "--every", bind: [], constant: [] };
+    const response = await fetch(`play?${session}`, { method: "POST", body: JSON.stringify(shader) });
+    return (await response.json()).refused;
+  }, right);
+  assert.match(refused, /there is no formula `--every`/);
+  await page.fill("#text", "");
+  await said(/^Nothing is judged yet/);
+  assert.equal(await page.locator("#drawn img").count(), 0, "nothing is drawn of no shader");
+  const spoilt = await open(`${url}#shader=%7Bnothing`);
+  await spoilt.waitForFunction(() => /the link's shader cannot be read/.test(document.querySelector("#played").textContent), null, { timeout: 60_000 });
+  await spoilt.context().close();
   // What cannot be judged is refused in words that name no file of this machine, and the next shader is judged.
   for (const [text, pattern] of [["void main() { not glsl }", /^Not judged: /], ["(".repeat(30_000), /^Not judged: /], ["x".repeat(70_000), /65536 bytes/]]) {
     await page.fill("#text", text);
@@ -417,6 +448,7 @@ async function shadersAreJudgedAsTheyAreTyped() {
   // The refused message of 70,000 bytes is the browser's only complaint.
   assert.deepEqual(page.problems.filter((problem) => !problem.includes("413")), []);
   child.kill("SIGINT");
+  await said(/^lightmeter has ended/);
   assert.equal((await ended).code, 0);
   await page.context().close();
 }

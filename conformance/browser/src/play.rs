@@ -57,8 +57,10 @@ pub struct PlayedFormula {
     pub verdicts: u64,
     /// Verdicts that failed.
     pub failed: u64,
-    /// The mistake that explains them.
+    /// The mistake that explains them, or what else is wrong.
     pub why: Option<String>,
+    /// Outputs of the formula that the shader does not give.
+    pub missing: Vec<String>,
 }
 
 /// The same picture by the reference and by the shader, and where they differ.
@@ -83,6 +85,8 @@ pub(crate) enum PlayReply {
     Superseded,
     /// Nobody judges shaders, or it takes too long.
     Late,
+    /// No shaders are judged any more.
+    Over,
 }
 
 /// The shaders of one page: at most one waits, as people look at the last one.
@@ -99,6 +103,7 @@ struct PlaysState {
     waiting: Option<(u64, PlayedShader)>,
     under_way: Option<u64>,
     done: Option<(u64, String)>,
+    is_over: bool,
 }
 
 impl Plays {
@@ -127,6 +132,9 @@ impl Plays {
         let number = {
             let mut state = self.state();
             state.last += 1;
+            if state.is_over {
+                return PlayReply::Over;
+            }
             state.waiting = Some((state.last, shader));
             state.last
         };
@@ -134,6 +142,9 @@ impl Plays {
         let replied = self.until(patience, |state| {
             if let Some((_, result)) = state.done.as_ref().filter(|(done, _)| *done == number) {
                 return Some(PlayReply::Done(result.clone()));
+            }
+            if state.is_over {
+                return Some(PlayReply::Over);
             }
             let is_kept = state.under_way == Some(number) || state.waiting.as_ref().is_some_and(|(k, _)| *k == number);
             (!is_kept).then_some(PlayReply::Superseded)
@@ -148,6 +159,12 @@ impl Plays {
             state.under_way = Some(number);
             Some(shader)
         })
+    }
+
+    /// Notes that no shader is judged any more.
+    pub(crate) fn end(&self) {
+        self.state().is_over = true;
+        self.changed.notify_all();
     }
 
     /// Notes what became of the shader under way.
@@ -193,6 +210,19 @@ mod tests {
         assert_eq!(plays.next(LONG), Some(shader("third")));
         plays.done(&PlayedResult::default());
         assert!(matches!(third.join().expect("it ends"), PlayReply::Done(_)));
+    }
+
+    #[test]
+    fn who_waits_hears_of_the_end() {
+        let plays = Arc::new(Plays::default());
+        let waiting = {
+            let plays = plays.clone();
+            std::thread::spawn(move || plays.ask(shader("x"), LONG))
+        };
+        assert!(plays.next(LONG).is_some());
+        plays.end();
+        assert_eq!(waiting.join().expect("it ends"), PlayReply::Over);
+        assert_eq!(plays.ask(shader("y"), LONG), PlayReply::Over);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::http::{Answers, Asked, Connections, Reply};
 use crate::play::{PlayReply, PlayedShader};
-use crate::session::{BrowserHello, Session, Superseded};
+use crate::session::{BrowserHello, PROTOCOL, Session, Superseded};
 use crate::tls::certified;
 use hyper::Method;
 use hyper::header::{HOST, HeaderMap, HeaderName, ORIGIN};
@@ -286,7 +286,17 @@ impl Shared {
     fn hello(&self, body: &[u8]) -> Result<Reply, Reply> {
         let hello: BrowserHello =
             serde_json::from_slice(body).map_err(|error| Reply::refused(400, &format!("not a hello: {error}")))?;
+        if hello.protocol != PROTOCOL {
+            let spoken = hello.protocol;
+            return Err(Reply::refused(
+                400,
+                &format!(
+                    "this page speaks version {spoken} of the protocol, and lightmeter version {PROTOCOL}: load the page again"
+                ),
+            ));
+        }
         let mut sessions = locked(&self.sessions);
+        sessions.all.retain(|_, session| !session.is_gone());
         let known = hello.session.as_ref().and_then(|id| sessions.all.get(id)).cloned();
         let known = known.filter(|known| known.hello().abilities == hello.abilities && !known.has_ended());
         let session = match known {
@@ -309,6 +319,9 @@ impl Shared {
     fn next(&self, query: &HashMap<&str, &str>) -> Result<Reply, Reply> {
         let (session, page) = self.session(query)?;
         let pieces = session.after(page, number(query, "after")?, LONG_POLL)?;
+        if pieces.is_empty() && session.has_ended() {
+            return Err(over());
+        }
         let status = if pieces.is_empty() { 204 } else { 200 };
         Ok(Reply::new(status, "application/octet-stream", pieces))
     }
@@ -346,6 +359,7 @@ impl Shared {
             PlayReply::Done(result) => Ok(Reply::new(200, "application/json", result)),
             PlayReply::Superseded => Ok(Reply::new(204, "application/json", "")),
             PlayReply::Late => Err(Reply::refused(503, "the shader is not judged in time")),
+            PlayReply::Over => Err(over()),
         }
     }
 
@@ -369,6 +383,14 @@ impl Shared {
         let session = found.ok_or_else(|| Reply::refused(403, "there is no such session: load the page again"))?;
         Ok((session, number(query, "page")?))
     }
+}
+
+/// That a session has ended, of which the page may not know.
+fn over() -> Reply {
+    Reply::refused(
+        410,
+        "this session has ended: nothing is judged any more. Load the page again, or start lightmeter again",
+    )
 }
 
 fn number(query: &HashMap<&str, &str>, name: &str) -> Result<u64, Reply> {

@@ -19,6 +19,8 @@ const GOODBYE: Duration = Duration::from_secs(3);
 const AT_ONCE: usize = 8 << 20;
 /// Pictures that a page is shown, at most.
 const PICTURES_MOST: usize = 96;
+/// The protocol's version, which page and server must have in common.
+pub(crate) const PROTOCOL: u32 = 1;
 /// How often a device may be lost at the same piece of work.
 const LOSSES: u32 = 2;
 
@@ -26,6 +28,8 @@ const LOSSES: u32 = 2;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BrowserHello {
+    /// The version of the protocol that it speaks.
+    pub protocol: u32,
     /// The session that it had before it was loaded again.
     pub session: Option<String>,
     /// The GPU's vendor, as `nvidia`.
@@ -142,6 +146,8 @@ struct State {
     answers: HashMap<u64, Result<Vec<u8>, HostError>>,
     /// Pieces whose results nobody waits for.
     forgotten: HashSet<u64>,
+    /// Executors that were dropped: nothing is kept of them any more.
+    dropped: HashSet<u64>,
     /// The number of the page that has the session.
     page: u64,
     /// When the page is taken for gone, unless it is heard of before.
@@ -181,6 +187,7 @@ impl Session {
             kept: BTreeMap::new(),
             answers: HashMap::new(),
             forgotten: HashSet::new(),
+            dropped: HashSet::new(),
             page: 0,
             gone_at: Instant::now() + SILENCE,
             lost_at: (0, 0),
@@ -303,6 +310,14 @@ impl Session {
         self.state().ended.is_some()
     }
 
+    /// The same, where nothing is asked of the browser: a page that is silent for too long is gone.
+    #[must_use]
+    pub fn is_gone(&self) -> bool {
+        let mut state = self.state();
+        state.note_silence();
+        state.ended.is_some()
+    }
+
     /// Keeps pictures for the page, as PNG files. Gives the number of the first; `None` where there are enough.
     #[must_use]
     pub fn show(&self, pictures: Vec<Vec<u8>>) -> Option<usize> {
@@ -327,6 +342,7 @@ impl Session {
         board.told.is_over = true;
         board.reports = reports;
         drop(board);
+        self.plays.end();
         let until = Instant::now() + GOODBYE;
         while !self.board().is_known && self.state().ended.is_none() && Instant::now() < until {
             std::thread::sleep(Duration::from_millis(20));
@@ -365,12 +381,21 @@ impl Session {
     pub(crate) fn end(&self, why: &str) {
         self.state().ended.get_or_insert_with(|| why.into());
         self.changed.notify_all();
+        self.plays.end();
     }
 }
 
 impl State {
     const fn is_of(&self, page: u64) -> Result<(), Superseded> {
         if self.page == page { Ok(()) } else { Err(Superseded) }
+    }
+
+    /// Ends the session where its page is silent for too long.
+    fn note_silence(&mut self) {
+        if Instant::now() > self.gone_at {
+            self.ended
+                .get_or_insert_with(|| "the browser is silent: its page was closed, or its machine sleeps".to_owned());
+        }
     }
 
     fn handed(&mut self, after: u64) -> Vec<u8> {
@@ -397,7 +422,7 @@ impl State {
 
     fn close(&mut self, id: u64, result: Result<Vec<u8>, HostError>) {
         let Some(open) = self.open.remove(&id) else { return };
-        if open.role == Role::Makes {
+        if open.role == Role::Makes && !self.dropped.contains(&open.executor) {
             // Where something was refused, the others of the same piece have their places all the same.
             self.kept.insert(id, open);
         }
@@ -427,6 +452,7 @@ impl Host for Session {
         state.next += 1;
         if role == Role::Ends {
             state.kept.retain(|_, kept| kept.executor != executor);
+            state.dropped.insert(executor);
         }
         let open = Open { executor, role, bytes: bytes.into() };
         if role == Role::Changes { &mut state.kept } else { &mut state.open }.insert(id, open);
@@ -444,8 +470,8 @@ impl Host for Session {
             if let Some(why) = &state.ended {
                 return Err(HostError::Failed(why.clone()));
             }
-            if Instant::now() > state.gone_at {
-                state.ended = Some("the browser is silent: its page was closed, or its machine sleeps".into());
+            state.note_silence();
+            if state.ended.is_some() {
                 continue;
             }
             if Instant::now() > until {

@@ -35,7 +35,7 @@ fn path(server: &Server, name: &str) -> String {
     format!("/{}/{name}", server.access().token)
 }
 
-const HELLO: &str = r#"{"session": null, "vendor": "maker", "architecture": "modern", "model": "", "description": "", "platform": "Linux",
+const HELLO: &str = r#"{"protocol": 1, "session": null, "vendor": "maker", "architecture": "modern", "model": "", "description": "", "platform": "Linux",
     "browser": "Tester", "version": "1", "abilities": {"is_cpu": true, "most_pixels": 8192, "features": ["float32-blendable"]}}"#;
 
 #[test]
@@ -59,6 +59,9 @@ fn the_page_is_served_and_what_nobody_should_ask_is_refused() {
     assert_eq!(get("next?session=0&page=1&after=0", &own), 403, "no such session");
     assert_eq!(post("hello", &own, b"rubbish").0, 400);
     assert_eq!(post("hello", &own, &vec![b' '; (1 << 16) + 1]).0, 413);
+    let (status, told) = post("hello", &own, HELLO.replace("\"protocol\": 1", "\"protocol\": 2").as_bytes());
+    let told = String::from_utf8_lossy(&told).into_owned();
+    assert!(status == 400 && told.contains("version 2") && told.contains("load the page again"), "{told}");
     assert_eq!(post("page.js", &own, b"").0, 405);
     assert!(server.next_browser(Duration::ZERO).is_none(), "none of these is a browser");
     assert_eq!(post("hello", &own, HELLO.as_bytes()).0, 200);
@@ -135,6 +138,9 @@ fn a_page_that_is_loaded_again_is_handed_what_is_kept_and_what_is_open_and_nothi
     session.answer(first, dropped.0, Ok(vec![])).expect("it is its page");
     session.wait(dropped).expect("it was answered");
     session.send(&WorkPiece::Drop { executor: 2 });
+    // What is made after its executor was dropped is not kept.
+    let late = make(2);
+    session.answer(first, late.0, Ok(vec![])).expect("it is its page");
     let second = session.take_over();
     session.answer(first, open.0, Ok(vec![3])).expect_err("another page has the session");
     session.after(first, 0, Duration::ZERO).expect_err("another page has the session");

@@ -38,6 +38,9 @@ pub struct FormulaCandidate {
     /// What explains them: the mistake that leads from the formula to the shader.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explanation: Option<String>,
+    /// What is wrong with its values all together, where each alone is legal: a systematic error, or a result that changes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
     /// The names of the mistakes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mistakes: Vec<String>,

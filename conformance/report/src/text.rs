@@ -614,7 +614,8 @@ pub fn failure(failure: &Failure, level: Level, out: &mut impl Write) -> Result 
         let off = distance_told(failure.error_ulp, unit_of(failure), failure.value, failure.reference);
         writeln!(out, "  {:<14} {}{bits}, {off}", "value", failure.value.narrow())?;
     }
-    writeln!(out, "  {:<14} {}", "again", failure.rerun)
+    // What was typed into a page has no command that judges it again.
+    if failure.rerun.is_empty() { Ok(()) } else { writeln!(out, "  {:<14} {}", "again", failure.rerun) }
 }
 
 /// What the error of a failure is counted in.

@@ -4,7 +4,7 @@
 //! option that is given wins, and a wrong value is told like a wrong option.
 
 use anyhow::{Context as _, bail};
-use clap::Command;
+use clap::{Arg, Command};
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::PROFILES;
 use lightmeter::document::run::ConfigUse;
@@ -74,6 +74,7 @@ pub(crate) fn arguments(command: &Command) -> anyhow::Result<Vec<OsString>> {
     let taken = |name: &str| named.and_then(|one| one.get_arguments().find(|arg| arg.get_long() == Some(name)));
     // The reference draws where no adapter is asked for, whatever a project's adapter is.
     let draws = named.is_some_and(|one| one.get_name() == "render");
+    let judges_browsers = named.is_some_and(|one| one.get_name() == "serve");
     if is_left_out || draws || !NAMES.iter().any(|name| taken(name).is_some()) {
         return Ok(given);
     }
@@ -83,7 +84,9 @@ pub(crate) fn arguments(command: &Command) -> anyhow::Result<Vec<OsString>> {
     for (name, values) in options(&config, path.parent().unwrap_or(Path::new("."))) {
         // Without a baseline nothing grows.
         let is_of_baseline = name == "growth" && config.baseline.is_none() && !is_given(options_given, "baseline");
-        let Some(option) = taken(name).filter(|_| !is_given(options_given, name) && !is_of_baseline) else { continue };
+        let has_no_use =
+            is_of_baseline || judges_browsers && name == "adapter" || is_excluded(named, name, options_given);
+        let Some(option) = taken(name).filter(|_| !is_given(options_given, name) && !has_no_use) else { continue };
         if values.len() > 1 && !matches!(option.get_action(), clap::ArgAction::Append) {
             bail!(
                 "{file} sets {name} to a list of {} values, but this command takes only one; choose one with `--{name}`",
@@ -160,6 +163,16 @@ fn options(config: &Config, folder: &Path) -> Vec<(&'static str, Vec<OsString>)>
         ("require", number(&config.require)),
     ];
     all.into_iter().filter(|(_, values)| !values.is_empty()).collect()
+}
+
+/// Whether one of the options that are given cannot be used with another one.
+fn is_excluded(command: Option<&Command>, name: &str, given: &[OsString]) -> bool {
+    let Some(command) = command else { return false };
+    let excludes = |arg: &&Arg| command.get_arg_conflicts_with(arg).iter().any(|other| other.get_long() == Some(name));
+    command
+        .get_arguments()
+        .filter(|arg| arg.get_long().is_some_and(|long| is_given(given, long)))
+        .any(|arg| excludes(&arg))
 }
 
 /// Whether an option is among the words.

@@ -109,16 +109,20 @@ impl Identify {
 
     fn document(&self, file: &Path, report: &Report, adapted: &[Adapted]) -> IdentifyDocument {
         let candidates = candidates(report, adapted);
-        let is = |candidate: &&FormulaCandidate| candidate.failed == 0 && candidate.verdicts > 0;
         IdentifyDocument {
             schema: SCHEMA.into(),
             file: file.to_string_lossy().into_owned(),
             function: self.function.clone(),
             adapter: report.adapters.first().map(|adapter| adapter.name.clone()).unwrap_or_default(),
-            is: candidates.iter().filter(is).map(|candidate| candidate.formula.clone()).collect(),
+            is: candidates.iter().filter(|one| is_formula(one)).map(|candidate| candidate.formula.clone()).collect(),
             candidates,
         }
     }
+}
+
+/// Whether a shader is judged to be this formula.
+fn is_formula(candidate: &FormulaCandidate) -> bool {
+    candidate.failed == 0 && candidate.problem.is_none() && candidate.verdicts > 0
 }
 
 /// The formulas that a shader was judged by, the nearest one first.
@@ -129,7 +133,8 @@ pub(super) fn candidates(report: &Report, adapted: &[Adapted]) -> Vec<FormulaCan
             FormulaCandidate { formula: id.clone(), missing: missing.clone(), ..FormulaCandidate::default() };
         for group in report.groups.iter().filter(|group| group.id == *id) {
             candidate.verdicts += group.totals.verdicts - group.totals.indeterminate;
-            candidate.failed += group.totals.failed + u64::from(group.problem.is_some());
+            candidate.failed += group.totals.failed;
+            candidate.problem = candidate.problem.or_else(|| group.problem.clone());
             candidate.explanation = candidate.explanation.or_else(|| group.explanation.clone());
             if candidate.mistakes.is_empty() {
                 candidate.mistakes.clone_from(&group.mistakes);
@@ -139,10 +144,10 @@ pub(super) fn candidates(report: &Report, adapted: &[Adapted]) -> Vec<FormulaCan
     }
     // What has a name is nearer than what has none, and one mistake nearer than two. Shares of what fails are compared in quarters: they
     // depend on which hard cases a formula has, and where they are alike the formula that is listed first is the more common one.
-    let steps = |candidate: &FormulaCandidate| match (candidate.failed, candidate.mistakes.len()) {
-        (0, _) => 0,
-        (_, 0) => usize::MAX,
-        (_, mistakes) => mistakes,
+    let steps = |candidate: &FormulaCandidate| match candidate.mistakes.len() {
+        _ if is_formula(candidate) => 0,
+        0 => usize::MAX,
+        mistakes => mistakes,
     };
     #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
     let share =
@@ -178,13 +183,14 @@ fn told(document: &IdentifyDocument, again: &str) -> Result<String, std::fmt::Er
             _ => format!("computes none of the {tried} formulas"),
         };
         writeln!(text, "{what} {none} that its variables can be bound to.")?;
-        write!(
-            text,
-            "The nearest is {}, of which {} of {} values are wrong",
-            nearest.formula,
-            thousands(nearest.failed),
-            thousands(nearest.verdicts)
-        )?;
+        write!(text, "The nearest is {}, of which ", nearest.formula)?;
+        match &nearest.problem {
+            Some(problem) if nearest.failed == 0 => write!(text, "each value is legal, but: {problem}")?,
+            _ if nearest.verdicts == 0 => write!(text, "no value could be judged")?,
+            _ => {
+                write!(text, "{} of {} values are wrong", thousands(nearest.failed), thousands(nearest.verdicts))?;
+            }
+        }
         match &nearest.explanation {
             Some(explanation) => writeln!(text, ":\n  {explanation}")?,
             None => writeln!(text, ".")?,

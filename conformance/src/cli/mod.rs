@@ -1,5 +1,6 @@
 //! The command line: what can be asked for, and the exit codes.
 
+mod adapt;
 mod adapters;
 mod bench;
 mod book;
@@ -165,7 +166,7 @@ enum Command {
     #[command(hide = true)]
     TryShaders(foreign::Try),
     #[command(hide = true)]
-    AdaptShader(shader::Adapt),
+    AdaptShader(adapt::Adapt),
 }
 
 impl Cli {

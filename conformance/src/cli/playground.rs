@@ -4,6 +4,7 @@ use super::identify::{CASES, candidates};
 use super::shader::{OwnShader, constant, is_identified};
 use super::{NothingToRun, Status};
 use anyhow::Context as _;
+use anyhow::{bail, ensure};
 use lightmeter::arithmetic::Profile;
 use lightmeter::book::picture::{FormulaPicture, png};
 use lightmeter::browser::{PlayedFormula, PlayedLanguage, PlayedPicture, PlayedResult, PlayedShader, Session};
@@ -72,7 +73,7 @@ impl Playground {
     }
 
     fn serve(mut self) {
-        while self.stop.signal().is_none() && !self.session.has_ended() {
+        while self.stop.signal().is_none() && !self.session.is_gone() {
             let Some(shader) = self.session.next_shader(LOOK) else { continue };
             let result = self.judged(&shader).unwrap_or_else(|error| {
                 if error.downcast_ref().is_some_and(DeviceError::is_of_device) {
@@ -82,7 +83,11 @@ impl Playground {
             });
             self.session.tell_of_shader(&result);
         }
-        self.session.tell_the_end("The command has ended: nothing is judged any more.".into(), None);
+        self.session.tell_the_end(
+            "lightmeter has ended: nothing is judged any more. Start it again, and load this page's new address."
+                .into(),
+            None,
+        );
     }
 
     /// Judges a shader by the formula that was chosen, or by all that its variables can be bound to.
@@ -94,8 +99,13 @@ impl Playground {
         };
         let file = folder.path().join(name);
         std::fs::write(&file, &shader.text)?;
-        // Messages name the file, of which people know nothing.
-        let bare = |text: &str| lines(text).replace(&format!("{}/", folder.path().display()), "");
+        // Messages name the file and options, of which people see nothing in a page.
+        let bare = |text: &str| {
+            let text = lines(text).replace(&format!("{}/", folder.path().display()), "");
+            text.replace("`--constant ", "the constant `")
+                .replace("--bind '", "variable '")
+                .replace("`--bind ", "the variable `")
+        };
         let judged = self.judged_file(shader, &file);
         match judged {
             Ok(result) => Ok(PlayedResult { told: bare(&result.told), result: bare(&result.result), ..result }),
@@ -105,6 +115,7 @@ impl Playground {
     }
 
     fn judged_file(&mut self, shader: &PlayedShader, file: &Path) -> anyhow::Result<PlayedResult> {
+        check(shader)?;
         let constants = shader.constant.iter().map(|text| constant(text).map_err(anyhow::Error::msg));
         let function = Some(shader.function.as_str()).filter(|name| !name.is_empty());
         let own = OwnShader::new(file.into(), function, shader.bind.clone(), constants.collect::<Result<_, _>>()?);
@@ -118,7 +129,8 @@ impl Playground {
         options.diagnose = Some(&Mistakes);
         options.adapted.clone_from(&accepted.adapted);
         options.stop = self.stop.clone();
-        let report = run(std::slice::from_mut(&mut self.subject), &options, &mut Silent)?;
+        let mut report = run(std::slice::from_mut(&mut self.subject), &options, &mut Silent)?;
+        report.failures.iter_mut().for_each(|failure| failure.rerun.clear());
         if let Some(interrupted) = &report.interrupted {
             return Err(
                 DeviceError::Failed(format!("the shader was not judged to its end: {}", interrupted.message)).into()
@@ -137,13 +149,13 @@ impl Playground {
             id: candidate.formula.clone(),
             verdicts: candidate.verdicts,
             failed: candidate.failed,
-            why: candidate.explanation.clone(),
+            why: candidate.explanation.clone().or_else(|| candidate.problem.clone()),
+            missing: candidate.missing.clone(),
         });
         let mut result = String::new();
         let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false, level: Level::Normal };
         text::write(&report, style, &mut result)?;
-        // What the variables of twenty formulas were taken for, nobody reads.
-        let told = if formulas.is_empty() { String::new() } else { told };
+        let told = nearest.map(|id| told_of_formula(&told, id)).unwrap_or_default();
         Ok(PlayedResult { refused: None, told, formulas: told_of.collect(), result, picture })
     }
 
@@ -216,6 +228,34 @@ impl Playground {
         let words = device.finish(&work, job, &rows)?;
         Ok(Some(words.into_iter().map(|word| f32::from_bits(word).into()).collect()))
     }
+}
+
+/// Refuses what the command line of the process that reads the shader could take for something else.
+fn check(shader: &PlayedShader) -> anyhow::Result<()> {
+    let PlayedShader { function, formula, .. } = shader;
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    ensure!(
+        function.chars().all(is_word),
+        "`{function}` is no function's name: leave the field empty to judge the whole shader"
+    );
+    let is_known = |member: Member| is_identified(&member.spec) && member.spec.id == *formula;
+    if !formula.is_empty() && !catalogue().into_iter().any(is_known) {
+        bail!("there is no formula `{formula}` that a shader can be judged by");
+    }
+    Ok(())
+}
+
+/// What the variables of a shader were taken for by one formula, of what was told of all.
+fn told_of_formula(told: &str, id: &str) -> String {
+    let is_head = |line: &&str| !line.starts_with(' ');
+    let of_it = told.lines().skip_while(|line| !(is_head(line) && line.contains(&format!(" judged as {id}."))));
+    let mut lines = of_it.enumerate().take_while(|(k, line)| *k == 0 || !is_head(line)).map(|(_, line)| line);
+    let mut text = String::new();
+    for line in lines.by_ref() {
+        text += line;
+        text.push('\n');
+    }
+    text
 }
 
 fn subject(session: &Arc<Session>) -> Subject {

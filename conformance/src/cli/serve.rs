@@ -3,14 +3,45 @@
 use super::playground::play;
 use super::run::{Prepared, Run};
 use super::visit::{awaited, tell_of};
-use super::{NothingToRun, Status};
+use super::{NothingToRun, Status, say};
 use clap::Args;
 use lightmeter::browser::{Server, Session};
 use lightmeter::subject_gpu::browser::of_session;
-use std::net::SocketAddr;
+use std::net::{SocketAddr, ToSocketAddrs as _};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::thread::JoinHandle;
+
+/// Options that a playground has no use for: it judges what is typed.
+const PLAYGROUND_LACKS: [&str; 27] = [
+    "filter",
+    "blend",
+    "target",
+    "size",
+    "seed",
+    "shaders",
+    "shader",
+    "function",
+    "bind",
+    "constant",
+    "cases",
+    "shard",
+    "suggest",
+    "groups",
+    "timing",
+    "separate",
+    "images",
+    "runs",
+    "fail_fast",
+    "expect",
+    "baseline",
+    "growth",
+    "update_baseline",
+    "require",
+    "format",
+    "out",
+    "keep",
+];
 
 /// Judge the GPU of a browser: a page that it opens computes what `run` asks, and what comes back is judged here.
 #[derive(Debug, Args)]
@@ -18,7 +49,7 @@ pub(crate) struct Serve {
     #[command(flatten)]
     run: Run,
     /// Where the page is served: an address of this machine, and a port; 0 is any that is free. Other machines reach it by https alone
-    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0")]
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0", value_parser = address)]
     listen: SocketAddr,
     /// Open the page in the default browser
     #[arg(long)]
@@ -27,7 +58,7 @@ pub(crate) struct Serve {
     #[arg(long)]
     keep: bool,
     /// Judge shaders that are typed into the page, as they are typed, and nothing else; Ctrl-C ends it
-    #[arg(long, conflicts_with_all = ["filter", "blend", "keep", "shaders", "shader", "function", "bind", "constant", "out", "format"])]
+    #[arg(long, conflicts_with_all = PLAYGROUND_LACKS)]
     playground: bool,
 }
 
@@ -42,8 +73,8 @@ impl Serve {
         let prepared = self.run.prepared()?;
         let server = Server::start(self.listen)?;
         tell_of(&server);
-        if self.open {
-            open(&server.access().url())?;
+        if let (true, Err(error)) = (self.open, open(&server.access().url())) {
+            say(&format!("note: {error}"));
         }
         let stop = prepared.stop().clone();
         let next = || awaited(&server, &stop);
@@ -103,6 +134,15 @@ fn named(session: &Session, names: &mut Vec<String>) -> String {
         1 => name,
         count => format!("{name}-{count}"),
     }
+}
+
+/// An address of this machine with a port. Of the addresses that a name stands for, that of version 4 is taken, as most browsers do.
+fn address(text: &str) -> Result<SocketAddr, String> {
+    let expected = "expected ADDRESS:PORT, as 127.0.0.1:8080, [::1]:8080 or localhost:8080";
+    let found = text.to_socket_addrs().map_err(|error| format!("{error}; {expected}"))?;
+    let mut found: Vec<SocketAddr> = found.collect();
+    found.sort_by_key(SocketAddr::is_ipv6);
+    found.first().copied().ok_or_else(|| expected.to_owned())
 }
 
 /// Opens a page in the default browser.

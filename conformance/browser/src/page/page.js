@@ -5,8 +5,10 @@
 
 import { decode } from "./cbor.js";
 import { Executors, Refused } from "./executor.js";
-import { openPlayground } from "./playground.js";
+import { endPlayground, openPlayground } from "./playground.js";
 
+// The protocol's version.
+const PROTOCOL = 1;
 // Pieces whose results are awaited at once.
 const UNDER_WAY = 12;
 const PATIENCE = 60_000;
@@ -54,6 +56,7 @@ function hello({ adapter, device }) {
   const { vendor = "", architecture = "", device: model = "", description = "", isFallbackAdapter } = adapter.info;
   const isCpu = Boolean(isFallbackAdapter ?? adapter.isFallbackAdapter) || /swiftshader|llvmpipe|basic render/i.test(`${architecture} ${description}`);
   return {
+    protocol: PROTOCOL,
     session: sessionStorage.getItem("lightmeter-session"),
     vendor,
     architecture,
@@ -77,7 +80,8 @@ async function persistently(path, options, patience = PATIENCE) {
       const response = await fetch(path, { ...options, cache: "no-store" });
       if (response.ok) return response;
       const text = await response.text();
-      throw new Stopped(response.status === 409 ? "Another page has taken over: this one is idle." : `The server refuses a message: ${text}`);
+      if (response.status === 409) throw new Stopped("Another page has taken over: this one is idle.");
+      throw new Stopped(response.status === 410 ? text : `The server refuses a message: ${text}`);
     } catch (error) {
       if (error instanceof Stopped) throw error;
       if (performance.now() > until) throw new Stopped("The server is gone. Look at the terminal where lightmeter was started.");
@@ -186,6 +190,7 @@ async function offer(page) {
 
 // Shows what the server tells of the run, once a second.
 async function tell(page) {
+  const play = (shader) => post(`play?${page.session}`, JSON.stringify(shader));
   let groups = 0;
   let last = null;
   while (!page.isOver) {
@@ -196,7 +201,7 @@ async function tell(page) {
       if (group.failed > 0 || group.why) await failure(group, page);
     }
     groups += state.groups.length;
-    if (state.playground.length > 0) openPlayground(state.playground, (shader) => post(`play?${page.session}`, JSON.stringify(shader)));
+    if (state.playground.length > 0) openPlayground(state.playground, play);
     const { done, of, failed } = state;
     const verdict = shown("verdict");
     verdict.textContent = state.says;
@@ -210,6 +215,7 @@ async function tell(page) {
     if (state.is_over) {
       page.isOver = true;
       if (state.playground.length === 0) await offer(page);
+      else endPlayground(state.says);
       shown("rate").textContent = "";
       return;
     }
@@ -238,7 +244,7 @@ async function run() {
     });
     addEventListener("pagehide", () => { if (!page.isOver) navigator.sendBeacon(`bye?${page.session}`); });
     // What fails because the device is lost is no news.
-    const told = (error) => { if (!page.isLost) page.stop(error); };
+    const told = (error) => { if (!page.isLost && !page.isOver) page.stop(error); };
     tell(page).then(over, told);
     serve(page).catch(told);
     await Promise.race([lost, stopped]);
@@ -248,4 +254,8 @@ async function run() {
   }
 }
 
-run().catch((error) => notice(error instanceof Stopped ? error.message : `This page failed: ${error.message}`));
+run().catch((error) => {
+  const text = error instanceof Stopped ? error.message : `This page failed: ${error.message}`;
+  notice(text);
+  endPlayground(text);
+});

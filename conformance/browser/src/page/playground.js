@@ -12,7 +12,7 @@ const FIELDS = ["language", "formula", "function", "text", "bind", "constant"];
 const PICTURES = ["the reference", "your shader, on this GPU", "the error map: blue is legal, yellow to violet is wrong"];
 
 let send = null;
-let [timer, isUnderWay, isChanged] = [0, false, false];
+let [timer, isUnderWay, isChanged, isOver] = [0, false, false, false];
 
 const typed = () => Object.fromEntries(FIELDS.map((name) => [name, shown(name).value]));
 const listed = (text) => text.split("\n").map((line) => line.trim()).filter((line) => line);
@@ -36,24 +36,27 @@ function fill(values) {
   if (shown("formula").selectedIndex < 0) shown("formula").value = "";
 }
 
+const wrong = ({ verdicts, failed }) => `${failed.toLocaleString("en")} of ${count(verdicts, "value")} are wrong`;
+const lacks = ({ missing }) => (missing.length > 0 ? `\nThe shader does not give ${missing.join(" and ")}, which is not judged.` : "");
+
 function say(text, state) {
   shown("played").textContent = text;
   shown("played").className = state;
 }
 
-function show({ refused, told, formulas, result, picture }) {
+function show({ refused = null, told = "", formulas = [], result = "", picture = null }) {
   const [nearest, ...others] = formulas;
   if (refused !== null) say(`Not judged: ${refused}`, "failed");
-  else if (!nearest) say("Nothing was judged.", "failed");
+  else if (!nearest) say("Nothing is judged yet.", "");
   else if (nearest.verdicts === 0) say(`Nothing of ${nearest.id} was judged: of these inputs nothing is promised, or the device refused the shader.`, "failed");
-  else if (nearest.failed === 0) say(`✓ This is ${nearest.id}: ${count(nearest.verdicts, "value")}, all legal.`, "passed");
-  else {
-    const why = nearest.why ?? "No mistake of the catalogue explains them.";
-    say(`✗ The nearest is ${nearest.id}: ${nearest.failed.toLocaleString("en")} of ${count(nearest.verdicts, "value")} are wrong.\n${why}`, "failed");
-  }
-  shown("nearest").replaceChildren(...others.map(({ id, verdicts, failed, why }) => {
+  else if (nearest.failed > 0) say(`✗ The nearest is ${nearest.id}: ${wrong(nearest)}.\n${nearest.why ?? "No mistake of the catalogue explains them."}${lacks(nearest)}`, "failed");
+  else if (nearest.why !== null) say(`✗ This is ${nearest.id}, and each of ${count(nearest.verdicts, "value")} is legal, but not all of them together.\n${nearest.why}${lacks(nearest)}`, "failed");
+  else say(`✓ This is ${nearest.id}: ${count(nearest.verdicts, "value")}, all legal.${lacks(nearest)}`, "passed");
+  shown("nearest").replaceChildren(...others.map((other) => {
     const line = document.createElement("li");
-    line.textContent = failed === 0 ? `It is ${id}, too.` : `By ${id} ${failed.toLocaleString("en")} of ${count(verdicts, "value")} are wrong${why ? `: ${why}` : "."}`;
+    const { id, verdicts, failed, why } = other;
+    if (verdicts === 0) line.textContent = `By ${id} nothing was judged.`;
+    else line.textContent = failed === 0 && why === null ? `It is ${id}, too.` : `By ${id} ${wrong(other)}${why ? `: ${why}` : "."}`;
     return line;
   }));
   shown("drawn").replaceChildren(...(picture?.files ?? []).map((file, k) => {
@@ -64,7 +67,7 @@ function show({ refused, told, formulas, result, picture }) {
     figure.append(image, caption);
     return figure;
   }));
-  shown("drawn-says").textContent = picture ? `${picture.caption}. ${picture.wrong.toLocaleString("en")} of ${count(picture.drawn, "pixel")} are wrong.` : "";
+  shown("drawn-says").textContent = picture ? `${picture.caption[0].toUpperCase()}${picture.caption.slice(1)}. ${picture.wrong.toLocaleString("en")} of ${count(picture.drawn, "pixel")} are wrong.` : "";
   for (const [place, inside, text] of [["whole", "result", result], ["taken", "told", told]]) {
     shown(inside).textContent = text;
     shown(place).hidden = text === "";
@@ -72,20 +75,27 @@ function show({ refused, told, formulas, result, picture }) {
 }
 
 async function judge() {
+  if (isOver) return;
   if (isUnderWay) {
     isChanged = true;
     return;
   }
   const shader = typed();
-  if (shader.text.trim() === "") return;
+  if (shader.text.trim() === "") {
+    show({});
+    return;
+  }
   isUnderWay = true;
   say("Judging …", "");
   try {
     const response = await send({ ...shader, bind: listed(shader.bind), constant: listed(shader.constant) });
-    if (response.status === 200) show(await response.json());
+    const result = response.status === 200 ? await response.json() : null;
+    if (isOver) return;
+    if (result) show(result);
     else isChanged = true;
   } catch (error) {
-    say(error.message, "failed");
+    if (isOver) return;
+    if (!isChanged) show({ refused: error.message });
   }
   isUnderWay = false;
   if (isChanged) {
@@ -94,7 +104,9 @@ async function judge() {
   }
 }
 
-function changed() {
+function changed(event) {
+  // What was changed is no example any more, and each can be chosen again.
+  if (event) shown("example").value = "";
   const values = typed();
   history.replaceState(null, "", values.text === "" ? "#" : `#shader=${packed(values)}`);
   shown("copied").textContent = "";
@@ -111,21 +123,32 @@ function offerExamples() {
   });
 }
 
-// What the address's fragment holds; an address that somebody spoilt holds nothing.
+// What the address's fragment holds.
 function fromAddress() {
-  const found = /^#shader=([\w-]+)$/.exec(location.hash);
-  if (!found) return;
+  const [, link] = /^#shader=(.*)$/.exec(location.hash) ?? [];
+  if (link === undefined) return;
   try {
-    fill(unpacked(found[1]));
+    fill(unpacked(link));
   } catch {
-    say("The link's shader cannot be read.", "failed");
+    show({ refused: "the link's shader cannot be read. It may have been cut: copy all of the link." });
+    return;
   }
   judge();
 }
 
+// Nothing is judged any more, and why.
+export function endPlayground(text) {
+  isOver = true;
+  clearTimeout(timer);
+  if (!shown("playground").hidden) say(text, "failed");
+}
+
 export function openPlayground(formulas, sender) {
+  const [isFirst, isSame] = [send === null, send === sender];
   send = sender;
-  if (!shown("playground").hidden) return;
+  // After a lost device, what was under way is judged again.
+  if (!isFirst && !isSame) judge();
+  if (!isFirst) return;
   for (const id of formulas) shown("formula").append(new Option(id, id));
   offerExamples();
   for (const name of FIELDS) shown(name).addEventListener("input", changed);
