@@ -127,10 +127,14 @@ fn columns_that_do_not_fit_the_pack_are_refused_by_name() {
         assert!(error.contains(said), "{said}: {error}");
     };
     let shape = format!("({rows},)");
+    let a_matrix = format!("its shape is [{rows}, 1]; expected [{rows}], as of f[:, 0]");
+    let a_row = format!("its shape is [{}]; expected [{rows}, 3]", 3 * rows);
     for (path, file, said) in [
         (&f, array(&shape, "<i4", false, &scalar), "its numbers are '<i4'; expected <f4 or <f8"),
         (&f, array("(3,)", "<f4", false, &[0; 12]), "its shape is [3]; expected"),
         (&color, array(&format!("(3, {rows})"), "<f4", false, &vector), "its shape is [3, "),
+        (&f, array(&format!("({rows}, 1)"), "<f4", false, &scalar), &a_matrix),
+        (&color, array(&format!("({},)", 3 * rows), "<f4", false, &vector), &a_row),
         (&color, array(&format!("({rows}, 3)"), "<f4", true, &vector), "Fortran's order"),
         (&f, array(&shape, "<f4", false, &scalar[4..]), "bytes; expected"),
         (&f, b"numbers".to_vec(), "it is no array"),
@@ -181,24 +185,50 @@ fn a_process_is_asked_in_columns() {
         ("wrong", 1, ""),
         ("skips", 1, "not built"),
         ("errors", 1, "no memory"),
-        ("short", 1, "bytes in columns; expected"),
-        ("type", 1, "its `dtype` is `<i4`; expected <f4 or <f8"),
-        ("nothing", 1, "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
-        ("other", 4, "no batch 0 of `fog/exp` waits for an answer in columns"),
         ("crash", 4, "cases asked in columns it ended"),
         ("hang", 4, "cases asked in columns it took longer"),
+        ("few", 4, "it took longer than a case may: it announced "),
     ] {
         let output = process(&formulas, &format!("columns={way}"), &["--case-timeout", "1"]);
         let (found, report) = report(&output);
         assert_eq!(found, status, "{way}: {report}");
         assert!(report.to_string().contains(said), "{way}: {report}");
         assert_eq!(count(&report, "asked"), count(&whole, "asked"), "{way}");
-        if matches!(way, "f4" | "f8" | "lines" | "crash" | "hang" | "other") {
+        if matches!(way, "f4" | "f8" | "lines" | "crash" | "hang" | "few") {
             assert_eq!(count(&report, "passed"), count(&whole, "passed"), "{way}: {report}");
         } else {
             assert_eq!(count(&report, "passed"), 0, "{way}: {report}");
         }
     }
+}
+
+#[test]
+fn what_is_no_answer_in_columns_is_told_at_once_and_its_cases_are_asked_by_lines() {
+    let formulas = ["fog/exp", "vector/reflect"];
+    let whole = report(&process(&formulas, "", &[])).1;
+    for (way, kind, said) in [
+        ("short", "malformed", " bytes in columns; expected "),
+        ("huge", "malformed", "its line announces 1000000000000000 bytes in columns; expected "),
+        ("surplus", "malformed", "5 bytes stand before the line of its answer; expected none"),
+        ("type", "malformed", "its `dtype` is `<i4`; expected <f4 or <f8"),
+        ("nothing", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
+        ("both", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
+        ("other", "unknown", "no batch 0 of `fog/exp` waits for an answer in columns"),
+    ] {
+        // Whoever waited for what does not come would wait for ten minutes.
+        let (begun, timeout) = (std::time::Instant::now(), ["--case-timeout", "600"]);
+        let (status, report) = report(&process(&formulas, &format!("columns={way}"), &timeout));
+        assert!(begun.elapsed().as_secs() < 60, "{way}: {:?}", begun.elapsed());
+        let problems = &report["problems"];
+        assert!(status == 4 && problems["counts"][kind].as_u64() >= Some(1), "{way}: {report}");
+        assert!(problems.to_string().contains(said), "{way}: {problems}");
+        assert_eq!((count(&report, "failed"), count(&report, "missing")), (0, 0), "{way}: {report}");
+        assert_eq!(count(&report, "passed"), count(&whole, "passed"), "{way}: {report}");
+    }
+    // Behind the last array nothing waits for a line, and what stands there is told all the same.
+    let (status, report) = report(&process(&["fog/exp/random"], "columns=surplus", &[]));
+    assert!(status == 4 && report["problems"].to_string().contains("5 bytes behind the last answer"), "{report}");
+    assert_eq!(count(&report, "passed"), count(&report, "asked"), "{report}");
 }
 
 #[test]
@@ -213,12 +243,17 @@ fn rows_of_columns_are_skipped_by_a_line() {
         std::fs::write(answers.join("answers.jsonl"), lines.concat()).expect("it can be written");
         report(&lightmeter(&["gate", text(&pack), text(&answers), "--format", "json"]))
     };
-    let (status, report) = judged(&[json!({ "id": "fog/exp", "skip": "no fog", "rows": [0, 3, 3] })]);
+    let (status, report) = judged(&[json!({ "id": "fog/exp", "skip": "no fog", "rows": [0, 3] })]);
     assert_eq!((status, count(&report, "skipped"), &report["totals"]["undeclared"]), (0, 2, &Value::Null), "{report}");
     let (status, report) = judged(&[json!({ "id": "vector/reflect", "skip": "none", "rows": [1] })]);
     assert_eq!((status, count(&report, "skipped"), count(&report, "undeclared")), (1, 1, 1), "{report}");
     for (line, kind, said) in [
         (json!({ "id": "fog/exp", "skip": "no fog" }), "duplicate", "names them by `rows`"),
+        (
+            json!({ "id": "fog/exp", "skip": "no fog", "rows": [1, 1] }),
+            "duplicate",
+            "row 1 of fog/exp is skipped more than once",
+        ),
         (json!({ "id": "fog/exp", "skip": "no fog", "rows": [100_000] }), "unknown", "rows, counted from 0"),
         (json!({ "id": "fog/exp", "value": [1] }), "unknown", "is a formula; expected the id of a case"),
     ] {
@@ -226,4 +261,9 @@ fn rows_of_columns_are_skipped_by_a_line() {
         let problems = &report["problems"];
         assert!(status == 4 && problems["counts"][kind] == 1 && problems.to_string().contains(said), "{problems}");
     }
+    // One row by two lines: both lines are of answers, and the first holds.
+    let skip = json!({ "id": "fog/exp", "skip": "no fog", "rows": [4, 5] });
+    let (status, report) = judged(&[skip.clone(), skip]);
+    assert_eq!((status, count(&report, "skipped")), (4, 2), "{report}");
+    assert!(report["problems"].to_string().contains("line 3: row 4 of fog/exp is skipped more than once"), "{report}");
 }
