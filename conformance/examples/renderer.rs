@@ -132,13 +132,38 @@ impl Renderer<'_> {
             "errors" => head["error"] = json!("no memory"),
             "lines" => head["lines"] = json!(true),
             "nothing" => {}
+            "cases" => head = json!({ "id": "fog/exp/random/000000", "value": [0.5] }),
             "other" => head["batch"] = json!(0),
             _ => {}
         }
-        if !matches!(way, "f4" | "f8" | "short" | "other" | "type" | "wrong") {
+        if !matches!(way, "f4" | "f8" | "short" | "other" | "type" | "wrong" | "surplus" | "few" | "huge" | "both") {
             writeln!(out, "{head}")?;
             return Ok(());
         }
+        let mut data = self.arrays(request, bytes, way)?;
+        if way == "short" {
+            data.truncate(data.len() - 4);
+        }
+        head["bytes"] = json!(if way == "huge" { 1_000_000_000_000_000 } else { data.len() });
+        match way {
+            // More and fewer bytes than the line announces.
+            "surplus" => data.extend([0x7f; 5]),
+            "few" => data.truncate(data.len() - 8),
+            "both" => head["lines"] = json!(true),
+            _ => {}
+        }
+        head["dtype"] = json!(match way {
+            "f8" => "<f8",
+            "type" => "<i4",
+            _ => "<f4",
+        });
+        writeln!(out, "{head}")?;
+        out.write_all(&data)?;
+        Ok(())
+    }
+
+    /// The outputs of a batch in columns, an array for each.
+    fn arrays(&self, request: &Value, bytes: &[u8], way: &str) -> anyhow::Result<Vec<u8>> {
         let member = self.by_id[request["columns"].as_str().unwrap_or_default()];
         let numbers: Vec<f32> =
             bytes.chunks_exact(4).map(|part| part.try_into().map(f32::from_le_bytes)).collect::<Result<_, _>>()?;
@@ -169,18 +194,7 @@ impl Renderer<'_> {
             }
             start += components;
         }
-        if way == "short" {
-            data.truncate(data.len() - 4);
-        }
-        head["bytes"] = json!(data.len());
-        head["dtype"] = json!(match way {
-            "f8" => "<f8",
-            "type" => "<i4",
-            _ => "<f4",
-        });
-        writeln!(out, "{head}")?;
-        out.write_all(&data)?;
-        Ok(())
+        Ok(data)
     }
 
     /// Answers a case, unless it is told to fail at it.

@@ -181,24 +181,51 @@ fn a_process_is_asked_in_columns() {
         ("wrong", 1, ""),
         ("skips", 1, "not built"),
         ("errors", 1, "no memory"),
-        ("short", 1, "bytes in columns; expected"),
-        ("type", 1, "its `dtype` is `<i4`; expected <f4 or <f8"),
-        ("nothing", 1, "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
-        ("other", 4, "no batch 0 of `fog/exp` waits for an answer in columns"),
         ("crash", 4, "cases asked in columns it ended"),
         ("hang", 4, "cases asked in columns it took longer"),
+        ("few", 4, "it took longer than a case may: it announced "),
     ] {
         let output = process(&formulas, &format!("columns={way}"), &["--case-timeout", "1"]);
         let (found, report) = report(&output);
         assert_eq!(found, status, "{way}: {report}");
         assert!(report.to_string().contains(said), "{way}: {report}");
         assert_eq!(count(&report, "asked"), count(&whole, "asked"), "{way}");
-        if matches!(way, "f4" | "f8" | "lines" | "crash" | "hang" | "other") {
+        if matches!(way, "f4" | "f8" | "lines" | "crash" | "hang" | "few") {
             assert_eq!(count(&report, "passed"), count(&whole, "passed"), "{way}: {report}");
         } else {
             assert_eq!(count(&report, "passed"), 0, "{way}: {report}");
         }
     }
+}
+
+#[test]
+fn what_is_no_answer_in_columns_is_told_at_once_and_its_cases_are_asked_by_lines() {
+    let formulas = ["fog/exp", "vector/reflect"];
+    let whole = report(&process(&formulas, "", &[])).1;
+    for (way, kind, said) in [
+        ("short", "malformed", " bytes in columns; expected "),
+        ("huge", "malformed", "its line announces 1000000000000000 bytes in columns; expected "),
+        ("surplus", "malformed", "5 bytes stand before the line of its answer; expected none"),
+        ("type", "malformed", "its `dtype` is `<i4`; expected <f4 or <f8"),
+        ("nothing", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
+        ("both", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
+        ("cases", "malformed", "answers a case; expected such as"),
+        ("other", "unknown", "no batch 0 of `fog/exp` waits for an answer in columns"),
+    ] {
+        // Whoever waited for what does not come would wait for ten minutes.
+        let (begun, timeout) = (std::time::Instant::now(), ["--case-timeout", "600"]);
+        let (status, report) = report(&process(&formulas, &format!("columns={way}"), &timeout));
+        assert!(begun.elapsed().as_secs() < 60, "{way}: {:?}", begun.elapsed());
+        let problems = &report["problems"];
+        assert!(status == 4 && problems["counts"][kind].as_u64() >= Some(1), "{way}: {report}");
+        assert!(problems.to_string().contains(said), "{way}: {problems}");
+        assert_eq!((count(&report, "failed"), count(&report, "missing")), (0, 0), "{way}: {report}");
+        assert_eq!(count(&report, "passed"), count(&whole, "passed"), "{way}: {report}");
+    }
+    // Behind the last array nothing waits for a line, and what stands there is told all the same.
+    let (status, report) = report(&process(&["fog/exp/random"], "columns=surplus", &[]));
+    assert!(status == 4 && report["problems"].to_string().contains("5 bytes behind the last answer"), "{report}");
+    assert_eq!(count(&report, "passed"), count(&report, "asked"), "{report}");
 }
 
 #[test]

@@ -1,12 +1,14 @@
 //! A formula asked in columns: all cases of a batch by one request, their inputs and outputs as binary arrays.
 //!
 //! A request is a line, and behind it its bytes; so is an answer. What a renderer does not answer in this way, and every batch in which it
-//! ends or hangs, is asked by lines, where the case that it fails at is found.
+//! ends or hangs, is asked by lines, where the case that it fails at is found. So is what is left of a formula whose answer has another
+//! number of bytes than it must have: the process is ended at once, since nothing tells where its next line begins.
 
-use super::super::answer::clipped;
+use super::super::answer::{self, clipped};
 use super::super::problems::note;
+use super::framing::{before, width};
 use super::queue::MOST_OF_FORMULA;
-use super::running::Event;
+use super::running::{Event, Running};
 use super::session::{Ended, MOMENT, ROWS, SURPLUS, Session};
 use lightmeter_catalogue::cases::{Spec, ValueShape};
 use lightmeter_document::protocol::{ColumnsAnswer, ColumnsRequest, RequestedColumn};
@@ -19,6 +21,10 @@ use std::time::Instant;
 /// Bytes of a request, at most, beyond its first row.
 const MOST_REQUEST: usize = 8 << 20;
 
+/// What an answer in columns looks like.
+const EXPECTED: &str =
+    "such as {\"columns\": \"fog/exp\", \"batch\": 7, \"bytes\": 4096}, and that many bytes behind it";
+
 /// What came of a batch.
 enum Came {
     /// The outputs of all cases, column by column.
@@ -29,6 +35,16 @@ enum Came {
     Lines,
     /// The process failed.
     Failed(Ended),
+    /// What it wrote is no answer, a problem of this kind, for this reason. What stands behind it cannot be told.
+    Refused(&'static str, String),
+}
+
+/// A batch that waits for its answer.
+struct Batch<'a> {
+    spec: &'a Spec,
+    number: u64,
+    /// Cases of it.
+    count: usize,
 }
 
 impl Session {
@@ -75,16 +91,16 @@ impl Session {
                     self.breaks_off(ended);
                     break;
                 }
+                Came::Refused(kind, why) => {
+                    note(&mut self.used.problems, kind, || {
+                        format!("{}, batch {}: {why}; it is asked by lines", spec.id, self.number)
+                    });
+                    self.kill(Ended::Answered);
+                    left.extend(batch);
+                    break;
+                }
                 Came::Failed(ended) => {
-                    let how = self.kill(ended);
-                    self.used.incidents.push(format!(
-                        "{}: with {} cases asked in columns {}: {how}; they are asked by lines",
-                        spec.id,
-                        batch.len(),
-                        ended.message()
-                    ));
-                    self.rows = ROWS[0];
-                    failures += 1;
+                    failures += self.fails_in_columns(spec, batch.len(), ended);
                     left.extend(batch);
                     continue;
                 }
@@ -96,59 +112,38 @@ impl Session {
         left
     }
 
+    /// Ends a process that failed in a batch, and tells it; how many of the failures that a formula may have this is.
+    fn fails_in_columns(&mut self, spec: &Spec, count: usize, ended: Ended) -> usize {
+        let cut = self.running.as_ref().and_then(|running| running.framing.cut_short());
+        // One that stops within an array counts wrong, and does so again.
+        let failures = if cut.is_some() { MOST_OF_FORMULA } else { 1 };
+        let how = self.kill(ended);
+        self.used.incidents.push(format!(
+            "{}: with {count} cases asked in columns {}: {}{how}; they are asked by lines",
+            spec.id,
+            ended.message(),
+            cut.map_or_else(String::new, |cut| format!("{cut}; "))
+        ));
+        self.rows = ROWS[0];
+        failures
+    }
+
     /// Asks a batch of rows and waits for what comes of it.
     fn ask_columns(&mut self, spec: &Spec, rows: &Rows<'_>, batch: Range<usize>) -> Came {
         self.number += 1;
-        let (number, count) = (self.number, batch.len());
+        let asked = Batch { spec, number: self.number, count: batch.len() };
         let Some(mut running) = self.running.take() else { return Came::Failed(Ended::Crashed) };
         let mut text = self.description(spec).into_bytes();
-        text.extend(request(spec, rows, batch, number));
+        text.extend(request(spec, rows, batch, asked.number));
+        running.framing.awaits(asked.number, asked.count * spec.output_len());
         let writing = running.send(text);
         let (limit, start) = (self.asking.limits.case, Instant::now());
-        let until = start + limit;
-        let mut surplus = 0;
-        let came = loop {
-            if surplus > SURPLUS {
-                break Came::Failed(Ended::Flooded);
-            }
-            if self.is_stopped() {
-                break Came::Failed(Ended::Stopped);
-            }
-            let wait = self.over(until).saturating_duration_since(Instant::now());
-            if wait.is_zero() {
-                break Came::Failed(if self.is_out_of_time() { Ended::OutOfTime } else { Ended::Hung });
-            }
-            match running.events.recv_timeout(wait.min(MOMENT)) {
-                Ok(Event::Line(line)) if line.iter().all(u8::is_ascii_whitespace) => surplus += 1,
-                Ok(Event::Line(line)) => {
-                    self.lines += 1;
-                    if let Some(came) = self.told(&line, spec, number) {
-                        break came;
-                    }
-                    surplus += 1;
-                }
-                Ok(Event::Columns(answer, bytes)) => {
-                    self.lines += 1;
-                    if answer.columns == spec.id && answer.batch == number {
-                        break values(spec, count, &answer, &bytes);
-                    }
-                    self.is_not_asked(&answer);
-                    surplus += 1;
-                }
-                Ok(Event::TooLong) => {
-                    surplus += 1;
-                    note(&mut self.used.problems, "oversized", || "a line or an array without end".into());
-                }
-                Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => break Came::Failed(Ended::Crashed),
-                // The next turn tells which time is over.
-                Err(RecvTimeoutError::Timeout) => {}
-            }
-        };
-        if matches!(came, Came::Failed(_)) {
+        let came = self.came_of(&asked, &running, start + limit);
+        if matches!(came, Came::Failed(_) | Came::Refused(..)) {
             self.running = Some(running);
             return came;
         }
-        let has_read = self.has_read(&mut running, writing, until);
+        let has_read = self.has_read(&mut running, writing, start + limit);
         if start.elapsed() * 8 < limit {
             self.rows = (2 * self.rows).min(ROWS[1]);
         }
@@ -156,39 +151,101 @@ impl Session {
         if has_read { came } else { Came::Failed(Ended::Deaf) }
     }
 
-    /// What a line says of a batch; `None` where it answers another one, or nothing.
-    fn told(&mut self, line: &[u8], spec: &Spec, number: u64) -> Option<Came> {
+    /// Waits for what comes of a batch.
+    fn came_of(&mut self, batch: &Batch<'_>, running: &Running, until: Instant) -> Came {
+        let mut surplus = 0;
+        loop {
+            if surplus > SURPLUS {
+                return Came::Failed(Ended::Flooded);
+            }
+            if self.is_stopped() {
+                return Came::Failed(Ended::Stopped);
+            }
+            let wait = self.over(until).saturating_duration_since(Instant::now());
+            if wait.is_zero() {
+                return Came::Failed(if self.is_out_of_time() { Ended::OutOfTime } else { Ended::Hung });
+            }
+            match running.events.recv_timeout(wait.min(MOMENT)) {
+                Ok(Event::Line(line)) if line.iter().all(u8::is_ascii_whitespace) => surplus += 1,
+                Ok(Event::Line(line)) => {
+                    self.lines += 1;
+                    if let Some(came) = self.told(&line, batch) {
+                        return came;
+                    }
+                    surplus += 1;
+                }
+                Ok(Event::Columns(answer, bytes)) => {
+                    self.lines += 1;
+                    if batch.is_of(&answer) {
+                        return Came::Values(values(&answer, &bytes));
+                    }
+                    return Came::Refused("unknown", not_asked(&answer));
+                }
+                Ok(Event::TooLong) => {
+                    return Came::Refused(
+                        "oversized",
+                        "a line or an array without end; expected the line of its answer".into(),
+                    );
+                }
+                Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Came::Failed(Ended::Crashed),
+                // The next turn tells which time is over.
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    /// What a line says of a batch; `None` where it answers nothing, as what a library prints.
+    fn told(&mut self, line: &[u8], batch: &Batch<'_>) -> Option<Came> {
+        let refused = |why: String| Some(Came::Refused("malformed", why));
+        let quoted = || clipped(&String::from_utf8_lossy(line));
         let answer = match serde_json::from_slice::<ColumnsAnswer>(line) {
-            Ok(answer) => answer,
-            Err(error) => {
-                let line = clipped(&String::from_utf8_lossy(line));
-                note(&mut self.used.problems, "malformed", || {
-                    format!("`{line}`: {error}; expected an answer in columns")
-                });
+            Ok(answer) if answer.columns.is_empty() && answer::id(line).is_some() => {
+                return refused(format!("`{}` answers a case; expected {EXPECTED}", quoted()));
+            }
+            Ok(answer) if answer.columns.is_empty() => {
+                self.is_not_asked(&answer);
                 return None;
             }
+            Ok(answer) => answer,
+            Err(error) => match before(line) {
+                Some(0) => return refused(format!("`{}`: {error}; expected {EXPECTED}", quoted())),
+                Some(bytes) => {
+                    return refused(format!(
+                        "{bytes} bytes stand before the line of its answer; expected none, and before it as many bytes of arrays as \
+                         their lines announce"
+                    ));
+                }
+                None => {
+                    note(&mut self.used.problems, "malformed", || {
+                        format!("`{}`: {error}; expected an answer in columns", quoted())
+                    });
+                    return None;
+                }
+            },
         };
-        if answer.columns != spec.id || answer.batch != number {
-            self.is_not_asked(&answer);
-            return None;
+        if !batch.is_of(&answer) {
+            return Some(Came::Refused("unknown", not_asked(&answer)));
         }
-        let ColumnsAnswer { skip, error, lines, .. } = answer;
-        Some(match (skip, error, lines) {
-            (Some(reason), None, false) => Came::Nothing(Unanswered::Skipped(clipped(&reason))),
-            (None, Some(reason), false) => Came::Nothing(Unanswered::Unjudged(clipped(&reason))),
-            (None, None, true) => Came::Lines,
-            _ => Came::Nothing(Unanswered::Unjudged(
-                "an answer in columns has none, or more than one, of `bytes`, `skip`, `error` and `lines`".into(),
-            )),
+        if let Some(why) = batch.refuses(&answer) {
+            return refused(why);
+        }
+        let ColumnsAnswer { skip, error, .. } = answer;
+        Some(match (skip, error) {
+            (Some(reason), _) => Came::Nothing(Unanswered::Skipped(clipped(&reason))),
+            (_, Some(reason)) => Came::Nothing(Unanswered::Unjudged(clipped(&reason))),
+            _ => Came::Lines,
         })
     }
 
     /// An answer in columns to nothing that waits for one is a problem.
     pub(super) fn is_not_asked(&mut self, answer: &ColumnsAnswer) {
-        note(&mut self.used.problems, "unknown", || {
-            format!("no batch {} of `{}` waits for an answer in columns", answer.batch, clipped(&answer.columns))
-        });
+        note(&mut self.used.problems, "unknown", || not_asked(answer));
     }
+}
+
+/// That an answer in columns is to nothing that waits for one.
+fn not_asked(answer: &ColumnsAnswer) -> String {
+    format!("no batch {} of `{}` waits for an answer in columns", answer.batch, clipped(&answer.columns))
 }
 
 /// A request: its line, and its bytes.
@@ -219,29 +276,42 @@ fn request(spec: &Spec, rows: &Rows<'_>, batch: Range<usize>, number: u64) -> Ve
     bytes
 }
 
-/// The numbers of an answer, held against what was asked.
-fn values(spec: &Spec, count: usize, answer: &ColumnsAnswer, bytes: &[u8]) -> Came {
-    let refused = |message: String| Came::Nothing(Unanswered::Unjudged(message));
-    let dtype = answer.dtype.as_deref().unwrap_or("<f4");
-    let width = match dtype {
-        "<f4" => 4,
-        "<f8" => 8,
-        other => return refused(format!("its `dtype` is `{}`; expected <f4 or <f8", clipped(other))),
-    };
-    let outputs = spec.output_len();
-    if bytes.len() != count * outputs * width {
-        return refused(format!(
-            "{} bytes in columns; expected {}: {outputs} numbers of {dtype} for each of {count} cases",
-            bytes.len(),
-            count * outputs * width
-        ));
+impl Batch<'_> {
+    /// Whether an answer is to it.
+    fn is_of(&self, answer: &ColumnsAnswer) -> bool {
+        answer.columns == self.spec.id && answer.batch == self.number
     }
+
+    /// What is wrong with the line of an answer to it that no array was read behind; `None` where nothing is.
+    fn refuses(&self, answer: &ColumnsAnswer) -> Option<String> {
+        let ways = [answer.bytes.is_some(), answer.skip.is_some(), answer.error.is_some(), answer.lines];
+        if ways.into_iter().filter(|&is_there| is_there).count() != 1 {
+            return Some(format!(
+                "its line has none, or more than one, of `bytes`, `skip`, `error` and `lines`; expected {EXPECTED}"
+            ));
+        }
+        let announced = answer.bytes?;
+        let dtype = answer.dtype.as_deref().unwrap_or("<f4");
+        let Some(width) = width(Some(dtype)) else {
+            return Some(format!("its `dtype` is `{}`; expected <f4 or <f8", clipped(dtype)));
+        };
+        let (outputs, count) = (self.spec.output_len(), self.count);
+        let right = count * outputs * width;
+        Some(format!(
+            "its line announces {announced} bytes in columns; expected {right}: {outputs} numbers of {dtype} for each of {count} cases"
+        ))
+    }
+}
+
+/// The numbers of an answer, whose length was held against what was asked.
+fn values(answer: &ColumnsAnswer, bytes: &[u8]) -> Vec<f32> {
+    let width = width(answer.dtype.as_deref()).unwrap_or(4);
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is what is asked for")]
     let number = |part: &[u8]| match width {
         8 => part.try_into().map_or(f64::NAN, f64::from_le_bytes) as f32,
         _ => part.try_into().map_or(f32::NAN, f32::from_le_bytes),
     };
-    Came::Values(bytes.chunks_exact(width).map(number).collect())
+    bytes.chunks_exact(width).map(number).collect()
 }
 
 /// The outputs of a case out of columns, as words.

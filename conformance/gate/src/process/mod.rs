@@ -7,6 +7,7 @@
 
 mod columns;
 mod family;
+mod framing;
 mod queue;
 mod running;
 mod session;

@@ -1,20 +1,19 @@
 //! A running renderer: its pipes, and its end with all that it started.
 
 use super::super::answer::{self, Unread, clipped};
+use super::framing::{Framing, columns_of};
 use super::{Starter, family};
 use lightmeter_document::protocol::ColumnsAnswer;
 use std::ffi::OsStr;
 use std::io::{BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Lines of a process that wait to be read.
 const UNREAD: usize = 64;
-/// Bytes of an answer in columns, at most.
-const MOST_ARRAY: usize = 64 << 20;
 /// Bytes of standard error that are kept.
 const KEPT: usize = 4096;
 /// How long a starter may take to end all that it started.
@@ -29,6 +28,14 @@ pub(super) enum Event {
     End,
 }
 
+/// How a renderer ended that had nothing more to do.
+pub(super) struct End {
+    /// What is wrong with it, in words.
+    pub(super) wrong: Option<String>,
+    /// Bytes that it wrote behind its last answer.
+    pub(super) unread: usize,
+}
+
 /// A running renderer.
 pub(super) struct Running {
     child: Child,
@@ -36,8 +43,8 @@ pub(super) struct Running {
     ends_all: bool,
     /// Its standard input, but while something is written to it.
     pub(super) input: Option<ChildStdin>,
-    /// Whether arrays may stand behind a line that it writes.
-    has_columns: Arc<AtomicBool>,
+    /// Which arrays may stand behind a line that it writes, and how much of one has come.
+    pub(super) framing: Arc<Framing>,
     /// What it writes.
     pub(super) events: Receiver<Event>,
     /// A word in its environment, which its descendants inherit.
@@ -68,10 +75,10 @@ impl Running {
         let (input, output, errors) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         // What is not taken waits in the pipe, so that memory stays flat.
         let (send, events) = sync_channel(UNREAD);
-        let has_columns = Arc::new(AtomicBool::new(false));
+        let framing = Arc::new(Framing::default());
         if let Some(output) = output {
-            let has_columns = Arc::clone(&has_columns);
-            std::thread::spawn(move || listen(output, &send, &has_columns));
+            let framing = Arc::clone(&framing);
+            std::thread::spawn(move || listen(output, &send, &framing));
         }
         let complaint = Arc::new(Mutex::new(vec![]));
         let listening = errors.map(|mut errors| {
@@ -88,12 +95,7 @@ impl Running {
             })
         });
         let ends_all = starter.is_some();
-        Ok(Self { child, ends_all, input, has_columns, events, mark, complaint, listening })
-    }
-
-    /// Says whether arrays may stand behind a line that it writes from now on.
-    pub(super) fn reads_columns(&self, has_columns: bool) {
-        self.has_columns.store(has_columns, Ordering::Release);
+        Ok(Self { child, ends_all, input, framing, events, mark, complaint, listening })
     }
 
     /// Writes lines in a thread of its own, since a renderer may answer before it has read all.
@@ -126,27 +128,43 @@ impl Running {
         if last.is_empty() { status } else { format!("{status}; it said: {}", clipped(&last.join(" / "))) }
     }
 
-    /// Closes its input and waits until it ends; what is wrong with how it does, in words.
-    pub(super) fn finish(mut self, limit: Duration, is_stopped: impl Fn() -> bool) -> Option<String> {
+    /// Closes its input and waits until it ends.
+    pub(super) fn finish(mut self, limit: Duration, is_stopped: impl Fn() -> bool) -> End {
         drop(self.input.take());
-        let until = Instant::now() + limit;
+        let (until, mut unread) = (Instant::now() + limit, 0);
         let status = loop {
             match self.child.try_wait() {
                 Ok(Some(status)) => break Some(status),
                 Ok(None) if Instant::now() < until && !is_stopped() => {}
                 _ => break None,
             }
-            // What it still writes is not read.
-            while self.events.try_recv().is_ok() {}
+            unread += self.unread(Duration::ZERO);
             std::thread::sleep(Duration::from_millis(2));
         };
+        unread += self.unread(Duration::from_millis(50));
         let how = self.kill();
-        match status {
+        let wrong = match status {
             None if is_stopped() => None,
             None => Some(format!("it did not end within {} s of its input's end", limit.as_secs_f64())),
             Some(status) if status.success() => None,
             Some(_) => Some(format!("all was answered, and it ended with {how}")),
+        };
+        End { wrong, unread }
+    }
+
+    /// Bytes of what it has written and nobody waits for, but for blank lines.
+    fn unread(&self, wait: Duration) -> usize {
+        let mut bytes = 0;
+        while let Ok(event) = self.events.recv_timeout(wait) {
+            bytes += match event {
+                Event::Line(line) if line.iter().all(u8::is_ascii_whitespace) => 0,
+                Event::Line(line) => line.len(),
+                Event::Columns(_, array) => array.len(),
+                Event::TooLong => answer::MOST_BYTES,
+                Event::End => return bytes,
+            };
         }
+        bytes
     }
 
     /// Whether it has ended by itself.
@@ -167,35 +185,18 @@ impl Running {
     }
 }
 
-/// The answer in columns that a line is, and how many bytes stand behind it; `None` of any other line, and where there are more of them than
-/// an answer has.
-fn columns_of(line: &[u8]) -> Option<(ColumnsAnswer, usize)> {
-    let word = b"\"columns\"";
-    if !line.windows(word.len()).any(|part| part == word) {
-        return None;
-    }
-    let answer: ColumnsAnswer = serde_json::from_slice(line).ok()?;
-    let count = answer.bytes.filter(|&count| count <= MOST_ARRAY && !answer.columns.is_empty())?;
-    Some((answer, count))
-}
-
 /// Hears what it writes, a line at a time, and the array behind one that has some.
-fn listen(output: impl std::io::Read, send: &SyncSender<Event>, has_columns: &AtomicBool) {
+fn listen(output: impl std::io::Read, send: &SyncSender<Event>, framing: &Framing) {
     let mut stream = BufReader::with_capacity(1 << 16, output);
     let mut line = vec![];
     loop {
         let event = match answer::next(&mut stream, &mut line) {
-            Ok(true) if has_columns.load(Ordering::Acquire) => match columns_of(&line) {
-                Some((answer, count)) => {
-                    let mut bytes = vec![];
-                    match (&mut stream).take(count as u64).read_to_end(&mut bytes) {
-                        Ok(read) if read == count => Event::Columns(answer, bytes),
-                        _ => Event::End,
-                    }
+            Ok(true) => match columns_of(&line).and_then(|answer| Some((framing.length(&answer)?, answer))) {
+                Some((count, answer)) => {
+                    framing.array(&mut stream, count).map_or(Event::End, |bytes| Event::Columns(answer, bytes))
                 }
                 None => Event::Line(std::mem::take(&mut line)),
             },
-            Ok(true) => Event::Line(std::mem::take(&mut line)),
             Err(Unread::TooLong) => Event::TooLong,
             Ok(false) | Err(Unread::Io(_)) => {
                 let _ = send.send(Event::End);

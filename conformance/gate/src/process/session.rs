@@ -203,8 +203,17 @@ impl Session {
     fn finish(&mut self) {
         if let Some(running) = self.running.take() {
             let stop = &self.asking.stop;
-            let wrong = running.finish(self.asking.limits.case, || stop.is_set());
-            self.used.incidents.extend(wrong);
+            let end = running.finish(self.asking.limits.case, || stop.is_set());
+            self.used.incidents.extend(end.wrong);
+            // Behind an array it may be what a wrong number of bytes left over.
+            if end.unread > 0 && self.hello.columns {
+                note(&mut self.used.problems, "malformed", || {
+                    format!(
+                        "{} bytes behind the last answer, which nothing asked for; expected as many bytes of arrays as their lines announce",
+                        end.unread
+                    )
+                });
+            }
         }
     }
 
@@ -261,7 +270,7 @@ impl Session {
                         self.answered = 0;
                         self.described.clear();
                         self.hello = *hello;
-                        running.reads_columns(self.hello.columns);
+                        running.framing.has_columns(self.hello.columns);
                         running.input = written.and_then(|thread| thread.join().ok().flatten());
                         self.running = Some(running);
                         return Ok(());
