@@ -4,7 +4,7 @@ use super::answer::{self, Hello, Line, Unread, clipped};
 use super::columns::Columns;
 use super::error::ProcessError;
 use super::expectations::Expectations;
-use super::formula_skips::{FormulaSkip, FormulaSkips};
+use super::formula_skips::{FormulaSkip, FormulaSkips, SkippedTwice};
 use super::given::{Asks, Declared, Given, given, word};
 use super::pack::PackError;
 use super::picture;
@@ -298,7 +298,18 @@ impl FileRenderer {
             None if has_columns => note(&mut self.problems, "duplicate", || {
                 format!("{line}: {id} is answered by columns; a skip of some of its cases names them by `rows`")
             }),
-            _ => self.contents.skips.add(formula, skip),
+            _ => {
+                if let Err(twice) = self.contents.skips.add(formula, skip) {
+                    note(&mut self.problems, "duplicate", || match twice {
+                        SkippedTwice::Row(row) => {
+                            format!(
+                                "{line}: row {row} of {id} is skipped more than once; expected each row once in `rows` of all lines"
+                            )
+                        }
+                        SkippedTwice::All => format!("{line}: {id} is skipped more than once; expected one such line"),
+                    });
+                }
+            }
         }
     }
 }
@@ -334,7 +345,7 @@ impl Read {
         if let (None, Some(formula)) = (plan.find(id), plan.formula(id)) {
             let (rows, reason) = match &line {
                 Line::Skip(_, reason) => (None, reason),
-                Line::SkipRows(_, rows, reason) => (Some(rows.iter().copied().collect()), reason),
+                Line::SkipRows(_, rows, reason) => (Some(rows.clone()), reason),
                 _ => return Self::Problem("unknown", format!("`{id}` is a formula; expected the id of a case")),
             };
             if declared.lacks(id).is_some() {

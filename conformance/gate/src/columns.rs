@@ -80,11 +80,12 @@ impl ColumnFile {
         let mut rest = header.as_slice();
         let array = npyz::NpyFile::new(&mut rest).map_err(|error| refused(format!("it is no array: {error}")))?;
         let components = output.shape.components();
-        let shapes: [&[u64]; 2] = [&[count as u64, components as u64], &[count as u64]];
-        let is_shape = |shape: &[u64]| shape == shapes[0] || (components == 1 && shape == shapes[1]);
-        if !is_shape(array.shape()) {
-            let expected = shapes[usize::from(components == 1)];
-            return Err(refused(format!("its shape is {:?}; expected {expected:?}", array.shape())));
+        // A column of the shape (n, 1) is told, since elsewhere NumPy stretches it to a matrix: f * color would be one.
+        let shape = [count as u64, components as u64];
+        let expected = &shape[..if components == 1 { 1 } else { 2 }];
+        if array.shape() != expected {
+            let fix = if array.shape() == shape { ", as of f[:, 0]" } else { "" };
+            return Err(refused(format!("its shape is {:?}; expected {expected:?}{fix}", array.shape())));
         }
         if array.order() != npyz::Order::C && components > 1 {
             return Err(refused("it is in Fortran's order; expected C's, as of numpy.ascontiguousarray".into()));

@@ -127,10 +127,14 @@ fn columns_that_do_not_fit_the_pack_are_refused_by_name() {
         assert!(error.contains(said), "{said}: {error}");
     };
     let shape = format!("({rows},)");
+    let a_matrix = format!("its shape is [{rows}, 1]; expected [{rows}], as of f[:, 0]");
+    let a_row = format!("its shape is [{}]; expected [{rows}, 3]", 3 * rows);
     for (path, file, said) in [
         (&f, array(&shape, "<i4", false, &scalar), "its numbers are '<i4'; expected <f4 or <f8"),
         (&f, array("(3,)", "<f4", false, &[0; 12]), "its shape is [3]; expected"),
         (&color, array(&format!("(3, {rows})"), "<f4", false, &vector), "its shape is [3, "),
+        (&f, array(&format!("({rows}, 1)"), "<f4", false, &scalar), &a_matrix),
+        (&color, array(&format!("({},)", 3 * rows), "<f4", false, &vector), &a_row),
         (&color, array(&format!("({rows}, 3)"), "<f4", true, &vector), "Fortran's order"),
         (&f, array(&shape, "<f4", false, &scalar[4..]), "bytes; expected"),
         (&f, b"numbers".to_vec(), "it is no array"),
@@ -240,12 +244,17 @@ fn rows_of_columns_are_skipped_by_a_line() {
         std::fs::write(answers.join("answers.jsonl"), lines.concat()).expect("it can be written");
         report(&lightmeter(&["gate", text(&pack), text(&answers), "--format", "json"]))
     };
-    let (status, report) = judged(&[json!({ "id": "fog/exp", "skip": "no fog", "rows": [0, 3, 3] })]);
+    let (status, report) = judged(&[json!({ "id": "fog/exp", "skip": "no fog", "rows": [0, 3] })]);
     assert_eq!((status, count(&report, "skipped"), &report["totals"]["undeclared"]), (0, 2, &Value::Null), "{report}");
     let (status, report) = judged(&[json!({ "id": "vector/reflect", "skip": "none", "rows": [1] })]);
     assert_eq!((status, count(&report, "skipped"), count(&report, "undeclared")), (1, 1, 1), "{report}");
     for (line, kind, said) in [
         (json!({ "id": "fog/exp", "skip": "no fog" }), "duplicate", "names them by `rows`"),
+        (
+            json!({ "id": "fog/exp", "skip": "no fog", "rows": [1, 1] }),
+            "duplicate",
+            "row 1 of fog/exp is skipped more than once",
+        ),
         (json!({ "id": "fog/exp", "skip": "no fog", "rows": [100_000] }), "unknown", "rows, counted from 0"),
         (json!({ "id": "fog/exp", "value": [1] }), "unknown", "is a formula; expected the id of a case"),
     ] {
@@ -253,4 +262,9 @@ fn rows_of_columns_are_skipped_by_a_line() {
         let problems = &report["problems"];
         assert!(status == 4 && problems["counts"][kind] == 1 && problems.to_string().contains(said), "{problems}");
     }
+    // One row by two lines: both lines are of answers, and the first holds.
+    let skip = json!({ "id": "fog/exp", "skip": "no fog", "rows": [4, 5] });
+    let (status, report) = judged(&[skip.clone(), skip]);
+    assert_eq!((status, count(&report, "skipped")), (4, 2), "{report}");
+    assert!(report["problems"].to_string().contains("line 3: row 4 of fog/exp is skipped more than once"), "{report}");
 }
