@@ -78,6 +78,8 @@ typedef struct {
     const char *const *excludes;
     /* Where the code of formulas stands, for annotations. The list ends with an entry whose id is NULL. */
     const lightmeter_source *sources;
+    /* What tells its code from other code of the same version, such as a commit; shards of another build are not merged. */
+    const char *build;
 } lightmeter_about;
 
 /* Answers until standard input ends; what `main` returns. */
@@ -426,6 +428,7 @@ static void lightmeter_hello(const lightmeter_about *about, const lightmeter_for
     lightmeter_field("version", about->version ? about->version : "");
     lightmeter_field("device", about->device);
     lightmeter_field("driver", about->driver);
+    lightmeter_field("build", about->build);
     printf(", \"columns\": %s, \"excludes\": [", *(const unsigned char *)&one ? "true" : "false");
     for (size_t k = 0; about->excludes && about->excludes[k]; ++k) {
         fputs(k ? ", " : "", stdout);
@@ -452,7 +455,7 @@ static void lightmeter_hello(const lightmeter_about *about, const lightmeter_for
 
 int lightmeter_serve(const char *name, const char *version, const lightmeter_formula *formulas, size_t count)
 {
-    lightmeter_about about = {name, version, NULL, NULL, NULL, NULL};
+    lightmeter_about about = {name, version, NULL, NULL, NULL, NULL, NULL};
     return lightmeter_serve_as(&about, formulas, count);
 }
 

@@ -20,12 +20,14 @@ vector one after the other, each with a number a case. It returns the outputs in
 Python has an underscore behind it (`lambda_`).
 """
 import fnmatch
+import hashlib
 import json
 import keyword
 import os
 import re
 import shutil
 import sys
+import sysconfig
 import traceback
 from pathlib import Path
 from types import SimpleNamespace
@@ -170,9 +172,27 @@ def source(pattern, function):
     return [{"id": pattern, "file": file.replace(os.sep, "/"), "line": code.co_firstlineno}]
 
 
+def digest(*files):
+    """What tells this program's code from other code of the same version: a hash of its main file, of all modules that were imported by now
+    and are not installed, and of further files, such as shaders, named from the main file's folder."""
+    main = getattr(sys.modules["__main__"], "__file__", None)
+    folder = Path(main).resolve().parent if main else Path.cwd()
+    library = {Path(sysconfig.get_path(kind)).resolve() for kind in ("stdlib", "platstdlib")}
+    loaded = [getattr(module, "__file__", None) for module in list(sys.modules.values())]
+    own = {Path(file).resolve() for file in [main, *loaded] if file}
+    own = {file for file in own if file.is_file() and not library & set(file.parents)}
+    own = {file for file in own if not {"site-packages", "dist-packages"} & set(file.parts)}
+    own |= {(folder / file).resolve() for file in files}
+    code = hashlib.sha256()
+    # By names that do not depend on where the program lies.
+    for name, file in sorted((str(file.relative_to(folder)) if folder in file.parents else file.name, file) for file in own):
+        code.update(f"{name} {file.stat().st_size}\n".encode() + file.read_bytes())
+    return code.hexdigest()[:16]
+
+
 class Renderer:
     """What a renderer can do. `declares` is said in its hello as it is: `profile`, `formats`, `effects`, `skips`, `excludes`, `sources` and
-    others of docs/protocol.md. Without `sources`, the functions of `formula` and `scene` are named with their lines, for reports. With `describe=True` the gate describes each formula before its first case: `described`, by id."""
+    others of docs/protocol.md. Without `build` it is `digest()`, so that shards of changed code are not merged. Without `sources`, the functions of `formula` and `scene` are named with their lines, for reports. With `describe=True` the gate describes each formula before its first case: `described`, by id."""
 
     def __init__(self, name, version="", **declares):
         self.hello = {"hello": PROTOCOL, "renderer": name, "version": version, **declares}
@@ -221,7 +241,7 @@ class Renderer:
         manifest = json.loads((pack / "manifest.json").read_text())
         if not manifest.get("columns"):
             sys.exit(f"{pack} has no columns; expected a pack of `lightmeter pack {pack} --columns`")
-        lines = [{"formulas": list(self.functions), "sources": self.sources, **self.hello, "pack": manifest["pack"]}]
+        lines = [{"formulas": list(self.functions), "sources": self.sources, "build": digest(), **self.hello, "pack": manifest["pack"]}]
         for formula in manifest["formulas"]:
             name = formula["id"]
             function = next((f for pattern, f in self.functions.items() if matches(pattern, name)), None)
@@ -257,7 +277,8 @@ class Renderer:
                 if request["hello"] != PROTOCOL:
                     sys.exit(f"the gate speaks {request['hello']}, and this client {PROTOCOL}")
                 folder = request["folder"]
-                declared = {"formulas": list(self.functions), "scenes": self.scenes, "columns": self.columns, "sources": self.sources}
+                declared = {"formulas": list(self.functions), "scenes": self.scenes, "columns": self.columns}
+                declared |= {"sources": self.sources, "build": digest()}
                 print(json.dumps({**declared, **self.hello}), flush=True)
             elif "describe" in request:
                 self.described[request["describe"]["id"]] = request["describe"]

@@ -107,7 +107,7 @@ impl Renderer<'_> {
         if self.faults.has("no-hello", "") {
             return json!("what?");
         }
-        json!({
+        let mut hello = json!({
             "hello": "lightmeter.protocol/1",
             "renderer": "example",
             "version": "1.0",
@@ -118,7 +118,11 @@ impl Renderer<'_> {
             "describe": self.faults.0.contains_key("describe"),
             "special": self.faults.0.contains_key("special"),
             "targets": if self.faults.0.contains_key("targets") { TargetFormat::ALL.map(TargetFormat::name).to_vec() } else { vec![] },
-        })
+        });
+        if let Some(build) = self.faults.0.get("build") {
+            hello["build"] = json!(build);
+        }
+        hello
     }
 
     /// Answers a batch in columns by numbers of the type that it is told, `f4` or `f8`, or fails as it is told.

@@ -30,6 +30,8 @@ pub struct Hello {
     pub device: Option<String>,
     /// The driver of that, with its version.
     pub driver: Option<String>,
+    /// What tells its code from other code of the same version, such as a commit or a hash. Shards of one run have the same.
+    pub build: Option<String>,
     /// Globs of the formulas that it evaluates.
     pub formulas: Vec<String>,
     /// Globs of the scenes that it draws.
@@ -414,6 +416,7 @@ fn hello(text: &str) -> Result<Line<'_>, String> {
             "version" => "1.2",
             "device" => "llvmpipe (LLVM 15.0.6, 256 bits)",
             "driver" => "Mesa 22.3.6",
+            "build" => "3f2a91c",
             _ => continue,
         };
         if !value.is_string() {
@@ -421,7 +424,8 @@ fn hello(text: &str) -> Result<Line<'_>, String> {
         }
     }
     let hello: Hello = serde_json::from_value(rest.into()).map_err(wrong)?;
-    Ok(Line::Hello(Box::new(Hello { renderer: clipped(&renderer), version: clipped(&hello.version), ..hello })))
+    let build = hello.build.as_deref().map(clipped);
+    Ok(Line::Hello(Box::new(Hello { renderer: clipped(&renderer), version: clipped(&hello.version), build, ..hello })))
 }
 
 /// The names of fields, in a row.
@@ -597,6 +601,7 @@ mod tests {
             (br#"{"renderer":"r","formulas":"fog"}"#, "`formulas` is no list"),
             (br#"{"renderer":"r","version":1.2}"#, "`version` is no string"),
             (br#"{"renderer":"r","driver":["Mesa"]}"#, "`driver` is no string; expected such as \"Mesa 22.3.6\""),
+            (br#"{"renderer":"r","build":17}"#, "`build` is no string; expected such as \"3f2a91c\""),
             (br#"{"renderer":"r","excludes":"fog"}"#, "`excludes` is no list"),
             (br#"{"renderer":"r","special":"yes"}"#, "expected a boolean"),
             (br#"{"renderer":"r","exclude":["fog"]}"#, "unknown field `exclude`; did you mean `excludes`?"),

@@ -7,14 +7,22 @@ here = Path(__file__).resolve().parent
 sys.path[:0] = [str(here.parent / "common"), str(here.parents[2] / "clients/python")]
 
 import context
-from lightmeter_client import Renderer
+from lightmeter_client import Renderer, digest
 
 version, device = context.create()
 
 from formulas import Formulas, Raster
 from scenes import EFFECTS, draw
 
-renderer = Renderer("documents-glsl", version, device=device, driver=f"Mesa {version}", profile="opengl", effects=EFFECTS)
+renderer = Renderer(
+    "documents-glsl",
+    version,
+    device=device,
+    driver=f"Mesa {version}",
+    build=digest("library.glsl", "lighting.glsl", "scene.vert", "scene.frag"),
+    profile="opengl",
+    effects=EFFECTS,
+)
 renderer.batches({**Formulas().functions, **Raster().functions})
 renderer.scene("scene")(draw)
 renderer.serve()

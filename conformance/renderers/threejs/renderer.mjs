@@ -1,5 +1,6 @@
 // three.js in headless Chromium as a renderer that speaks lightmeter.protocol/1: lines here, drawing in `page.js`.
-import { readFile, writeFile } from "node:fs/promises";
+import { createHash } from "node:crypto";
+import { readdir, readFile, writeFile } from "node:fs/promises";
 import { join, normalize } from "node:path";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
@@ -80,6 +81,16 @@ async function answers(page, folder, formula, requests) {
   }
 }
 
+/** What tells the code of this folder from other code of the same three.js. */
+async function digest() {
+  const code = createHash("sha256");
+  for (const name of (await readdir(HERE)).filter((name) => /\.m?js$/.test(name)).sort()) {
+    const text = await readFile(join(HERE, name));
+    code.update(`${name} ${text.length}\n`).update(text);
+  }
+  return code.digest("hex").slice(0, 16);
+}
+
 const write = (answer) => process.stdout.write(JSON.stringify(answer) + "\n");
 const { browser, page } = await open();
 let folder = ".";
@@ -89,7 +100,8 @@ for await (const line of createInterface({ input: process.stdin })) {
   if (request.hello) {
     folder = request.folder;
     const declared = await page.evaluate(() => ({ ...window.renderer.declared, device: window.renderer.device() }));
-    write({ hello: request.hello, renderer: "three.js", version: `0.${REVISION}.0`, profile: "opengl", ...declared });
+    const about = { version: `0.${REVISION}.0`, build: await digest(), profile: "opengl" };
+    write({ hello: request.hello, renderer: "three.js", ...about, ...declared });
   } else if (request.batch) {
     for (const [key, requests] of waiting) {
       (await answers(page, folder, requests[0].formula, requests)).forEach(write);

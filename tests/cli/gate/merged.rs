@@ -1,5 +1,6 @@
 //! Shards of a gate or of a run that are not of one run: `merge` names what differs, and in which files.
 
+use super::process::command_of;
 use super::{answered, edit_as, folder, text};
 use crate::{code, lightmeter, stderr};
 use serde_json::Value;
@@ -36,6 +37,7 @@ fn what_a_renderer_declares_is_the_same_in_all_shards_or_named() {
         ("renderer.version", first.replace("1.0", "1.1"), ["\"1.0\"", "\"1.1\""]),
         ("renderer.name", first.replace("\"r\"", "\"s\""), ["\"r\"", "\"s\""]),
         ("renderer.driver", first.replace('}', ", \"driver\": \"D 3\"}"), ["nothing", "\"D 3\""]),
+        ("declares.build", first.replace('}', ", \"build\": \"3f2a91c\"}"), ["nothing", "\"3f2a91c\""]),
         ("profile", first.replace('}', ", \"profile\": \"opengl\"}"), ["\"wgsl\"", "\"opengl\""]),
         ("declares.excludes", first.replace('}', ", \"excludes\": [\"shape:mat4\"]}"), ["nothing", "[\"shape:mat4\"]"]),
         (
@@ -50,6 +52,23 @@ fn what_a_renderer_declares_is_the_same_in_all_shards_or_named() {
         assert!(said.lines().any(|told| told == line), "no `{line}` in {said}");
         assert!(said.contains("different runs"), "{said}");
     }
+}
+
+#[test]
+fn shards_of_a_process_whose_code_changed_in_between_are_refused() {
+    let folder = folder("merged-builds");
+    let shard = |of: &str, build: &str| {
+        let out = folder.join(format!("{}-{build}.json", &of[..1]));
+        let args = ["gate", "fog/exp", "--cases", "8", "--shard", of, "--format", "json", "--out", text(&out)];
+        let exec = command_of(&format!("build={build}"));
+        assert_eq!(code(&lightmeter(&[&args[..], &["--exec", &exec]].concat())), 0);
+        out
+    };
+    let [one, two, other] = [("1/2", "a1"), ("2/2", "a1"), ("2/2", "b2")].map(|(of, build)| shard(of, build));
+    assert_eq!(code(&lightmeter(&["merge", text(&one), text(&two)])), 0);
+    let line = format!("  declares.build: \"a1\" in {}; \"b2\" in {}", text(&one), text(&other));
+    let said = refused(&[&one, &other]);
+    assert!(said.lines().any(|told| told == line), "no `{line}` in {said}");
 }
 
 #[test]
