@@ -9,12 +9,16 @@ sys.path.insert(0, str(here.parents[2] / "clients/python"))
 from blending import Blending
 from lightmeter_client import Renderer
 from scenes import EFFECTS, draw
+from stage import capabilities
 from surfaces import Surfaces
 from vtkmodules.vtkCommonCore import vtkVersion
 
+opengl = capabilities()
 renderer = Renderer(
     "vtk",
     vtkVersion.GetVTKVersion(),
+    device=opengl["OpenGL renderer string"],
+    driver=opengl["OpenGL version string"],
     profile="opengl",
     effects=EFFECTS,
     skips=[

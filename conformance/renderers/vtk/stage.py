@@ -47,6 +47,12 @@ state = window.GetState()
 drawn_to = None
 
 
+def capabilities():
+    """What OpenGL says of itself, by VTK's words for it, such as `OpenGL renderer string`."""
+    lines = [line.partition(":") for line in window.ReportCapabilities().splitlines()]
+    return {name.strip(): value.strip() for name, colon, value in lines if colon}
+
+
 def bind(*_):
     drawn_to.frame.Bind()
     drawn_to.frame.ActivateDrawBuffer(0)
