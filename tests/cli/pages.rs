@@ -152,6 +152,30 @@ fn a_matrix_has_a_column_for_each_subject() {
 }
 
 #[test]
+fn renderers_have_a_row_each() {
+    let [right, wrong, text] = ["right.json", "wrong.json", "told.txt"].map(|name| path(&format!("renderers-{name}")));
+    for (fault, status, file) in [("", 0, &right), ("wrong-at=fog/exp/random/000003", 1, &wrong)] {
+        let exec = gate::process::command_of(fault);
+        let gate = ["gate", "fog/*", "--exec", &exec, "--cases", "16", "--json", file, "--out", &text];
+        assert_eq!(code(&lightmeter(&gate)), status);
+    }
+    // What is told is as it is without `--json`.
+    assert!(std::fs::read_to_string(&text).expect("it was written").contains("cases pass, 1 fail"));
+    let table = stdout(&lightmeter(&["page", "renderers", &right, &wrong]));
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .filter(|line| line.contains("example 1.0"))
+        .map(|row| row.split('|').map(str::trim).collect())
+        .collect();
+    let [right, wrong] = rows.as_slice() else { panic!("{table}") };
+    let (pass, other) = (9, 11);
+    assert_eq!((right[1], wrong[1], right[other], wrong[other]), ("✓", "✗", "0", "1"), "{table}");
+    let number = |cell: &str| cell.replace(',', "").parse::<u64>().expect("a number");
+    assert_eq!(number(right[pass]), number(wrong[pass]) + 1, "{table}");
+    assert!(right[6] != "0" && right[6] == wrong[6] && right[7] == "0", "{table}");
+}
+
+#[test]
 fn what_makes_no_page_is_told() {
     let other = path("no-page.json");
     std::fs::write(&other, "{\"schema\": \"lightmeter.cases/1\"}").expect("it can be written");
@@ -163,6 +187,8 @@ fn what_makes_no_page_is_told() {
         (&["page", "report"], "exactly one run"),
         (&["page", "matrix"], "at least one run or gate"),
         (&["page", "matrix", &other], "no-page.json"),
+        (&["page", "renderers"], "at least one gate"),
+        (&["page", "renderers", &other], "no-page.json"),
         (&["book", "--docs", "/nowhere"], "a checkout of lightmeter"),
         (&["merge", "--format", "html", "/nowhere"], "/nowhere"),
     ] {

@@ -89,6 +89,23 @@ run_lightmeter() {
     fi
 }
 
+# Sets `kept` to the option that keeps a result as JSON, where the caller has named a folder, `RENDERER_RESULTS`: one file a result, of which
+# a gate may have several.
+keep_result() {
+    kept=
+    [ -n "${RENDERER_RESULTS:-}" ] || return 0
+    file=$RENDERER_RESULTS/$(basename "$here")
+    count=1
+    while [ -e "$file-$count.json" ]; do count=$((count + 1)); done
+    kept=$file-$count.json
+}
+
+# Judges files of answers to a pack.
+run_files() {
+    keep_result
+    run_lightmeter gate "$@" ${kept:+--json "$kept"}
+}
+
 # Runs the gate over a command; what the caller says stands last. Without it there are 64 cases of each formula, and known
 # failures are those of `expected.toml`.
 run_gate() {
@@ -99,7 +116,8 @@ run_gate() {
     expected=
     [ ! -e "$here/expected.toml" ] || expected=$here/expected.toml
     case " $arguments " in *" --expect"*) expected= ;; esac
-    set -- --exec "$command" ${expected:+--expect "$expected"} "$@"
+    keep_result
+    set -- --exec "$command" ${expected:+--expect "$expected"} ${kept:+--json "$kept"} "$@"
     # shellcheck disable=SC2086
     run_lightmeter gate $options "$@"
 }

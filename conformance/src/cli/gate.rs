@@ -3,7 +3,7 @@
 use super::clock::now;
 use super::comparison::{Comparison, Earlier, matches_something};
 use super::config::used;
-use super::options::{ReportFormat, Required, ShardArgument, Targets};
+use super::options::{AlsoJson, ReportFormat, Required, ShardArgument, Targets};
 use super::pack::{Cases, nothing_to_ask};
 use super::progress::{Bar, Stream};
 use super::say;
@@ -96,6 +96,8 @@ pub(crate) struct Gate {
     /// Write the result to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    also_json: AlsoJson,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -118,6 +120,7 @@ impl Gate {
             baseline.is_of(&plan.choice, counts.iter().map(|(id, count)| (id.as_str(), *count)), None, path)?;
         }
         writable(self.out.as_deref())?;
+        self.also_json.is_writable()?;
         let stop = stopped_by_signals()?;
         let images = Images::new(self.images.clone())?;
         let report = self.judge(plan, answers, &expectations, &images, &stop);
@@ -138,9 +141,10 @@ impl Gate {
         (report.mended, report.added) =
             whole.map(|earlier| earlier.progress(&Standard::from(&report))).unwrap_or_default();
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
+        let kept = self.also_json.emit(|| report.to_json());
         regressions?;
         self.comparison.update(&report)?;
-        emitted?;
+        emitted.and(kept)?;
         Ok(status(&report, self.required))
     }
 

@@ -2,7 +2,7 @@
 
 use super::shader::ShaderChoice;
 use super::visit::opened;
-use super::{Status, emit, say, show};
+use super::{Status, emit, say, show, writable};
 use clap::Args;
 use lightmeter::arithmetic::Profile;
 use lightmeter::device::Code;
@@ -17,7 +17,7 @@ use lightmeter::select::Shard;
 use lightmeter::subject::Subject;
 use lightmeter_scene::target::TargetFormat;
 use std::num::NonZeroU64;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// What `--target` names: one format, or all.
@@ -79,6 +79,34 @@ impl ReportFormat {
     /// Writes the result to a file, or shows it.
     pub(crate) fn emit(self, text: &str, file: Option<&Path>) -> anyhow::Result<()> {
         if self == Self::Text { show(text, file) } else { emit(text, file) }
+    }
+}
+
+/// The result as JSON, beside what is told of it.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct AlsoJson {
+    /// Write the result to a file as JSON too, whatever --format is
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl AlsoJson {
+    /// The file.
+    pub(crate) const fn file(&mut self) -> Option<&mut PathBuf> {
+        self.json.as_mut()
+    }
+
+    /// That the file can be written, before anything is judged.
+    pub(crate) fn is_writable(&self) -> anyhow::Result<()> {
+        writable(self.json.as_deref())
+    }
+
+    /// Writes it, where that was asked for.
+    pub(crate) fn emit<E>(&self, json: impl FnOnce() -> Result<String, E>) -> anyhow::Result<()>
+    where
+        anyhow::Error: From<E>,
+    {
+        self.json.as_deref().map_or(Ok(()), |file| emit(&json()?, Some(file)))
     }
 }
 

@@ -16,7 +16,7 @@ use lightmeter::report::bench::{page, plot};
 use lightmeter::report::html;
 use lightmeter::report::page::scenes::ToldScene;
 use lightmeter::report::page::sweep::Swept;
-use lightmeter::report::page::{BlendRun, markdown, scenes, selftest, special, stability, svg};
+use lightmeter::report::page::{BlendRun, markdown, renderers, scenes, selftest, special, stability, svg};
 use lightmeter::rulings;
 use lightmeter::select::catalogue;
 use lightmeter::sweep::{Asked, PRESETS, SweepPlan, file, is_over_inputs_of};
@@ -31,6 +31,8 @@ enum Subject {
     Blend,
     /// Formulas by the subjects of several runs or gates; HTML where the file's name ends in .html.
     Matrix,
+    /// Renderers, a row each, from the JSON of their gates.
+    Renderers,
     /// A page to look at, from the JSON of `run`, `gate`, `merge`, `bench`, `sweep` or `selftest`: one file with everything in it.
     Report,
     /// Where formulas are from, what is ruled where the documents are wrong, and words with a meaning of their own; of no run.
@@ -74,6 +76,10 @@ impl Page {
             emit(&self.matrix()?, self.out.as_deref())?;
             return Ok(Status::Success);
         }
+        if self.subject == Subject::Renderers {
+            emit(&self.renderers()?, self.out.as_deref())?;
+            return Ok(Status::Success);
+        }
         if self.subject == Subject::Rulings {
             if let Some(run) = self.runs.first() {
                 bail!("the page of rulings takes no run; remove {}", run.display());
@@ -90,7 +96,9 @@ impl Page {
             Subject::Bench => self.bench(&json),
             Subject::Blend => self.blend(&json),
             Subject::Report => report_of(&json, run.parent().unwrap_or(Path::new(""))),
-            Subject::Scenes | Subject::Sweep | Subject::Rulings | Subject::Matrix => self.scenes(&json),
+            Subject::Scenes | Subject::Sweep | Subject::Rulings | Subject::Matrix | Subject::Renderers => {
+                self.scenes(&json)
+            }
             Subject::Selftest => selftest_page(&json),
             Subject::Special => special(&json),
             Subject::Stability => self.stability(&json),
@@ -134,6 +142,22 @@ impl Page {
         }
         let mut text = String::new();
         html::matrix_markdown(&named, &mut text)?;
+        Ok(text)
+    }
+
+    /// A row for each gate.
+    fn renderers(&self) -> anyhow::Result<String> {
+        if self.runs.is_empty() {
+            bail!("a table of renderers needs the JSON result of at least one gate");
+        }
+        let mut gates = vec![];
+        for path in &self.runs {
+            let failed = || format!("cannot read {}", path.display());
+            let json = read::text(path, read::MOST_TEXT).with_context(failed)?;
+            gates.push(GateReport::read(&json).with_context(failed)?);
+        }
+        let mut text = String::new();
+        renderers::markdown(&gates, &mut text)?;
         Ok(text)
     }
 

@@ -3,7 +3,7 @@
 use super::clock::now;
 use super::comparison::{Comparison, Earlier, matches_something};
 use super::config::used;
-use super::options::{Amount, Choice, ReportFormat, Required};
+use super::options::{AlsoJson, Amount, Choice, ReportFormat, Required};
 use super::progress::{Bar, Stream};
 use super::say;
 use super::shader::hash_of;
@@ -82,6 +82,8 @@ pub(crate) struct Run {
     /// Write the result to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    also_json: AlsoJson,
 }
 
 /// What is asked for, checked.
@@ -113,7 +115,7 @@ impl Run {
 
     /// The same, whose result does not overwrite that of the runs before.
     pub(crate) fn numbered(mut self, number: usize) -> Self {
-        if let Some(out) = self.out.as_mut().filter(|_| number > 1) {
+        for out in self.out.iter_mut().chain(self.also_json.file()).filter(|_| number > 1) {
             let stem = out.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let ending = out.extension().map(|ending| format!(".{}", ending.to_string_lossy())).unwrap_or_default();
             out.set_file_name(format!("{stem}-{number}{ending}"));
@@ -149,6 +151,7 @@ impl Run {
         options.runs = self.runs;
         options.counts_cases = true;
         writable(self.out.as_deref())?;
+        self.also_json.is_writable()?;
         let compared_by = self.compared_by(&options);
         if let Some(Earlier { baseline, path, .. }) = &earlier {
             baseline.is_of(&compared_by.choice, std::iter::empty(), Some(&options.profile.name.into()), path)?;
@@ -202,6 +205,7 @@ impl Run {
             session.tell_the_end(said_of(&report), Some([html::of_run(&report), report.to_json()?]));
         }
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
+        let kept = self.also_json.emit(|| report.to_json());
         if self.suggest {
             say(self.choice.shaders.own.suggested(&options.adapted, &report)?.trim_end());
         }
@@ -210,7 +214,7 @@ impl Run {
         }
         regressions?;
         self.comparison.update(&report)?;
-        emitted?;
+        emitted.and(kept)?;
         Ok(status(&report, self.required))
     }
 

@@ -158,6 +158,11 @@ pub fn of_matrix(reports: &[(&str, &Report)]) -> String {
     page(&facts.title, PageKind::Report, &body)
 }
 
+/// Whether a gate passes, as its exit code has it.
+pub(crate) fn is_success(gate: &GateReport) -> bool {
+    Verdict::of_gate(gate, &Report::from(gate.clone())).is_success
+}
+
 /// The same matrix in Markdown: a row for each formula that does not simply pass everywhere, and the counts of the others.
 ///
 /// # Errors

@@ -1,6 +1,7 @@
 //! The page on blending, made from a run's JSON: states against routes and drivers, in Markdown and as a picture.
 
 mod picture;
+pub mod renderers;
 pub mod scenes;
 pub mod selftest;
 pub mod special;
