@@ -26,4 +26,19 @@ fn the_example_engine_finds_its_bug_by_its_own_tests() {
     for what in ["lighting/blinn: ", "(half-vector-as-mean)", "legal from"] {
         assert!(told.contains(what), "no {what} in {told}");
     }
+    // The README's five bugs.
+    let (passes, told) = test("thirty");
+    assert!(!passes && told.contains("25 passed; 5 failed"), "{told}");
+    let readme = std::fs::read_to_string(folder.join("README.md")).expect("it is there");
+    let names = [
+        "half-vector-as-mean",
+        "reflect-once",
+        "normal-reversed",
+        "attenuation-quadratic-of-distance",
+        "fog-exp2-document",
+    ];
+    for name in names {
+        assert!(told.contains(&format!("({name})")), "no {name} in {told}");
+        assert!(readme.contains(&format!("`{name}`")), "no {name} in the README");
+    }
 }

@@ -136,6 +136,7 @@ impl Renderer<'_> {
             "errors" => head["error"] = json!("no memory"),
             "lines" => head["lines"] = json!(true),
             "nothing" => {}
+            "cases" => head = json!({ "id": "fog/exp/random/000000", "value": [0.5] }),
             "other" => head["batch"] = json!(0),
             _ => {}
         }

@@ -213,6 +213,7 @@ fn what_is_no_answer_in_columns_is_told_at_once_and_its_cases_are_asked_by_lines
         ("type", "malformed", "its `dtype` is `<i4`; expected <f4 or <f8"),
         ("nothing", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
         ("both", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
+        ("cases", "malformed", "answers a case; expected such as"),
         ("other", "unknown", "no batch 0 of `fog/exp` waits for an answer in columns"),
     ] {
         // Whoever waited for what does not come would wait for ten minutes.

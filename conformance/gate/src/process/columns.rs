@@ -4,7 +4,7 @@
 //! ends or hangs, is asked by lines, where the case that it fails at is found. So is what is left of a formula whose answer has another
 //! number of bytes than it must have: the process is ended at once, since nothing tells where its next line begins.
 
-use super::super::answer::clipped;
+use super::super::answer::{self, clipped};
 use super::super::problems::note;
 use super::framing::{before, width};
 use super::queue::MOST_OF_FORMULA;
@@ -194,38 +194,40 @@ impl Session {
         }
     }
 
-    /// What a line says of a batch; `None` where it answers another one, or nothing.
+    /// What a line says of a batch; `None` where it answers nothing, as what a library prints.
     fn told(&mut self, line: &[u8], batch: &Batch<'_>) -> Option<Came> {
+        let refused = |why: String| Some(Came::Refused("malformed", why));
+        let quoted = || clipped(&String::from_utf8_lossy(line));
         let answer = match serde_json::from_slice::<ColumnsAnswer>(line) {
-            Ok(answer) => answer,
-            Err(error) => {
-                let quoted = clipped(&String::from_utf8_lossy(line));
-                let why = match before(line) {
-                    Some(0) => format!("`{quoted}`: {error}; expected {EXPECTED}"),
-                    Some(bytes) => {
-                        return Some(Came::Refused(
-                            "malformed",
-                            format!(
-                                "{bytes} bytes stand before the line of its answer; expected none, and before it as many bytes of arrays as \
-                             their lines announce"
-                            ),
-                        ));
-                    }
-                    None => {
-                        note(&mut self.used.problems, "malformed", || {
-                            format!("`{quoted}`: {error}; expected an answer in columns")
-                        });
-                        return None;
-                    }
-                };
-                return Some(Came::Refused("malformed", why));
+            Ok(answer) if answer.columns.is_empty() && answer::id(line).is_some() => {
+                return refused(format!("`{}` answers a case; expected {EXPECTED}", quoted()));
             }
+            Ok(answer) if answer.columns.is_empty() => {
+                self.is_not_asked(&answer);
+                return None;
+            }
+            Ok(answer) => answer,
+            Err(error) => match before(line) {
+                Some(0) => return refused(format!("`{}`: {error}; expected {EXPECTED}", quoted())),
+                Some(bytes) => {
+                    return refused(format!(
+                        "{bytes} bytes stand before the line of its answer; expected none, and before it as many bytes of arrays as \
+                         their lines announce"
+                    ));
+                }
+                None => {
+                    note(&mut self.used.problems, "malformed", || {
+                        format!("`{}`: {error}; expected an answer in columns", quoted())
+                    });
+                    return None;
+                }
+            },
         };
         if !batch.is_of(&answer) {
             return Some(Came::Refused("unknown", not_asked(&answer)));
         }
         if let Some(why) = batch.refuses(&answer) {
-            return Some(Came::Refused("malformed", why));
+            return refused(why);
         }
         let ColumnsAnswer { skip, error, .. } = answer;
         Some(match (skip, error) {
