@@ -408,7 +408,7 @@ async function shadersAreJudgedAsTheyAreTyped() {
   await page.selectOption("#formula", "");
   // What is no name of a function, no input and no formula is said to be none.
   await page.evaluate(() => { for (const place of document.querySelectorAll("details")) place.open = true; });
-  for (const [field, text, pattern] of [["function", "--shader=/etc/passwd", /is no function's name/], ["constant", "glossiness=3", /the constant `glossiness=3` is an input of no formula/]]) {
+  for (const [field, text, pattern] of [["function", "--shader=/etc/passwd", /is no function's name/], ["constant", "glossiness=3", /the constant `glossiness=3`: no formula has an input `glossiness`/]]) {
     await page.fill(`#${field}`, text);
     await said(pattern);
     assert.equal(await page.locator("#drawn img").count(), 0, "no picture of an earlier shader is left");

@@ -508,3 +508,25 @@ fn a_loop_whose_condition_never_ends_it_fails_and_one_that_ends_does_not() {
     assert!(said.contains("It has loops"), "{said}");
     assert_eq!(failed, 0, "{said}");
 }
+
+#[test]
+fn the_formula_that_is_meant_is_the_nearest_one_and_not_one_that_mistakes_lead_to() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let told = |text: &str| {
+        let file = folder.path().join("shader.frag");
+        std::fs::write(&file, text).expect("it is written");
+        lightmeter(&["identify", &file.to_string_lossy()])
+    };
+    // It normalises what is a unit vector, of which three hard cases are not quite ones. Phong's without two of its terms is far away.
+    let lambert = told(
+        "uniform vec3 lightDir, lightColor, albedo; varying vec3 vNormal; void main() { gl_FragColor = \
+         vec4(lightColor * albedo * max(dot(normalize(vNormal), normalize(lightDir)), 0.0), 1.0); }",
+    );
+    assert!(stdout(&lambert).contains("The nearest is lighting/diffuse-toward"), "{}", stdout(&lambert));
+    let white = told("void main() { gl_FragColor = vec4(1.0); }");
+    assert!(code(&white) == 2 && stderr(&white).contains("its result is always the same"), "{}", stderr(&white));
+    let fog = told(
+        "uniform vec3 fogColor, mystery; uniform float fogDensity; varying float vFogDepth; void main() { gl_FragColor = vec4(mix(mystery, fogColor, 1.0 - exp(-fogDensity * vFogDepth)), 1.0); }",
+    );
+    assert!(stderr(&fog).contains("nothing of fog/exp is known to be meant by\n  mystery"), "{}", stderr(&fog));
+}

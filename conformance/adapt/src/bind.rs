@@ -109,13 +109,14 @@ pub fn bind(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> Res
     if !missing.is_empty() {
         let inputs =
             spec.inputs.iter().map(|input| format!("{}: {}", input.name, input.shape.name())).collect::<Vec<_>>();
-        return Err(AdaptError::Bind(format!(
+        let message = format!(
             "nothing of {} is known to be meant by\n  {}\nThe formula has the inputs\n  {}\nSay what is meant by `--bind \
              'NAME=EXPRESSION'`, in WGSL over these inputs.",
             spec.id,
             missing.join("\n  "),
             inputs.join("\n  ")
-        )));
+        );
+        return Err(AdaptError::Unknown { variables: missing.len(), message });
     }
     let outputs = outputs(program, spec)?;
     let unused = unused(spec, &bound, &outputs);
@@ -198,7 +199,7 @@ fn checked(slot: &Variable, expression: &str, spec: &Spec) -> Result<(), AdaptEr
         spec.inputs.iter().map(|input| format!("{}: {}", input.name, type_of(input.shape))).collect();
     let head = format!("fn bound({}) -> {} {{ return ", inputs.join(", "), slot.leaf);
     let refused = |message: &str| {
-        AdaptError::Bind(format!(
+        AdaptError::Expression(format!(
             "`--bind '{}={expression}'`: {message}; expected WGSL of the type {} over {}",
             slot.name,
             slot.leaf,

@@ -35,4 +35,15 @@ pub enum AdaptError {
     /// Something has no binding, has two, or is bound to what does not fit.
     #[error("{0}")]
     Bind(String),
+    /// Variables of it are nothing that the formula has.
+    #[error("{message}")]
+    Unknown {
+        /// How many.
+        variables: usize,
+        /// Which, and what the formula has.
+        message: String,
+    },
+    /// What a variable is said to mean is no expression over the formula's inputs.
+    #[error("{0}")]
+    Expression(String),
 }

@@ -38,7 +38,7 @@ const SAMPLE: &str = "lightmeter_texture";
 /// What combines a texture and a sampler.
 const COMBINE: &str = "lightmeter_combined";
 /// The output of versions that have no other.
-const COLOR: &str = "lightmeter_FragColor";
+pub(crate) const COLOR: &str = "lightmeter_FragColor";
 const HELPERS: &str = "vec4 lightmeter_texture(vec4 t, vec2 at) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at) { return t; } \
     vec4 lightmeter_texture(vec4 t, vec2 at, float bias) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at, float bias) { return t; } \
     float lightmeter_texture(float t, vec3 at) { return t; } vec4 lightmeter_combined(vec4 t, float s) { return t; } ";

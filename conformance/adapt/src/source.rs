@@ -129,7 +129,12 @@ fn of_wgsl(path: &Path, text: &str) -> Result<Module, AdaptError> {
 }
 
 fn of_glsl(path: &Path, own: String, stage: ShaderStage) -> Result<ShaderSource, AdaptError> {
-    let invalid = |line, message: String| AdaptError::Invalid { path: path.into(), line, message };
+    // Messages have the names that people wrote.
+    let invalid = |line, message: String| AdaptError::Invalid {
+        path: path.into(),
+        line,
+        message: message.replace(glsl::COLOR, "gl_FragColor"),
+    };
     if let Some((line, word)) = unread(&own) {
         return Err(invalid(Some(line), word));
     }

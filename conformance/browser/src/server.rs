@@ -121,6 +121,13 @@ struct Sessions {
     waiting: VecDeque<Arc<Session>>,
 }
 
+/// The part of a hello that all versions of the protocol have.
+#[derive(serde::Deserialize)]
+struct Spoken {
+    #[serde(default)]
+    protocol: u32,
+}
+
 impl Reply {
     fn new(status: u16, kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
         Self { status, kind, body: body.into(), policy: POLICY }
@@ -284,10 +291,10 @@ impl Shared {
     }
 
     fn hello(&self, body: &[u8]) -> Result<Reply, Reply> {
-        let hello: BrowserHello =
-            serde_json::from_slice(body).map_err(|error| Reply::refused(400, &format!("not a hello: {error}")))?;
-        if hello.protocol != PROTOCOL {
-            let spoken = hello.protocol;
+        let no_hello = |error: serde_json::Error| Reply::refused(400, &format!("not a hello: {error}"));
+        // The version comes first: another one's hello may have other fields.
+        let Spoken { protocol: spoken } = serde_json::from_slice(body).map_err(no_hello)?;
+        if spoken != PROTOCOL {
             return Err(Reply::refused(
                 400,
                 &format!(
@@ -295,6 +302,7 @@ impl Shared {
                 ),
             ));
         }
+        let hello: BrowserHello = serde_json::from_slice(body).map_err(no_hello)?;
         let mut sessions = locked(&self.sessions);
         sessions.all.retain(|_, session| !session.is_gone());
         let known = hello.session.as_ref().and_then(|id| sessions.all.get(id)).cloned();
@@ -319,10 +327,12 @@ impl Shared {
     fn next(&self, query: &HashMap<&str, &str>) -> Result<Reply, Reply> {
         let (session, page) = self.session(query)?;
         let pieces = session.after(page, number(query, "after")?, LONG_POLL)?;
-        if pieces.is_empty() && session.has_ended() {
-            return Err(over());
-        }
-        let status = if pieces.is_empty() { 204 } else { 200 };
+        // 205 is no error, of which a browser's console would tell.
+        let status = match (pieces.is_empty(), session.has_ended()) {
+            (false, _) => 200,
+            (true, false) => 204,
+            (true, true) => 205,
+        };
         Ok(Reply::new(status, "application/octet-stream", pieces))
     }
 
@@ -375,7 +385,12 @@ impl Shared {
         let (session, page) = self.session(query)?;
         session.see(page)?;
         let from = usize::try_from(number(query, "groups")?).unwrap_or(usize::MAX);
-        Ok(Reply::json(&session.told(from)))
+        let mut told = session.told(from);
+        if locked(&self.sessions).waiting.iter().any(|waiting| waiting.id == session.id) {
+            told.says =
+                "Waiting: another browser's page came first. `lightmeter serve --keep` judges all that come.".into();
+        }
+        Ok(Reply::json(&told))
     }
 
     fn session(&self, query: &HashMap<&str, &str>) -> Result<(Arc<Session>, u64), Reply> {

@@ -59,7 +59,7 @@ fn the_page_is_served_and_what_nobody_should_ask_is_refused() {
     assert_eq!(get("next?session=0&page=1&after=0", &own), 403, "no such session");
     assert_eq!(post("hello", &own, b"rubbish").0, 400);
     assert_eq!(post("hello", &own, &vec![b' '; (1 << 16) + 1]).0, 413);
-    let (status, told) = post("hello", &own, HELLO.replace("\"protocol\": 1", "\"protocol\": 2").as_bytes());
+    let (status, told) = post("hello", &own, br#"{"protocol": 2, "more": "than today"}"#);
     let told = String::from_utf8_lossy(&told).into_owned();
     assert!(status == 400 && told.contains("version 2") && told.contains("load the page again"), "{told}");
     assert_eq!(post("page.js", &own, b"").0, 405);

@@ -2,7 +2,7 @@
 
 use super::shader::{BOUND, JUDGED, OwnShader, is_identified};
 use super::{Status, foreign};
-use anyhow::{Context as _, anyhow};
+use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
 use lightmeter::cases::Spec;
 use lightmeter::document::run::JudgedAs;
@@ -42,6 +42,17 @@ impl Adapt {
             let own = self.own.with_constants(own)?;
             let (bound, others): (Vec<_>, Vec<_>) =
                 own.into_iter().map(|spec| Ok((spec, bind(&program, spec, &asked)?))).partition(Result::is_ok);
+            // What has no input in it would be judged as anything.
+            let has_input = |found: &Result<(&Spec, ShaderBinding), AdaptError>| {
+                found.as_ref().is_ok_and(|(_, binding)| binding.bound.iter().any(|bound| bound.found != Found::Fixed))
+            };
+            if !bound.is_empty() && !bound.iter().any(has_input) {
+                bail!(
+                    "no variable of {} stands for an input of a formula: its result is always the same",
+                    file.display()
+                );
+            }
+            let bound: Vec<_> = bound.into_iter().filter(has_input).collect();
             if bound.is_empty() {
                 let refused = others.into_iter().filter_map(|other: Result<_, AdaptError>| other.err());
                 return Err(no_formula(&file, refused));
@@ -75,9 +86,14 @@ impl Adapt {
     }
 }
 
-/// That a shader can be bound to no formula: with what is not known of the nearest one.
+/// That a shader can be bound to no formula: with what is not known of the nearest one, the first that knows the most of its variables.
 fn no_formula(file: &Path, refused: impl Iterator<Item = AdaptError>) -> anyhow::Error {
-    let nearest = refused.map(|error| error.to_string()).min_by_key(|message| message.lines().count());
+    let unknown = |error: &AdaptError| match error {
+        AdaptError::Unknown { variables, .. } => *variables,
+        AdaptError::Expression(_) => usize::MAX,
+        _ => 0,
+    };
+    let nearest = refused.min_by_key(unknown).map(|error| error.to_string());
     anyhow!(
         "the variables of {} can be bound to the inputs of no formula. Nearest is this: {}",
         file.display(),

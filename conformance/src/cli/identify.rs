@@ -22,6 +22,8 @@ use std::path::{Path, PathBuf};
 
 /// Random cases of each formula: mistakes show in as many.
 pub(super) const CASES: u64 = 256;
+/// How many times more of a formula than of the best one may be wrong, so that it can still be the one that is meant.
+const FAR: f64 = 8.0;
 /// Formulas that are told besides the ones that it is, or the nearest one.
 const MOST_TOLD: usize = 3;
 
@@ -142,6 +144,11 @@ pub(super) fn candidates(report: &Report, adapted: &[Adapted]) -> Vec<FormulaCan
         }
         candidates.push(candidate);
     }
+    #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
+    let failed = |one: &FormulaCandidate| if one.verdicts == 0 { 1.0 } else { one.failed as f64 / one.verdicts as f64 };
+    // A formula of which far more is wrong than of another one is not meant, whatever explains it: mistakes enough turn any formula into any other.
+    let least = candidates.iter().filter(|one| !is_formula(one)).map(failed).fold(1.0, f64::min);
+    let is_far = |one: &FormulaCandidate| !is_formula(one) && failed(one) > FAR * least;
     // What has a name is nearer than what has none, and one mistake nearer than two. Shares of what fails are compared in quarters: they
     // depend on which hard cases a formula has, and where they are alike the formula that is listed first is the more common one.
     let steps = |candidate: &FormulaCandidate| match candidate.mistakes.len() {
@@ -149,11 +156,13 @@ pub(super) fn candidates(report: &Report, adapted: &[Adapted]) -> Vec<FormulaCan
         0 => usize::MAX,
         mistakes => mistakes,
     };
-    #[expect(clippy::cast_precision_loss, reason = "counts of verdicts")]
-    let share =
-        |candidate: &FormulaCandidate| (4.0 * candidate.failed as f64 / candidate.verdicts.max(1) as f64).round();
+    let share = |one: &FormulaCandidate| (4.0 * failed(one)).round();
     candidates.sort_by(|a, b| {
-        steps(a).cmp(&steps(b)).then(a.missing.len().cmp(&b.missing.len())).then(share(a).total_cmp(&share(b)))
+        is_far(a)
+            .cmp(&is_far(b))
+            .then(steps(a).cmp(&steps(b)))
+            .then(a.missing.len().cmp(&b.missing.len()))
+            .then(share(a).total_cmp(&share(b)))
     });
     candidates
 }

@@ -99,13 +99,7 @@ impl Playground {
         };
         let file = folder.path().join(name);
         std::fs::write(&file, &shader.text)?;
-        // Messages name the file and options, of which people see nothing in a page.
-        let bare = |text: &str| {
-            let text = lines(text).replace(&format!("{}/", folder.path().display()), "");
-            text.replace("`--constant ", "the constant `")
-                .replace("--bind '", "variable '")
-                .replace("`--bind ", "the variable `")
-        };
+        let bare = |text: &str| words_of_page(&lines(text).replace(&format!("{}/", folder.path().display()), ""));
         let judged = self.judged_file(shader, &file);
         match judged {
             Ok(result) => Ok(PlayedResult { told: bare(&result.told), result: bare(&result.result), ..result }),
@@ -117,7 +111,7 @@ impl Playground {
     fn judged_file(&mut self, shader: &PlayedShader, file: &Path) -> anyhow::Result<PlayedResult> {
         check(shader)?;
         let constants = shader.constant.iter().map(|text| constant(text).map_err(anyhow::Error::msg));
-        let function = Some(shader.function.as_str()).filter(|name| !name.is_empty());
+        let function = Some(shader.function.trim()).filter(|name| !name.is_empty());
         let own = OwnShader::new(file.into(), function, shader.bind.clone(), constants.collect::<Result<_, _>>()?);
         let formulas: Vec<String> = Some(shader.formula.clone()).filter(|id| !id.is_empty()).into_iter().collect();
         own.check_constants(&formulas)?;
@@ -235,7 +229,7 @@ fn check(shader: &PlayedShader) -> anyhow::Result<()> {
     let PlayedShader { function, formula, .. } = shader;
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     ensure!(
-        function.chars().all(is_word),
+        function.trim().chars().all(is_word),
         "`{function}` is no function's name: leave the field empty to judge the whole shader"
     );
     let is_known = |member: Member| is_identified(&member.spec) && member.spec.id == *formula;
@@ -247,15 +241,40 @@ fn check(shader: &PlayedShader) -> anyhow::Result<()> {
 
 /// What the variables of a shader were taken for by one formula, of what was told of all.
 fn told_of_formula(told: &str, id: &str) -> String {
-    let is_head = |line: &&str| !line.starts_with(' ');
-    let of_it = told.lines().skip_while(|line| !(is_head(line) && line.contains(&format!(" judged as {id}."))));
-    let mut lines = of_it.enumerate().take_while(|(k, line)| *k == 0 || !is_head(line)).map(|(_, line)| line);
-    let mut text = String::new();
-    for line in lines.by_ref() {
-        text += line;
-        text.push('\n');
+    let (mut text, mut is_of_it) = (String::new(), false);
+    for line in told.lines() {
+        if !line.starts_with(' ') {
+            is_of_it = line.contains(&format!(" judged as {id}."));
+        }
+        if is_of_it {
+            text += line;
+            text.push('\n');
+        }
     }
     text
+}
+
+/// A message that names options of the command line, with the fields of the page in their place.
+fn words_of_page(text: &str) -> String {
+    let text = text
+        .replace("name a function by `--function NAME@FILE`", "write the name of a function into the field Function")
+        .replace("name one by `--function NAME@FILE`", "write the name of one into the field Function")
+        .replace("by `--bind 'NAME=EXPRESSION'`", "by a line NAME=EXPRESSION in the field Variables")
+        .replace("said by `--constant ", "said in the field Constants by the line `")
+        .replace("`--constant ", "the constant `");
+    let line = |line: &str| match (line.split_once("--bind '"), line.rfind('\'')) {
+        (Some((before, _)), Some(end)) => {
+            let start = before.len() + "--bind '".len();
+            let (before, after) = (before.strip_suffix('`').unwrap_or(before), &line[end + 1..]);
+            format!(
+                "{before}the line {} in the field Variables{}",
+                &line[start..end],
+                after.strip_prefix('`').unwrap_or(after)
+            )
+        }
+        _ => line.to_owned(),
+    };
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
 }
 
 fn subject(session: &Arc<Session>) -> Subject {
@@ -265,4 +284,41 @@ fn subject(session: &Arc<Session>) -> Subject {
 /// A colour as a pixel; what is not drawn is clear.
 fn units(color: &Option<[f64; 3]>) -> [f64; 4] {
     color.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_of_the_command_line_are_told_as_fields_of_the_page() {
+        for (text, expected) in [
+            (
+                "  If l points the other way: --bind 'l=-l'",
+                "  If l points the other way: the line l=-l in the field Variables",
+            ),
+            (
+                "`--bind 'd=foo(('`: expected an expression",
+                "the line d=foo(( in the field Variables: expected an expression",
+            ),
+            (
+                "Say what is meant by `--bind 'NAME=EXPRESSION'`, in WGSL",
+                "Say what is meant by a line NAME=EXPRESSION in the field Variables, in WGSL",
+            ),
+            (
+                "it has no main; name a function by `--function NAME@FILE`: it has f",
+                "it has no main; write the name of a function into the field Function: it has f",
+            ),
+            ("is said by `--constant la=VALUE`, where", "is said in the field Constants by the line `la=VALUE`, where"),
+        ] {
+            assert_eq!(words_of_page(text), expected);
+        }
+    }
+
+    #[test]
+    fn the_variables_of_one_formula_are_told() {
+        let told = "a is judged as fog/exp. What:\n  x  distance\na is judged as fog/exp2. What:\n  x  y\n  z\n";
+        assert_eq!(told_of_formula(told, "fog/exp2"), "a is judged as fog/exp2. What:\n  x  y\n  z\n");
+        assert_eq!(told_of_formula(told, "fog/linear"), "");
+    }
 }

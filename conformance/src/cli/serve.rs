@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 
 /// Options that a playground has no use for: it judges what is typed.
-const PLAYGROUND_LACKS: [&str; 27] = [
+const PLAYGROUND_LACKS: [&str; 28] = [
     "filter",
     "blend",
     "target",
@@ -40,6 +40,7 @@ const PLAYGROUND_LACKS: [&str; 27] = [
     "require",
     "format",
     "out",
+    "json",
     "keep",
 ];
 
@@ -156,4 +157,18 @@ fn open(url: &str) -> anyhow::Result<()> {
     started
         .map(drop)
         .map_err(|error| anyhow::anyhow!("--open: {program} does not start: {error}; open the page by hand"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_playground_has_a_use_for_an_option_or_refuses_it() {
+        const USED: [&str; 5] = ["adapter", "profile", "listen", "open", "playground"];
+        let command = Serve::augment_args(clap::Command::new("serve"));
+        for id in command.get_arguments().map(|arg| arg.get_id().as_str()) {
+            assert!(PLAYGROUND_LACKS.contains(&id) != USED.contains(&id), "{id}");
+        }
+    }
 }

@@ -322,7 +322,11 @@ impl OwnShader {
         for one in &self.constant {
             let alone = Self { constant: vec![one.clone()], ..Self::default() };
             if !formulas.iter().any(|spec| is_fit(&alone, spec)) {
-                bail!("`--constant {}` is an input of no formula, or has more or fewer numbers", text(one));
+                let has = |spec: &&&Spec| spec.inputs.iter().any(|input| input.name == one.0);
+                let Some(spec) = formulas.iter().find(has) else {
+                    bail!("`--constant {}`: no formula has an input `{}`", text(one), one.0);
+                };
+                alone.check_constants(std::slice::from_ref(&spec.id))?;
             }
         }
         bail!(

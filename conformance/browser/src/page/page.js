@@ -78,13 +78,15 @@ async function persistently(path, options, patience = PATIENCE) {
   for (let pause = 100; ; pause = Math.min(2 * pause, 2000)) {
     try {
       const response = await fetch(path, { ...options, cache: "no-store" });
+      if (pause > 100) shown("notice").hidden = true;
       if (response.ok) return response;
       const text = await response.text();
-      if (response.status === 409) throw new Stopped("Another page has taken over: this one is idle.");
+      if (response.status === 409) throw new Stopped("Another page has taken over, so this one is idle. Load it again to take over from there.");
       throw new Stopped(response.status === 410 ? text : `The server refuses a message: ${text}`);
     } catch (error) {
       if (error instanceof Stopped) throw error;
-      if (performance.now() > until) throw new Stopped("The server is gone. Look at the terminal where lightmeter was started.");
+      if (performance.now() > until) throw new Stopped("lightmeter does not answer. Look at the terminal where it was started; where it still runs, load this page again.");
+      notice("lightmeter does not answer. It is asked again …");
     }
     await wait(pause);
   }
@@ -121,6 +123,7 @@ async function serve(page) {
   while (!page.isLost && !page.isOver) {
     const response = await persistently(`next?${session}&after=${after}`, {});
     if (response.status === 204) continue;
+    if (response.status === 205) throw new Stopped("This session has ended: nothing is judged any more. Load the page again, or start lightmeter again.");
     for (const { id, bytes } of pieces(await response.arrayBuffer())) {
       if (page.isLost) return;
       after = id;
@@ -204,7 +207,7 @@ async function tell(page) {
     if (state.playground.length > 0) openPlayground(state.playground, play);
     const { done, of, failed } = state;
     const verdict = shown("verdict");
-    verdict.textContent = state.says;
+    verdict.textContent = state.says || "Waiting for work.";
     verdict.className = failed > 0 ? "failed" : state.is_over ? "passed" : "";
     const bar = shown("bar");
     bar.hidden = !(of > 0) || state.is_over;

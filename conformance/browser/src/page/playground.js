@@ -72,6 +72,8 @@ function show({ refused = null, told = "", formulas = [], result = "", picture =
     shown(inside).textContent = text;
     shown(place).hidden = text === "";
   }
+  // Why a right shader is taken for a wrong one mostly stands there.
+  shown("taken").open ||= nearest?.failed > 0;
 }
 
 async function judge() {
@@ -104,14 +106,25 @@ async function judge() {
   }
 }
 
+// Keeps the shader in the address. A browser may refuse that where it is done too often.
+function keep() {
+  const values = typed();
+  try {
+    history.replaceState(null, "", values.text === "" ? "#" : `#shader=${packed(values)}`);
+  } catch {
+    shown("copied").textContent = "The browser does not let the address follow so fast.";
+  }
+}
+
 function changed(event) {
   // What was changed is no example any more, and each can be chosen again.
   if (event) shown("example").value = "";
-  const values = typed();
-  history.replaceState(null, "", values.text === "" ? "#" : `#shader=${packed(values)}`);
   shown("copied").textContent = "";
   clearTimeout(timer);
-  timer = setTimeout(judge, PAUSE);
+  timer = setTimeout(() => {
+    keep();
+    judge();
+  }, PAUSE);
 }
 
 function offerExamples() {
@@ -153,6 +166,7 @@ export function openPlayground(formulas, sender) {
   offerExamples();
   for (const name of FIELDS) shown(name).addEventListener("input", changed);
   shown("copy").addEventListener("click", async () => {
+    keep();
     try {
       await navigator.clipboard.writeText(location.href);
       shown("copied").textContent = "Copied. It opens as long as lightmeter serves this page; what follows # is the shader, and opens in later playgrounds too.";
