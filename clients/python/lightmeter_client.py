@@ -35,6 +35,8 @@ from types import SimpleNamespace
 import numpy as np
 
 PROTOCOL = "lightmeter.protocol/1"
+# What packs of columns are written as.
+PACK = "lightmeter.pack/1"
 NAMED = {"NaN": float("nan"), "Inf": float("inf"), "-Inf": float("-inf")}
 
 
@@ -130,8 +132,13 @@ def computed(function, cases, dtype):
     with np.errstate(all="ignore"):
         outputs = function(**inputs)
         parts = [np.atleast_2d(part) for part in (outputs if isinstance(outputs, tuple) else (outputs,))]
-        if any(part.dtype.kind == "f" and part.dtype != dtype for part in parts):
-            raise TypeError(f"{cases.formula} was not computed in {np.dtype(dtype)}")
+        for part in parts:
+            if part.dtype.kind not in "biuf":
+                raise TypeError(f"{cases.formula}: an output of {part.dtype}; expected {np.dtype(dtype)}")
+            if part.dtype.kind == "f" and part.dtype != dtype:
+                raise TypeError(f"{cases.formula}: an output of {part.dtype}: it was not computed in {np.dtype(dtype)}")
+            if part.ndim != 2 or part.shape[1] not in (1, cases.total):
+                raise ValueError(f"{cases.formula}: an output of the shape {part.shape}; expected ({cases.total},) of numbers and (3, {cases.total}) of vectors: a row a component")
         parts = [np.broadcast_to(part, (len(part), cases.total)) for part in parts]
         return np.concatenate(parts).astype(np.float32).T
 
@@ -177,16 +184,22 @@ def digest(*files):
     and are not installed, and of further files, such as shaders, named from the main file's folder."""
     main = getattr(sys.modules["__main__"], "__file__", None)
     folder = Path(main).resolve().parent if main else Path.cwd()
-    library = {Path(sysconfig.get_path(kind)).resolve() for kind in ("stdlib", "platstdlib")}
-    loaded = [getattr(module, "__file__", None) for module in list(sys.modules.values())]
-    own = {Path(file).resolve() for file in [main, *loaded] if file}
-    own = {file for file in own if file.is_file() and not library & set(file.parents)}
-    own = {file for file in own if not {"site-packages", "dist-packages"} & set(file.parts)}
-    own |= {(folder / file).resolve() for file in files}
+    library = {Path(sysconfig.get_path(kind)) for kind in ("stdlib", "platstdlib")}
+    library |= {path.resolve() for path in library}
+
+    def is_own(path):
+        # A file of the library may be a link that leads out of it.
+        paths = {path.absolute(), path.resolve()}
+        installed = any({"site-packages", "dist-packages"} & set(path.parts) or library & set(path.parents) for path in paths)
+        return path.is_file() and not installed
+
+    # By the names of modules, which do not depend on where the program lies.
+    modules = [(name, getattr(module, "__file__", None)) for name, module in list(sys.modules.items())]
+    own = [(name, Path(file)) for name, file in modules if file and is_own(Path(file))]
     code = hashlib.sha256()
-    # By names that do not depend on where the program lies.
-    for name, file in sorted((str(file.relative_to(folder)) if folder in file.parents else file.name, file) for file in own):
-        code.update(f"{name} {file.stat().st_size}\n".encode() + file.read_bytes())
+    for name, file in sorted(own) + [(file, folder / file) for file in files]:
+        text = file.read_bytes()
+        code.update(f"{name} {len(text)}\n".encode() + text)
     return code.hexdigest()[:16]
 
 
@@ -241,6 +254,10 @@ class Renderer:
         manifest = json.loads((pack / "manifest.json").read_text())
         if not manifest.get("columns"):
             sys.exit(f"{pack} has no columns; expected a pack of `lightmeter pack {pack} --columns`")
+        if manifest.get("schema") != PACK:
+            sys.exit(f"{pack} is a {manifest.get('schema')}, and this client reads {PACK}")
+        # Until all is answered nothing is: a gate would take what an earlier call left for answers of this one.
+        (answers / "answers.jsonl").unlink(missing_ok=True)
         lines = [{"formulas": list(self.functions), "sources": self.sources, "build": digest(), **self.hello, "pack": manifest["pack"]}]
         for formula in manifest["formulas"]:
             name = formula["id"]

@@ -159,6 +159,12 @@ fn renderers_have_a_row_each() {
         let gate = ["gate", "fog/*", "--exec", &exec, "--cases", "16", "--json", file, "--out", &text];
         assert_eq!(code(&lightmeter(&gate)), status);
     }
+    for option in ["--out", "--baseline"] {
+        let one_file =
+            lightmeter(&["gate", "fog/*", "--cases", "16", "--exec", "true", "--json", &right, option, &right]);
+        let told = stderr(&one_file);
+        assert!(code(&one_file) == 2 && told.contains(&format!("`--json` and `{option}` both name")), "{told}");
+    }
     // What is told is as it is without `--json`.
     assert!(std::fs::read_to_string(&text).expect("it was written").contains("cases pass, 1 fail"));
     let table = stdout(&lightmeter(&["page", "renderers", &right, &wrong]));

@@ -62,7 +62,7 @@ pub(crate) fn mistakes(catalogue: &[Member], place: &Place<'_>) -> Markup {
     html! {
         h1 { "Mistakes that are known by name" }
         p { "Where a renderer fails, the suite names the mistake that explains its answers, if it knows one. " code { "lightmeter show CASE --mistake NAME" } " computes a case as a renderer with the mistake would." }
-        ul.names { @for fault in faults() { li { a href={ "#" (fault.name) } { code { (fault.name) } } } } }
+        details { summary { "All names" } ul.names { @for fault in faults() { li { a href={ "#" (fault.name) } { code { (fault.name) } } } } } }
         @for fault in faults() {
             section {
                 h2 id=(fault.name) { code { (fault.name) } }

@@ -26,6 +26,13 @@ pub(crate) struct Comparison {
     update_baseline: bool,
 }
 
+impl Comparison {
+    /// The files of known failures and of the earlier result.
+    pub(crate) fn files(&self) -> [Option<&Path>; 2] {
+        [self.expect.as_deref(), self.baseline.as_deref()]
+    }
+}
+
 fn factor(text: &str) -> Result<f64, String> {
     let factor: f64 = text.parse().map_err(|_| "expected a factor, such as 1.5".to_owned())?;
     if factor >= 1.0 && factor.is_finite() { Ok(factor) } else { Err("expected a factor of 1 or more".into()) }

@@ -120,7 +120,8 @@ impl Gate {
             baseline.is_of(&plan.choice, counts.iter().map(|(id, count)| (id.as_str(), *count)), None, path)?;
         }
         writable(self.out.as_deref())?;
-        self.also_json.is_writable()?;
+        let [expect, baseline] = self.comparison.files();
+        self.also_json.is_writable([("out", self.out.as_deref()), ("expect", expect), ("baseline", baseline)])?;
         let stop = stopped_by_signals()?;
         let images = Images::new(self.images.clone())?;
         let report = self.judge(plan, answers, &expectations, &images, &stop);

@@ -3,6 +3,7 @@
 use super::shader::ShaderChoice;
 use super::visit::opened;
 use super::{Status, emit, say, show, writable};
+use anyhow::bail;
 use clap::Args;
 use lightmeter::arithmetic::Profile;
 use lightmeter::device::Code;
@@ -96,9 +97,15 @@ impl AlsoJson {
         self.json.as_mut()
     }
 
-    /// That the file can be written, before anything is judged.
-    pub(crate) fn is_writable(&self) -> anyhow::Result<()> {
-        writable(self.json.as_deref())
+    /// That the file can be written, and is none of those that the options name besides, before anything is judged.
+    pub(crate) fn is_writable(&self, others: [(&str, Option<&Path>); 3]) -> anyhow::Result<()> {
+        let Some(json) = &self.json else { return Ok(()) };
+        let place = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_default();
+        if let Some((name, _)) = others.iter().find(|(_, other)| other.is_some_and(|other| place(other) == place(json)))
+        {
+            bail!("`--json` and `--{name}` both name {}; choose two files", json.display());
+        }
+        writable(Some(json))
     }
 
     /// Writes it, where that was asked for.

@@ -151,7 +151,8 @@ impl Run {
         options.runs = self.runs;
         options.counts_cases = true;
         writable(self.out.as_deref())?;
-        self.also_json.is_writable()?;
+        let [expect, baseline] = self.comparison.files();
+        self.also_json.is_writable([("out", self.out.as_deref()), ("expect", expect), ("baseline", baseline)])?;
         let compared_by = self.compared_by(&options);
         if let Some(Earlier { baseline, path, .. }) = &earlier {
             baseline.is_of(&compared_by.choice, std::iter::empty(), Some(&options.profile.name.into()), path)?;

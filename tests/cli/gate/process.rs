@@ -315,6 +315,15 @@ fn a_gate_that_is_told_to_stop_reports_and_leaves_nothing() {
 }
 
 #[test]
+fn a_renderer_that_writes_on_after_its_last_answer_is_ended() {
+    for pause in ["sleep 0.02", ":"] {
+        let exec = format!("{}; while :; do echo; {pause}; done", renderer());
+        let (status, found) = report(&gate(&["fog/exp"], &exec, &["--case-timeout", "1"]));
+        assert!(status == 4 && found["incidents"].to_string().contains("did not end"), "{pause}: {found}");
+    }
+}
+
+#[test]
 fn how_a_renderer_ends_is_told_though_it_answered_all() {
     for (fault, said) in [("exit=3", "exit status: 3"), ("lingers=all", "did not end")] {
         let (status, found) = report(&process(&["fog/exp"], fault, &["--case-timeout", "1"]));

@@ -8,7 +8,7 @@ use std::ffi::OsStr;
 use std::io::{BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -138,10 +138,11 @@ impl Running {
                 Ok(None) if Instant::now() < until && !is_stopped() => {}
                 _ => break None,
             }
-            unread += self.unread(Duration::ZERO);
-            std::thread::sleep(Duration::from_millis(2));
+            unread += self.unread(Instant::now() + Duration::from_millis(2));
         };
-        unread += self.unread(Duration::from_millis(50));
+        if status.is_some() {
+            unread += self.unread(Instant::now() + Duration::from_millis(50));
+        }
         let how = self.kill();
         let wrong = match status {
             None if is_stopped() => None,
@@ -152,10 +153,20 @@ impl Running {
         End { wrong, unread }
     }
 
-    /// Bytes of what it has written and nobody waits for, but for blank lines.
-    fn unread(&self, wait: Duration) -> usize {
+    /// Bytes of what it writes until then and nobody waits for, but for blank lines.
+    fn unread(&self, until: Instant) -> usize {
         let mut bytes = 0;
-        while let Ok(event) = self.events.recv_timeout(wait) {
+        // One that writes without end is heard no longer.
+        while let Some(left) = until.checked_duration_since(Instant::now()) {
+            let event = match self.events.recv_timeout(left) {
+                Ok(event) => event,
+                Err(RecvTimeoutError::Timeout) => return bytes,
+                // Its output is closed, and it may still run.
+                Err(RecvTimeoutError::Disconnected) => {
+                    std::thread::sleep(left);
+                    return bytes;
+                }
+            };
             bytes += match event {
                 Event::Line(line) if line.iter().all(u8::is_ascii_whitespace) => 0,
                 Event::Line(line) => line.len(),
