@@ -133,7 +133,7 @@ async function twoBrowsersAtOnceAreJudgedEachByItself() {
 async function impostor(url, answer) {
   const post = (path, body) => fetch(url + path, { method: "POST", body });
   const hello = await post("hello", JSON.stringify({
-    session: null, vendor: "", architecture: "", model: "", description: "", platform: "", browser: "impostor", version: "0",
+    protocol: 1, session: null, vendor: "", architecture: "", model: "", description: "", platform: "", browser: "impostor", version: "0",
     abilities: { is_cpu: false, most_pixels: 8192, features: [] },
   }));
   const { session, page } = await hello.json();
