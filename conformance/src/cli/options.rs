@@ -83,7 +83,7 @@ impl ReportFormat {
     }
 }
 
-/// The result as JSON, beside what is told of it.
+/// The file that the result is also written to as JSON.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct AlsoJson {
     /// Write the result to a file as JSON too, whatever --format is

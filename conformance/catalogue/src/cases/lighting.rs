@@ -286,7 +286,7 @@ formula!(
     hard [
         Hard::new("no-exponent-behind", "evenly lit where the cone reaches behind the light too", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[0.0, 0.0, -2.0]), ("axis", &[0.953_939_2, 0.0, 0.3]), ("cutoff_cosine", &[-0.5]), ("exponent", &[0.0])]),
         Hard::new("no-axis", "−l·axis is 0: outside of a cone of 72°", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[-2.0, -2.0, -2.0]), ("axis", &[0.0, 0.0, 0.0]), ("cutoff_cosine", &[0.3]), ("exponent", &[1.0])]),
-        Hard::new("no-axis-lit-from-behind", "the same of a light on the other side", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.5, 0.5, -0.7]), ("position", &[2.0, 2.0, -8.0]), ("axis", &[0.0, 0.0, 0.0]), ("cutoff_cosine", &[0.3]), ("exponent", &[1.0])]),
+        Hard::new("no-axis-lit-from-behind", "−l·axis is 0, wherever the light is: outside of a cone of 72°", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.5, 0.5, -0.7]), ("position", &[2.0, 2.0, -8.0]), ("axis", &[0.0, 0.0, 0.0]), ("cutoff_cosine", &[0.3]), ("exponent", &[1.0])]),
         Hard::new("just-outside-the-cone", "ambient light alone, however low the exponent", &[("p", &[0.0, 0.0, -5.0]), ("normal", &[0.0, 0.0, 1.0]), ("position", &[0.0, 0.0, -2.0]), ("axis", &[0.6, 0.0, -0.8]), ("cutoff_cosine", &[0.81]), ("exponent", &[0.5])]),
     ],
 );
