@@ -37,7 +37,7 @@ impl Visitor for Check {
 
 fn random_row(spec: &Spec, k: u64) -> Vec<f32> {
     let mut row = vec![];
-    lightmeter::cases::inputs(spec, 11, k, &mut row);
+    lightmeter::cases::Drawing::new(spec, 11).inputs(k, &mut row);
     row
 }
 

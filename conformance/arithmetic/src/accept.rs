@@ -17,6 +17,7 @@
 mod chain;
 
 use super::format::{F32, Format};
+use super::order::{greater, lesser};
 use super::paths;
 use super::profile::{Excess, GrowingUlp, assert_in_force, current, relative};
 use chain::chain_error;
@@ -88,12 +89,22 @@ impl<F: Format> Accept<F> {
     /// The smallest interval that holds both.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
-        Self::raw(self.low.min(other.low), self.high.max(other.high))
+        Self::raw(lesser(self.low, other.low), greater(self.high, other.high))
     }
 
     /// Outward to the format's grid, then the hull with 0 where a subnormal may be flushed.
     #[inline]
     fn seal(low: f64, high: f64) -> Self {
+        let (down, up) = (F::round_down(low), F::round_up(high));
+        if F::is_normal(down) && F::is_normal(up) {
+            return Self::raw(down, up);
+        }
+        Self::seal_beyond_normal(low, high)
+    }
+
+    /// [`Accept::seal`] where an end is 0, subnormal or not finite.
+    #[inline(never)]
+    fn seal_beyond_normal(low: f64, high: f64) -> Self {
         // A NaN fails this too.
         if !(low >= -F::MAX && high <= F::MAX) {
             return if F::IS_HARDWARE { Self::overflow(low, high) } else { Self::ANY };
@@ -108,12 +119,14 @@ impl<F: Format> Accept<F> {
     /// [`Accept::seal`] of a sum's or a product's exact range, widened where the profile promises less than correct rounding.
     #[inline]
     fn rounded(low: f64, high: f64) -> Self {
+        if relative() == 0.0 { Self::seal(low, high) } else { Self::rounded_by_profile(low, high) }
+    }
+
+    #[inline(never)]
+    fn rounded_by_profile(low: f64, high: f64) -> Self {
         let relative = relative();
-        if relative != 0.0 {
-            assert_in_force(relative);
-            return Self::seal(low - relative * low.abs(), high + relative * high.abs());
-        }
-        Self::seal(low, high)
+        assert_in_force(relative);
+        Self::seal(low - relative * low.abs(), high + relative * high.abs())
     }
 
     /// [`Accept::seal`] of fixed hardware, where what is too great becomes infinite or the greatest finite number.
@@ -153,7 +166,7 @@ impl<F: Format> Accept<F> {
     }
 
     fn magnitude(&self) -> f64 {
-        self.low.abs().max(self.high.abs())
+        greater(self.low.abs(), self.high.abs())
     }
 
     /// Whether it holds a value of at most that magnitude.
@@ -169,7 +182,7 @@ impl<F: Format> Accept<F> {
     #[inline]
     fn product_range(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
         let (p, q, r, s) = (a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1);
-        (p.min(q).min(r.min(s)), p.max(q).max(r.max(s)))
+        (lesser(lesser(p, q), lesser(r, s)), greater(greater(p, q), greater(r, s)))
     }
 
     /// Widened on both ends by a number of ULP and sealed. `f` is monotone, and its values at the interval's ends, of
@@ -185,7 +198,11 @@ impl<F: Format> Accept<F> {
 
     /// The values of the format between two real bounds: a built-in's result is one of them, so the bounds round inward.
     fn of_results(low: f64, high: f64) -> Self {
-        Self::seal(F::round_up(low), F::round_down(high))
+        let (low, high) = (F::round_up(low), F::round_down(high));
+        if F::is_normal(low) && F::is_normal(high) {
+            return Self::raw(low, high);
+        }
+        Self::seal_beyond_normal(low, high)
     }
 
     /// An exponential `f` with a bound that grows with |x|.
@@ -281,14 +298,14 @@ impl<F: Format> Div for Accept<F> {
     #[inline]
     fn div(self, divisor: Self) -> Self {
         // The bound holds for divisors whose magnitude lies in [2⁻¹²⁶, 2¹²⁶]; beyond, nothing is promised.
-        let (least, most) = (divisor.low.abs().min(divisor.high.abs()), divisor.magnitude());
+        let (least, most) = (lesser(divisor.low.abs(), divisor.high.abs()), divisor.magnitude());
         if divisor.contains_zero() || least < F::MIN_NORMAL || most > 1.0 / F::MIN_NORMAL || self.is_any() {
             return Self::ANY;
         }
-        let inverse =
-            [self.low / divisor.low, self.low / divisor.high, self.high / divisor.low, self.high / divisor.high];
-        let low = inverse.into_iter().fold(f64::INFINITY, f64::min);
-        let high = inverse.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        // By a positive divisor: the end farther from 0 by the least of it, the end nearer to 0 by the greatest.
+        let (dividend, divisor) = if divisor.low > 0.0 { (self, divisor) } else { (-self, -divisor) };
+        let low = dividend.low / if dividend.low < 0.0 { divisor.low } else { divisor.high };
+        let high = dividend.high / if dividend.high < 0.0 { divisor.high } else { divisor.low };
         if low == 0.0 && high == 0.0 {
             return Self::exactly(0.0);
         }
@@ -297,11 +314,14 @@ impl<F: Format> Div for Accept<F> {
 }
 
 impl<F: Format> Real for Accept<F> {
+    #[inline]
     fn input(x: f32) -> Self {
         // On the grid already for binary32; a conversion, rounded up or down, for a narrower format.
-        Self::seal(f64::from(x), f64::from(x))
+        let wide = f64::from(x);
+        if x == 0.0 { Self::raw(wide, wide) } else { Self::seal(wide, wide) }
     }
 
+    #[inline]
     fn literal(x: f64) -> Self {
         Self::seal(x, x)
     }
@@ -310,7 +330,7 @@ impl<F: Format> Real for Accept<F> {
         if self.is_any() || other.is_any() {
             return Self::ANY;
         }
-        Self::raw(self.low.max(other.low), self.high.max(other.high))
+        Self::raw(greater(self.low, other.low), greater(self.high, other.high))
     }
 
     fn min(self, other: Self) -> Self {
@@ -321,7 +341,7 @@ impl<F: Format> Real for Accept<F> {
         if self.is_any() {
             return Self::ANY;
         }
-        let least = if self.contains_zero() { 0.0 } else { self.low.abs().min(self.high.abs()) };
+        let least = if self.contains_zero() { 0.0 } else { lesser(self.low.abs(), self.high.abs()) };
         Self::raw(least, self.magnitude())
     }
 
@@ -426,7 +446,7 @@ impl<F: Format> Real for Accept<F> {
             Self::product_range((a.low, a.high), (b.low, b.high)),
             Self::product_range((c.low, c.high), (d.low, d.high)),
         );
-        let magnitude = ab.0.abs().max(ab.1.abs()) + cd.0.abs().max(cd.1.abs());
+        let magnitude = greater(ab.0.abs(), ab.1.abs()) + greater(cd.0.abs(), cd.1.abs());
         let mut error = chain_error::<F>(12) * 4.0 * magnitude;
         if magnitude < F::MIN_NORMAL / (F::EPSILON * F::EPSILON) * 16.0 {
             error += 12.0 * F::MIN_NORMAL;
@@ -483,8 +503,9 @@ impl<F: Format> Real for Accept<F> {
     }
 
     fn normalize<const N: usize>(v: [Self; N]) -> [Self; N] {
-        let square = Self::sum(v.map(|x| x.square()));
-        let (length, inverse) = (square.sqrt(), square.inverse_sqrt());
+        let inverse = Self::sum(v.map(Self::square)).inverse_sqrt();
+        // The square root, by its rule.
+        let length = Self::exactly(1.0) / inverse;
         v.map(|x| (x / length).hull(x * inverse))
     }
 

@@ -12,6 +12,7 @@
 
 #![expect(clippy::float_cmp, reason = "0 and 1 are exact")]
 
+use super::order::{greater, lesser};
 use lightmeter_reference::{Components, Real};
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -146,7 +147,7 @@ impl<U: Unit> Mul for Fixed<U> {
         }
         let (p, q) = (self.low * other.low, self.low * other.high);
         let (r, s) = (self.high * other.low, self.high * other.high);
-        Self::between(p.min(q).min(r.min(s)), p.max(q).max(r.max(s))).widened(U::PRODUCT)
+        Self::between(lesser(lesser(p, q), lesser(r, s)), greater(greater(p, q), greater(r, s))).widened(U::PRODUCT)
     }
 }
 
@@ -167,11 +168,11 @@ impl<U: Unit> Real for Fixed<U> {
     }
 
     fn max(self, other: Self) -> Self {
-        Self::between(self.low.max(other.low), self.high.max(other.high))
+        Self::between(greater(self.low, other.low), greater(self.high, other.high))
     }
 
     fn min(self, other: Self) -> Self {
-        Self::between(self.low.min(other.low), self.high.min(other.high))
+        Self::between(lesser(self.low, other.low), lesser(self.high, other.high))
     }
 
     fn abs(self) -> Self {
@@ -216,7 +217,7 @@ impl<U: Unit> Real for Fixed<U> {
         } else if a.high < b.low {
             otherwise()
         } else {
-            then().zip(otherwise(), |x, y| Self::between(x.low.min(y.low), x.high.max(y.high)))
+            then().zip(otherwise(), |x, y| Self::between(lesser(x.low, y.low), greater(x.high, y.high)))
         }
     }
 }

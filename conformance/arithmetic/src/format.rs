@@ -17,6 +17,9 @@ pub trait Format: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// The greatest finite number.
     const MAX: f64;
 
+    /// The bits of an f64 that the significand does not have.
+    const BELOW: u64 = (1 << (52 - Self::FRACTION_BITS)) - 1;
+
     /// Whether it is fixed hardware's: a sum errs relative to the sum of its terms' magnitudes rather than to its result, and
     /// what is too great for the format has a result, infinite or the greatest finite number.
     const IS_HARDWARE: bool = false;
@@ -25,17 +28,28 @@ pub trait Format: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     #[inline]
     #[must_use]
     fn round_down(x: f64) -> f64 {
-        let below = (1u64 << (52 - Self::FRACTION_BITS)) - 1;
         // Sign and magnitude: dropping bits moves towards zero, adding them first moves away from it.
-        let away = if x < 0.0 { below } else { 0 };
-        f64::from_bits((x.to_bits() + away) & !below)
+        let bits = x.to_bits();
+        let away = Self::BELOW * (bits >> 63);
+        f64::from_bits((bits + away) & !Self::BELOW)
     }
 
     /// The least value of the format that is ≥ x, for |x| at least [`Format::MIN_NORMAL`] or 0.
     #[inline]
     #[must_use]
     fn round_up(x: f64) -> f64 {
-        -Self::round_down(-x)
+        let bits = x.to_bits();
+        let away = Self::BELOW * (!bits >> 63);
+        f64::from_bits((bits + away) & !Self::BELOW)
+    }
+
+    /// Whether x, which is a value of the format or beyond its ends, is a normal number of it.
+    #[inline]
+    #[must_use]
+    fn is_normal(x: f64) -> bool {
+        let least = Self::MIN_NORMAL.to_bits() << 1;
+        // Without the sign, from the least of them on: what is less wraps around.
+        (x.to_bits() << 1).wrapping_sub(least) <= (Self::MAX.to_bits() << 1) - least
     }
 
     /// The distance between the two values of the format that bracket x most narrowly (Muller 2005); never below the

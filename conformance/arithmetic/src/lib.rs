@@ -5,6 +5,7 @@ pub mod dual;
 pub mod fixed;
 pub mod format;
 pub mod mistaken;
+mod order;
 pub mod paths;
 pub mod profile;
 pub mod random;

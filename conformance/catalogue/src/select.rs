@@ -1,9 +1,10 @@
 //! Which cases a run is made of: ids, and the choice among them by filter and shard.
 
 use crate::cases::blend::{Program, Samples};
-use crate::cases::{self, AnyFormula, Kind, Spec};
+use crate::cases::{self, AnyFormula, Boundaries, Drawing, Kind, Spec};
 use crate::filter::Filter;
 use lightmeter_scene::blend::Separate;
+use std::cell::OnceCell;
 use std::num::NonZeroU64;
 
 /// A case of a formula, in the order in which a run takes them.
@@ -115,11 +116,15 @@ impl Member {
         self.hard_and_near().chain((0..self.boundary()).map(CaseRef::Boundary))
     }
 
-    /// The case's inputs, appended to a row.
+    /// The case's inputs, appended to a row. Of many cases [`Member::draws`] gives them sooner.
     pub fn inputs(&self, case: CaseRef, seed: u64, row: &mut Vec<f32>) {
-        let start = row.len();
-        self.drawn(case, seed, row);
-        self.hold(&mut row[start..]);
+        self.draws(seed).inputs(case, row);
+    }
+
+    /// Draws cases one after another.
+    #[must_use]
+    pub const fn draws(&self, seed: u64) -> Draws<'_> {
+        Draws { member: self, seed, random: OnceCell::new(), boundaries: OnceCell::new() }
     }
 
     /// Sets the inputs of a row that are held.
@@ -132,26 +137,41 @@ impl Member {
         }
     }
 
-    fn drawn(&self, case: CaseRef, seed: u64, row: &mut Vec<f32>) {
+    /// The inputs of a hard case, appended to a row.
+    fn hard_inputs(&self, place: usize, row: &mut Vec<f32>) {
+        let start = row.len();
+        for input in self.spec.inputs {
+            input.middle(row);
+        }
+        for (name, values) in self.spec.hard[place].inputs {
+            let range = self.spec.place(name).unwrap_or_default();
+            row[start..][range].copy_from_slice(values);
+        }
+    }
+}
+
+/// The cases of a formula by one seed, drawn one after another: what they have in common is worked out once, when it is asked for.
+pub struct Draws<'a> {
+    member: &'a Member,
+    seed: u64,
+    random: OnceCell<Drawing<'a>>,
+    boundaries: OnceCell<Boundaries<'a>>,
+}
+
+impl Draws<'_> {
+    /// The case's inputs, appended to a row.
+    pub fn inputs(&self, case: CaseRef, row: &mut Vec<f32>) {
+        let (member, spec, start) = (self.member, &self.member.spec, row.len());
         match case {
-            CaseRef::Random(k) => cases::inputs(&self.spec, seed, k, row),
-            CaseRef::Boundary(k) => cases::boundary_inputs(&self.spec, k, row),
-            CaseRef::Hard(place) => {
-                let start = row.len();
-                for input in self.spec.inputs {
-                    input.middle(row);
-                }
-                for (name, values) in self.spec.hard[place].inputs {
-                    let range = self.spec.place(name).unwrap_or_default();
-                    row[start..][range].copy_from_slice(values);
-                }
-            }
+            CaseRef::Random(k) => self.random.get_or_init(|| Drawing::new(spec, self.seed)).inputs(k, row),
+            CaseRef::Boundary(k) => self.boundaries.get_or_init(|| Boundaries::new(spec)).inputs(k, row),
+            CaseRef::Hard(place) => member.hard_inputs(place, row),
             CaseRef::Near(place, k) => {
-                let start = row.len();
-                self.drawn(CaseRef::Hard(place), seed, row);
-                cases::move_by_ulps(&self.spec, &self.spec.hard[place], k, &mut row[start..]);
+                member.hard_inputs(place, row);
+                cases::move_by_ulps(spec, &spec.hard[place], k, &mut row[start..]);
             }
         }
+        member.hold(&mut row[start..]);
     }
 }
 

@@ -68,6 +68,9 @@ impl std::fmt::Debug for Code {
 /// Something that a device keeps for itself: work that it has compiled, or a job under way.
 pub type Own = Box<dyn Any>;
 
+/// Reads the code of a formula.
+pub type ReadAhead = Box<dyn Fn(&Member) + Send + Sync>;
+
 /// Each stage with what the device made of it, or why it is skipped.
 pub type Stages<T> = Vec<(Stage, Result<T, &'static str>)>;
 
@@ -117,6 +120,12 @@ pub trait Device: Send + Sync {
 
     /// The text of a file of the code.
     fn source(&self, code: &Code, file: &str) -> String;
+
+    /// What reads the code of a formula ahead of its compilation, on another thread; `None` where there is nothing to gain.
+    fn read_ahead(&self, code: &Code) -> Option<ReadAhead> {
+        let _ = code;
+        None
+    }
 
     /// Compiles what the formulas of a group need, each of which the first stands for.
     fn compile(&mut self, code: &Code, member: &Member) -> Result<Stages<Own>, DeviceError>;

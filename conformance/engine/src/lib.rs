@@ -20,6 +20,7 @@ pub mod selection;
 pub mod special;
 pub mod stability;
 pub mod subject;
+mod supply;
 pub mod sweep;
 mod turn;
 mod under_way;

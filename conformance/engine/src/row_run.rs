@@ -1,5 +1,4 @@
-//! A group of formulas in the stages that take rows: chunk after chunk, each handed to every stage of every subject before the
-//! reference is computed on all cores.
+//! A group of formulas in the stages that take rows: chunk after chunk, each handed to every stage of every subject, and judged.
 
 use crate::again::{Digests, UNASKED, digest_of_values, number};
 use crate::device::DeviceError;
@@ -104,6 +103,16 @@ impl<'a> RowRun<'a> {
         let clock = Instant::now();
         let chunk = chunk::draw(self.members, cases, options.seed);
         report.timing.generate += clock.elapsed().as_secs_f64();
+        self.start(chunk, subjects, report)
+    }
+
+    /// Hands cases that are drawn already to every stage of every subject.
+    pub(crate) fn start(
+        &self,
+        chunk: Chunk<'a>,
+        subjects: &mut [Subject],
+        report: &mut Report,
+    ) -> Result<Begun<'a>, DeviceError> {
         let clock = Instant::now();
         let jobs = self.submit(subjects, &chunk)?;
         report.timing.devices += clock.elapsed().as_secs_f64();
@@ -122,7 +131,7 @@ impl<'a> RowRun<'a> {
         let clock = Instant::now();
         chunk::refer(&mut begun.chunk, options.profile);
         report.timing.reference += clock.elapsed().as_secs_f64();
-        self.judge(subjects, &begun.chunk, begun.jobs, options, report, observer)
+        self.judge(begun, subjects, options, report, observer)
     }
 
     /// What the subjects answer to cases that were judged before.
@@ -191,11 +200,10 @@ impl<'a> RowRun<'a> {
     }
 
     /// Waits for every stage of every subject, and judges what it gave.
-    fn judge(
+    pub(crate) fn judge(
         &mut self,
+        Begun { chunk, jobs }: Begun<'a>,
         subjects: &mut [Subject],
-        chunk: &Chunk<'_>,
-        jobs: Vec<Submitted>,
         options: &Options,
         report: &mut Report,
         observer: &mut dyn Observer,
@@ -212,11 +220,11 @@ impl<'a> RowRun<'a> {
                 };
                 let clock = Instant::now();
                 let answers =
-                    subject.finish(work, job, &rows(chunk), &mut |count| observer.see(&Event::Advanced(count)))?;
+                    subject.finish(work, job, &rows(&chunk), &mut |count| observer.see(&Event::Advanced(count)))?;
                 let waiting = clock.elapsed().as_secs_f64();
                 report.timing.devices += waiting;
                 let clock = Instant::now();
-                standing.judge(chunk, &answers, *stage, &options.judging(subject));
+                standing.judge(&chunk, &answers, *stage, &options.judging(subject));
                 if let Some(digests) = &mut self.digests {
                     digests[place][number].note(&answers, outputs, chunk.cases.len());
                 }
@@ -347,9 +355,10 @@ const fn is_shader(stage: Stage) -> bool {
 
 /// The rows of one formula, by its place among the group's, with their inputs.
 fn of_member<'a>(member: &Member, place: usize, rows: &[((usize, CaseRef), &'a [f32])], seed: u64) -> Vec<Row<'a>> {
+    let draws = member.draws(seed);
     let row = |&((_, case), values): &((usize, CaseRef), &'a [f32])| {
         let mut inputs = Vec::with_capacity(member.spec.input_len());
-        member.inputs(case, seed, &mut inputs);
+        draws.inputs(case, &mut inputs);
         (inputs, values, case)
     };
     // A hard case is one of its own formula alone.
@@ -363,7 +372,7 @@ fn rows<'a>(chunk: &'a Chunk<'_>) -> Rows<'a> {
         of: &chunk.of,
         cases: &chunk.cases,
         inputs: &chunk.inputs,
-        selected: &chunk.selected,
+        selected: if chunk.selected.is_empty() { &chunk.inputs } else { &chunk.selected },
         outputs: chunk.members[0].spec.output_len(),
     }
 }

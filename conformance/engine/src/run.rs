@@ -1,7 +1,7 @@
 //! The runner: draws cases, has every subject evaluate them, computes what is legal meanwhile, and judges.
 //!
-//! Work goes group by group and chunk by chunk, so that memory stays flat however many cases there are. A chunk's inputs
-//! are handed to every stage of every subject before the reference is computed on all cores; then the results are read.
+//! Work goes group by group and chunk by chunk, so that memory stays flat however many cases there are. A thread of its own draws the
+//! chunks and works out what is legal, ahead of the subjects ([`Supply`]).
 
 use crate::ask_again::{Noted, ask_again};
 use crate::blend_unit;
@@ -16,14 +16,15 @@ use crate::scout;
 use crate::selection::Selection;
 use crate::special::verdict::Table;
 use crate::subject::{Compiled, Subject};
-use crate::turn::{CHUNK, Turn, cases_of, not_asked, scene_of, turns};
+use crate::supply::{RowGroup, Supply};
+use crate::turn::{Turn, not_asked, scene_of, turns};
 use crate::under_way::{is_over, tell};
 use crate::witness;
 use crate::{special, stability};
 use lightmeter_catalogue::cases::blend;
 use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::scene::select::Chosen;
-use lightmeter_catalogue::select::{CaseRef, Member, Selected, Shard};
+use lightmeter_catalogue::select::{Member, Selected, Shard};
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::run::{BlendPromise, Failure, Group, Report};
 use lightmeter_judge::blend_unit::policy::{InterfacePromise, PROMISES};
@@ -74,12 +75,24 @@ pub fn run_selection(
     let started = Instant::now();
     observer.see(&Event::Begun(work(selection, subjects, options)));
     let mut report = options.report(subjects);
-    if let Some(compiled) = scout::scout(selection, subjects, options, &mut report, observer)? {
+    let turns = turns_in_order(selection, subjects);
+    let lacks = |id: &str| subjects.iter().filter_map(Subject::asked).any(|renderer| renderer.lacks(id).is_some());
+    let (catalogue, is_asked) = (&selection.catalogue, is_asked(subjects));
+    let rows: Vec<RowGroup<'_>> =
+        turns.iter().filter_map(|turn| RowGroup::of(turn, catalogue, is_asked, lacks)).collect();
+    std::thread::scope(|scope| -> Result<(), DeviceError> {
+        if let Some(read) = subjects.iter().find_map(|subject| subject.device()?.read_ahead(&options.code)) {
+            let firsts = rows.iter().map(|group| group.members()[0]);
+            scope.spawn(move || firsts.take_while(|_| !options.stop.is_set()).for_each(read));
+        }
+        let supply = Supply::start(scope, &rows, options);
+        let Some(compiled) = scout::scout(selection, subjects, options, &mut report, observer)? else { return Ok(()) };
         for &deviation in &selection.deviations {
             witness::ask(deviation, &selection.catalogue, subjects, options, &mut report)?;
         }
-        judge_in_turn(selection, subjects, options, compiled, &mut report, observer)?;
-    }
+        let ahead = Ahead { turns: &turns, rows: &rows, supply };
+        judge_in_turn(selection, ahead, subjects, options, compiled, &mut report, observer)
+    })?;
     for group in &report.groups {
         report.totals.add(&group.totals);
     }
@@ -108,9 +121,31 @@ pub fn run_selection(
     Ok(report)
 }
 
+/// Whether a renderer is asked, case by case.
+fn is_asked(subjects: &[Subject]) -> bool {
+    subjects.iter().any(|subject| subject.asked().is_some())
+}
+
+/// All that is judged, in the order in which it is, each with its place in the order of reports.
+fn turns_in_order<'a>(selection: &'a Selection, subjects: &[Subject]) -> Vec<(usize, Turn<'a>)> {
+    let mut turns: Vec<(usize, Turn<'_>)> = turns(selection).into_iter().enumerate().collect();
+    if !is_asked(subjects) {
+        turns.sort_by_key(|(_, turn)| turn.rank(&selection.catalogue));
+    }
+    turns
+}
+
+/// What is to be judged, and the chunks of its formulas, which are made ahead.
+struct Ahead<'a> {
+    turns: &'a [(usize, Turn<'a>)],
+    rows: &'a [RowGroup<'a>],
+    supply: Supply<'a>,
+}
+
 /// Judges one after the other, until a device fails or the run is stopped. In the report all stands in the order of reports.
 fn judge_in_turn(
     selection: &Selection,
+    ahead: Ahead<'_>,
     subjects: &mut [Subject],
     options: &Options,
     mut compiled: CompiledGroups,
@@ -118,21 +153,18 @@ fn judge_in_turn(
     observer: &mut dyn Observer,
 ) -> Result<(), DeviceError> {
     let catalogue = &selection.catalogue;
-    let mut turns: Vec<(usize, Turn<'_>)> = turns(selection).into_iter().enumerate().collect();
-    let is_asked = subjects.iter().any(|subject| subject.asked().is_some());
-    if !is_asked {
-        turns.sort_by_key(|(_, turn)| turn.rank(catalogue));
-    }
+    let is_asked = is_asked(subjects);
     let mut judged: Vec<(usize, Vec<Group>, Vec<Failure>)> = vec![];
     let mut noted: Vec<(Turn<'_>, Noted)> = vec![];
-    for (place, turn) in turns {
+    for &(place, turn) in ahead.turns {
         let id = turn.id(selection);
         observer.see(&Event::Group(&id));
         let result = match turn {
             Turn::Table(table) => judge_table(table, subjects, options, report, observer),
             Turn::Formulas(group) => {
+                let rows = ahead.rows.iter().find(|rows| rows.turn() == place).map(|rows| (rows, &ahead.supply));
                 let compiled = compiled.remove(&id);
-                judge_group(catalogue, group, subjects, (options, compiled), report, observer)
+                judge_group(catalogue, (group, rows), subjects, (options, compiled), report, observer)
             }
             Turn::Blended(group) => {
                 let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
@@ -154,6 +186,7 @@ fn judge_in_turn(
             break;
         }
     }
+    drop(ahead.supply);
     if report.interrupted.is_none() {
         let result = ask_again(selection, &noted, subjects, options, report, observer);
         is_over(result, "what is asked again", options, report)?;
@@ -213,9 +246,9 @@ fn judge_table(
 }
 
 /// Judges a group in the blend unit, if that draws it, and in the stages that take rows, which may be compiled already.
-fn judge_group(
+fn judge_group<'a>(
     catalogue: &[Member],
-    group: &[Selected],
+    (group, ahead): (&[Selected], Option<(&'a RowGroup<'a>, &Supply<'a>)>),
     subjects: &mut [Subject],
     (options, compiled): (&Options, Option<Vec<Compiled>>),
     report: &mut Report,
@@ -235,18 +268,16 @@ fn judge_group(
             ));
             return Ok(Noted::Nothing);
         }
-        return run_rows(&members, group, subjects, (options, compiled), report, observer);
+        let (rows, supply) = ahead.expect("it is made ahead where the renderer does not lack it");
+        return run_rows(rows, supply, subjects, (options, compiled), report, observer);
     }
     let mut pixels = NotedPixels::default();
     if matches!(members[0].spec.kind, Kind::Blend(_)) {
         pixels = blend_unit::run::run_group(&members, group, subjects, options, report, observer)?;
     }
-    if members[0].spec.row_stages().is_empty() || options.stop.is_set() {
-        return Ok(Noted::Pixels(pixels));
-    }
+    let Some((rows, supply)) = ahead.filter(|_| !options.stop.is_set()) else { return Ok(Noted::Pixels(pixels)) };
     let first = report.groups.len();
-    let rows: Vec<Selected> = group.iter().zip(&members).map(|(chosen, member)| chosen.rows(member)).collect();
-    let noted = run_rows(&members, &rows, subjects, (options, compiled), report, observer)?;
+    let noted = run_rows(rows, supply, subjects, (options, compiled), report, observer)?;
     for (member, chosen) in members.iter().zip(group) {
         stability::examine(member, &chosen.hard, subjects, options, report)?;
     }
@@ -278,36 +309,36 @@ pub(crate) fn routes(report: &Report) -> serde_json::Map<String, serde_json::Val
 }
 
 /// Judges cases of formulas of one group, chunk by chunk, in the stages that take rows.
-fn run_rows(
-    members: &[&Member],
-    group: &[Selected],
+fn run_rows<'a>(
+    group: &'a RowGroup<'a>,
+    supply: &Supply<'a>,
     subjects: &mut [Subject],
     (options, compiled): (&Options, Option<Vec<Compiled>>),
     report: &mut Report,
     observer: &mut dyn Observer,
 ) -> Result<Noted, DeviceError> {
     let clock = Instant::now();
+    let members = group.members();
     let compiled = compiled.map_or_else(|| RowRun::compile(members[0], subjects, options), Ok)?;
     let mut run = RowRun::new(members, compiled, Asked::All);
     if options.runs > 1 {
         run = run.noting();
     }
     report.timing.compile += clock.elapsed().as_secs_f64();
-    let is_asked = subjects.iter().any(|subject| subject.asked().is_some());
-    let mut all = cases_of(group);
-    let mut next: Vec<(usize, CaseRef)> = vec![];
-    while is_asked || !options.stop.is_set() {
-        next.clear();
-        next.extend(all.by_ref().take(CHUNK));
-        if next.is_empty() {
+    let is_asked = is_asked(subjects);
+    for next in group.chunks() {
+        if !is_asked && options.stop.is_set() {
             break;
         }
         if is_asked && subjects.iter().all(|subject| subject.asked().is_some_and(AskedRenderer::is_over)) {
             run.leave_out(&next);
             continue;
         }
-        let begun = run.begin(&next, subjects, options, report);
-        if let Err(error) = begun.and_then(|begun| run.end(begun, subjects, options, report, observer)) {
+        let ready = supply.next(group.turn());
+        report.timing.generate += ready.drawing;
+        report.timing.reference += ready.evaluating;
+        let begun = run.start(ready.chunk, subjects, report);
+        if let Err(error) = begun.and_then(|begun| run.judge(begun, subjects, options, report, observer)) {
             // What was judged until then stays.
             run.finish(subjects, options, report);
             return Err(error);

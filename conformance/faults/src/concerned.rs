@@ -63,12 +63,13 @@ impl<'a> Sample<'a> {
     const SHARE: usize = 40;
 
     fn new(member: &'a Member) -> Self {
+        let draws = member.draws(0);
         let inputs: Vec<Vec<f32>> = member
             .fixed()
             .chain((0..Self::RANDOM).map(CaseRef::Random))
             .map(|case| {
                 let mut row = vec![];
-                member.inputs(case, 0, &mut row);
+                draws.inputs(case, &mut row);
                 row
             })
             .collect();

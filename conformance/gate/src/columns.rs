@@ -42,7 +42,7 @@ pub(super) fn write(plan: &GatePlan, formula: usize, streams: &mut [impl Write])
     let mut columns = streams.iter_mut().zip(&components).map(begin).collect::<std::io::Result<Vec<_>>>()?;
     for first in (0..count).step_by(ROWS) {
         let places: Vec<usize> = (first..count.min(first + ROWS)).collect();
-        let rows: Vec<Vec<f32>> = places.par_iter().map(|&place| plan.inputs(formula, place)).collect();
+        let rows: Vec<Vec<f32>> = places.par_iter().map_init(|| plan.rows(formula), |row, &place| row(place)).collect();
         let mut start = 0;
         for (column, &components) in columns.iter_mut().zip(&components) {
             rows.iter().try_for_each(|row| column.extend(row[start..start + components].iter().copied()))?;

@@ -190,9 +190,10 @@ fn write_columns(plan: &GatePlan, formula: usize, folder: &Path) -> Result<Vec<L
 fn write_cases(plan: &GatePlan, has_columns: bool, out: &mut impl Write) -> std::io::Result<()> {
     let formulas = if has_columns { 0 } else { plan.formulas.len() };
     for formula in 0..formulas {
+        let row = plan.rows(formula);
         for place in 0..plan.formulas[formula].count() {
             let id = plan.id(CasePlace::Case { formula, case: place });
-            writeln!(out, "{}", case(&plan.member(formula).spec, &id, &plan.inputs(formula, place)))?;
+            writeln!(out, "{}", case(&plan.member(formula).spec, &id, &row(place)))?;
         }
     }
     for state in 0..plan.states.len() {

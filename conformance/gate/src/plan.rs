@@ -263,20 +263,28 @@ impl GatePlan {
     /// The inputs of a case.
     #[must_use]
     pub fn inputs(&self, formula: usize, case: usize) -> Vec<f32> {
-        self.row(&self.formulas[formula], case)
+        self.rows(formula)(case)
     }
 
     /// The inputs of a case of a blend state, which are the same on each target.
     #[must_use]
     pub fn state_inputs(&self, state: usize, case: usize) -> Vec<f32> {
-        self.row(&self.states[state], case)
+        self.row(&self.states[state])(case)
     }
 
-    fn row(&self, planned: &PlannedFormula, case: usize) -> Vec<f32> {
+    /// Inputs of many cases of a formula, by the cases' places.
+    pub(super) fn rows(&self, formula: usize) -> impl Fn(usize) -> Vec<f32> {
+        self.row(&self.formulas[formula])
+    }
+
+    fn row<'a>(&'a self, planned: &'a PlannedFormula) -> impl Fn(usize) -> Vec<f32> + 'a {
         let member = &self.catalogue[planned.selected.member];
-        let mut row = Vec::with_capacity(member.spec.input_len());
-        member.inputs(planned.case(case), self.choice.seed, &mut row);
-        row
+        let draws = member.draws(self.choice.seed);
+        move |case| {
+            let mut row = Vec::with_capacity(member.spec.input_len());
+            draws.inputs(planned.case(case), &mut row);
+            row
+        }
     }
 
     /// A scene's title and frame.

@@ -40,25 +40,29 @@ pub fn draw<'a>(members: &'a [&'a Member], cases: &[(usize, CaseRef)], seed: u64
     let parts: Vec<(Vec<f32>, Vec<f32>)> = cases
         .par_chunks(TASK)
         .map(|cases| {
-            let (mut inputs, mut selected) = (vec![], vec![]);
-            for &(of, case) in cases {
-                let start = inputs.len();
-                members[of].inputs(case, seed, &mut inputs);
-                if !members[of].spec.selectors.is_empty() {
-                    selected.extend(members[of].spec.selectors.iter().map(|&code| f32::from_bits(code)));
-                    selected.extend_from_slice(&inputs[start..]);
+            let (mut inputs, mut selected) = (Vec::with_capacity(cases.len() * members[0].spec.input_len()), vec![]);
+            for of_member in cases.chunk_by(|a, b| a.0 == b.0) {
+                let member = members[of_member[0].0];
+                let draws = member.draws(seed);
+                for &(_, case) in of_member {
+                    let start = inputs.len();
+                    draws.inputs(case, &mut inputs);
+                    if !member.spec.selectors.is_empty() {
+                        selected.extend(member.spec.selectors.iter().map(|&code| f32::from_bits(code)));
+                        selected.extend_from_slice(&inputs[start..]);
+                    }
                 }
             }
             (inputs, selected)
         })
         .collect();
-    let inputs = parts.iter().flat_map(|(inputs, _)| inputs).copied().collect::<Vec<f32>>();
-    let selected = parts.iter().flat_map(|(_, selected)| selected).copied().collect::<Vec<f32>>();
+    let (inputs, selected): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    let (inputs, selected) = (inputs.concat(), selected.concat());
     Chunk {
         members,
         cases: cases.iter().map(|(_, case)| *case).collect(),
         of: cases.iter().map(|(of, _)| *of).collect(),
-        selected: if selected.is_empty() { inputs.clone() } else { selected },
+        selected,
         inputs,
         references: vec![],
         intervals: vec![],
@@ -80,10 +84,7 @@ pub fn refer(chunk: &mut Chunk<'_>, profile: &Profile) {
                 let cases = done..done + of.len();
                 let rows = &chunk.inputs[(first + cases.start) * stride..(first + cases.end) * stride];
                 let out = cases.start * outputs..cases.end * outputs;
-                for (row, reference) in rows.chunks_exact(stride).zip(references[out.clone()].chunks_exact_mut(outputs))
-                {
-                    formula.reference(row, reference);
-                }
+                formula.references(rows, stride, &mut references[out.clone()]);
                 formula.intervals(rows, stride, profile, &mut intervals[out]);
                 done = cases.end;
             }

@@ -16,7 +16,7 @@ use lightmeter::filter::Filter;
 use lightmeter::options::{Adapted, Constant};
 use lightmeter::report::Level;
 use lightmeter::select::{Member, Shard, catalogue, select};
-use lightmeter::subject_gpu::code_of;
+use lightmeter::subject_gpu::{code_of, shaders_of};
 use lightmeter_adapt::bind::{AskedBinding, Bound, Found, ShaderBinding};
 use lightmeter_adapt::constant::numbers;
 use lightmeter_adapt::place::{line_of_step, line_of_variable};
@@ -115,7 +115,7 @@ fn tell_unjudged(folder: &Path) -> anyhow::Result<()> {
 
 /// The hash of all files of a set of shaders, by their names and texts; `None` of the built-in ones.
 pub(crate) fn hash_of(code: &Code) -> anyhow::Result<Option<String>> {
-    let Some(shaders) = code.get::<Shaders>() else { return Ok(None) };
+    let Some(shaders) = shaders_of(code) else { return Ok(None) };
     let texts =
         |shaders: &Shaders| -> String { shaders.texts().map(|(name, text)| format!("{name}\0{text}\0")).collect() };
     let (own, built_in) = (texts(shaders), texts(&Shaders::built_in()?));

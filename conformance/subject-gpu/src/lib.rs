@@ -11,11 +11,13 @@ mod sweep;
 
 pub use kernel::kernel;
 
+use kernel::ShaderCode;
+
 use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::Member;
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::run::{Cost, EffectsCost, Identity};
-use lightmeter_engine::device::{Blocks, Code, Device, DeviceError, Own, Picture, Probed, Stages};
+use lightmeter_engine::device::{Blocks, Code, Device, DeviceError, Own, Picture, Probed, ReadAhead, Stages};
 use lightmeter_engine::piece::{Piece, Pixels};
 use lightmeter_engine::rows::Rows;
 use lightmeter_engine::subject::Subject;
@@ -38,7 +40,13 @@ use std::path::Path;
 /// Shaders as the code under test.
 #[must_use]
 pub fn code(shaders: Shaders) -> Code {
-    Code::of(shaders)
+    Code::of(ShaderCode::new(shaders))
+}
+
+/// The shaders of a code under test; `None` of any other code.
+#[must_use]
+pub fn shaders_of(code: &Code) -> Option<&Shaders> {
+    code.get().map(|code: &ShaderCode| &code.shaders)
 }
 
 /// The shaders of a folder, or the built-in ones, as the code under test.
@@ -97,6 +105,10 @@ pub fn device_error(error: GpuError) -> DeviceError {
 
 /// The shaders under test.
 fn shaders(code: &Code) -> Result<&Shaders, DeviceError> {
+    shader_code(code).map(|code| &code.shaders)
+}
+
+fn shader_code(code: &Code) -> Result<&ShaderCode, DeviceError> {
     code.get().ok_or_else(|| DeviceError::Refused("an adapter's code is a set of shaders, and there are none".into()))
 }
 
@@ -234,12 +246,23 @@ impl Device for GpuDevice {
     }
 
     fn source(&self, code: &Code, file: &str) -> String {
-        code.get().map(|shaders: &Shaders| shaders.source(file)).unwrap_or_default()
+        shaders_of(code).map(|shaders| shaders.source(file)).unwrap_or_default()
+    }
+
+    fn read_ahead(&self, code: &Code) -> Option<ReadAhead> {
+        let code = code.clone();
+        shader_code(&code).is_ok().then(|| -> ReadAhead {
+            Box::new(move |member| {
+                if let Ok(code) = shader_code(&code) {
+                    code.read(member);
+                }
+            })
+        })
     }
 
     fn compile(&mut self, code: &Code, member: &Member) -> Result<Stages<Own>, DeviceError> {
-        let shaders = shaders(code)?;
-        let kernel = kernel(shaders, member).map_err(device_error)?;
+        let code = shader_code(code)?;
+        let (shaders, kernel) = (&code.shaders, code.kernel(member).map_err(device_error)?);
         let mut stages: Stages<Own> = vec![];
         for &stage in member.spec.row_stages() {
             let work = self.work(shaders, member.spec.kind, kernel.as_ref(), stage).map_err(device_error)?;

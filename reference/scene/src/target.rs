@@ -52,6 +52,7 @@ impl TargetFormat {
     }
 
     /// How it holds a component.
+    #[inline]
     #[must_use]
     pub const fn encoding(self) -> Encoding {
         match self {
@@ -63,18 +64,21 @@ impl TargetFormat {
     }
 
     /// Whether it holds 0 to 1 alone: sources, constants and results are clamped on it.
+    #[inline]
     #[must_use]
     pub const fn is_unorm(self) -> bool {
         matches!(self.encoding(), Encoding::Unorm8 | Encoding::Srgb8)
     }
 
     /// Whether blue stands before red in memory.
+    #[inline]
     #[must_use]
     pub const fn is_blue_first(self) -> bool {
         matches!(self, Self::Bgra8Unorm)
     }
 
     /// Bytes of a component.
+    #[inline]
     #[must_use]
     pub const fn component_bytes(self) -> usize {
         match self.encoding() {

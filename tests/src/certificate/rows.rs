@@ -4,7 +4,7 @@
 //! fit each other; or, for arithmetic, at 0, ±1, the least normal and subnormal, 1e±30, or another of the case's numbers, a
 //! last bit beside it or negated.
 
-use lightmeter::cases::{Domain, Kind, Spec, inputs};
+use lightmeter::cases::{Domain, Drawing, Kind, Spec};
 use lightmeter::select::{CaseRef, Member, random_cases};
 
 /// The seed of random cases, that of a run.
@@ -73,7 +73,7 @@ fn edges(spec: &Spec, rows: &mut Vec<Row>) {
         };
         for end in ends(*domain) {
             let mut row = vec![];
-            inputs(&loose, EDGE_SEED, case, &mut row);
+            Drawing::new(&loose, EDGE_SEED).inputs(case, &mut row);
             row[at] = end;
             if let Some(fit) = spec.fit {
                 fit(spec, &mut row);
@@ -89,7 +89,7 @@ fn edges(spec: &Spec, rows: &mut Vec<Row>) {
             continue;
         }
         let mut row = vec![];
-        inputs(spec, EDGE_SEED, case, &mut row);
+        Drawing::new(spec, EDGE_SEED).inputs(case, &mut row);
         let with = |x: f32| {
             let mut row = row.clone();
             row[at] = x;
@@ -135,7 +135,7 @@ fn vector_edges(spec: &Spec, rows: &mut Vec<Row>) {
     for (case, ((name, to, len), (other, from, _))) in (0_u64..).zip(pairs.filter(|(a, b)| a.1 != b.1 && a.2 == b.2)) {
         for (what, face) in FACES {
             let mut row = vec![];
-            inputs(spec, EDGE_SEED, case, &mut row);
+            Drawing::new(spec, EDGE_SEED).inputs(case, &mut row);
             for k in 0..*len {
                 row[to + k] = face(row[from + k]);
             }

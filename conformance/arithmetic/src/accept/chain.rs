@@ -1,39 +1,38 @@
 //! Sums and products of several numbers, whose order is open.
 
 use super::super::format::Format;
+use super::super::order::{greater, lesser};
 use super::super::profile::{assert_in_force, relative};
 use super::{Accept, F64_SLACK, epsilon};
 
 impl<F: Format> Accept<F> {
-    /// [`Accept::sum_by_terms`] without the terms that are exactly 0, which round nothing.
-    fn sum_of_hardware(terms: impl Iterator<Item = Self>) -> Self {
-        let rest: Vec<Self> = terms.filter(|term| !term.is_exactly(0.0)).collect();
-        match rest[..] {
-            [] => Self::exactly(0.0),
-            [x] => x,
-            _ => Self::sum_by_terms(&rest),
-        }
-    }
-
     /// A sum that errs by one ULP of its terms' magnitudes for each addition: fixed hardware's bound does not follow from
-    /// roundings. v − ε|v| grows with v, so the ends of the terms give the ends of the sum.
-    fn sum_by_terms(terms: &[Self]) -> Self {
-        let error = chain_error::<F>(terms.len());
-        let flushed = |magnitude: f64| {
-            // Partial sums that cancel to a subnormal may be flushed; above this magnitude the rounding term covers that.
-            if magnitude < F::MIN_NORMAL / F::EPSILON * 16.0 {
-                terms.iter().fold(0.0, |sum, _| sum + F::MIN_NORMAL)
-            } else {
-                0.0
-            }
-        };
+    /// roundings. v − ε|v| grows with v, so the ends of the terms give the ends of the sum. Terms that are exactly 0 round nothing.
+    fn sum_of_hardware(terms: impl Iterator<Item = Self>) -> Self {
         let (mut low, mut high, mut below, mut above) = (0.0, 0.0, 0.0, 0.0);
+        let (mut count, mut last) = (0, Self::exactly(0.0));
         for term in terms {
+            if term.is_exactly(0.0) {
+                continue;
+            }
+            (count, last) = (count + 1, term);
             low += term.low;
             high += term.high;
             below += term.low.abs();
             above += term.high.abs();
         }
+        if count <= 1 {
+            return last;
+        }
+        let error = chain_error::<F>(count);
+        let flushed = |magnitude: f64| {
+            // Partial sums that cancel to a subnormal may be flushed; above this magnitude the rounding term covers that.
+            if magnitude < F::MIN_NORMAL / F::EPSILON * 16.0 {
+                (0..count).fold(0.0, |sum, _| sum + F::MIN_NORMAL)
+            } else {
+                0.0
+            }
+        };
         Self::seal(low - error * below - flushed(below), high + error * above + flushed(above))
     }
 
@@ -57,7 +56,9 @@ impl<F: Format> Accept<F> {
             high += term.high;
             magnitude += term.magnitude();
             all_are_points &= term.is_point();
-            finest = finest.min(last_bit(term.low));
+            if all_are_points {
+                finest = finest.min(last_bit(term.low));
+            }
         }
         match count {
             0 => return Self::exactly(0.0),
@@ -93,9 +94,9 @@ impl<F: Format> Accept<F> {
                 continue;
             }
             range = Self::product_range(range, (x.low, x.high));
-            greatest *= x.magnitude().max(1.0);
-            let smallest = if x.contains_zero() { 0.0 } else { x.low.abs().min(x.high.abs()) };
-            least *= smallest.min(1.0);
+            greatest *= greater(x.magnitude(), 1.0);
+            let smallest = if x.contains_zero() { 0.0 } else { lesser(x.low.abs(), x.high.abs()) };
+            least *= lesser(smallest, 1.0);
             any_zero |= x.is_exactly(0.0);
             // Scaling by a power of two rounds nothing.
             let power_of_two = x.is_point() && x.low.to_bits() & ((1 << 52) - 1) == 0;
@@ -112,7 +113,7 @@ impl<F: Format> Accept<F> {
         if rounded <= 2 && least >= F::MIN_NORMAL {
             return Self::rounded(range.0, range.1);
         }
-        error *= range.0.abs().max(range.1.abs());
+        error *= greater(range.0.abs(), range.1.abs());
         // A partial product below the normal range may be flushed, and what it lost is then scaled up again.
         if least < F::MIN_NORMAL {
             error += 2.0 * F::MIN_NORMAL * greatest;

@@ -93,7 +93,7 @@ formula!(
     hard [
         Hard::new("on-the-edge-of-a-hemisphere", "the edge belongs to the cone", ON_THE_EDGE),
         Hard::new("no-exponent", "an evenly lit cone", &[("l", &[0.0, 0.6, -0.8]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.5]), ("exponent", &[0.0])]),
-        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("l", &[0.0, 0.0, -1.0]), ("axis", &[0.0, 0.0, 1.5]), ("cutoff_cosine", &[0.5]), ("exponent", &[2.0])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is neither clamped nor its vectors normalised", &[("l", &[0.6, 0.0, -0.8]), ("axis", &[0.0, 0.0, 1.5]), ("cutoff_cosine", &[0.5]), ("exponent", &[2.0])]),
         Hard::new("slight-exponent", "an exponent of 0.0005 is not 0", SLIGHT),
         Hard::new("barely-before-it", "however small, a cosine above 0 counts", &[("l", &[0.999_999_9, 0.0, -9e-5]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[0.5])]),
         Hard::new("least-before-it", "1e-12 is above 0, too", &[("l", &[1.0, 0.0, -1e-12]), ("axis", &[0.0, 0.0, 1.0]), ("cutoff_cosine", &[0.0]), ("exponent", &[1.0])]),

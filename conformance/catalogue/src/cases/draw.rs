@@ -10,20 +10,50 @@ pub const GENERATOR_VERSION: u64 = 4;
 /// The version by which random inputs are drawn. It stays where boundary cases alone change, so that each random case keeps its inputs.
 const DRAWN_BY: u64 = 3;
 
-/// The inputs of random case `k` of a formula.
-pub fn inputs(spec: &Spec, seed: u64, k: u64, row: &mut Vec<f32>) {
-    let mut numbers = Numbers::new(&spec.id, seed, k);
-    let start = row.len();
-    if let Kind::Blend(Program::Draw(state, _)) = spec.kind {
-        blend_pair(&spec.id, state, seed, k, row);
-        return;
+/// What the random cases of a formula by one seed have in common, worked out once for all of them.
+#[derive(Debug)]
+pub struct Drawing<'a> {
+    spec: &'a Spec,
+    path: u64,
+    /// The binary logarithms of each input's bounds, where it is drawn evenly in the logarithm.
+    bounds: Vec<[f64; 2]>,
+}
+
+impl<'a> Drawing<'a> {
+    /// Of a formula and a seed.
+    #[must_use]
+    pub fn new(spec: &'a Spec, seed: u64) -> Self {
+        let bounds = |input: &Input| match input.domain {
+            Domain::LogUniform(low, high) | Domain::Vector(low, high) | Domain::Transform(low, high) => {
+                [low, high].map(|bound| core_math::log2(bound.into()))
+            }
+            _ => [0.0; 2],
+        };
+        Self { spec, path: path(&spec.id, seed), bounds: spec.inputs.iter().map(bounds).collect() }
     }
-    for input in spec.inputs {
-        draw(input, &mut numbers, row);
+
+    /// The inputs of random case `k`, appended to a row.
+    pub fn inputs(&self, k: u64, row: &mut Vec<f32>) {
+        let mut numbers = Numbers::new(self.path, k);
+        let start = row.len();
+        if let Kind::Blend(Program::Draw(state, _)) = self.spec.kind {
+            blend_pair(self.path, state, k, row);
+            return;
+        }
+        for (input, &bounds) in self.spec.inputs.iter().zip(&self.bounds) {
+            draw(input, bounds, &mut numbers, row);
+        }
+        if let Some(fit) = self.spec.fit {
+            fit(self.spec, &mut row[start..]);
+        }
     }
-    if let Some(fit) = spec.fit {
-        fit(spec, &mut row[start..]);
-    }
+}
+
+/// What follows from the generator's version, the seed and a formula's id.
+fn path(id: &str, seed: u64) -> u64 {
+    // FNV-1a of the id, then mixed with the rest.
+    let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    mix(hash ^ mix(seed ^ mix(DRAWN_BY)))
 }
 
 impl Input {
@@ -73,7 +103,7 @@ pub fn move_by_ulps(spec: &Spec, hard: &Hard, k: u64, row: &mut [f32]) {
     if hard.is_at_an_end {
         return;
     }
-    let mut numbers = Numbers::new(&format!("{}/hard/{}", spec.id, hard.name), 0, k);
+    let mut numbers = Numbers::new(path(&format!("{}/hard/{}", spec.id, hard.name), 0), k);
     for input in spec.inputs {
         let is_given = hard.inputs.iter().any(|(name, _)| *name == input.name);
         let Some(range) = spec.place(input.name).filter(|_| is_given && input.is_continuous()) else { continue };
@@ -96,16 +126,16 @@ pub fn move_by_ulps(spec: &Spec, hard: &Hard, k: u64, row: &mut [f32]) {
     }
 }
 
-fn draw(input: &Input, numbers: &mut Numbers, row: &mut Vec<f32>) {
+fn draw(input: &Input, bounds: [f64; 2], numbers: &mut Numbers, row: &mut Vec<f32>) {
     let len = input.shape.components();
     match input.domain {
         Domain::Around => row.extend((0..len).map(|_| numbers.uniform(0.0, 1.0))),
         Domain::Uniform(low, high) => row.extend((0..len).map(|_| numbers.uniform(low, high))),
-        Domain::LogUniform(low, high) => row.extend((0..len).map(|_| numbers.log_uniform(low, high))),
+        Domain::LogUniform(..) => row.extend((0..len).map(|_| numbers.log_uniform(bounds))),
         Domain::Unit => row.extend((0..len).map(|_| numbers.unit())),
         Domain::Direction => row.extend(numbers.direction(1.0)),
-        Domain::Vector(low, high) => {
-            let length = numbers.log_uniform(low, high);
+        Domain::Vector(..) => {
+            let length = numbers.log_uniform(bounds);
             row.extend(numbers.direction(length.into()));
         }
         Domain::Weights => numbers.weights(len, row),
@@ -114,7 +144,7 @@ fn draw(input: &Input, numbers: &mut Numbers, row: &mut Vec<f32>) {
             let steps = whole((high - low) * 2.0);
             row.extend((0..len).map(|_| low + numbers.whole(0, steps) * 0.5));
         }
-        Domain::Transform(low, high) => numbers.transform(input.shape, (low, high), row),
+        Domain::Transform(..) => numbers.transform(input.shape, bounds, row),
         Domain::Pixel => row.extend(numbers.pixel()),
     }
 }
@@ -130,8 +160,8 @@ const ROUND: u64 = 1 << 11;
 /// Even cases have a constant of [0, 1], odd ones one outside; a state has two constants. Of each 2,048 pairs 833 go
 /// through all corners: each of the 7⁴ combinations of colour and alpha of both sides stands in one of the three colour
 /// components. The rest are drawn: in [0, 1], in whole 255ths, beyond [0, 1], equal, or with both alphas 0 or 1.
-fn blend_pair(id: &str, state: Separate, seed: u64, k: u64, row: &mut Vec<f32>) {
-    let mut numbers = Numbers::new(id, seed, k);
+fn blend_pair(path: u64, state: Separate, k: u64, row: &mut Vec<f32>) {
+    let mut numbers = Numbers::new(path, k);
     // An odd factor permutes the pairs of a round, so that a few cases have some of each kind.
     let place = (k >> 1).wrapping_mul(0x2f5) & (ROUND - 1);
     let first_round = k >> 1 < ROUND;
@@ -163,7 +193,7 @@ fn blend_pair(id: &str, state: Separate, seed: u64, k: u64, row: &mut Vec<f32>) 
         return;
     }
     let outside = k & 1 == 1;
-    let mut numbers = Numbers::new(id, seed, u64::MAX - u64::from(outside));
+    let mut numbers = Numbers::new(path, u64::MAX - u64::from(outside));
     row.extend((0..4).map(|_| match (outside, numbers.next() & 1) {
         (false, _) => numbers.uniform(0.0, 1.0),
         (true, 0) => numbers.uniform(-0.5, 0.0),
@@ -173,8 +203,9 @@ fn blend_pair(id: &str, state: Separate, seed: u64, k: u64, row: &mut Vec<f32>) 
 
 /// States drawn from the (15 × 15 × 5)² with separate ones for colour and alpha.
 pub(super) fn separate_states(seed: u64, count: u64) -> Vec<Separate> {
+    let path = path("blend/separate", seed);
     let draw = |k| {
-        let mut numbers = Numbers::new("blend/separate", seed, k);
+        let mut numbers = Numbers::new(path, k);
         let mut below = |n: usize| usize::try_from((numbers.next() >> 32) % n as u64).unwrap_or_default();
         let mut state =
             || State { equation: Equation::ALL[below(5)], src: Factor::ALL[below(15)], dst: Factor::ALL[below(15)] };
@@ -192,10 +223,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    fn new(id: &str, seed: u64, k: u64) -> Self {
-        // FNV-1a of the id, then mixed with the rest.
-        let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
-        let path = mix(hash ^ mix(seed ^ mix(DRAWN_BY)));
+    const fn new(path: u64, k: u64) -> Self {
         Self { key: mix(path ^ mix(k)), k, path, drawn: 0 }
     }
 
@@ -216,8 +244,8 @@ impl Numbers {
         narrow(low + self.fraction() * (high - low))
     }
 
-    fn log_uniform(&mut self, low: f32, high: f32) -> f32 {
-        let (low, high) = (core_math::log2(low.into()), core_math::log2(high.into()));
+    /// Evenly in the logarithm, between bounds whose binary logarithms these are.
+    fn log_uniform(&mut self, [low, high]: [f64; 2]) -> f32 {
         narrow(core_math::exp2(low + self.fraction() * (high - low)))
     }
 
@@ -239,7 +267,7 @@ impl Numbers {
         let z = 2.0 * self.fraction() - 1.0;
         let angle = std::f64::consts::TAU * self.fraction();
         let r = (1.0 - z * z).max(0.0).sqrt();
-        let (sin, cos) = (core_math::sin(angle), core_math::cos(angle));
+        let (sin, cos) = core_math::sincos(angle);
         [r * cos, r * sin, z].map(|x| narrow(x * length))
     }
 
@@ -256,12 +284,13 @@ impl Numbers {
         row.push(narrow((1.0 - rest).max(0.0)));
     }
 
-    fn transform(&mut self, shape: ValueShape, (low, high): (f32, f32), row: &mut Vec<f32>) {
+    fn transform(&mut self, shape: ValueShape, bounds: [f64; 2], row: &mut Vec<f32>) {
         // A random unit quaternion (Shoemake), then a scale of each axis.
         let (u, a, b) = (self.fraction(), self.fraction(), self.fraction());
         let (a, b) = (a * std::f64::consts::TAU, b * std::f64::consts::TAU);
         let (p, q) = ((1.0 - u).sqrt(), u.sqrt());
-        let (x, y, z, w) = (p * core_math::sin(a), p * core_math::cos(a), q * core_math::sin(b), q * core_math::cos(b));
+        let ((sin_a, cos_a), (sin_b, cos_b)) = (core_math::sincos(a), core_math::sincos(b));
+        let (x, y, z, w) = (p * sin_a, p * cos_a, q * sin_b, q * cos_b);
         let columns = [
             [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)],
             [2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)],
@@ -269,8 +298,7 @@ impl Numbers {
         ];
         // Scaled along each axis, one of them mirrored half the time, then sheared: no two columns at right angles.
         let mirrored = if self.next() & 1 == 0 { 1.0 } else { -1.0 };
-        let scales =
-            [0, 1, 2].map(|axis| f64::from(self.log_uniform(low, high)) * if axis == 0 { mirrored } else { 1.0 });
+        let scales = [0, 1, 2].map(|axis| f64::from(self.log_uniform(bounds)) * if axis == 0 { mirrored } else { 1.0 });
         let shears: [f64; 3] = std::array::from_fn(|_| self.fraction() - 0.5);
         let scaled = [0, 1, 2].map(|k| columns[k].map(|x: f64| x * scales[k]));
         let plus = |a: [f64; 3], b: [f64; 3], s: f64| [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
@@ -283,7 +311,8 @@ impl Numbers {
             }
         }
         if shape == ValueShape::Mat4 {
-            let w = self.log_uniform(0.5, 2.0);
+            // From ½ to 2.
+            let w = self.log_uniform([-1.0, 1.0]);
             row.extend([self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), self.uniform(-10.0, 10.0), w]);
         }
     }

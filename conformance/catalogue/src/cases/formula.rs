@@ -108,10 +108,16 @@ const MOST_OUTPUTS: usize = 16;
 /// Widens a row of inputs for an evaluation.
 fn widened<R: Real>(inputs: &[f32], evaluate: impl FnOnce(&[R])) {
     let mut row = [R::literal(0.0); MOST_INPUTS];
+    evaluate(widened_in(&mut row, inputs));
+}
+
+/// The same where there is room already.
+#[inline]
+fn widened_in<'a, R: Real>(row: &'a mut [R; MOST_INPUTS], inputs: &[f32]) -> &'a [R] {
     for (wide, &narrow) in row.iter_mut().zip(inputs) {
         *wide = R::input(narrow);
     }
-    evaluate(&row[..inputs.len()]);
+    &row[..inputs.len()]
 }
 
 /// Evaluates one output for each of `inputs` in the place of the row's free number.
@@ -122,9 +128,7 @@ fn evaluate_along<R: Real>(
     evaluate: impl Fn(&[R], Wanted, &mut [R]),
 ) {
     let mut row = [R::literal(0.0); MOST_INPUTS];
-    for (wide, &narrow) in row.iter_mut().zip(along.row) {
-        *wide = R::input(narrow);
-    }
+    widened_in(&mut row, along.row);
     let mut outputs = [R::literal(0.0); MOST_OUTPUTS];
     for (input, out) in inputs.zip(out) {
         row[along.free] = input;
@@ -138,6 +142,15 @@ impl dyn AnyFormula + '_ {
     #[inline]
     pub fn reference(&self, inputs: &[f32], out: &mut [f64]) {
         widened(inputs, |row| self.on_f64(row, Wanted::ALL, out));
+    }
+
+    /// The reference of many rows of inputs, `stride` numbers each.
+    pub fn references(&self, rows: &[f32], stride: usize, out: &mut [f64]) {
+        let outputs = out.len() / (rows.len() / stride);
+        let mut row = [0.0; MOST_INPUTS];
+        for (inputs, out) in rows.chunks_exact(stride).zip(out.chunks_exact_mut(outputs)) {
+            self.on_f64(widened_in(&mut row, inputs), Wanted::ALL, out);
+        }
     }
 
     /// The embedded implementation in f32.
@@ -156,8 +169,9 @@ impl dyn AnyFormula + '_ {
     pub fn intervals(&self, rows: &[f32], stride: usize, profile: &Profile, out: &mut [Accept]) {
         let outputs = out.len() / (rows.len() / stride);
         profile.scope(|| {
+            let mut row = [Accept::exactly(0.0); MOST_INPUTS];
             for (inputs, out) in rows.chunks_exact(stride).zip(out.chunks_exact_mut(outputs)) {
-                widened(inputs, |row| self.on_accept(row, Wanted::ALL, out));
+                self.on_accept(widened_in(&mut row, inputs), Wanted::ALL, out);
             }
         });
     }

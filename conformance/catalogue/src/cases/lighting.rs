@@ -59,7 +59,7 @@ formula!(
         Hard::new("edge-on", "0 at a right angle", &[("l", &[1.0, 0.0, 0.0]), ("n", &[0.0, 0.0, 1.0])]),
         Hard::new("least-lit", "1e-12 is above 0, too", &[("ld", WHITE), ("md", WHITE), ("l", &[1.0, 0.0, 1e-12]), ("n", &[0.0, 0.0, 1.0])]),
         Hard::new("from-behind", "max, not abs and not the bare product", &[("l", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.0])]),
-        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("l", &[0.0, 0.0, 1.0]), ("n", &[0.0, 0.0, 1.5])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is neither clamped nor its vectors normalised", &[("l", &[0.6, 0.0, 0.8]), ("n", &[0.0, 0.0, 1.5])]),
     ],
 );
 formula!(
@@ -69,7 +69,7 @@ formula!(
     [LD, MD, Input::direction("i"), Input::direction("n")] -> [RGB],
     |ld, md, i, n; out| { out.vector(lighting::diffuse_travel(ld, md, i, n)); },
     hard [
-        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("i", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.5])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is neither clamped nor its vectors normalised", &[("i", &[0.6, 0.0, -0.8]), ("n", &[0.0, 0.0, 1.5])]),
         Hard::new("least-lit", "1e-12 is above 0, too", &[("ld", WHITE), ("md", WHITE), ("i", &[1.0, 0.0, -1e-12]), ("n", &[0.0, 0.0, 1.0])]),
     ],
 );
@@ -101,7 +101,7 @@ formula!(
     hard [
         Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("n", &[0.999_999_9, 0.0, 6e-5]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
         Hard::new("least-lit", "1e-12 is above 0, too", &[("ls", WHITE), ("ms", WHITE), ("n", &[1.0, 0.0, 1e-12]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
-        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("n", &[0.0, 0.0, 1.5]), ("h", &[0.0, 0.0, 1.0]), ("shininess", &[4.0])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is neither clamped nor its vectors normalised", &[("n", &[0.0, 0.0, 1.5]), ("h", &[0.6, 0.0, 0.8]), ("shininess", &[4.0])]),
     ],
 );
 formula!(
@@ -111,7 +111,7 @@ formula!(
     [LS, MS, Input::direction("r"), SHININESS] -> [RGB],
     |ls, ms, r, shininess; out| { out.vector(lighting::specular_nonlocal(ls, ms, r, shininess)); },
     hard [Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("r", &[0.999_999_9, 0.0, 6e-5]), ("shininess", &[1.0])]),
-        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("r", &[0.0, 0.0, 1.5]), ("shininess", &[4.0])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is neither clamped nor its vectors normalised", &[("r", &[0.9, 0.0, 1.2]), ("shininess", &[4.0])]),
         Hard::new("least-lit", "5e-10 is above 0, too", &[("ls", WHITE), ("ms", WHITE), ("r", &[1.0, 0.0, 5e-10]), ("shininess", &[1.0])]),
         Hard::new("no-shininess-least-lit", "1 for a cosine above 0, however small", &[("ls", WHITE), ("ms", WHITE), ("r", &[1.0, 0.0, 5e-10]), ("shininess", &[0.0])]),
     ],
@@ -444,7 +444,7 @@ formula!(
         Hard::new("barely-lit", "however small, a cosine above 0 counts", BARELY),
         Hard::new("least-lit", "1e-12 is above 0, too", LEAST),
         Hard::new("no-exponent", "1 for a cosine above 0", &[("a", &[0.0, 0.6, 0.8]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[0.0])]),
-        Hard::new("cosine-above-1", "a cosine above 1 is not clamped", &[("a", &[0.0, 0.0, 1.5]), ("b", &[0.0, 0.0, 1.0]), ("exponent", &[4.0])]),
+        Hard::new("cosine-above-1", "a cosine above 1 is neither clamped nor its vectors normalised", &[("a", &[0.0, 0.0, 1.5]), ("b", &[0.6, 0.0, 0.8]), ("exponent", &[4.0])]),
     ],
 );
 formula!(

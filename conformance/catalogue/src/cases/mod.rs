@@ -25,9 +25,9 @@ mod rows;
 mod rule;
 mod spec;
 
-pub use boundary::{DRAWN, boundary_cases, boundary_inputs, boundary_name, boundary_names};
+pub use boundary::{Boundaries, DRAWN, boundary_cases, boundary_name, boundary_names};
 pub use common::{CommonCases, Lacking, Side, Surface, and_common, beyond, colors, given_beyond, given_placed, placed};
-pub use draw::{GENERATOR_VERSION, inputs, mix, move_by_ulps};
+pub use draw::{Drawing, GENERATOR_VERSION, mix, move_by_ulps};
 pub use formula::{AnyFormula, Formula, Visitor};
 pub use partial::Partial;
 pub use rows::{FromNumbers, Reader, Slot, Wanted, Writer, slot};

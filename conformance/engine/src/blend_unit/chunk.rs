@@ -49,9 +49,9 @@ impl<'a> UnitChunk<'a> {
             taken.push(part);
         }
         let pieces = taken.par_iter().map(|(member, route, cases)| {
-            let mut inputs = vec![];
+            let (draws, mut inputs) = (member.draws(seed), vec![]);
             for &case in cases {
-                member.inputs(case, seed, &mut inputs);
+                draws.inputs(case, &mut inputs);
             }
             let Kind::Blend(program) = member.spec.kind else { unreachable!("checked where the parts are made") };
             Piece { program, route: *route, inputs, stride: member.spec.input_len() }

@@ -27,9 +27,9 @@ impl HardRows {
         let near = |&place: &usize| (0..member.near()).map(move |k| CaseRef::Near(place, k));
         let cases: Vec<CaseRef> =
             places.iter().flat_map(|place| std::iter::once(CaseRef::Hard(*place)).chain(near(place))).collect();
-        let mut inputs = vec![];
+        let (draws, mut inputs) = (member.draws(seed), vec![]);
         for &case in &cases {
-            member.inputs(case, seed, &mut inputs);
+            draws.inputs(case, &mut inputs);
         }
         Self { cases, inputs }
     }

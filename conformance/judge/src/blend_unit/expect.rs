@@ -209,8 +209,19 @@ fn steps(target: TargetFormat, stored_as: usize, low: f64, high: f64) -> (f64, f
     let at = |linear: f64| pixel::units(target, stored_as, linear);
     // A step that is met but for f64's own rounding is that step; in sRGB's powers a device errs by more.
     let near = if is_encoded(target, stored_as) { -ENCODING } else { SNAP };
-    // A sum with 0 has no −0.
-    ((at(low) + near).floor().clamp(0.0, 255.0) + 0.0, (at(high) - near).ceil().clamp(0.0, 255.0) + 0.0)
+    (whole_step_below(at(low) + near), whole_step_above(at(high) - near))
+}
+
+/// The greatest of the steps from 0 to 255 that is no greater; 0 where there is none.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a conversion stays within the steps")]
+fn whole_step_below(steps: f64) -> f64 {
+    f64::from(steps as u8)
+}
+
+/// The least of the steps from 0 to 255 that is no less; 255 where there is none.
+fn whole_step_above(steps: f64) -> f64 {
+    let below = whole_step_below(steps);
+    if below < steps && below < 255.0 { below + 1.0 } else { below }
 }
 
 fn blended<U: Unit>(

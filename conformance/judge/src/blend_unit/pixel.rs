@@ -3,6 +3,7 @@
 use half::f16;
 use lightmeter_reference::color::{srgb_decode, srgb_encode};
 use lightmeter_scene::target::{Encoding, TargetFormat};
+use std::sync::LazyLock;
 
 /// Red, green, blue and alpha in the target's units.
 pub type Units = [f64; 4];
@@ -22,8 +23,26 @@ pub fn stored(target: TargetFormat, color: [f32; 4]) -> Units {
 pub fn linear(target: TargetFormat, component: usize, units: f64) -> f64 {
     match target.encoding() {
         Encoding::Float32 | Encoding::Float16 => units,
-        Encoding::Srgb8 if component < 3 => srgb_decode(units / 255.0),
+        Encoding::Srgb8 if component < 3 => decoded(units),
         Encoding::Unorm8 | Encoding::Srgb8 => units / 255.0,
+    }
+}
+
+/// A step of an sRGB target, decoded. Most are whole steps and halves between them, which are decoded once.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "what is no place of the table is none as a whole number"
+)]
+fn decoded(steps: f64) -> f64 {
+    const HALVES: u16 = 2 * 255 + 1;
+    static TABLE: LazyLock<Vec<f64>> =
+        LazyLock::new(|| (0..HALVES).map(|half| srgb_decode(f64::from(half) * 0.5 / 255.0)).collect());
+    let half = (2.0 * steps) as u16;
+    let is_there = f64::from(half).to_bits() == (2.0 * steps).to_bits();
+    match TABLE.get(usize::from(half)) {
+        Some(&decoded) if is_there => decoded,
+        _ => srgb_decode(steps / 255.0),
     }
 }
 

@@ -6,6 +6,7 @@ use lightmeter_reference::blend::{Operands, Saturate, blend_separate, factor};
 use lightmeter_reference::{Real, Rgba};
 use lightmeter_scene::blend::{Equation, Factor, Separate, State, WriteMask};
 use lightmeter_scene::target::{Encoding, TargetFormat};
+use std::borrow::Cow;
 
 /// What is clamped to [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +119,10 @@ impl Rules {
     }
 
     /// The case as it is drawn.
-    pub(super) fn case(&self, case: &UnitCase) -> UnitCase {
+    pub(super) fn case<'a>(&self, case: &'a UnitCase) -> Cow<'a, UnitCase> {
+        if !self.layers_reversed && !self.red_and_blue_exchanged {
+            return Cow::Borrowed(case);
+        }
         let mut drawn = *case;
         if self.layers_reversed {
             drawn.sources[..case.layers].reverse();
@@ -127,7 +131,7 @@ impl Rules {
             drawn.sources.iter_mut().for_each(|source| source.swap(0, 2));
             drawn.constant.swap(0, 2);
         }
-        drawn
+        Cow::Owned(drawn)
     }
 
     /// The target as it is blended on.

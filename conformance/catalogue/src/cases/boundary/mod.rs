@@ -5,7 +5,7 @@
 //! of a formula can come close to one is found from their shapes, domains, units and names. It is drawn at distances from ½ to 2⁻²⁴, at a
 //! distance of 0, and together with another of the ways.
 
-use super::draw::inputs;
+use super::draw::Drawing;
 use super::fit::Fitted;
 use super::program::Program;
 use super::spec::{Domain, Input, Kind, Spec, ValueShape};
@@ -110,13 +110,33 @@ pub fn boundary_cases(spec: &Spec) -> u64 {
     approaches(spec).len() as u64 * DRAWN
 }
 
-/// The inputs of the `k`-th of them, appended to a row.
-pub fn boundary_inputs(spec: &Spec, k: u64, row: &mut Vec<f32>) {
-    let start = row.len();
-    inputs(spec, SEED, k, row);
-    let row = &mut row[start..];
-    let all = approaches(spec);
-    let Some(approach) = usize::try_from(k / DRAWN).ok().and_then(|way| all.get(way)) else { return };
+/// What the cases near the boundaries of a formula have in common, worked out once for all of them.
+#[derive(Debug)]
+pub struct Boundaries<'a> {
+    spec: &'a Spec,
+    drawing: Drawing<'a>,
+    ways: Vec<Approach>,
+}
+
+impl<'a> Boundaries<'a> {
+    /// Of a formula.
+    #[must_use]
+    pub fn new(spec: &'a Spec) -> Self {
+        Self { spec, drawing: Drawing::new(spec, SEED), ways: approaches(spec) }
+    }
+
+    /// The inputs of the `k`-th case, appended to a row.
+    pub fn inputs(&self, k: u64, row: &mut Vec<f32>) {
+        let start = row.len();
+        self.drawing.inputs(k, row);
+        if let Some(approach) = usize::try_from(k / DRAWN).ok().and_then(|way| self.ways.get(way)) {
+            bring(self.spec, &self.ways, approach, k, &mut row[start..]);
+        }
+    }
+}
+
+/// Brings the inputs of the `k`-th case close to a boundary, or to another one besides.
+fn bring(spec: &Spec, all: &[Approach], approach: &Approach, k: u64, row: &mut [f32]) {
     let mut near = Near { fitted: Fitted::new(spec, row), distance: 1.0, side: 1.0 };
     let drawn = k % DRAWN;
     if drawn < OF_ONE_WAY {
@@ -440,7 +460,7 @@ mod tests {
 
     fn row(spec: &Spec, k: u64) -> Vec<f32> {
         let mut row = vec![];
-        boundary_inputs(spec, k, &mut row);
+        Boundaries::new(spec).inputs(k, &mut row);
         row
     }
 
@@ -459,7 +479,7 @@ mod tests {
                 let first = way * DRAWN;
                 let is_moved = |k: &u64| {
                     let mut drawn = vec![];
-                    inputs(spec, SEED, *k, &mut drawn);
+                    Drawing::new(spec, SEED).inputs(*k, &mut drawn);
                     let moved = row(spec, *k);
                     assert!(moved.iter().all(|x| x.is_finite()), "{} {k}: {moved:?}", spec.id);
                     drawn != moved
