@@ -16,7 +16,7 @@
 
 mod chain;
 
-use super::format::{F32, Format};
+use super::format::{F32, F64_SLACK, Format};
 use super::order::{greater, lesser};
 use super::paths;
 use super::profile::{Excess, GrowingUlp, assert_in_force, current, relative};
@@ -32,9 +32,6 @@ pub struct Accept<F = F32> {
     high: f64,
     format: PhantomData<F>,
 }
-
-/// f64 endpoints computed by a few correctly rounded operations err by less than this, relatively.
-const F64_SLACK: f64 = 16.0 * f64::EPSILON;
 
 impl<F: Format> Accept<F> {
     /// The rules permit any value, NaN included.
@@ -190,7 +187,7 @@ impl<F: Format> Accept<F> {
     /// interval a value just past a power of two has twice the ULP of one just before, so the relative bound stands in.
     fn widen(point: bool, low: f64, high: f64, ulps: f64) -> Self {
         let error = |x: f64| {
-            let ulp = if point { F::ulp(x) } else { (x.abs() * F::EPSILON).max(F::MIN_SUBNORMAL) };
+            let ulp = if point { F::ulp(x) } else { greater(x.abs() * F::EPSILON, F::MIN_SUBNORMAL) };
             ulps * ulp + x.abs() * F64_SLACK
         };
         Self::of_results(low - error(low), high + error(high))
@@ -388,7 +385,7 @@ impl<F: Format> Real for Accept<F> {
             match (touches_middle, self.is_point()) {
                 (true, true) => absolute + y.abs() * F64_SLACK,
                 // The bounds differ on the two sides of 0.5 and of 2: the greater serves for both.
-                (true, false) => absolute.max(relative) + y.abs() * F64_SLACK,
+                (true, false) => greater(absolute, relative) + y.abs() * F64_SLACK,
                 (false, _) => relative,
             }
         };

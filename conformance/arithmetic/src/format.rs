@@ -2,6 +2,7 @@
 
 #![expect(clippy::float_cmp, reason = "values are told apart to the last bit")]
 
+use super::order::greater;
 use std::fmt::Debug;
 
 /// A binary floating-point format, as constants, so that interval operations compile to straight code.
@@ -19,6 +20,17 @@ pub trait Format: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
 
     /// The bits of an f64 that the significand does not have.
     const BELOW: u64 = (1 << (52 - Self::FRACTION_BITS)) - 1;
+
+    /// [`chain_error`] by the number of terms or factors, where each operation is correctly rounded, up or down.
+    const CHAIN_ERRORS: [f64; 16] = {
+        let mut errors = [0.0; 16];
+        let mut n = 0;
+        while n < errors.len() {
+            errors[n] = chain_error(n, Self::EPSILON);
+            n += 1;
+        }
+        errors
+    };
 
     /// Whether it is fixed hardware's: a sum errs relative to the sum of its terms' magnitudes rather than to its result, and
     /// what is too great for the format has a result, infinite or the greatest finite number.
@@ -57,13 +69,26 @@ pub trait Format: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     #[inline]
     #[must_use]
     fn ulp(x: f64) -> f64 {
-        let x = x.abs().max(Self::MIN_NORMAL);
+        let x = greater(Self::MIN_NORMAL, x.abs());
         let power = f64::from_bits(x.to_bits() & (0x7ff << 52));
         let ulp = power * Self::EPSILON;
         // At a power of two the bracket below is half as wide.
         if x == power && x > Self::MIN_NORMAL { ulp * 0.5 } else { ulp }
     }
 }
+
+/// An upper bound of (1 + ε)ⁿ⁻¹ − 1 that exceeds it by no more than f64 rounding errors in the last bits.
+pub(crate) const fn chain_error(n: usize, epsilon: f64) -> f64 {
+    let (mut growth, mut k) = (1.0, 1);
+    while k < n {
+        growth *= 1.0 + epsilon;
+        k += 1;
+    }
+    growth - 1.0 + F64_SLACK
+}
+
+/// f64 endpoints computed by a few correctly rounded operations err by less than this, relatively.
+pub(crate) const F64_SLACK: f64 = 16.0 * f64::EPSILON;
 
 /// binary32.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,9 +1,9 @@
 //! Sums and products of several numbers, whose order is open.
 
-use super::super::format::Format;
+use super::super::format::{self, Format};
 use super::super::order::{greater, lesser};
 use super::super::profile::{assert_in_force, relative};
-use super::{Accept, F64_SLACK, epsilon};
+use super::{Accept, epsilon};
 
 impl<F: Format> Accept<F> {
     /// A sum that errs by one ULP of its terms' magnitudes for each addition: fixed hardware's bound does not follow from
@@ -93,7 +93,11 @@ impl<F: Format> Accept<F> {
             if x.is_exactly(1.0) {
                 continue;
             }
-            range = Self::product_range(range, (x.low, x.high));
+            range = if range.0 > 0.0 && x.low > 0.0 {
+                (range.0 * x.low, range.1 * x.high)
+            } else {
+                Self::product_range(range, (x.low, x.high))
+            };
             greatest *= greater(x.magnitude(), 1.0);
             let smallest = if x.contains_zero() { 0.0 } else { lesser(x.low.abs(), x.high.abs()) };
             least *= lesser(smallest, 1.0);
@@ -140,8 +144,11 @@ fn is_exact_in_any_order<F: Format>(magnitude: f64, finest: u64) -> bool {
     has_all_bits && magnitude <= f64::from_bits((most - 52) << 52) && relative() <= F::EPSILON
 }
 
-/// An upper bound of (1 + ε)ⁿ⁻¹ − 1 that exceeds it by no more than f64 rounding errors in the last bits.
+/// [`format::chain_error`] by the profile in force.
+#[inline]
 pub(super) fn chain_error<F: Format>(n: usize) -> f64 {
-    let epsilon = epsilon::<F>();
-    (1..n).fold(1.0, |growth, _| growth * (1.0 + epsilon)) - 1.0 + F64_SLACK
+    match F::CHAIN_ERRORS.get(n) {
+        Some(&error) if relative() == 0.0 => error,
+        _ => format::chain_error(n, epsilon::<F>()),
+    }
 }

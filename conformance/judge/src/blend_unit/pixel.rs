@@ -14,8 +14,15 @@ pub fn stored(target: TargetFormat, color: [f32; 4]) -> Units {
     color.map(|c| match target.encoding() {
         Encoding::Float32 => c.into(),
         Encoding::Float16 => f16::from_f32(c).into(),
-        Encoding::Unorm8 | Encoding::Srgb8 => (255.0 * f64::from(c.clamp(0.0, 1.0))).round_ties_even(),
+        Encoding::Unorm8 | Encoding::Srgb8 => nearest_step(255.0 * f64::from(c.clamp(0.0, 1.0))),
     })
+}
+
+/// The nearest whole number, the even one of two, for a number of steps: where a sum's last place is 1, it rounds so by itself. The function
+/// of the standard library is a call on processors that may lack an instruction for it.
+pub(super) fn nearest_step(steps: f64) -> f64 {
+    const LAST_PLACE_IS_1: f64 = 1.5 * (1_u64 << 52) as f64;
+    (steps + LAST_PLACE_IS_1) - LAST_PLACE_IS_1
 }
 
 /// The value that a component is blended as, for steps that need not be whole.
@@ -110,6 +117,16 @@ mod tests {
             stored(TargetFormat::Bgra8Unorm, [0.25, 1.5, -0.5, 1.0]).map(f64::to_bits),
             [64.0, 255.0, 0.0, 255.0].map(f64::to_bits)
         );
+    }
+
+    #[test]
+    fn the_nearest_step_is_the_even_one_of_two() {
+        for half in -2..=512 {
+            let steps = f64::from(half) / 2.0;
+            for steps in [steps, steps.next_down(), steps.next_up()] {
+                assert!((nearest_step(steps) - steps.round_ties_even()).abs() <= 0.0, "{steps}");
+            }
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The rules that a blend unit follows, and the faulty ones that tell which mistake was made.
 
+use super::pixel::nearest_step;
 use lightmeter_catalogue::cases::blend::UnitCase;
 use lightmeter_document::stores::StoreCounts;
 use lightmeter_reference::blend::{Operands, Saturate, blend_separate, factor};
@@ -75,7 +76,7 @@ impl Store {
     #[must_use]
     pub fn step(self, steps: f64) -> f64 {
         let step = match self {
-            Self::Nearest => steps.round_ties_even(),
+            Self::Nearest => nearest_step(steps),
             Self::Truncated => steps.floor(),
             Self::Times256 => (steps * (256.0 / 255.0)).floor(),
             Self::RoundedUp => steps.ceil(),

@@ -2,7 +2,7 @@
 
 use super::embedded;
 use super::expect::{ExpectedPixel, expect};
-use super::pixel::Units;
+use super::pixel::{Units, nearest_step};
 use super::rules::{FAULTS, Rules, Store, UnitFault};
 use super::store::{NEAR, StoreCounts, Stores as _};
 use crate::devices::{BlendDeviation, Known};
@@ -169,7 +169,7 @@ impl UnitTally {
 /// Counts a value on a target of 8 bits among those that come as near.
 pub fn count_tier(tiers: &mut Tiers, reference: f64, value: f64, outcome: Outcome) {
     let error = (value - reference).abs();
-    let is_step = (reference - reference.round()).abs() < NEAR;
+    let is_step = (reference - nearest_step(reference)).abs() < NEAR;
     let tier = match outcome {
         Outcome::Fail => &mut tiers.outside,
         _ if is_step && error < NEAR => &mut tiers.exact,
