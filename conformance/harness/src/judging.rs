@@ -21,6 +21,7 @@ use lightmeter_gate::expectations::{ExpectationError, Expectations};
 use lightmeter_gate::plan::unmatched;
 use lightmeter_gate::renderer::InProcess;
 use lightmeter_report::gate::{GateStyle, text};
+use lightmeter_report::github;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -173,6 +174,21 @@ impl Judged {
     }
 }
 
+/// Prints, where the tests run in GitHub Actions, the lines that it shows as annotations: at the line which names the formula.
+pub(crate) fn annotate(report: &GateReport) {
+    if std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true") {
+        eprint!("{}", annotations(report));
+    }
+}
+
+/// A line for each group that fails.
+fn annotations(report: &GateReport) -> String {
+    github::of_gate(report)
+        .lines()
+        .filter(|line| line.starts_with("::error"))
+        .fold(String::new(), |all, line| all + line + "\n")
+}
+
 /// What `lightmeter gate` prints of a result, where it is none that passes. A formula that is skipped passes where a file of expectations
 /// says that it is; whether anything was judged at all is seen to by whoever judges several.
 pub(crate) fn complaint(report: &GateReport) -> Option<String> {
@@ -186,4 +202,27 @@ pub(crate) fn complaint(report: &GateReport) -> Option<String> {
     // Writing to a string does not fail.
     let _ = text(report, &GateStyle::default(), &mut told);
     Some(told)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Formulas;
+
+    #[test]
+    fn github_is_told_the_line_that_names_a_formula_which_fails() {
+        let annotated = |factor: f32| {
+            let engine = Formulas::new("engine", "1.0").with("color/modulate", move |x| {
+                let (texel, color) = (x.vec4("texel"), x.vec4("color"));
+                [0, 1, 2, 3].map(|k| factor * texel[k] * color[k])
+            });
+            let judged = Criteria::default().begin(Arc::new(engine)).expect("the engine can be judged");
+            annotations(&judged.of(&judged.parts[0]).expect("it is judged"))
+        };
+        assert_eq!(annotated(1.0), "");
+        let told = annotated(0.5);
+        let place = format!("::error file={},line=", file!());
+        assert!(told.starts_with(&place) && told.contains(",title=color/modulate"), "{told}");
+        assert_eq!(told.lines().count(), 1, "{told}");
+    }
 }

@@ -1,7 +1,7 @@
 //! One formula, judged within an ordinary test.
 
 use crate::engine::Formulas;
-use crate::judging::{Criteria, complaint};
+use crate::judging::{Criteria, annotate, complaint};
 use crate::values::{FormulaInputs, FormulaOutputs};
 use std::sync::Arc;
 
@@ -21,10 +21,13 @@ pub fn assert_formula<O: Into<FormulaOutputs>>(
         Err(error) => panic!("{error}"),
     };
     for part in &judged.parts {
-        let complaint = judged.of(part).map(|report| complaint(&report));
-        match complaint {
-            Ok(None) => {}
-            Ok(Some(complaint)) => panic!("{formula} fails\n{complaint}"),
+        match judged.of(part) {
+            Ok(report) => {
+                if let Some(complaint) = complaint(&report) {
+                    annotate(&report);
+                    panic!("{formula} fails\n{complaint}");
+                }
+            }
             Err(error) => panic!("{error}"),
         }
     }

@@ -1,7 +1,7 @@
 //! Tests of an engine, one for each formula.
 
 use crate::engine::Engine;
-use crate::judging::{Criteria, HarnessError, Judged, UPDATE, complaint};
+use crate::judging::{Criteria, HarnessError, Judged, UPDATE, annotate, complaint};
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -103,7 +103,9 @@ fn trials(judged: &Arc<Judged>) -> Vec<Trial> {
         let name = format!("{ROOT}::{}", judged.parts[place].path.replace('/', "::"));
         Trial::test(name, move || {
             let report = judged_.of(&judged_.parts[place]).map_err(|error| Failed::from(error.to_string()))?;
-            complaint(&report).map_or(Ok(()), |complaint| Err(Failed::from(complaint)))
+            let Some(complaint) = complaint(&report) else { return Ok(()) };
+            annotate(&report);
+            Err(Failed::from(complaint))
         })
     };
     (0..judged.parts.len()).map(trial).collect()

@@ -72,9 +72,9 @@ pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
         blend_timing(report, out)?;
         writeln!(
             out,
-            "time: devices {:.2} s (their compilers included), pipelines {:.2} s, reference {:.2} s, inputs {:.2} s, \
-             judging {:.2} s, diagnosis {:.2} s",
-            t.devices, t.compile, t.reference, t.generate, t.judge, t.diagnose
+            "time: devices {:.2} s (their compilers included), pipelines {:.2} s, judging {:.2} s, diagnosis {:.2} s; for the most \
+             part beside these: reference {:.2} s, inputs {:.2} s",
+            t.devices, t.compile, t.judge, t.diagnose, t.reference, t.generate
         )?;
     }
     if let Some(interrupted) = &report.interrupted {

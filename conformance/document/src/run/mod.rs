@@ -388,11 +388,11 @@ pub struct DeviationUse {
 /// Where the time of a run went, in seconds of this process.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Timing {
-    /// Drawing inputs.
+    /// Drawing inputs, for the most part on a thread of its own, beside the rest.
     pub generate: f64,
     /// Shaders parsed and pipelines made.
     pub compile: f64,
-    /// Reference values and intervals.
+    /// Reference values and intervals, of formulas likewise.
     pub reference: f64,
     /// Handing work to devices, and waiting for it: drivers compile at the first use of a pipeline.
     pub devices: f64,

@@ -21,7 +21,7 @@ pub fn stored(target: TargetFormat, color: [f32; 4]) -> Units {
 /// The nearest whole number, the even one of two, for a number of steps: where a sum's last place is 1, it rounds so by itself. The function
 /// of the standard library is a call on processors that may lack an instruction for it.
 pub(super) fn nearest_step(steps: f64) -> f64 {
-    const LAST_PLACE_IS_1: f64 = 1.5 * (1_u64 << 52) as f64;
+    const LAST_PLACE_IS_1: f64 = 1.5 * 4_503_599_627_370_496.0;
     (steps + LAST_PLACE_IS_1) - LAST_PLACE_IS_1
 }
 
