@@ -215,7 +215,7 @@ const RULES: &[(&str, &str)] = &[
         "max(c, 0)^S is 0 for c ≤ 0 and S > 0, and 1 for c > 0 and S = 0; for c ≤ 0 and S = 0 both 0 and 1 are legal",
     ),
     (
-        "lighting/specular-* lighting/cosine-power lighting/cosine-power-unguarded lighting/phong lighting/blinn lighting/blinn-unnormalised lighting/phong-gated lighting/phong-unit-light lighting/phong-nonlocal lighting/point-* lighting/spot lighting/scalar-material lighting/two-lights lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
+        "lighting/diffuse-* lighting/specular-* lighting/cosine-power lighting/cosine-power-unguarded lighting/phong lighting/blinn lighting/blinn-unnormalised lighting/phong-gated lighting/phong-unit-light lighting/phong-nonlocal lighting/point-* lighting/spot lighting/scalar-material lighting/two-lights lighting/gouraud lighting/phong-shading lighting/phong-interpolated lighting/flat",
         "a cosine above 1 is not clamped",
     ),
     ("lighting/cosine-power-unguarded", "for a·b ≤ 0 nothing is promised"),
