@@ -21,7 +21,8 @@ pub trait Format: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// The bits of an f64 that the significand does not have.
     const BELOW: u64 = (1 << (52 - Self::FRACTION_BITS)) - 1;
 
-    /// [`chain_error`] by the number of terms or factors, where each operation is correctly rounded, up or down.
+    /// How far a sum of n terms or a product of n factors may be off in any order, relatively, by n: an upper bound of (1 + ε)ⁿ⁻¹ − 1, for
+    /// operations that are correctly rounded, up or down.
     const CHAIN_ERRORS: [f64; 16] = {
         let mut errors = [0.0; 16];
         let mut n = 0;

@@ -1,7 +1,7 @@
 //! The runner: draws cases, has every subject evaluate them, computes what is legal meanwhile, and judges.
 //!
 //! Work goes group by group and chunk by chunk, so that memory stays flat however many cases there are. A thread of its own draws the
-//! chunks and works out what is legal, ahead of the subjects ([`Supply`]).
+//! chunks and works out what is legal, ahead of the subjects (`supply.rs`).
 
 use crate::ask_again::{Noted, ask_again};
 use crate::blend_unit;
