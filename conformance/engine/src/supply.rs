@@ -166,3 +166,32 @@ fn make<'a>(groups: &'a [RowGroup<'a>], shared: &Shared<'a>, seed: u64, profile:
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_catalogue::select::{Random, catalogue};
+
+    #[test]
+    fn chunks_come_in_turn_with_what_is_legal_and_those_that_nobody_took_are_left() {
+        let catalogue = catalogue();
+        let place = |id: &str| catalogue.iter().position(|member| member.spec.id == id).expect("it is there");
+        let group = |(turn, id): (usize, &str)| {
+            let rows = vec![Selected::whole(place(id), Random::First(CHUNK as u64 + 1))];
+            RowGroup { turn, members: vec![&catalogue[place(id)]], rows }
+        };
+        let groups: Vec<RowGroup<'_>> = [(3, "color/to-unorm8"), (1, "color/from-unorm8")].map(group).into();
+        let options = Options::new(crate::device::Code::default());
+        std::thread::scope(|scope| {
+            let supply = Supply::start(scope, &groups, &options);
+            let first = supply.next(3).chunk;
+            assert_eq!((first.cases.len(), first.intervals.len(), first.references.len()), (CHUNK, CHUNK, CHUNK));
+            // The second chunk of the turn before it, of one case, is left.
+            let other = supply.next(1).chunk;
+            assert_eq!((other.members[0].spec.id.as_str(), other.cases.len()), ("color/from-unorm8", CHUNK));
+            let drawn = chunk::draw(&groups[1].members, &groups[1].chunks().next().expect("a chunk"), options.seed);
+            assert_eq!(other.inputs, drawn.inputs);
+            // The last chunk is taken by nobody, and the thread ends all the same.
+        });
+    }
+}
