@@ -5,11 +5,14 @@ use lightmeter_gpu::{GpuError, Kernel, Shaders};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// Shaders as the code under test, with the kernels that were read of them ahead.
+/// A kernel, once somebody has read it; `None` of an invalid one.
+type Read = OnceLock<Option<Kernel>>;
+
+/// Shaders as the code under test, with the kernels that are read of them, each once for all devices.
 pub(crate) struct ShaderCode {
     pub(crate) shaders: Shaders,
-    /// By the formula's id. `None` of what has no shader function, or an invalid one.
-    kernels: Mutex<HashMap<String, Arc<OnceLock<Option<Kernel>>>>>,
+    /// By file and function.
+    kernels: Mutex<HashMap<(String, &'static str), Arc<Read>>>,
 }
 
 impl ShaderCode {
@@ -17,22 +20,21 @@ impl ShaderCode {
         Self { shaders, kernels: Mutex::default() }
     }
 
-    /// Reads a formula's kernel, which [`ShaderCode::kernel`] then need not.
-    pub(crate) fn read(&self, member: &Member) {
-        let mut kernels = self.kernels.lock().unwrap_or_else(PoisonError::into_inner);
-        let place = Arc::clone(kernels.entry(member.spec.id.clone()).or_default());
-        drop(kernels);
-        place.get_or_init(|| kernel(&self.shaders, member).ok().flatten());
-    }
-
-    /// A formula's kernel; where another thread is reading it, as soon as that has.
+    /// The shader function of a formula, held against the formula's description as [`kernel`] does. Where another thread is reading it, as soon as
+    /// that has.
     pub(crate) fn kernel(&self, member: &Member) -> Result<Option<Kernel>, GpuError> {
-        let kernels = self.kernels.lock().unwrap_or_else(PoisonError::into_inner);
-        let place = kernels.get(&member.spec.id).cloned();
+        let (file, function) = (member.spec.file(), member.spec.function);
+        if function.is_empty() {
+            return Ok(None);
+        }
+        let mut kernels = self.kernels.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = Arc::clone(kernels.entry((file.clone(), function)).or_default());
         drop(kernels);
-        let read = place.and_then(|place| place.get_or_init(|| kernel(&self.shaders, member).ok().flatten()).clone());
-        // An invalid one is read again for its error.
-        read.map_or_else(|| kernel(&self.shaders, member), |kernel| Ok(Some(kernel)))
+        match place.get_or_init(|| Kernel::new(&self.shaders, &file, function).ok()) {
+            Some(kernel) => held_against(kernel.clone(), member).map(Some),
+            // An invalid one is read again for its error.
+            None => kernel(&self.shaders, member),
+        }
     }
 }
 
@@ -45,14 +47,38 @@ pub fn kernel(shaders: &Shaders, member: &Member) -> Result<Option<Kernel>, GpuE
     if function.is_empty() {
         return Ok(None);
     }
-    let file = spec.file();
-    let kernel = Kernel::new(shaders, &file, function)?;
+    held_against(Kernel::new(shaders, &spec.file(), function)?, member).map(Some)
+}
+
+fn held_against(kernel: Kernel, member: &Member) -> Result<Kernel, GpuError> {
+    let spec = &member.spec;
     let (selectors, outputs) = (spec.selectors.len(), spec.output_len());
     let inputs = spec.input_len() + selectors;
     if (kernel.inputs, kernel.outputs, kernel.selectors) != (inputs, outputs, selectors) {
         let found =
             format!("{} numbers to {}, where {} takes {inputs} to {outputs}", kernel.inputs, kernel.outputs, spec.id);
-        return Err(GpuError::Signature { file, function: function.into(), found });
+        return Err(GpuError::Signature { file: spec.file(), function: spec.function.into(), found });
     }
-    Ok(Some(kernel))
+    Ok(kernel)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_catalogue::select::catalogue;
+
+    #[test]
+    fn a_kernel_that_was_read_before_is_the_same_and_belongs_to_its_function() {
+        let code = ShaderCode::new(Shaders::built_in().expect("the built-in shaders are valid"));
+        let catalogue = catalogue();
+        for id in ["fog/exp", "fog/linear", "lighting/blinn"] {
+            let member = catalogue.iter().find(|member| member.spec.id == id).expect("it is there");
+            let read = || format!("{:?}", code.kernel(member).expect("it is valid"));
+            let first = read();
+            assert!(first.contains(member.spec.function), "{id}");
+            assert_eq!(first, format!("{:?}", kernel(&code.shaders, member).expect("it is valid")));
+            assert_eq!(first, read());
+        }
+        assert_eq!(code.kernels.lock().expect("nothing panicked").len(), 3);
+    }
 }

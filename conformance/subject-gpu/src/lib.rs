@@ -253,9 +253,8 @@ impl Device for GpuDevice {
         let code = code.clone();
         shader_code(&code).is_ok().then(|| -> ReadAhead {
             Box::new(move |member| {
-                if let Ok(code) = shader_code(&code) {
-                    code.read(member);
-                }
+                // What it finds wrong is told where the formula is compiled.
+                let _ = shader_code(&code).map(|code| code.kernel(member));
             })
         })
     }
