@@ -31,7 +31,7 @@ use items::{Item, reached, split};
 use lightmeter_scene::effects::{Effect, Effects};
 pub use lightmeter_scene::stage::Intermediate;
 use naga::valid::ModuleInfo;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use template::{Template, Wanted};
 
 /// How much a draw's shader holds.
@@ -346,6 +346,39 @@ impl Composer {
         self.check_those(|effects| effects.has(effect))
     }
 
+    /// The lines that only techniques and intermediate results compose, one shader after the other: no picture of a scene shows what they do.
+    ///
+    /// # Errors
+    /// Where the effects' files do not go together, with the file and the line.
+    pub fn lines_beside_pictures(&self) -> Result<Vec<LineBeside>, GpuError> {
+        let plain = Recipe::of(ShaderForm::Composed);
+        let techniques = Technique::ALL.map(|technique| Recipe { technique, ..plain });
+        let stages = Intermediate::ALL.map(Recipe::stage);
+        let places =
+            |composition: &Composition| composition.origins.iter().cloned().collect::<BTreeSet<(String, usize)>>();
+        let mut shown = places(&self.compose(Effects::NONE, Recipe::of(ShaderForm::Full), 0)?);
+        for effects in covering() {
+            shown.extend(places(&self.compose(effects, plain, 0)?));
+        }
+        let mut beside = vec![];
+        for (number, effects) in covering().enumerate() {
+            let toward = if effects.has_any(&[Effect::Point, Effect::Spot]) { MOST_TOWARD } else { 0 };
+            for (recipe, place) in techniques.iter().chain(&stages).zip(0..) {
+                let composition = self.compose(effects, *recipe, toward)?;
+                let lines = composition.origins.iter().zip(composition.source.lines());
+                beside.extend(lines.filter(|(origin, _)| !shown.contains(*origin)).map(|((file, line), text)| {
+                    LineBeside {
+                        shader: (number, place),
+                        file: file.clone(),
+                        line: *line,
+                        text: text.trim().to_owned(),
+                    }
+                }));
+            }
+        }
+        Ok(beside)
+    }
+
     fn check_those(&self, chosen: impl Fn(Effects) -> bool) -> Result<(), GpuError> {
         for effects in covering().filter(|effects| chosen(*effects)) {
             for technique in Technique::ALL.into_iter().filter(|technique| technique.concerns(live(effects, None))) {
@@ -356,6 +389,19 @@ impl Composer {
         self.compose(Effects::NONE, Recipe::of(ShaderForm::Full), 0)?.validate()?;
         Ok(())
     }
+}
+
+/// A line that is in a technique's or an intermediate result's shader, and in none of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LineBeside {
+    /// Which shader, by its set of effects and its recipe: the same number for the same of another set of files.
+    pub shader: (usize, usize),
+    /// The file that the line is from.
+    pub file: String,
+    /// Its number there.
+    pub line: usize,
+    /// What it says.
+    pub text: String,
 }
 
 /// A light of each kind that stands somewhere.

@@ -150,7 +150,7 @@ pub fn normal_by_cofactors<R: Real>(modelview: &Mat3<R>, n: Vec3<R>) -> Vec3<R> 
         let scales = modelview.0.map(|column| binary_scale(column.largest()).0);
         let scaled = Mat3(std::array::from_fn(|k| modelview.0[k].scale(scales[k])));
         let cofactors = scaled.cofactors();
-        let weights = near_one(n * Vector(scales));
+        let weights = near_one(near_one(n) * Vector(scales));
         let normal = cofactors.transform(weights).normalize_scaled().named("⟨cofactors·n⟩");
         let determinant = scaled.0[0].dot(near_one(cofactors.0[0])).named("determinant, scaled");
         R::if_ge(determinant, R::literal(0.0), || normal, || -normal)

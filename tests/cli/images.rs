@@ -241,3 +241,35 @@ fn a_run_makes_the_page_and_its_contact_sheet() {
     let sheet = std::fs::metadata(dir.join("scenes.png")).expect("the sheet was written").len();
     assert!(sheet > 50_000, "{sheet} bytes");
 }
+
+#[test]
+fn edited_lines_that_no_picture_shows_are_told() {
+    let said = |name: &str, before: &str, after: &str| {
+        let dir = edited(name, "scene.wgsl", |text| {
+            assert!(text.contains(before), "{before}");
+            text.replace(before, after)
+        });
+        let args = ["run", "scene/fog-exp", "--size", "16", "--shaders", dir.to_str().expect("UTF-8")];
+        let output = lightmeter(&args);
+        assert_eq!(code(&output), 0, "{name}");
+        stderr(&output)
+    };
+    let factor = "out.fog_factor = scene_fog_factor";
+    for (name, before, after, place) in [
+        (
+            "beside-changed",
+            factor,
+            "out.fog_factor = 0.5 * scene_fog_factor",
+            "scene.wgsl:107 is edited and not judged",
+        ),
+        // What stands elsewhere in the file, too.
+        ("beside-same", "out.viewer = vector_normalize(-eye.xyz);", "out.viewer = -eye.xyz;", "scene.wgsl:113 is"),
+        ("beside-gone", "out.viewer = vector_normalize(-eye.xyz);\n", "", "scene.wgsl is edited and not judged"),
+        ("beside-condition", "local_viewer & !unit_vectors", "local_viewer & unit_vectors", "is edited and not judged"),
+    ] {
+        let said = said(name, before, after);
+        assert!(said.contains(place), "{name}: {said}");
+    }
+    let said = said("beside-nothing", "let eye = ", "let eye = 1.0 * ");
+    assert!(!said.contains("not judged"), "{said}");
+}

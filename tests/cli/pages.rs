@@ -170,7 +170,7 @@ fn renderers_have_a_row_each() {
     let table = stdout(&lightmeter(&["page", "renderers", &right, &wrong]));
     let rows: Vec<Vec<&str>> = table
         .lines()
-        .filter(|line| line.contains("example 1.0"))
+        .filter(|line| line.starts_with('|') && line.contains("example 1.0"))
         .map(|row| row.split('|').map(str::trim).collect())
         .collect();
     let [right, wrong] = rows.as_slice() else { panic!("{table}") };
@@ -179,6 +179,8 @@ fn renderers_have_a_row_each() {
     let number = |cell: &str| cell.replace(',', "").parse::<u64>().expect("a number");
     assert_eq!(number(right[pass]), number(wrong[pass]) + 1, "{table}");
     assert!(right[6] != "0" && right[6] == wrong[6] && right[7] == "0", "{table}");
+    let whys: Vec<&str> = table.lines().filter(|line| line.starts_with("* ✗ ")).collect();
+    assert!(matches!(whys[..], [why] if why.starts_with("* ✗ example 1.0: ")), "{table}");
 }
 
 #[test]

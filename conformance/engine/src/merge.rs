@@ -60,7 +60,19 @@ pub fn merge(parts: Vec<(PathBuf, Report)>) -> Result<Report, NoWhole> {
     whole.totals.unexpected_passes += (not_needed + pass) as u64;
     whole.routes = routes(&whole);
     sort_failures(&mut whole, &order);
+    warn_of_unknown_builds(&mut whole);
     Ok(whole)
+}
+
+/// Shards of a renderer that does not tell its code from other code of the same version may be of two.
+fn warn_of_unknown_builds(whole: &mut Report) {
+    let Some(renderer) = whole.renderer.as_mut().filter(|renderer| !renderer.declares.contains_key("build")) else {
+        return;
+    };
+    renderer.warnings.push(
+        "whether all shards judged the same code is not known: the renderer's hello has no `build`, such as a commit"
+            .into(),
+    );
 }
 
 /// Adds the lines of a shader in which a part's mistakes are made.

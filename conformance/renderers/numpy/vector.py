@@ -73,7 +73,7 @@ def normal_by_cofactors(modelview: Array, n: Array) -> Array:
     k = np.stack([power_of_two_exponents(column) for column in columns])
     columns = np.ldexp(columns, k[:, None])
     by_column = cofactors(columns)
-    direction = normalize_scaled(transform(by_column, np.ldexp(scaled(n), k)))
+    direction = normalize_scaled(transform(by_column, scaled(np.ldexp(scaled(n), k))))
     return np.where(dot(columns[0], by_column[0]) < 0, -direction, direction)
 
 

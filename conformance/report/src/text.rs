@@ -87,21 +87,24 @@ pub fn write(report: &Report, style: Style, out: &mut impl Write) -> Result {
     totals(&report.totals, report.is_success(), report.seconds, out)
 }
 
-/// Images that lie to one side of their reference by no more than the accuracy rules permit.
+/// Images that lie to one side of their reference by no more than the accuracy rules permit: a line for all stages that show the same.
 fn legal_biases(report: &Report, out: &mut impl Write) -> Result {
+    let mut told: Vec<(&str, &str, String, Vec<&str>)> = vec![];
     for group in &report.groups {
         let bias = group.image.as_ref().and_then(|image| image.bias).filter(|bias| bias.beyond.is_none());
-        if let Some(bias) = bias {
-            writeln!(
-                out,
-                "{} on {} ({}) lies to one side, which the accuracy rules permit: {}, {:+.2} steps of 8 bits on average",
-                group.id,
-                group.adapter,
-                group.stage,
-                bias.as_if(),
-                bias.steps
-            )?;
+        let Some(bias) = bias else { continue };
+        let says = format!("{}, {} on average", bias.as_if(), bias.on_average());
+        match told
+            .iter_mut()
+            .find(|(id, adapter, other, _)| (*id, *adapter) == (&*group.id, &*group.adapter) && *other == says)
+        {
+            Some((.., stages)) => stages.push(&group.stage),
+            None => told.push((&group.id, &group.adapter, says, vec![&group.stage])),
         }
+    }
+    for (id, adapter, says, stages) in told {
+        let stages = stages.join(", ");
+        writeln!(out, "{id} on {adapter} ({stages}) lies to one side, which is legal there: {says}")?;
     }
     Ok(())
 }

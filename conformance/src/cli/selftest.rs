@@ -26,6 +26,7 @@ use lightmeter::report::html;
 use lightmeter::report::page::selftest::SelftestRun;
 use lightmeter::report::selftest as report;
 use lightmeter::report::table::{Align, TextTable};
+use lightmeter::scene::select::SIZE_AMONG_ALL;
 use lightmeter::select::catalogue;
 use lightmeter_scene::target::TargetFormat;
 use std::fmt::Write as _;
@@ -159,7 +160,7 @@ impl Selftest {
             tested.scenes = Some(scenes::selftest(SCENE_SIZE, self.profile, stop, &mut progress)?);
             if self.calibrate && !stop.is_set() {
                 let mut progress = |id: &str| say(&format!("the smallest errors in {id}"));
-                tested.scene_resolutions = measure(SCENE_SIZE, self.profile, stop, &mut progress)?;
+                tested.scene_resolutions = measure(SIZE_AMONG_ALL, self.profile, stop, &mut progress)?;
             }
         }
         if is_asked(Part::BlendUnit) {

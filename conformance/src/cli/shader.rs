@@ -22,7 +22,9 @@ use lightmeter_adapt::constant::numbers;
 use lightmeter_adapt::place::{line_of_step, line_of_variable};
 use lightmeter_adapt::source::Language;
 use lightmeter_adapt::{Part, in_language, stable_form};
-use lightmeter_gpu::Shaders;
+use lightmeter_gpu::compose::Composer;
+use lightmeter_gpu::{EFFECT_FILES, SCENE_FILES, Shaders};
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -110,7 +112,46 @@ fn tell_unjudged(folder: &Path) -> anyhow::Result<()> {
             say(&format!("note: {} is not judged: {why}", folder.join(file).display()));
         }
     }
+    if SCENE_FILES.iter().chain(&EFFECT_FILES).any(|(file, _)| text(&built_in, file) != text(&own, file)) {
+        for (file, lines) in edited_beside_pictures(&built_in, &own)? {
+            let lines = lines.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            let place = if lines.is_empty() { String::new() } else { format!(":{lines}") };
+            say(&format!(
+                "note: {}{place} is edited and not judged: only the techniques of `lightmeter bench` and intermediate results use it",
+                folder.join(file).display()
+            ));
+        }
+    }
     Ok(())
+}
+
+/// The files of scenes that are edited where no picture shows it, with the lines that are new there; none where lines are only gone.
+fn edited_beside_pictures(built_in: &Shaders, own: &Shaders) -> anyhow::Result<BTreeMap<String, BTreeSet<usize>>> {
+    type Texts = BTreeMap<((usize, usize), String), Vec<(usize, String)>>;
+    let of = |shaders: &Shaders| -> anyhow::Result<Texts> {
+        let mut texts = Texts::new();
+        for line in Composer::new(shaders)?.lines_beside_pictures()? {
+            texts.entry((line.shader, line.file)).or_default().push((line.line, line.text));
+        }
+        Ok(texts)
+    };
+    let (known, found) = (of(built_in)?, of(own)?);
+    let mut edited = BTreeMap::<String, BTreeSet<usize>>::new();
+    for key in known.keys().chain(found.keys()).collect::<BTreeSet<_>>() {
+        let [before, after] = [&known, &found].map(|texts| texts.get(key).map_or(&[][..], Vec::as_slice));
+        if before.iter().map(|(_, text)| text).eq(after.iter().map(|(_, text)| text)) {
+            continue;
+        }
+        let mut left: Vec<&String> = before.iter().map(|(_, text)| text).collect();
+        let lines = edited.entry(key.1.clone()).or_default();
+        for (line, text) in after {
+            match left.iter().position(|known| *known == text) {
+                Some(place) => drop(left.remove(place)),
+                None => drop(lines.insert(*line)),
+            }
+        }
+    }
+    Ok(edited)
 }
 
 /// The hash of all files of a set of shaders, by their names and texts; `None` of the built-in ones.

@@ -32,6 +32,19 @@ fn composer() -> Composer {
     Composer::new(&shaders).unwrap_or_else(|error| panic!("{error}"))
 }
 
+#[test]
+fn what_pictures_do_not_show_is_told_by_file_and_line() {
+    let lines = composer().lines_beside_pictures().unwrap_or_else(|error| panic!("{error}"));
+    let has = |text: &str| lines.iter().any(|line| line.file == "scene.wgsl" && line.text == text);
+    for beside in ["out.fog_factor = scene_fog_factor(eye.xyz);", "out.viewer = -eye.xyz;", "return vec4f(in.p, 1.0);"]
+    {
+        assert!(has(beside), "{beside}");
+    }
+    for shown in ["out.clip = scene_draw.projection * eye;", "let f = scene_fog_factor(in.p);", "return color;"] {
+        assert!(!has(shown), "{shown}");
+    }
+}
+
 /// Every subset of the parts that may stand beside each other.
 fn subsets(parts: &[Effect]) -> Vec<Effects> {
     (0..1_u32 << parts.len())

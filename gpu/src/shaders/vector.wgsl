@@ -128,7 +128,7 @@ fn vector_near_one(v: vec3f) -> vec3f {
 }
 
 // Without the division by the determinant: only its sign is of use, which turns the cofactors round under reflection. Each
-// column is brought near 1 first, and n divided by what it is scaled by.
+// column is brought near 1 first, and so is n, whose components are then scaled as the columns are.
 // stable form of: vector_normal_by_determinant
 fn vector_normal_by_cofactors(modelview: mat3x3f, n: vec3f) -> vec3f {
     let scales = vec3f(
@@ -140,7 +140,7 @@ fn vector_normal_by_cofactors(modelview: mat3x3f, n: vec3f) -> vec3f {
     let b = modelview[1] * scales.y;
     let c = modelview[2] * scales.z;
     let bc = cross(b, c);
-    let normal = vector_normalize_scaled(mat3x3f(bc, cross(c, a), cross(a, b)) * vector_near_one(n * scales));
+    let normal = vector_normalize_scaled(mat3x3f(bc, cross(c, a), cross(a, b)) * vector_near_one(vector_near_one(n) * scales));
     return select(-normal, normal, dot(a, vector_near_one(bc)) >= 0.0);
 }
 

@@ -70,6 +70,8 @@ pub struct Departures {
     pub highlight_over_texture: bool,
     /// What is lit at the vertices is limited to 1 there, before it is interpolated.
     pub clamped_vertices: bool,
+    /// What is lit is held above 0, before it is interpolated or a texture multiplies it.
+    pub lit_at_least_0: bool,
     /// A spotlight's axis keeps its length.
     pub axis_at_length: bool,
     /// Fog mixes alpha with 1, as it mixes colours with the fog's.

@@ -256,7 +256,9 @@ impl<'a, R: Real> Shader<'a, R> {
             (none, none)
         };
         diffuse.append(specular);
-        Lit { color: of(diffuse), diffuse: without, specular: highlights }
+        let color = of(diffuse);
+        let color = if self.frame.departures.lit_at_least_0 { color.map(|x| x.max(R::literal(0.0))) } else { color };
+        Lit { color, diffuse: without, specular: highlights }
     }
 
     #[inline]

@@ -214,7 +214,7 @@ fn what_is_no_answer_in_columns_is_told_at_once_and_its_cases_are_asked_by_lines
         ("nothing", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
         ("both", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
         ("cases", "malformed", "answers a case; expected such as"),
-        ("other", "unknown", "no batch 0 of `fog/exp` waits for an answer in columns"),
+        ("other", "unknown", "an answer of `fog/exp` in columns has no `batch`, or 0; expected the number"),
     ] {
         // Whoever waited for what does not come would wait for ten minutes.
         let (begun, timeout) = (std::time::Instant::now(), ["--case-timeout", "600"]);

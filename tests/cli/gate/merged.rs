@@ -2,7 +2,7 @@
 
 use super::process::command_of;
 use super::{answered, edit_as, folder, text};
-use crate::{code, lightmeter, stderr};
+use crate::{code, lightmeter, stderr, stdout};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -33,6 +33,7 @@ fn what_a_renderer_declares_is_the_same_in_all_shards_or_named() {
     let two = shard(&pack, &answers, "two", "2/2", first);
     let merged = lightmeter(&["merge", text(&one), text(&two)]);
     assert_eq!(code(&merged), 0, "{}", stderr(&merged));
+    assert!(stdout(&merged).contains("warning: whether all shards judged the same code is not known"));
     for (field, hello, values) in [
         ("renderer.version", first.replace("1.0", "1.1"), ["\"1.0\"", "\"1.1\""]),
         ("renderer.name", first.replace("\"r\"", "\"s\""), ["\"r\"", "\"s\""]),
@@ -65,7 +66,8 @@ fn shards_of_a_process_whose_code_changed_in_between_are_refused() {
         out
     };
     let [one, two, other] = [("1/2", "a1"), ("2/2", "a1"), ("2/2", "b2")].map(|(of, build)| shard(of, build));
-    assert_eq!(code(&lightmeter(&["merge", text(&one), text(&two)])), 0);
+    let merged = lightmeter(&["merge", text(&one), text(&two)]);
+    assert_eq!((code(&merged), stdout(&merged).contains("warning")), (0, false));
     let line = format!("  declares.build: \"a1\" in {}; \"b2\" in {}", text(&one), text(&other));
     let said = refused(&[&one, &other]);
     assert!(said.lines().any(|told| told == line), "no `{line}` in {said}");

@@ -2,6 +2,7 @@
 
 use super::generate::Mutant;
 use crate::callers::callers;
+use crate::frames::frame;
 use crate::techniques::drawn_by;
 use lightmeter::arithmetic::Accept;
 use lightmeter::arithmetic::profile::WGSL;
@@ -13,6 +14,7 @@ use lightmeter::document::event::{Event, Observer, Stop};
 use lightmeter::document::run::Group;
 use lightmeter::evaluate::Evaluator;
 use lightmeter::filter::Filter;
+use lightmeter::image::LegalPixel;
 use lightmeter::image::drawn::{drawn, intermediate};
 use lightmeter::image::expect::expect;
 use lightmeter::options::Options;
@@ -22,13 +24,14 @@ use lightmeter::scene::select::{SIZE_AMONG_ALL, builtin, scene_id};
 use lightmeter::select::{CaseRef, Member, catalogue};
 use lightmeter::selection::Selection;
 use lightmeter::subject::Subject;
-use lightmeter::subject_gpu::{code, device_error};
+use lightmeter::subject_gpu::{code, device_error, shaders_of};
 use lightmeter::witness;
 use lightmeter_gpu::Shaders;
 use lightmeter_gpu::compose::Technique;
 use lightmeter_scene::effects::{effects, named};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::stage::Intermediate;
+use lightmeter_scene::target::TargetFormat;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
@@ -39,8 +42,15 @@ const INPUTS_OF_A_SURVIVOR: u64 = 1_000_000;
 const MANY: usize = 200;
 /// Random cases of each blend state.
 const CASES_OF_A_STATE: u64 = 1024;
-/// How many of them are evaluated at once.
+/// Random cases of each formula of a fixed function: more than a million answers of the rasteriser, of the depth test and of the blend unit.
+const CASES_OF_A_FIXED_FUNCTION: u64 = 65_536;
+/// Random frames in which what survives in scenes is drawn: more than a million pixels.
+const RANDOM_FRAMES: u64 = 600;
+/// How many rows are evaluated at once.
 const ROWS: usize = 1 << 16;
+
+/// The tables of special values, which have no other inputs than their own.
+const SPECIAL_VALUES: &str = "special";
 
 /// Blend states that take each route to the unit: its own factors, and beside each other the constant's colour and its alpha, which
 /// are folded into the source or come as a second source.
@@ -63,20 +73,17 @@ pub enum MutantClass {
     Killed,
     /// It gives the same bits.
     Equal,
-    /// It gives other bits, all of which are legal.
+    /// All that it gives is legal: other bits, or what is judged without comparing bits, as fixed functions are.
     Legal,
     /// It gives what is not legal, and no run of default cases shows it.
     Missed,
-    /// Every case gives the same bits: of the pixels of all scenes, or of the rasteriser, the depth test, the blend unit or special values.
-    Unshown,
     /// No run judges the function that it is in.
     Unjudged,
 }
 
 impl MutantClass {
     /// All of them, in the order of tables.
-    pub const ALL: [Self; 7] =
-        [Self::Killed, Self::Equal, Self::Legal, Self::Missed, Self::Unshown, Self::Unjudged, Self::Invalid];
+    pub const ALL: [Self; 6] = [Self::Killed, Self::Equal, Self::Legal, Self::Missed, Self::Unjudged, Self::Invalid];
 
     /// Whether it is a mutant that no run fails.
     #[must_use]
@@ -93,7 +100,6 @@ impl fmt::Display for MutantClass {
             Self::Equal => "equal",
             Self::Legal => "legal",
             Self::Missed => "missed",
-            Self::Unshown => "unshown",
             Self::Unjudged => "unjudged",
         })
     }
@@ -119,6 +125,8 @@ pub struct Campaign {
     subject: Subject,
     /// Scopes in which the right shaders were seen to pass.
     passed: Vec<Scope>,
+    /// The pixels of random frames by the right shaders, as far as they were drawn.
+    right_frames: Vec<Vec<[f64; 4]>>,
 }
 
 /// Ends a run at its first failure.
@@ -147,7 +155,7 @@ impl Campaign {
     pub fn new(subject: Subject) -> Result<Self, lightmeter_gpu::GpuError> {
         let shaders = Shaders::built_in()?;
         let catalogue = catalogue().into_iter().chain(techniques::formulas()).collect();
-        Ok(Self { right: code(shaders.clone()), shaders, catalogue, subject, passed: vec![] })
+        Ok(Self { right: code(shaders.clone()), shaders, catalogue, subject, passed: vec![], right_frames: vec![] })
     }
 
     /// The shaders that are mutated.
@@ -162,7 +170,7 @@ impl Campaign {
         let globs = |globs: &[&str]| Some(Scope::Filter(globs.iter().map(|&glob| glob.to_owned()).collect()));
         let file = mutant.file.as_str();
         match file {
-            "special.wgsl" => globs(&["special"]),
+            "special.wgsl" => globs(&[SPECIAL_VALUES]),
             "raster.wgsl" => {
                 let is_raster = |spec: &Spec| matches!(spec.kind, Kind::Raster(_));
                 let ids = self.catalogue.iter().map(|member| &member.spec).filter(|spec| is_raster(spec));
@@ -218,7 +226,9 @@ impl Campaign {
         let found = match scope {
             Scope::Formulas(places) => self.survivor(&places, &mutated),
             Scope::Filter(globs) if globs[0].starts_with("scene") => self.scenes(&globs, &mutated),
-            Scope::Filter(_) | Scope::Witnesses => Ok(MutantClass::Unshown),
+            Scope::Filter(ref globs) if *globs != [SPECIAL_VALUES] => self.fixed_function(&scope, &mutated),
+            // A run asks all that there is to ask of these.
+            Scope::Filter(_) | Scope::Witnesses => Ok(MutantClass::Legal),
         };
         // What no run composes may be invalid where a technique does.
         found.or_else(|error| if error.is_of_device() { Err(error) } else { Ok(MutantClass::Invalid) })
@@ -250,11 +260,11 @@ impl Campaign {
 
     /// Whether a default run of the scope fails with the mutant, and passes without it.
     fn is_failed(&mut self, scope: &Scope, mutated: &Code) -> Result<bool, DeviceError> {
-        if !self.fails(scope, mutated)? {
+        if !self.fails(scope, mutated, None)? {
             return Ok(false);
         }
         if !self.passed.contains(scope) {
-            if self.fails(scope, &self.right.clone())? {
+            if self.fails(scope, &self.right.clone(), None)? {
                 return Err(DeviceError::Failed(format!("the right shaders fail too, in {scope:?}")));
             }
             self.passed.push(scope.clone());
@@ -262,8 +272,8 @@ impl Campaign {
         Ok(true)
     }
 
-    /// Whether a default run of the scope fails.
-    fn fails(&mut self, scope: &Scope, mutated: &Code) -> Result<bool, DeviceError> {
+    /// Whether a run of the scope fails, of the default cases or of as many.
+    fn fails(&mut self, scope: &Scope, mutated: &Code, cases: Option<u64>) -> Result<bool, DeviceError> {
         let globs = match scope {
             Scope::Formulas(places) => {
                 let groups: BTreeSet<&str> = places.iter().map(|&place| self.catalogue[place].spec.group()).collect();
@@ -279,6 +289,7 @@ impl Campaign {
         if matches!(scope, Scope::Formulas(places) if places.len() > MANY) {
             options.cases = CASES_OF_A_STATE;
         }
+        options.cases = cases.unwrap_or(options.cases);
         let selection = match scope {
             Scope::Formulas(places) => {
                 let mut selection = Selection::of_formulas(self.catalogue.clone(), &options);
@@ -322,10 +333,21 @@ impl Campaign {
         Ok(worst)
     }
 
-    /// What a mutant is that no run of scenes fails: whether an intermediate result or a technique of drawing is wrong, or a pixel changes.
-    fn scenes(&self, globs: &[String], mutated: &Code) -> Result<MutantClass, DeviceError> {
+    /// What a mutant of a fixed function's shaders is that no default run fails.
+    fn fixed_function(&mut self, scope: &Scope, mutated: &Code) -> Result<MutantClass, DeviceError> {
+        if !self.fails(scope, mutated, Some(CASES_OF_A_FIXED_FUNCTION))? {
+            return Ok(MutantClass::Legal);
+        }
+        if self.fails(scope, &self.right.clone(), Some(CASES_OF_A_FIXED_FUNCTION))? {
+            return Err(DeviceError::Failed(format!("the right shaders fail too, in more cases of {scope:?}")));
+        }
+        Ok(MutantClass::Missed)
+    }
+
+    /// What a mutant is that no run of scenes fails: an intermediate result or a technique of drawing may show it, and random frames may.
+    fn scenes(&mut self, globs: &[String], mutated: &Code) -> Result<MutantClass, DeviceError> {
         let filter = Filter::new(globs).map_err(|error| DeviceError::Refused(Box::new(error)))?;
-        let mut found = MutantClass::Unshown;
+        let mut found = MutantClass::Equal;
         for place in (0..SCENES.len()).filter(|&place| filter.selects(&scene_id(place))) {
             let load = |size| builtin(place, Some(size)).map_err(|error| DeviceError::Refused(Box::new(error)));
             let frame = load(SIZE_AMONG_ALL)?.frame;
@@ -341,10 +363,40 @@ impl Campaign {
                 return Ok(MutantClass::Killed);
             }
         }
-        let shaders = mutated.get().expect("the code is shaders");
+        let shaders = shaders_of(mutated).expect("the code is shaders");
         for technique in Technique::ALL {
             if drawn_by(technique, &self.subject, shaders).map_err(device_error)?.departure.is_some() {
                 return Ok(MutantClass::Killed);
+            }
+        }
+        Ok(found.max(self.random_frames(mutated)?))
+    }
+
+    /// What a mutant is to random frames, drawn on floats and not blended.
+    fn random_frames(&mut self, mutated: &Code) -> Result<MutantClass, DeviceError> {
+        let mut found = MutantClass::Equal;
+        for seed in 0..RANDOM_FRAMES {
+            let mut frame = frame(seed);
+            frame.target.format = TargetFormat::Rgba32Float;
+            frame.draws.iter_mut().for_each(|draw| draw.blend = None);
+            let sets = effects(&frame);
+            let image = |code| drawn(&self.subject, code, &frame, &sets, Picture::Composed);
+            let place = usize::try_from(seed).expect("there are few");
+            if self.right_frames.len() == place {
+                self.right_frames.push(image(&self.right)?.map_or_else(|_| vec![], |image| image.pixels));
+            }
+            let Ok(other) = image(mutated)? else { continue };
+            let right = &self.right_frames[place];
+            if other.pixels == *right {
+                continue;
+            }
+            found = MutantClass::Legal;
+            let legal = expect(&frame, None, None, &self.subject.known.profile(&WGSL));
+            if !right.iter().zip(&legal).all(|(value, legal)| is_legal(value, legal)) {
+                return Err(DeviceError::Failed(format!("the right shaders are wrong in the random frame {seed}")));
+            }
+            if !other.pixels.iter().zip(&legal).all(|(value, legal)| is_legal(value, legal)) {
+                return Ok(MutantClass::Missed);
             }
         }
         Ok(found)
@@ -361,12 +413,8 @@ impl Campaign {
                 continue;
             }
             let legal = expect(frame, None, Some(stage), &profile);
-            let is_legal = |pixel: usize| {
-                let (value, legal) = (other.pixels[pixel], &legal[pixel]);
-                (0..4).all(|k| legal.low[k] <= value[k] && value[k] <= legal.high[k])
-            };
             let mut pixels = (0..legal.len()).filter(|&pixel| drawn_for_certain[pixel].low[3] > 0.0);
-            if !pixels.all(is_legal) {
+            if !pixels.all(|pixel| is_legal(&other.pixels[pixel], &legal[pixel])) {
                 return Ok(true);
             }
         }
@@ -413,4 +461,8 @@ impl Campaign {
             }
         }
     }
+}
+
+fn is_legal(value: &[f64; 4], legal: &LegalPixel) -> bool {
+    (0..4).all(|k| legal.low[k] <= value[k] && value[k] <= legal.high[k])
 }

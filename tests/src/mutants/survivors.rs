@@ -11,8 +11,9 @@ pub const SURVIVORS: &str = "tests/mutants.txt";
 
 const HEADER: &str = "\
 # Mutants of the shaders that no default run fails, as `./x mutants --update` finds them: what each is, and its name.
-# equal: the same bits on a million inputs of each formula, and on all hard cases. legal: other bits, all within the intervals.
-# missed: a value that is not legal, on an input that a default run does not draw. unshown: the same bits in every scene or case.
+# equal: the same bits on a million inputs of each formula and on all hard cases; of scenes, in a million pixels of random frames and in all built-in ones.
+# legal: other bits, all within the intervals; of fixed functions, a million answers that are; of special values, all that there are.
+# missed: a value that is not legal, on an input that a default run does not draw.
 ";
 
 /// Mutants that are known to survive.

@@ -198,7 +198,7 @@ const RULES: &[(&str, &str)] = &[
     ),
     (
         "vector/normal-by-cofactors",
-        "cofactorᵢ is the cross product of the two other columns, in cyclic order; column i is multiplied by sᵢ, and the normal's component nᵢ too",
+        "cofactorᵢ is the cross product of the two other columns, in cyclic order; column i is multiplied by sᵢ, and the normal's component nᵢ too; n may have any length: it is brought near 1 by a power of two before and after",
     ),
     ("vector/light-direction", "the matrix's translation does not count; x, y and z are the result"),
     ("vector/light-position", "a negative w divides as any other"),

@@ -274,6 +274,14 @@ formula!(
             .naive("vector/normal-by-determinant", "the determinant of 1e-40 underflows, or its inverse overflows", 1e6),
         Hard::new("mirrored-and-thin-1e-30", "two axes of 1e-30 under reflection, the normal along the third", &[("modelview", &[-1.0, 0.0, 0.0, 0.0, 1e-30, 0.0, 0.0, 0.0, 1e-30]), ("n", &[1.0, 0.0, 0.0])])
             .naive("vector/normal-by-determinant", "the cofactor of 1e-60 underflows", 1e6),
+        Hard::new("long-normal", "a normal of length 1e38, and columns of 1e10", &[("modelview", &[1e10, 0.0, 0.0, 0.0, 1e10, 0.0, 0.0, 0.0, 1e-10]), ("n", &[6e37, 0.0, 8e37])])
+            .naive("vector/normal-by-determinant", "the normal's square overflows", 1e6),
+        Hard::new("short-normal", "a normal of length 1e-37, and columns of 1e10", &[("modelview", &[1e10, 0.0, 0.0, 0.0, 1e10, 0.0, 0.0, 0.0, 1e10]), ("n", &[6e-38, 0.0, 8e-38])])
+            .naive("vector/normal-by-determinant", "the normal's square underflows", 1e6),
+        Hard::new("mirrored-and-parallel", "columns that differ by 1e-36, under reflection", &[("modelview", &[1.0, 0.0, -1e-3, 1.0, 0.0, 0.0, 1.0, 1e-36, 0.0]), ("n", &[0.6, 0.0, 0.8])])
+            .naive("vector/normal-by-determinant", "the determinant of 1e-39 underflows", 1e6),
+        Hard::new("grown-and-parallel", "columns of 1e36 that differ by 1e-3", &[("modelview", &[1e36, 0.0, 0.0, 1e36, 1e33, 0.0, 1e36, 0.0, 1e33]), ("n", &[1.0, 0.0, 0.0])])
+            .naive("vector/normal-by-determinant", "the cofactors overflow", 1e6),
         Hard::new("flattened-to-a-plane", "a determinant of 0 does not turn the normal", &[("modelview", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]), ("n", &[0.0, 0.0, 0.5])]),
     ],
 );
@@ -287,10 +295,16 @@ formula!(
     hard [
         Hard::new("tiny", "edges of 1e-12", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1e-12, 2e-12, 0.0]), ("c", &[-1e-12, 1e-12, 3e-12])])
             .naive("vector/face-normal", "the square of the cross product underflows", 1e6),
+        Hard::new("tiniest", "edges of 1e-30", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1e-30, 2e-30, 0.0]), ("c", &[-1e-30, 1e-30, 3e-30])])
+            .naive("vector/face-normal", "the cross product underflows", 1e6),
+        Hard::new("hugest", "edges of 1e30", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1e30, 2e30, 0.0]), ("c", &[-1e30, 1e30, 3e30])])
+            .naive("vector/face-normal", "the cross product overflows", 1e6),
         Hard::new("huge", "edges of 1e12", &[("a", &[0.0, 0.0, 0.0]), ("b", &[1e12, 2e12, 0.0]), ("c", &[-1e12, 1e12, 3e12])])
             .naive("vector/face-normal", "the square of the cross product overflows", 1e6),
         Hard::new("sliver", "edges that agree to 5 digits", &[("a", &[0.0, 0.0, 0.0]), ("b", &[0.7, 0.3, 0.2]), ("c", &[1.4, 0.600_01, 0.4])])
             .naive("vector/face-normal", "the rounding of the products is what is left", 1e3),
+        Hard::new("tiny-sliver", "edges of 1e-33 that agree to 5 digits", &[("a", &[0.0, 0.0, 0.0]), ("b", &[0.7e-33, 0.3e-33, 0.2e-33]), ("c", &[1.4e-33, 0.600_01e-33, 0.4e-33])])
+            .naive("vector/face-normal", "the products underflow", 1e6),
         Hard::new("needle", "edges that agree to the last bits", &[("a", &[0.0, 0.0, 0.0]), ("b", &[0.1, 0.3, 0.7]), ("c", &[0.7, 2.1, 4.9])])
             .naive("vector/face-normal", "any direction", 1e6),
     ],

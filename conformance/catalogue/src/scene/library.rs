@@ -8,7 +8,7 @@ macro_rules! scenes {
     };
 }
 
-const COUNT: usize = 46;
+const COUNT: usize = 48;
 
 /// Each built-in scene's name and JSON.
 pub const SCENES: [(&str, &str); COUNT] = scenes! {
@@ -21,6 +21,7 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "combined-exp2-opengl"
     "combined-linear"
     "crossing"
+    "dark-light"
     "depth-on-off"
     "eight-lights"
     "eight-points"
@@ -40,6 +41,7 @@ pub const SCENES: [(&str, &str); COUNT] = scenes! {
     "many-points"
     "many-spots"
     "many-suns"
+    "many-units"
     "missed-highlight"
     "near-clip"
     "obj"

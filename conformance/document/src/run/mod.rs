@@ -213,19 +213,37 @@ pub struct PixelUse {
     pub marked: bool,
 }
 
-/// An image of 8 bits that is to one side of its reference, by less than one pixel shows.
+/// In what a bias is counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum BiasUnit {
+    /// Steps of 8 bits.
+    #[default]
+    Step,
+    /// Tolerances of pixels, on a target of floats.
+    Tolerance,
+}
+
+/// An image that is to one side of its reference, by less than one pixel shows.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ImageBias {
     /// What the values are as if multiplied by; where it is missing, as if something were added.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub factor: Option<f64>,
-    /// How far it moves values, in steps, negative where it is downwards.
+    /// How far it moves values, in units, negative where it is downwards.
     pub steps: f64,
-    /// Its standard error, in steps.
+    /// Its standard error, in units.
     pub error: f64,
-    /// What of these steps the accuracy rules do not explain, which fails the image; missing where they explain it.
+    /// What the units are; steps of 8 bits where it is missing.
+    #[serde(default, skip_serializing_if = "is_step")]
+    pub unit: BiasUnit,
+    /// What of these the accuracy rules do not explain, which fails the image; missing where they explain it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beyond: Option<f64>,
+}
+
+fn is_step(unit: &BiasUnit) -> bool {
+    *unit == BiasUnit::Step
 }
 
 impl ImageBias {
@@ -233,8 +251,21 @@ impl ImageBias {
     #[must_use]
     pub fn as_if(&self) -> String {
         match self.factor {
-            Some(factor) => format!("as if every value were {factor:.4} times what it is to be"),
-            None => format!("as if {:+.2} were added to every value", self.steps),
+            Some(factor) if self.unit == BiasUnit::Step => {
+                format!("as if every value were {factor:.4} times what it is to be")
+            }
+            Some(factor) => format!("as if every value were {factor:.6} times what it is to be"),
+            None if self.unit == BiasUnit::Step => format!("as if {:+.2} were added to every value", self.steps),
+            None => "as if the same were added to every value".into(),
+        }
+    }
+
+    /// How far it moves values, as the root of the mean square, with the unit.
+    #[must_use]
+    pub fn on_average(&self) -> String {
+        match self.unit {
+            BiasUnit::Step => format!("{:+.2} steps of 8 bits", self.steps),
+            BiasUnit::Tolerance => format!("{:+.2} of what is permitted", self.steps),
         }
     }
 }

@@ -8,7 +8,7 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
 use lightmeter_document::by_case::CaseCounts;
-use lightmeter_document::run::{Failure, Group, ImageBias, ImageUse, PixelUse, Report, Totals};
+use lightmeter_document::run::{BiasUnit, Failure, Group, ImageBias, ImageUse, PixelUse, Report, Totals};
 use lightmeter_document::{Number, hash};
 use lightmeter_judge::cases::ending;
 use lightmeter_judge::devices::Deviation;
@@ -119,18 +119,34 @@ impl<'a> JudgedScene<'a> {
         judge(image, &self.reference, self.expected(profile), &self.pixels)
     }
 
-    /// What all pixels of a right image say together; of blended ones nothing, since each layer was rounded.
+    /// What all pixels of a right image say together; of blended ones nothing, since each layer was rounded, of sRGB nothing,
+    /// whose steps are uneven, and nothing of half precision, to which some devices truncate: that is legal, and lies to one side.
     pub(super) fn bias(&self, image: &StoredImage, profile: &Profile) -> Option<ImageBias> {
         let frame = self.frame;
-        if frame.target.format.encoding() != Encoding::Unorm8 || frame.draws.iter().any(|draw| draw.blend.is_some()) {
+        if frame.draws.iter().any(|draw| draw.blend.is_some()) {
             return None;
+        }
+        let told = |found: Bias, unit, beyond| ImageBias {
+            factor: found.factor,
+            steps: found.steps,
+            error: found.error,
+            unit,
+            beyond,
+        };
+        match frame.target.format.encoding() {
+            Encoding::Unorm8 => {}
+            Encoding::Srgb8 | Encoding::Float16 => return None,
+            Encoding::Float32 => {
+                let found = Bias::of_floats(image, &self.reference, self.expected(profile), &self.pixels)?;
+                return Some(told(found, BiasUnit::Tolerance, None));
+            }
         }
         let found = Bias::of(image, &self.reference, self.expected(profile), &self.pixels)?;
         let mut on_floats = frame.clone();
         on_floats.target.format = TargetFormat::Rgba32Float;
         let on_floats = expect(&on_floats, None, None, profile);
         let beyond = Bias::beyond(image, &self.reference, &on_floats, &self.pixels).map(|beyond| beyond.steps);
-        Some(ImageBias { factor: found.factor, steps: found.steps, error: found.error, beyond })
+        Some(told(found, BiasUnit::Step, beyond))
     }
 
     /// What the reference has at a pixel.

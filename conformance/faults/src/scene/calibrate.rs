@@ -152,6 +152,10 @@ impl Measured {
     }
 
     fn is_biased(&self, image: &StoredImage) -> bool {
+        let is_float = self.frame.target.format.encoding() == Encoding::Float32;
+        if is_float && self.frame.draws.iter().all(|draw| draw.blend.is_none()) {
+            return Bias::of_floats(image, &self.reference, &self.expected, &self.all).is_some();
+        }
         let Some(on_floats) = &self.on_floats else { return false };
         Bias::of(image, &self.reference, &self.expected, &self.all).is_some()
             && Bias::beyond(image, &self.reference, on_floats, &self.all).is_some()

@@ -267,6 +267,9 @@ faults! {
     Frame "clamped-at-the-vertices" "what is lit at the vertices is limited to 1 there, before it is interpolated" @ "gl4es; OpenGL's fixed function" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some_and(|shading| shading.frequency == Frequency::Gouraud)) {
         frame.departures.clamped_vertices = true;
     };
+    Frame "lit-at-least-0" "what is lit is held above 0, before it is interpolated" @ "max(color, 0) at the end of a lighting function" |frame| if frame.draws.iter().any(|draw| draw.shading.is_some()) {
+        frame.departures.lit_at_least_0 = true;
+    };
     Frame "axis-not-normalised" "a spotlight's axis is not normalised" |frame| if frame.lights.iter().any(|light| matches!(light.place, Place::Spot { .. })) {
         frame.departures.axis_at_length = true;
     };
@@ -282,6 +285,7 @@ faults! {
     Color "gamma-encoded" "colours are raised to the power 1/2.2" |pixel| each_color(pixel, |c| c.max(0.0).powf(1.0 / 2.2));
     Color "gamma-decoded" "colours are raised to the power 2.2" |pixel| each_color(pixel, |c| c.max(0.0).powf(2.2));
     Color "clamped" "colours are clamped to 1 and the target is not" @ "OpenGL's fixed function" |pixel| each_color(pixel, |c| c.clamp(0.0, 1.0));
+    Color "not-below-0" "colours below 0 are taken as 0" @ "max(color, 0) at the end of a fragment shader" |pixel| each_color(pixel, |c| c.max(0.0));
     Color "premultiplied" "colours are multiplied by their alpha" @ "a browser's canvas" |[r, g, b, a]| [r * a, g * a, b * a, a];
     Color "alpha-lost" "alpha is 1 everywhere" |[r, g, b, _]| [r, g, b, 1.0];
     Color "truncated" "steps of 8 bits are truncated and not rounded" @ "int(255·c)" |pixel| pixel.map(|c| ((255.0 * c + 1e-9).floor() / 255.0).min(c));

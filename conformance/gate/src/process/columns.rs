@@ -245,6 +245,12 @@ impl Session {
 
 /// That an answer in columns is to nothing that waits for one.
 fn not_asked(answer: &ColumnsAnswer) -> String {
+    if answer.batch == 0 {
+        let columns = clipped(&answer.columns);
+        return format!(
+            "an answer of `{columns}` in columns has no `batch`, or 0; expected the number that its request has, from 1"
+        );
+    }
     format!("no batch {} of `{}` waits for an answer in columns", answer.batch, clipped(&answer.columns))
 }
 

@@ -4,6 +4,9 @@
 //! one side; each is legal wherever arithmetic leaves it to the shader which of two steps is next. So the steps by which pixels differ from the
 //! reference, rounded, are added up: of a right image they are few, and as often up as down. Where a shader compiler may be off to one side all over an
 //! image, it may be: what fails an image is what is left beyond that.
+//!
+//! On a float target each pixel tells what it hides, but for what lies within its tolerance. There a bias is counted in tolerances. It is
+//! told, and fails nothing, since each pixel may be where it is.
 
 use super::file::StoredImage;
 use super::pixel::LegalPixel;
@@ -11,9 +14,9 @@ use std::collections::BTreeMap;
 
 /// Standard errors that a bias is more than.
 const ERRORS: f64 = 8.0;
-/// Steps that it is more than: an eighth of what a target of 8 bits tells apart.
+/// Steps that it is more than: an eighth of what a target of 8 bits tells apart. On floats, tolerances.
 const STEPS: f64 = 0.125;
-/// Values of the reference that have to be there, in steps, each of which counts once however many pixels have it.
+/// Values of the reference that have to be there, in steps of 8 bits, each of which counts once however many pixels have it.
 const LEAST_VALUES: usize = 24;
 
 /// An image to one side of its reference.
@@ -21,9 +24,9 @@ const LEAST_VALUES: usize = 24;
 pub struct Bias {
     /// What the values are as if multiplied by; `None` where they are as if something were added.
     pub factor: Option<f64>,
-    /// How far it moves values, in steps, negative where it is downwards: the root of the mean square.
+    /// How far it moves values, in steps of 8 bits or in tolerances on floats, negative where it is downwards: the root of the mean square.
     pub steps: f64,
-    /// Its standard error, in steps.
+    /// Its standard error, in the same.
     pub error: f64,
 }
 
@@ -56,14 +59,43 @@ impl Bias {
         Self::fitted(&means(reference, unmarked, off))
     }
 
-    fn fitted(points: &[[f64; 2]]) -> Option<Self> {
+    /// To which side of its reference an image of floats lies, in tolerances; `None` where it lies to none. Marked pixels say nothing, and neither
+    /// do those of which any value or a single one is legal.
+    #[must_use]
+    pub fn of_floats(
+        image: &StoredImage,
+        reference: &StoredImage,
+        expected: &[LegalPixel],
+        pixels: &[usize],
+    ) -> Option<Self> {
+        let mut values: Means<3> = BTreeMap::new();
+        for &pixel in pixels.iter().filter(|&&pixel| !expected[pixel].is_marked) {
+            for component in 0..3 {
+                let exact = reference.pixels[pixel][component];
+                let tolerance = 0.5 * (expected[pixel].high[component] - expected[pixel].low[component]);
+                if exact != 0.0 && tolerance > 0.0 && tolerance.is_finite() {
+                    let step = (255.0 * exact).round_ties_even();
+                    let off = image.pixels[pixel][component] - exact;
+                    add(&mut values, component, step, [exact, 1.0, off].map(|x| x / tolerance));
+                }
+            }
+        }
+        let points: Vec<Point> =
+            values.into_values().map(|sums| mean(&sums)).map(|[x, one, y]| Point { x, one, y }).collect();
+        Self::fitted(&points)
+    }
+
+    fn fitted(points: &[Point]) -> Option<Self> {
         if points.len() < LEAST_VALUES {
             return None;
         }
-        let added = fit(points, |_| 1.0);
-        let multiplied = fit(points, |x| x);
+        let added = fit(points, |point| point.one);
+        let multiplied = fit(points, |point| point.x);
         let is_multiplied = multiplied.rest < added.rest;
         let better = if is_multiplied { multiplied } else { added };
+        if better.points < LEAST_POINTS {
+            return None;
+        }
         let found = Self {
             factor: is_multiplied.then_some(1.0 + better.slope),
             steps: better.slope * better.size,
@@ -74,25 +106,52 @@ impl Bias {
     }
 }
 
+/// Points that a fit has to rest on: of n points of the same weight n, and of others fewer, since one point says by itself what a line is
+/// on which it weighs more than all others.
+const LEAST_POINTS: f64 = 12.0;
+
+/// What the pixels of a value say together, in steps or in tolerances.
+#[derive(Clone, Copy)]
+struct Point {
+    /// The value, as what a factor multiplies.
+    x: f64,
+    /// What 1 comes to that is added to it.
+    one: f64,
+    /// How far the pixels are from it.
+    y: f64,
+}
+
+/// Sums of numbers, and how many there are of each, by component and value of the reference in whole steps.
+type Means<const N: usize> = BTreeMap<(usize, u64), ([f64; N], f64)>;
+
+fn add<const N: usize>(values: &mut Means<N>, component: usize, step: f64, of: [f64; N]) {
+    let (sums, count) = values.entry((component, step.to_bits())).or_insert(([0.0; N], 0.0));
+    sums.iter_mut().zip(of).for_each(|(sum, x)| *sum += x);
+    *count += 1.0;
+}
+
+fn mean<const N: usize>((sums, count): &([f64; N], f64)) -> [f64; N] {
+    sums.map(|sum| sum / count)
+}
+
 /// For each component and each value of the reference in whole steps, that value and the mean of something over the pixels that have it.
 fn means(
     reference: &StoredImage,
     pixels: impl Iterator<Item = usize>,
     of: impl Fn(usize, usize, f64) -> f64,
-) -> Vec<[f64; 2]> {
-    let mut values: BTreeMap<(usize, u64), (f64, f64)> = BTreeMap::new();
+) -> Vec<Point> {
+    let mut values: Means<1> = BTreeMap::new();
     for pixel in pixels {
         for component in 0..3 {
             let exact = reference.pixels[pixel][component];
             if (1.0..=254.0).contains(&exact) {
                 let nearest = exact.round_ties_even();
-                let (sum, count) = values.entry((component, nearest.to_bits())).or_default();
-                *sum += of(pixel, component, nearest);
-                *count += 1.0;
+                add(&mut values, component, nearest, [of(pixel, component, nearest)]);
             }
         }
     }
-    values.into_iter().map(|((_, nearest), (sum, count))| [f64::from_bits(nearest), sum / count]).collect()
+    let points = values.into_iter().map(|((_, nearest), sums)| (f64::from_bits(nearest), mean(&sums)));
+    points.map(|(x, [y])| Point { x, one: 1.0, y }).collect()
 }
 
 /// A line through the origin.
@@ -105,16 +164,26 @@ struct Line {
     size: f64,
     /// The sum of the squares that it leaves.
     rest: f64,
+    /// How many points of the same weight say as much: (Σw)²/Σw² of the weights w, the squares of what the slope is multiplied by.
+    points: f64,
 }
 
-/// The line `y = slope·of(x)` of the least squares.
-fn fit(points: &[[f64; 2]], of: impl Fn(f64) -> f64) -> Line {
-    let squares: f64 = points.iter().map(|&[x, _]| of(x) * of(x)).sum();
-    let slope = points.iter().map(|&[x, y]| of(x) * y).sum::<f64>() / squares;
-    let rest: f64 = points.iter().map(|&[x, y]| (y - slope * of(x)) * (y - slope * of(x))).sum();
-    #[expect(clippy::cast_precision_loss, reason = "at most some hundred points")]
+/// The line `y = slope·of(point)` of the least squares.
+fn fit(points: &[Point], of: impl Fn(&Point) -> f64) -> Line {
+    let squares: f64 = points.iter().map(|point| of(point) * of(point)).sum();
+    let slope = points.iter().map(|point| of(point) * point.y).sum::<f64>() / squares;
+    let left = |point: &Point| point.y - slope * of(point);
+    let rest: f64 = points.iter().map(|point| left(point) * left(point)).sum();
+    let fourth_powers: f64 = points.iter().map(|point| of(point).powi(4)).sum();
+    #[expect(clippy::cast_precision_loss, reason = "no more points than pixels")]
     let count = points.len() as f64;
-    Line { slope, error: (rest / (count - 1.0) / squares).sqrt(), size: (squares / count).sqrt(), rest }
+    Line {
+        slope,
+        error: (rest / (count - 1.0) / squares).sqrt(),
+        size: (squares / count).sqrt(),
+        rest,
+        points: squares * squares / fourth_powers,
+    }
 }
 
 #[cfg(test)]
@@ -194,6 +263,50 @@ mod tests {
             .map(|pixel| LegalPixel { low: pixel.map(|c| c / 255.0), high: pixel.map(|c| c / 255.0), is_marked: false })
             .collect();
         assert_eq!(Bias::beyond(&down, &ties, &legal, &all), None);
+    }
+
+    #[test]
+    fn on_floats_a_bias_is_counted_in_tolerances() {
+        // Rounded at random to within a tenth of a tolerance of 1e-4.
+        let exact: Vec<[f64; 4]> = (0..5_000).map(|k| [0.05 + f64::from(k) * 1e-4; 4]).collect();
+        let reference = StoredImage { width: 100, format: TargetFormat::Rgba32Float, pixels: exact.clone() };
+        let legal = |pixel: &[f64; 4]| LegalPixel {
+            low: pixel.map(|c| c * (1.0 - 1e-4)),
+            high: pixel.map(|c| c * (1.0 + 1e-4)),
+            is_marked: false,
+        };
+        let expected: Vec<LegalPixel> = exact.iter().map(legal).collect();
+        let all: Vec<usize> = (0..exact.len()).collect();
+        let found = |factor: f64, added: f64| {
+            let noise = |c: f64| 1e-5 * c * (c * 7919.0).sin();
+            let drawn = |pixel: &[f64; 4]| pixel.map(|c| c * factor + added + noise(c));
+            let image = StoredImage { pixels: exact.iter().map(drawn).collect(), ..reference.clone() };
+            Bias::of_floats(&image, &reference, &expected, &all)
+        };
+        assert_eq!(found(1.0, 0.0), None);
+        assert_eq!(found(1.000_01, 0.0), None, "a tenth of the tolerance is too little");
+        let bright = found(1.000_03, 0.0).expect("it is to one side");
+        assert!(bright.factor.is_some_and(|factor| (factor - 1.000_03).abs() < 1e-6), "{bright:?}");
+        assert!((bright.steps - 0.3).abs() < 0.02, "{bright:?}");
+        let above = found(1.0, 1e-5).expect("it is to one side");
+        assert!(above.factor.is_none() && above.steps > 0.125, "{above:?}");
+    }
+
+    #[test]
+    fn on_floats_one_value_of_a_small_tolerance_says_nothing() {
+        let exact: Vec<[f64; 4]> = (0..60).map(|k| [f64::from(k + 1) * 0.01; 4]).collect();
+        let reference = StoredImage { width: 60, format: TargetFormat::Rgba32Float, pixels: exact.clone() };
+        let tolerance = |place: usize, c: f64| if place == 30 { 1e-7 * c } else { 1e-4 * c };
+        let legal = |(place, pixel): (usize, &[f64; 4])| LegalPixel {
+            low: pixel.map(|c| c - tolerance(place, c)),
+            high: pixel.map(|c| c + tolerance(place, c)),
+            is_marked: false,
+        };
+        let expected: Vec<LegalPixel> = exact.iter().enumerate().map(legal).collect();
+        let mut image = reference.clone();
+        image.pixels[30] = image.pixels[30].map(|c| c + 0.9 * tolerance(30, c));
+        let all: Vec<usize> = (0..exact.len()).collect();
+        assert_eq!(Bias::of_floats(&image, &reference, &expected, &all), None);
     }
 
     #[test]

@@ -4,8 +4,9 @@
 //!
 //! * *Place.* A vertex may be off by δ in x and in y: the step of the subpixel grid, and what its clip coordinates and the
 //!   viewport lose in binary32. A pixel whose middle lies within δ of an edge may be covered or not. A covered one holds
-//!   attributes of a point at most δ away *within the triangle*, since its weights among the moved vertices are those of
-//!   that point among the given ones.
+//!   attributes of a point at most δ away. Among the moved vertices that point lies within the triangle. A rasteriser that
+//!   moves vertices to decide what is covered, and interpolates among those that were given, as llvmpipe does, takes it
+//!   from up to δ outside, where attributes go beyond those of the vertices.
 //! * *Attributes.* With `a = Σgᵢaᵢ/wᵢ / Σgᵢ/wᵢ`, g linear in x and y, the value δ away differs from a by exactly
 //!   `((Nx − aDx)dx + (Ny − aDy)dy)/D′`, N and D the numerator and the denominator, D′ the denominator there.
 //! * *The plane equation in binary32*, `q₀ + gx(x − x₀) + gy(y − y₀)` however it is arranged, of q = a/w and of 1/w. With
@@ -219,9 +220,7 @@ impl Bound {
             let value = (over_w[0] * at[0] + over_w[1] * at[1] + over_w[2] * at[2]) / sum;
             let along = |axis: usize| (0..3).map(|i| self.gradients[i][axis] * (at[i] - value)).sum::<f64>().abs();
             let off = if least > 0.0 { (along(0) * dx + along(1) * dy) / least } else { high - low };
-            // The point that is shown lies within the triangle.
-            let (least, most) = ((value - off).max(low).min(high), (value + off).min(high).max(low));
-            out.push(between(least - slack, most + slack));
+            out.push(between(value - off - slack, value + off + slack));
         }
     }
 }

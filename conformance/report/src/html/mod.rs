@@ -158,9 +158,10 @@ pub fn of_matrix(reports: &[(&str, &Report)]) -> String {
     page(&facts.title, PageKind::Report, &body)
 }
 
-/// Whether a gate passes, as its exit code has it.
-pub(crate) fn is_success(gate: &GateReport) -> bool {
-    Verdict::of_gate(gate, &Report::from(gate.clone())).is_success
+/// Why a gate does not pass, as its exit code has it, in sentences; `None` where it passes.
+pub(crate) fn why_not(gate: &GateReport) -> Option<String> {
+    let verdict = Verdict::of_gate(gate, &Report::from(gate.clone()));
+    (!verdict.is_success).then(|| verdict.sentences.join(" "))
 }
 
 /// The same matrix in Markdown: a row for each formula that does not simply pass everywhere, and the counts of the others.

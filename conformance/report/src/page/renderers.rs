@@ -20,19 +20,33 @@ pub fn markdown(gates: &[GateReport], out: &mut impl Write) -> Result {
         "| | renderer | device | driver | profile | formulas | scenes | cases | pass | known failures | other failures | skipped | unanswered | seconds |"
     )?;
     writeln!(out, "|---|---|---|---|---|{}", "--:|".repeat(9))?;
-    gates.iter().try_for_each(|gate| row(gate, out))
+    let whys: Vec<Option<String>> = gates.iter().map(html::why_not).collect();
+    gates.iter().zip(&whys).try_for_each(|(gate, why)| row(gate, why.is_none(), out))?;
+    let failing = gates.iter().zip(&whys).filter_map(|(gate, why)| Some((gate, why.as_ref()?)));
+    failing.enumerate().try_for_each(|(place, (gate, why))| {
+        let before = if place == 0 { "\n" } else { "" };
+        writeln!(out, "{before}* ✗ {}: {}", escaped(&name(gate)), escaped(why))
+    })
+}
+
+/// A renderer's name and version, and which shard of its cases this is.
+fn name(gate: &GateReport) -> String {
+    let GateReport { renderer, compared_by, .. } = gate;
+    let shard = compared_by.as_ref().and_then(|by| by.shard.as_ref());
+    let shard = shard.map_or_else(String::new, |shard| format!(", shard {shard} alone"));
+    format!("{} {}", renderer.name, renderer.version).trim().to_owned() + &shard
 }
 
 /// The row of a gate.
-fn row(gate: &GateReport, out: &mut impl Write) -> Result {
+fn row(gate: &GateReport, is_success: bool, out: &mut impl Write) -> Result {
     let (totals, who) = (&gate.totals, &gate.renderer);
     let asked = |is_scene: bool| {
         let is_it = |group: &&GateGroup| group.id.starts_with("scene/") == is_scene && group.target.is_none();
         gate.groups.iter().filter(is_it).filter(|group| group.asked > 0).count() as u64
     };
     let words = [
-        if html::is_success(gate) { "✓".to_owned() } else { "✗".to_owned() },
-        format!("{} {}", who.name, who.version),
+        if is_success { "✓".to_owned() } else { "✗".to_owned() },
+        name(gate),
         who.device.clone().unwrap_or_default(),
         who.driver.clone().unwrap_or_default(),
         gate.profile.clone(),
