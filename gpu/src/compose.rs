@@ -394,7 +394,7 @@ impl Composer {
 /// A line that is in a technique's or an intermediate result's shader, and in none of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineBeside {
-    /// Which shader, by its set of effects and its recipe: the same number for the same of another set of files.
+    /// Which shader: the number of its set of effects, and that of its recipe. They do not depend on the files, so that two folders can be compared.
     pub shader: (usize, usize),
     /// The file that the line is from.
     pub file: String,

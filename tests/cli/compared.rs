@@ -136,7 +136,7 @@ fn each_group_says_what_became_of_its_cases() {
 /// Two results, but for times, the command that made them, and what a sum over parts rounds in another way.
 fn alike(mut a: Value, mut b: Value) -> (Value, Value) {
     for report in [&mut a, &mut b] {
-        // That builds are not known is told of shards alone.
+        // Only `merge` warns that the shards may be of different builds.
         for name in ["seconds", "made_at", "timing", "command", "starts", "warnings"] {
             report.as_object_mut().expect("an object").remove(name);
         }

@@ -273,3 +273,13 @@ fn edited_lines_that_no_picture_shows_are_told() {
     let said = said("beside-nothing", "let eye = ", "let eye = 1.0 * ");
     assert!(!said.contains("not judged"), "{said}");
 }
+
+/// llvmpipe decides what is covered by moved vertices and interpolates among the given ones, so that these pixels have more or less alpha
+/// than any vertex.
+#[test]
+fn attributes_may_lie_beyond_those_of_the_vertices() {
+    for (scene, size) in [("scene/combined-exp2-opengl", "128"), ("scene/combined-exp", "64")] {
+        let output = lightmeter(&["run", scene, "--size", size]);
+        assert_eq!(code(&output), 0, "{}", stdout(&output));
+    }
+}
