@@ -12,7 +12,7 @@ use lightmeter_document::by_case::CaseCounts;
 use lightmeter_document::run::{Group, Totals};
 
 /// Cases of a chunk.
-pub(crate) const CHUNK: usize = 1 << 16;
+pub(crate) const CHUNK: usize = 1 << 14;
 /// What is judged in one go.
 #[derive(Clone, Copy)]
 pub(crate) enum Turn<'a> {

@@ -277,7 +277,7 @@ pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
     // A mark of the byte order, which some editors put first.
     let text = text.trim_start_matches('\u{feff}');
     match serde_json::from_str::<Raw<'_>>(text) {
-        Ok(raw) => told(raw),
+        Ok(raw) => told(raw).map_err(|error| format!("`{}`: {error}", clipped_to(text, MOST_QUOTED))),
         Err(error) => {
             if is_hello(line) {
                 return hello(text);
@@ -288,13 +288,10 @@ pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
                     return told(raw).map(Line::into_owned);
                 }
             }
+            let line = clipped_to(text, MOST_QUOTED);
             let begins_as_one = text.trim_start().starts_with('{');
-            let error = if begins_as_one {
-                error.to_string()
-            } else {
-                format!("`{}` is no JSON object", clipped_to(text, MOST_QUOTED))
-            };
-            Err(format!("{error}; expected {EXPECTED}"))
+            let what = if begins_as_one { format!("`{line}`: {error}") } else { format!("`{line}` is no JSON object") };
+            Err(format!("{what}; expected {EXPECTED}"))
         }
     }
 }
@@ -579,9 +576,9 @@ mod tests {
         }
         assert_eq!(super::id(br#"{"id":"a","value":[1,2"#).as_deref(), Some("a"));
         for (line, said) in [
-            (&br#"{"id":"a","value":[1,2"#[..], "EOF"),
+            (&br#"{"id":"a","value":[1,2"#[..], "`{\"id\":\"a\",\"value\":[1,2`: EOF"),
             (br#"{"id":"a","value":["nan"]}"#, "expected"),
-            (br#"{"id":"a"}"#, "none, or more than one"),
+            (br#"{"id":"a"}"#, "`{\"id\":\"a\"}`: it has none, or more than one"),
             (br#"{"id":"a","value":[1],"skip":"x"}"#, "none, or more than one"),
             (br#"{"id":"a","value":[1],"hex":"0x1"}"#, "none, or more than one"),
             (br#"{"id":"a","values":[1]}"#, "none, or more than one"),

@@ -58,7 +58,7 @@ impl Session {
         let (spec, count) = (&rows.members[0].spec, rows.of.len());
         let most = (MOST_REQUEST / (4 * rows.stride())).max(1);
         let (mut left, mut first, mut failures) = (vec![], 0, 0);
-        while first < count && !self.is_over() && failures < MOST_OF_FORMULA {
+        while first < count && !self.is_over() && failures < MOST_OF_FORMULA && !self.counts_wrong {
             if self.running.is_none() && !self.starts_again(count - first) {
                 self.has_broken_off = true;
                 break;
@@ -100,7 +100,8 @@ impl Session {
                     break;
                 }
                 Came::Failed(ended) => {
-                    failures += self.fails_in_columns(spec, batch.len(), ended);
+                    failures += 1;
+                    self.fails_in_columns(spec, batch.len(), ended);
                     left.extend(batch);
                     continue;
                 }
@@ -112,20 +113,20 @@ impl Session {
         left
     }
 
-    /// Ends a process that failed in a batch, and tells it; how many of the failures that a formula may have this is.
-    fn fails_in_columns(&mut self, spec: &Spec, count: usize, ended: Ended) -> usize {
+    /// Ends a process that failed in a batch, and tells it.
+    fn fails_in_columns(&mut self, spec: &Spec, count: usize, ended: Ended) {
         let cut = self.running.as_ref().and_then(|running| running.framing.cut_short());
-        // One that stops within an array counts wrong, and does so again.
-        let failures = if cut.is_some() { MOST_OF_FORMULA } else { 1 };
+        // One that stops within an array does so at the next formula too, after as long a wait.
+        self.counts_wrong |= cut.is_some();
         let how = self.kill(ended);
+        let those = if cut.is_some() { "they and all other formulas" } else { "they" };
         self.used.incidents.push(format!(
-            "{}: with {count} cases asked in columns {}: {}{how}; they are asked by lines",
+            "{}: with {count} cases asked in columns {}: {}{how}; {those} are asked by lines",
             spec.id,
             ended.message(),
             cut.map_or_else(String::new, |cut| format!("{cut}; "))
         ));
         self.rows = ROWS[0];
-        failures
     }
 
     /// Asks a batch of rows and waits for what comes of it.

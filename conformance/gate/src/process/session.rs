@@ -139,6 +139,8 @@ pub(super) struct Session {
     pub(super) size: usize,
     /// Cases that are asked at once in columns.
     pub(super) rows: usize,
+    /// Whether it stopped within an array: it counts wrong, and is asked in columns no more.
+    pub(super) counts_wrong: bool,
     /// Cases that the process has answered since it was started.
     pub(super) answered: usize,
     /// Cases that it failed at.
@@ -176,6 +178,7 @@ impl Session {
             number: 0,
             size: BATCH[0],
             rows: ROWS[0],
+            counts_wrong: false,
             answered: 0,
             culprits: 0,
             culprits_of: HashMap::new(),
