@@ -170,8 +170,7 @@ impl AskedRenderer for ProcessRenderer {
 
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
         let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
-        let has_columns = self.declared.hello.columns && !self.session().counts_wrong;
-        let in_columns = has_columns && rows.members.len() == 1;
+        let in_columns = self.declared.hello.columns && rows.members.len() == 1;
         let left = if in_columns {
             self.session().columns(rows, &mut answers, advanced)
         } else {
