@@ -10,29 +10,12 @@ use lightmeter::nearest::nearest;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    without_desktop();
+    cli::environment::complete();
     let status = command().unwrap_or_else(|error| {
         cli::say(&format!("error: {error:#}"));
         cli::Status::of(&error)
     });
     cli::end(status)
-}
-
-/// Where no desktop runs, one of Mesa's layers complains on standard error unless this variable is set, which must be so when a process
-/// starts: the process is started anew with it.
-fn without_desktop() {
-    #[cfg(unix)]
-    const SILENT: &str = "NODEVICE_SELECT";
-    #[cfg(unix)]
-    if ["XDG_RUNTIME_DIR", SILENT].iter().all(|name| std::env::var_os(name).is_none())
-        && let Ok(program) = std::env::current_exe()
-    {
-        use std::os::unix::process::CommandExt as _;
-        let mut given = std::env::args_os();
-        let own = given.next().unwrap_or_else(|| program.clone().into());
-        // It returns only where the program cannot be started.
-        let _ = std::process::Command::new(program).arg0(own).args(given).env(SILENT, "1").exec();
-    }
 }
 
 /// Reads the command line, with what the project's file says, and does as it asks.

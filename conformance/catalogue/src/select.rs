@@ -353,18 +353,31 @@ pub fn select(catalogue: &[Member], filter: &Filter, cases: u64, shard: Shard) -
             .filter(|&k| shard.has(k as u64) && filter.selects(&member.case_id(CaseRef::Hard(k))))
             .collect();
         let near = (0..member.spec.hard.len())
-            .flat_map(|k| (0..member.near()).map(move |near| (k, near)))
-            .filter(|&(k, near)| shard.has(near) && filter.selects(&member.case_id(CaseRef::Near(k, near))))
+            .flat_map(|k| {
+                let chosen = below(filter, member.near(), move |near| member.case_id(CaseRef::Near(k, near)));
+                chosen.map(move |near| (k, near))
+            })
+            .filter(|&(_, near)| shard.has(near))
             .collect();
-        let boundary = (0..member.boundary())
-            .filter(|&k| shard.has(k) && filter.selects(&member.case_id(CaseRef::Boundary(k))))
-            .collect();
+        let boundary = below(filter, member.boundary(), |k| member.case_id(CaseRef::Boundary(k)));
+        let boundary = boundary.filter(|&k| shard.has(k)).collect();
         let chosen = Selected { member: place, random, hard, near, boundary, shard };
         if chosen.count() > 0 {
             selected.push(chosen);
         }
     }
     selected
+}
+
+/// Which of the first cases of a path a filter selects, whose ids differ in the last segment alone: those are looked at only where the path does
+/// not tell.
+fn below(filter: &Filter, count: u64, id: impl Fn(u64) -> String) -> impl Iterator<Item = u64> {
+    let first = if count == 0 { String::new() } else { id(0) };
+    let path = first.rsplit_once('/').map_or("", |(path, _)| path);
+    let are_all = filter.selects(path);
+    let names_one = || filter.literals().any(|id| id.rsplit_once('/').is_some_and(|(of, _)| of == path));
+    let last = if are_all || filter.reaches_below(path) || names_one() { count } else { 0 };
+    (0..last).filter(move |&k| are_all || filter.selects(&id(k)))
 }
 
 /// The id under which a case is judged: that of its own name, or of the state that its state is an alias of.
@@ -374,4 +387,58 @@ pub fn canonical_id(id: &str) -> String {
         id.strip_prefix(&alias).filter(|rest| rest.starts_with('/')).map(|rest| canonical + rest)
     });
     renamed.unwrap_or_else(|| id.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a filter says of the id of each case that is not random, one after the other.
+    fn by_id(member: &Member, filter: &Filter, shard: Shard) -> Vec<CaseRef> {
+        let hard = (0..member.spec.hard.len()).map(CaseRef::Hard);
+        let near = (0..member.spec.hard.len()).flat_map(|k| (0..member.near()).map(move |near| CaseRef::Near(k, near)));
+        let all = hard.chain(near).chain((0..member.boundary()).map(CaseRef::Boundary));
+        all.filter(|&case| {
+            let number = match case {
+                CaseRef::Hard(k) => k as u64,
+                CaseRef::Near(_, k) | CaseRef::Boundary(k) | CaseRef::Random(k) => k,
+            };
+            shard.has(number) && filter.selects(&member.case_id(case))
+        })
+        .collect()
+    }
+
+    #[test]
+    fn cases_that_are_selected_together_are_those_that_are_selected_one_by_one() {
+        let catalogue: Vec<Member> = catalogue().into_iter().filter(|one| one.spec.id.starts_with("fog/")).collect();
+        let some = ["fog/exp/boundary/0003", "fog/exp/hard/*/near/01"];
+        for globs in [
+            &["fog"][..],
+            &["fog/exp"],
+            &["fog/*/boundary"],
+            &["fog/*/boundary/00?1"],
+            &["**/0007"],
+            &["fog/**/near/{00,02}"],
+            &["fog/exp/hard/*"],
+            &["fog/linear/random"],
+            &some,
+            &[],
+        ] {
+            let filter = Filter::new(globs).expect("the globs are valid");
+            for shard in [Shard::WHOLE, Shard { index: 1, count: NonZeroU64::MIN.saturating_add(2) }] {
+                let selected = select(&catalogue, &filter, 5, shard);
+                for (place, member) in catalogue.iter().enumerate() {
+                    let chosen = selected.iter().find(|chosen| chosen.member == place);
+                    let of_chosen = |chosen: &Selected| {
+                        let hard = chosen.hard.iter().map(|&k| CaseRef::Hard(k));
+                        let near = chosen.near.iter().map(|&(k, near)| CaseRef::Near(k, near));
+                        let boundary = chosen.boundary.iter().map(|&k| CaseRef::Boundary(k));
+                        hard.chain(near).chain(boundary).collect::<Vec<_>>()
+                    };
+                    let found = chosen.map(of_chosen).unwrap_or_default();
+                    assert_eq!(found, by_id(member, &filter, shard), "{globs:?}, {}", member.spec.id);
+                }
+            }
+        }
+    }
 }

@@ -8,6 +8,7 @@ pub mod device;
 pub mod evaluate;
 mod expected;
 pub mod image;
+mod in_turn;
 pub mod merge;
 pub mod options;
 pub mod piece;

@@ -137,6 +137,11 @@ impl<'a> Supply<'a> {
         Self(shared)
     }
 
+    /// Whether a chunk is there already.
+    pub(crate) fn has_ready(&self) -> bool {
+        !self.0.state().ready.is_empty()
+    }
+
     /// The next chunk of a turn; those of turns before it that nobody took are left.
     pub(crate) fn next(&self, turn: usize) -> Ready<'a> {
         loop {

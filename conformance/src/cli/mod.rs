@@ -9,6 +9,7 @@ mod comparison;
 pub(crate) mod config;
 mod contact_sheet;
 mod effects;
+pub(crate) mod environment;
 mod eval;
 mod foreign;
 mod gate;

@@ -1,6 +1,7 @@
 //! `lightmeter start-renderer`: what `gate` starts a renderer by, so that nothing of it outlives the gate.
 
 use super::Status;
+use super::environment;
 use super::signals::ENDING;
 use anyhow::Context as _;
 use clap::Args;
@@ -55,8 +56,9 @@ impl Start {
         setrlimit(Resource::Core, Rlimit { current: Some(0), maximum: Some(0) })?;
         // The shell limits itself, and so what it starts: this process needs more than a renderer may.
         let limit = self.memory.map(|memory| format!("ulimit -v {} || exit 2\n", memory << 10)).unwrap_or_default();
-        let child =
-            Command::new("sh").args(["-c", &(limit + &self.command)]).spawn().context("cannot start a shell")?;
+        let mut shell = Command::new("sh");
+        let shell = environment::spare(shell.args(["-c", &(limit + &self.command)]));
+        let child = shell.spawn().context("cannot start a shell")?;
         // Its pipes are its own: whoever reads or writes them sees when it closes them.
         let nothing = OpenOptions::new().read(true).write(true).open("/dev/null")?;
         rustix::stdio::dup2_stdin(&nothing)?;

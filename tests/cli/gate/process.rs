@@ -244,6 +244,22 @@ fn nothing_that_a_renderer_started_outlives_it() {
 }
 
 #[test]
+fn what_the_gate_sets_for_itself_is_not_in_the_environment_of_a_renderer() {
+    let file = folder("environment").join("tunables");
+    let exec = format!("echo \"[$GLIBC_TUNABLES]\" > '{}'", text(&file));
+    for own in ["", "glibc.malloc.perturb=0"] {
+        let mut gate = command(&["gate", "fog/exp", "--exec", &exec]);
+        if own.is_empty() {
+            gate.env_remove("GLIBC_TUNABLES")
+        } else {
+            gate.env("GLIBC_TUNABLES", own)
+        };
+        gate.output().expect("the binary starts");
+        assert_eq!(std::fs::read_to_string(&file).expect("it ran").trim(), format!("[{own}]"));
+    }
+}
+
+#[test]
 fn a_renderer_does_not_outlive_a_gate_that_is_killed() {
     let file = folder("killed").join("pid");
     let exec = format!("echo $$ > '{}'; exec sleep 600", text(&file));

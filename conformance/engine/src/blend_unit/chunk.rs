@@ -7,7 +7,7 @@ use lightmeter_scene::blend::{Route, routes};
 use rayon::prelude::*;
 
 /// Pixels of a submission.
-const PIXELS: usize = 1 << 19;
+const PIXELS: usize = 1 << 17;
 /// Cases of a state that are taken at once.
 const BLOCK: usize = 1 << 15;
 

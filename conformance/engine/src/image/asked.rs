@@ -35,7 +35,7 @@ pub(crate) fn ask(
 }
 
 /// Judges the image that a renderer draws of a scene; what stands for it, and whether it failed.
-pub(super) fn run_scene(
+pub(crate) fn run_scene(
     loaded: &Loaded,
     chosen: &Chosen,
     subject: &mut Subject,

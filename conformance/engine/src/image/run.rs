@@ -2,7 +2,6 @@
 //! with all effects behind switches; every pixel of both must be legal by the full reference. A run of everything, which is
 //! to end within a minute, draws them smaller and by the composed shaders alone.
 
-use super::asked;
 use super::verdict::{Drawn, JudgedScene};
 use crate::device::{DeviceError, Own, Picture};
 use crate::options::Options;
@@ -40,42 +39,59 @@ enum Drawing {
     Pending(Own),
 }
 
-/// Judges a scene on every subject; of each renderer that is asked case by case, what stands for its image, and whether that failed.
+/// A scene whose images subjects have begun to draw.
+pub(crate) struct BegunScene {
+    loaded: Loaded,
+    images: Vec<Started>,
+}
+
+/// Has every subject begin with a scene's images.
 ///
 /// # Errors
 /// Where a shader is invalid or a device fails.
-pub(crate) fn run_scene(
-    loaded: &Loaded,
+pub(crate) fn begin(
+    loaded: Loaded,
+    subjects: &[Subject],
+    options: &Options,
+    report: &mut Report,
+) -> Result<BegunScene, DeviceError> {
+    let images = Asked::of(&loaded.frame).start_all(subjects, options, report)?;
+    Ok(BegunScene { loaded, images })
+}
+
+/// Works out what is legal of a scene, and judges every subject's images.
+///
+/// # Errors
+/// Where a device fails.
+pub(crate) fn judge(
+    BegunScene { loaded, images }: BegunScene,
     chosen: &Chosen,
-    subjects: &mut [Subject],
+    subjects: &[Subject],
     options: &Options,
     report: &mut Report,
     observer: &mut dyn Observer,
-) -> Result<Vec<(u32, bool)>, DeviceError> {
-    if let [subject] = subjects
-        && subject.asked().is_some()
-    {
-        return asked::run_scene(loaded, chosen, subject, options, report, observer).map(|image| vec![image]);
-    }
-    let frame = &loaded.frame;
-    let asked = Asked { frame, called: effects(frame), named: named(frame) };
-    let all_started = asked.start_all(subjects, options, report)?;
+) -> Result<(), DeviceError> {
+    let asked = Asked::of(&loaded.frame);
     let clock = Instant::now();
-    let mut scene = JudgedScene::new(loaded, chosen);
-    for subject in subjects.iter() {
+    let mut scene = JudgedScene::new(&loaded, chosen);
+    for subject in subjects {
         scene.expect(&subject.known.profile(options.profile));
     }
     report.timing.reference += clock.elapsed().as_secs_f64();
     let mut composed: Vec<Option<StoredImage>> = vec![None; subjects.len()];
-    for started in all_started {
+    for started in images {
         let place = started.subject;
         asked.finish(started, &scene, &subjects[place], &mut composed[place], options, report)?;
     }
     observer.see(&Event::Advanced((scene.pixels() * subjects.len()) as u64));
-    Ok(vec![])
+    Ok(())
 }
 
-impl Asked<'_> {
+impl<'a> Asked<'a> {
+    fn of(frame: &'a Frame) -> Self {
+        Self { frame, called: effects(frame), named: named(frame) }
+    }
+
     /// Has every subject begin with its images.
     fn start_all(
         &self,

@@ -1,0 +1,368 @@
+//! The turns of a run, judged one after the other, while devices are at work on those that come next.
+//!
+//! A software driver draws on one thread. So while what is legal of one turn is worked out and judged, its device is handed the first
+//! rows, or the images, of the next ones. A renderer is asked turn by turn.
+
+use crate::ask_again::Noted;
+use crate::blend_unit;
+use crate::blend_unit::run::NotedPixels;
+use crate::device::DeviceError;
+use crate::expected::expect_problems;
+use crate::image;
+use crate::image::run::BegunScene;
+use crate::options::Options;
+use crate::renderer::AskedRenderer;
+use crate::row_run::{Asked, Begun, CompiledGroups, RowRun};
+use crate::selection::Selection;
+use crate::special;
+use crate::special::verdict::Table;
+use crate::stability;
+use crate::subject::Subject;
+use crate::supply::{RowGroup, Supply};
+use crate::turn::{Turn, not_asked, scene_of};
+use crate::under_way::{is_over, tell};
+use lightmeter_catalogue::cases::{Kind, Stage};
+use lightmeter_catalogue::scene::select::Chosen;
+use lightmeter_catalogue::select::{CaseRef, Member, Selected};
+use lightmeter_document::event::{Event, Observer};
+use lightmeter_document::run::{Failure, Group, Report};
+use std::collections::VecDeque;
+use std::time::Instant;
+
+/// Failing cases of each formula that are asked once more.
+const MOST_AGAIN: usize = 1024;
+/// Scenes, and chunks of rows, that devices are at work on at once.
+const AT_ONCE: usize = 6;
+
+/// What is judged in one step: a chunk of a formula group's rows, or all else of a turn.
+struct Part<'a> {
+    place: usize,
+    turn: Turn<'a>,
+    rows: Option<Rows<'a>>,
+}
+
+/// A chunk of a group's rows; an empty one where the group has none.
+struct Rows<'a> {
+    group: &'a RowGroup<'a>,
+    cases: Vec<(usize, CaseRef)>,
+    is_first: bool,
+    is_last: bool,
+}
+
+/// A part that subjects are at work on, or why it could not begin.
+struct Step<'a> {
+    part: Part<'a>,
+    begun: Result<Work<'a>, DeviceError>,
+}
+
+/// What subjects were handed of a part.
+enum Work<'a> {
+    /// Nothing yet: what is asked for in one go, rows that nobody answers any more, a group without rows.
+    Nothing,
+    Rows(Begun<'a>),
+    Scene(BegunScene),
+}
+
+/// A group of formulas, some of whose rows subjects are at work on.
+struct GroupRun<'a> {
+    run: RowRun<'a>,
+    /// What a blend unit left.
+    pixels: Option<NotedPixels>,
+}
+
+/// What the turns are made of, in the order in which they are judged.
+fn parts<'a>(turns: &'a [(usize, Turn<'a>)], rows: &'a [RowGroup<'a>]) -> impl Iterator<Item = Part<'a>> {
+    turns.iter().flat_map(move |&(place, turn)| -> Box<dyn Iterator<Item = Part<'a>> + 'a> {
+        let Some(group) = rows.iter().find(|group| group.turn() == place) else {
+            return Box::new(std::iter::once(Part { place, turn, rows: None }));
+        };
+        let (mut chunks, mut next) = (group.chunks().peekable(), Some(true));
+        Box::new(std::iter::from_fn(move || {
+            let is_first = next?;
+            let cases = chunks.next().unwrap_or_default();
+            let is_last = chunks.peek().is_none();
+            next = (!is_last).then_some(false);
+            Some(Part { place, turn, rows: Some(Rows { group, cases, is_first, is_last }) })
+        }))
+    })
+}
+
+/// The turns of a run, and how far they are.
+pub(crate) struct InTurn<'a, 'r> {
+    pub(crate) selection: &'a Selection,
+    pub(crate) supply: Supply<'a>,
+    pub(crate) subjects: &'r mut [Subject],
+    pub(crate) options: &'r Options,
+    pub(crate) compiled: CompiledGroups,
+    pub(crate) report: &'r mut Report,
+    pub(crate) observer: &'r mut dyn Observer,
+    /// The groups that are under way, the first that is judged in front.
+    groups: VecDeque<GroupRun<'a>>,
+}
+
+/// What came of turns, each by its place in the order of reports.
+#[derive(Default)]
+pub(crate) struct Outcome<'a> {
+    pub(crate) judged: Vec<(usize, Vec<Group>, Vec<Failure>)>,
+    /// What was answered, to be compared with what is answered later.
+    pub(crate) noted: Vec<(Turn<'a>, Noted)>,
+}
+
+impl<'a, 'r> InTurn<'a, 'r> {
+    pub(crate) fn new(
+        selection: &'a Selection,
+        supply: Supply<'a>,
+        subjects: &'r mut [Subject],
+        (options, compiled): (&'r Options, CompiledGroups),
+        report: &'r mut Report,
+        observer: &'r mut dyn Observer,
+    ) -> Self {
+        Self { selection, supply, subjects, options, compiled, report, observer, groups: VecDeque::new() }
+    }
+
+    /// Judges one after the other, until a device fails or the run is stopped.
+    pub(crate) fn judge_all(
+        mut self,
+        turns: &'a [(usize, Turn<'a>)],
+        rows: &'a [RowGroup<'a>],
+    ) -> Result<Outcome<'a>, DeviceError> {
+        let at_once = if self.is_asked() { 1 } else { AT_ONCE };
+        let mut outcome = Outcome::default();
+        let (mut parts, mut under_way) = (parts(turns, rows).peekable(), VecDeque::<Step<'a>>::new());
+        loop {
+            while under_way.len() < at_once
+                && under_way.back().is_none_or(|last| last.begun.is_ok())
+                && let Some(part) = parts.next_if(|part| under_way.is_empty() || self.is_ready(part))
+            {
+                under_way.push_back(self.begin(part));
+            }
+            let Some(step) = under_way.pop_front() else { return Ok(outcome) };
+            if self.judge(step, under_way.len(), &mut outcome)? {
+                return Ok(outcome);
+            }
+        }
+    }
+
+    /// Whether a renderer is asked, case by case.
+    fn is_asked(&self) -> bool {
+        self.subjects.iter().any(|subject| subject.asked().is_some())
+    }
+
+    /// Whether a part can begin without a wait for its rows.
+    fn is_ready(&self, part: &Part<'_>) -> bool {
+        part.rows.as_ref().is_none_or(|rows| rows.cases.is_empty() || self.supply.has_ready())
+    }
+
+    /// Hands a part to the subjects, as far as they can be at work on it while others are judged.
+    fn begin(&mut self, part: Part<'a>) -> Step<'a> {
+        let begun = match (&part.rows, part.turn) {
+            (Some(rows), _) => self.begin_rows(rows),
+            (None, Turn::Scene(chosen)) if !self.is_asked() => {
+                let loaded = scene_of(chosen, self.selection);
+                image::run::begin(loaded, self.subjects, self.options, self.report).map(Work::Scene)
+            }
+            _ => Ok(Work::Nothing),
+        };
+        Step { part, begun }
+    }
+
+    fn begin_rows(&mut self, rows: &Rows<'a>) -> Result<Work<'a>, DeviceError> {
+        let members = rows.group.members();
+        if rows.is_first {
+            let clock = Instant::now();
+            let compiled = match self.compiled.remove(members[0].spec.group()) {
+                Some(compiled) => compiled,
+                None => RowRun::compile(members[0], self.subjects, self.options)?,
+            };
+            let run = RowRun::new(members, compiled, Asked::All);
+            let run = if self.options.runs > 1 { run.noting() } else { run };
+            self.groups.push_back(GroupRun { run, pixels: None });
+            self.report.timing.compile += clock.elapsed().as_secs_f64();
+        }
+        let has_ended =
+            self.is_asked() && self.subjects.iter().all(|one| one.asked().is_some_and(AskedRenderer::is_over));
+        if rows.cases.is_empty() || has_ended {
+            return Ok(Work::Nothing);
+        }
+        let ready = self.supply.next(rows.group.turn());
+        self.report.timing.generate += ready.drawing;
+        self.report.timing.reference += ready.evaluating;
+        let group = self.groups.back().expect("a group is under way once its first rows have begun");
+        group.run.start(ready.chunk, self.subjects, self.report).map(Work::Rows)
+    }
+
+    /// Judges a part and, where it is the last of its turn, takes what came of the turn; whether nothing more is to be judged. `waiting` parts
+    /// have begun after it.
+    fn judge(&mut self, step: Step<'a>, waiting: usize, outcome: &mut Outcome<'a>) -> Result<bool, DeviceError> {
+        let Part { place, turn, rows } = step.part;
+        let id = turn.id(self.selection);
+        if rows.as_ref().is_none_or(|rows| rows.is_first) {
+            self.observer.see(&Event::Group(&id));
+        }
+        let noted = match (turn, step.begun, &rows) {
+            (Turn::Formulas(chosen), begun, Some(rows)) => self.rows(chosen, begun, rows),
+            (_, Err(error), _) => Err(error),
+            (Turn::Table(table), ..) => self.table(table).map(Some),
+            (Turn::Scene(chosen), Ok(begun), _) => self.scene(chosen, begun).map(Some),
+            (Turn::Formulas(group), ..) => self.without_rows(group).map(Some),
+            (Turn::Blended(group), ..) => self.blended(group).map(|pixels| Some(Noted::Pixels(pixels))),
+        };
+        let result = match noted {
+            // More of the turn follows.
+            Ok(None) => return Ok(false),
+            Ok(Some(noted)) => {
+                outcome.noted.push((turn, noted));
+                Ok(())
+            }
+            Err(error) => Err(error),
+        };
+        let report = &mut *self.report;
+        let (mut groups, failures) = (std::mem::take(&mut report.groups), std::mem::take(&mut report.failures));
+        expect_problems(&mut groups, &mut report.expectations);
+        find_sources(&mut groups, self.subjects);
+        tell(&groups, &failures, false, self.observer);
+        outcome.judged.push((place, groups, failures));
+        let under_way = match waiting {
+            // A driver may have failed at any of those.
+            1.. if result.is_err() => format!("{id}, or one of the {waiting} that were begun after it,"),
+            _ => id,
+        };
+        // Of a renderer everything is reported: what it was not asked is missing.
+        Ok(is_over(result, &under_way, self.options, report)? && !self.is_asked())
+    }
+
+    /// Judges a table of special values.
+    fn table(&mut self, table: &Table) -> Result<Noted, DeviceError> {
+        let (options, report) = (self.options, &mut *self.report);
+        if let [subject] = &mut *self.subjects
+            && subject.asked().is_some()
+        {
+            return special::asked::run_table(table, subject, options, report, self.observer).map(Noted::Probes);
+        }
+        special::verdict::run_table(table, self.subjects, options, report, self.observer).map(|()| Noted::Nothing)
+    }
+
+    /// Judges a scene, whose images a device has begun to draw.
+    fn scene(&mut self, chosen: &Chosen, begun: Work<'a>) -> Result<Noted, DeviceError> {
+        let (options, report) = (self.options, &mut *self.report);
+        match (begun, &mut *self.subjects) {
+            (Work::Scene(begun), subjects) => {
+                image::run::judge(begun, chosen, subjects, options, report, self.observer)?;
+                Ok(Noted::Nothing)
+            }
+            (_, [subject]) => {
+                let loaded = scene_of(chosen, self.selection);
+                image::asked::run_scene(&loaded, chosen, subject, options, report, self.observer)
+                    .map(|image| Noted::Images(vec![image]))
+            }
+            _ => unreachable!("a renderer that is asked is the only subject"),
+        }
+    }
+
+    /// Judges a chunk of a group's rows and, behind the last one, the group; `None` where more of it follow.
+    fn rows(
+        &mut self,
+        chosen: &[Selected],
+        begun: Result<Work<'a>, DeviceError>,
+        rows: &Rows<'a>,
+    ) -> Result<Option<Noted>, DeviceError> {
+        let (is_asked, options) = (self.is_asked(), self.options);
+        let is_stopped = || !is_asked && options.stop.is_set();
+        if rows.is_first && begun.is_ok() && !is_asked && is_blended(rows.group.members()[0]) {
+            let drawn = self.blended(chosen);
+            let group = self.groups.front_mut().expect("it has begun");
+            match drawn {
+                Ok(pixels) if !is_stopped() => group.pixels = Some(pixels),
+                other => {
+                    self.groups.pop_front();
+                    return other.map(|pixels| Some(Noted::Pixels(pixels)));
+                }
+            }
+        }
+        if !is_stopped() {
+            if let Err(error) = begun.and_then(|begun| self.chunk(begun, rows, is_asked)) {
+                // What was judged until then stays.
+                if let Some(group) = self.groups.pop_front() {
+                    group.run.finish(self.subjects, options, self.report);
+                }
+                return Err(error);
+            }
+            if !rows.is_last {
+                return Ok(None);
+            }
+        }
+        self.finish(chosen, rows.group.members(), is_asked).map(Some)
+    }
+
+    /// Judges a chunk of a group's rows.
+    fn chunk(&mut self, begun: Work<'a>, rows: &Rows<'a>, is_asked: bool) -> Result<(), DeviceError> {
+        let run = &mut self.groups.front_mut().expect("it has begun").run;
+        match begun {
+            Work::Rows(begun) => run.judge(begun, self.subjects, self.options, self.report, self.observer)?,
+            _ => run.leave_out(&rows.cases),
+        }
+        if !is_asked {
+            self.observer.see(&Event::Advanced(rows.cases.len() as u64));
+        }
+        Ok(())
+    }
+
+    /// Reports the group that is judged, and examines its stable forms.
+    fn finish(&mut self, chosen: &[Selected], members: &[&Member], is_asked: bool) -> Result<Noted, DeviceError> {
+        let GroupRun { mut run, pixels } = self.groups.pop_front().expect("it has begun");
+        let (options, report) = (self.options, &mut *self.report);
+        let first = report.groups.len();
+        let digests = run.noted();
+        let failing = if is_asked && digests.is_none() { run.failing(MOST_AGAIN) } else { vec![] };
+        run.finish(self.subjects, options, report);
+        if is_asked {
+            return Ok(digests.map_or(Noted::Failing(failing), Noted::Rows));
+        }
+        for (member, chosen) in members.iter().zip(chosen) {
+            stability::examine(member, &chosen.hard, self.subjects, options, report)?;
+        }
+        for group in &mut report.groups[first..] {
+            if let Some(unstable) = stability::problem(&report.stability, &group.id, &group.adapter, &group.stage) {
+                group.problem =
+                    Some(group.problem.take().map_or(unstable.clone(), |problem| format!("{problem}; {unstable}")));
+                group.totals.failed_groups = 1;
+            }
+        }
+        let pixels = pixels.unwrap_or_default();
+        Ok(match digests {
+            Some(rows) => Noted::Both(pixels, rows),
+            None => Noted::Pixels(pixels),
+        })
+    }
+
+    /// A group without stages that take rows, or one that a renderer lacks.
+    fn without_rows(&mut self, chosen: &[Selected]) -> Result<Noted, DeviceError> {
+        let member = &self.selection.catalogue[chosen[0].member];
+        if let [subject] = &*self.subjects
+            && let Some(reason) = subject.asked().and_then(|renderer| renderer.lacks(&member.spec.id))
+        {
+            let (id, stage) = (member.spec.id.clone(), Stage::Answer.name());
+            self.report.groups.push(not_asked(id, stage, chosen[0].count(), reason, subject));
+            return Ok(Noted::Nothing);
+        }
+        let pixels = if is_blended(member) { self.blended(chosen)? } else { NotedPixels::default() };
+        Ok(Noted::Pixels(pixels))
+    }
+
+    /// Judges what blend units leave.
+    fn blended(&mut self, chosen: &[Selected]) -> Result<NotedPixels, DeviceError> {
+        let catalogue = &self.selection.catalogue;
+        let members: Vec<&Member> = chosen.iter().map(|chosen| &catalogue[chosen.member]).collect();
+        blend_unit::run::run_group(&members, chosen, self.subjects, self.options, self.report, self.observer)
+    }
+}
+
+const fn is_blended(member: &Member) -> bool {
+    matches!(member.spec.kind, Kind::Blend(_))
+}
+
+/// Notes where a renderer's code of each group stands, as far as it says so.
+fn find_sources(groups: &mut [Group], subjects: &[Subject]) {
+    let Some(renderer) = subjects.iter().find_map(Subject::asked) else { return };
+    groups.iter_mut().for_each(|group| group.source = renderer.source(&group.id));
+}
