@@ -452,7 +452,9 @@ impl AskedRenderer for FileRenderer {
     fn values(&mut self, rows: &Rows<'_>, advanced: &mut dyn FnMut(u64)) -> Result<Answers, DeviceError> {
         let mut answers = Answers { words: vec![0; rows.of.len() * rows.outputs], ..Answers::default() };
         let formula = self.plan.formula(&rows.members[0].spec.id);
-        if let Some(formula) = formula.filter(|formula| self.contents.columns.has(*formula)) {
+        if let Some(formula) = formula
+            && let Some(mut columns) = self.contents.columns.of(formula)
+        {
             for (place, (&case, words)) in
                 rows.cases.iter().zip(answers.words.chunks_exact_mut(rows.outputs)).enumerate()
             {
@@ -465,8 +467,7 @@ impl AskedRenderer for FileRenderer {
                     answers.unanswered.insert(place, self.declared.skips.skipped(&id, reason.to_owned()));
                     continue;
                 }
-                let read = self.contents.columns.read(formula, row, words);
-                read.map_err(|error| DeviceError::Refused(Box::new(error)))?;
+                columns.read(row, words).map_err(|error| DeviceError::Refused(Box::new(error)))?;
             }
             advanced(rows.of.len() as u64);
             return Ok(answers);

@@ -185,10 +185,20 @@ impl Columns {
         self.0.keys().copied()
     }
 
-    /// Puts the answer to a case of a formula into words.
-    pub(super) fn read(&mut self, formula: usize, case: usize, words: &mut [u32]) -> Result<(), PackError> {
+    /// The columns of a formula, in the order of its outputs; `None` where it has none.
+    pub(super) fn of(&mut self, formula: usize) -> Option<FormulaColumns<'_>> {
+        self.0.get_mut(&formula).map(|columns| FormulaColumns(columns))
+    }
+}
+
+/// The columns of a formula.
+pub(super) struct FormulaColumns<'a>(&'a mut [ColumnFile]);
+
+impl FormulaColumns<'_> {
+    /// Puts the answer to a case into words.
+    pub(super) fn read(&mut self, case: usize, words: &mut [u32]) -> Result<(), PackError> {
         let mut rest = words;
-        for column in self.0.get_mut(&formula).into_iter().flatten() {
+        for column in &mut *self.0 {
             let (own, after) = rest.split_at_mut(column.components);
             own.copy_from_slice(column.row(case)?);
             rest = after;
