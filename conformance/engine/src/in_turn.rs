@@ -31,8 +31,10 @@ use std::time::Instant;
 
 /// Failing cases of each formula that are asked once more.
 const MOST_AGAIN: usize = 1024;
-/// Scenes, and chunks of rows, that devices are at work on at once.
+/// Parts that have begun at once, at most.
 const AT_ONCE: usize = 6;
+/// Pixels of scenes that have begun, from which on no further part begins.
+const PIXELS: usize = 1 << 19;
 
 /// What is judged in one step: a chunk of a formula group's rows, or all else of a turn.
 struct Part<'a> {
@@ -63,6 +65,35 @@ enum Work<'a> {
     Scene(BegunScene),
 }
 
+impl Step<'_> {
+    /// Whether another part may begin while this one waits to be judged. Behind one that failed nothing does, nor behind a table of special
+    /// values, which is judged before anything is drawn.
+    const fn lets_begin(&self) -> bool {
+        self.begun.is_ok() && !matches!(self.part.turn, Turn::Table(_))
+    }
+
+    /// Pixels of its images.
+    fn pixels(&self) -> usize {
+        if let Ok(Work::Scene(scene)) = &self.begun { scene.pixels() } else { 0 }
+    }
+
+    /// Whether subjects are at work on it.
+    const fn is_begun(&self) -> bool {
+        matches!(self.begun, Ok(Work::Scene(_) | Work::Rows(_)))
+    }
+}
+
+/// What came of a part.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum After {
+    /// More of its turn follows.
+    More,
+    /// Its turn is over.
+    Turn,
+    /// Nothing more is to be judged.
+    All,
+}
+
 /// A group of formulas, some of whose rows subjects are at work on.
 struct GroupRun<'a> {
     run: RowRun<'a>,
@@ -89,13 +120,13 @@ fn parts<'a>(turns: &'a [(usize, Turn<'a>)], rows: &'a [RowGroup<'a>]) -> impl I
 
 /// The turns of a run, and how far they are.
 pub(crate) struct InTurn<'a, 'r> {
-    pub(crate) selection: &'a Selection,
-    pub(crate) supply: Supply<'a>,
-    pub(crate) subjects: &'r mut [Subject],
-    pub(crate) options: &'r Options,
-    pub(crate) compiled: CompiledGroups,
-    pub(crate) report: &'r mut Report,
-    pub(crate) observer: &'r mut dyn Observer,
+    selection: &'a Selection,
+    supply: Supply<'a>,
+    subjects: &'r mut [Subject],
+    options: &'r Options,
+    compiled: CompiledGroups,
+    report: &'r mut Report,
+    observer: &'r mut dyn Observer,
     /// The groups that are under way, the first that is judged in front.
     groups: VecDeque<GroupRun<'a>>,
 }
@@ -131,14 +162,19 @@ impl<'a, 'r> InTurn<'a, 'r> {
         let (mut parts, mut under_way) = (parts(turns, rows).peekable(), VecDeque::<Step<'a>>::new());
         loop {
             while under_way.len() < at_once
-                && under_way.back().is_none_or(|last| last.begun.is_ok())
+                && under_way.back().is_none_or(Step::lets_begin)
+                && under_way.iter().map(Step::pixels).sum::<usize>() < PIXELS
                 && let Some(part) = parts.next_if(|part| under_way.is_empty() || self.is_ready(part))
             {
                 under_way.push_back(self.begin(part));
             }
             let Some(step) = under_way.pop_front() else { return Ok(outcome) };
-            if self.judge(step, under_way.len(), &mut outcome)? {
-                return Ok(outcome);
+            let place = step.part.place;
+            match self.judge(step, &under_way, &mut outcome)? {
+                After::More => {}
+                // A renderer that failed within a turn is asked no more of it.
+                After::Turn => while parts.next_if(|part| part.place == place).is_some() {},
+                After::All => return Ok(outcome),
             }
         }
     }
@@ -191,9 +227,13 @@ impl<'a, 'r> InTurn<'a, 'r> {
         group.run.start(ready.chunk, self.subjects, self.report).map(Work::Rows)
     }
 
-    /// Judges a part and, where it is the last of its turn, takes what came of the turn; whether nothing more is to be judged. `waiting` parts
-    /// have begun after it.
-    fn judge(&mut self, step: Step<'a>, waiting: usize, outcome: &mut Outcome<'a>) -> Result<bool, DeviceError> {
+    /// Judges a part and, where it is the last of its turn, takes what came of the turn. Some parts have begun after it.
+    fn judge(
+        &mut self,
+        step: Step<'a>,
+        others: &VecDeque<Step<'a>>,
+        outcome: &mut Outcome<'a>,
+    ) -> Result<After, DeviceError> {
         let Part { place, turn, rows } = step.part;
         let id = turn.id(self.selection);
         if rows.as_ref().is_none_or(|rows| rows.is_first) {
@@ -209,7 +249,7 @@ impl<'a, 'r> InTurn<'a, 'r> {
         };
         let result = match noted {
             // More of the turn follows.
-            Ok(None) => return Ok(false),
+            Ok(None) => return Ok(After::More),
             Ok(Some(noted)) => {
                 outcome.noted.push((turn, noted));
                 Ok(())
@@ -222,13 +262,21 @@ impl<'a, 'r> InTurn<'a, 'r> {
         find_sources(&mut groups, self.subjects);
         tell(&groups, &failures, false, self.observer);
         outcome.judged.push((place, groups, failures));
-        let under_way = match waiting {
+        let mut under_way = id;
+        if result.is_err() {
             // A driver may have failed at any of those.
-            1.. if result.is_err() => format!("{id}, or one of the {waiting} that were begun after it,"),
-            _ => id,
-        };
+            let mut others: Vec<&Part<'_>> =
+                others.iter().filter(|step| step.is_begun()).map(|step| &step.part).collect();
+            others.retain(|other| other.place != place);
+            others.dedup_by_key(|other| other.place);
+            let ids: Vec<String> = others.iter().map(|other| other.turn.id(self.selection)).collect();
+            if !ids.is_empty() {
+                under_way += &format!(" (or {}, begun after it)", ids.join(", "));
+            }
+        }
+        let is_over = is_over(result, &under_way, self.options, report)?;
         // Of a renderer everything is reported: what it was not asked is missing.
-        Ok(is_over(result, &under_way, self.options, report)? && !self.is_asked())
+        Ok(if is_over && !self.is_asked() { After::All } else { After::Turn })
     }
 
     /// Judges a table of special values.
@@ -268,7 +316,11 @@ impl<'a, 'r> InTurn<'a, 'r> {
     ) -> Result<Option<Noted>, DeviceError> {
         let (is_asked, options) = (self.is_asked(), self.options);
         let is_stopped = || !is_asked && options.stop.is_set();
-        if rows.is_first && begun.is_ok() && !is_asked && is_blended(rows.group.members()[0]) {
+        let begun = match begun {
+            Ok(begun) => begun,
+            Err(error) => return Err(self.broken(error)),
+        };
+        if rows.is_first && !is_asked && is_blended(rows.group.members()[0]) {
             let drawn = self.blended(chosen);
             let group = self.groups.front_mut().expect("it has begun");
             match drawn {
@@ -280,18 +332,22 @@ impl<'a, 'r> InTurn<'a, 'r> {
             }
         }
         if !is_stopped() {
-            if let Err(error) = begun.and_then(|begun| self.chunk(begun, rows, is_asked)) {
-                // What was judged until then stays.
-                if let Some(group) = self.groups.pop_front() {
-                    group.run.finish(self.subjects, options, self.report);
-                }
-                return Err(error);
+            if let Err(error) = self.chunk(begun, rows, is_asked) {
+                return Err(self.broken(error));
             }
             if !rows.is_last {
                 return Ok(None);
             }
         }
         self.finish(chosen, rows.group.members(), is_asked).map(Some)
+    }
+
+    /// Reports what was judged of a group, if any of it had begun, before it came to an error.
+    fn broken(&mut self, error: DeviceError) -> DeviceError {
+        if let Some(group) = self.groups.pop_front() {
+            group.run.finish(self.subjects, self.options, self.report);
+        }
+        error
     }
 
     /// Judges a chunk of a group's rows.

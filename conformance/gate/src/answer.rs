@@ -273,25 +273,25 @@ impl<'de> Deserialize<'de> for Values {
 /// # Errors
 /// What is wrong with it, in words.
 pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
-    let text = std::str::from_utf8(line).map_err(|_| "it is not UTF-8".to_owned())?;
+    let quoted = |what: String| format!("`{}`: {what}", clipped_to(&String::from_utf8_lossy(line), MOST_QUOTED));
+    let text = std::str::from_utf8(line).map_err(|_| quoted("it is not UTF-8".into()))?;
     // A mark of the byte order, which some editors put first.
     let text = text.trim_start_matches('\u{feff}');
     match serde_json::from_str::<Raw<'_>>(text) {
-        Ok(raw) => told(raw).map_err(|error| format!("`{}`: {error}", clipped_to(text, MOST_QUOTED))),
+        Ok(raw) => told(raw).map_err(quoted),
         Err(error) => {
             if is_hello(line) {
                 return hello(text);
             }
             if BARE.iter().any(|(word, _)| text.contains(word)) {
-                let words = quoted(text);
+                let words = with_strings(text);
                 if let Ok(raw) = serde_json::from_str::<Raw<'_>>(&words) {
-                    return told(raw).map(Line::into_owned);
+                    return told(raw).map(Line::into_owned).map_err(quoted);
                 }
             }
-            let line = clipped_to(text, MOST_QUOTED);
             let begins_as_one = text.trim_start().starts_with('{');
-            let what = if begins_as_one { format!("`{line}`: {error}") } else { format!("`{line}` is no JSON object") };
-            Err(format!("{what}; expected {EXPECTED}"))
+            let what = if begins_as_one { error.to_string() } else { "it is no JSON object".into() };
+            Err(quoted(format!("{what}; expected {EXPECTED}")))
         }
     }
 }
@@ -309,7 +309,7 @@ const BARE: [(&str, &str); 8] = [
 ];
 
 /// Bare words for numbers that JSON has not, as strings.
-fn quoted(text: &str) -> String {
+fn with_strings(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 16);
     let mut is_string = false;
     let mut rest = text;
@@ -584,6 +584,10 @@ mod tests {
             (br#"{"id":"a","values":[1]}"#, "none, or more than one"),
             (br#"{"id":"fog/exp","skip":"no fog","rows":[-1]}"#, "its `rows`"),
             (br#"[1]"#, "expected an answer"),
+            (
+                br#"{"id":"a","value":[NaN],"skip":"x"}"#,
+                "`{\"id\":\"a\",\"value\":[NaN],\"skip\":\"x\"}`: it has none, or",
+            ),
             (b"\xff", "UTF-8"),
         ] {
             let error = read(line).expect_err(said);

@@ -9,10 +9,16 @@ const KEEPS_MEMORY: (&str, &str) =
 /// Where no desktop runs, one of Mesa's layers complains on standard error unless this is set.
 const IS_SILENT: (&str, &str) = ("NODEVICE_SELECT", "1");
 
+/// Says that the process was started anew already. A system may keep a variable from a program that has more rights than who starts it.
+const IS_COMPLETE: (&str, &str) = ("LIGHTMETER_STARTED_ANEW", "1");
+
 /// Variables that the environment lacks, each with its value.
 fn missing() -> Vec<(&'static str, &'static str)> {
     let is_set = |name: &str| std::env::var_os(name).is_some();
     let mut missing = vec![];
+    if is_set(IS_COMPLETE.0) {
+        return missing;
+    }
     if cfg!(unix) && !is_set("XDG_RUNTIME_DIR") && !is_set(IS_SILENT.0) {
         missing.push(IS_SILENT);
     }
@@ -33,15 +39,15 @@ pub(crate) fn complete() {
         let mut given = std::env::args_os();
         let own = given.next().unwrap_or_else(|| program.clone().into());
         // It returns only where the program cannot be started.
-        let _ = Command::new(program).arg0(own).args(given).envs(missing).exec();
+        let _ = Command::new(program).arg0(own).args(given).envs(missing).env(IS_COMPLETE.0, IS_COMPLETE.1).exec();
     }
     #[cfg(not(unix))]
     drop(missing);
 }
 
 /// Leaves out of the environment of a command, which is somebody else's, what is for this process alone.
-#[cfg(unix)]
 pub(crate) fn spare(command: &mut Command) -> &mut Command {
     let (name, own) = KEEPS_MEMORY;
+    let command = command.env_remove(IS_COMPLETE.0);
     if std::env::var_os(name).is_some_and(|value| value == own) { command.env_remove(name) } else { command }
 }

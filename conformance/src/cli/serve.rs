@@ -3,7 +3,7 @@
 use super::playground::play;
 use super::run::{Prepared, Run};
 use super::visit::{awaited, tell_of};
-use super::{NothingToRun, Status, say};
+use super::{NothingToRun, Status, environment, say};
 use clap::Args;
 use lightmeter::browser::{Server, Session};
 use lightmeter::subject_gpu::browser::of_session;
@@ -153,8 +153,10 @@ fn open(url: &str) -> anyhow::Result<()> {
         "windows" => ("cmd", &["/C", "start", ""]),
         _ => ("xdg-open", &[]),
     };
-    let started = Command::new(program).args(arguments).arg(url).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
-    started
+    let mut command = Command::new(program);
+    let command = environment::spare(command.args(arguments).arg(url).stdout(Stdio::null()).stderr(Stdio::null()));
+    command
+        .spawn()
         .map(drop)
         .map_err(|error| anyhow::anyhow!("--open: {program} does not start: {error}; open the page by hand"))
 }

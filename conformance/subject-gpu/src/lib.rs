@@ -415,6 +415,20 @@ mod tests {
     }
 
     #[test]
+    fn code_that_cannot_be_compiled_is_told_though_the_run_is_stopped() {
+        let adapters = native_adapters();
+        let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
+        let mut subject = open_device(adapter).expect("the adapter gives a device");
+        let filter = Filter::new(&["fog/exp"]).expect("the glob is valid");
+        // Of formulas no code is there, while the deviations' witnesses run by the device's own.
+        let options = Options { filter, cases: 64, ..Options::new(Code::default()) };
+        options.stop.at_first_failure();
+        let told = run(std::slice::from_mut(&mut subject), &options, &mut lightmeter_document::event::Silent);
+        let error = told.expect_err("there is no code").to_string();
+        assert!(error.contains("an adapter's code is a set of shaders"), "{error}");
+    }
+
+    #[test]
     fn states_that_were_drawn_together_are_tried_alone() {
         let report = lose_at("blend/subtract", "blend/{add,subtract}/dst-alpha");
         let under_way = &report.interrupted.as_ref().expect("the run was interrupted").under_way;

@@ -1,6 +1,6 @@
 //! Columns: packs and answers as arrays of NumPy's format, and a process that is asked in binary batches.
 
-use super::process::process;
+use super::process::{command_of, process};
 use super::{count, folder, report, text};
 use crate::{code, lightmeter, stderr};
 use lightmeter::select::catalogue;
@@ -204,6 +204,16 @@ fn a_process_is_asked_in_columns() {
             assert_eq!(report["incidents"].as_array().map(Vec::len), Some(1), "{report}");
         }
     }
+}
+
+#[test]
+fn a_formula_that_hangs_in_columns_is_waited_for_three_times() {
+    // More cases than are judged at once.
+    let renderer = command_of("columns=hang");
+    let arguments = ["gate", "fog/exp", "--exec", &renderer, "--cases", "40000", "--case-timeout", "1"];
+    let (status, report) = report(&lightmeter(&[&arguments[..], &["--format", "json"]].concat()));
+    assert_eq!(status, 4, "{report}");
+    assert_eq!(report["incidents"].as_array().map(Vec::len), Some(3), "{}", report["incidents"]);
 }
 
 #[test]

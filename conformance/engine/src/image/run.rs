@@ -45,6 +45,14 @@ pub(crate) struct BegunScene {
     images: Vec<Started>,
 }
 
+impl BegunScene {
+    /// Pixels of all its images.
+    pub(crate) fn pixels(&self) -> usize {
+        let target = &self.loaded.frame.target;
+        self.images.len() * target.width as usize * target.height as usize
+    }
+}
+
 /// Has every subject begin with a scene's images.
 ///
 /// # Errors

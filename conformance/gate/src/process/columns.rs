@@ -2,7 +2,8 @@
 //!
 //! A request is a line, and behind it its bytes; so is an answer. What a renderer does not answer in this way, and every batch in which it
 //! ends or hangs, is asked by lines, where the case that it fails at is found. So is what is left of a formula whose answer has another
-//! number of bytes than it must have: the process is ended at once, since nothing tells where its next line begins.
+//! number of bytes than it must have: the process is ended at once, since nothing tells where its next line begins. One that announces more bytes
+//! than it writes, and so is waited for in vain, is asked all other formulas by lines, too.
 
 use super::super::answer::{self, clipped};
 use super::super::problems::note;
@@ -57,8 +58,8 @@ impl Session {
     ) -> Vec<usize> {
         let (spec, count) = (&rows.members[0].spec, rows.of.len());
         let most = (MOST_REQUEST / (4 * rows.stride())).max(1);
-        let (mut left, mut first, mut failures) = (vec![], 0, 0);
-        while first < count && !self.is_over() && failures < MOST_OF_FORMULA && !self.counts_wrong {
+        let (mut left, mut first) = (vec![], 0);
+        while first < count && !self.is_over() && self.may_ask_in_columns(spec) {
             if self.running.is_none() && !self.starts_again(count - first) {
                 self.has_broken_off = true;
                 break;
@@ -96,11 +97,11 @@ impl Session {
                         format!("{}, batch {}: {why}; it is asked by lines", spec.id, self.number)
                     });
                     self.kill(Ended::Answered);
+                    self.failed_in_columns.insert(spec.id.clone(), MOST_OF_FORMULA);
                     left.extend(batch);
                     break;
                 }
                 Came::Failed(ended) => {
-                    failures += 1;
                     self.fails_in_columns(spec, batch.len(), ended);
                     left.extend(batch);
                     continue;
@@ -113,13 +114,20 @@ impl Session {
         left
     }
 
+    /// Whether a formula is asked in columns: not where that failed too often.
+    fn may_ask_in_columns(&self, spec: &Spec) -> bool {
+        !self.hangs_in_arrays && self.failed_in_columns.get(&spec.id).is_none_or(|&failed| failed < MOST_OF_FORMULA)
+    }
+
     /// Ends a process that failed in a batch, and tells it.
     fn fails_in_columns(&mut self, spec: &Spec, count: usize, ended: Ended) {
         let cut = self.running.as_ref().and_then(|running| running.framing.cut_short());
-        // One that stops within an array does so at the next formula too, after as long a wait.
-        self.counts_wrong |= cut.is_some();
+        // One that stops within an array counts wrong, and does so again; where it is waited for in vain, at the next formula too.
+        let hangs = cut.is_some() && ended == Ended::Hung;
+        self.hangs_in_arrays |= hangs;
+        *self.failed_in_columns.entry(spec.id.clone()).or_default() += if cut.is_some() { MOST_OF_FORMULA } else { 1 };
         let how = self.kill(ended);
-        let those = if cut.is_some() { "they and all other formulas" } else { "they" };
+        let those = if hangs { "they and all other formulas" } else { "they" };
         self.used.incidents.push(format!(
             "{}: with {count} cases asked in columns {}: {}{how}; {those} are asked by lines",
             spec.id,

@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 /// Cases that are asked at once, at first and at most: twice as many where they were answered in an eighth of what a case may take.
 pub(super) const BATCH: [usize; 2] = [16, 1024];
 /// Cases of a batch in columns, at first and at most: twice as many where they were answered in an eighth of what a batch may take.
-pub(super) const ROWS: [usize; 2] = [256, 1 << 16];
+pub(super) const ROWS: [usize; 2] = [256, 1 << 14];
 /// Lines that wait to be read as answers, and their bytes, at most.
 const WAITING: (usize, usize) = (4096, 8 << 20);
 /// Lines beyond one a case, in a batch, that end a process.
@@ -139,8 +139,10 @@ pub(super) struct Session {
     pub(super) size: usize,
     /// Cases that are asked at once in columns.
     pub(super) rows: usize,
-    /// Whether it stopped within an array: it counts wrong, and is asked in columns no more.
-    pub(super) counts_wrong: bool,
+    /// How often it failed in columns at each formula.
+    pub(super) failed_in_columns: HashMap<String, usize>,
+    /// Whether it wrote fewer bytes of an array than it announced, and hung so: it is asked in columns no more.
+    pub(super) hangs_in_arrays: bool,
     /// Cases that the process has answered since it was started.
     pub(super) answered: usize,
     /// Cases that it failed at.
@@ -178,7 +180,8 @@ impl Session {
             number: 0,
             size: BATCH[0],
             rows: ROWS[0],
-            counts_wrong: false,
+            failed_in_columns: HashMap::new(),
+            hangs_in_arrays: false,
             answered: 0,
             culprits: 0,
             culprits_of: HashMap::new(),
@@ -224,6 +227,7 @@ impl Session {
     pub(super) fn begin_again(&mut self) {
         self.finish();
         self.culprits_of.clear();
+        self.failed_in_columns.clear();
         self.asked.clear();
     }
 
