@@ -78,7 +78,9 @@ impl ColumnFile {
             return Err(refused("its header nests brackets; expected that of an array of numbers".into()));
         }
         let mut rest = header.as_slice();
-        let array = npyz::NpyFile::new(&mut rest).map_err(|error| refused(format!("it is no array: {error}")))?;
+        let array = npyz::NpyFile::new(&mut rest).map_err(|error| {
+            refused(format!("it is no array: {error}; expected one of <f4 or <f8, as numpy.save writes it"))
+        })?;
         let components = output.shape.components();
         // A column of the shape (n, 1) is told, since elsewhere NumPy stretches it to a matrix: f * color would be one.
         let shape = [count as u64, components as u64];
