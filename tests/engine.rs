@@ -13,6 +13,7 @@ fn the_example_engine_finds_its_bug_by_its_own_tests() {
             .arg(&target)
             // Built once and run for a moment: what optimising takes would not be won back.
             .args(["--config", "profile.dev.package.\"*\".opt-level=0", "--config", "profile.dev.debug=false"])
+            .args(["--config", "profile.dev.incremental=false"])
             .current_dir(&folder)
             .output()
             .expect("cargo starts");

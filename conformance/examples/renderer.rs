@@ -140,7 +140,10 @@ impl Renderer<'_> {
             "other" => head["batch"] = json!(0),
             _ => {}
         }
-        if !matches!(way, "f4" | "f8" | "short" | "other" | "type" | "wrong" | "surplus" | "few" | "huge" | "both") {
+        if !matches!(
+            way,
+            "f4" | "f8" | "short" | "other" | "type" | "wrong" | "surplus" | "few" | "huge" | "both" | "joined"
+        ) {
             writeln!(out, "{head}")?;
             return Ok(());
         }
@@ -161,7 +164,7 @@ impl Renderer<'_> {
             "type" => "<i4",
             _ => "<f4",
         });
-        writeln!(out, "{head}")?;
+        write!(out, "{head}{}", if way == "joined" { "" } else { "\n" })?;
         out.write_all(&data)?;
         Ok(())
     }
@@ -218,7 +221,9 @@ impl Renderer<'_> {
         }
         self.faults.write_besides(id, &answer, out)?;
         self.faults.delay(id, out)?;
-        if !self.faults.has("drop-at", id) {
+        if self.faults.has("unended-at", id) {
+            write!(out, "{answer}")?;
+        } else if !self.faults.has("drop-at", id) {
             writeln!(out, "{answer}")?;
         }
         Ok(())

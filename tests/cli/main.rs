@@ -212,7 +212,10 @@ fn shards_make_the_whole() {
         json(&["run", "fog", "--adapter", "cpu", "--cases", "100", "--shard", shard, "--format", "json"])["totals"]["cases"].as_u64().expect("a count")
     };
     assert_eq!(cases("1/3") + cases("2/3") + cases("3/3"), cases("1/1"));
-    assert_eq!(code(&lightmeter(&["run", "--shard", "4/3"])), 2);
+    for (command, shard) in [("run", "4/3"), ("run", "-1/3"), ("gate", "-1/3"), ("sweep", "-1/3")] {
+        let output = lightmeter(&[command, "fog/exp", "--shard", shard]);
+        assert!(code(&output) == 2 && stderr(&output).contains("expected I/N with 1 ≤ I ≤ N"), "{}", stderr(&output));
+    }
 }
 
 #[test]

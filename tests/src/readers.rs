@@ -18,6 +18,7 @@ use lightmeter::gate::answer::{self, Line};
 use lightmeter::gate::answers::{AnswerFile, FileRenderer};
 use lightmeter::gate::baseline::Baseline;
 use lightmeter::gate::expectations::Expectations;
+use lightmeter::gate::hello;
 use lightmeter::gate::pack;
 use lightmeter::gate::picture;
 use lightmeter::gate::plan::GatePlan;
@@ -144,7 +145,7 @@ fn answers(bytes: &[u8]) {
 
 fn protocol(bytes: &[u8]) {
     for line in bytes.split(|&byte| byte == b'\n') {
-        let _ = answer::is_hello(line);
+        let _ = hello::is_one(line);
         if let Some(id) = answer::id(line) {
             said(id);
         }

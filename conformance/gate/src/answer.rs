@@ -1,167 +1,15 @@
 //! A line that a renderer writes.
 
-use super::error::ProcessError;
-use super::frame;
-use lightmeter_arithmetic::Profile;
-use lightmeter_arithmetic::profile::PROFILES;
-use lightmeter_catalogue::filter::Filter;
-use lightmeter_catalogue::nearest::did_you_mean;
-use lightmeter_document::gate::RendererIdentity;
-use lightmeter_document::protocol::PROTOCOL;
-use lightmeter_scene::frame::Frame;
+use super::hello::{self, Hello};
+use super::words::{MOST_QUOTED, clipped_to};
+use serde::Deserialize;
 use serde::de::{Deserializer, Visitor};
-use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt;
 use std::io::BufRead;
 
 /// Bytes of a line, at most.
 pub const MOST_BYTES: usize = 1 << 20;
-
-/// Who answers, and what is to be asked.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Hello {
-    /// Its name.
-    pub renderer: String,
-    /// Its version.
-    pub version: String,
-    /// What it computes on, such as a GPU's name.
-    pub device: Option<String>,
-    /// The driver of that, with its version.
-    pub driver: Option<String>,
-    /// What tells its code from other code of the same version, such as a commit or a hash. Shards of one run have the same.
-    pub build: Option<String>,
-    /// Globs of the formulas that it evaluates.
-    pub formulas: Vec<String>,
-    /// Globs of the scenes that it draws.
-    pub scenes: Vec<String>,
-    /// What it does not, though the others name it: globs of formulas and scenes, or such as `function:lighting_spot`, `file:fog.wgsl`,
-    /// `shape:mat4`, `effect:lightmap` and `format:rgba32float`.
-    pub excludes: Vec<String>,
-    /// Formats of targets that it draws on; `None` for all.
-    pub formats: Option<Vec<String>>,
-    /// Effects that it has; `None` for all. A scene that calls for another is not asked for.
-    pub effects: Option<Vec<String>>,
-    /// The accuracy rules that it is held to.
-    pub profile: Option<String>,
-    /// Formats of targets that it blends on, step for step; none where it is asked for blending as arithmetic alone.
-    pub targets: Vec<String>,
-    /// Cases that it may skip, by globs, each with the reason.
-    pub skips: Vec<DeclaredSkip>,
-    /// The pack that a file answers, as the pack's manifest has it; answers in columns say so.
-    pub pack: Option<String>,
-    /// Whether a process is asked in columns: binary batches of a formula.
-    pub columns: bool,
-    /// Whether the gate describes each formula to the process before its first case: its inputs, its outputs and what computes it.
-    pub describe: bool,
-    /// Whether it is asked for special values: NaN, infinity, subnormals, signed zero and rounding, an operation at a time.
-    pub special: bool,
-    /// Where its code of formulas and scenes stands, which annotations point to.
-    pub sources: Vec<DeclaredSource>,
-}
-
-/// Where a renderer's code of formulas or scenes stands.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "a source such as {\"id\": \"fog/exp\", \"file\": \"src/fog.glsl\", \"line\": 12}"
-)]
-pub struct DeclaredSource {
-    /// A glob of formulas or scenes.
-    pub id: String,
-    /// The file, as it is called from the root of the repository.
-    pub file: String,
-    /// The line, from 1; `None` for the whole file.
-    #[serde(default)]
-    pub line: Option<u64>,
-}
-
-/// Cases that a renderer may skip.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a skip such as {\"id\": \"fog/exp\", \"reason\": \"not built\"}")]
-pub struct DeclaredSkip {
-    /// A glob of cases, or of an ancestor of theirs.
-    pub id: String,
-    /// Why it skips them.
-    pub reason: String,
-}
-
-impl Hello {
-    /// Of answers that do not say what they are to: everything is asked.
-    #[must_use]
-    pub fn everything() -> Self {
-        Self { renderer: "unnamed".into(), formulas: vec!["**".into()], scenes: vec!["**".into()], ..Self::default() }
-    }
-
-    /// How reports name it.
-    #[must_use]
-    pub fn identity(&self) -> RendererIdentity {
-        let told = |text: &Option<String>| text.as_ref().map(|text| clipped(text));
-        RendererIdentity {
-            name: clipped(&self.renderer),
-            version: clipped(&self.version),
-            device: told(&self.device),
-            driver: told(&self.driver),
-        }
-    }
-
-    /// What it declares besides its name and version, as reports have it: the fields that say something, but for where its code stands.
-    #[must_use]
-    pub fn declares(&self) -> serde_json::Map<String, serde_json::Value> {
-        let says_nothing = |value: &serde_json::Value| {
-            value.is_null() || value == &serde_json::json!([]) || value == &serde_json::json!(false)
-        };
-        let mut fields = self.fields();
-        fields.retain(|name, value| {
-            !says_nothing(value) && !["renderer", "version", "device", "driver", "sources"].contains(&name.as_str())
-        });
-        fields
-    }
-
-    /// All fields, by their names.
-    fn fields(&self) -> serde_json::Map<String, serde_json::Value> {
-        match serde_json::to_value(self) {
-            Ok(serde_json::Value::Object(fields)) => fields,
-            _ => unreachable!("a hello is an object of strings, lists and truth values"),
-        }
-    }
-
-    /// The accuracy rules that it is judged by: those that it is held to, or those that it asks for.
-    ///
-    /// # Errors
-    /// Where it asks for rules that nobody knows.
-    pub fn profile(&self, held_to: Option<&'static Profile>) -> Result<&'static Profile, ProcessError> {
-        match (held_to, &self.profile) {
-            (Some(profile), _) => Ok(profile),
-            (None, Some(name)) => Profile::by_name(name).ok_or_else(|| ProcessError::Profile(clipped(name))),
-            (None, None) => Ok(PROFILES[0]),
-        }
-    }
-
-    /// What it says of itself, read as filters.
-    ///
-    /// # Errors
-    /// Where a glob cannot be read.
-    pub fn filters(&self) -> Result<[Option<Filter>; 2], lightmeter_catalogue::filter::FilterError> {
-        // No glob matches everything in a filter, and nothing in a declaration.
-        let read = |globs: &[String]| (!globs.is_empty()).then(|| Filter::new(globs)).transpose();
-        Ok([read(&self.formulas)?, read(&self.scenes)?])
-    }
-
-    /// Why it does not draw a frame; `None` where it does.
-    #[must_use]
-    pub fn lacks(&self, frame: &Frame) -> Option<String> {
-        let format = frame.target.format.name();
-        if self.formats.as_ref().is_some_and(|formats| !formats.iter().any(|own| own == format)) {
-            return Some(format!("it does not draw on {format}"));
-        }
-        let has = self.effects.as_ref()?;
-        let missing: Vec<&str> =
-            frame::called(frame).into_iter().filter(|name| !has.iter().any(|own| own == name)).collect();
-        (!missing.is_empty()).then(|| format!("it has no {}", missing.join(", ")))
-    }
-}
 
 /// What a line says.
 #[derive(Clone, Debug, PartialEq)]
@@ -280,8 +128,8 @@ pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
     match serde_json::from_str::<Raw<'_>>(text) {
         Ok(raw) => told(raw).map_err(quoted),
         Err(error) => {
-            if is_hello(line) {
-                return hello(text);
+            if hello::is_one(line) {
+                return hello::read(text).map(|hello| Line::Hello(Box::new(hello)));
             }
             if BARE.iter().any(|(word, _)| text.contains(word)) {
                 let words = with_strings(text);
@@ -362,74 +210,6 @@ impl Line<'_> {
 
 const EXPECTED: &str = "an answer such as {\"id\": \"fog/exp/random/000017\", \"value\": [0.5, 1, 2, 3]}";
 
-/// Whether a line is meant to say who answers: it has the words, and no id.
-#[must_use]
-pub fn is_hello(line: &[u8]) -> bool {
-    serde_json::from_slice::<serde_json::Value>(line.trim_ascii())
-        .is_ok_and(|value| value["id"].is_null() && (!value["hello"].is_null() || !value["renderer"].is_null()))
-}
-
-/// What an entry of `skips` says.
-const SKIPS: &str = "[{\"id\": \"fog/exp\", \"reason\": \"not built\"}]";
-/// What an entry of `sources` says.
-const SOURCES: &str = "[{\"id\": \"fog/exp\", \"file\": \"src/fog.glsl\", \"line\": 12}]";
-
-fn hello(text: &str) -> Result<Line<'_>, String> {
-    #[derive(Deserialize)]
-    struct Greeting {
-        /// The protocol; a file of answers may leave it out.
-        hello: Option<String>,
-        renderer: String,
-        #[serde(flatten)]
-        rest: serde_json::Map<String, serde_json::Value>,
-    }
-    let wrong = |error: serde_json::Error| format!("said a hello that cannot be read: {error}");
-    let Greeting { hello, renderer, rest } = serde_json::from_str(text).map_err(wrong)?;
-    if let Some(protocol) = hello.filter(|protocol| protocol != PROTOCOL) {
-        return Err(format!("said a hello of `{}`; expected `{PROTOCOL}`", clipped(&protocol)));
-    }
-    let known = Hello::default().fields();
-    for (name, value) in &rest {
-        if !known.contains_key(name) {
-            let meant = did_you_mean(name, known.keys().map(String::as_str));
-            let meant = if meant == "." { format!("; expected one of {}", listed(&known)) } else { meant };
-            return Err(format!("said a hello with the unknown field `{}`{meant}", clipped(name)));
-        }
-        let is_list =
-            matches!(name.as_str(), "formulas" | "scenes" | "excludes" | "formats" | "effects" | "targets" | "sources");
-        if is_list && !value.is_array() && !value.is_null() {
-            let example = if name == "sources" { SOURCES } else { "[\"fog/*\", \"lighting/blinn\"]" };
-            return Err(format!("said a hello in which `{name}` is no list; expected such as {example}"));
-        }
-        let unread = match name.as_str() {
-            "skips" => serde_json::from_value::<Vec<DeclaredSkip>>(value.clone()).err().map(|why| (why, SKIPS)),
-            "sources" => serde_json::from_value::<Vec<DeclaredSource>>(value.clone()).err().map(|why| (why, SOURCES)),
-            _ => None,
-        };
-        if let Some((why, example)) = unread {
-            return Err(format!("said a hello in which `{name}` cannot be read: {why}; expected such as {example}"));
-        }
-        let example = match name.as_str() {
-            "version" => "1.2",
-            "device" => "llvmpipe (LLVM 15.0.6, 256 bits)",
-            "driver" => "Mesa 22.3.6",
-            "build" => "3f2a91c",
-            _ => continue,
-        };
-        if !value.is_string() {
-            return Err(format!("said a hello in which `{name}` is no string; expected such as \"{example}\""));
-        }
-    }
-    let hello: Hello = serde_json::from_value(rest.into()).map_err(wrong)?;
-    let build = hello.build.as_deref().map(clipped);
-    Ok(Line::Hello(Box::new(Hello { renderer: clipped(&renderer), version: clipped(&hello.version), build, ..hello })))
-}
-
-/// The names of fields, in a row.
-fn listed(fields: &serde_json::Map<String, serde_json::Value>) -> String {
-    fields.keys().map(String::as_str).collect::<Vec<_>>().join(", ")
-}
-
 /// The id of an answer, whatever else is wrong with it: where it is no JSON, the string behind the first `"id":`.
 #[must_use]
 pub fn id(line: &[u8]) -> Option<Cow<'_, str>> {
@@ -446,27 +226,6 @@ pub fn id(line: &[u8]) -> Option<Cow<'_, str>> {
     let rest = rest.trim_start().strip_prefix(':')?.trim_start().strip_prefix('"')?;
     // Some writers escape a slash, of which ids have some, and nothing else in them is to be escaped.
     rest.split_once('"').map(|(id, _)| Cow::Owned(id.replace("\\/", "/")))
-}
-
-/// Characters of a renderer's words that are told.
-const MOST_TOLD: usize = 300;
-
-/// Characters of a line that is no answer.
-const MOST_QUOTED: usize = 60;
-
-/// A renderer's words, as far as they are told: fit to be shown, and not without end.
-#[must_use]
-pub fn clipped(words: &str) -> String {
-    clipped_to(words, MOST_TOLD)
-}
-
-fn clipped_to(words: &str, most: usize) -> String {
-    let cut: String = words.trim().chars().take(most).collect();
-    let mut told = lightmeter_files::shown(&cut).into_owned();
-    if words.trim().chars().nth(most).is_some() {
-        told.push('…');
-    }
-    told
 }
 
 /// Why a line cannot be had.
@@ -490,6 +249,18 @@ const MOST_SKIPPED: usize = 16 << 20;
 /// # Errors
 /// Where the line is too long, or the stream fails.
 pub fn next(stream: &mut impl BufRead, line: &mut Vec<u8>) -> Result<bool, Unread> {
+    next_told(stream, line, |_| {})
+}
+
+/// The same, which tells how much of the line has come before more of it is waited for.
+///
+/// # Errors
+/// Where the line is too long, or the stream fails.
+pub(super) fn next_told(
+    stream: &mut impl BufRead,
+    line: &mut Vec<u8>,
+    mut waits: impl FnMut(&[u8]),
+) -> Result<bool, Unread> {
     line.clear();
     let (mut dropped, mut skipped) = (false, 0);
     loop {
@@ -523,6 +294,7 @@ pub fn next(stream: &mut impl BufRead, line: &mut Vec<u8>) -> Result<bool, Unrea
             }
             return Ok(true);
         }
+        waits(line);
     }
 }
 
@@ -593,41 +365,6 @@ mod tests {
             let error = read(line).expect_err(said);
             assert!(error.contains(said), "{error}");
         }
-    }
-
-    #[test]
-    fn what_is_wrong_with_a_hello_is_said() {
-        for (line, said) in [
-            (&br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#[..], "expected `lightmeter.protocol/1`"),
-            (br#"{"renderer":"r","formulas":"fog"}"#, "`formulas` is no list"),
-            (br#"{"renderer":"r","version":1.2}"#, "`version` is no string"),
-            (br#"{"renderer":"r","driver":["Mesa"]}"#, "`driver` is no string; expected such as \"Mesa 22.3.6\""),
-            (br#"{"renderer":"r","build":17}"#, "`build` is no string; expected such as \"3f2a91c\""),
-            (br#"{"renderer":"r","excludes":"fog"}"#, "`excludes` is no list"),
-            (br#"{"renderer":"r","special":"yes"}"#, "expected a boolean"),
-            (br#"{"renderer":"r","exclude":["fog"]}"#, "unknown field `exclude`; did you mean `excludes`?"),
-            (br#"{"renderer":"r","xyzzy":1}"#, "unknown field `xyzzy`; expected one of renderer, version, device"),
-            (br#"{"renderer":"r","sources":"a.c"}"#, "`sources` is no list; expected such as [{\"id\""),
-            (
-                br#"{"renderer":"r","sources":[{"id":"fog"}]}"#,
-                "`sources` cannot be read: missing field `file`; expected such as",
-            ),
-            (
-                br#"{"renderer":"r","skips":[{"id":"fog"}]}"#,
-                "`skips` cannot be read: missing field `reason`; expected such as",
-            ),
-            (br#"{"renderer":5}"#, "said a hello that cannot be read: invalid type: integer `5`, expected a string"),
-        ] {
-            let error = read(line).expect_err(said);
-            assert!(error.contains(said), "{error}");
-        }
-    }
-
-    #[test]
-    fn words_are_told_without_end_and_control() {
-        assert_eq!(clipped(" a\u{1b}[2Jb\nc "), r"a\u{1b}[2Jb\u{a}c");
-        let long = clipped(&"x".repeat(1 << 20));
-        assert!(long.chars().count() == MOST_TOLD + 1 && long.ends_with('…'));
     }
 
     #[test]

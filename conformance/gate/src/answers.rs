@@ -1,15 +1,17 @@
 //! Answers as files: the first of each case, and that further files answer the same.
 
-use super::answer::{self, Hello, Line, Unread, clipped};
+use super::answer::{self, Line, Unread};
 use super::columns::Columns;
 use super::error::ProcessError;
 use super::expectations::Expectations;
 use super::formula_skips::{FormulaSkip, FormulaSkips, SkippedTwice};
 use super::given::{Asks, Declared, Given, given, word};
+use super::hello::{self, Hello};
 use super::pack::PackError;
 use super::picture;
 use super::plan::{CasePlace, GatePlan};
 use super::problems::note;
+use super::words::clipped;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::select::CaseRef;
 use lightmeter_catalogue::special::Probe;
@@ -72,7 +74,7 @@ impl AnswerFile {
         if let Some(Ok(line)) = opened.next()? {
             match answer::read(&line) {
                 Ok(Line::Hello(hello)) => opened.hello = Some(*hello),
-                Err(message) if answer::is_hello(&line) => {
+                Err(message) if hello::is_one(&line) => {
                     return Err(PackError::Manifest {
                         path: opened.path,
                         message: format!("line 1: the renderer {message}"),
@@ -82,6 +84,11 @@ impl AnswerFile {
             }
         }
         Ok(opened)
+    }
+
+    /// The pack that it answers, where it says so.
+    fn pack(&self) -> Option<&str> {
+        self.hello.as_ref().and_then(|hello| hello.pack.as_deref())
     }
 
     /// The next line that is not blank, or that it is too long.
@@ -191,9 +198,10 @@ impl FileRenderer {
     /// Reads the next file.
     fn read_next(&mut self) -> Result<(), PackError> {
         let Some(mut file) = self.files.pop_front() else { return Ok(()) };
+        self.is_of_this_pack(&file)?;
         let columns = Columns::open(&file.folder, &self.plan)?;
-        self.is_of_this_pack(&file, &columns)?;
-        if file.hello.as_ref().is_none_or(|hello| hello.pack.is_none()) {
+        self.says_its_pack(&file, &columns)?;
+        if file.pack().is_none() {
             self.of_any_pack.push(file.path.clone());
         }
         for formula in columns.formulas() {
@@ -206,8 +214,8 @@ impl FileRenderer {
         let source = self.are_many.then(|| file.path.display().to_string());
         let told =
             |number: u64| source.as_ref().map_or_else(|| format!("line {number}"), |of| format!("{of}, line {number}"));
-        if file.hello.as_ref().is_some_and(|hello| *hello != self.declared.hello) {
-            let what = format!("{}: another hello than that of the first file", told(1));
+        if let Some(which) = file.hello.as_ref().and_then(|hello| self.declared.hello.difference(hello)) {
+            let what = format!("{}: another hello than that of the first file: {which}", told(1));
             note(&mut self.problems, "malformed", || what);
         }
         let mut lines = std::mem::take(&mut file.first);
@@ -220,7 +228,7 @@ impl FileRenderer {
                 None => {}
             }
             if lines.len() == LINES || is_over {
-                self.take(&lines, source.as_deref(), &told);
+                self.take(&lines, &told);
                 lines.clear();
             }
             if is_over {
@@ -229,18 +237,22 @@ impl FileRenderer {
         }
     }
 
-    /// Refuses answers to another pack. Columns have no ids that would tell, so that their hello must say what they answer.
-    fn is_of_this_pack(&self, file: &AnswerFile, columns: &Columns) -> Result<(), PackError> {
-        let (own, said) = (self.plan.pack(), file.hello.as_ref().and_then(|hello| hello.pack.as_deref()));
-        let message = match said {
-            Some(other) if other != own => {
-                format!("its hello says that it answers the pack `{}`; this pack is `{own}`", clipped(other))
-            }
-            None if !columns.is_empty() => {
-                format!("its hello does not say which pack it answers; beside columns it has `\"pack\": \"{own}\"`")
-            }
-            _ => return Ok(()),
-        };
+    /// Refuses answers that are to another pack, as they say.
+    fn is_of_this_pack(&self, file: &AnswerFile) -> Result<(), PackError> {
+        let own = self.plan.pack();
+        let Some(other) = file.pack().filter(|&said| said != own) else { return Ok(()) };
+        let message = format!("its hello says that it answers the pack `{}`; this pack is `{own}`", clipped(other));
+        Err(PackError::Manifest { path: file.path.clone(), message })
+    }
+
+    /// Refuses columns without a word of the pack that they are to: they have no ids that would tell.
+    fn says_its_pack(&self, file: &AnswerFile, columns: &Columns) -> Result<(), PackError> {
+        if file.pack().is_some() || columns.is_empty() {
+            return Ok(());
+        }
+        let own = self.plan.pack();
+        let message =
+            format!("its hello does not say which pack it answers; beside columns it has `\"pack\": \"{own}\"`");
         Err(PackError::Manifest { path: file.path.clone(), message })
     }
 
@@ -258,7 +270,7 @@ impl FileRenderer {
     }
 
     /// Takes lines for answers to cases of the plan. What answers none of them is a problem.
-    fn take(&mut self, lines: &[(u64, Vec<u8>)], source: Option<&str>, told: &dyn Fn(u64) -> String) {
+    fn take(&mut self, lines: &[(u64, Vec<u8>)], told: &dyn Fn(u64) -> String) {
         let (plan, declared) = (&self.plan, &self.declared);
         let read: Vec<(u64, Read)> =
             lines.par_iter().map(|(number, line)| (*number, Read::of(line, plan, declared))).collect();
@@ -275,9 +287,8 @@ impl FileRenderer {
                 Read::Answer(place, given) => (place, given),
             };
             if !self.contents.put(&self.plan, place, given) {
-                let source = source.map_or_else(String::new, |source| format!("{source}: "));
                 let id = self.plan.id(place);
-                note(&mut self.problems, "duplicate", || format!("{source}{id} is answered more than once"));
+                note(&mut self.problems, "duplicate", || format!("{}: {id} is answered more than once", told(number)));
             }
         }
     }

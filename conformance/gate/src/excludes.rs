@@ -1,9 +1,9 @@
 //! What a renderer leaves out of what it declares: by ids, or by what formulas and scenes are made of.
 
-use super::answer::clipped;
 use super::error::ProcessError;
 use super::frame::called;
 use super::pack::made_by;
+use super::words::clipped;
 use lightmeter_catalogue::cases::ValueShape;
 use lightmeter_catalogue::cases::blend::aliases;
 use lightmeter_catalogue::filter::Filter;

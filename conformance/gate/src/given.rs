@@ -1,9 +1,11 @@
 //! What a renderer gave to a question, read from a line.
 
-use super::answer::{DeclaredSkip, DeclaredSource, Hello, Line, clipped};
+use super::answer::Line;
 use super::error::ProcessError;
 use super::excludes::Excludes;
+use super::hello::{DeclaredSkip, DeclaredSource, Hello};
 use super::plan::unmatched;
+use super::words::clipped;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::cases::blend::aliases;
 use lightmeter_catalogue::filter::Filter;

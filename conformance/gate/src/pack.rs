@@ -365,6 +365,9 @@ fn png(texture: &Texture) -> Vec<u8> {
     image.encode(Path::new("texture.png")).unwrap_or_default()
 }
 
+/// What the cases of a pack are chosen by.
+const CHOOSE: &str = "`filter`, `cases`, `seed`, `size`, `targets` and `special`";
+
 /// Reads the manifest of a pack, holds its files against it, and gives the cases that it is of.
 ///
 /// # Errors
@@ -413,11 +416,14 @@ pub fn read(folder: &Path) -> Result<GatePlan, PackError> {
         }
     }
     let plan = GatePlan::new(manifest.choice.clone()).map_err(|error| refused(error.to_string()))?;
-    difference(&manifest, &plan)?.map_or(Ok(plan), |what| {
-        Err(refused(format!(
-            "its {what} are not those that its `filter`, `cases`, `seed`, `size`, `targets` and `special` choose: write the pack again"
-        )))
-    })
+    if let Some(what) = difference(&manifest, &plan)? {
+        return Err(refused(format!("its {what} are not those that its {CHOOSE} choose: write the pack again")));
+    }
+    let own = plan.pack();
+    if !manifest.pack.is_empty() && manifest.pack != own {
+        return Err(refused(format!("its `pack` is not `{own}`, which its {CHOOSE} make it: write the pack again")));
+    }
+    Ok(plan)
 }
 
 /// What of a manifest is not as this lightmeter would write it for the plan. The cases themselves go by the generator's version.

@@ -1,6 +1,6 @@
 //! Lines that cannot be read as answers: counted by kind, the first of them in words.
 
-use super::answer::clipped;
+use super::words::clipped;
 use lightmeter_document::gate::Problems;
 
 /// Problems of each kind that are kept in words.

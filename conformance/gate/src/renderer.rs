@@ -1,10 +1,12 @@
 //! A renderer in this process.
 
-use super::answer::{Hello, Line, clipped};
+use super::answer::Line;
 use super::error::ProcessError;
 use super::expectations::Expectations;
 use super::given::{Asks, Declared, Given, given, put};
+use super::hello::Hello;
 use super::picture;
+use super::words::clipped;
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_catalogue::select::CaseRef;

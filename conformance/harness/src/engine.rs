@@ -3,7 +3,7 @@
 use crate::values::{FormulaInputs, FormulaOutputs};
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_document::by_case::SourcePlace;
-use lightmeter_gate::answer::{DeclaredSource, Hello};
+use lightmeter_gate::hello::{DeclaredSource, Hello};
 use lightmeter_gate::renderer::Renderer;
 use std::panic::Location;
 use std::sync::Arc;

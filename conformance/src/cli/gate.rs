@@ -60,7 +60,7 @@ pub(crate) struct Gate {
     #[arg(long, value_name = "NAME", requires = "exec", value_parser = super::options::Choice::target)]
     target: Vec<Targets>,
     /// Only a part of the cases: the I-th of N
-    #[arg(long, value_name = "I/N", default_value = "1/1")]
+    #[arg(long, value_name = "I/N", default_value = "1/1", allow_hyphen_values = true)]
     shard: ShardArgument,
     /// Accuracy rules: wgsl, vulkan or opengl; without it: what the renderer asks for, or wgsl
     #[arg(long, value_name = "NAME", value_parser = super::options::Choice::profile)]

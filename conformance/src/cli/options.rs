@@ -148,7 +148,7 @@ pub(crate) struct Amount {
     #[arg(long, value_name = "N", default_value_t = DEFAULT_CASES, value_parser = clap::value_parser!(u64).range(1..=MOST_CASES))]
     pub(crate) cases: u64,
     /// Only a part of the cases: the I-th of N
-    #[arg(long, value_name = "I/N", default_value = "1/1")]
+    #[arg(long, value_name = "I/N", default_value = "1/1", allow_hyphen_values = true)]
     pub(crate) shard: ShardArgument,
 }
 

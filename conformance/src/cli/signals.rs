@@ -7,6 +7,8 @@ use lightmeter::document::run::Interrupted;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+#[cfg(unix)]
+use std::{io::Read as _, os::unix::net::UnixStream, sync::atomic::Ordering, time::Duration};
 
 /// A terminal was closed. Windows has no such signal, but results of other systems name it.
 pub(crate) const SIGHUP: i32 = 1;
@@ -14,16 +16,43 @@ pub(crate) const SIGHUP: i32 = 1;
 /// The signals that end a program.
 pub(crate) const ENDING: &[i32] = if cfg!(unix) { &[SIGINT, SIGTERM, SIGHUP] } else { &[SIGINT, SIGTERM] };
 
-/// Set by the first signal that ends a program: what was judged is then reported. The second ends this one at once.
+/// How long signals count as the first. `timeout` sends one to its child and one to the child's group, and a terminal sends one to
+/// all that it started, which may pass it on.
+#[cfg(unix)]
+const SAME: Duration = Duration::from_millis(500);
+
+/// Set by the first signal that ends a program: what was judged is then reported. A second one ends this program at once.
 pub(crate) fn stopped_by_signals() -> anyhow::Result<Stop> {
-    let (stop, is_second) = (Stop::default(), Arc::new(AtomicBool::new(false)));
+    let (stop, ends_at_once) = (Stop::default(), Arc::new(AtomicBool::new(false)));
     for &signal in ENDING {
-        let number = usize::try_from(signal)?;
-        signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, is_second.clone())?;
-        signal_hook::flag::register(signal, is_second.clone())?;
-        signal_hook::flag::register_usize(signal, stop.flag(), number)?;
+        signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, ends_at_once.clone())?;
+        signal_hook::flag::register_usize(signal, stop.flag(), usize::try_from(signal)?)?;
     }
+    after_the_first(ends_at_once)?;
     Ok(stop)
+}
+
+/// Sets a flag a moment after the first signal.
+#[cfg(unix)]
+fn after_the_first(flag: Arc<AtomicBool>) -> anyhow::Result<()> {
+    let (mut hears, tells) = UnixStream::pair()?;
+    for &signal in ENDING {
+        signal_hook::low_level::pipe::register(signal, tells.try_clone()?)?;
+    }
+    std::thread::spawn(move || {
+        if hears.read_exact(&mut [0]).is_ok() {
+            std::thread::sleep(SAME);
+            flag.store(true, Ordering::Relaxed);
+        }
+    });
+    Ok(())
+}
+
+/// Sets a flag with the first signal.
+#[cfg(not(unix))]
+fn after_the_first(flag: Arc<AtomicBool>) -> anyhow::Result<()> {
+    ENDING.iter().try_for_each(|&signal| signal_hook::flag::register(signal, flag.clone()).map(drop))?;
+    Ok(())
 }
 
 /// Says what ended a command before its time, and how the command ends.

@@ -66,7 +66,7 @@ pub(crate) struct Sweep {
     #[command(flatten)]
     shaders: ShaderChoice,
     /// Only a part of the inputs: the I-th of N; `lightmeter merge` joins them
-    #[arg(long, value_name = "I/N", default_value = "1/1")]
+    #[arg(long, value_name = "I/N", default_value = "1/1", allow_hyphen_values = true)]
     shard: ShardArgument,
     /// Where the state is kept, so that the same command goes on where an interrupted one was
     #[arg(long, value_name = "FILE")]

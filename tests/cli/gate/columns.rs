@@ -224,6 +224,7 @@ fn what_is_no_answer_in_columns_is_told_at_once_and_its_cases_are_asked_by_lines
         ("short", "malformed", " bytes in columns; expected "),
         ("huge", "malformed", "its line announces 1000000000000000 bytes in columns; expected "),
         ("surplus", "malformed", "5 bytes stand before the line of its answer; expected none"),
+        ("joined", "malformed", " bytes stand between the line of its answer and the newline; expected none"),
         ("type", "malformed", "its `dtype` is `<i4`; expected <f4 or <f8"),
         ("nothing", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),
         ("both", "malformed", "none, or more than one, of `bytes`, `skip`, `error` and `lines`"),

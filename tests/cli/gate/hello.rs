@@ -94,7 +94,7 @@ fn a_field_that_a_hello_does_not_have_is_refused_with_the_one_that_is_meant() {
     for (hello, said) in [
         ("{\"renderer\": \"r\", \"exclude\": [\"fog/linear\"]}\n", "unknown field `exclude`; did you mean `excludes`?"),
         ("{\"renderer\": \"r\", \"formulae\": [\"fog\"]}\n", "unknown field `formulae`; did you mean `formulas`?"),
-        ("{\"renderer\": \"r\", \"xyzzy\": 1}\n", "unknown field `xyzzy`; expected one of renderer, version"),
+        ("{\"renderer\": \"r\", \"xyzzy\": 1}\n", "unknown field `xyzzy`; expected one of hello, renderer, version"),
     ] {
         let file = edit(&answers, |k, line| if k == 0 { hello } else { "" }.to_owned() + line + "\n");
         let output = lightmeter(&["gate", text(&pack), text(&file)]);
@@ -201,7 +201,10 @@ fn an_error_is_told_once_and_says_what_would_be_right() {
     for (given, said) in [
         (file("glob.jsonl", r#"{"renderer": "r", "formulas": ["fog/["]}"#), "is not a glob"),
         (file("target.jsonl", r#"{"renderer": "r", "targets": ["rgb"]}"#), "no target `rgb`; expected rgba32float"),
-        (file("number.jsonl", r#"{"renderer": 5}"#), "line 1: the renderer said a hello that cannot be read"),
+        (
+            file("number.jsonl", r#"{"renderer": 5}"#),
+            "line 1: the renderer said a hello in which `renderer` is no string; expected such as",
+        ),
         (
             file("skip.jsonl", r#"{"renderer": "r", "skips": [{"id": "fog"}]}"#),
             "missing field `reason`; expected such as",

@@ -1,6 +1,7 @@
 //! `lightmeter pack` and `lightmeter gate`: other renderers, by their files and as processes, right ones and all sorts of wrong.
 
 mod columns;
+mod ending;
 mod hello;
 mod merged;
 pub(crate) mod process;
@@ -141,6 +142,8 @@ fn each_wrong_line_is_named_and_every_good_answer_is_judged() {
             assert_eq!(report["problems"]["counts"], serde_json::json!({}), "{report}");
         } else {
             assert_eq!(report["problems"]["counts"][problem], 1, "{report}");
+            let line = if problem == "duplicate" { "line 7" } else { "line 6" };
+            assert!(report["problems"]["first"][0].as_str().is_some_and(|what| what.contains(line)), "{report}");
         }
     }
 }
@@ -168,7 +171,7 @@ fn a_second_run_must_answer_the_same() {
         edit(&answers, |k, line| if k == 0 { "{\"renderer\": \"another\"}\n" } else { "" }.to_owned() + line + "\n");
     let (status, report) = judged(&pack, &answers, &[text(&other)]);
     // The first file says no name.
-    assert!(status == 4 && report.to_string().contains("another hello"), "{report}");
+    assert!(status == 4 && report.to_string().contains("first file: `renderer` was"), "{report}");
 }
 
 #[test]
@@ -254,6 +257,8 @@ fn packs_that_are_damaged_or_of_another_kind_are_refused() {
         ("\"cases\": 64", "\"cases\": 999999999999", "expected 1 to"),
         ("\"size\": null", "\"size\": 100000", "expected 1 to"),
         ("\"id\": \"fog/exp\"", "\"id\": \"fog/linear\"", "its formulas are not those"),
+        ("\"seed\": 1", "\"seed\": 2", "its `pack` is not `"),
+        ("\"pack\": \"", "\"pack\": \"0", "its `pack` is not `"),
     ];
     for (what, wrong, said) in rows {
         assert!(right.contains(what), "{what}");

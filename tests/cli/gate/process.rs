@@ -2,14 +2,13 @@
 
 use super::{count, folder, report, text};
 use crate::{code, command, lightmeter, stderr, stdout};
-use rustix::process::{Pid, Signal, kill_process, test_kill_process};
 use serde_json::{Value, json};
 use std::path::Path;
-use std::process::{Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Output;
+use std::time::Duration;
 
 /// The command of the example renderer.
-fn renderer() -> String {
+pub(super) fn renderer() -> String {
     let binary = Path::new(env!("CARGO_BIN_EXE_lightmeter"));
     let renderer = binary.parent().expect("it lies in a folder").join("examples/renderer");
     assert!(
@@ -29,32 +28,8 @@ pub(crate) fn process(filter: &[&str], fault: &str, more: &[&str]) -> Output {
     gate(filter, &command_of(fault), more)
 }
 
-fn gate(filter: &[&str], exec: &str, more: &[&str]) -> Output {
+pub(super) fn gate(filter: &[&str], exec: &str, more: &[&str]) -> Output {
     lightmeter(&[&["gate", "--exec", exec, "--format", "json", "--cases", "64"], filter, more].concat())
-}
-
-/// Whether a process whose number a file has runs, once it has had time to end.
-fn runs(file: &Path) -> bool {
-    let read = || std::fs::read_to_string(file).ok()?.trim().parse::<i32>().ok();
-    let until = Instant::now() + Duration::from_secs(5);
-    let number = loop {
-        match read() {
-            Some(number) => break number,
-            None => assert!(Instant::now() < until, "the process wrote no number"),
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    };
-    let pid = Pid::from_raw(number).expect("a number above 0");
-    let state = || std::fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
-    let until = Instant::now() + Duration::from_secs(5);
-    // One that has ended and whose parent does not ask is a zombie.
-    while test_kill_process(pid).is_ok() && !state().contains(") Z") {
-        if Instant::now() > until {
-            return true;
-        }
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    false
 }
 
 #[test]
@@ -118,6 +93,18 @@ fn a_process_that_fails_in_any_way_costs_that_case_alone() {
     }
     let (status, found) = report(&process(&["fog/exp"], "unstable-at=fog/exp/random/000003", &[]));
     assert_eq!((status, count(&found, "unstable")), (1, 1), "{found}");
+    // The last answer of a batch, so that nothing else is in its line.
+    let last = "unended-at=fog/exp/random/000015";
+    let (status, found) = report(&process(&["fog/exp/random/0000{0,1}*"], last, &["--case-timeout", "1.5"]));
+    let incidents = found["incidents"].to_string();
+    assert!(
+        status == 4 && incidents.contains("took longer than a case may: ") && count(&found, "failed") == 1,
+        "{found}"
+    );
+    assert!(
+        incidents.contains(" bytes without a newline behind them came, `{\\\"id\\\":\\\"fog/exp/random/000015"),
+        "{found}"
+    );
     let dropped = process(&["fog/exp"], &format!("drop-at={case}"), &["--case-timeout", "1.5"]);
     let (status, found) = report(&dropped);
     assert_eq!((status, count(&found, "failed")), (4, 1), "{found}");
@@ -147,15 +134,6 @@ fn a_crash_in_every_run_is_no_changed_answer() {
     assert_eq!((status, count(&found, "unstable"), count(&found, "broken")), (4, 0, 1), "{found}");
     let (status, found) = report(&process(&["fog/exp", "fog/linear"], "crash-at=fog/exp", &["--runs", "2"]));
     assert_eq!((status, count(&found, "unstable"), count(&found, "broken")), (4, 0, 3), "{found}");
-}
-
-#[test]
-fn a_gate_that_is_told_to_stop_before_the_hello_ends_by_the_signal() {
-    let gate = command(&["gate", "fog/exp", "--exec", "sleep 600"]).stderr(Stdio::piped()).spawn().expect("it starts");
-    std::thread::sleep(Duration::from_secs(3));
-    let pid = i32::try_from(gate.id()).ok().and_then(Pid::from_raw).expect("a number");
-    kill_process(pid, Signal::INT).expect("it runs");
-    assert_eq!(code(&gate.wait_with_output().expect("it ends")), 130);
 }
 
 #[test]
@@ -227,23 +205,6 @@ fn a_renderer_that_answers_without_reading_is_told() {
 }
 
 #[test]
-fn nothing_that_a_renderer_started_outlives_it() {
-    let folder = folder("orphans");
-    let file = folder.join("pid");
-    // In a session, and so a process group, of its own, with an environment of its own, and started by a shell that has ended.
-    let orphan = format!("(env -i setsid /bin/sh -c 'echo $$ > \"{}\"; exec sleep 600' &)", text(&file));
-    for fault in ["", "crash-at=fog/exp/random/000017", "hang-at=fog/exp/random/000017"] {
-        let _ = std::fs::remove_file(&file);
-        // Not before it has written its number.
-        let waits = format!("while [ ! -s '{}' ]; do sleep 0.01; done", text(&file));
-        let exec = format!("{orphan}; {waits}; {} {fault}", renderer());
-        let output = gate(&["fog/exp"], &exec, &["--case-timeout", "1"]);
-        assert_eq!(code(&output), if fault.is_empty() { 0 } else { 4 }, "{}", stderr(&output));
-        assert!(!runs(&file), "{fault}: what it started runs on");
-    }
-}
-
-#[test]
 fn what_the_gate_sets_for_itself_is_not_in_the_environment_of_a_renderer() {
     let file = folder("environment").join("tunables");
     let exec = format!("echo \"[$GLIBC_TUNABLES]\" > '{}'", text(&file));
@@ -260,92 +221,12 @@ fn what_the_gate_sets_for_itself_is_not_in_the_environment_of_a_renderer() {
 }
 
 #[test]
-fn a_renderer_does_not_outlive_a_gate_that_is_killed() {
-    let file = folder("killed").join("pid");
-    let exec = format!("echo $$ > '{}'; exec sleep 600", text(&file));
-    let mut gate = command(&["gate", "fog/exp", "--exec", &exec])
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the binary starts");
-    let until = Instant::now() + Duration::from_secs(20);
-    while std::fs::read_to_string(&file).unwrap_or_default().trim().is_empty() {
-        assert!(Instant::now() < until, "the renderer was not started");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    gate.kill().expect("it can be killed");
-    gate.wait().expect("it has ended");
-    assert!(!runs(&file), "the renderer runs on");
-}
-
-#[test]
 fn a_renderer_has_the_memory_that_it_is_given() {
     let exec = format!("test \"$(ulimit -v)\" = 8388608 && exec {}", renderer());
     let output = gate(&["fog/exp"], &exec, &["--memory", "8192"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let output = gate(&["fog/exp"], &exec, &["--memory", "8191"]);
     assert!(code(&output) == 4 && stderr(&output).contains("ended before its hello"), "{}", stderr(&output));
-}
-
-#[test]
-fn a_renderer_whose_hello_is_refused_is_ended() {
-    let number = folder("refused").join("number");
-    let hello = r#"{"hello": "lightmeter.protocol/1", "renderer": "r", "formulas": ["fog"], "targets": ["rgb565"]}"#;
-    let exec = format!("echo $$ > '{}'; echo '{hello}'; exec sleep 600", text(&number));
-    let output = gate(&["fog/exp"], &exec, &[]);
-    assert!(
-        code(&output) == 2 && stderr(&output).contains("no target `rgb565`; expected rgba32float"),
-        "{}",
-        stderr(&output)
-    );
-    assert!(!runs(&number), "it goes on");
-}
-
-#[test]
-fn a_gate_that_is_told_to_stop_reports_and_leaves_nothing() {
-    let folder = folder("stopped");
-    let file = folder.join("pid");
-    let temporary = folder.join("tmp");
-    std::fs::create_dir_all(&temporary).expect("a folder can be made");
-    let exec = format!("echo $$ > '{}'; exec {} hang-at=fog/exp/random/000050", text(&file), renderer());
-    let gate =
-        command(&["gate", "fog/exp", "scene/flat", "--exec", &exec, "--format", "json", "--case-timeout", "600"])
-            .env("TMPDIR", &temporary)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the binary starts");
-    let until = Instant::now() + Duration::from_secs(60);
-    while !file.exists() && Instant::now() < until {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    std::thread::sleep(Duration::from_secs(6));
-    let pid = i32::try_from(gate.id()).ok().and_then(Pid::from_raw).expect("a number");
-    kill_process(pid, Signal::TERM).expect("it runs");
-    let (status, found) = report(&gate.wait_with_output().expect("it ends"));
-    assert!(status == 143 && found["signal"] == 15, "{found}");
-    assert!(found["incidents"].to_string().contains("it was stopped"), "{found}");
-    assert!(count(&found, "passed") > 0, "what was answered is judged: {found}");
-    assert!(!runs(&file), "the renderer runs on");
-    assert_eq!(std::fs::read_dir(&temporary).expect("it is there").count(), 0, "its folder for images is left");
-}
-
-#[test]
-fn a_renderer_that_writes_on_after_its_last_answer_is_ended() {
-    for pause in ["sleep 0.02", ":"] {
-        let exec = format!("{}; while :; do echo; {pause}; done", renderer());
-        let (status, found) = report(&gate(&["fog/exp"], &exec, &["--case-timeout", "1"]));
-        assert!(status == 4 && found["incidents"].to_string().contains("did not end"), "{pause}: {found}");
-    }
-}
-
-#[test]
-fn how_a_renderer_ends_is_told_though_it_answered_all() {
-    for (fault, said) in [("exit=3", "exit status: 3"), ("lingers=all", "did not end")] {
-        let (status, found) = report(&process(&["fog/exp"], fault, &["--case-timeout", "1"]));
-        assert!(status == 4 && found["incidents"].to_string().contains(said), "{fault}: {found}");
-        assert_eq!(count(&found, "passed"), count(&found, "asked"), "{found}");
-    }
 }
 
 #[test]
@@ -373,12 +254,6 @@ fn an_image_that_is_no_file_is_not_waited_for() {
     );
     let (status, found) = report(&gate(&["scene/flat"], &exec, &["--images", text(&folder), "--size", "16"]));
     assert!(status == 1 && found.to_string().contains("is no file"), "{found}");
-}
-
-#[test]
-fn time_for_all_ends_a_renderer_that_never_says_hello() {
-    let output = lightmeter(&["gate", "fog", "--exec", "sleep 600", "--timeout", "0.5"]);
-    assert!(code(&output) == 4 && stderr(&output).contains("said nothing for 0.5 s"), "{}", stderr(&output));
 }
 
 #[test]
@@ -468,6 +343,8 @@ fn a_process_that_says_another_hello_is_given_up() {
     std::fs::write(&script, named).expect("it can be written");
     let (status, found) = report(&gate(&["fog/exp"], &exec, &["--runs", "2"]));
     assert!(status == 4 && found["incidents"].to_string().contains("says another hello"), "{found}");
+    let incidents = found["incidents"].to_string();
+    assert!(incidents.contains("started first: `renderer` was \\\"first\\\", and is \\\"second\\\""), "{incidents}");
     for (hello, status, said) in [
         ("{\"hello\":\"lightmeter.protocol/2\",\"renderer\":\"r\"}", 4, "expected `lightmeter.protocol/1`"),
         (

@@ -5,9 +5,10 @@
 //! number of bytes than it must have: the process is ended at once, since nothing tells where its next line begins. One that announces more bytes
 //! than it writes, and so is waited for in vain, is asked all other formulas by lines, too.
 
-use super::super::answer::{self, clipped};
+use super::super::answer;
 use super::super::problems::note;
-use super::framing::{before, width};
+use super::super::words::clipped;
+use super::framing::{before, behind_answer, width};
 use super::queue::MOST_OF_FORMULA;
 use super::running::{Event, Running};
 use super::session::{Ended, MOMENT, ROWS, SURPLUS, Session};
@@ -121,7 +122,9 @@ impl Session {
 
     /// Ends a process that failed in a batch, and tells it.
     fn fails_in_columns(&mut self, spec: &Spec, count: usize, ended: Ended) {
-        let cut = self.running.as_ref().and_then(|running| running.framing.cut_short());
+        let framing = self.running.as_ref().map(|running| &running.framing);
+        let cut = framing.and_then(|framing| framing.array_under_way());
+        let open_line = framing.filter(|_| ended == Ended::Hung).and_then(|framing| framing.open_line());
         // One that stops within an array counts wrong, and does so again; where it is waited for in vain, at the next formula too.
         let hangs = cut.is_some() && ended == Ended::Hung;
         self.hangs_in_arrays |= hangs;
@@ -132,7 +135,7 @@ impl Session {
             "{}: with {count} cases asked in columns {}: {}{how}; {those} are asked by lines",
             spec.id,
             ended.message(),
-            cut.map_or_else(String::new, |cut| format!("{cut}; "))
+            cut.or(open_line).map_or_else(String::new, |cut| format!("{cut}; "))
         ));
         self.rows = ROWS[0];
     }
@@ -216,6 +219,11 @@ impl Session {
                 return None;
             }
             Ok(answer) => answer,
+            Err(_) if let Some(behind) = behind_answer(line) => {
+                return refused(format!(
+                    "{behind} bytes stand between the line of its answer and the newline; expected none, and an array behind the newline"
+                ));
+            }
             Err(error) => match before(line) {
                 Some(0) => return refused(format!("`{}`: {error}; expected {EXPECTED}", quoted())),
                 Some(bytes) => {

@@ -3,13 +3,16 @@
 //! Nothing in an array marks its end. So an answer whose line announces another number of bytes than the batch has is not read on: what
 //! is a line behind it and what is not can no longer be told.
 
+use super::super::words::{MOST_QUOTED, clipped_to};
 use lightmeter_document::protocol::ColumnsAnswer;
 use std::io::{ErrorKind, Read};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Bytes of an answer to no batch that waits, at most.
 const MOST_ARRAY: usize = 64 << 20;
+/// Bytes of a line that are kept while its end has not come: some more than are quoted.
+const MOST_NOTED: usize = 4 * MOST_QUOTED + 4;
 /// What every line has that answers in columns.
 const WORD: &[u8] = b"\"columns\"";
 
@@ -30,6 +33,8 @@ pub(super) struct Framing {
     announced: AtomicUsize,
     /// Bytes of it that have come.
     came: AtomicUsize,
+    /// The beginning of a line whose end has not come, and how many bytes of it have.
+    open_line: Mutex<(Vec<u8>, usize)>,
 }
 
 impl Framing {
@@ -40,14 +45,14 @@ impl Framing {
 
     /// Says which batch waits, and how many numbers its answer has.
     pub(super) fn awaits(&self, batch: u64, numbers: usize) {
-        *self.awaited.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(Awaited { batch, numbers });
+        *self.awaited.lock().unwrap_or_else(PoisonError::into_inner) = Some(Awaited { batch, numbers });
     }
 
     /// Bytes behind the line of an answer; `None` where there are none, or another number of them than there has to be.
     pub(super) fn length(&self, answer: &ColumnsAnswer) -> Option<usize> {
         let is_array = answer.skip.is_none() && answer.error.is_none() && !answer.lines;
         let count = answer.bytes.filter(|_| is_array && self.has_columns.load(Ordering::Acquire))?;
-        let awaited = *self.awaited.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let awaited = *self.awaited.lock().unwrap_or_else(PoisonError::into_inner);
         let is_right = match awaited.filter(|awaited| awaited.batch == answer.batch) {
             Some(awaited) => width(answer.dtype.as_deref()).is_some_and(|width| count == awaited.numbers * width),
             // It is none of this batch's, and is read so that what stands behind it can be.
@@ -74,8 +79,30 @@ impl Framing {
         Some(bytes)
     }
 
-    /// Of the array under way how many bytes were announced and how many came, in words; nothing where none is.
+    /// Notes as much of a line as has come before its end; nothing once the end has.
+    pub(super) fn has_come(&self, line: &[u8]) {
+        let mut open = self.open_line.lock().unwrap_or_else(PoisonError::into_inner);
+        open.0.clear();
+        open.0.extend_from_slice(&line[..line.len().min(MOST_NOTED)]);
+        open.1 = line.len();
+    }
+
+    /// The line whose end has not come, in words; nothing where there is none.
+    pub(super) fn open_line(&self) -> Option<String> {
+        let open = self.open_line.lock().unwrap_or_else(PoisonError::into_inner);
+        let (line, bytes) = (clipped_to(&String::from_utf8_lossy(&open.0), MOST_QUOTED), open.1);
+        (bytes > 0).then(|| {
+            format!("{bytes} bytes without a newline behind them came, `{line}`; expected one behind each line")
+        })
+    }
+
+    /// What it wrote of an array or a line whose end has not come, in words.
     pub(super) fn cut_short(&self) -> Option<String> {
+        self.array_under_way().or_else(|| self.open_line())
+    }
+
+    /// Of the array under way how many bytes were announced and how many came, in words; nothing where none is.
+    pub(super) fn array_under_way(&self) -> Option<String> {
         let announced = self.announced.load(Ordering::Acquire);
         let came = self.came.load(Ordering::Acquire);
         (announced > 0).then(|| format!("it announced {announced} bytes in columns, and {came} of them came"))
@@ -101,6 +128,13 @@ pub(super) fn columns_of(line: &[u8]) -> Option<ColumnsAnswer> {
 pub(super) fn before(line: &[u8]) -> Option<usize> {
     let word = word(line)?;
     line[..word].iter().rposition(|&byte| byte == b'{')
+}
+
+/// Bytes behind the answer in columns that a line begins with; `None` where it begins otherwise, or ends there.
+pub(super) fn behind_answer(line: &[u8]) -> Option<usize> {
+    let mut answers = serde_json::Deserializer::from_slice(line).into_iter::<ColumnsAnswer>();
+    answers.next()?.ok().filter(|answer| !answer.columns.is_empty())?;
+    Some(line.len() - answers.byte_offset()).filter(|&bytes| bytes > 0)
 }
 
 /// Where the word of an answer in columns stands in a line.

@@ -12,10 +12,10 @@ mod queue;
 mod running;
 mod session;
 
-use super::answer::Hello;
 use super::error::ProcessError;
 use super::expectations::Expectations;
 use super::given::{Asks, Declared, Given, pixel, put, word};
+use super::hello::Hello;
 use super::{frame, pack, picture};
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::Document as _;

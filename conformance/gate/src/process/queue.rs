@@ -84,7 +84,9 @@ impl Session {
 
     /// Ends a process that failed with cases open, and finds out which of them it failed at.
     fn failed(&mut self, queue: &mut Queue<'_>, ended: Ended, rest: Vec<usize>) {
-        let message = ended.message();
+        let cut =
+            self.running.as_ref().filter(|_| ended == Ended::Hung).and_then(|running| running.framing.cut_short());
+        let message = cut.map_or_else(|| ended.message().to_owned(), |cut| format!("{}: {cut}", ended.message()));
         let how = self.kill(ended);
         let [culprit] = rest[..] else {
             // A retry hides nothing: that the process ended is reported, whatever it answers afterwards.

@@ -1,6 +1,7 @@
 //! A running renderer: its pipes, and its end with all that it started.
 
-use super::super::answer::{self, Unread, clipped};
+use super::super::answer::{self, Unread};
+use super::super::words::clipped;
 use super::framing::{Framing, columns_of};
 use super::{Starter, family};
 use lightmeter_document::protocol::ColumnsAnswer;
@@ -201,7 +202,9 @@ fn listen(output: impl std::io::Read, send: &SyncSender<Event>, framing: &Framin
     let mut stream = BufReader::with_capacity(1 << 16, output);
     let mut line = vec![];
     loop {
-        let event = match answer::next(&mut stream, &mut line) {
+        let read = answer::next_told(&mut stream, &mut line, |so_far| framing.has_come(so_far));
+        framing.has_come(&[]);
+        let event = match read {
             Ok(true) => match columns_of(&line).and_then(|answer| Some((framing.length(&answer)?, answer))) {
                 Some((count, answer)) => {
                     framing.array(&mut stream, count).map_or(Event::End, |bytes| Event::Columns(answer, bytes))

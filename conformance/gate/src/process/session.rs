@@ -1,10 +1,12 @@
 //! A conversation with a process: its start, batches of questions, its answers as they come, its end.
 
-use super::super::answer::{self, Hello, Line, Unread, clipped};
+use super::super::answer::{self, Line, Unread};
 use super::super::error::ProcessError;
 use super::super::given::{Asks, Given, Skips, given};
+use super::super::hello::{self, Hello};
 use super::super::pack::described;
 use super::super::problems::note;
+use super::super::words::clipped;
 use super::Asking;
 use super::running::{Event, Running};
 use lightmeter_catalogue::cases::Spec;
@@ -271,7 +273,8 @@ impl Session {
                 Ok(Event::Line(line)) if line.iter().all(u8::is_ascii_whitespace) => continue,
                 Ok(Event::Line(line)) => match answer::read(&line) {
                     Ok(Line::Hello(hello)) if self.used.starts > 1 && *hello != self.hello => {
-                        "says another hello than when it was started first".into()
+                        let which = self.hello.difference(&hello).unwrap_or_default();
+                        format!("says another hello than when it was started first: {which}")
                     }
                     Ok(Line::Hello(hello)) => {
                         self.answered = 0;
@@ -282,7 +285,7 @@ impl Session {
                         self.running = Some(running);
                         return Ok(());
                     }
-                    Err(message) if answer::is_hello(&line) => message,
+                    Err(message) if hello::is_one(&line) => message,
                     _ => {
                         let line = clipped(&String::from_utf8_lossy(&line));
                         format!(
@@ -300,7 +303,11 @@ impl Session {
                 }
                 Err(RecvTimeoutError::Timeout) if self.is_stopped() => "was stopped before its hello".into(),
                 Err(RecvTimeoutError::Timeout) => {
-                    format!("said nothing for {:.1} s", until.saturating_duration_since(begun).as_secs_f64())
+                    let seconds = until.saturating_duration_since(begun).as_secs_f64();
+                    running.framing.open_line().map_or_else(
+                        || format!("said nothing for {seconds:.1} s"),
+                        |line| format!("said no whole line for {seconds:.1} s: {line}"),
+                    )
                 }
             };
             running.kill();
@@ -390,7 +397,9 @@ impl Session {
                 None if !self.asked.contains(&hash(id)) => note(&mut self.used.problems, "unknown", || {
                     format!("line {number}: no case `{}` was asked for", clipped(id))
                 }),
-                _ => note(&mut self.used.problems, "duplicate", || format!("{id} is answered more than once")),
+                _ => note(&mut self.used.problems, "duplicate", || {
+                    format!("line {number}: {id} is answered more than once")
+                }),
             }
         }
     }
