@@ -248,8 +248,12 @@ fn every_legal_unit_lies_inside() {
                     }
                 }
                 if target.encoding() == Encoding::Unorm8 {
-                    let narrow =
-                        BlendUnitModel::Llvmpipe.predict(piece.program, piece.route, &case, stored(target, case.dst));
+                    let narrow = BlendUnitModel::Llvmpipe.predict(
+                        piece.program,
+                        piece.route,
+                        &case,
+                        stored(target.encoding(), case.dst),
+                    );
                     assert!(inside(narrow), "{} {piece:?} {place}: {narrow:?} {expected:?}", target.name());
                 }
             }
@@ -341,7 +345,7 @@ fn layers_blend_in_order_and_masks_hold() {
         );
         let masked = Program::Draw(Mode::Alpha.state().into(), WriteMask([true, false, true, false]));
         let expected = expect(masked, target, &case, &Rules::RIGHT, &WGSL);
-        let kept = stored(target, case.dst);
+        let kept = stored(target.encoding(), case.dst);
         assert_eq!((expected.low[1], expected.high[3]), (kept[1], kept[3]), "{}", target.name());
         let unmasked =
             embedded::blend(Program::Draw(Mode::Alpha.state().into(), WriteMask::ALL), target, &case, &Rules::RIGHT);

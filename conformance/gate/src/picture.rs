@@ -98,7 +98,7 @@ impl Values {
             Self::Linear(pixels) => {
                 let units = |pixel: [f64; 4]| {
                     std::array::from_fn(|k| {
-                        let units = pixel::units(format, k, pixel[k]);
+                        let units = pixel::units(format.encoding(), k, pixel[k]);
                         // A whole step that was written as binary32 is that step.
                         let step = units.round();
                         if format.is_unorm() && (units - step).abs() < WHOLE { step } else { units }

@@ -73,7 +73,27 @@ pub fn judge(bits: u32, reference: f64, interval: &Accept) -> Verdict {
 
 /// The distance from the reference over the distance to the end of the interval on the value's side. It is never NaN: beside
 /// a NaN it is infinite, and 1 where the interval's end is infinite and the value is that.
+#[inline]
 pub fn margin(value: f64, reference: f64, low: f64, high: f64) -> f64 {
+    let distance = (value - reference).abs();
+    // 0/0 is 0: exactly right where nothing else is legal.
+    if distance == 0.0 {
+        return 0.0;
+    }
+    if distance < f64::INFINITY {
+        return distance / room(value, reference, low, high);
+    }
+    margin_beyond(value, reference, low, high)
+}
+
+/// The distance from the reference to the end of the interval on the value's side.
+#[inline]
+fn room(value: f64, reference: f64, low: f64, high: f64) -> f64 {
+    (if value >= reference { high - reference } else { reference - low }).max(0.0)
+}
+
+/// The margin where the value and the reference are infinitely far from each other, the same infinity, or a NaN is one of them.
+fn margin_beyond(value: f64, reference: f64, low: f64, high: f64) -> f64 {
     if value.is_nan() || reference.is_nan() {
         return f64::INFINITY;
     }
@@ -87,10 +107,7 @@ pub fn margin(value: f64, reference: f64, low: f64, high: f64) -> f64 {
             f64::INFINITY
         };
     }
-    let distance = (value - reference).abs();
-    let room = if value >= reference { high - reference } else { reference - low };
-    // 0/0 is 0: exactly right where nothing else is legal.
-    let margin = if distance == 0.0 { 0.0 } else { distance / room.max(0.0) };
+    let margin = (value - reference).abs() / room(value, reference, low, high);
     // From an infinite reference all that is finite is as far away as the end of the interval.
     if margin.is_nan() { 1.0 } else { margin }
 }

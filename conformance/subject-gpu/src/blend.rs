@@ -58,7 +58,7 @@ fn batch(target: TargetFormat, pieces: &[&Piece]) -> Batch {
     for piece in pieces {
         let cases: Vec<UnitCase> = (0..piece.count()).map(|k| piece.case(k)).collect();
         for case in &cases {
-            pixel::write(target, pixel::stored(target, case.dst), &mut batch.destinations);
+            pixel::write(target, pixel::stored(target.encoding(), case.dst), &mut batch.destinations);
         }
         let draw = |batch: &mut Batch, layer: usize, constant: [f32; 4], points: &[Point]| {
             let start = small(batch.pixels.len());

@@ -258,7 +258,7 @@ pub(super) fn errors(image: &StoredImage, ideal: &Standard, all: &[&Standard]) -
             if is_open(pixel, all) {
                 gathered.skip();
             } else {
-                gathered.add(linear(image.format, k, units[k]), exact[k]);
+                gathered.add(linear(image.format.encoding(), k, units[k]), exact[k]);
             }
         }
     }

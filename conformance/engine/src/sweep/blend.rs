@@ -77,8 +77,9 @@ impl<'a> BytesWork<'a> {
             let case = piece.case(place);
             let expected = expect(self.program, TARGET, &case, &Rules::RIGHT, self.profile);
             let model = self.subject.known.blend_model;
-            let predicted =
-                model.map(|model| model.predict(self.program, piece.route, &case, pixel::stored(TARGET, case.dst)));
+            let predicted = model.map(|model| {
+                model.predict(self.program, piece.route, &case, pixel::stored(TARGET.encoding(), case.dst))
+            });
             for (component, number) in (first..to).take(COMPONENTS).enumerate() {
                 let value = pixel[component];
                 let verdict = expected.judge(TARGET, component, value);

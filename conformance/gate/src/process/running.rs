@@ -99,6 +99,14 @@ impl Running {
         Ok(Self { child, ends_all, input, framing, events, mark, complaint, listening })
     }
 
+    /// That no whole line came for some seconds, in words.
+    pub(super) fn said_no_line_for(&self, seconds: f64) -> String {
+        self.framing.open_line().map_or_else(
+            || format!("said nothing for {seconds:.1} s"),
+            |line| format!("said no whole line for {seconds:.1} s: {line}"),
+        )
+    }
+
     /// Writes lines in a thread of its own, since a renderer may answer before it has read all.
     pub(super) fn send(&mut self, text: Vec<u8>) -> Option<std::thread::JoinHandle<Option<ChildStdin>>> {
         let mut input = self.input.take()?;

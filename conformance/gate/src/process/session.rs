@@ -303,11 +303,7 @@ impl Session {
                 }
                 Err(RecvTimeoutError::Timeout) if self.is_stopped() => "was stopped before its hello".into(),
                 Err(RecvTimeoutError::Timeout) => {
-                    let seconds = until.saturating_duration_since(begun).as_secs_f64();
-                    running.framing.open_line().map_or_else(
-                        || format!("said nothing for {seconds:.1} s"),
-                        |line| format!("said no whole line for {seconds:.1} s: {line}"),
-                    )
+                    running.said_no_line_for(until.saturating_duration_since(begun).as_secs_f64())
                 }
             };
             running.kill();

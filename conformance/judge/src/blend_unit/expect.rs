@@ -8,7 +8,7 @@
 //!
 //! Layers chain: what may be left by one is what the next is blended over, so the bound grows as it must.
 
-use super::pixel::{self, Units};
+use super::pixel::{self, Units, step_above, step_below};
 use super::policy::promises_nothing;
 use super::rules::{Clamp, Rules};
 use lightmeter_arithmetic::fixed::{Narrow, Unit, Wide};
@@ -35,6 +35,9 @@ const SNAP: f64 = 1e-9;
 /// How far the decoding of a stored sRGB component may err, in encoded steps.
 const DECODING: f64 = 0.5;
 
+/// In the place of a constant that a state does not read.
+const UNREAD: Rgba<f64> = Vector([0.0; 4]);
+
 /// How far a binary32 unit may err in encoding, in steps: a power of relative error 2⁻²⁰ or so.
 const ENCODING: f64 = 1.0 / 1024.0;
 
@@ -48,12 +51,13 @@ pub fn expect(
     profile: &Profile,
 ) -> ExpectedPixel {
     let (case, target) = (&rules.case(case), rules.target(target));
-    let start = pixel::stored(target, case.dst);
+    let encoding = target.encoding();
+    let start = pixel::stored(encoding, case.dst);
     let reference = reference(program, target, case, rules, start);
-    let (low, high) = match target.encoding() {
+    let (low, high) = match encoding {
         Encoding::Float32 => profile.scope(|| legal_on_floats::<F32>(program, case, rules, start)),
         Encoding::Float16 => profile.scope(|| legal_on_floats::<F16>(program, case, rules, start)),
-        Encoding::Unorm8 | Encoding::Srgb8 => legal_in_steps(program, target, case, rules, start),
+        Encoding::Unorm8 | Encoding::Srgb8 => legal_in_steps(program, encoding, case, rules, start),
     };
     let mut expected = ExpectedPixel { reference, low, high };
     if program.is_special() {
@@ -65,19 +69,21 @@ pub fn expect(
 }
 
 fn reference(program: Program, target: TargetFormat, case: &UnitCase, rules: &Rules, start: Units) -> Units {
-    let mut below = by_component(|k| pixel::linear(target, rules.stored_as(k), start[k]));
-    let clamps = rules.clamps(target);
+    let (encoding, clamps) = (target.encoding(), rules.clamps(target));
+    let mut below = by_component(|k| pixel::linear(encoding, rules.stored_as(k), start[k]));
     let operand = |color: [f32; 4]| {
         Vector(color.map(|c| if clamps == Clamp::Operands { f64::from(c).clamp(0.0, 1.0) } else { c.into() }))
     };
     for number in 0..case.layers {
         let (state, mask) = program.layer(number);
-        let of = Operands { src: operand(case.sources[number]), dst: below, constant: operand(case.constant) };
+        let state = rules.state(state);
+        let constant = if state.reads_constant() { operand(case.constant) } else { UNREAD };
+        let of = Operands { src: operand(case.sources[number]), dst: below, constant };
         let blended = rules.blend(state, &of);
         let result = if clamps == Clamp::Nothing { blended } else { blended.map(|c| c.clamp(0.0, 1.0)) };
         below = masked(rules.mask(mask), result, below);
     }
-    by_component(|k| pixel::units(target, rules.stored_as(k), below[k])).0
+    by_component(|k| pixel::units(encoding, rules.stored_as(k), below[k])).0
 }
 
 /// What a pixel of the target may hold after a draw, in the target's units: from the source's and from what was there.
@@ -100,11 +106,19 @@ pub fn over(
             let mut pixel = (low, high);
             match state {
                 Some(state) => {
-                    layer_in_steps(target, &Rules::RIGHT, (state, WriteMask::ALL), source, constant, &mut pixel);
+                    layer_in_steps(
+                        target.encoding(),
+                        &Rules::RIGHT,
+                        (state, WriteMask::ALL),
+                        source,
+                        constant,
+                        &mut pixel,
+                    );
                 }
                 None => {
                     for (k, (low, high)) in source.into_iter().enumerate() {
-                        (pixel.0[k], pixel.1[k]) = steps(target, k, low.clamp(0.0, 1.0), high.clamp(0.0, 1.0));
+                        (pixel.0[k], pixel.1[k]) =
+                            steps(target.encoding(), k, low.clamp(0.0, 1.0), high.clamp(0.0, 1.0));
                     }
                 }
             }
@@ -127,7 +141,8 @@ fn on_floats<F: Format>(
     let left = match state {
         Some(state) => {
             let dst = by_component(|k| number((low[k], high[k])));
-            Rules::RIGHT.blend(state, &Operands { src, dst, constant: Vector(constant.map(number)) })
+            Rules::RIGHT
+                .blend(Rules::RIGHT.state(state), &Operands { src, dst, constant: Vector(constant.map(number)) })
         }
         None => src,
     };
@@ -139,7 +154,9 @@ fn legal_on_floats<F: Format>(program: Program, case: &UnitCase, rules: &Rules, 
     let mut below = Vector(start.map(|c| if c.is_nan() { Accept::ANY } else { Accept::exactly(c) }));
     for number in 0..case.layers {
         let (state, mask) = program.layer(number);
-        let of = Operands { src: input(case.sources[number]), dst: below, constant: input(case.constant) };
+        let state = rules.state(state);
+        let constant = if state.reads_constant() { input(case.constant) } else { Vector([Accept::exactly(0.0); 4]) };
+        let of = Operands { src: input(case.sources[number]), dst: below, constant };
         let mut blended = rules.blend(state, &of);
         if rules.clamp == Clamp::Result {
             blended = blended.map(|c| c.clamp(Accept::exactly(0.0), Accept::exactly(1.0)));
@@ -151,7 +168,7 @@ fn legal_on_floats<F: Format>(program: Program, case: &UnitCase, rules: &Rules, 
 
 fn legal_in_steps(
     program: Program,
-    target: TargetFormat,
+    encoding: Encoding,
     case: &UnitCase,
     rules: &Rules,
     start: Units,
@@ -160,27 +177,28 @@ fn legal_in_steps(
     let exactly = |color: [f32; 4]| color.map(|c| (c.into(), c.into()));
     for number in 0..case.layers {
         let (source, constant) = (exactly(case.sources[number]), exactly(case.constant));
-        layer_in_steps(target, rules, program.layer(number), source, constant, &mut pixel);
+        layer_in_steps(encoding, rules, program.layer(number), source, constant, &mut pixel);
     }
     pixel
 }
 
 /// One layer on a target of 8 bits.
 fn layer_in_steps(
-    target: TargetFormat,
+    encoding: Encoding,
     rules: &Rules,
     (state, mask): (Separate, WriteMask),
     source: Between,
     constant: Between,
     (low, high): &mut (Units, Units),
 ) {
-    let encoded = |k: usize| is_encoded(target, rules.stored_as(k));
+    let encoded = |k: usize| is_encoded(encoding, rules.stored_as(k));
     // What is stored is read exactly, but for the decoding of sRGB.
     let before = by_component(|k| {
         let slack = if encoded(k) { DECODING } else { 0.0 };
-        let at = |steps: f64| pixel::linear(target, rules.stored_as(k), steps.clamp(0.0, 255.0));
+        let at = |steps: f64| pixel::linear(encoding, rules.stored_as(k), steps.clamp(0.0, 255.0));
         (at(low[k] - slack), at(high[k] + slack))
     });
+    let state = rules.state(state);
     let wide = blended::<Wide>(rules, state, source, constant, before);
     let narrow = blended::<Narrow>(rules, state, source, constant, before);
     for k in (0..4).filter(|&k| rules.mask(mask).0[k]) {
@@ -188,10 +206,10 @@ fn layer_in_steps(
         if encoded(k) && (wide[k].low(), wide[k].high()).eq(&before[k]) {
             continue;
         }
-        (low[k], high[k]) = steps(target, rules.stored_as(k), wide[k].low(), wide[k].high());
+        (low[k], high[k]) = steps(encoding, rules.stored_as(k), wide[k].low(), wide[k].high());
         if !encoded(k) {
-            let at = |linear: f64| pixel::units(target, rules.stored_as(k), linear);
-            let (least, most) = ((at(narrow[k].low()) - SNAP).ceil(), (at(narrow[k].high()) + SNAP).floor());
+            let at = |linear: f64| pixel::units(encoding, rules.stored_as(k), linear);
+            let (least, most) = (step_above(at(narrow[k].low()) - SNAP), step_below(at(narrow[k].high()) + SNAP));
             if least <= most {
                 low[k] = low[k].min(least);
                 high[k] = high[k].max(most);
@@ -200,15 +218,15 @@ fn layer_in_steps(
     }
 }
 
-const fn is_encoded(target: TargetFormat, stored_as: usize) -> bool {
-    matches!(target.encoding(), Encoding::Srgb8) && stored_as < 3
+const fn is_encoded(encoding: Encoding, stored_as: usize) -> bool {
+    matches!(encoding, Encoding::Srgb8) && stored_as < 3
 }
 
 /// Either neighbour among the steps, of every value between two.
-fn steps(target: TargetFormat, stored_as: usize, low: f64, high: f64) -> (f64, f64) {
-    let at = |linear: f64| pixel::units(target, stored_as, linear);
+fn steps(encoding: Encoding, stored_as: usize, low: f64, high: f64) -> (f64, f64) {
+    let at = |linear: f64| pixel::units(encoding, stored_as, linear);
     // A step that is met but for f64's own rounding is that step; in sRGB's powers a device errs by more.
-    let near = if is_encoded(target, stored_as) { -ENCODING } else { SNAP };
+    let near = if is_encoded(encoding, stored_as) { -ENCODING } else { SNAP };
     (whole_step_below(at(low) + near), whole_step_above(at(high) - near))
 }
 
@@ -242,7 +260,8 @@ fn blended<U: Unit>(
         }))
     };
     let dst = Vector(before.0.map(|(low, high)| Fixed::between(low, high)));
-    let of = Operands { src: operand(source), dst, constant: operand(constant) };
+    let constant = if state.reads_constant() { operand(constant) } else { Vector([Fixed::between(0.0, 0.0); 4]) };
+    let of = Operands { src: operand(source), dst, constant };
     rules.blend(state, &of).map(Fixed::within_unit)
 }
 

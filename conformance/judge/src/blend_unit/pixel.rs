@@ -10,8 +10,8 @@ pub type Units = [f64; 4];
 
 /// A colour as a target holds it from the start: the nearest that it can hold. A step of an sRGB target is the encoded one.
 #[must_use]
-pub fn stored(target: TargetFormat, color: [f32; 4]) -> Units {
-    color.map(|c| match target.encoding() {
+pub fn stored(encoding: Encoding, color: [f32; 4]) -> Units {
+    color.map(|c| match encoding {
         Encoding::Float32 => c.into(),
         Encoding::Float16 => f16::from_f32(c).into(),
         Encoding::Unorm8 | Encoding::Srgb8 => nearest_step(255.0 * f64::from(c.clamp(0.0, 1.0))),
@@ -25,10 +25,22 @@ pub(super) fn nearest_step(steps: f64) -> f64 {
     (steps + LAST_PLACE_IS_1) - LAST_PLACE_IS_1
 }
 
+/// The whole number below a number of steps, by the same way.
+pub(super) fn step_below(steps: f64) -> f64 {
+    let nearest = nearest_step(steps);
+    if nearest > steps { nearest - 1.0 } else { nearest }
+}
+
+/// The whole number above a number of steps.
+pub(super) fn step_above(steps: f64) -> f64 {
+    let nearest = nearest_step(steps);
+    if nearest < steps { nearest + 1.0 } else { nearest }
+}
+
 /// The value that a component is blended as, for steps that need not be whole.
 #[must_use]
-pub fn linear(target: TargetFormat, component: usize, units: f64) -> f64 {
-    match target.encoding() {
+pub fn linear(encoding: Encoding, component: usize, units: f64) -> f64 {
+    match encoding {
         Encoding::Float32 | Encoding::Float16 => units,
         Encoding::Srgb8 if component < 3 => decoded(units),
         Encoding::Unorm8 | Encoding::Srgb8 => units / 255.0,
@@ -55,8 +67,8 @@ fn decoded(steps: f64) -> f64 {
 
 /// The inverse of [`linear`]: a blended value in the target's units, not rounded.
 #[must_use]
-pub fn units(target: TargetFormat, component: usize, linear: f64) -> f64 {
-    match target.encoding() {
+pub fn units(encoding: Encoding, component: usize, linear: f64) -> f64 {
+    match encoding {
         Encoding::Float32 | Encoding::Float16 => linear,
         Encoding::Srgb8 if component < 3 => 255.0 * srgb_encode(linear),
         Encoding::Unorm8 | Encoding::Srgb8 => 255.0 * linear,
@@ -106,7 +118,7 @@ mod tests {
     #[test]
     fn pixels_are_read_back_as_they_were_written() {
         for target in TargetFormat::ALL {
-            let pixel = stored(target, [0.25, 1.5, -0.5, 1.0]);
+            let pixel = stored(target.encoding(), [0.25, 1.5, -0.5, 1.0]);
             let mut bytes = vec![];
             write(target, [0.0; 4], &mut bytes);
             write(target, pixel, &mut bytes);
@@ -114,17 +126,19 @@ mod tests {
             assert_eq!(read(target, &bytes, 1).map(f64::to_bits), pixel.map(f64::to_bits), "{}", target.name());
         }
         assert_eq!(
-            stored(TargetFormat::Bgra8Unorm, [0.25, 1.5, -0.5, 1.0]).map(f64::to_bits),
+            stored(Encoding::Unorm8, [0.25, 1.5, -0.5, 1.0]).map(f64::to_bits),
             [64.0, 255.0, 0.0, 255.0].map(f64::to_bits)
         );
     }
 
     #[test]
-    fn the_nearest_step_is_the_even_one_of_two() {
+    fn steps_are_those_of_the_standard_library() {
         for half in -2..=512 {
             let steps = f64::from(half) / 2.0;
             for steps in [steps, steps.next_down(), steps.next_up()] {
                 assert!((nearest_step(steps) - steps.round_ties_even()).abs() <= 0.0, "{steps}");
+                assert!((step_below(steps) - steps.floor()).abs() <= 0.0, "{steps}");
+                assert!((step_above(steps) - steps.ceil()).abs() <= 0.0, "{steps}");
             }
         }
     }
@@ -145,7 +159,8 @@ mod tests {
         for target in TargetFormat::ALL {
             for step in 0..=255 {
                 let (there, component) = (f64::from(step), usize::try_from(step % 4).expect("small"));
-                let back = units(target, component, linear(target, component, there));
+                let encoding = target.encoding();
+                let back = units(encoding, component, linear(encoding, component, there));
                 assert!((back - there).abs() < 1e-3, "{}: {there} {back}", target.name());
             }
         }

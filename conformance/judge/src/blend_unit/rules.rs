@@ -1,6 +1,6 @@
 //! The rules that a blend unit follows, and the faulty ones that tell which mistake was made.
 
-use super::pixel::nearest_step;
+use super::pixel::{nearest_step, step_above, step_below};
 use lightmeter_catalogue::cases::blend::UnitCase;
 use lightmeter_document::stores::StoreCounts;
 use lightmeter_reference::blend::{Operands, Saturate, blend_separate, factor};
@@ -23,8 +23,8 @@ pub enum Clamp {
 /// How a blend unit computes.
 #[derive(Clone, Copy, Debug)]
 pub struct Rules {
-    factor: fn(Factor) -> Factor,
-    equation: fn(Equation) -> Equation,
+    factor: Option<fn(Factor) -> Factor>,
+    equation: Option<fn(Equation) -> Equation>,
     saturate: Saturate,
     alpha_state_for_color: bool,
     factors_in_min_and_max: bool,
@@ -77,11 +77,11 @@ impl Store {
     pub fn step(self, steps: f64) -> f64 {
         let step = match self {
             Self::Nearest => nearest_step(steps),
-            Self::Truncated => steps.floor(),
-            Self::Times256 => (steps * (256.0 / 255.0)).floor(),
-            Self::RoundedUp => steps.ceil(),
-            Self::StepUp => steps.round_ties_even() + 1.0,
-            Self::StepDown => steps.round_ties_even() - 1.0,
+            Self::Truncated => step_below(steps),
+            Self::Times256 => step_below(steps * (256.0 / 255.0)),
+            Self::RoundedUp => step_above(steps),
+            Self::StepUp => nearest_step(steps) + 1.0,
+            Self::StepDown => nearest_step(steps) - 1.0,
         };
         step.clamp(0.0, 255.0)
     }
@@ -90,8 +90,8 @@ impl Store {
 impl Rules {
     /// What OpenGL, Vulkan and WebGPU define.
     pub const RIGHT: Self = Self {
-        factor: |factor| factor,
-        equation: |equation| equation,
+        factor: None,
+        equation: None,
         saturate: Saturate::SourceAndDestination,
         alpha_state_for_color: false,
         factors_in_min_and_max: false,
@@ -168,24 +168,33 @@ impl Rules {
         if self.mask_ignored { WriteMask::ALL } else { mask }
     }
 
-    /// A draw by these rules, not yet clamped.
-    pub(super) fn blend<R: Real>(&self, state: Separate, of: &Operands<R>) -> Rgba<R> {
-        let color = self.of(if self.alpha_state_for_color { state.alpha } else { state.color });
+    /// A state as it is drawn by.
+    #[inline]
+    pub(super) fn state(&self, state: Separate) -> Separate {
+        let is_itself = self.factor.is_none() && self.equation.is_none();
+        if is_itself && !self.factors_exchanged && !self.alpha_state_for_color { state } else { self.changed(state) }
+    }
+
+    fn changed(&self, state: Separate) -> Separate {
         let alpha = self.of(state.alpha);
+        Separate { color: if self.alpha_state_for_color { alpha } else { self.of(state.color) }, alpha }
+    }
+
+    /// A draw by these rules and a [`Self::state`] of them, not yet clamped.
+    pub(super) fn blend<R: Real>(&self, drawn: Separate, of: &Operands<R>) -> Rgba<R> {
+        let Separate { color, alpha } = drawn;
         if self.factors_in_min_and_max && (color.equation.ignores_factors() || alpha.equation.ignores_factors()) {
             let (color, alpha) = (self.scaled(color, of), self.scaled(alpha, of));
             return color.xyz().extend(alpha.w());
         }
-        blend_separate(Separate { color, alpha }, of, self.saturate)
+        blend_separate(drawn, of, self.saturate)
     }
 
     fn of(&self, state: State) -> State {
         let state = if self.factors_exchanged { State { src: state.dst, dst: state.src, ..state } } else { state };
-        State {
-            equation: (self.equation)(state.equation),
-            src: (self.factor)(state.src),
-            dst: (self.factor)(state.dst),
-        }
+        let factor = |factor| self.factor.map_or(factor, |exchanged| exchanged(factor));
+        let equation = self.equation.map_or(state.equation, |exchanged| exchanged(state.equation));
+        State { equation, src: factor(state.src), dst: factor(state.dst) }
     }
 
     /// MIN and MAX of the products.
@@ -267,11 +276,11 @@ pub const FAULTS: &[UnitFault] = &[
         "src-alpha-for-one",
         "SRC_ALPHA and ONE were exchanged",
         Rules {
-            factor: |factor| match factor {
+            factor: Some(|factor| match factor {
                 Factor::SrcAlpha => Factor::One,
                 Factor::One => Factor::SrcAlpha,
                 other => other,
-            },
+            }),
             ..Rules::RIGHT
         },
     ),
@@ -279,11 +288,11 @@ pub const FAULTS: &[UnitFault] = &[
         "one-minus-src-alpha-for-zero",
         "ONE_MINUS_SRC_ALPHA and ZERO were exchanged",
         Rules {
-            factor: |factor| match factor {
+            factor: Some(|factor| match factor {
                 Factor::OneMinusSrcAlpha => Factor::Zero,
                 Factor::Zero => Factor::OneMinusSrcAlpha,
                 other => other,
-            },
+            }),
             ..Rules::RIGHT
         },
     ),
@@ -296,11 +305,11 @@ pub const FAULTS: &[UnitFault] = &[
         "subtract-reversed",
         "the two subtractions were exchanged",
         Rules {
-            equation: |equation| match equation {
+            equation: Some(|equation| match equation {
                 Equation::Subtract => Equation::ReverseSubtract,
                 Equation::ReverseSubtract => Equation::Subtract,
                 other => other,
-            },
+            }),
             ..Rules::RIGHT
         },
     ),
@@ -308,11 +317,11 @@ pub const FAULTS: &[UnitFault] = &[
         "constant-color-for-alpha",
         "the constant's colour were read for its alpha",
         Rules {
-            factor: |factor| match factor {
+            factor: Some(|factor| match factor {
                 Factor::ConstantAlpha => Factor::ConstantColor,
                 Factor::OneMinusConstantAlpha => Factor::OneMinusConstantColor,
                 other => other,
-            },
+            }),
             ..Rules::RIGHT
         },
     ),
@@ -320,7 +329,7 @@ pub const FAULTS: &[UnitFault] = &[
         "alpha-factor-for-color",
         "colour factors gave their alpha to every component",
         Rules {
-            factor: |factor| match factor {
+            factor: Some(|factor| match factor {
                 Factor::SrcColor => Factor::SrcAlpha,
                 Factor::OneMinusSrcColor => Factor::OneMinusSrcAlpha,
                 Factor::DstColor => Factor::DstAlpha,
@@ -328,7 +337,7 @@ pub const FAULTS: &[UnitFault] = &[
                 Factor::ConstantColor => Factor::ConstantAlpha,
                 Factor::OneMinusConstantColor => Factor::OneMinusConstantAlpha,
                 other => other,
-            },
+            }),
             ..Rules::RIGHT
         },
     ),

@@ -11,6 +11,7 @@
 //! where such errors cancel, where not most values are the nearest or the mean distance is an eighth of a step (Mesa's: 80 %
 //! and 0.09 at worst).
 
+use super::pixel::step_below;
 use super::rules::Store;
 pub use lightmeter_document::sweep::StoreCounts;
 
@@ -54,7 +55,7 @@ pub fn problem_of(components: &[StoreCounts; 4], states: usize) -> Option<String
 
 impl Stores for StoreCounts {
     fn count(&mut self, reference: f64, value: f64) {
-        let fraction = reference - reference.floor();
+        let fraction = reference - step_below(reference);
         if !(NEAR..=1.0 - NEAR).contains(&fraction) || (fraction - 0.5).abs() < NEAR {
             return;
         }

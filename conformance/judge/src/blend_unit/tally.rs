@@ -31,6 +31,7 @@ pub struct DrawnState {
 
 impl ExpectedPixel {
     /// Judges a component.
+    #[inline]
     #[must_use]
     pub fn judge(&self, target: TargetFormat, k: usize, value: f64) -> Verdict {
         let (reference, low, high) = (self.reference[k], self.low[k], self.high[k]);
@@ -56,6 +57,10 @@ fn deviates(known: &Known, target: TargetFormat, reference: f64) -> Option<&'sta
 
 /// Beyond the greatest finite number infinity is as near as that number.
 fn distance(value: f64, reference: f64, most: f64) -> f64 {
+    // Nearly all are neither infinite nor NaN.
+    if value.abs() <= most && reference.abs() <= most {
+        return (value - reference).abs();
+    }
     let finite = |x: f64| x.clamp(-most, most);
     if value.is_nan() || reference.is_nan() { f64::INFINITY } else { (finite(value) - finite(reference)).abs() }
 }
@@ -107,7 +112,7 @@ impl UnitTally {
         let expected = expect(program, target, case, &Rules::RIGHT, profile);
         self.verdicts.totals.cases += 1;
         let (state, mask) = program.layer(0);
-        let tells = tells_stores(state, case);
+        let tells = target.is_unorm() && tells_stores(state, case);
         let before = self.verdicts.totals.failed;
         let mut errors = (0.0, 0.0, 0);
         for (k, value) in pixel.into_iter().enumerate() {
@@ -133,7 +138,7 @@ impl UnitTally {
             self.verdicts.see_margin(verdict.margin, place);
             if target.is_unorm() {
                 count_tier(&mut self.tiers, expected.reference[k], value, verdict.outcome);
-                if mask.0[k] && tells {
+                if tells && mask.0[k] {
                     self.stores[k].count(expected.reference[k], value);
                 }
             }
@@ -155,7 +160,7 @@ impl UnitTally {
             self.verdicts.fail(place, simple, || ());
         }
         if let Some(model) = known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8) {
-            let predicted = model.predict(program, route, case, super::pixel::stored(target, case.dst));
+            let predicted = model.predict(program, route, case, super::pixel::stored(target.encoding(), case.dst));
             let others = (0..4).filter(|&k| predicted[k].to_bits() != pixel[k].to_bits()).count() as u64;
             self.model.0 += 4;
             self.model.1 += others;

@@ -74,7 +74,7 @@ impl StoredImage {
     /// The same, not rounded.
     #[must_use]
     pub fn unrounded(image: &Image, format: TargetFormat) -> Self {
-        let units = |pixel: &[f64; 4]| std::array::from_fn(|k| pixel::units(format, k, pixel[k]));
+        let units = |pixel: &[f64; 4]| std::array::from_fn(|k| pixel::units(format.encoding(), k, pixel[k]));
         Self { width: image.width, format, pixels: image.pixels.iter().map(units).collect() }
     }
 
@@ -170,7 +170,7 @@ impl StoredImage {
         let linear = |pixel: &Units| -> [f32; 4] {
             std::array::from_fn(|k| match self.format.encoding() {
                 Encoding::Float32 | Encoding::Float16 => pixel[k] as f32,
-                _ => pixel::linear(self.format, k, pixel[k]) as f32,
+                _ => pixel::linear(self.format.encoding(), k, pixel[k]) as f32,
             })
         };
         self.pixels.iter().flat_map(linear).collect()

@@ -271,7 +271,7 @@ impl<'a> Trial<'a> {
             // The bounds of a frame already include the rounding of the store. A mistake that changes colours acts before the store, so the
             // changed bounds have to be rounded once more: on an 8-bit target, outward to the neighbouring steps.
             let [low, high] = [legal.low, legal.high].map(|units| {
-                let mut pixels = [std::array::from_fn(|k| pixel::linear(format, k, units[k]))];
+                let mut pixels = [std::array::from_fn(|k| pixel::linear(format.encoding(), k, units[k]))];
                 colors(&mut pixels, faults);
                 unrounded(format, pixels[0])
             });
@@ -389,7 +389,7 @@ fn spread<T: Copy>(of: &[T], most: usize) -> impl Iterator<Item = T> {
 
 /// A linear colour in the target's units.
 fn unrounded(format: TargetFormat, color: [f64; 4]) -> [f64; 4] {
-    std::array::from_fn(|k| pixel::units(format, k, color[k]))
+    std::array::from_fn(|k| pixel::units(format.encoding(), k, color[k]))
 }
 
 /// The same, rounded to it.
