@@ -142,7 +142,17 @@ impl Renderer<'_> {
         }
         if !matches!(
             way,
-            "f4" | "f8" | "short" | "other" | "type" | "wrong" | "surplus" | "few" | "huge" | "both" | "joined"
+            "f4" | "f8"
+                | "short"
+                | "other"
+                | "type"
+                | "wrong"
+                | "surplus"
+                | "few"
+                | "huge"
+                | "both"
+                | "joined"
+                | "unended"
         ) {
             writeln!(out, "{head}")?;
             return Ok(());
@@ -157,6 +167,8 @@ impl Renderer<'_> {
             "surplus" => data.extend([0x7f; 5]),
             "few" => data.truncate(data.len() - 8),
             "both" => head["lines"] = json!(true),
+            // No byte of it is a newline.
+            "unended" => data.fill(0),
             _ => {}
         }
         head["dtype"] = json!(match way {
@@ -164,7 +176,7 @@ impl Renderer<'_> {
             "type" => "<i4",
             _ => "<f4",
         });
-        write!(out, "{head}{}", if way == "joined" { "" } else { "\n" })?;
+        write!(out, "{head}{}", if matches!(way, "joined" | "unended") { "" } else { "\n" })?;
         out.write_all(&data)?;
         Ok(())
     }

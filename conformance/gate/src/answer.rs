@@ -138,10 +138,23 @@ pub fn read(line: &[u8]) -> Result<Line<'_>, String> {
                 }
             }
             let begins_as_one = text.trim_start().starts_with('{');
-            let what = if begins_as_one { error.to_string() } else { "it is no JSON object".into() };
+            let what = match behind(text) {
+                _ if !begins_as_one => "it is no JSON object".into(),
+                Some(rest) if rest.starts_with('{') => {
+                    "another answer stands behind it; expected each on a line of its own".into()
+                }
+                _ => error.to_string(),
+            };
             Err(quoted(format!("{what}; expected {EXPECTED}")))
         }
     }
+}
+
+/// What stands behind a first object of JSON; `None` where there is none.
+fn behind(text: &str) -> Option<&str> {
+    let mut values = serde_json::Deserializer::from_str(text).into_iter::<serde::de::IgnoredAny>();
+    values.next()?.ok()?;
+    text.get(values.byte_offset()..).map(str::trim_start)
 }
 
 /// What Python, and C's printf, write for numbers that JSON has not; longer ones first.
@@ -249,17 +262,17 @@ const MOST_SKIPPED: usize = 16 << 20;
 /// # Errors
 /// Where the line is too long, or the stream fails.
 pub fn next(stream: &mut impl BufRead, line: &mut Vec<u8>) -> Result<bool, Unread> {
-    next_told(stream, line, |_| {})
+    next_told(stream, line, |_, _| {})
 }
 
-/// The same, which tells how much of the line has come before more of it is waited for.
+/// The same, which tells what is kept of the line and how many bytes of it have come before more of it is waited for.
 ///
 /// # Errors
 /// Where the line is too long, or the stream fails.
 pub(super) fn next_told(
     stream: &mut impl BufRead,
     line: &mut Vec<u8>,
-    mut waits: impl FnMut(&[u8]),
+    mut waits: impl FnMut(&[u8], usize),
 ) -> Result<bool, Unread> {
     line.clear();
     let (mut dropped, mut skipped) = (false, 0);
@@ -294,7 +307,7 @@ pub(super) fn next_told(
             }
             return Ok(true);
         }
-        waits(line);
+        waits(line, line.len() + skipped);
     }
 }
 
@@ -303,7 +316,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_are_read_and_what_is_wrong_is_said() {
+    fn lines_are_read() {
         let value = |numbers: &[f64]| Line::Value("a".into(), numbers.to_vec());
         assert_eq!(read(br#"{"id":"a","value":[1,-2.5,1e-3]}"#), Ok(value(&[1.0, -2.5, 1e-3])));
         assert_eq!(
@@ -347,6 +360,10 @@ mod tests {
             assert!(matches!(read(line), Ok(Line::Value(read, _)) if read == id));
         }
         assert_eq!(super::id(br#"{"id":"a","value":[1,2"#).as_deref(), Some("a"));
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_line_is_said() {
         for (line, said) in [
             (&br#"{"id":"a","value":[1,2"#[..], "`{\"id\":\"a\",\"value\":[1,2`: EOF"),
             (br#"{"id":"a","value":["nan"]}"#, "expected"),
@@ -356,6 +373,11 @@ mod tests {
             (br#"{"id":"a","values":[1]}"#, "none, or more than one"),
             (br#"{"id":"fog/exp","skip":"no fog","rows":[-1]}"#, "its `rows`"),
             (br#"[1]"#, "expected an answer"),
+            (
+                br#"{"id":"a","value":[1]}{"id":"b","value":[1]}"#,
+                "another answer stands behind it; expected each on a line",
+            ),
+            (br#"{"id":"a","value":[1]} x"#, "trailing characters"),
             (
                 br#"{"id":"a","value":[NaN],"skip":"x"}"#,
                 "`{\"id\":\"a\",\"value\":[NaN],\"skip\":\"x\"}`: it has none, or",

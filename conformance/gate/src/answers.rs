@@ -55,6 +55,8 @@ pub struct AnswerFile {
     number: u64,
     /// The first line, where it is an answer.
     first: Vec<(u64, Vec<u8>)>,
+    /// The number of its first line that is not blank.
+    first_number: u64,
     /// Who answers, where the first line says so.
     pub hello: Option<Hello>,
 }
@@ -70,14 +72,15 @@ impl AnswerFile {
         let file = lightmeter_files::read::open(&path)
             .map_err(|error| PackError::Read { path: path.clone(), message: format!("{error}; {EXPECTED}") })?;
         let stream = BufReader::with_capacity(1 << 20, file);
-        let mut opened = Self { path, stream, folder, number: 0, first: vec![], hello: None };
+        let mut opened = Self { path, stream, folder, number: 0, first: vec![], first_number: 1, hello: None };
         if let Some(Ok(line)) = opened.next()? {
+            opened.first_number = opened.number;
             match answer::read(&line) {
                 Ok(Line::Hello(hello)) => opened.hello = Some(*hello),
                 Err(message) if hello::is_one(&line) => {
                     return Err(PackError::Manifest {
                         path: opened.path,
-                        message: format!("line 1: the renderer {message}"),
+                        message: format!("line {}: the renderer {message}", opened.number),
                     });
                 }
                 _ => opened.first.push((opened.number, line)),
@@ -215,7 +218,7 @@ impl FileRenderer {
         let told =
             |number: u64| source.as_ref().map_or_else(|| format!("line {number}"), |of| format!("{of}, line {number}"));
         if let Some(which) = file.hello.as_ref().and_then(|hello| self.declared.hello.difference(hello)) {
-            let what = format!("{}: another hello than that of the first file: {which}", told(1));
+            let what = format!("{}: another hello than that of the first file: {which}", told(file.first_number));
             note(&mut self.problems, "malformed", || what);
         }
         let mut lines = std::mem::take(&mut file.first);

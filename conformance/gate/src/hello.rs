@@ -7,6 +7,7 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::nearest::did_you_mean;
+use lightmeter_document::Unique;
 use lightmeter_document::gate::RendererIdentity;
 use lightmeter_document::protocol::PROTOCOL;
 use lightmeter_scene::frame::Frame;
@@ -117,7 +118,17 @@ impl Hello {
     pub(super) fn difference(&self, other: &Self) -> Option<String> {
         let (own, others) = (self.fields(), other.fields());
         let (name, value) = own.iter().find(|&(name, value)| others.get(name) != Some(value))?;
-        Some(format!("`{name}` was {}, and is {}", clipped(&value.to_string()), clipped(&others[name].to_string())))
+        let told = |value: &serde_json::Value| clipped(&value.to_string());
+        let (Some(was), Some(is)) = (value.as_array(), others[name].as_array()) else {
+            return Some(format!("`{name}` was {}, and is {}", told(value), told(&others[name])));
+        };
+        // Of lists what the other has not: they may be long.
+        Some(match (was.iter().find(|one| !is.contains(one)), is.iter().find(|one| !was.contains(one))) {
+            (Some(one), None) => format!("`{name}` had {}, and no longer has", told(one)),
+            (None, Some(one)) => format!("`{name}` has {}, and had it not", told(one)),
+            (Some(was), Some(is)) => format!("`{name}` had {}, and has {} now", told(was), told(is)),
+            (None, None) => format!("`{name}` has the same in another order, or another number of times"),
+        })
     }
 
     /// All fields, by their names.
@@ -169,15 +180,20 @@ const GREETING: &str = "hello";
 /// The field that has the renderer's name.
 const NAME: &str = "renderer";
 
-/// Whether a line is meant to say who answers: an object without an id that has one of the two words, or nearly one.
+/// Whether a line is meant to say who answers: an object without an id that has one of the two words, or nearly one beside what only a
+/// hello has.
 #[must_use]
 pub fn is_one(line: &[u8]) -> bool {
     let line = line.trim_ascii();
     let line = line.strip_prefix("\u{feff}".as_bytes()).unwrap_or(line);
-    let is_meant =
-        |name: &String| [GREETING, NAME].contains(&name.as_str()) || did_you_mean(name, [GREETING, NAME]) != ".";
-    serde_json::from_slice::<serde_json::Map<String, serde_json::Value>>(line)
-        .is_ok_and(|said| said.get("id").is_none_or(serde_json::Value::is_null) && said.keys().any(is_meant))
+    let Ok(said) = serde_json::from_slice::<serde_json::Map<String, serde_json::Value>>(line) else { return false };
+    let has = |name: &str| said.get(name).is_some_and(|value| !value.is_null());
+    let is_near = || said.keys().any(|name| did_you_mean(name, [GREETING, NAME]) != ".");
+    let is_a_hellos = || {
+        let known = Hello::default().fields();
+        said.iter().any(|(name, value)| known.contains_key(name) || value == PROTOCOL)
+    };
+    !has("id") && (has(GREETING) || has(NAME) || is_near() && is_a_hellos())
 }
 
 /// What an entry of `skips` says.
@@ -191,9 +207,12 @@ const SOURCES: &str = "[{\"id\": \"fog/exp\", \"file\": \"src/fog.glsl\", \"line
 /// What is wrong with it, in words.
 pub(super) fn read(text: &str) -> Result<Hello, String> {
     let wrong = |error: serde_json::Error| format!("said a hello that cannot be read: {error}");
-    let mut said: serde_json::Map<String, serde_json::Value> = serde_json::from_str(text).map_err(wrong)?;
+    // A field that stands twice is refused.
+    let Unique(said) = serde_json::from_str(text).map_err(wrong)?;
+    let mut said: serde_json::Map<String, serde_json::Value> = serde_json::from_value(said).map_err(wrong)?;
     // A file of answers may leave it out.
-    if let Some(protocol) = said.remove(GREETING).filter(|protocol| protocol != PROTOCOL) {
+    let protocol = said.remove(GREETING).filter(|protocol| !protocol.is_null());
+    if let Some(protocol) = protocol.filter(|protocol| protocol != PROTOCOL) {
         let protocol = protocol.as_str().map_or_else(|| protocol.to_string(), str::to_owned);
         return Err(format!("said a hello of `{}`; expected `{PROTOCOL}`", clipped(&protocol)));
     }
@@ -254,6 +273,34 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_field_that_differs_is_told() {
+        let hello = |text: &str| read(text).expect("a hello");
+        let first = hello(r#"{"renderer":"r","version":"1","formulas":["fog/exp","fog/linear"]}"#);
+        for (other, said) in [
+            (r#"{"renderer":"r","version":"1","formulas":["fog/exp","fog/linear"]}"#, None),
+            (
+                r#"{"renderer":"r","version":"2","formulas":["fog/exp","fog/linear"]}"#,
+                Some("`version` was \"1\", and is \"2\""),
+            ),
+            (r#"{"renderer":"r","version":"1","formulas":["fog/exp"]}"#, Some("had \"fog/linear\", and no longer has")),
+            (r#"{"renderer":"r","version":"1","formulas":["fog/linear","fog/exp"]}"#, Some("in another order")),
+        ] {
+            let told = first.difference(&hello(other));
+            assert!(
+                told.as_deref().map_or(said.is_none(), |told| said.is_some_and(|said| told.contains(said))),
+                "{told:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_only_looks_like_a_hello_is_none() {
+        for line in [&br#"{"rendered": 5}"#[..], br#"{"id":"fog/exp","renderer":"r"}"#, b"[1]", b"hello"] {
+            assert!(!is_one(line), "{}", String::from_utf8_lossy(line));
+        }
+    }
+
+    #[test]
     fn what_is_wrong_with_a_hello_is_said() {
         for (line, said) in [
             (&br#"{"hello":"lightmeter.protocol/9","renderer":"r"}"#[..], "expected `lightmeter.protocol/1`"),
@@ -274,6 +321,10 @@ mod tests {
             ),
             (br#"{"helo":"lightmeter.protocol/1","name":"r"}"#, "unknown field `helo`; did you mean `hello`?"),
             (br#"{"hello":1,"renderer":"r"}"#, "a hello of `1`; expected `lightmeter.protocol/1`"),
+            (
+                br#"{"hello":"lightmeter.protocol/1","renderer":"a","renderer":"b"}"#,
+                "field `renderer` stands there twice",
+            ),
             (br#"{"hello":"lightmeter.protocol/1"}"#, "a hello without `renderer`; expected such as"),
             ("\u{feff}{\"hello\":\"lightmeter.protocol/9\"}".as_bytes(), "expected `lightmeter.protocol/1`"),
             (br#"{"renderer":"r","sources":"a.c"}"#, "`sources` is no list; expected such as [{\"id\""),
@@ -288,7 +339,8 @@ mod tests {
             (br#"{"renderer":5}"#, "`renderer` is no string; expected such as \"my-renderer\""),
         ] {
             assert!(is_one(line), "{said}");
-            let error = read(std::str::from_utf8(line).expect("text")).expect_err(said);
+            let text = std::str::from_utf8(line).expect("text");
+            let error = read(text.trim_start_matches('\u{feff}')).expect_err(said);
             assert!(error.contains(said), "{error}");
         }
     }

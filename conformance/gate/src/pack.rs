@@ -420,7 +420,7 @@ pub fn read(folder: &Path) -> Result<GatePlan, PackError> {
         return Err(refused(format!("its {what} are not those that its {CHOOSE} choose: write the pack again")));
     }
     let own = plan.pack();
-    if !manifest.pack.is_empty() && manifest.pack != own {
+    if manifest.pack != own {
         return Err(refused(format!("its `pack` is not `{own}`, which its {CHOOSE} make it: write the pack again")));
     }
     Ok(plan)

@@ -188,18 +188,19 @@ fn a_process_is_asked_in_columns() {
         ("crash", 4, "cases asked in columns it ended"),
         ("hang", 4, "cases asked in columns it took longer"),
         ("few", 4, "it took longer than a case may: it announced "),
+        ("unended", 4, "bytes came behind the line of an answer in columns, and no newline between; expected one"),
     ] {
         let output = process(&formulas, &format!("columns={way}"), &["--case-timeout", "1"]);
         let (found, report) = report(&output);
         assert_eq!(found, status, "{way}: {report}");
         assert!(report.to_string().contains(said), "{way}: {report}");
         assert_eq!(count(&report, "asked"), count(&whole, "asked"), "{way}");
-        if matches!(way, "f4" | "f8" | "lines" | "crash" | "hang" | "few") {
+        if matches!(way, "f4" | "f8" | "lines" | "crash" | "hang" | "few" | "unended") {
             assert_eq!(count(&report, "passed"), count(&whole, "passed"), "{way}: {report}");
         } else {
             assert_eq!(count(&report, "passed"), 0, "{way}: {report}");
         }
-        if way == "few" {
+        if matches!(way, "few" | "unended") {
             // One wait tells it: the next formula is asked by lines at once.
             assert_eq!(report["incidents"].as_array().map(Vec::len), Some(1), "{report}");
         }

@@ -123,7 +123,7 @@ impl Session {
     /// Ends a process that failed in a batch, and tells it.
     fn fails_in_columns(&mut self, spec: &Spec, count: usize, ended: Ended) {
         let framing = self.running.as_ref().map(|running| &running.framing);
-        let cut = framing.and_then(|framing| framing.array_under_way());
+        let cut = framing.and_then(|framing| framing.array_cut_short());
         let open_line = framing.filter(|_| ended == Ended::Hung).and_then(|framing| framing.open_line());
         // One that stops within an array counts wrong, and does so again; where it is waited for in vain, at the next formula too.
         let hangs = cut.is_some() && ended == Ended::Hung;
@@ -221,7 +221,7 @@ impl Session {
             Ok(answer) => answer,
             Err(_) if let Some(behind) = behind_answer(line) => {
                 return refused(format!(
-                    "{behind} bytes stand between the line of its answer and the newline; expected none, and an array behind the newline"
+                    "{behind} bytes stand between the line of its answer and the newline; expected none"
                 ));
             }
             Err(error) => match before(line) {

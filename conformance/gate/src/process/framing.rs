@@ -79,12 +79,12 @@ impl Framing {
         Some(bytes)
     }
 
-    /// Notes as much of a line as has come before its end; nothing once the end has.
-    pub(super) fn has_come(&self, line: &[u8]) {
+    /// Notes the beginning of a line whose end has not come, and how many bytes of it have; nothing once the end has.
+    pub(super) fn has_come(&self, line: &[u8], bytes: usize) {
         let mut open = self.open_line.lock().unwrap_or_else(PoisonError::into_inner);
         open.0.clear();
         open.0.extend_from_slice(&line[..line.len().min(MOST_NOTED)]);
-        open.1 = line.len();
+        open.1 = bytes;
     }
 
     /// The line whose end has not come, in words; nothing where there is none.
@@ -98,11 +98,25 @@ impl Framing {
 
     /// What it wrote of an array or a line whose end has not come, in words.
     pub(super) fn cut_short(&self) -> Option<String> {
-        self.array_under_way().or_else(|| self.open_line())
+        self.array_cut_short().or_else(|| self.open_line())
+    }
+
+    /// What it wrote of an array that it was waited for in vain, in words: one that ends too soon, or one whose line lacks its newline.
+    pub(super) fn array_cut_short(&self) -> Option<String> {
+        self.array_under_way().or_else(|| {
+            let open = self.open_line.lock().unwrap_or_else(PoisonError::into_inner);
+            let noted = open.0.len();
+            behind_answer(&open.0).map(|behind| {
+                let bytes = behind + open.1 - noted;
+                format!(
+                    "{bytes} bytes came behind the line of an answer in columns, and no newline between; expected one"
+                )
+            })
+        })
     }
 
     /// Of the array under way how many bytes were announced and how many came, in words; nothing where none is.
-    pub(super) fn array_under_way(&self) -> Option<String> {
+    fn array_under_way(&self) -> Option<String> {
         let announced = self.announced.load(Ordering::Acquire);
         let came = self.came.load(Ordering::Acquire);
         (announced > 0).then(|| format!("it announced {announced} bytes in columns, and {came} of them came"))

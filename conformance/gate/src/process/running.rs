@@ -210,8 +210,8 @@ fn listen(output: impl std::io::Read, send: &SyncSender<Event>, framing: &Framin
     let mut stream = BufReader::with_capacity(1 << 16, output);
     let mut line = vec![];
     loop {
-        let read = answer::next_told(&mut stream, &mut line, |so_far| framing.has_come(so_far));
-        framing.has_come(&[]);
+        let read = answer::next_told(&mut stream, &mut line, |so_far, bytes| framing.has_come(so_far, bytes));
+        framing.has_come(&[], 0);
         let event = match read {
             Ok(true) => match columns_of(&line).and_then(|answer| Some((framing.length(&answer)?, answer))) {
                 Some((count, answer)) => {

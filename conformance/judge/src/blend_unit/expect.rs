@@ -77,7 +77,7 @@ fn reference(program: Program, target: TargetFormat, case: &UnitCase, rules: &Ru
     for number in 0..case.layers {
         let (state, mask) = program.layer(number);
         let state = rules.state(state);
-        let constant = if state.reads_constant() { operand(case.constant) } else { UNREAD };
+        let constant = if rules.reads_constant(state) { operand(case.constant) } else { UNREAD };
         let of = Operands { src: operand(case.sources[number]), dst: below, constant };
         let blended = rules.blend(state, &of);
         let result = if clamps == Clamp::Nothing { blended } else { blended.map(|c| c.clamp(0.0, 1.0)) };
@@ -155,7 +155,8 @@ fn legal_on_floats<F: Format>(program: Program, case: &UnitCase, rules: &Rules, 
     for number in 0..case.layers {
         let (state, mask) = program.layer(number);
         let state = rules.state(state);
-        let constant = if state.reads_constant() { input(case.constant) } else { Vector([Accept::exactly(0.0); 4]) };
+        let constant =
+            if rules.reads_constant(state) { input(case.constant) } else { Vector([Accept::exactly(0.0); 4]) };
         let of = Operands { src: input(case.sources[number]), dst: below, constant };
         let mut blended = rules.blend(state, &of);
         if rules.clamp == Clamp::Result {
@@ -260,11 +261,45 @@ fn blended<U: Unit>(
         }))
     };
     let dst = Vector(before.0.map(|(low, high)| Fixed::between(low, high)));
-    let constant = if state.reads_constant() { operand(constant) } else { Vector([Fixed::between(0.0, 0.0); 4]) };
+    let constant = if rules.reads_constant(state) { operand(constant) } else { Vector([Fixed::between(0.0, 0.0); 4]) };
     let of = Operands { src: operand(source), dst, constant };
     rules.blend(state, &of).map(Fixed::within_unit)
 }
 
 fn by_component<T>(f: impl Fn(usize) -> T) -> Rgba<T> {
     Vector(std::array::from_fn(f))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::embedded;
+    use super::super::rules::FAULTS;
+    use super::*;
+    use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::cases::blend::{MOST_LAYERS, Program};
+    use lightmeter_scene::blend::{Equation, Factor, State};
+
+    #[test]
+    fn a_constant_is_read_wherever_the_rules_read_it() {
+        let color = [0.5, 0.25, 0.75, 1.0];
+        let case = UnitCase { sources: [color; MOST_LAYERS], layers: 1, dst: [0.75; 4], constant: [0.5; 4] };
+        let rules = std::iter::once(&Rules::RIGHT).chain(FAULTS.iter().map(|fault| &fault.rules));
+        for rules in rules.filter(|rules| rules.stores_as() == super::super::rules::Store::Nearest) {
+            for equation in Equation::ALL {
+                for src in [Factor::One, Factor::ConstantColor, Factor::OneMinusConstantAlpha] {
+                    let state = State { equation, src, dst: Factor::ConstantAlpha };
+                    let program = Program::Draw(state.into(), WriteMask::ALL);
+                    let expected = expect(program, TargetFormat::Rgba32Float, &case, rules, &WGSL);
+                    let drawn = embedded::blend(program, TargetFormat::Rgba32Float, &case, rules);
+                    for (k, drawn) in drawn.into_iter().enumerate() {
+                        assert!((drawn - expected.reference[k]).abs() < 1e-6, "{state}: {drawn}, {expected:?}");
+                        assert!(
+                            (expected.low[k]..=expected.high[k]).contains(&drawn),
+                            "{state}: {drawn}, {expected:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 }

@@ -175,6 +175,11 @@ impl Rules {
         if is_itself && !self.factors_exchanged && !self.alpha_state_for_color { state } else { self.changed(state) }
     }
 
+    /// Whether a draw by a [`Self::state`] of these rules reads the blend constant.
+    pub(super) const fn reads_constant(&self, drawn: Separate) -> bool {
+        self.factors_in_min_and_max || drawn.reads_constant()
+    }
+
     fn changed(&self, state: Separate) -> Separate {
         let alpha = self.of(state.alpha);
         Separate { color: if self.alpha_state_for_color { alpha } else { self.of(state.color) }, alpha }
