@@ -77,8 +77,8 @@ impl<R: Real, const N: usize> Vector<R, N> {
 
     /// Applies `f` to each component.
     #[must_use]
-    pub fn map(self, f: impl FnMut(R) -> R) -> Self {
-        Self(self.0.map(f))
+    pub fn map(self, mut f: impl FnMut(R) -> R) -> Self {
+        Self(std::array::from_fn(|k| f(self.0[k])))
     }
 
     /// a·b = Σ aᵢbᵢ.
@@ -141,13 +141,13 @@ impl<R: Real, const N: usize> Vector<R, N> {
     /// Σ of the vectors, component by component and in any order.
     #[must_use]
     pub fn sum<const M: usize>(terms: [Self; M]) -> Self {
-        Self(std::array::from_fn(|k| R::sum(terms.map(|term| term.0[k]))))
+        Self(std::array::from_fn(|k| R::sum::<M>(std::array::from_fn(|term| terms[term].0[k]))))
     }
 
     /// Π of the vectors, component by component and in any order.
     #[must_use]
     pub fn product<const M: usize>(factors: [Self; M]) -> Self {
-        Self(std::array::from_fn(|k| R::product(factors.map(|factor| factor.0[k]))))
+        Self(std::array::from_fn(|k| R::product::<M>(std::array::from_fn(|factor| factors[factor].0[k]))))
     }
 
     /// Names each component for an arithmetic that records them.
@@ -206,21 +206,21 @@ impl<R: Real, const N: usize> Components<R> for Vector<R, N> {
 impl<R: Real, const N: usize> Add for Vector<R, N> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        self.zip(other, Add::add)
+        Self(std::array::from_fn(|k| self.0[k] + other.0[k]))
     }
 }
 
 impl<R: Real, const N: usize> Sub for Vector<R, N> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        self.zip(other, Sub::sub)
+        Self(std::array::from_fn(|k| self.0[k] - other.0[k]))
     }
 }
 
 impl<R: Real, const N: usize> Mul for Vector<R, N> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        self.zip(other, Mul::mul)
+        Self(std::array::from_fn(|k| self.0[k] * other.0[k]))
     }
 }
 
@@ -246,7 +246,8 @@ impl<R: Real> Mat3<R> {
     /// M·v.
     #[must_use]
     pub fn transform(&self, v: Vec3<R>) -> Vec3<R> {
-        Vector::sum([self.0[0].scale(v[0]), self.0[1].scale(v[1]), self.0[2].scale(v[2])])
+        let [a, b, c] = &self.0;
+        Vector(std::array::from_fn(|k| R::sum([a[k] * v[0], b[k] * v[1], c[k] * v[2]])))
     }
 
     /// The cofactors: det(M)·M⁻ᵀ.
@@ -265,7 +266,8 @@ impl<R: Real> Mat4<R> {
     /// M·v.
     #[must_use]
     pub fn transform(&self, v: Vec4<R>) -> Vec4<R> {
-        Vector::sum([self.0[0].scale(v[0]), self.0[1].scale(v[1]), self.0[2].scale(v[2]), self.0[3].scale(v[3])])
+        let [a, b, c, d] = &self.0;
+        Vector(std::array::from_fn(|k| R::sum([a[k] * v[0], b[k] * v[1], c[k] * v[2], d[k] * v[3]])))
     }
 
     /// The upper left 3 × 3 part, which is what acts on directions.

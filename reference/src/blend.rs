@@ -63,13 +63,14 @@ pub fn factor<R: Real>(factor: Factor, of: &Operands<R>, saturate: Saturate) -> 
 pub fn blend<R: Real>(state: State, of: &Operands<R>, saturate: Saturate) -> Rgba<R> {
     let s = || (of.src * factor(state.src, of, saturate).named("S")).named("Cs·S");
     let d = || (of.dst * factor(state.dst, of, saturate).named("D")).named("Cd·D");
-    match state.equation {
-        Equation::Add => Vector::sum([s(), d()]),
-        Equation::Subtract => Vector::sum([s(), -d()]),
-        Equation::ReverseSubtract => Vector::sum([d(), -s()]),
-        Equation::Min => of.src.zip(of.dst, R::min),
-        Equation::Max => of.src.zip(of.dst, R::max),
-    }
+    let [a, b] = match state.equation {
+        Equation::Add => [s(), d()],
+        Equation::Subtract => [s(), -d()],
+        Equation::ReverseSubtract => [d(), -s()],
+        Equation::Min => return of.src.zip(of.dst, R::min),
+        Equation::Max => return of.src.zip(of.dst, R::max),
+    };
+    Vector::sum([a, b])
 }
 
 /// The colour by one state, the alpha by another. Source: 000 §6.6.

@@ -49,11 +49,28 @@ pub fn normal_modelview<R: Real>(modelview: &Mat3<R>, n: Vec3<R>) -> Vec3<R> {
 /// Where the determinant is 0 there is no value. Source: 004; ruling 6.
 pub fn normal_inverse_transpose<R: Real>(modelview: &Mat3<R>, n: Vec3<R>) -> Vec3<R> {
     let modelview = *modelview;
-    step!("modelview⁻ᵀ·n", |modelview, n| {
+    step!("modelview⁻ᵀ·n", |modelview, n| NormalMatrix::new(&modelview).transform(n))
+}
+
+/// `modelview⁻ᵀ`, not yet divided: what [`normal_inverse_transpose`] works out of the matrix alone, once for all normals.
+#[derive(Clone, Copy, Debug)]
+pub struct NormalMatrix<R> {
+    cofactors: Mat3<R>,
+    determinant: R,
+}
+
+impl<R: Real> NormalMatrix<R> {
+    /// The cofactors and the determinant.
+    pub fn new(modelview: &Mat3<R>) -> Self {
         let cofactors = modelview.cofactors();
         let determinant = modelview.0[0].dot(cofactors.0[0]).named("determinant");
-        cofactors.transform(n).named("cofactors·n").map(|x| x / determinant)
-    })
+        Self { cofactors, determinant }
+    }
+
+    /// `cofactors · n / determinant`.
+    pub fn transform(&self, n: Vec3<R>) -> Vec3<R> {
+        self.cofactors.transform(n).named("cofactors·n").map(|x| x / self.determinant)
+    }
 }
 
 /// `view · (direction, 0)`: a light's direction in eye space. Source: 000 §6.3.

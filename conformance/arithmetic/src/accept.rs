@@ -102,6 +102,10 @@ impl<F: Format> Accept<F> {
     /// [`Accept::seal`] where an end is 0, subnormal or not finite.
     #[inline(never)]
     fn seal_beyond_normal(low: f64, high: f64) -> Self {
+        // An exact 0: a product with one, above all.
+        if low == 0.0 && high == 0.0 {
+            return Self::raw(low, high);
+        }
         // A NaN fails this too.
         if !(low >= -F::MAX && high <= F::MAX) {
             return if F::IS_HARDWARE { Self::overflow(low, high) } else { Self::ANY };
@@ -280,6 +284,7 @@ impl<F: Format> Mul for Accept<F> {
         // ∞·0 is NaN.
         let is_infinite = |x: Self| x.low.is_infinite() || x.high.is_infinite();
         if F::IS_HARDWARE
+            && greater(self.magnitude(), other.magnitude()) > F::MAX
             && ((is_infinite(self) && other.contains_zero()) || (is_infinite(other) && self.contains_zero()))
         {
             return Self::ANY;
@@ -477,7 +482,8 @@ impl<F: Format> Real for Accept<F> {
 
     #[inline]
     fn sum<const N: usize>(terms: [Self; N]) -> Self {
-        Self::sum_over(terms.into_iter())
+        // Not by value: iterators over references compile to less.
+        Self::sum_over(terms.iter().copied())
     }
 
     #[inline]

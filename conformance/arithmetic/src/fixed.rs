@@ -76,7 +76,8 @@ impl<U: Unit> Fixed<U> {
     /// The same of one that is known to lie between two.
     #[must_use]
     pub fn operand_between(low: f64, high: f64) -> Self {
-        Self::between(low, high).widened(U::OPERAND).within_unit()
+        let given = Self::between(low, high);
+        if U::OPERAND > 0.0 { given.widened(U::OPERAND).within_unit() } else { given }
     }
 
     /// The least.

@@ -117,12 +117,14 @@ impl Profile {
     /// Functions that evaluate take the profile as an argument and call this around the evaluation of a formula. Outside of it
     /// there is no profile at all, and an operation that asks for one panics. Work that is handed to a pool of threads inside of a
     /// scope must enter one of its own, since another thread has none and this one may take up other work meanwhile.
+    #[inline]
     pub fn scope<T>(&self, f: impl FnOnce() -> T) -> T {
         // While a scope is open its profile is borrowed: what lies at the same address is the same profile.
+        if IN_FORCE.get() == std::ptr::from_ref(self).addr() { f() } else { self.enter(f) }
+    }
+
+    fn enter<T>(&self, f: impl FnOnce() -> T) -> T {
         let address = std::ptr::from_ref(self).addr();
-        if IN_FORCE.get() == address {
-            return f();
-        }
         // Rows are evaluated one by one by the same figures, which stay where they are for the next row.
         if FIGURES.with(|figures| figures.get().has_figures_of(self)) {
             let _outer =

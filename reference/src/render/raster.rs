@@ -68,6 +68,13 @@ impl Geometry {
         &self.numbers[vertex * self.stride..(vertex + 1) * self.stride]
     }
 
+    /// The two vertices that clipping made this one between; `None` for a vertex of the mesh.
+    #[must_use]
+    pub fn ends(&self, vertex: usize) -> Option<[usize; 2]> {
+        let given = self.clip.len() - self.made_between.len();
+        vertex.checked_sub(given).map(|made| self.made_between[made])
+    }
+
     /// Brings triangles to the window: `triangles` of the vertices that are there, `size` that of the target in pixels.
     pub fn assemble(
         &mut self,
@@ -104,15 +111,15 @@ impl Geometry {
         source: usize,
         to: &Viewport<f64>,
     ) -> Option<Triangle> {
-        let corner = |vertex: usize| interpolation::viewport(Vector(self.clip[vertex]), to);
-        let [a, b, c] = vertices.map(corner).map(|v| Vector([v.x(), v.y()]));
+        let mut corners = vertices.map(|vertex| interpolation::viewport(Vector(self.clip[vertex]), to));
+        let [a, b, c] = corners.map(|v| Vector([v.x(), v.y()]));
         let area = edge(a, b, c);
         // Front is counter-clockwise as seen, which with y down is a negative area.
         let is_front = area < 0.0;
         if is_front {
             vertices.swap(1, 2);
+            corners.swap(1, 2);
         }
-        let corners = vertices.map(corner);
         let window = corners.map(|v| [v.x(), v.y()]);
         let [a, b, c] = window;
         (area != 0.0 && area.is_finite()).then(|| Triangle {

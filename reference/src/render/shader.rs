@@ -6,11 +6,12 @@
 //! effects says what is called for.
 
 use super::attributes::{Attributes, LIT};
-use crate::algebra::{Mat4, Rgb, Rgba, Vec2, Vec3, Vec4, Vector};
+use crate::algebra::{Mat3, Mat4, Rgb, Rgba, Vec2, Vec3, Vec4, Vector};
 use crate::departure::{FresnelHighlight, half_lambert, smoothstep, turned_to};
 use crate::lighting::{self, Material};
 use crate::real::Real;
-use crate::{attenuation, color, fog, texture, vector};
+use crate::vector::{self, NormalMatrix};
+use crate::{attenuation, color, fog, texture};
 use lightmeter_scene::effects::{Called, Effect};
 use lightmeter_scene::frame::{self, Departures, FogForm, Frame, Place, Sampled, Shading, Texture, TextureFilter};
 use lightmeter_scene::shading::{Ambient, Frequency, LightAmbient, Normals, SpecularGate, Viewer};
@@ -26,6 +27,8 @@ pub struct Shader<'a, R> {
     pub attributes: Attributes,
     modelview: Mat4<R>,
     projection: Mat4<R>,
+    /// Where the draw is lit.
+    normals: Option<NormalTransform<R>>,
     material: Material<R>,
     emissive: Rgb<R>,
     ambient: Rgb<R>,
@@ -35,6 +38,13 @@ pub struct Shader<'a, R> {
     stages: bool,
     /// Whether some light has use for normals.
     has_normals: bool,
+}
+
+/// What brings normals to eye space.
+#[derive(Clone, Copy, Debug)]
+enum NormalTransform<R> {
+    InverseTranspose(NormalMatrix<R>),
+    Modelview(Mat3<R>),
 }
 
 /// A light with everything that does not vary over the surface.
@@ -146,6 +156,11 @@ impl<'a, R: Real> Shader<'a, R> {
             Some(called) => called.lights.iter().map(|&place| light(&frame.lights[place])).collect(),
             None => frame.lights.iter().map(light).collect(),
         };
+        let modelview: Mat4<R> = matrix(&draw.modelview);
+        let normals = draw.shading.map(|shading| match shading.normals {
+            Normals::InverseTranspose => NormalTransform::InverseTranspose(NormalMatrix::new(&modelview.upper3())),
+            Normals::Modelview => NormalTransform::Modelview(modelview.upper3()),
+        });
         let [diffuse, specular] = [m.diffuse, m.specular].map(rgb);
         let has_normals = only.map_or(!frame.lights.is_empty(), |called| called.effects.has_normals());
         let fogged = only.is_none_or(|called| called.effects.has_fog());
@@ -155,8 +170,9 @@ impl<'a, R: Real> Shader<'a, R> {
             draw,
             only,
             attributes: Attributes::of(draw, stages || fog.is_some(), stages && has_normals),
-            modelview: matrix(&draw.modelview),
+            modelview,
             projection: matrix(&frame.projection),
+            normals,
             material: Material { ambient: rgb(m.ambient), diffuse, specular, shininess: R::input(m.shininess) },
             emissive: rgb(m.emissive),
             ambient: rgb(frame.ambient),
@@ -174,13 +190,29 @@ impl<'a, R: Real> Shader<'a, R> {
 
     /// The clip coordinates of a vertex of the draw's mesh; its attributes are appended.
     pub fn vertex(&self, vertex: usize, scratch: &mut Scratch<R>, attributes: &mut Vec<R>) -> Vec4<R> {
-        let (mesh, at) = (&self.frame.meshes[self.draw.mesh], &self.attributes);
-        let position: Vec3<R> = Vector(mesh.positions[vertex].map(R::input));
-        let eye = self.modelview.transform(position.extend(R::literal(1.0)));
+        let eye = self.eye(vertex);
+        self.vertex_attributes(vertex, eye, scratch, attributes);
+        self.clip(eye)
+    }
+
+    /// A vertex of the draw's mesh in eye space.
+    pub fn eye(&self, vertex: usize) -> Vec4<R> {
+        let position: Vec3<R> = Vector(self.frame.meshes[self.draw.mesh].positions[vertex].map(R::input));
+        self.modelview.transform(position.extend(R::literal(1.0)))
+    }
+
+    /// The clip coordinates of a place in eye space.
+    pub fn clip(&self, eye: Vec4<R>) -> Vec4<R> {
+        self.projection.transform(eye)
+    }
+
+    /// The attributes of a vertex of the draw's mesh, whose place in eye space is given, appended.
+    pub fn vertex_attributes(&self, vertex: usize, eye: Vec4<R>, scratch: &mut Scratch<R>, attributes: &mut Vec<R>) {
         let p = eye.xyz();
-        let n = self.draw.shading.filter(|_| at.n.is_some() || at.lit.is_some()).map(|shading| {
+        let (mesh, at) = (&self.frame.meshes[self.draw.mesh], &self.attributes);
+        let n = self.normals.as_ref().filter(|_| at.n.is_some() || at.lit.is_some()).map(|transform| {
             let given = mesh.normals.get(vertex).copied().unwrap_or_default();
-            self.normal(shading, Vector(given.map(R::input)))
+            self.normal(transform, Vector(given.map(R::input)))
         });
         let n = n.unwrap_or(Vector::splat(R::literal(0.0)));
         let start = attributes.len();
@@ -208,14 +240,12 @@ impl<'a, R: Real> Shader<'a, R> {
             attributes.extend(mesh.colors[vertex].map(R::input));
         }
         debug_assert_eq!(attributes.len() - start, at.count);
-        self.projection.transform(eye)
     }
 
-    fn normal(&self, shading: Shading, given: Vec3<R>) -> Vec3<R> {
-        let modelview = self.modelview.upper3();
-        let n = match shading.normals {
-            Normals::InverseTranspose => vector::normal_inverse_transpose(&modelview, given),
-            Normals::Modelview => vector::normal_modelview(&modelview, given),
+    fn normal(&self, transform: &NormalTransform<R>, given: Vec3<R>) -> Vec3<R> {
+        let n = match transform {
+            NormalTransform::InverseTranspose(matrix) => matrix.transform(given),
+            NormalTransform::Modelview(matrix) => vector::normal_modelview(matrix, given),
         };
         if self.frame.departures.normals_at_length { n } else { n.normalize() }
     }

@@ -72,7 +72,7 @@ fn reference(program: Program, target: TargetFormat, case: &UnitCase, rules: &Ru
     let (encoding, clamps) = (target.encoding(), rules.clamps(target));
     let mut below = by_component(|k| pixel::linear(encoding, rules.stored_as(k), start[k]));
     let operand = |color: [f32; 4]| {
-        Vector(color.map(|c| if clamps == Clamp::Operands { f64::from(c).clamp(0.0, 1.0) } else { c.into() }))
+        by_component(|k| if clamps == Clamp::Operands { f64::from(color[k]).clamp(0.0, 1.0) } else { color[k].into() })
     };
     for number in 0..case.layers {
         let (state, mask) = program.layer(number);
@@ -197,9 +197,17 @@ fn layer_in_steps(
     let before = by_component(|k| {
         let slack = if encoded(k) { DECODING } else { 0.0 };
         let at = |steps: f64| pixel::linear(encoding, rules.stored_as(k), steps.clamp(0.0, 255.0));
-        (at(low[k] - slack), at(high[k] + slack))
+        let (least, most) = (low[k] - slack, high[k] + slack);
+        let from = at(least);
+        (from, if most > least { at(most) } else { from })
     });
     let state = rules.state(state);
+    let operand = |color: Between| match rules.clamp {
+        Clamp::Operands => color.map(|(low, high)| (low.clamp(0.0, 1.0), high.clamp(0.0, 1.0))),
+        Clamp::Nothing | Clamp::Result => color,
+    };
+    let source = operand(source);
+    let constant = rules.reads_constant(state).then(|| operand(constant));
     let wide = blended::<Wide>(rules, state, source, constant, before);
     let narrow = blended::<Narrow>(rules, state, source, constant, before);
     for k in (0..4).filter(|&k| rules.mask(mask).0[k]) {
@@ -247,22 +255,18 @@ fn blended<U: Unit>(
     rules: &Rules,
     state: Separate,
     source: Between,
-    constant: Between,
+    constant: Option<Between>,
     before: Rgba<(f64, f64)>,
 ) -> Rgba<Fixed<U>> {
-    let clamps = rules.clamp == Clamp::Operands;
-    let operand = |color: Between| {
-        Vector(color.map(|(low, high)| {
-            if clamps {
-                Fixed::operand_between(low.clamp(0.0, 1.0), high.clamp(0.0, 1.0))
-            } else {
-                Fixed::between(low, high)
-            }
-        }))
+    let operand = |(low, high): (f64, f64)| match rules.clamp {
+        Clamp::Operands => Fixed::operand_between(low, high),
+        Clamp::Nothing | Clamp::Result => Fixed::between(low, high),
     };
-    let dst = Vector(before.0.map(|(low, high)| Fixed::between(low, high)));
-    let constant = if rules.reads_constant(state) { operand(constant) } else { Vector([Fixed::between(0.0, 0.0); 4]) };
-    let of = Operands { src: operand(source), dst, constant };
+    let of = Operands {
+        src: by_component(|k| operand(source[k])),
+        dst: by_component(|k| Fixed::between(before[k].0, before[k].1)),
+        constant: constant.map_or(Vector([Fixed::between(0.0, 0.0); 4]), |constant| Vector(constant.map(operand))),
+    };
     rules.blend(state, &of).map(Fixed::within_unit)
 }
 

@@ -20,55 +20,68 @@
 //!   that lies on the plane within its error leaves open whether its triangle is seen at all.
 
 use lightmeter_arithmetic::{Accept, F32, Format};
-use lightmeter_reference::render::{Attributes, Geometry, Triangle};
+use lightmeter_reference::Vec4;
+use lightmeter_reference::render::{Attributes, Geometry, Scratch, Shader, Triangle};
+use std::sync::OnceLock;
 
 const EPSILON: f64 = F32::EPSILON;
 const MIN_NORMAL: f64 = F32::MIN_NORMAL;
 
 /// What each vertex of a draw may be off by.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct VertexErrors {
-    /// Numbers of a vertex.
-    pub(super) stride: usize,
     /// x and y in pixels, the subpixel step not counted; depth; 1/w, relatively.
     pub(super) places: Vec<[f64; 4]>,
-    /// The attributes.
-    pub(super) attributes: Vec<f64>,
     /// Clip coordinates, of those behind the eye too.
     pub(super) clips: Vec<[f64; 4]>,
+    /// The legal places in eye space.
+    pub(super) eyes: Vec<Vec4<Accept>>,
+    /// The attributes, of those vertices alone that a pixel has asked for.
+    pub(super) attributes: Vec<OnceLock<Box<[f64]>>>,
+}
+
+/// How far legal values may lie from the exact one.
+pub(super) fn off(exact: f64, legal: &Accept) -> f64 {
+    (legal.high() - exact).max(exact - legal.low())
 }
 
 /// More than any target: where nothing is known of a place.
 const ANYWHERE: f64 = 1e9;
 
 impl VertexErrors {
-    pub(super) fn of(&self, vertex: usize) -> &[f64] {
-        &self.attributes[vertex * self.stride..(vertex + 1) * self.stride]
+    /// What the attributes of a vertex may be off by.
+    fn of(&self, vertex: usize, geometry: &Geometry, shader: &Shader<'_, Accept>) -> &[f64] {
+        self.attributes[vertex].get_or_init(|| match geometry.ends(vertex) {
+            Some(ends) => {
+                let along = self.off_along(geometry, vertex, ends);
+                let [a, b] = ends.map(|end| geometry.attributes(end));
+                let [off_a, off_b] = ends.map(|end| self.of(end, geometry, shader));
+                (0..geometry.stride).map(|k| moved([a[k], b[k]], off_a[k].max(off_b[k]), along)).collect()
+            }
+            None => {
+                let mut legal = Vec::with_capacity(geometry.stride);
+                shader.vertex_attributes(vertex, self.eyes[vertex], &mut Scratch::default(), &mut legal);
+                geometry.attributes(vertex).iter().zip(&legal).map(|(&value, legal)| off(value, legal)).collect()
+            }
+        })
     }
 
-    /// Vertices that clipping made: what both ends may be off by, and how far that moves the point between them.
+    /// Places of the vertices that clipping made: what both ends may be off by, and how far that moves the point between them.
     pub(super) fn extend(&mut self, geometry: &Geometry, size: [f64; 2]) {
-        for (made, &[from, to]) in geometry.made_between.iter().enumerate() {
-            let vertex = geometry.clip.len() - geometry.made_between.len() + made;
-            let clip = geometry.clip[vertex];
+        for vertex in self.clips.len()..geometry.clip.len() {
+            let Some([from, to]) = geometry.ends(vertex) else { continue };
             let along = self.off_along(geometry, vertex, [from, to]);
-            let moved = |a: f64, b: f64, error: f64| {
-                (error + 4.0 * EPSILON * a.abs().max(b.abs()) + along * (b - a).abs()).min(ANYWHERE)
-            };
             let (a, b) = (geometry.clip[from], geometry.clip[to]);
-            let off: [f64; 4] = std::array::from_fn(|k| moved(a[k], b[k], self.clips[from][k].max(self.clips[to][k])));
+            let error = |k: usize| self.clips[from][k].max(self.clips[to][k]);
+            let off: [f64; 4] = std::array::from_fn(|k| moved([a[k], b[k]], error(k), along));
             self.clips.push(off);
-            let [x, y, z, w] = clip;
+            let [x, y, z, w] = geometry.clip[vertex];
             let least = (w - off[3]).max(0.0);
             let ratio = |x: f64, off_x: f64| ((off_x + (x / w).abs() * off[3]) / least + 8.0 * EPSILON).min(ANYWHERE);
             let inverse_w = (off[3] / least).min(ANYWHERE);
             self.places.push([ratio(x, off[0]) * size[0], ratio(y, off[1]) * size[1], ratio(z, off[2]), inverse_w]);
-            for k in 0..self.stride {
-                let (a, b) = (geometry.attributes(from)[k], geometry.attributes(to)[k]);
-                let error = self.of(from)[k].max(self.of(to)[k]);
-                self.attributes.push(moved(a, b, error));
-            }
         }
+        self.attributes.resize_with(geometry.clip.len(), OnceLock::new);
     }
 
     /// The share of an edge by which the point where it meets the plane may be off.
@@ -91,10 +104,14 @@ impl VertexErrors {
 
     /// Whether a vertex may lie on either side of the near or the far plane.
     fn is_on_a_plane(&self, geometry: &Geometry, vertex: usize) -> bool {
-        let given = geometry.clip.len() - geometry.made_between.len();
         let (distances, off) = (planes(geometry.clip[vertex]), self.off_planes(vertex));
-        vertex < given && (0..2).any(|k| distances[k].abs() <= off[k])
+        geometry.ends(vertex).is_none() && (0..2).any(|k| distances[k].abs() <= off[k])
     }
+}
+
+/// What a number between those of two vertices may be off by, where they are off by `error` and the place by a share of the edge.
+fn moved([a, b]: [f64; 2], error: f64, along: f64) -> f64 {
+    (error + 4.0 * EPSILON * a.abs().max(b.abs()) + along * (b - a).abs()).min(ANYWHERE)
 }
 
 /// The distances from the near and the far plane, in clip coordinates.
@@ -102,33 +119,19 @@ fn planes([_, _, z, w]: [f64; 4]) -> [f64; 2] {
     [z, w - z]
 }
 
-/// A triangle, and what may become of it.
+/// Where a triangle may be seen.
 #[derive(Clone, Debug)]
-pub(super) struct Bound {
+pub(super) struct Outline {
     /// Below this magnitude the sign of an edge's [`Triangle::edges`] is open.
     pub(super) margins: [f64; 3],
     /// How far the point that is shown may lie from the pixel's middle.
     pub(super) reach: [f64; 2],
     /// Whether it may have no area, or be turned the other way.
     pub(super) may_vanish: bool,
-    /// Where its attributes' errors begin among all of the draw's.
-    slack: usize,
-    depth_slack: f64,
-    /// ∂/∂x and ∂/∂y of each vertex's edge over its w.
-    gradients: [[f64; 2]; 3],
-    depth_gradient: [f64; 2],
 }
 
-impl Bound {
-    /// Errors of the attributes are appended to `slacks`.
-    pub(super) fn new(
-        triangle: &Triangle,
-        geometry: &Geometry,
-        errors: &VertexErrors,
-        attributes: &Attributes,
-        step: f64,
-        slacks: &mut Vec<f64>,
-    ) -> Self {
+impl Outline {
+    pub(super) fn new(triangle: &Triangle, geometry: &Geometry, errors: &VertexErrors, step: f64) -> Self {
         let window = triangle.window;
         let off = triangle.vertices.map(|vertex| {
             let [x, y, ..] = errors.places[vertex];
@@ -142,42 +145,66 @@ impl Bound {
             (window[j][1] - window[i][1]).abs() * dx + (window[j][0] - window[i][0]).abs() * dy
         };
         let margins = std::array::from_fn(edge);
+        // Moving each vertex of an edge by δ changes twice the area by at most the two margins beside it and 4δ² more.
+        let may_vanish = triangle.area <= margins[0] + margins[1] + margins[2] + 4.0 * reach[0] * reach[1]
+            || triangle.vertices.iter().any(|&vertex| errors.is_on_a_plane(geometry, vertex));
+        Self { margins, reach, may_vanish }
+    }
+}
+
+/// What a triangle may show.
+#[derive(Clone, Debug)]
+pub(super) struct Surface {
+    /// How far the point that is shown may lie from the pixel's middle.
+    reach: [f64; 2],
+    /// What each attribute may be off by besides.
+    slacks: Box<[f64]>,
+    depth_slack: f64,
+    /// ∂/∂x and ∂/∂y of each vertex's edge over its w.
+    gradients: [[f64; 2]; 3],
+    depth_gradient: [f64; 2],
+}
+
+impl Surface {
+    pub(super) fn new(
+        (triangle, outline): (&Triangle, &Outline),
+        geometry: &Geometry,
+        errors: &VertexErrors,
+        shader: &Shader<'_, Accept>,
+    ) -> Self {
+        let window = triangle.window;
         // ∂/∂x and ∂/∂y of the edge opposite each vertex.
         let slopes: [[f64; 2]; 3] = std::array::from_fn(|k| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             [-(window[j][1] - window[i][1]), window[j][0] - window[i][0]]
         });
-        // Moving each vertex of an edge by δ changes twice the area by at most the two margins beside it and 4δ² more.
-        let may_vanish = triangle.area <= margins[0] + margins[1] + margins[2] + 4.0 * reach[0] * reach[1]
-            || triangle.vertices.iter().any(|&vertex| errors.is_on_a_plane(geometry, vertex));
         let plane = Plane::new(triangle, slopes);
-        let start = slacks.len();
         let inverse_w = triangle.inverse_w;
         let least_w = inverse_w.iter().fold(f64::INFINITY, |least, &x| least.min(x));
-        let w_error = triangle.vertices.iter().map(|&vertex| errors.places[vertex][3]).fold(3.0 * EPSILON, f64::max);
+        let off = triangle.vertices.map(|vertex| &errors.places[vertex]);
+        let w_error = off.iter().map(|off| off[3]).fold(3.0 * EPSILON, f64::max);
         let denominator = plane.error(inverse_w);
-        for k in 0..errors.stride {
-            let at = triangle.vertices.map(|vertex| geometry.attributes(vertex)[k]);
-            let given = triangle.vertices.iter().map(|&vertex| errors.of(vertex)[k]).fold(0.0, f64::max);
-            if attributes.is_flat_at(k) {
-                slacks.push(errors.of(triangle.provoking)[k]);
-                continue;
+        let [a, b, c] = triangle.vertices.map(|vertex| geometry.attributes(vertex));
+        let [off_a, off_b, off_c] = triangle.vertices.map(|vertex| errors.of(vertex, geometry, shader));
+        let provoking = errors.of(triangle.provoking, geometry, shader);
+        let slack = |k: usize| {
+            if shader.attributes.is_flat_at(k) {
+                return provoking[k];
             }
+            let at = [a[k], b[k], c[k]];
+            let given = [off_a[k], off_b[k], off_c[k]].into_iter().fold(0.0, f64::max);
             let (low, high) = range(at);
             let most = low.abs().max(high.abs());
             let numerator = plane.error(std::array::from_fn(|i| at[i] * inverse_w[i]));
             let quotient = (numerator + most * denominator) / (least_w - denominator).max(0.0) + 3.0 * EPSILON * most;
-            slacks.push(given + quotient + 2.0 * w_error * (high - low));
-        }
-        let given = triangle.vertices.iter().map(|&vertex| errors.places[vertex][2]).fold(0.0, f64::max);
-        let gradients = std::array::from_fn(|i| slopes[i].map(|slope| slope * inverse_w[i]));
+            given + quotient + 2.0 * w_error * (high - low)
+        };
+        let given = off.iter().map(|off| off[2]).fold(0.0, f64::max);
         Self {
-            margins,
-            reach,
-            may_vanish,
-            slack: start,
+            reach: outline.reach,
+            slacks: (0..geometry.stride).map(slack).collect(),
             depth_slack: given + plane.error(triangle.depth) + EPSILON,
-            gradients,
+            gradients: std::array::from_fn(|i| slopes[i].map(|slope| slope * inverse_w[i])),
             depth_gradient: plane.gradient(triangle.depth),
         }
     }
@@ -197,7 +224,7 @@ impl Bound {
     pub(super) fn attributes(
         &self,
         (triangle, geometry): (&Triangle, &Geometry),
-        (flat, slacks): (&Attributes, &[f64]),
+        flat: &Attributes,
         edges: [f64; 3],
         out: &mut Vec<Accept>,
     ) {
@@ -210,7 +237,7 @@ impl Bound {
         let [a, b, c] = triangle.vertices.map(|vertex| geometry.attributes(vertex));
         let provoking = geometry.attributes(triangle.provoking);
         for k in 0..geometry.stride {
-            let slack = slacks[self.slack + k];
+            let slack = self.slacks[k];
             if flat.is_flat_at(k) {
                 out.push(between(provoking[k] - slack, provoking[k] + slack));
                 continue;

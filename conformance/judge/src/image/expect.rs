@@ -116,17 +116,17 @@ impl<'a> Expectation<'a> {
     /// The pixels that a triangle may cover.
     fn reach(&self, (draw, triangle): (u32, u32)) -> [[usize; 2]; 2] {
         let draw = &self.draws[draw as usize];
-        let [dx, dy] = draw.bounds[triangle as usize].reach;
+        let [dx, dy] = draw.outlines[triangle as usize].reach;
         let size = [self.frame.target.width, self.frame.target.height];
         draw.geometry.triangles[triangle as usize].pixels(dx.max(dy), size)
     }
 
     fn candidate(&self, (draw, number): (u32, u32), x: usize, y: usize) -> Option<Candidate> {
         let prepared = &self.draws[draw as usize];
-        let (triangle, bound) = (&prepared.geometry.triangles[number as usize], &prepared.bounds[number as usize]);
+        let (triangle, outline) = (&prepared.geometry.triangles[number as usize], &prepared.outlines[number as usize]);
         let edges = triangle.edges([middle(x), middle(y)]);
-        let is_open = |k: usize| edges[k].abs() <= bound.margins[k];
-        if (0..3).any(|k| edges[k] < -bound.margins[k]) {
+        let is_open = |k: usize| edges[k].abs() <= outline.margins[k];
+        if (0..3).any(|k| edges[k] < -outline.margins[k]) {
             return None;
         }
         let open = [is_open(0), is_open(1), is_open(2)];
@@ -158,7 +158,7 @@ fn bins(draws: &[Prepared<'_>], size: [u32; 2]) -> (usize, Vec<Vec<(u32, u32)>>)
     let number = |place: usize| u32::try_from(place).expect("a loader refuses meshes of more triangles");
     for (draw, prepared) in draws.iter().enumerate() {
         for (place, triangle) in prepared.geometry.triangles.iter().enumerate() {
-            let [dx, dy] = prepared.bounds[place].reach;
+            let [dx, dy] = prepared.outlines[place].reach;
             let [[left, right], [top, bottom]] = triangle.pixels(dx.max(dy), size);
             if right < left || bottom < top {
                 continue;

@@ -14,6 +14,8 @@ use lightmeter_scene::depth::Compare;
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::stage::Intermediate;
 use lightmeter_scene::target::TargetFormat;
+use smallvec::{SmallVec, smallvec};
+use std::ops::Range;
 
 /// Ways that are followed for one pixel; beyond, anything is legal there.
 const MOST: usize = 64;
@@ -28,6 +30,15 @@ pub struct LegalPixel {
     /// Whether its coverage, its depth's winner or another condition is open, and the outcomes differ by more than twice the
     /// widest of them.
     pub is_marked: bool,
+}
+
+impl LegalPixel {
+    /// The hull of all outcomes, the widest of which is that wide.
+    fn new((low, high): (Units, Units), widest: Units) -> Self {
+        // Where anything is legal, other outcomes are too.
+        let is_marked = (0..4).any(|k| high[k] - low[k] > 2.0 * widest[k] || widest[k] == f64::INFINITY);
+        Self { low, high, is_marked }
+    }
 }
 
 /// A triangle that may cover a pixel.
@@ -46,13 +57,19 @@ pub(super) struct Candidate {
 }
 
 /// A fragment that a pixel shows, by its candidate and its outcome among that one's, or [`EACH`].
-type Layer = (usize, usize);
+type Layer = (u32, u32);
 
 /// Any of a candidate's outcomes.
-const EACH: usize = usize::MAX;
+const EACH: u32 = u32::MAX;
 
-/// The outcomes of a candidate: the colour, and whether a cutout keeps it (1) or not (0).
-type Outcomes = Vec<(Rgba<Accept>, Accept)>;
+/// An outcome of a candidate: the colour, and whether a cutout keeps it (1) or not (0).
+type Outcome = (Rgba<Accept>, Accept);
+
+/// What a pixel shows, the lowest first. Few pixels have more than one layer, so that there is seldom anything to allocate.
+type Layers = SmallVec<[Layer; 4]>;
+
+/// The candidates that are there.
+type Present = SmallVec<[u32; 8]>;
 
 /// What one way through a pixel's depth tests leaves.
 #[derive(Clone, Debug)]
@@ -60,8 +77,11 @@ struct Way {
     depth: (f64, f64),
     /// The draw's place and the triangle whose depth that is.
     owner: Option<(usize, usize)>,
-    layers: Vec<Layer>,
+    layers: Layers,
 }
+
+/// Most pixels come about in one way.
+type Few<T> = SmallVec<[T; 2]>;
 
 /// Works out pixels one after the other.
 pub(super) struct Painter<'a> {
@@ -72,8 +92,10 @@ pub(super) struct Painter<'a> {
     background: (Units, Units),
     scratch: Scratch<Accept>,
     attributes: Vec<Accept>,
-    /// Of each candidate, once they are known.
-    outcomes: Vec<Option<Outcomes>>,
+    /// Of all candidates, one after the other.
+    outcomes: Vec<Outcome>,
+    /// Which are a candidate's, once they are known.
+    known: Vec<Option<Range<u32>>>,
 }
 
 impl<'a> Painter<'a> {
@@ -91,15 +113,20 @@ impl<'a> Painter<'a> {
             scratch: Scratch::default(),
             attributes: vec![],
             outcomes: vec![],
+            known: vec![],
         }
     }
 
     /// The legal values of a pixel, from all that may cover it, in the order of drawing.
     pub(super) fn pixel(&mut self, candidates: &[Candidate]) -> LegalPixel {
+        if candidates.is_empty() {
+            return LegalPixel::new(self.background, width(self.background));
+        }
         self.outcomes.clear();
-        self.outcomes.resize(candidates.len(), None);
+        self.known.clear();
+        self.known.resize(candidates.len(), None);
         let Some(presences) = self.presences(candidates) else { return ANYTHING };
-        let mut seen: Vec<Vec<Layer>> = vec![];
+        let mut seen: Few<Layers> = SmallVec::new();
         for present in presences {
             let Some(ways) = self.ways(candidates, &present) else { return ANYTHING };
             for way in ways {
@@ -111,36 +138,29 @@ impl<'a> Painter<'a> {
                 return ANYTHING;
             }
         }
-        let mut all: Option<LegalPixel> = None;
+        let mut all: Option<(Units, Units)> = None;
         let mut widest = [0.0_f64; 4];
-        for (low, high) in seen.iter().flat_map(|layers| self.colors(candidates, layers)).collect::<Vec<_>>() {
-            for k in 0..4 {
-                widest[k] = widest[k].max(high[k] - low[k]);
+        for layers in &seen {
+            for color in self.colors(candidates, layers) {
+                let width = width(color);
+                widest = std::array::from_fn(|k| widest[k].max(width[k]));
+                all = Some(all.map_or(color, |so_far| hull(so_far, color)));
             }
-            all = Some(match all {
-                None => LegalPixel { low, high, is_marked: false },
-                Some(so_far) => LegalPixel {
-                    low: std::array::from_fn(|k| so_far.low[k].min(low[k])),
-                    high: std::array::from_fn(|k| so_far.high[k].max(high[k])),
-                    is_marked: false,
-                },
-            });
         }
-        let mut all = all.unwrap_or(LegalPixel { low: self.background.0, high: self.background.1, is_marked: false });
-        // Where anything is legal, other outcomes are too.
-        all.is_marked = (0..4).any(|k| all.high[k] - all.low[k] > 2.0 * widest[k] || widest[k] == f64::INFINITY);
-        all
+        LegalPixel::new(all.unwrap_or(self.background), widest)
     }
 
     /// Which candidates cover the pixel, in each way that coverage may turn out; `None` where there are too many.
-    fn presences(&self, candidates: &[Candidate]) -> Option<Vec<Vec<usize>>> {
+    fn presences(&self, candidates: &[Candidate]) -> Option<Few<Present>> {
         let is_open = |c: &Candidate| c.open.contains(&true) || self.bound_may_vanish(c);
-        let certain: Vec<usize> = (0..candidates.len()).filter(|&k| !is_open(&candidates[k])).collect();
-        let mut ways = vec![certain];
-        let mut open: Vec<usize> = (0..candidates.len()).filter(|&k| is_open(&candidates[k])).collect();
+        let (mut open, mut certain) = (Present::new(), Present::new());
+        for (k, candidate) in (0..).zip(candidates) {
+            if is_open(candidate) { open.push(k) } else { certain.push(k) }
+        }
+        let mut ways: Few<Present> = smallvec![certain];
         while let Some(&first) = open.first() {
-            let alike = |&k: &usize| self.is_alike(&candidates[first], &candidates[k]);
-            let (group, rest): (Vec<usize>, Vec<usize>) = open.into_iter().partition(alike);
+            let alike = |&k: &u32| self.is_alike(&candidates[first as usize], &candidates[k as usize]);
+            let (group, rest): (Present, Present) = open.into_iter().partition(alike);
             open = rest;
             let alternatives = self.alternatives(candidates, &group)?;
             if ways.len() * alternatives.len() > MOST {
@@ -158,7 +178,7 @@ impl<'a> Painter<'a> {
     }
 
     fn bound_may_vanish(&self, candidate: &Candidate) -> bool {
-        self.draws[candidate.draw as usize].bounds[candidate.triangle as usize].may_vanish
+        self.draws[candidate.draw as usize].outlines[candidate.triangle as usize].may_vanish
     }
 
     /// Whether two triangles are of one draw and turned the same way.
@@ -171,12 +191,13 @@ impl<'a> Painter<'a> {
     ///
     /// Moving vertices moves both triangles at a shared edge alike. Where every edge that is open is shared by two of
     /// them, the number of triangles that cover the pixel cannot change: where it is one, it is always one of them.
-    fn alternatives(&self, candidates: &[Candidate], group: &[usize]) -> Option<Vec<Vec<usize>>> {
-        let paired = group.iter().all(|&k| !self.bound_may_vanish(&candidates[k]))
+    fn alternatives(&self, candidates: &[Candidate], group: &[u32]) -> Option<Few<Present>> {
+        let paired = group.iter().all(|&k| !self.bound_may_vanish(&candidates[k as usize]))
             && self.open_edges_are_shared(candidates, group);
-        let covering = group.iter().filter(|&&k| candidates[k].covers).count();
+        let covering = group.iter().filter(|&&k| candidates[k as usize].covers).count();
         if paired && covering <= 1 {
-            return Some(if covering == 1 { group.iter().map(|&k| vec![k]).collect() } else { vec![vec![]] });
+            let each = || group.iter().map(|&k| smallvec![k]).collect();
+            return Some(if covering == 1 { each() } else { smallvec![Present::new()] });
         }
         if group.len() > 6 {
             return None;
@@ -185,10 +206,10 @@ impl<'a> Painter<'a> {
         Some(subsets.map(|set| (0..group.len()).filter(|k| set >> k & 1 == 1).map(|k| group[k]).collect()).collect())
     }
 
-    fn open_edges_are_shared(&self, candidates: &[Candidate], group: &[usize]) -> bool {
-        let mut edges: Vec<(u64, u64)> = vec![];
+    fn open_edges_are_shared(&self, candidates: &[Candidate], group: &[u32]) -> bool {
+        let mut edges: SmallVec<[(u64, u64); 8]> = SmallVec::new();
         for &k in group {
-            let candidate = &candidates[k];
+            let candidate = &candidates[k as usize];
             let geometry = &self.draws[candidate.draw as usize].geometry;
             let vertices = geometry.triangles[candidate.triangle as usize].vertices;
             for edge in (0..3).filter(|&edge| candidate.open[edge]) {
@@ -207,40 +228,36 @@ impl<'a> Painter<'a> {
     }
 
     /// The ways through the depth tests of the fragments that are there; `None` where there are too many.
-    fn ways(&mut self, candidates: &[Candidate], present: &[usize]) -> Option<Vec<Way>> {
+    fn ways(&mut self, candidates: &[Candidate], present: &[u32]) -> Option<Few<Way>> {
         let clear = f64::from(self.frame.clear_depth);
-        let mut ways = vec![Way { depth: (clear, clear), owner: None, layers: vec![] }];
+        let mut ways: Few<Way> = smallvec![Way { depth: (clear, clear), owner: None, layers: Layers::new() }];
         for &k in present {
-            let candidate = &candidates[k];
+            let candidate = &candidates[k as usize];
             let prepared = &self.draws[candidate.draw as usize];
             let triangle = &prepared.geometry.triangles[candidate.triangle as usize];
-            let depth = prepared.bounds[candidate.triangle as usize].depth(triangle, candidate.edges);
+            let depth = prepared.surface(candidate.triangle as usize).depth(triangle, candidate.edges);
             let owner = (prepared.place, triangle.source);
             let (test, is_opaque) = (prepared.draw.depth, prepared.draw.blend.is_none() || self.stage.is_some());
-            let outcomes = if prepared.draw.cutout.is_some() { self.outcomes(candidates, k) } else { 1 };
-            let mut left = vec![];
+            let is_cutout = prepared.draw.cutout.is_some();
+            let outcomes = if is_cutout { self.outcomes(candidates, k) } else { 0..1 };
+            let mut left: Few<Way> = SmallVec::new();
             for way in ways {
                 let passes = test
                     .map_or((true, false), |test| may_pass(test.compare, depth, way.depth, way.owner == Some(owner)));
-                let (mut may_stay, mut drawn) = (passes.1, vec![]);
+                let mut may_stay = passes.1;
                 if passes.0 {
-                    for outcome in 0..outcomes {
-                        let (keeps, drops) = self.kept(k, outcome, prepared.draw.cutout.is_some());
+                    for outcome in outcomes.clone() {
+                        let (keeps, drops) = if is_cutout { self.kept(outcome) } else { (true, false) };
                         may_stay |= drops;
                         if keeps {
-                            let mut next = way.clone();
-                            if is_opaque {
-                                next.layers.clear();
-                            }
-                            next.layers.push((k, if prepared.draw.cutout.is_some() { outcome } else { EACH }));
-                            if test.is_some_and(|test| test.write) {
-                                (next.depth, next.owner) = (depth, Some(owner));
-                            }
-                            drawn.push(next);
+                            let mut layers = if is_opaque { Layers::new() } else { way.layers.clone() };
+                            layers.push((k, if is_cutout { outcome } else { EACH }));
+                            let writes = test.is_some_and(|test| test.write);
+                            let (depth, owner) = if writes { (depth, Some(owner)) } else { (way.depth, way.owner) };
+                            left.push(Way { depth, owner, layers });
                         }
                     }
                 }
-                left.extend(drawn);
                 if may_stay {
                     left.push(way);
                 }
@@ -254,30 +271,26 @@ impl<'a> Painter<'a> {
     }
 
     /// Whether a cutout may keep an outcome, and whether it may drop it.
-    fn kept(&self, candidate: usize, outcome: usize, is_cutout: bool) -> (bool, bool) {
-        match &self.outcomes[candidate] {
-            Some(outcomes) if is_cutout => {
-                let kept = outcomes[outcome].1;
-                (kept.high() > 0.5, kept.low() < 0.5)
-            }
-            _ => (true, false),
-        }
+    fn kept(&self, outcome: u32) -> (bool, bool) {
+        let kept = self.outcomes[outcome as usize].1;
+        (kept.high() > 0.5, kept.low() < 0.5)
     }
 
-    /// Shades a candidate, once; how many outcomes there are.
-    fn outcomes(&mut self, candidates: &[Candidate], k: usize) -> usize {
-        if let Some(known) = &self.outcomes[k] {
-            return known.len();
+    /// Shades a candidate, once; which outcomes are its.
+    fn outcomes(&mut self, candidates: &[Candidate], k: u32) -> Range<u32> {
+        if let Some(known) = &self.known[k as usize] {
+            return known.clone();
         }
-        let candidate = &candidates[k];
+        let candidate = &candidates[k as usize];
         let prepared = &self.draws[candidate.draw as usize];
         let number = candidate.triangle as usize;
-        let (triangle, bound) = (&prepared.geometry.triangles[number], &prepared.bounds[number]);
-        let given = (&prepared.shader.attributes, &prepared.slacks[..]);
-        bound.attributes((triangle, &prepared.geometry), given, candidate.edges, &mut self.attributes);
-        let (low, high) = bound.depth(triangle, candidate.edges);
+        let (triangle, surface) = (&prepared.geometry.triangles[number], prepared.surface(number));
+        let given = (triangle, &prepared.geometry);
+        surface.attributes(given, &prepared.shader.attributes, candidate.edges, &mut self.attributes);
+        let (low, high) = surface.depth(triangle, candidate.edges);
         let (stage, scratch, attributes) = (self.stage, &mut self.scratch, &self.attributes);
-        let mut found = vec![];
+        let first = self.outcomes.len();
+        let found = &mut self.outcomes;
         paths::each(
             || prepared.shader.fragment(attributes, scratch),
             |fragment| {
@@ -288,27 +301,29 @@ impl<'a> Painter<'a> {
                 found.push((color, fragment.kept));
             },
         );
-        let count = found.len();
-        self.outcomes[k] = Some(found);
-        count
+        let number = |place: usize| u32::try_from(place).expect("few outcomes");
+        let known = number(first)..number(self.outcomes.len());
+        self.known[k as usize] = Some(known.clone());
+        known
     }
 
     /// What layers over the background may leave, by each way through their shading.
-    fn colors(&mut self, candidates: &[Candidate], layers: &[Layer]) -> Vec<(Units, Units)> {
-        let mut left = vec![self.background];
+    fn colors(&mut self, candidates: &[Candidate], layers: &[Layer]) -> Few<(Units, Units)> {
+        let mut left: Few<(Units, Units)> = smallvec![self.background];
         for &(k, outcome) in layers {
-            let count = self.outcomes(candidates, k);
-            let blend = self.draws[candidates[k].draw as usize].draw.blend.filter(|_| self.stage.is_none());
+            let all = self.outcomes(candidates, k);
+            let blend = self.draws[candidates[k as usize].draw as usize].draw.blend.filter(|_| self.stage.is_none());
             let state = blend.map(|blend| blend.state);
             let constant = blend.map_or([0.0; 4], |blend| blend.constant);
-            let shaded = self.outcomes[k].as_deref().unwrap_or_default();
-            let chosen = if outcome == EACH { 0..count } else { outcome..outcome + 1 };
-            let sources: Vec<_> =
-                shaded[chosen].iter().map(|(color, _)| color.0.map(|c| (c.low(), c.high()))).collect();
+            let chosen = if outcome == EACH { all } else { outcome..outcome + 1 };
+            let sources = &self.outcomes[chosen.start as usize..chosen.end as usize];
+            let bounds = |(color, _): &Outcome| color.0.map(|c| (c.low(), c.high()));
             let target = self.target;
             left = left
                 .iter()
-                .flat_map(|&below| sources.iter().map(move |&source| over(target, state, source, constant, below)))
+                .flat_map(|&below| {
+                    sources.iter().map(move |source| over(target, state, bounds(source), constant, below))
+                })
                 .collect();
             if left.len() > MOST {
                 left = left.into_iter().reduce(hull).into_iter().collect();
@@ -319,6 +334,10 @@ impl<'a> Painter<'a> {
 }
 
 const ANYTHING: LegalPixel = LegalPixel { low: [f64::NEG_INFINITY; 4], high: [f64::INFINITY; 4], is_marked: true };
+
+fn width((low, high): (Units, Units)) -> Units {
+    std::array::from_fn(|k| high[k] - low[k])
+}
 
 fn hull(a: (Units, Units), b: (Units, Units)) -> (Units, Units) {
     (std::array::from_fn(|k| a.0[k].min(b.0[k])), std::array::from_fn(|k| a.1[k].max(b.1[k])))

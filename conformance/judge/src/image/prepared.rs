@@ -1,6 +1,6 @@
 //! A draw with its triangles, and what rasterisers may make of each.
 
-use super::bound::{Bound, VertexErrors};
+use super::bound::{Outline, Surface, VertexErrors, off};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_reference::interpolation::{self, Viewport};
 use lightmeter_reference::render::{Geometry, Scratch, Shader};
@@ -10,25 +10,29 @@ use lightmeter_scene::frame::{Draw, Frame};
 use lightmeter_scene::raster::Provoking;
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 /// A draw with its triangles and what may become of each.
 pub(super) struct Prepared<'a> {
     pub(super) draw: &'a Draw,
     pub(super) shader: Shader<'a, Accept>,
     pub(super) geometry: Geometry,
-    pub(super) bounds: Vec<Bound>,
-    pub(super) slacks: Vec<f64>,
+    pub(super) outlines: Vec<Outline>,
+    /// Of those triangles alone that a pixel has asked for.
+    surfaces: Vec<OnceLock<Surface>>,
+    errors: VertexErrors,
     /// Draws of one number have the same depths, triangle by triangle.
     pub(super) place: usize,
 }
 
-/// A vertex: clip coordinates and attributes, and what they and its place in the window may be off by.
+/// A vertex: clip coordinates and attributes, legal places in eye space, and what its clip coordinates and its place in the window
+/// may be off by.
 struct Shaded {
     clip: [f64; 4],
-    off_clip: [f64; 4],
-    place: [f64; 4],
     attributes: Vec<f64>,
-    off: Vec<f64>,
+    eye: Vec4<Accept>,
+    off_clip: [f64; 4],
+    off_place: [f64; 4],
 }
 
 impl<'a> Prepared<'a> {
@@ -50,41 +54,44 @@ impl<'a> Prepared<'a> {
             .into_par_iter()
             .map(|vertex| profile.scope(|| shaded(&exact, &shader, vertex, size)))
             .collect();
-        let stride = shader.attributes.count;
-        let mut geometry = Geometry { stride, ..Geometry::default() };
-        let mut errors = VertexErrors { stride, ..VertexErrors::default() };
+        let mut geometry = Geometry { stride: shader.attributes.count, ..Geometry::default() };
+        let mut errors = VertexErrors::default();
         let mut identities = HashMap::new();
         for (vertex, position) in vertices.into_iter().zip(&mesh.positions) {
             geometry.clip.push(vertex.clip);
-            errors.clips.push(vertex.off_clip);
             geometry.numbers.extend(vertex.attributes);
             let next = identities.len() as u64;
             geometry.identities.push(*identities.entry(position.map(f32::to_bits)).or_insert(next));
-            errors.places.push(vertex.place);
-            errors.attributes.extend(vertex.off);
+            errors.eyes.push(vertex.eye);
+            errors.clips.push(vertex.off_clip);
+            errors.places.push(vertex.off_place);
         }
         let provoking = draw.shading.map_or(Provoking::First, |shading| shading.provoking);
-        let size = [frame.target.width, frame.target.height];
-        geometry.assemble(&mesh.triangles, |of| interpolation::flat(of, provoking), size, draw.cull);
-        errors.extend(&geometry, size.map(f64::from));
-        let mut slacks = vec![];
-        let bounds = geometry
-            .triangles
-            .iter()
-            .map(|triangle| Bound::new(triangle, &geometry, &errors, &shader.attributes, step, &mut slacks))
-            .collect();
-        Self { draw, shader, geometry, bounds, slacks, place: number }
+        let pixels = [frame.target.width, frame.target.height];
+        geometry.assemble(&mesh.triangles, |of| interpolation::flat(of, provoking), pixels, draw.cull);
+        errors.extend(&geometry, size);
+        let outlines =
+            geometry.triangles.iter().map(|triangle| Outline::new(triangle, &geometry, &errors, step)).collect();
+        let surfaces = geometry.triangles.iter().map(|_| OnceLock::new()).collect();
+        Self { draw, shader, geometry, outlines, surfaces, errors, place: number }
+    }
+
+    /// What the triangle of that number may show.
+    pub(super) fn surface(&self, number: usize) -> &Surface {
+        self.surfaces[number].get_or_init(|| {
+            let of = (&self.geometry.triangles[number], &self.outlines[number]);
+            Surface::new(of, &self.geometry, &self.errors, &self.shader)
+        })
     }
 }
 
 fn shaded(exact: &Shader<'_, f64>, legal: &Shader<'_, Accept>, vertex: usize, size: [f64; 2]) -> Shaded {
-    let (mut attributes, mut intervals) = (vec![], vec![]);
+    let mut attributes = Vec::with_capacity(exact.attributes.count);
     let clip = exact.vertex(vertex, &mut Scratch::default(), &mut attributes);
-    let legal_clip = legal.vertex(vertex, &mut Scratch::default(), &mut intervals);
-    let off = |value: f64, legal: &Accept| (legal.high() - value).max(value - legal.low());
-    let slack = attributes.iter().zip(&intervals).map(|(&value, legal)| off(value, legal)).collect();
+    let eye = legal.eye(vertex);
+    let legal_clip = legal.clip(eye);
     let off_clip = std::array::from_fn(|k| off(clip[k], &legal_clip[k]));
-    Shaded { clip: clip.0, off_clip, place: place(clip, legal_clip, size), attributes, off: slack }
+    Shaded { clip: clip.0, attributes, eye, off_clip, off_place: place(clip, legal_clip, size) }
 }
 
 /// What a vertex's place in the window may be off by: x, y, depth, and 1/w relatively.
@@ -98,7 +105,7 @@ fn place(exact: Vec4<f64>, legal: Vec4<Accept>, [width, height]: [f64; 2]) -> [f
         return [0.0; 4];
     }
     let (window, legal_window) = (interpolation::viewport(exact, &to), interpolation::viewport(legal, &legal_to));
-    let off = |k: usize| (legal_window[k].high() - window[k]).max(window[k] - legal_window[k].low());
+    let off = |k: usize| off(window[k], &legal_window[k]);
     let w = legal.w();
     let inverse_w = (w.high() / exact.w() - 1.0).max(1.0 - w.low() / exact.w());
     [off(0), off(1), off(2), inverse_w]
