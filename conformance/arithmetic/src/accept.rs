@@ -102,7 +102,7 @@ impl<F: Format> Accept<F> {
     /// [`Accept::seal`] where an end is 0, subnormal or not finite.
     #[inline(never)]
     fn seal_beyond_normal(low: f64, high: f64) -> Self {
-        // An exact 0: a product with one, above all.
+        // Both ends are 0, above all those of a product with an exact 0.
         if low == 0.0 && high == 0.0 {
             return Self::raw(low, high);
         }

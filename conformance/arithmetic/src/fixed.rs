@@ -67,7 +67,7 @@ impl<U: Unit> Fixed<U> {
         Self { low, high, unit: PhantomData }
     }
 
-    /// An operand of [0, 1], brought to the unit's numbers.
+    /// An operand of [0, 1], brought to the unit's numbers. Whoever has one beyond clamps it first.
     #[must_use]
     pub fn operand(x: f64) -> Self {
         Self::operand_between(x, x)

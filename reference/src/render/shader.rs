@@ -138,7 +138,7 @@ struct Lit<R> {
 
 impl<'a, R: Real> Shader<'a, R> {
     /// The shader of a draw: of all that it names, or of what is called for only. `stages` keeps what intermediate results
-    /// ask for.
+    /// ask for. What does not vary over the surface is worked out here, so that an arithmetic that asks for a profile needs one in force.
     #[must_use]
     pub fn new(frame: &'a Frame, draw: usize, only: Option<&'a Called>, stages: bool) -> Self {
         let draw = &frame.draws[draw];

@@ -27,17 +27,17 @@ use std::sync::OnceLock;
 const EPSILON: f64 = F32::EPSILON;
 const MIN_NORMAL: f64 = F32::MIN_NORMAL;
 
-/// What each vertex of a draw may be off by.
+/// What each vertex of a draw may be off by: by the profile in force, which is the same for all that asks.
 #[derive(Debug, Default)]
 pub(super) struct VertexErrors {
     /// x and y in pixels, the subpixel step not counted; depth; 1/w, relatively.
     pub(super) places: Vec<[f64; 4]>,
     /// Clip coordinates, of those behind the eye too.
     pub(super) clips: Vec<[f64; 4]>,
-    /// The legal places in eye space.
+    /// The legal places in eye space of the mesh's vertices.
     pub(super) eyes: Vec<Vec4<Accept>>,
     /// The attributes, of those vertices alone that a pixel has asked for.
-    pub(super) attributes: Vec<OnceLock<Box<[f64]>>>,
+    attributes: Vec<OnceLock<Box<[f64]>>>,
 }
 
 /// How far legal values may lie from the exact one.
@@ -68,8 +68,7 @@ impl VertexErrors {
 
     /// Places of the vertices that clipping made: what both ends may be off by, and how far that moves the point between them.
     pub(super) fn extend(&mut self, geometry: &Geometry, size: [f64; 2]) {
-        for vertex in self.clips.len()..geometry.clip.len() {
-            let Some([from, to]) = geometry.ends(vertex) else { continue };
+        for (vertex, &[from, to]) in (self.clips.len()..).zip(&geometry.made_between) {
             let along = self.off_along(geometry, vertex, [from, to]);
             let (a, b) = (geometry.clip[from], geometry.clip[to]);
             let error = |k: usize| self.clips[from][k].max(self.clips[to][k]);
@@ -157,7 +156,7 @@ impl Outline {
 pub(super) struct Surface {
     /// How far the point that is shown may lie from the pixel's middle.
     reach: [f64; 2],
-    /// What each attribute may be off by besides.
+    /// What each attribute may be off by, besides what the reach of the point makes of it.
     slacks: Box<[f64]>,
     depth_slack: f64,
     /// ∂/∂x and ∂/∂y of each vertex's edge over its w.

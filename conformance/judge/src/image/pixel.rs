@@ -92,7 +92,7 @@ pub(super) struct Painter<'a> {
     background: (Units, Units),
     scratch: Scratch<Accept>,
     attributes: Vec<Accept>,
-    /// Of all candidates, one after the other.
+    /// Of the candidates that are shaded so far, one after the other.
     outcomes: Vec<Outcome>,
     /// Which are a candidate's, once they are known.
     known: Vec<Option<Range<u32>>>,
@@ -152,7 +152,7 @@ impl<'a> Painter<'a> {
 
     /// Which candidates cover the pixel, in each way that coverage may turn out; `None` where there are too many.
     fn presences(&self, candidates: &[Candidate]) -> Option<Few<Present>> {
-        let is_open = |c: &Candidate| c.open.contains(&true) || self.bound_may_vanish(c);
+        let is_open = |c: &Candidate| c.open.contains(&true) || self.may_vanish(c);
         let (mut open, mut certain) = (Present::new(), Present::new());
         for (k, candidate) in (0..).zip(candidates) {
             if is_open(candidate) { open.push(k) } else { certain.push(k) }
@@ -177,7 +177,7 @@ impl<'a> Painter<'a> {
         Some(ways)
     }
 
-    fn bound_may_vanish(&self, candidate: &Candidate) -> bool {
+    fn may_vanish(&self, candidate: &Candidate) -> bool {
         self.draws[candidate.draw as usize].outlines[candidate.triangle as usize].may_vanish
     }
 
@@ -192,7 +192,7 @@ impl<'a> Painter<'a> {
     /// Moving vertices moves both triangles at a shared edge alike. Where every edge that is open is shared by two of
     /// them, the number of triangles that cover the pixel cannot change: where it is one, it is always one of them.
     fn alternatives(&self, candidates: &[Candidate], group: &[u32]) -> Option<Few<Present>> {
-        let paired = group.iter().all(|&k| !self.bound_may_vanish(&candidates[k as usize]))
+        let paired = group.iter().all(|&k| !self.may_vanish(&candidates[k as usize]))
             && self.open_edges_are_shared(candidates, group);
         let covering = group.iter().filter(|&&k| candidates[k as usize].covers).count();
         if paired && covering <= 1 {
@@ -301,8 +301,8 @@ impl<'a> Painter<'a> {
                 found.push((color, fragment.kept));
             },
         );
-        let number = |place: usize| u32::try_from(place).expect("few outcomes");
-        let known = number(first)..number(self.outcomes.len());
+        let place = |outcome: usize| u32::try_from(outcome).expect("each candidate has few outcomes");
+        let known = place(first)..place(self.outcomes.len());
         self.known[k as usize] = Some(known.clone());
         known
     }

@@ -76,7 +76,8 @@ impl<'a> Prepared<'a> {
         Self { draw, shader, geometry, outlines, surfaces, errors, place: number }
     }
 
-    /// What the triangle of that number may show.
+    /// What the triangle of that number may show, by the profile in force, which must be that of [`Prepared::new`]. Not to be called first where
+    /// [`paths`](lightmeter_arithmetic::paths) are followed: its own would be among them.
     pub(super) fn surface(&self, number: usize) -> &Surface {
         self.surfaces[number].get_or_init(|| {
             let of = (&self.geometry.triangles[number], &self.outlines[number]);
