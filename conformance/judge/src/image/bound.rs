@@ -119,7 +119,7 @@ fn planes([_, _, z, w]: [f64; 4]) -> [f64; 2] {
 }
 
 /// Where a triangle may be seen.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Outline {
     /// Below this magnitude the sign of an edge's [`Triangle::edges`] is open.
     pub(super) margins: [f64; 3],
@@ -152,7 +152,7 @@ impl Outline {
 }
 
 /// What a triangle may show.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Surface {
     /// How far the point that is shown may lie from the pixel's middle.
     reach: [f64; 2],

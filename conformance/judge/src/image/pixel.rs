@@ -239,7 +239,7 @@ impl<'a> Painter<'a> {
             let owner = (prepared.place, triangle.source);
             let (test, is_opaque) = (prepared.draw.depth, prepared.draw.blend.is_none() || self.stage.is_some());
             let is_cutout = prepared.draw.cutout.is_some();
-            let outcomes = if is_cutout { self.outcomes(candidates, k) } else { 0..1 };
+            let outcomes = if is_cutout { self.shaded(candidates, k) } else { 0..1 };
             let mut left: Few<Way> = SmallVec::new();
             for way in ways {
                 let passes = test
@@ -277,7 +277,7 @@ impl<'a> Painter<'a> {
     }
 
     /// Shades a candidate, once; which outcomes are its.
-    fn outcomes(&mut self, candidates: &[Candidate], k: u32) -> Range<u32> {
+    fn shaded(&mut self, candidates: &[Candidate], k: u32) -> Range<u32> {
         if let Some(known) = &self.known[k as usize] {
             return known.clone();
         }
@@ -311,7 +311,7 @@ impl<'a> Painter<'a> {
     fn colors(&mut self, candidates: &[Candidate], layers: &[Layer]) -> Few<(Units, Units)> {
         let mut left: Few<(Units, Units)> = smallvec![self.background];
         for &(k, outcome) in layers {
-            let all = self.outcomes(candidates, k);
+            let all = self.shaded(candidates, k);
             let blend = self.draws[candidates[k as usize].draw as usize].draw.blend.filter(|_| self.stage.is_none());
             let state = blend.map(|blend| blend.state);
             let constant = blend.map_or([0.0; 4], |blend| blend.constant);
