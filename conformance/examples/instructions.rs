@@ -21,8 +21,8 @@ use std::process::{Command, ExitCode};
 
 /// Instructions for each item of the processor's workloads, against the record.
 #[derive(Debug, Parser)]
-#[command(after_help = "Exit codes: 0 within the record, or another compiler's · 1 outside · 2 bad usage or input · \
-    3 valgrind is not here, nothing was counted")]
+#[command(after_help = "Exit codes: 0 within the record · 1 outside · 2 bad usage or input · \
+    3 valgrind is not here, or the record is another compiler's: nothing was compared")]
 struct Cli {
     /// Write the record anew
     #[arg(long)]
@@ -97,12 +97,12 @@ impl Cli {
         let json = std::fs::read_to_string(&path)
             .with_context(|| format!("cannot read {}; ./x instructions --update writes it", path.display()))?;
         let record: Record = serde_json::from_str(&json).with_context(|| path.display().to_string())?;
-        Ok(u8::from(!report(&record, &made_by, &counts)))
+        Ok(report(&record, &made_by, &counts))
     }
 }
 
-/// Prints every count beside the record's, then what is wrong; whether nothing is.
-fn report(record: &Record, made_by: &MadeBy, counts: &BTreeMap<String, f64>) -> bool {
+/// Prints every count beside the record's, then what is wrong. The exit code: 1 where something is, 3 where nothing can be compared.
+fn report(record: &Record, made_by: &MadeBy, counts: &BTreeMap<String, f64>) -> u8 {
     println!("{:<50} {:<12} {:>10} {:>10}", "instructions of", "for a", "here", "record");
     for work in workload::all() {
         let count = counts.get(&work.name).copied().unwrap_or(f64::NAN);
@@ -115,7 +115,7 @@ fn report(record: &Record, made_by: &MadeBy, counts: &BTreeMap<String, f64>) -> 
     if record.made_by != *made_by {
         println!("instructions: NOT COMPARED: the record is of {}, these counts of {made_by}", record.made_by);
         println!("instructions: ./x instructions --update records these");
-        return true;
+        return 3;
     }
     let problems = problems(&record.instructions, counts);
     for problem in &problems {
@@ -126,7 +126,7 @@ fn report(record: &Record, made_by: &MadeBy, counts: &BTreeMap<String, f64>) -> 
     } else {
         println!("instructions: where that is as it should be, ./x instructions --update renews the record");
     }
-    problems.is_empty()
+    u8::from(!problems.is_empty())
 }
 
 /// What is outside the record. A count that fell is too: the next rise would hide below the old one.

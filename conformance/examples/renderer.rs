@@ -47,7 +47,15 @@ fn main() -> anyhow::Result<()> {
     let faults = Faults::read();
     let catalogue: Vec<Member> = catalogue().into_iter().chain(alias_members()).collect();
     let by_id = catalogue.iter().map(|member| (member.spec.id.as_str(), member)).collect();
-    let mut renderer = Renderer { faults, by_id, folder: PathBuf::new(), answered: 0, described: HashSet::new() };
+    let mut renderer = Renderer {
+        faults,
+        by_id,
+        folder: PathBuf::new(),
+        answered: 0,
+        withholds: false,
+        slow: Default::default(),
+        described: HashSet::new(),
+    };
     let mut out = std::io::BufWriter::with_capacity(1 << 20, std::io::stdout().lock());
     let (mut stream, mut line) = (std::io::stdin().lock(), vec![]);
     while stream.read_until(b'\n', &mut line)? > 0 {
@@ -63,18 +71,33 @@ fn main() -> anyhow::Result<()> {
             stream.read_exact(&mut bytes)?;
             renderer.respond_in_columns(&request, &bytes, &mut out)?;
             out.flush()?;
+            if matches!(renderer.faults.0.get("columns").map(String::as_str), Some("few" | "unended")) {
+                stall(&mut out)?;
+            }
         } else if request.get("hello").is_some() {
             writeln!(out, "{}", renderer.hello(&request))?;
             out.flush()?;
         } else if request.get("batch").is_some() {
+            let (time, answers) = std::mem::take(&mut renderer.slow);
+            passes(time, &mut out)?;
+            out.write_all(&answers)?;
             out.flush()?;
+            if std::mem::take(&mut renderer.withholds) {
+                stall(&mut out)?;
+            }
+        } else if renderer.faults.0.contains_key("slow-at") {
+            let (time, mut answers) = std::mem::take(&mut renderer.slow);
+            renderer.respond(&request, &mut answers)?;
+            let id = request["id"].as_str().unwrap_or_default();
+            let is_slow = renderer.faults.0["slow-at"].as_str();
+            renderer.slow = (time + Duration::from_millis(if id.starts_with(is_slow) { 10 } else { 0 }), answers);
         } else {
             renderer.respond(&request, &mut out)?;
         }
     }
     out.flush()?;
     if renderer.faults.has("lingers", "") {
-        std::thread::sleep(Duration::from_secs(600));
+        hang(&mut out)?;
     }
     if let Some(code) = renderer.faults.0.get("exit") {
         std::process::exit(code.parse()?);
@@ -89,6 +112,10 @@ struct Renderer<'a> {
     /// Where images are written.
     folder: PathBuf,
     answered: u32,
+    /// Whether it did not write all of an answer.
+    withholds: bool,
+    /// How long its answers to a batch take together, and these answers.
+    slow: (Duration, Vec<u8>),
     /// The formulas that were described.
     described: HashSet<String>,
 }
@@ -131,7 +158,7 @@ impl Renderer<'_> {
         let way = self.faults.0.get("columns").map_or("f4", String::as_str);
         match way {
             "crash" => std::process::abort(),
-            "hang" => std::thread::sleep(Duration::from_secs(600)),
+            "hang" => hang(out)?,
             "skips" => head["skip"] = json!("not built"),
             "errors" => head["error"] = json!("no memory"),
             "lines" => head["lines"] = json!(true),
@@ -233,6 +260,7 @@ impl Renderer<'_> {
         }
         self.faults.write_besides(id, &answer, out)?;
         self.faults.delay(id, out)?;
+        self.withholds |= self.faults.has("unended-at", id) || self.faults.has("drop-at", id);
         if self.faults.has("unended-at", id) {
             write!(out, "{answer}")?;
         } else if !self.faults.has("drop-at", id) {
@@ -249,10 +277,9 @@ impl Faults {
             // Like a renderer that loses what it had not written.
             std::process::abort();
         } else if self.has("hang-at", id) {
-            out.flush()?;
-            loop {
-                std::thread::sleep(Duration::from_secs(1));
-            }
+            // A test waits for this file.
+            self.0.get("tells").map(|file| std::fs::write(file, "it hangs")).transpose()?;
+            hang(out)?;
         }
         Ok(())
     }
@@ -278,20 +305,45 @@ impl Faults {
         Ok(())
     }
 
-    /// Takes its time over an answer: a little, or for ever with lines that answer nothing, without end or now and then.
+    /// Takes its time over an answer: for ever with lines that answer nothing, without end or now and then.
     fn delay(&self, id: &str, out: &mut impl Write) -> anyhow::Result<()> {
-        if self.0.get("slow-at").is_some_and(|formula| id.strip_prefix(formula.as_str()).is_some()) {
-            std::thread::sleep(Duration::from_millis(10));
-        }
         while self.has("flood-at", id) {
             writeln!(out, "{}", json!({ "id": "fog/none/random/000000", "value": [0] }))?;
         }
         while self.has("trickle-at", id) {
             writeln!(out)?;
+            passes(Duration::from_millis(50), out)?;
             out.flush()?;
-            std::thread::sleep(Duration::from_millis(50));
         }
         Ok(())
+    }
+}
+
+/// Longer than anything may take.
+const LONG: Duration = Duration::from_secs(600);
+
+/// Lets time pass: by the test's clock, which a mark in the output moves, or really.
+fn passes(time: Duration, out: &mut impl Write) -> anyhow::Result<()> {
+    if std::env::var_os("LIGHTMETER_CLOCK").is_some() {
+        out.write_all(b"\xffpasses:")?;
+        write!(out, "{:08}", time.as_millis())?;
+    } else if time < LONG {
+        std::thread::sleep(time);
+    }
+    Ok(())
+}
+
+/// Lets more time pass than anything may take.
+fn stall(out: &mut impl Write) -> anyhow::Result<()> {
+    passes(LONG, out)?;
+    Ok(out.flush()?)
+}
+
+/// Does nothing any more.
+fn hang(out: &mut impl Write) -> anyhow::Result<()> {
+    stall(out)?;
+    loop {
+        std::thread::sleep(LONG);
     }
 }
 

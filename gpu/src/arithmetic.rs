@@ -138,6 +138,9 @@ mod tests {
 
     #[test]
     fn rows_are_evaluated_alike_by_way_of_json() {
+        if crate::lacks_driver() {
+            return;
+        }
         let gpu = device();
         let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
         for (file, function) in [("fog.wgsl", "fog_exp"), ("lighting.wgsl", "lighting_frame")] {

@@ -378,6 +378,9 @@ mod tests {
 
     #[test]
     fn batches_are_drawn_alike_by_way_of_json() {
+        if crate::lacks_driver() {
+            return;
+        }
         let gpu = device();
         let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
         let mut pipelines = UnitPipelines::new(&shaders, gpu.has_dual_source());

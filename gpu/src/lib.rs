@@ -22,6 +22,10 @@ mod repeat;
 mod rung;
 pub mod scene;
 mod shaders;
+#[cfg(test)]
+#[path = "../../tests/src/skip.rs"]
+#[expect(unreachable_pub, reason = "the library of the tests has it as well")]
+mod skip;
 mod sweep;
 pub mod work;
 
@@ -38,3 +42,9 @@ pub use repeat::RepeatPipeline;
 pub use rung::Rung;
 pub use shaders::Shaders;
 pub use sweep::{Block, Sweep};
+
+/// Whether this thread's test is skipped for want of a driver.
+#[cfg(test)]
+fn lacks_driver() -> bool {
+    skip::lacks(native_adapters().is_empty(), skip::DRIVER)
+}

@@ -306,6 +306,9 @@ mod tests {
 
     #[test]
     fn primitives_are_drawn_alike_by_way_of_json() {
+        if crate::lacks_driver() {
+            return;
+        }
         let gpu = device();
         let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
         let corners = [-1.0, -1.0, 0.5, 1.0, 3.0, -1.0, 0.25, 1.0, -1.0, 3.0, 0.75, 1.0];

@@ -5,8 +5,10 @@ import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:f
 import { connect } from "node:tls";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { createInterface } from "node:readline";
 import { chromium } from "playwright-core";
 import axe from "axe-core";
+import { limit, pause, until } from "./limit.mjs";
 
 // The folder for screenshots, and the part of a test's name that is run alone.
 const [, , shots, only] = process.argv;
@@ -48,7 +50,7 @@ async function open(url) {
   return page;
 }
 
-const isOver = (page) => page.waitForFunction(() => /right|wrong|before its time/.test(document.querySelector("#verdict").textContent), null, { timeout: 120_000 });
+const isOver = (page) => page.waitForFunction(() => /right|wrong|before its time/.test(document.querySelector("#verdict").textContent), null, limit);
 const verdict = (page) => page.textContent("#verdict");
 
 async function aRunIsShownAndItsReportIsKept() {
@@ -87,19 +89,20 @@ async function aRunIsShownAndItsReportIsKept() {
 async function aReloadLosesNothing() {
   const served = await serve("lighting/*", "--format", "json");
   const page = await open(served.url);
-  await page.waitForFunction(() => document.querySelectorAll("#groups tr").length > 4, null, { timeout: 60_000 });
+  await page.waitForFunction(() => document.querySelectorAll("#groups tr").length > 4, null, limit);
   await page.reload();
   await isOver(page);
   const { code, out } = await served.ended;
   assert.equal(code, 0);
-  const [{ totals }, undisturbed] = [JSON.parse(out), JSON.parse((await run("lighting/*", "--format", "json")).out)];
+  const [{ totals }, undisturbed] = [JSON.parse(out), JSON.parse((await run({}, "lighting/*", "--format", "json")).out)];
   assert.deepEqual(totals, undisturbed.totals, "a reload changes no count");
   await page.context().close();
 }
 
 // What `run` gives of the same by the browser that it starts itself.
-async function run(...args) {
-  const child = spawn(lightmeter, ["run", "--adapter", "chromium", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+async function run(variables, ...args) {
+  const env = { ...process.env, ...variables };
+  const child = spawn(lightmeter, ["run", "--adapter", "chromium", ...args], { env, stdio: ["ignore", "pipe", "pipe"] });
   let [out, err] = ["", ""];
   child.stdout.on("data", (data) => { out += data; });
   child.stderr.on("data", (data) => { err += data; });
@@ -109,7 +112,7 @@ async function run(...args) {
 async function aClosedTabEndsTheRun() {
   const served = await serve("lighting/*");
   const page = await open(served.url);
-  await page.waitForFunction(() => document.querySelectorAll("#groups tr").length > 4, null, { timeout: 60_000 });
+  await page.waitForFunction(() => document.querySelectorAll("#groups tr").length > 4, null, limit);
   await page.close({ runBeforeUnload: false });
   const { code, err } = await served.ended;
   assert.equal(code, 4, err);
@@ -162,7 +165,7 @@ async function aSlowBrowserIsWaitedFor() {
   const served = await serve("fog/exp", "--cases", "64");
   const context = await browser.newContext();
   await context.route("**/answer*", async (route) => {
-    await new Promise((resolve) => setTimeout(resolve, 500));
+    await pause(500);
     await route.continue();
   });
   const page = await context.newPage();
@@ -253,7 +256,7 @@ const MISTAKES = [
 async function mistakesAreNamedThroughTheBrowser() {
   for (const [formula, file, right, wrong, name] of MISTAKES) {
     const copy = shaders(file, right, wrong);
-    const { code, out, err } = await run(formula, "--shaders", copy, "--cases", "512");
+    const { code, out, err } = await run({}, formula, "--shaders", copy, "--cases", "512");
     rmSync(copy, { recursive: true });
     assert.equal(code, 1, `${formula}: ${out}${err}`);
     assert.ok(out.includes(`(${name})`), `${formula}: ${name} is not named in\n${out}`);
@@ -323,48 +326,48 @@ async function anotherMachineReachesItByTlsAlone() {
   }
 }
 
-// The process of Chromium that a `run` started itself, once it is there.
-function childOf(pid) {
-  return spawnSync("pgrep", ["--parent", String(pid)], { encoding: "utf8" }).stdout.trim().split("\n")[0];
+// The processes of Chromium whose profiles lie in a folder.
+function browsers(folder) {
+  return spawnSync("pgrep", ["--full", `user-data-dir=${folder}/lightmeter-chromium-`], { encoding: "utf8" }).stdout.split("\n").filter(Boolean);
 }
 
 async function aChromiumThatIsKilledEndsTheRunWithWhatWasJudged() {
-  const child = spawn(lightmeter, ["run", "--adapter", "chromium", "lighting/*", "--cases", "100000"], { stdio: ["ignore", "pipe", "pipe"] });
+  const folder = mkdtempSync(join(tmpdir(), "lightmeter-killed-"));
+  // It holds once something was judged, until a byte comes on its standard input.
+  const env = { ...process.env, TMPDIR: folder, LIGHTMETER_EVENTS: "2", LIGHTMETER_HOLD: "advanced:1@0" };
+  const child = spawn(lightmeter, ["run", "--adapter", "chromium", "lighting/*", "--cases", "100000"], { env });
   let [out, err] = ["", ""];
   child.stdout.on("data", (data) => { out += data; });
-  child.stderr.on("data", (data) => { err += data; });
   const ended = new Promise((resolve) => child.on("close", resolve));
-  let pid = "";
-  for (let k = 0; k < 200 && !pid; k++) {
-    await new Promise((resolve) => setTimeout(resolve, 100));
-    pid = childOf(child.pid);
-  }
+  await new Promise((resolve) => createInterface(child.stderr).on("line", (line) => {
+    if (!line.startsWith('{"event":')) err += line + "\n";
+    else if (JSON.parse(line).event === "advanced") resolve();
+  }).on("close", resolve));
+  // The one that the run started is the parent of the others.
+  const pid = browsers(folder).find((pid) => spawnSync("ps", ["-o", "ppid=", "-p", pid], { encoding: "utf8" }).stdout.trim() === String(child.pid));
   assert.ok(pid, "Chromium is a child of the run");
-  await new Promise((resolve) => setTimeout(resolve, 5000));
   process.kill(Number(pid), "SIGKILL");
+  child.stdin.end("\n");
   assert.equal(await ended, 4, out + err);
   assert.match(out + err, /Chromium ended with signal: 9/);
   assert.match(out, /lighting\/|verdicts/);
-}
-
-// How many browsers run that a `lightmeter` started: their profiles are named after it.
-function startedBrowsers() {
-  return spawnSync("pgrep", ["--full", "--count", "user-data-dir=.*/lightmeter-chromium-"], { encoding: "utf8" }).stdout.trim();
+  rmSync(folder, { recursive: true, force: true });
 }
 
 async function aRunThatEndsAtItsFirstFailureEndsItsChromium() {
-  const before = startedBrowsers();
+  const folder = mkdtempSync(join(tmpdir(), "lightmeter-ended-"));
   const copy = shaders("fog.wgsl", "return clamp(exp(-(density * distance)), 0.0, 1.0);", "return 0.5;");
-  const { code, out } = await run("fog/*", "--shaders", copy, "--fail-fast");
+  const { code, out } = await run({ TMPDIR: folder }, "fog/*", "--shaders", copy, "--fail-fast");
   rmSync(copy, { recursive: true });
   assert.equal(code, 1, out);
-  assert.equal(startedBrowsers(), before, "the Chromium that was started has ended");
+  await until("the end of the Chromium that was started", () => browsers(folder).length === 0);
+  rmSync(folder, { recursive: true, force: true });
 }
 
 async function shadersAreJudgedAsTheyAreTyped() {
   const { url, ended, child } = await serve("--playground");
   const page = await open(url);
-  const said = (pattern) => page.waitForFunction((source) => new RegExp(source).test(document.querySelector("#played").textContent), pattern.source, { timeout: 60_000 }).catch(async () => assert.match(await page.textContent("#played"), pattern));
+  const said = (pattern) => page.waitForFunction((source) => new RegExp(source).test(document.querySelector("#played").textContent), pattern.source, limit).catch(async () => assert.match(await page.textContent("#played"), pattern));
   await page.waitForSelector("#playground:not([hidden])");
   // Each example says in its title whether it is right.
   const examples = await page.locator("#example option:not([value=''])").allTextContents();
@@ -389,7 +392,7 @@ async function shadersAreJudgedAsTheyAreTyped() {
   // The address holds the shader: another page that opens it has the same one.
   const link = await page.evaluate(() => location.href);
   const other = await open(link);
-  await other.waitForFunction(() => /half-vector-by-difference/.test(document.querySelector("#played").textContent), null, { timeout: 60_000 });
+  await other.waitForFunction(() => /half-vector-by-difference/.test(document.querySelector("#played").textContent), null, limit);
   assert.equal(await other.inputValue("#text"), await page.inputValue("#text"));
   assert.deepEqual(other.problems, []);
   await other.context().close();
@@ -426,7 +429,7 @@ async function shadersAreJudgedAsTheyAreTyped() {
   await said(/^Nothing is judged yet/);
   assert.equal(await page.locator("#drawn img").count(), 0, "nothing is drawn of no shader");
   const spoilt = await open(`${url}#shader=%7Bnothing`);
-  await spoilt.waitForFunction(() => /the link's shader cannot be read/.test(document.querySelector("#played").textContent), null, { timeout: 60_000 });
+  await spoilt.waitForFunction(() => /the link's shader cannot be read/.test(document.querySelector("#played").textContent), null, limit);
   await spoilt.context().close();
   // What cannot be judged is refused in words that name no file of this machine, and the next shader is judged.
   for (const [text, pattern] of [["void main() { not glsl }", /^Not judged: /], ["(".repeat(30_000), /^Not judged: /], ["x".repeat(70_000), /65536 bytes/]]) {

@@ -18,6 +18,9 @@ fn rows<'a>(document: &'a Value, group: &str) -> &'a Vec<Value> {
 
 #[test]
 fn every_row_is_filled_or_says_why_not() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let document = small(&[]);
     assert_eq!(document["schema"], "lightmeter.bench/1");
     let measured = &document["adapters"][0];
@@ -57,6 +60,9 @@ fn every_row_is_filled_or_says_why_not() {
 
 #[test]
 fn an_adapter_without_timestamps_is_timed_by_the_wall_and_says_so() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let document = small(&["--clock", "wall"]);
     let clock = &document["adapters"][0]["clock"];
     assert_eq!(clock["kind"], "wall");
@@ -67,6 +73,9 @@ fn an_adapter_without_timestamps_is_timed_by_the_wall_and_says_so() {
 
 #[test]
 fn a_wrong_value_disqualifies() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let dir = edited("bench_wrong", "fog.wgsl", |text| {
         text.replace("clamp(exp(-(density * distance)), 0.0, 1.0)", "clamp(0.9 * exp(-(density * distance)), 0.0, 1.0)")
     });
@@ -83,6 +92,9 @@ fn a_wrong_value_disqualifies() {
 
 #[test]
 fn the_cheapest_below_an_error_is_recommended() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let ask = |limit: &str| {
         let arguments = ["bench", "technique/power", "--quick", "--inputs", "random", "--recommend", limit];
         let output = lightmeter(&arguments);
@@ -97,6 +109,9 @@ fn the_cheapest_below_an_error_is_recommended() {
 
 #[test]
 fn bad_input_is_refused_with_what_would_be_right() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     for (arguments, status, says) in [
         (&["bench", "nothing/there"][..], 2, "no group matches"),
         (&["bench", "fog/[", "--quick"], 2, "fog/["),

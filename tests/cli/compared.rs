@@ -1,14 +1,12 @@
 //! A run held against an earlier one, against known failures, and against itself.
 
-use super::{code, edited, gate, json, lightmeter, stderr, stdout};
+use super::{code, edited, folder, gate, json, lightmeter, stderr, stdout};
 use serde_json::Value;
 use std::path::PathBuf;
 
 /// A file of this test's own.
 fn file(name: &str) -> PathBuf {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = std::fs::remove_file(&path);
-    path
+    folder(name).join(name)
 }
 
 /// A run of a few cases.
@@ -19,6 +17,9 @@ fn run(filter: &[&str], more: &[&str]) -> (i32, String, String) {
 
 #[test]
 fn a_run_is_no_worse_than_its_baseline_or_says_where() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let baseline = file("run-baseline.json");
     let path = baseline.to_str().expect("the path is UTF-8");
     let wrong = edited("run-baseline-wrong", "vector.wgsl", |text| text.replace("return i - 2.0", "return i - 2.0001"));
@@ -62,6 +63,9 @@ fn what_is_no_result_of_a_run_is_no_baseline() {
 
 #[test]
 fn a_known_failure_is_expected_on_an_adapter_and_told_when_it_passes() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let expected = file("run-expected.toml");
     let path = expected.to_str().expect("the path is UTF-8");
     let wrong = edited("run-expected-wrong", "vector.wgsl", |text| text.replace("return i - 2.0", "return i + 2.0"));
@@ -103,12 +107,18 @@ fn a_known_failure_is_expected_on_an_adapter_and_told_when_it_passes() {
 
 #[test]
 fn results_are_the_same_however_often_they_are_asked() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let report = json(&["run", "fog", "depth", "vector/halfway", "--cases", "100", "--runs", "3", "--format", "json"]);
     assert_eq!((report.get("unstable"), report["totals"]["failed"].as_u64()), (None, Some(0)), "{}", report["totals"]);
 }
 
 #[test]
 fn failures_are_annotations_for_a_server() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let wrong = edited("run-github-wrong", "vector.wgsl", |text| text.replace("return i - 2.0", "return i + 2.0"));
     let wrong = wrong.to_str().expect("the path is UTF-8");
     let (status, said, _) = run(&["vector/reflect"], &["--shaders", wrong, "--format", "github"]);
@@ -123,6 +133,9 @@ fn failures_are_annotations_for_a_server() {
 
 #[test]
 fn each_group_says_what_became_of_its_cases() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let report = json(&["run", "fog/linear", "blend/add/one/zero", "--cases", "100", "--format", "json"]);
     for group in report["groups"].as_array().expect("an array") {
         let counts = &group["by_case"];
@@ -172,6 +185,9 @@ fn differences(a: &Value, b: &Value, path: &str, out: &mut Vec<String>) {
 
 #[test]
 fn shards_of_shaders_that_differ_in_their_text_alone_are_no_run() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let folder = file("merge-shaders");
     std::fs::create_dir_all(&folder).expect("the folder can be made");
     let shader = folder.join("fog.glsl");
@@ -194,6 +210,9 @@ fn shards_of_shaders_that_differ_in_their_text_alone_are_no_run() {
 
 #[test]
 fn shards_of_a_run_and_of_a_gate_merge_into_the_whole() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let exec = gate::process::command_of("targets=all wrong-at=fog/exp/random/000017");
     let run =
         ["run", "fog", "blend/{min,max}/one", "depth", "special/nan", "vector/reflect", "scene/flat", "--size", "48"];

@@ -1,6 +1,6 @@
 //! What goes out as JSON is as its schema says, is read again by the types that wrote it, and written once more it is the same.
 
-use super::{code, command, lightmeter, stderr};
+use super::{code, command, folder, lightmeter, stderr};
 use lightmeter::document::Document;
 use lightmeter::document::adapters::AdaptersDocument;
 use lightmeter::document::bench::BenchDocument;
@@ -119,7 +119,7 @@ fn departure(root: &Value, schema: &Value, value: &Value, place: &str) -> Option
 
 /// A pack, and answers to it of which some are wrong, some are skipped and one is not JSON.
 fn packed() -> (PathBuf, PathBuf) {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents");
+    let folder = folder("documents-pack");
     let (pack, answers) = (folder.join("pack"), folder.join("answers.jsonl"));
     let dir = pack.to_str().expect("UTF-8");
     let output = lightmeter(&["pack", dir, "fog/exp", "vector/reflect", "scene/flat", "--cases", "16", "--size", "16"]);
@@ -142,6 +142,9 @@ fn packed() -> (PathBuf, PathBuf) {
 
 #[test]
 fn a_run_is_read_again() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let filters = ["fog/linear", "attenuation/*/hard", "blend/special", "blend/add/one", "special", "scene/flat"];
     let args = [&["run", "--adapter", "lavapipe", "--cases", "16", "--size", "16"], &filters[..]].concat();
     let (report, _) = read_and_written::<Report>(&args);
@@ -154,6 +157,9 @@ fn a_run_is_read_again() {
 
 #[test]
 fn failures_are_read_again() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let head = "fn fog_exp_factor(distance: f32, density: f32) -> f32 {";
     let wrong = |text: &str| text.replace(head, &format!("{head}\n    if density > 0.0 {{ return 0.5; }}"));
     let dir = super::edited("documents", "fog.wgsl", wrong);
@@ -164,6 +170,9 @@ fn failures_are_read_again() {
 
 #[test]
 fn special_values_are_read_again() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let (report, written) = read_and_written::<SpecialReport>(&["special", "--adapter", "lavapipe"]);
     assert!(report.outcomes.len() > 100 && report.probes.len() > 100);
     assert!(report.probes.iter().all(|probe| report.classes.iter().any(|class| class.name == probe.class)));
@@ -187,16 +196,16 @@ fn a_pack_and_a_gate_are_read_again() {
 
 #[test]
 fn sweeps_are_read_again() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let range = ["--from", "1", "--to", "1.01", "--adapter"];
     for adapter in ["cpu", "lavapipe"] {
         let (document, _) =
             read_and_written::<SweepDocument>(&[&["sweep", "fog/exp"], &range[..], &[adapter]].concat());
         assert!(document.is_finished() && document.statistics.worst.is_some());
     }
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents");
-    std::fs::create_dir_all(&folder).expect("a folder can be made");
-    let checkpoint = folder.join("blend.json");
-    let _ = std::fs::remove_file(&checkpoint);
+    let checkpoint = folder("documents-sweep").join("blend.json");
     let place = checkpoint.to_str().expect("UTF-8");
     let args = ["sweep", "blend/mode-alpha", "--adapter", "lavapipe", "--checkpoint", place, "--blocks", "1"];
     let (document, _) = read_and_written::<SweepDocument>(&args);
@@ -205,6 +214,9 @@ fn sweeps_are_read_again() {
 
 #[test]
 fn a_bench_is_read_again() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let args = ["bench", "fog/exp", "technique/power", "scaling/pixels", "--quick", "--adapter", "lavapipe"];
     let (document, _) = read_and_written::<BenchDocument>(&args);
     let measured = &document.adapters[0];
@@ -252,6 +264,9 @@ fn cases_and_formulas_are_read_again() {
 
 #[test]
 fn what_is_shown_is_read_again() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let show = |id: &str, more: &[&str]| read_and_written::<ShowDocument>(&[&["show", id], more].concat()).0;
     let case = |id: &str, more: &[&str]| match show(id, more) {
         ShowDocument::Case(case) => case,
@@ -276,6 +291,9 @@ fn what_is_shown_is_read_again() {
 
 #[test]
 fn what_can_be_asked_for_is_read_again() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let (adapters, _) = read_and_written::<AdaptersDocument>(&["adapters"]);
     assert!(!adapters.adapters.is_empty());
     let (effects, _) = read_and_written::<EffectsDocument>(&["effects", "scene/teapot"]);
@@ -307,6 +325,9 @@ fn lines_of_eval_are_read_again() {
 
 #[test]
 fn a_recommendation_is_read_again() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let args = ["bench", "technique/power", "--quick", "--inputs", "random", "--adapter", "lavapipe", "--recommend"];
     let found = |limit: &str| read_and_written::<Recommendation>(&[&args[..], &[limit]].concat()).0;
     assert!(found("1e-2").groups.iter().all(|group| group.chosen.is_some()));
@@ -315,7 +336,10 @@ fn a_recommendation_is_read_again() {
 
 #[test]
 fn a_record_of_special_values_is_read_again() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents/records");
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
+    let folder = folder("documents-records");
     let output = lightmeter(&["special", "--adapter", "lavapipe", "--record", folder.to_str().expect("UTF-8")]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let written = std::fs::read(folder.join("lavapipe.json")).expect("there is a record");
@@ -349,8 +373,7 @@ fn a_document_that_departs_from_its_schema_is_told() {
 
 #[test]
 fn what_a_renderer_reads_is_read_again() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents-protocol");
-    let _ = std::fs::remove_dir_all(&folder);
+    let folder = folder("documents-protocol");
     let dir = folder.to_str().expect("UTF-8");
     let scenes = ["scene/combined-exp", "scene/spotlight", "scene/sorted", "scene/fog-exp2-document"];
     let filter = ["fog/exp", "blend/add/src-alpha/one", "blend/layers", "special/nan"];

@@ -1,10 +1,12 @@
 //! Hard cases on the command line: run, listed, shown, and made a page.
 
-use super::{code, edited, json, lightmeter, stderr, stdout};
-use std::path::Path;
+use super::{code, edited, folder, json, lightmeter, stderr, stdout};
 
 #[test]
 fn hard_cases_are_judged_on_both_sides() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let report = json(&["run", "fog/*/hard", "--format", "json"]);
     let rows = report["stability"].as_array().expect("hard cases on both sides");
     assert!(rows.len() >= 20, "{} rows", rows.len());
@@ -21,6 +23,9 @@ fn hard_cases_are_judged_on_both_sides() {
 
 #[test]
 fn an_unstable_form_in_a_stable_ones_place_fails_its_group() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let dir = edited("unstable-fog", "fog.wgsl", |text| {
         text.replace("-elementary_exp_m1(-(density * distance))", "1.0 - exp(-(density * distance))")
     });
@@ -34,6 +39,9 @@ fn an_unstable_form_in_a_stable_ones_place_fails_its_group() {
 
 #[test]
 fn a_case_near_a_hard_one_is_run_and_shown_alone() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let id = "fog/linear/hard/band-of-1-at-1e5/near/07";
     let output = lightmeter(&["run", id, "--format", "json"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
@@ -48,6 +56,9 @@ fn a_case_near_a_hard_one_is_run_and_shown_alone() {
 
 #[test]
 fn show_tells_ill_conditioned_from_unstable() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     for (id, what) in [
         ("vector/interpolated-normal/hard/nearly-opposite", "ill-conditioned: with inputs that were rounded"),
         ("vector/normalize/hard/tiny", "anything is legal: the fault of the form"),
@@ -83,9 +94,10 @@ fn the_list_says_which_form_fails_and_the_condition() {
 
 #[test]
 fn a_page_has_every_case_with_both_errors_and_a_picture() {
-    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("stability-page");
-    let _ = std::fs::remove_dir_all(&dir);
-    std::fs::create_dir_all(&dir).expect("a folder can be made");
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
+    let dir = folder("stability-page");
     let at = |name: &str| dir.join(name).to_str().expect("UTF-8").to_owned();
     let (run, page) = (at("hard.json"), at("stability.md"));
     assert_eq!(code(&lightmeter(&["run", "depth/*/hard", "--timing", "--format", "json", "--out", &run])), 0);

@@ -1,15 +1,7 @@
 //! Images on the command line: scenes judged, shown and drawn, and what is refused.
 
-use crate::{code, edited, json, lightmeter, stderr, stdout};
-use std::path::{Path, PathBuf};
-
-/// A folder of a test's own, empty.
-fn folder(test: &str) -> PathBuf {
-    let dir = std::env::temp_dir().join(format!("lightmeter-{test}-{}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&dir);
-    std::fs::create_dir_all(&dir).expect("a temporary folder can be made");
-    dir
-}
+use crate::{code, edited, folder, json, lightmeter, stderr, stdout};
+use std::path::Path;
 
 fn path(dir: &Path, name: &str) -> String {
     dir.join(name).to_str().expect("UTF-8").to_owned()
@@ -17,6 +9,9 @@ fn path(dir: &Path, name: &str) -> String {
 
 #[test]
 fn a_scene_is_judged_by_both_kinds_of_shader() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let report = json(&["run", "scene/viewer", "--size", "64", "--format", "json"]);
     let groups = report["groups"].as_array().expect("there are groups");
     let stages: Vec<&str> = groups.iter().filter_map(|group| group["stage"].as_str()).collect();
@@ -44,6 +39,9 @@ fn shards_of_scenes_make_the_whole() {
 
 #[test]
 fn one_pixel_is_judged_and_shown_by_its_name() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let report = json(&["run", "scene/teapot/24-30", "--size", "64", "--format", "json"]);
     assert_eq!((&report["totals"]["cases"], &report["totals"]["failed"]), (&2.into(), &0.into()));
     let shown = json(&["show", "scene/teapot/24-30", "--size", "64", "--format", "json"]);
@@ -63,6 +61,9 @@ fn one_pixel_is_judged_and_shown_by_its_name() {
 /// must not keep it from being told.
 #[test]
 fn a_texture_that_is_truncated_fails_on_every_adapter() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let dir = edited("truncated", "texture.wgsl", |text| {
         let right = "vec2i(floor(uv * vec2f(textureDimensions(image))))";
         assert!(text.contains(right));
@@ -88,6 +89,9 @@ fn a_texture_that_is_truncated_fails_on_every_adapter() {
 
 #[test]
 fn all_pixels_together_tell_what_none_shows_alone() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let lit = "return sum.diffuse + sum.specular;";
     let images = path(&folder("bias-images"), "");
     let run = |name: &str, factor: f64, scene: &str| {
@@ -117,6 +121,9 @@ fn all_pixels_together_tell_what_none_shows_alone() {
 /// A fragment that is left out has no position either: what is at fault is the cutout, or the alpha that it goes by.
 #[test]
 fn what_a_cutout_leaves_out_is_no_wrong_position() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     for (file, right, wrong, stage, mistake) in [
         ("effects/cutout.wgsl", "color.a < scene", "color.a <= scene", "cutout", "cutout-at-the-threshold"),
         ("texture.wgsl", "vec2i(floor(uv * ", "vec2i((uv * ", "surface", "texel-truncated"),
@@ -143,6 +150,9 @@ fn what_a_cutout_leaves_out_is_no_wrong_position() {
 
 #[test]
 fn a_wrong_image_names_its_stage_and_leaves_pictures() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let dir = edited("images", "vector.wgsl", |text| {
         let right = "return i - 2.0 * dot(i, n) * n;";
         assert!(text.contains(right));
@@ -179,6 +189,9 @@ fn a_wrong_image_names_its_stage_and_leaves_pictures() {
 
 #[test]
 fn images_are_drawn_to_png_and_exr() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let dir = folder("render");
     for (name, start) in [("a.png", &b"\x89PNG"[..]), ("a.exr", b"\x76\x2f\x31\x01")] {
         for with in ["reference", "gpu"] {
@@ -211,6 +224,9 @@ const REFUSED: &[(&[&str], &str)] = &[
 
 #[test]
 fn what_cannot_be_drawn_is_refused() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     for (args, says) in REFUSED {
         let output = lightmeter(args);
         assert_eq!(code(&output), 2, "{args:?}: {}", stderr(&output));
@@ -229,6 +245,9 @@ fn what_cannot_be_drawn_is_refused() {
 
 #[test]
 fn a_run_makes_the_page_and_its_contact_sheet() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let dir = folder("scenes-page");
     let (run, page) = (path(&dir, "run.json"), path(&dir, "scenes.md"));
     let output =
@@ -244,6 +263,9 @@ fn a_run_makes_the_page_and_its_contact_sheet() {
 
 #[test]
 fn edited_lines_that_no_picture_shows_are_told() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let said = |name: &str, before: &str, after: &str| {
         let dir = edited(name, "scene.wgsl", |text| {
             assert!(text.contains(before), "{before}");
@@ -278,6 +300,9 @@ fn edited_lines_that_no_picture_shows_are_told() {
 /// than any vertex.
 #[test]
 fn attributes_may_lie_beyond_those_of_the_vertices() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     for (scene, size) in [("scene/combined-exp2-opengl", "128"), ("scene/combined-exp", "64")] {
         let output = lightmeter(&["run", scene, "--size", size]);
         assert_eq!(code(&output), 0, "{}", stdout(&output));

@@ -1,6 +1,6 @@
 //! `lightmeter mistakes`, and what `--mistake` makes of `eval`, `show` and `render`.
 
-use super::{LINE, code, eval_with, lightmeter, stderr, stdout};
+use super::{LINE, code, eval_with, folder, lightmeter, stderr, stdout};
 use lightmeter::document::Document as _;
 use lightmeter::document::mistakes::{MistakeOf, MistakesDocument};
 use lightmeter::faults::faults;
@@ -91,8 +91,7 @@ fn a_case_is_shown_with_a_mistake() {
 
 #[test]
 fn a_scene_is_drawn_with_a_mistake() {
-    let folder = std::env::temp_dir().join(format!("lightmeter-made-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
+    let folder = folder("mistaken-image");
     let draw = |name: &str, args: &[&str]| {
         let path = folder.join(name);
         let file = path.to_str().expect("UTF-8");
@@ -112,6 +111,9 @@ fn a_scene_is_drawn_with_a_mistake() {
 
 #[test]
 fn a_group_of_blend_states_is_told_by_the_mistake_that_most_of_them_show() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let from = "case 6u: { return vec4f(src.a); }";
     let folder = super::edited("blend-group", "blend.wgsl", |text| text.replace(from, "case 6u: { return src; }"));
     let folder = folder.to_str().expect("UTF-8");

@@ -1,6 +1,6 @@
 //! Results as pages: one file of HTML from the documents of runs, the same as the command itself would have written.
 
-use super::{code, gate, json, lightmeter, stderr, stdout};
+use super::{code, folder, gate, json, lightmeter, stderr, stdout};
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::faults::faults;
 use lightmeter::scene::library::SCENES;
@@ -10,10 +10,12 @@ use lightmeter::special::PROBES;
 use lightmeter::sweep::PRESETS;
 use lightmeter_scene::blend::{Equation, Factor};
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 /// A file of these tests' own.
 fn path(name: &str) -> String {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    static OWN: LazyLock<PathBuf> = LazyLock::new(|| folder("pages"));
+    let path = OWN.join(name);
     path.to_str().expect("the path is UTF-8").to_owned()
 }
 

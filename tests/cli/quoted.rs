@@ -3,7 +3,7 @@
 //! A quotation is a block of Markdown. Its lines stand in the output in the same order, apart from times; `…` stands for anything that is left out,
 //! between lines and within one. Commands that take minutes, other machines or renderers to be installed are quoted too, and not run here.
 
-use super::{command, stderr, stdout};
+use super::{command, folder, stderr, stdout};
 use std::io::Write as _;
 use std::path::Path;
 use std::process::Stdio;
@@ -99,9 +99,8 @@ fn block(page: &str, begins: &str) -> String {
 /// What a command prints on both streams.
 fn printed(quotation: &Quotation, given: &str) -> String {
     let mut asked = command(quotation.args);
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("quoted");
     if let Some((name, begins)) = quotation.file {
-        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        let folder = folder("quoted");
         std::fs::write(folder.join(name), block(quotation.page, begins)).expect("it can be written");
         asked.current_dir(&folder);
     } else {
@@ -139,6 +138,9 @@ fn is_in(quoted: &str, line: &str) -> bool {
 
 #[test]
 fn what_the_documentation_quotes_is_what_commands_print() {
+    if crate::needs::lacks_recorded_lavapipe() {
+        return;
+    }
     let mut wrong = vec![];
     for quotation in QUOTATIONS {
         let block = block(quotation.page, quotation.begins);

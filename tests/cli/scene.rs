@@ -1,6 +1,6 @@
 //! Scenes on the command line: the schema, the effects, and what is refused.
 
-use crate::{code, json, lightmeter, stderr, stdout};
+use crate::{code, folder, json, lightmeter, stderr, stdout};
 use lightmeter::scene::{library::SCENES, load};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -283,8 +283,7 @@ fn effects_are_told_light_by_light() {
 
 #[test]
 fn a_scene_that_is_refused_ends_with_2() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("scene");
-    std::fs::create_dir_all(&folder).expect("a folder can be made");
+    let folder = folder("scene");
     let file = folder.join("bad.json");
     std::fs::write(&file, with("/lights/1/cutoff_deg", "91")).expect("a scene can be written");
     for (scene, says) in [

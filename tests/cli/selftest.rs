@@ -1,11 +1,11 @@
 //! `lightmeter selftest` on formulas, and its page.
 
-use super::{code, lightmeter, stderr, stdout};
+use super::{code, folder, lightmeter, stderr, stdout};
 use serde_json::Value;
 
 #[test]
 fn mistakes_in_formulas_are_caught_and_named() {
-    let path = std::env::temp_dir().join(format!("lightmeter-selftest-{}.json", std::process::id()));
+    let path = folder("selftest").join("selftest.json");
     let file = path.to_str().expect("a path of letters");
     let output = lightmeter(&["selftest", "fog", "attenuation", "lighting/phong", "--format", "json", "--out", file]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));

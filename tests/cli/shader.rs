@@ -65,6 +65,9 @@ fn words(command: &str, formula: &str, file: &Path, function: &str) -> Vec<Strin
 
 #[test]
 fn each_example_is_judged_and_its_mistake_named() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     for (file, function, formula, options, named) in EXAMPLES {
         let mut args = words("run", formula, &shaders().join(file), function);
         args.extend(options.iter().map(ToString::to_string));
@@ -84,6 +87,9 @@ fn each_example_is_judged_and_its_mistake_named() {
 
 #[test]
 fn the_line_in_which_a_mistake_is_made_is_told() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     for (file, function, formula, line) in [
         ("mistakes/half-vector-mean.frag", "", "lighting/blinn", "half-vector-mean.frag:16: vec3 h = (l + v) * 0.5;"),
         ("mistakes/fog-squared-once.glsl", "applyFog", "fog/exp2-opengl", "fog-squared-once.glsl:3: float f = clamp("),
@@ -107,6 +113,9 @@ fn the_line_in_which_a_mistake_is_made_is_told() {
 
 #[test]
 fn a_baseline_knows_the_constants_it_was_made_with() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let file = shaders().join("right/blinn.frag").display().to_string();
     let baseline = folder("shader-constants").join("baseline.json").display().to_string();
     let run = ["run", "lighting/blinn", "--cases", "64", "--shader", &file, "--baseline", &baseline];
@@ -130,6 +139,9 @@ fn a_baseline_knows_the_constants_it_was_made_with() {
 
 #[test]
 fn the_stable_form_is_told_in_the_shaders_language() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let file = folder("shader-stable").join("own.glsl");
     let text = "float attenuation(float kc, float kl, float kq, float d) { return 1.0 / (kl * d + kq * d * d); }";
     std::fs::write(&file, text).expect("it can be written");
@@ -175,6 +187,9 @@ fn no_example_is_left_out() {
 
 #[test]
 fn the_same_code_gives_the_same_in_each_language() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let module = naga::front::wgsl::parse_str(include_str!("../../conformance/examples/shaders/right/blinn.wgsl"));
     let module = module.expect("it is WGSL");
     let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default());
@@ -204,6 +219,9 @@ fn the_same_code_gives_the_same_in_each_language() {
 
 #[test]
 fn a_shader_is_told_which_formula_it_is() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let identified = |file: &str, function: &[&str]| {
         let file = shaders().join(file).display().to_string();
         let output = lightmeter(&[&["identify", &file, "--format", "json"], function].concat());
@@ -239,6 +257,9 @@ fn a_shader_is_told_which_formula_it_is() {
 
 #[test]
 fn a_shader_is_swept_measured_and_held_to_a_baseline() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let file = shaders().join("documents/slides-fog.frag").display().to_string();
     let sweep = [
         "sweep",
@@ -270,6 +291,9 @@ fn a_shader_is_swept_measured_and_held_to_a_baseline() {
 
 #[test]
 fn a_report_says_how_each_variable_was_found_and_which_inputs_have_none() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let file = folder("shader-found").join("own.glsl");
     let text = "vec3 shade(vec3 normal, vec3 L, vec3 md) { return md * max(dot(normal, L), 0.0); }";
     std::fs::write(&file, text).expect("it can be written");
@@ -287,6 +311,9 @@ fn a_report_says_how_each_variable_was_found_and_which_inputs_have_none() {
 
 #[test]
 fn a_bench_measures_a_shader_beside_the_suites_own() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let file = shaders().join("right/blinn.frag").display().to_string();
     let wrong = shaders().join("mistakes/half-vector-mean.frag").display().to_string();
     for (file, options, is_right) in
@@ -429,6 +456,9 @@ fn what_is_wrong_with_a_shader_is_told_with_what_would_do() {
 
 #[test]
 fn a_shader_that_discards_or_has_no_end_fails() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let folder = folder("shader-runs");
     let text = std::fs::read_to_string(shaders().join("right/blinn.frag")).expect("it is there");
     let with = |name: &str, statement: &str| {
@@ -457,6 +487,9 @@ fn the_page_has_all_names() {
 
 #[test]
 fn blend_states_are_read_as_people_write_them() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let output = lightmeter(&["show", "glBlendFunc(GL_SRC_ALPHA, GL_ONE)"]);
     let text = stdout(&output);
     assert!(
@@ -476,6 +509,9 @@ fn blend_states_are_read_as_people_write_them() {
 
 #[test]
 fn a_loop_whose_condition_never_ends_it_fails_and_one_that_ends_does_not() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let folder = folder("shader-turns");
     let judged = |name: &str, turns: &str| {
         let path = folder.join(name);
@@ -511,6 +547,9 @@ fn a_loop_whose_condition_never_ends_it_fails_and_one_that_ends_does_not() {
 
 #[test]
 fn the_formula_that_is_meant_is_the_nearest_one_and_not_one_that_mistakes_lead_to() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
     let folder = tempfile::tempdir().expect("a folder");
     let told = |text: &str| {
         let file = folder.path().join("shader.frag");

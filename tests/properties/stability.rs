@@ -16,8 +16,8 @@ use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_gpu::{Adapter, FILES};
 use lightmeter_reference::Real as _;
 use lightmeter_tests::exact::{self, Exact};
+use lightmeter_tests::place::folder;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 /// Formulas whose naive forms compute something else: a model that is wrong there, or no rule where one is needed.
 const OTHERS: [&str; 10] = [
@@ -149,6 +149,9 @@ fn cases_near_a_hard_one_are_a_few_ulp_away_on_both_sides() {
 
 #[test]
 fn stable_forms_keep_their_claims_and_naive_forms_fail_on_every_adapter() {
+    if lightmeter_tests::needs::lacks_driver() {
+        return;
+    }
     let mut subjects = subjects();
     let built_in = code_of(None).expect("the built-in shaders are valid");
     let report = run(&mut subjects, &options(built_in), &mut Silent).expect("it runs");
@@ -163,9 +166,7 @@ fn stable_forms_keep_their_claims_and_naive_forms_fail_on_every_adapter() {
 /// The built-in shaders with every stable form's function calling that of its naive form.
 fn naive_in_place() -> (Code, BTreeMap<String, &'static str>) {
     let catalogue = catalogue();
-    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("naive-in-place");
-    let _ = std::fs::remove_dir_all(&dir);
-    std::fs::create_dir_all(&dir).expect("a folder for shaders can be made");
+    let dir = folder("naive-in-place");
     let mut files: BTreeMap<String, String> =
         FILES.iter().map(|(name, text)| ((*name).into(), (*text).into())).collect();
     let mut replaced = BTreeMap::new();
@@ -192,6 +193,9 @@ fn naive_in_place() -> (Code, BTreeMap<String, &'static str>) {
 
 #[test]
 fn each_stable_form_with_the_naive_one_in_its_place_is_found_out() {
+    if lightmeter_tests::needs::lacks_driver() {
+        return;
+    }
     let (shaders, replaced) = naive_in_place();
     let mut subjects = subjects();
     let report = run(&mut subjects, &options(shaders), &mut Silent).expect("it runs");

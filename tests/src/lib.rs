@@ -8,8 +8,11 @@ pub mod forms;
 pub mod frames;
 pub mod harness;
 pub mod mutants;
+pub mod needs;
+pub mod place;
 pub mod readers;
 pub mod running;
+pub mod skip;
 pub mod techniques;
 
 use lightmeter::arithmetic::Accept;

@@ -3,6 +3,7 @@
 //!
 //! A reader may accept its bytes or refuse them. It may not panic, hang, or say what a terminal or a CI system would take for a command.
 
+use crate::place::folder;
 use lightmeter::arithmetic::Accept;
 use lightmeter::arithmetic::profile::PROFILES;
 use lightmeter::document::bench::BenchDocument;
@@ -33,7 +34,7 @@ use lightmeter_scene::effects::effects;
 use lightmeter_scene::frame::Frame;
 use std::fmt::{Display, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 
 /// What reads bytes of others.
 #[derive(Clone, Copy)]
@@ -104,13 +105,8 @@ fn accepted<T, E: Display>(read: Result<T, E>) -> Option<T> {
 
 /// A folder of this process with one file, for what reads by path.
 fn in_file<T>(name: &str, bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
-    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
-    let folder = FOLDER.get_or_init(|| {
-        let folder = std::env::temp_dir().join(format!("lightmeter-readers-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder can be made among temporary files");
-        folder
-    });
-    let path = folder.join(name);
+    static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| folder("readers"));
+    let path = FOLDER.join(name);
     std::fs::write(&path, bytes).expect("a temporary file can be written");
     read(&path)
 }

@@ -1,6 +1,7 @@
 //! What the files of a crate import from each other, and its public types, read from its sources. Tests (`#[cfg(test)]`) are left
 //! out.
 
+use lightmeter_tests::place::folder;
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -216,7 +217,7 @@ fn is_for_tests(attribute: &Attribute) -> bool {
 
 #[test]
 fn names_are_followed_to_the_files_that_define_them() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("imports");
+    let folder = folder("imports");
     std::fs::create_dir_all(folder.join("outer")).expect("a folder can be made");
     let files = [
         ("lib.rs", "mod a;\nmod b;\nmod outer;"),
@@ -246,8 +247,7 @@ fn names_are_followed_to_the_files_that_define_them() {
 
 #[test]
 fn public_types_are_found_in_every_module() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("types");
-    std::fs::create_dir_all(&folder).expect("a folder can be made");
+    let folder = folder("types");
     let files = [
         (
             "lib.rs",

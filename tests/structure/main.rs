@@ -4,6 +4,7 @@
 
 mod bugs;
 mod imports;
+mod time;
 
 use imports::{Imports, imports, public_types};
 use lightmeter::cases::{FAMILIES, Kind};

@@ -10,6 +10,10 @@ mod formulas;
 mod growth;
 pub mod scenes;
 mod sittings;
+#[cfg(test)]
+#[path = "../../../tests/src/skip.rs"]
+#[expect(unreachable_pub, reason = "the library of the tests has it as well")]
+mod skip;
 pub mod techniques;
 pub mod turns;
 
@@ -444,6 +448,12 @@ fn families(groups: &[BenchGroup]) -> Vec<Family> {
         }
     }
     families
+}
+
+/// Whether this thread's test is skipped for want of a driver.
+#[cfg(test)]
+fn lacks_driver() -> bool {
+    skip::lacks(lightmeter_gpu::native_adapters().is_empty(), skip::DRIVER)
 }
 
 #[cfg(test)]

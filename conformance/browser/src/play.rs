@@ -181,7 +181,7 @@ mod tests {
     use super::*;
     use std::sync::Arc;
 
-    const LONG: Duration = Duration::from_secs(20);
+    const LONG: Duration = Duration::from_secs(600);
 
     fn shader(text: &str) -> PlayedShader {
         PlayedShader { text: text.into(), ..PlayedShader::default() }

@@ -27,6 +27,19 @@ pub enum Event<'a> {
     },
 }
 
+impl Event<'_> {
+    /// The word that its JSON begins with.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Begun(_) => "begun",
+            Self::Group(_) => "group",
+            Self::Advanced(_) => "advanced",
+            Self::Judged { .. } => "judged",
+        }
+    }
+}
+
 /// Listens to a run.
 pub trait Observer {
     /// Is told what the run has come to.

@@ -39,13 +39,14 @@ pub struct SelftestOptions {
 }
 
 /// Tries every mistake, and none, in every formula that a filter selects. Once it is told to stop, no other mistake is tried, and a
-/// formula whose legal evaluations are under way is left out of those without a mistake.
+/// formula whose legal evaluations are under way is left out of those without a mistake. `tried` gets the id of each formula once every mistake
+/// in it was tried, before its legal evaluations.
 #[must_use]
-pub fn selftest(options: &SelftestOptions) -> Record {
+pub fn selftest(options: &SelftestOptions, tried: &(dyn Fn(&str) + Sync)) -> Record {
     let members = catalogue();
     let selected = select(&members, &options.filter, options.cases, Shard::WHOLE);
     let tried: Vec<(Vec<Kill>, Option<Clean>)> =
-        selected.par_iter().map(|chosen| try_all(&members[chosen.member], options)).collect();
+        selected.par_iter().map(|chosen| try_all(&members[chosen.member], options, tried)).collect();
     let (kills, clean): (Vec<Vec<Kill>>, Vec<Option<Clean>>) = tried.into_iter().unzip();
     let is_complete = clean.iter().all(Option::is_some);
     Record { kills: kills.into_iter().flatten().collect(), clean: clean.into_iter().flatten().collect(), is_complete }
@@ -55,7 +56,7 @@ pub fn selftest(options: &SelftestOptions) -> Record {
 const CASES_OF_A_RUN: u64 = 4096;
 
 /// Every mistake in a formula, and none; `None` where that was stopped.
-fn try_all(member: &Member, options: &SelftestOptions) -> (Vec<Kill>, Option<Clean>) {
+fn try_all(member: &Member, options: &SelftestOptions, tried: &dyn Fn(&str)) -> (Vec<Kill>, Option<Clean>) {
     if options.stop.is_set() {
         return (vec![], None);
     }
@@ -73,6 +74,7 @@ fn try_all(member: &Member, options: &SelftestOptions) -> (Vec<Kill>, Option<Cle
         // What does not show in a few cases has those of a run.
         kills.push(if kill.finding == Finding::Survived { all.kill(fault, &variation) } else { kill });
     }
+    tried(&spec.id);
     // Blend states are products and a sum each; a group verdict on all of them says nothing more than one on the modes.
     let is_grouped = matches!(spec.kind, Kind::Arithmetic) || spec.id.starts_with("blend/mode");
     (kills, if is_grouped { all.clean() } else { few.clean() })

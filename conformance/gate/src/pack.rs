@@ -124,11 +124,16 @@ pub fn probe(probe: &Probe) -> ProbeRequest {
 }
 
 /// Writes the pack of a plan into a folder, which is made, or must be empty or hold a pack, whose files go. The cases of formulas are
-/// lines of JSON, or columns.
+/// lines of JSON, or columns. `written` gets the name of each file once it is written; the manifest is the first and the last.
 ///
 /// # Errors
 /// Where a file cannot be written, or the folder holds something else.
-pub fn write(plan: &GatePlan, folder: &Path, has_columns: bool) -> Result<Manifest, PackError> {
+pub fn write(
+    plan: &GatePlan,
+    folder: &Path,
+    has_columns: bool,
+    written: &mut dyn FnMut(&str),
+) -> Result<Manifest, PackError> {
     let failed = |path: &Path| {
         let path = path.to_owned();
         move |error: std::io::Error| PackError::Write { path, message: error.to_string() }
@@ -147,11 +152,13 @@ pub fn write(plan: &GatePlan, folder: &Path, has_columns: bool) -> Result<Manife
     let names: Vec<Value> = names.into_iter().map(|name| json!({ "name": name })).collect();
     let begun = json!({ "schema": SCHEMA, "is_unfinished": true, "files": names }).to_string();
     whole(&path, begun.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
+    written(MANIFEST);
     let mut files = vec![];
     let path = folder.join(CASES);
     let mut out = Summed::create(&path).map_err(failed(&path))?;
     write_cases(plan, has_columns, &mut out).map_err(failed(&path))?;
     files.push(out.finish(CASES).map_err(failed(&path))?);
+    written(CASES);
     if has_columns {
         for formula in 0..plan.formulas.len() {
             files.extend(write_columns(plan, formula, folder)?);
@@ -163,6 +170,7 @@ pub fn write(plan: &GatePlan, folder: &Path, has_columns: bool) -> Result<Manife
             let parent = path.parent().unwrap_or(folder);
             std::fs::create_dir_all(parent).map_err(failed(parent))?;
             whole(&path, &bytes).map_err(|error| PackError::Write { path, message: error.to_string() })?;
+            written(&name);
             files.push(Listed { crc32: digits(&bytes), bytes: bytes.len() as u64, name });
         }
     }
@@ -170,6 +178,7 @@ pub fn write(plan: &GatePlan, folder: &Path, has_columns: bool) -> Result<Manife
     let path = folder.join(MANIFEST);
     let text = manifest.to_json().map_err(|error| PackError::Plan(error.to_string()))?;
     whole(&path, text.as_bytes()).map_err(|error| PackError::Write { path, message: error.to_string() })?;
+    written(MANIFEST);
     Ok(manifest)
 }
 

@@ -1,5 +1,6 @@
 //! The environment that the process needs from its start on.
 
+use super::observed::{EVENTS, HOLD};
 use std::process::Command;
 
 /// What has glibc keep memory that is let go. Images, chunks of cases and a software driver's copies of them are megabytes each, made
@@ -45,9 +46,9 @@ pub(crate) fn complete() {
     drop(missing);
 }
 
-/// Leaves out of the environment of a command, which is somebody else's, what is for this process alone.
+/// Removes the variables that are for this process alone from a child's environment.
 pub(crate) fn spare(command: &mut Command) -> &mut Command {
     let (name, own) = KEEPS_MEMORY;
-    let command = command.env_remove(IS_COMPLETE.0);
+    let command = command.env_remove(IS_COMPLETE.0).env_remove(EVENTS).env_remove(HOLD);
     if std::env::var_os(name).is_some_and(|value| value == own) { command.env_remove(name) } else { command }
 }

@@ -4,6 +4,7 @@
 //! that. So `--shaders` first has the own binary try them (`lightmeter try-shaders`); what becomes of that process is the message.
 
 use super::Status;
+use super::observed::is_time_told;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::adapters as named;
@@ -88,7 +89,7 @@ pub(crate) fn limit_time() {
     {
         // Time of the processor is counted on all of its cores.
         let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
-        let most = Some(2 * MOST_TIME.as_secs() * cores);
+        let most = Some(2 * MOST_TIME.as_secs() * cores).filter(|_| !is_time_told());
         let _ = setrlimit(Resource::Cpu, Rlimit { current: most, maximum: most });
     }
 }
@@ -122,6 +123,9 @@ fn functions_compile(gpu: &Gpu, [built_in, shaders]: [&Shaders; 2], under_way: &
 /// Ends this process where what is returned is not dropped in time: a device that does not come back cannot be asked to stop.
 fn ends_in_time() -> Sender<()> {
     let (sender, receiver) = channel::<()>();
+    if is_time_told() {
+        return sender;
+    }
     std::thread::spawn(move || {
         if receiver.recv_timeout(MOST_RUN) == Err(RecvTimeoutError::Timeout) {
             super::say(&format!(
@@ -279,12 +283,12 @@ fn clipped(text: &str) -> String {
 
 /// Waits for a process, and kills it beyond a limit; which one that is.
 fn watched(child: &mut Child) -> anyhow::Result<Option<String>> {
-    let until = Instant::now() + MOST_TIME;
+    let until = (!is_time_told()).then(|| Instant::now() + MOST_TIME);
     loop {
         if child.try_wait()?.is_some() {
             return Ok(None);
         }
-        let broken = if Instant::now() > until {
+        let broken = if until.is_some_and(|until| Instant::now() > until) {
             Some(format!("{} s", MOST_TIME.as_secs()))
         } else if memory(child.id()).is_some_and(|bytes| bytes > MOST_MEMORY) {
             Some(format!("{} GiB", MOST_MEMORY >> 30))

@@ -3,6 +3,7 @@
 use super::clock::now;
 use super::comparison::{Comparison, Earlier, matches_something};
 use super::config::used;
+use super::observed::is_time_told;
 use super::options::{AlsoJson, ReportFormat, Required, ShardArgument, Targets};
 use super::pack::{Cases, nothing_to_ask};
 use super::progress::{Bar, Stream};
@@ -284,7 +285,8 @@ impl Gate {
         // Only Unix has the limits and the signals of a starter; elsewhere, or where the own binary is not found, a shell starts it.
         let program = std::env::current_exe().ok().filter(|_| cfg!(unix));
         let starter = program.map(|program| Starter { program, memory: self.memory });
-        Asking { command: command.to_owned(), starter, folder, limits, runs: self.runs, stop: stop.clone() }
+        let (runs, stop) = (self.runs, stop.clone());
+        Asking { command: command.to_owned(), starter, folder, limits, runs, stop, is_time_told: is_time_told() }
     }
 
     /// The command that asks for one case again, but for the case's id; nothing of answers in files.

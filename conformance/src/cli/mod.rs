@@ -18,6 +18,7 @@ mod list;
 mod manual;
 mod merge;
 mod mistakes;
+mod observed;
 mod options;
 mod pack;
 mod page;

@@ -1,5 +1,6 @@
 //! `lightmeter pack`.
 
+use super::observed::happens;
 use super::options::Targets;
 use super::run::matching;
 use super::say;
@@ -87,7 +88,7 @@ impl Pack {
         if plan.is_empty() {
             return Err(nothing_to_ask());
         }
-        let manifest = pack::write(&plan, &self.dir, self.columns)?;
+        let manifest = pack::write(&plan, &self.dir, self.columns, &mut |file| happens("file", file))?;
         let on_targets: u64 = manifest.on_targets.values().sum();
         let besides = [(on_targets, "on targets"), (manifest.probes as u64, "special values")];
         let besides = besides.into_iter().filter(|(count, _)| *count > 0);

@@ -1,5 +1,6 @@
 //! How far long work has come, on standard error where that is a terminal.
 
+use super::observed::happens;
 use super::terminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lightmeter::browser::{PageGroup, PageState, Session};
@@ -15,7 +16,7 @@ pub(crate) struct Bar {
     pub(crate) bar: ProgressBar,
     /// Tells what fails as soon as it is judged, and where.
     live: Option<(Live, Stream)>,
-    /// PageState once something fails.
+    /// Set to stop at the first failure.
     fail_fast: Option<Stop>,
     failed: u64,
     /// The browser that is judged, whose page shows how far the work has come.
@@ -63,6 +64,7 @@ impl Bar {
 
 impl Observer for Bar {
     fn see(&mut self, event: &Event<'_>) {
+        happens(event.name(), event);
         if let Some(session) = &self.session {
             let picture = session.show(pictures(event));
             session.tell(|told| note(told, event, picture));

@@ -1,6 +1,7 @@
 //! `lightmeter selftest`.
 
 use super::clock::now;
+use super::observed::happens;
 use super::options::{Choice, PageFormat, Targets};
 use super::signals::{status_of, stopped_by_signals};
 use super::{Status, writable};
@@ -149,6 +150,7 @@ impl Selftest {
         let mut under_way = String::new();
         let mut say = |what: &str| {
             say(what);
+            happens("group", what);
             what.clone_into(&mut under_way);
         };
         if self.wants(Part::Formulas) {
@@ -190,7 +192,7 @@ impl Selftest {
             profile: self.profile,
             stop: stop.clone(),
         };
-        let record = formulas::selftest(&options);
+        let record = formulas::selftest(&options, &|formula| happens("tried", formula));
         if record.clean.is_empty() && !stop.is_set() {
             let catalogue = catalogue();
             let names = catalogue.iter().map(|member| member.spec.id.as_str());

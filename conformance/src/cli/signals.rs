@@ -1,6 +1,7 @@
 //! What ends a command before its work is done.
 
 use super::Status;
+use super::observed::happens;
 use super::say;
 use lightmeter::document::event::Stop;
 use lightmeter::document::run::Interrupted;
@@ -29,6 +30,7 @@ pub(crate) fn stopped_by_signals() -> anyhow::Result<Stop> {
         signal_hook::flag::register_usize(signal, stop.flag(), usize::try_from(signal)?)?;
     }
     after_the_first(ends_at_once)?;
+    happens("ready", ());
     Ok(stop)
 }
 
@@ -41,6 +43,8 @@ fn after_the_first(flag: Arc<AtomicBool>) -> anyhow::Result<()> {
     }
     std::thread::spawn(move || {
         if hears.read_exact(&mut [0]).is_ok() {
+            // The handlers before this one have set `stop`.
+            happens("signal", ());
             std::thread::sleep(SAME);
             flag.store(true, Ordering::Relaxed);
         }

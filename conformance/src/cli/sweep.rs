@@ -1,6 +1,7 @@
 //! `lightmeter sweep`.
 
 use super::clock::now;
+use super::observed::happens;
 use super::options::{Choice, PageFormat, ShardArgument};
 use super::page::swept;
 use super::say;
@@ -28,7 +29,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// How often the checkpoint is written.
+/// How often the checkpoint is written after the first block.
 const SAVED_EVERY: Duration = Duration::from_secs(1);
 
 /// Judge a formula along one of its inputs over every float of a range, or a blend mode over every byte.
@@ -111,13 +112,15 @@ impl Sweep {
         writable(self.out.as_deref())?;
         let stop = stopped_by_signals()?;
         let bar = bar(&document, shard);
-        let mut saved = Instant::now();
+        let mut saved: Option<Instant> = None;
         let mut tell = |document: &SweepDocument| {
             bar.set_position(document.statistics.inputs);
-            if saved.elapsed() >= SAVED_EVERY {
+            if saved.is_none_or(|saved| saved.elapsed() >= SAVED_EVERY) {
                 self.save(document)?;
-                saved = Instant::now();
+                saved = Some(Instant::now());
+                happens("saved", document.done);
             }
+            happens("block", document.done);
             Ok(if stop.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         };
         let swept = sweep(&plan, subject, &code, self.profile, &mut document, self.blocks, &mut tell);

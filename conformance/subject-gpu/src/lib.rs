@@ -5,6 +5,10 @@ mod blend;
 pub mod browser;
 mod cost;
 mod kernel;
+#[cfg(test)]
+#[path = "../../../tests/src/skip.rs"]
+#[expect(unreachable_pub, reason = "the library of the tests has it as well")]
+mod skip;
 mod special;
 mod stable_cost;
 mod sweep;
@@ -366,6 +370,12 @@ impl Device for GpuDevice {
     }
 }
 
+/// Whether this thread's test is skipped for want of a driver.
+#[cfg(test)]
+fn lacks_driver() -> bool {
+    skip::lacks(lightmeter_gpu::native_adapters().is_empty(), skip::DRIVER)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -406,6 +416,9 @@ mod tests {
 
     #[test]
     fn a_lost_device_ends_the_run_and_keeps_what_was_judged() {
+        if crate::lacks_driver() {
+            return;
+        }
         let report = lose_at("blend/max", "blend/{min,max,write-mask}");
         let interrupted = report.interrupted.as_ref().expect("the run was interrupted");
         assert!(interrupted.under_way.contains("blend/max") && interrupted.under_way.contains("rgba8unorm"));
@@ -416,6 +429,9 @@ mod tests {
 
     #[test]
     fn code_that_cannot_be_compiled_is_told_though_the_run_is_stopped() {
+        if crate::lacks_driver() {
+            return;
+        }
         let adapters = native_adapters();
         let adapter = adapters.first().expect("no Vulkan driver is here: `./x test` installs lavapipe");
         let mut subject = open_device(adapter).expect("the adapter gives a device");
@@ -430,6 +446,9 @@ mod tests {
 
     #[test]
     fn states_that_were_drawn_together_are_tried_alone() {
+        if crate::lacks_driver() {
+            return;
+        }
         let report = lose_at("blend/subtract", "blend/{add,subtract}/dst-alpha");
         let under_way = &report.interrupted.as_ref().expect("the run was interrupted").under_way;
         assert!(under_way.contains("15 states from blend/subtract/dst-alpha/zero to"), "{under_way}");

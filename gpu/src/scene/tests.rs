@@ -226,6 +226,9 @@ fn frames() -> Vec<(String, Frame)> {
 
 #[test]
 fn composed_and_full_shaders_draw_alike_on_every_adapter() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     for (name, gpu, format) in devices() {
         for (what, mut frame) in frames() {
@@ -245,6 +248,9 @@ fn composed_and_full_shaders_draw_alike_on_every_adapter() {
 
 #[test]
 fn composed_and_full_shaders_draw_alike_for_sets_of_all_sorts() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     let (name, gpu, _) = devices().next().expect("there is one");
     let (_, frame) = frames().pop().expect("there are some");
@@ -263,6 +269,9 @@ fn composed_and_full_shaders_draw_alike_for_sets_of_all_sorts() {
 
 #[test]
 fn stages_are_steps_towards_the_colour() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     let (_, gpu, _) = devices().next().expect("there is one");
     for (what, mut frame) in frames() {
@@ -309,6 +318,9 @@ fn apart(a: &[u8], b: &[u8]) -> f32 {
 
 #[test]
 fn fog_at_the_vertices_is_fog_where_its_factor_is_constant_and_not_elsewhere() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     for (name, gpu, format) in devices() {
         for frequency in [Frequency::Gouraud, Frequency::Phong] {
@@ -334,6 +346,9 @@ fn fog_at_the_vertices_is_fog_where_its_factor_is_constant_and_not_elsewhere() {
 
 #[test]
 fn interpolated_vectors_are_the_vectors_unless_they_are_normalised_first() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     for (name, gpu, format) in devices() {
         let mut frame = frame();
@@ -363,6 +378,9 @@ fn interpolated_vectors_are_the_vectors_unless_they_are_normalised_first() {
 
 #[test]
 fn a_frame_that_has_no_use_for_a_technique_is_refused() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     let (_, gpu, _) = devices().next().expect("there is one");
     let refused = |frame: &Frame, technique: Technique| match by(&gpu, frame, technique) {
@@ -390,6 +408,9 @@ fn a_frame_that_has_no_use_for_a_technique_is_refused() {
 /// Timestamps that a driver takes before it has rasterised would tell less than goes by on the wall.
 #[test]
 fn timestamps_tell_the_time_that_a_frame_takes() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
     for (name, gpu, format) in devices() {
@@ -417,6 +438,9 @@ fn timestamps_tell_the_time_that_a_frame_takes() {
 
 #[test]
 fn a_flat_face_has_the_colour_of_its_provoking_vertex() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     for (name, gpu, format) in devices() {
         for (provoking, vertex) in [(Provoking::First, 0), (Provoking::Last, 2)] {
@@ -440,6 +464,9 @@ fn a_flat_face_has_the_colour_of_its_provoking_vertex() {
 
 #[test]
 fn what_the_unit_cannot_blend_and_sets_of_another_frame_are_errors() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     let (_, gpu, _) = devices().next().expect("there is one");
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
@@ -456,6 +483,9 @@ fn what_the_unit_cannot_blend_and_sets_of_another_frame_are_errors() {
 
 #[test]
 fn a_frame_is_drawn_alike_by_way_of_json() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     let (_, gpu, format) = devices().next().expect("there is one");
     let shaders = Shaders::built_in().unwrap_or_else(|error| panic!("{error}"));
@@ -588,6 +618,9 @@ fn at_rung(gpu: &Gpu, frame: &Frame, recipe: Recipe) -> Option<Vec<f32>> {
 
 #[test]
 fn a_frame_is_drawn_at_every_rung() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     let mut frame = frame();
     // A hole's edge moves with the alpha.
@@ -628,6 +661,9 @@ fn a_frame_is_drawn_at_every_rung() {
 
 #[test]
 fn the_clip_position_is_of_f32_at_every_rung() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     let frame = frame();
     for (name, gpu, _) in devices().filter(|(_, gpu, _)| gpu.lacks_target(TargetFormat::Rgba32Float).is_none()) {
@@ -642,6 +678,9 @@ fn the_clip_position_is_of_f32_at_every_rung() {
 /// Exponentials of what uniforms go into, before loops on uniforms: a branch in them brings Mesa 22.3's lavapipe down.
 #[test]
 fn exponential_fog_and_all_effects_are_drawn_at_every_rung() {
+    if crate::lacks_driver() {
+        return;
+    }
     let _alone = alone();
     let mut frame = frame();
     frame.draws[0].cutout = None;

@@ -1,44 +1,45 @@
 //! How gates and renderers end: by a signal, by time, and that nothing outlives them.
 
-use super::process::{gate, process, renderer};
+use super::process::{PASSES, gate, process, renderer};
 use super::{count, folder, report, text};
+use crate::held::Held;
 use crate::{code, command, lightmeter, stderr};
-use rustix::process::{Pid, Signal, kill_process, test_kill_process};
+use rustix::process::{Pid, Signal, test_kill_process};
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// Whether a process whose number a file has runs, once it has had time to end.
-fn runs(file: &Path) -> bool {
+/// Waits until a process whose number a file has does not run any more.
+fn ends(file: &Path) {
     let read = || std::fs::read_to_string(file).ok()?.trim().parse::<i32>().ok();
-    let until = Instant::now() + Duration::from_secs(5);
-    let number = loop {
-        match read() {
-            Some(number) => break number,
-            None => assert!(Instant::now() < until, "the process wrote no number"),
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    };
+    let number = waited_for("its number", read);
     let pid = Pid::from_raw(number).expect("a number above 0");
     let state = || std::fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
-    let until = Instant::now() + Duration::from_secs(5);
     // One that has ended and whose parent does not ask is a zombie.
-    while test_kill_process(pid).is_ok() && !state().contains(") Z") {
-        if Instant::now() > until {
-            return true;
+    waited_for("its end", || (test_kill_process(pid).is_err() || state().contains(") Z")).then_some(()));
+}
+
+/// After which a test fails that waits for something in vain.
+const LIMIT: Duration = Duration::from_secs(300);
+
+/// Waits for something that happens in another process.
+fn waited_for<T>(what: &str, happens: impl Fn() -> Option<T>) -> T {
+    let until = Instant::now() + LIMIT;
+    loop {
+        match happens() {
+            Some(it) => return it,
+            None => assert!(Instant::now() < until, "waited for {what} in vain"),
         }
-        std::thread::sleep(Duration::from_millis(10));
+        std::thread::sleep(Duration::from_millis(5));
     }
-    false
 }
 
 #[test]
 fn a_gate_that_is_told_to_stop_before_the_hello_ends_by_the_signal() {
-    let gate = command(&["gate", "fog/exp", "--exec", "sleep 600"]).stderr(Stdio::piped()).spawn().expect("it starts");
-    std::thread::sleep(Duration::from_secs(3));
-    let pid = i32::try_from(gate.id()).ok().and_then(Pid::from_raw).expect("a number");
-    kill_process(pid, Signal::INT).expect("it runs");
-    assert_eq!(code(&gate.wait_with_output().expect("it ends")), 130);
+    let gate = Held::watch(&mut command(&["gate", "fog/exp", "--exec", "sleep 600"]));
+    gate.wait_for("ready");
+    gate.signal(Signal::INT);
+    assert_eq!(code(&gate.go_on()), 130);
 }
 
 #[test]
@@ -52,9 +53,9 @@ fn nothing_that_a_renderer_started_outlives_it() {
         let (gone, waits) =
             (format!("rm -f '{0}'", text(&file)), format!("while [ ! -s '{0}' ]; do sleep 0.01; done", text(&file)));
         let exec = format!("{gone}; {orphan}; {waits}; {} {fault}", renderer());
-        let output = gate(&["fog/exp"], &exec, &["--case-timeout", "1"]);
+        let output = gate(&["fog/exp"], &exec, &[]);
         assert_eq!(code(&output), if fault.is_empty() { 0 } else { 4 }, "{}", stderr(&output));
-        assert!(!runs(&file), "{fault}: what it started runs on");
+        ends(&file);
     }
 }
 
@@ -67,14 +68,10 @@ fn a_renderer_does_not_outlive_a_gate_that_is_killed() {
         .stderr(Stdio::null())
         .spawn()
         .expect("the binary starts");
-    let until = Instant::now() + Duration::from_secs(20);
-    while std::fs::read_to_string(&file).unwrap_or_default().trim().is_empty() {
-        assert!(Instant::now() < until, "the renderer was not started");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    waited_for("the renderer", || std::fs::read_to_string(&file).ok().filter(|number| number.ends_with('\n')));
     gate.kill().expect("it can be killed");
     gate.wait().expect("it has ended");
-    assert!(!runs(&file), "the renderer runs on");
+    ends(&file);
 }
 
 #[test]
@@ -88,7 +85,7 @@ fn a_renderer_whose_hello_is_refused_is_ended() {
         "{}",
         stderr(&output)
     );
-    assert!(!runs(&number), "it goes on");
+    ends(&number);
 }
 
 #[test]
@@ -97,38 +94,32 @@ fn a_gate_that_is_told_to_stop_reports_and_leaves_nothing() {
     let file = folder.join("pid");
     let temporary = folder.join("tmp");
     std::fs::create_dir_all(&temporary).expect("a folder can be made");
-    let exec = format!("echo $$ > '{}'; exec {} hang-at=fog/exp/random/000050", text(&file), renderer());
-    let gate =
-        command(&["gate", "fog/exp", "scene/flat", "--exec", &exec, "--format", "json", "--case-timeout", "600"])
-            .env("TMPDIR", &temporary)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the binary starts");
-    let until = Instant::now() + Duration::from_secs(60);
-    while !file.exists() && Instant::now() < until {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    std::thread::sleep(Duration::from_secs(6));
-    let pid = i32::try_from(gate.id()).ok().and_then(Pid::from_raw).expect("a number");
+    let hangs = folder.join("hangs");
+    let fault = format!("hang-at=fog/exp/random/000050 tells='{}'", text(&hangs));
+    let exec = format!("echo $$ > '{}'; exec {} {fault}", text(&file), renderer());
+    // What hears the first signal holds, so that the second one comes as early as `timeout` sends it.
+    let gate = Held::unawaited(
+        command(&["gate", "fog/exp", "scene/flat", "--exec", &exec, "--format", "json", "--case-timeout", "1e6"])
+            .env("TMPDIR", &temporary),
+        "signal:1",
+    );
+    waited_for("the case that it hangs at", || hangs.exists().then_some(()));
     // As `timeout` does: to its child, and to the group that the child is in.
-    for _ in 0..2 {
-        kill_process(pid, Signal::TERM).expect("it runs");
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    let (status, found) = report(&gate.wait_with_output().expect("it ends"));
+    gate.signal(Signal::TERM);
+    gate.send(Signal::TERM);
+    let (status, found) = report(&gate.go_on());
     assert!(status == 143 && found["signal"] == 15, "{found}");
     assert!(found["incidents"].to_string().contains("it was stopped"), "{found}");
     assert!(count(&found, "passed") > 0, "what was answered is judged: {found}");
-    assert!(!runs(&file), "the renderer runs on");
+    ends(&file);
     assert_eq!(std::fs::read_dir(&temporary).expect("it is there").count(), 0, "its folder for images is left");
 }
 
 #[test]
 fn a_renderer_that_writes_on_after_its_last_answer_is_ended() {
-    for pause in ["sleep 0.02", ":"] {
-        let exec = format!("{}; while :; do echo; {pause}; done", renderer());
-        let (status, found) = report(&gate(&["fog/exp"], &exec, &["--case-timeout", "1"]));
+    for pause in [PASSES, ":"] {
+        let exec = format!("{}; {PASSES}; while :; do echo; {pause}; done", renderer());
+        let (status, found) = report(&gate(&["fog/exp"], &exec, &[]));
         assert!(status == 4 && found["incidents"].to_string().contains("did not end"), "{pause}: {found}");
     }
 }
@@ -136,7 +127,7 @@ fn a_renderer_that_writes_on_after_its_last_answer_is_ended() {
 #[test]
 fn how_a_renderer_ends_is_told_though_it_answered_all() {
     for (fault, said) in [("exit=3", "exit status: 3"), ("lingers=all", "did not end")] {
-        let (status, found) = report(&process(&["fog/exp"], fault, &["--case-timeout", "1"]));
+        let (status, found) = report(&process(&["fog/exp"], fault, &[]));
         assert!(status == 4 && found["incidents"].to_string().contains(said), "{fault}: {found}");
         assert_eq!(count(&found, "passed"), count(&found, "asked"), "{found}");
     }
@@ -144,9 +135,12 @@ fn how_a_renderer_ends_is_told_though_it_answered_all() {
 
 #[test]
 fn time_for_all_ends_a_renderer_that_never_says_hello() {
-    let output = lightmeter(&["gate", "fog", "--exec", "sleep 600", "--timeout", "0.5"]);
+    // By the machine's clock: it says nothing however long that is.
+    let mut gate = command(&["gate", "fog", "--exec", "sleep 600", "--timeout", "0.5"]);
+    let output = gate.env_remove("LIGHTMETER_CLOCK").output().expect("the binary starts");
     assert!(code(&output) == 4 && stderr(&output).contains("said nothing for 0.5 s"), "{}", stderr(&output));
-    let output = lightmeter(&["gate", "fog", "--exec", "printf '{}'; sleep 600", "--timeout", "0.5"]);
+    let exec = format!("printf '{{}}'; {PASSES}; sleep 600");
+    let output = lightmeter(&["gate", "fog", "--exec", &exec, "--timeout", "0.5"]);
     let said = "said no whole line for 0.5 s: 2 bytes without a newline behind them came, `{}`";
     assert!(code(&output) == 4 && stderr(&output).contains(said), "{}", stderr(&output));
 }

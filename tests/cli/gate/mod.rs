@@ -15,10 +15,7 @@ use std::process::Output;
 
 /// A folder of this test's own.
 pub(crate) fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gate").join(test);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).expect("a folder can be made");
-    folder
+    crate::folder(&format!("gate-{test}"))
 }
 
 fn text(path: &Path) -> &str {

@@ -10,6 +10,8 @@ mod settings;
 
 pub use settings::{Settings, Variables};
 
+use crate::needs::has_no_driver;
+use crate::skip::{DRIVER, skip};
 use device::Device;
 use libtest_mimic::{Arguments, Completion, Failed, FormatSetting, Trial};
 use lightmeter::device::Code;
@@ -114,7 +116,12 @@ impl AdapterSuite {
             let name = name(part) + &suffix.unwrap_or_default();
             let (part, device, options) = (Arc::clone(part), Arc::clone(device), settings.options.clone());
             let totals = Arc::clone(&self.totals);
+            let (trial, is_any) = (name.clone(), settings.adapters.is_empty());
             Trial::ignorable_test(name, move || {
+                if is_any && has_no_driver() {
+                    skip(&trial, DRIVER);
+                    return Ok(Completion::ignored_with(DRIVER.1));
+                }
                 let report = device.judge(&part.selection, &options)?;
                 totals.lock().unwrap_or_else(PoisonError::into_inner).add(&report.totals);
                 verdict(&part, &report, &options)

@@ -3,6 +3,7 @@
 use lightmeter::adapters;
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::PROFILES;
+use lightmeter::nearest::nearest;
 use lightmeter::options::{DEFAULT_CASES, MOST_CASES, Options};
 use lightmeter::subject_gpu::code_of;
 use std::collections::BTreeMap;
@@ -11,8 +12,6 @@ use std::path::{Path, PathBuf};
 
 /// What every variable begins with.
 const PREFIX: &str = "LIGHTMETER_";
-/// The gate marks the processes that it starts with this one.
-const MARK_OF_THE_GATE: &str = "LIGHTMETER_GATE";
 /// The variables, each with the option of `run` that it stands for.
 const KNOWN: [(&str, &str); 5] = [
     ("LIGHTMETER_ADAPTER", "--adapter; several are separated by commas"),
@@ -22,7 +21,7 @@ const KNOWN: [(&str, &str); 5] = [
     ("LIGHTMETER_SHADERS", "--shaders"),
 ];
 
-/// The variables in force: those that begin with `LIGHTMETER_` and are not empty.
+/// The variables in force: those of [`KNOWN`] that are not empty, and those that look like a misspelt one of them.
 #[derive(Clone, Debug, Default)]
 pub struct Variables(BTreeMap<String, OsString>);
 
@@ -34,6 +33,13 @@ pub struct Settings {
     pub adapter_in_names: bool,
     /// The options of the run that the trials are parts of.
     pub options: Options,
+}
+
+/// Whether a variable is one of these, or is misspelt. Others that begin so are not for these tests.
+fn is_meant(name: &str) -> bool {
+    let known = KNOWN.iter().filter_map(|(name, _)| name.strip_prefix(PREFIX));
+    name.strip_prefix(PREFIX)
+        .is_some_and(|own| known.clone().any(|known| known == own) || !nearest(own, known).is_empty())
 }
 
 /// A path as it is meant where cargo was called: cargo starts tests in their package's folder, and leaves `PWD` as it was.
@@ -52,7 +58,7 @@ impl Variables {
     pub fn of(environment: impl Iterator<Item = (OsString, OsString)>) -> Self {
         let ours = environment.filter_map(|(name, value)| {
             let name = name.into_string().ok()?;
-            (name.starts_with(PREFIX) && name != MARK_OF_THE_GATE && !value.is_empty()).then_some((name, value))
+            (is_meant(&name) && !value.is_empty()).then_some((name, value))
         });
         Self(ours.collect())
     }

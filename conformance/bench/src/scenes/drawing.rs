@@ -330,6 +330,9 @@ pub(super) mod tests {
 
     #[test]
     fn a_scene_that_is_drawn_wrong_is_disqualified_and_one_that_is_not_has_its_reason() {
+        if crate::lacks_driver() {
+            return;
+        }
         on_a_device(|drawer| {
             for name in super::super::QUICK {
                 let place = SCENES.iter().position(|(own, _)| *own == name).expect("it is built in");
@@ -360,6 +363,9 @@ pub(super) mod tests {
 
     #[test]
     fn a_value_that_is_lost_is_no_small_error() {
+        if crate::lacks_driver() {
+            return;
+        }
         on_a_device(|drawer| {
             let standard = Standard::new(builtin(0, Some(16)).expect("it is built in").frame, &drawer.profile);
             let settled = (0..standard.exact.len()).find(|&pixel| !is_open(pixel, &[&standard])).expect("most are");

@@ -183,6 +183,9 @@ mod tests {
 
     #[test]
     fn what_is_too_large_for_the_adapter_has_its_reason_and_the_rest_its_times() {
+        if crate::lacks_driver() {
+            return;
+        }
         on_a_device(|drawer| {
             let too_many = drawer.gpu.most_pixels() + 1;
             let kind = Kind {

@@ -268,6 +268,9 @@ mod tests {
 
     #[test]
     fn a_row_that_draws_something_else_is_seen_in_every_group() {
+        if crate::lacks_driver() {
+            return;
+        }
         on_a_device(|drawer| {
             for comparison in comparisons() {
                 let standards = comparison.standards(drawer, 48);
@@ -295,6 +298,9 @@ mod tests {
 
     #[test]
     fn techniques_are_told_apart_by_their_errors() {
+        if crate::lacks_driver() {
+            return;
+        }
         on_a_device(|drawer| {
             let errors = |id: &str| -> Vec<(String, f64, bool)> {
                 let comparison = comparisons().into_iter().find(|comparison| comparison.id == id).expect("it is there");

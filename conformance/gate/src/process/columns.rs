@@ -11,14 +11,14 @@ use super::super::words::clipped;
 use super::framing::{before, behind_answer, width};
 use super::queue::MOST_OF_FORMULA;
 use super::running::{Event, Running};
-use super::session::{Ended, MOMENT, ROWS, SURPLUS, Session};
+use super::session::{Ended, ROWS, SURPLUS, Session};
 use lightmeter_catalogue::cases::{Spec, ValueShape};
 use lightmeter_document::protocol::{ColumnsAnswer, ColumnsRequest, RequestedColumn};
 use lightmeter_engine::rows::Rows;
 use lightmeter_judge::cases::{Answers, Unanswered};
 use std::ops::Range;
 use std::sync::mpsc::RecvTimeoutError;
-use std::time::Instant;
+use std::time::Duration;
 
 /// Bytes of a request, at most, beyond its first row.
 const MOST_REQUEST: usize = 8 << 20;
@@ -149,14 +149,14 @@ impl Session {
         text.extend(request(spec, rows, batch, asked.number));
         running.framing.awaits(asked.number, asked.count * spec.output_len());
         let writing = running.send(text);
-        let (limit, start) = (self.asking.limits.case, Instant::now());
+        let (limit, start) = (self.asking.limits.case, self.clock.now());
         let came = self.came_of(&asked, &running, start + limit);
         if matches!(came, Came::Failed(_) | Came::Refused(..)) {
             self.running = Some(running);
             return came;
         }
         let has_read = self.has_read(&mut running, writing, start + limit);
-        if start.elapsed() * 8 < limit {
+        if (self.clock.now() - start) * 8 < limit {
             self.rows = (2 * self.rows).min(ROWS[1]);
         }
         self.running = Some(running);
@@ -164,7 +164,7 @@ impl Session {
     }
 
     /// Waits for what comes of a batch.
-    fn came_of(&mut self, batch: &Batch<'_>, running: &Running, until: Instant) -> Came {
+    fn came_of(&mut self, batch: &Batch<'_>, running: &Running, until: Duration) -> Came {
         let mut surplus = 0;
         loop {
             if surplus > SURPLUS {
@@ -173,11 +173,11 @@ impl Session {
             if self.is_stopped() {
                 return Came::Failed(Ended::Stopped);
             }
-            let wait = self.over(until).saturating_duration_since(Instant::now());
-            if wait.is_zero() {
+            let over = self.over(until);
+            if self.clock.now() >= over {
                 return Came::Failed(if self.is_out_of_time() { Ended::OutOfTime } else { Ended::Hung });
             }
-            match running.events.recv_timeout(wait.min(MOMENT)) {
+            match self.hear(running, over) {
                 Ok(Event::Line(line)) if line.iter().all(u8::is_ascii_whitespace) => surplus += 1,
                 Ok(Event::Line(line)) => {
                     self.lines += 1;
@@ -201,7 +201,7 @@ impl Session {
                 }
                 Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Came::Failed(Ended::Crashed),
                 // The next turn tells which time is over.
-                Err(RecvTimeoutError::Timeout) => {}
+                Ok(Event::Passed(_)) | Err(RecvTimeoutError::Timeout) => {}
             }
         }
     }

@@ -5,6 +5,7 @@
 //! known at every moment: where it ends, hangs or floods, it is killed and started again, and asked what is open one case at a
 //! time until the one that it fails at is found; that case fails, and the rest goes on.
 
+mod clock;
 mod columns;
 mod family;
 mod framing;
@@ -71,6 +72,8 @@ pub struct Asking {
     pub runs: u64,
     /// Whether to stop, which a signal says.
     pub stop: Stop,
+    /// For tests: no time passes for `limits` but what the renderer's output says has passed.
+    pub is_time_told: bool,
 }
 
 /// The program that a renderer is started by: `lightmeter start-renderer`.

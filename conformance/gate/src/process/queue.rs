@@ -6,7 +6,7 @@ use super::session::{BATCH, Ended, Question, Questions, Session};
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_judge::cases::Unanswered;
 use std::collections::VecDeque;
-use std::time::Instant;
+use std::time::Duration;
 
 /// Failed starts in a row after which nothing more is asked.
 const MOST_STARTS: usize = 3;
@@ -24,7 +24,7 @@ struct Queue<'a> {
     /// What was told of them, by its places among the incidents, as long as the culprit is not found.
     untold: Vec<usize>,
     /// Since when they are asked so, where it was said to take too long.
-    since: Option<Instant>,
+    since: Option<Duration>,
 }
 
 impl Queue<'_> {
@@ -69,7 +69,7 @@ impl Session {
             return;
         }
         let limit = self.asking.limits.case;
-        if queue.since.take().is_some_and(|since| since.elapsed() * 2 >= limit) {
+        if queue.since.take().is_some_and(|since| (self.clock.now() - since) * 2 >= limit) {
             queue.untold.drain(..).rev().for_each(|place| drop(self.used.incidents.remove(place)));
         }
         queue.untold.clear();
@@ -92,7 +92,7 @@ impl Session {
             // A retry hides nothing: that the process ended is reported, whatever it answers afterwards.
             let count = rest.len();
             queue.untold = vec![self.used.incidents.len()];
-            queue.since = (ended == Ended::Hung).then(Instant::now);
+            queue.since = (ended == Ended::Hung).then(|| self.clock.now());
             let incident = format!("with {count} cases open {message}: {how}; they are asked one by one");
             self.used.incidents.push(incident);
             self.size = BATCH[0];

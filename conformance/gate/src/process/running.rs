@@ -2,9 +2,12 @@
 
 use super::super::answer::{self, Unread};
 use super::super::words::clipped;
+use super::clock::{Clock, Unmarked};
 use super::framing::{Framing, columns_of};
 use super::{Starter, family};
 use lightmeter_document::protocol::ColumnsAnswer;
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::ffi::OsStr;
 use std::io::{BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -15,6 +18,8 @@ use std::time::{Duration, Instant};
 
 /// Lines of a process that wait to be read.
 const UNREAD: usize = 64;
+/// The most events that are taken ahead of those who wait for them.
+const MOST_AHEAD: usize = 1 << 14;
 /// Bytes of standard error that are kept.
 const KEPT: usize = 4096;
 /// How long a starter may take to end all that it started.
@@ -26,6 +31,8 @@ pub(super) enum Event {
     /// An answer in columns, and the bytes behind its line.
     Columns(ColumnsAnswer, Vec<u8>),
     TooLong,
+    /// So much time has passed, as a renderer of a test says.
+    Passed(Duration),
     End,
 }
 
@@ -47,7 +54,9 @@ pub(super) struct Running {
     /// Which arrays may stand behind a line that it writes, and how much of one has come.
     pub(super) framing: Arc<Framing>,
     /// What it writes.
-    pub(super) events: Receiver<Event>,
+    events: Receiver<Event>,
+    /// What was taken from `events` and comes before them.
+    ahead: RefCell<VecDeque<Event>>,
     /// A word in its environment, which its descendants inherit.
     mark: String,
     complaint: Arc<Mutex<Vec<u8>>>,
@@ -56,7 +65,7 @@ pub(super) struct Running {
 }
 
 impl Running {
-    pub(super) fn start(command: &str, starter: Option<&Starter>) -> Result<Self, String> {
+    pub(super) fn start(command: &str, starter: Option<&Starter>, clock: &Clock) -> Result<Self, String> {
         static STARTED: AtomicU64 = AtomicU64::new(0);
         let mark = format!("{}-{}", std::process::id(), STARTED.fetch_add(1, Ordering::Relaxed));
         let (program, arguments) = match starter {
@@ -78,8 +87,16 @@ impl Running {
         let (send, events) = sync_channel(UNREAD);
         let framing = Arc::new(Framing::default());
         if let Some(output) = output {
-            let framing = Arc::clone(&framing);
-            std::thread::spawn(move || listen(output, &send, &framing));
+            let (framing, is_told) = (Arc::clone(&framing), clock.is_told());
+            std::thread::spawn(move || {
+                if is_told {
+                    // Where nobody hears it any more, the lines behind it end the thread.
+                    let passes = |time| drop(send.send(Event::Passed(time)));
+                    listen(Unmarked::new(output, passes), &send, &framing);
+                } else {
+                    listen(output, &send, &framing);
+                }
+            });
         }
         let complaint = Arc::new(Mutex::new(vec![]));
         let listening = errors.map(|mut errors| {
@@ -96,7 +113,31 @@ impl Running {
             })
         });
         let ends_all = starter.is_some();
-        Ok(Self { child, ends_all, input, framing, events, mark, complaint, listening })
+        let ahead = RefCell::default();
+        Ok(Self { child, ends_all, input, framing, events, ahead, mark, complaint, listening })
+    }
+
+    /// What it writes next, waited for so long.
+    pub(super) fn next(&self, wait: Duration) -> Result<Event, RecvTimeoutError> {
+        match self.ahead.borrow_mut().pop_front() {
+            Some(event) => Ok(event),
+            None => self.events.recv_timeout(wait),
+        }
+    }
+
+    /// Takes what it writes next ahead of those who wait for it, to hear the time that it tells.
+    pub(super) fn hear_ahead(&self, clock: &Clock, wait: Duration) {
+        let mut ahead = self.ahead.borrow_mut();
+        if !clock.is_told() || ahead.len() >= MOST_AHEAD {
+            std::thread::sleep(wait);
+            return;
+        }
+        match self.events.recv_timeout(wait) {
+            Ok(Event::Passed(time)) => clock.pass(time),
+            Ok(event) => ahead.push_back(event),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => std::thread::sleep(wait),
+        }
     }
 
     /// That no whole line came for some seconds, in words.
@@ -138,19 +179,19 @@ impl Running {
     }
 
     /// Closes its input and waits until it ends.
-    pub(super) fn finish(mut self, limit: Duration, is_stopped: impl Fn() -> bool) -> End {
+    pub(super) fn finish(mut self, limit: Duration, clock: &Clock, is_stopped: impl Fn() -> bool) -> End {
         drop(self.input.take());
-        let (until, mut unread) = (Instant::now() + limit, 0);
+        let (until, mut unread) = (clock.now() + limit, 0);
         let status = loop {
             match self.child.try_wait() {
                 Ok(Some(status)) => break Some(status),
-                Ok(None) if Instant::now() < until && !is_stopped() => {}
+                Ok(None) if clock.now() < until && !is_stopped() => {}
                 _ => break None,
             }
-            unread += self.unread(Instant::now() + Duration::from_millis(2));
+            unread += self.unread(clock, Instant::now() + Duration::from_millis(2));
         };
         if status.is_some() {
-            unread += self.unread(Instant::now() + Duration::from_millis(50));
+            unread += self.unread(clock, Instant::now() + Duration::from_millis(50));
         }
         let how = self.kill();
         let wrong = match status {
@@ -163,11 +204,11 @@ impl Running {
     }
 
     /// Bytes of what it writes until then and nobody waits for, but for blank lines.
-    fn unread(&self, until: Instant) -> usize {
+    fn unread(&self, clock: &Clock, until: Instant) -> usize {
         let mut bytes = 0;
         // One that writes without end is heard no longer.
         while let Some(left) = until.checked_duration_since(Instant::now()) {
-            let event = match self.events.recv_timeout(left) {
+            let event = match self.next(left) {
                 Ok(event) => event,
                 Err(RecvTimeoutError::Timeout) => return bytes,
                 // Its output is closed, and it may still run.
@@ -181,6 +222,10 @@ impl Running {
                 Event::Line(line) => line.len(),
                 Event::Columns(_, array) => array.len(),
                 Event::TooLong => answer::MOST_BYTES,
+                Event::Passed(time) => {
+                    clock.pass(time);
+                    return bytes;
+                }
                 Event::End => return bytes,
             };
         }

@@ -8,6 +8,7 @@ use super::super::pack::described;
 use super::super::problems::note;
 use super::super::words::clipped;
 use super::Asking;
+use super::clock::Clock;
 use super::running::{Event, Running};
 use lightmeter_catalogue::cases::Spec;
 use lightmeter_document::by_case::RendererUse;
@@ -19,7 +20,7 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::process::ChildStdin;
 use std::sync::mpsc::RecvTimeoutError;
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Cases that are asked at once, at first and at most: twice as many where they were answered in an eighth of what a case may take.
 pub(super) const BATCH: [usize; 2] = [16, 1024];
@@ -30,7 +31,7 @@ const WAITING: (usize, usize) = (4096, 8 << 20);
 /// Lines beyond one a case, in a batch, that end a process.
 pub(super) const SURPLUS: usize = 10_000;
 /// How long a wait lasts before it is asked whether to stop.
-pub(super) const MOMENT: Duration = Duration::from_millis(100);
+const MOMENT: Duration = Duration::from_millis(100);
 
 /// What became of a process while it was asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +97,7 @@ struct Waiting {
     /// How long an answer may take.
     limit: Duration,
     /// Until when the next must come: answers must come all the time, and nothing else counts.
-    until: Instant,
+    until: Duration,
     /// Lines that wait to be read as answers, each with its number, and their bytes.
     lines: Vec<(u64, Vec<u8>)>,
     bytes: usize,
@@ -105,14 +106,14 @@ struct Waiting {
 }
 
 impl Waiting {
-    /// Takes a line, and counts it where it is not blank.
-    fn hear(&mut self, line: Vec<u8>, count: &mut u64) {
+    /// Takes a line that came `now`, and counts it where it is not blank.
+    fn hear(&mut self, line: Vec<u8>, now: Duration, count: &mut u64) {
         if line.iter().all(u8::is_ascii_whitespace) {
             self.surplus += 1;
             return;
         }
         if answer::id(&line).is_some_and(|id| self.open.remove(id.as_ref()).is_some()) {
-            self.until = Instant::now() + self.limit;
+            self.until = now + self.limit;
         } else {
             self.surplus += 1;
         }
@@ -126,7 +127,8 @@ impl Waiting {
 pub(super) struct Session {
     pub(super) asking: Asking,
     pub(super) expected: Vec<ExpectedFailure>,
-    deadline: Option<Instant>,
+    pub(super) clock: Clock,
+    deadline: Option<Duration>,
     pub(super) running: Option<Running>,
     /// What it said first.
     hello: Hello,
@@ -171,7 +173,8 @@ impl Drop for Session {
 impl Session {
     pub(super) fn new(asking: Asking) -> Self {
         Self {
-            deadline: asking.limits.total.map(|total| Instant::now() + total),
+            clock: Clock::new(asking.is_time_told),
+            deadline: asking.limits.total,
             asking,
             expected: vec![],
             running: None,
@@ -211,7 +214,7 @@ impl Session {
     fn finish(&mut self) {
         if let Some(running) = self.running.take() {
             let stop = &self.asking.stop;
-            let end = running.finish(self.asking.limits.case, || stop.is_set());
+            let end = running.finish(self.asking.limits.case, &self.clock, || stop.is_set());
             self.used.incidents.extend(end.wrong);
             // Behind an array it may be what a wrong number of bytes left over.
             if end.unread > 0 && self.hello.columns {
@@ -252,7 +255,8 @@ impl Session {
     /// Starts the process and hears its hello.
     pub(super) fn start(&mut self) -> Result<(), ProcessError> {
         let failed = |message: String| ProcessError::Start { command: self.asking.command.clone(), message };
-        let mut running = Running::start(&self.asking.command, self.asking.starter.as_ref()).map_err(&failed)?;
+        let mut running =
+            Running::start(&self.asking.command, self.asking.starter.as_ref(), &self.clock).map_err(&failed)?;
         self.used.starts += 1;
         let greeting = Greeting {
             hello: PROTOCOL.into(),
@@ -260,13 +264,11 @@ impl Session {
             folder: self.asking.folder.to_string_lossy().into_owned(),
         };
         let written = running.send(format!("{greeting}\n").into_bytes());
-        let begun = Instant::now();
-        let until = begun + self.asking.limits.start;
-        let until = self.deadline.map_or(until, |deadline| until.min(deadline));
+        let begun = self.clock.now();
+        let until = self.over(begun + self.asking.limits.start);
         loop {
-            let left = until.saturating_duration_since(Instant::now());
-            let event = running.events.recv_timeout(left.min(MOMENT));
-            if matches!(event, Err(RecvTimeoutError::Timeout)) && left > MOMENT && !self.is_stopped() {
+            let event = self.hear(&running, until);
+            if matches!(event, Err(RecvTimeoutError::Timeout)) && self.clock.now() < until && !self.is_stopped() {
                 continue;
             }
             let message = match event {
@@ -293,17 +295,15 @@ impl Session {
                         )
                     }
                 },
-                Ok(Event::Columns(..)) | Ok(Event::TooLong) => {
-                    "said a line without end first; expected its hello".into()
-                }
+                Ok(Event::Columns(..) | Event::TooLong) => "said a line without end first; expected its hello".into(),
                 Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => {
                     running.has_ended();
                     let how = running.kill();
                     return Err(failed(format!("ended before its hello: {how}")));
                 }
                 Err(RecvTimeoutError::Timeout) if self.is_stopped() => "was stopped before its hello".into(),
-                Err(RecvTimeoutError::Timeout) => {
-                    running.said_no_line_for(until.saturating_duration_since(begun).as_secs_f64())
+                Ok(Event::Passed(_)) | Err(RecvTimeoutError::Timeout) => {
+                    running.said_no_line_for(until.saturating_sub(begun).as_secs_f64())
                 }
             };
             running.kill();
@@ -318,7 +318,7 @@ impl Session {
         let writing = running.send(text.into_bytes());
         let limits = self.asking.limits;
         let limit = if matches!(questions.all[batch[0]].asks, Asks::Image) { limits.scene } else { limits.case };
-        let start = Instant::now();
+        let start = self.clock.now();
         let mut waiting = Waiting {
             open: batch.iter().map(|&place| (questions.all[place].id.clone(), place)).collect(),
             limit,
@@ -333,7 +333,7 @@ impl Session {
             if !self.has_read(&mut running, writing, waiting.until) {
                 ended = Ended::Deaf;
             }
-            if start.elapsed() * 8 < limit {
+            if (self.clock.now() - start) * 8 < limit {
                 self.size = (2 * self.size).min(BATCH[1]);
             }
         }
@@ -417,12 +417,12 @@ impl Session {
             if self.is_stopped() {
                 return Ended::Stopped;
             }
-            let wait = self.over(waiting.until).saturating_duration_since(Instant::now());
-            if wait.is_zero() {
+            let until = self.over(waiting.until);
+            if self.clock.now() >= until {
                 return if self.is_out_of_time() { Ended::OutOfTime } else { Ended::Hung };
             }
-            match running.events.recv_timeout(wait.min(MOMENT)) {
-                Ok(Event::Line(line)) => waiting.hear(line, &mut self.lines),
+            match self.hear(running, until) {
+                Ok(Event::Line(line)) => waiting.hear(line, self.clock.now(), &mut self.lines),
                 Ok(Event::TooLong) => {
                     waiting.surplus += 1;
                     self.lines += 1;
@@ -435,18 +435,27 @@ impl Session {
                 }
                 Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Ended::Crashed,
                 // The next turn tells which time is over.
-                Err(RecvTimeoutError::Timeout) => {}
+                Ok(Event::Passed(_)) | Err(RecvTimeoutError::Timeout) => {}
             }
         }
     }
 
+    /// What the process writes next, within a moment and before `until`. Time that it tells is noted here.
+    pub(super) fn hear(&self, running: &Running, until: Duration) -> Result<Event, RecvTimeoutError> {
+        let event = running.next(until.saturating_sub(self.clock.now()).min(MOMENT));
+        if let Ok(Event::Passed(time)) = event {
+            self.clock.pass(time);
+        }
+        event
+    }
+
     /// Whether time for all is over.
     pub(super) fn is_out_of_time(&self) -> bool {
-        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        self.deadline.is_some_and(|deadline| self.clock.now() >= deadline)
     }
 
     /// A moment, or that at which time for all is over.
-    pub(super) fn over(&self, until: Instant) -> Instant {
+    pub(super) fn over(&self, until: Duration) -> Duration {
         self.deadline.map_or(until, |deadline| until.min(deadline))
     }
 
@@ -455,13 +464,13 @@ impl Session {
         &self,
         running: &mut Running,
         mut writing: Option<JoinHandle<Option<ChildStdin>>>,
-        until: Instant,
+        until: Duration,
     ) -> bool {
         let is_written =
             |thread: &Option<JoinHandle<Option<ChildStdin>>>| thread.as_ref().is_none_or(JoinHandle::is_finished);
         let over = self.over(until);
-        while !is_written(&writing) && Instant::now() < over && !self.is_stopped() {
-            std::thread::sleep(Duration::from_millis(1));
+        while !is_written(&writing) && self.clock.now() < over && !self.is_stopped() {
+            running.hear_ahead(&self.clock, Duration::from_millis(1));
         }
         let has_read = is_written(&writing);
         if has_read {

@@ -19,8 +19,8 @@ use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{Called, effects};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::stage::Intermediate;
+use lightmeter_tests::place::folder;
 use std::collections::BTreeMap;
-use std::path::Path;
 use table::{MISTAKES, Mistake, RIGHT, UNSEEN};
 
 /// A scene, and what is known of it whatever draws it.
@@ -69,8 +69,7 @@ fn subject() -> Subject {
 
 /// The built-in shaders, one of them edited, in a folder of its own.
 fn edited(place: usize, file: &str, edit: impl Fn(&str) -> String) -> Code {
-    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("scene-mistake-{place}"));
-    let _ = std::fs::remove_dir_all(&dir);
+    let dir = folder(&format!("scene-mistake-{place}"));
     std::fs::create_dir_all(dir.join("effects")).expect("a folder for shaders can be made");
     let mut files =
         lightmeter_gpu::FILES.into_iter().chain(lightmeter_gpu::SCENE_FILES).chain(lightmeter_gpu::EFFECT_FILES);
@@ -89,6 +88,9 @@ fn with(place: usize, (mistake, file, what, by, ..): Mistake) -> Code {
 
 #[test]
 fn each_mistake_is_seen_and_said_to_be_where_it_was_made() {
+    if lightmeter_tests::needs::lacks_driver() {
+        return;
+    }
     let subject = subject();
     let profile = subject.known.profile(&WGSL);
     let right = code_of(None).expect("the built-in shaders are valid");
@@ -117,6 +119,9 @@ fn each_mistake_is_seen_and_said_to_be_where_it_was_made() {
 
 #[test]
 fn intermediate_results_show_what_pixels_do_not() {
+    if lightmeter_tests::needs::lacks_driver() {
+        return;
+    }
     let subject = subject();
     let profile = subject.known.profile(&WGSL);
     for (place, row) in UNSEEN.iter().enumerate() {
@@ -131,6 +136,9 @@ fn intermediate_results_show_what_pixels_do_not() {
 
 #[test]
 fn right_shaders_depart_nowhere() {
+    if lightmeter_tests::needs::lacks_driver() {
+        return;
+    }
     let subject = subject();
     let profile = subject.known.profile(&WGSL);
     let code = code_of(None).expect("the built-in shaders are valid");
