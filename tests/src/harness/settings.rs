@@ -21,7 +21,7 @@ const KNOWN: [(&str, &str); 5] = [
     ("LIGHTMETER_SHADERS", "--shaders"),
 ];
 
-/// The variables in force: those of [`KNOWN`] that are not empty, and those that look like a misspelt one of them.
+/// The variables in force: those that are known and not empty, and those that look like a misspelt one of them.
 #[derive(Clone, Debug, Default)]
 pub struct Variables(BTreeMap<String, OsString>);
 

@@ -9,7 +9,7 @@
 
 #![expect(clippy::print_stdout, reason = "the counts are what it is for")]
 
-#[path = "../benches/workload/mod.rs"]
+#[path = "../../conformance/benches/workload/mod.rs"]
 mod workload;
 
 use anyhow::{Context as _, bail};
@@ -81,7 +81,7 @@ impl Cli {
         if cfg!(not(debug_assertions)) {
             bail!("the record is of the profile that tests are built by: run it by ./x instructions");
         }
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/instructions.json");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../conformance/benches/instructions.json");
         let made_by = MadeBy::here()?;
         let Some(counts) = count()? else {
             eprintln!("instructions: NOT COUNTED: valgrind is not here (Debian: apt-get install valgrind)");
@@ -284,7 +284,8 @@ mod tests {
 
     #[test]
     fn the_record_is_of_these_workloads() {
-        let record: Record = serde_json::from_str(include_str!("../benches/instructions.json")).expect("it is valid");
+        let record: Record =
+            serde_json::from_str(include_str!("../../conformance/benches/instructions.json")).expect("it is valid");
         let recorded: Vec<&String> = record.instructions.keys().collect();
         let names: BTreeMap<String, ()> = workload::all().into_iter().map(|work| (work.name, ())).collect();
         assert_eq!(recorded, names.keys().collect::<Vec<_>>(), "./x instructions --update renews the record");
