@@ -118,7 +118,9 @@ pub(crate) fn stopped_at(event: &str, args: &[&str], signal: Signal) -> Output {
 fn lasting(value: Value) -> Value {
     match value {
         Value::Object(fields) => {
-            let is_lasting = |name: &str| !name.contains("seconds") && !matches!(name, "made_at" | "command");
+            let is_lasting = |name: &str| {
+                !name.contains("seconds") && !matches!(name, "made_at" | "command" | "timing" | "checksum")
+            };
             let kept = fields.into_iter().filter(|(name, _)| is_lasting(name));
             Value::Object(kept.map(|(name, value)| (name, lasting(value))).collect())
         }
