@@ -8,7 +8,7 @@
 
 use serde::Serialize;
 use std::fs::File;
-use std::io::{Read as _, Write as _};
+use std::io::{Read, Write};
 use std::sync::{LazyLock, Mutex, PoisonError};
 
 pub(crate) const EVENTS: &str = "LIGHTMETER_EVENTS";
@@ -27,17 +27,21 @@ struct Hold {
     event: String,
     /// How many events of that name are still to come, with the one that it holds at.
     left: u64,
-    bytes: File,
+    bytes: Box<dyn Read + Send>,
 }
 
 /// What the variables ask for.
 struct Observed {
-    events: File,
+    events: Box<dyn Write + Send>,
     hold: Option<Hold>,
 }
 
 static OBSERVED: LazyLock<Option<Mutex<Observed>>> = LazyLock::new(|| {
-    let events = File::options().write(true).open(descriptor(&std::env::var(EVENTS).ok()?)).ok()?;
+    let events: Box<dyn Write + Send> = match std::env::var(EVENTS).ok()?.as_str() {
+        // It may be a socket, which cannot be opened once more.
+        "2" => Box::new(std::io::stderr()),
+        number => Box::new(File::options().write(true).open(descriptor(number)).ok()?),
+    };
     Some(Mutex::new(Observed { events, hold: std::env::var(HOLD).ok().and_then(|asked| hold(&asked)) }))
 });
 
@@ -49,7 +53,11 @@ fn descriptor(number: &str) -> String {
 fn hold(asked: &str) -> Option<Hold> {
     let (place, number) = asked.split_once('@')?;
     let (event, left) = place.split_once(':')?;
-    Some(Hold { event: event.into(), left: left.parse().ok()?, bytes: File::open(descriptor(number)).ok()? })
+    let bytes: Box<dyn Read + Send> = match number {
+        "0" => Box::new(std::io::stdin()),
+        _ => Box::new(File::open(descriptor(number)).ok()?),
+    };
+    Some(Hold { event: event.into(), left: left.parse().ok()?, bytes })
 }
 
 /// Writes an event, and holds where that is asked for. Where nobody listens it does nothing.
