@@ -119,7 +119,7 @@ impl AdapterSuite {
             let (trial, is_any) = (name.clone(), settings.adapters.is_empty());
             Trial::ignorable_test(name, move || {
                 if is_any && has_no_driver() {
-                    skip(&trial, DRIVER);
+                    skip(&trial, DRIVER)?;
                     return Ok(Completion::ignored_with(DRIVER.1));
                 }
                 let report = device.judge(&part.selection, &options)?;
