@@ -4,8 +4,8 @@
 use super::gate::{answered, edit};
 use super::{command, stderr, stdout};
 
-/// What a command says on both streams, and how it ends. Nothing is wider than a terminal; lines of which one has a time are written
-/// unwrapped, since the time's digits decide where they are wrapped.
+/// What a command prints on both streams, and its exit code. At 80 columns no line may be wider. Where a line has a time, the text is that of a
+/// wide terminal, since the digits of the time decide where lines wrap.
 fn said(args: &[&str], color: &str) -> String {
     let text = said_in(args, color, "80");
     assert!(color == "always" || is_narrow(&text), "{text}");

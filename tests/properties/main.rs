@@ -32,27 +32,6 @@ macro_rules! family {
             if lightmeter_tests::needs::lacks_driver() {
                 return;
             }
-            if lightmeter_tests::needs::lacks_driver() {
-                return;
-            }
-            if lightmeter_tests::needs::lacks_driver() {
-                return;
-            }
-            if lightmeter_tests::needs::lacks_driver() {
-                return;
-            }
-            if lightmeter_tests::needs::lacks_driver() {
-                return;
-            }
-            if lightmeter_tests::needs::lacks_driver() {
-                return;
-            }
-            if lightmeter_tests::needs::lacks_driver() {
-                return;
-            }
-            if lightmeter_tests::needs::lacks_driver() {
-                return;
-            }
             for group in lightmeter_tests::groups($name) {
                 lightmeter_tests::agree(&group, $rows);
             }

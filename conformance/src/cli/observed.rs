@@ -57,7 +57,8 @@ fn hold(asked: &str) -> Option<Hold> {
         "0" => Box::new(std::io::stdin()),
         _ => Box::new(File::open(descriptor(number)).ok()?),
     };
-    Some(Hold { event: event.into(), left: left.parse().ok()?, bytes })
+    let left = left.parse().ok().filter(|&left| left > 0)?;
+    Some(Hold { event: event.into(), left, bytes })
 }
 
 /// Writes an event, and holds where that is asked for. Where nobody listens it does nothing.
