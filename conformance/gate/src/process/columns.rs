@@ -148,14 +148,14 @@ impl Session {
         let mut text = self.description(spec).into_bytes();
         text.extend(request(spec, rows, batch, asked.number));
         running.framing.awaits(asked.number, asked.count * spec.output_len());
-        let writing = running.send(text);
+        running.send(text);
         let (limit, start) = (self.asking.limits.case, self.clock.now());
         let came = self.came_of(&asked, &running, start + limit);
         if matches!(came, Came::Failed(_) | Came::Refused(..)) {
             self.running = Some(running);
             return came;
         }
-        let has_read = self.has_read(&mut running, writing, start + limit);
+        let has_read = self.has_read(&mut running, start + limit);
         if (self.clock.now() - start) * 8 < limit {
             self.rows = (2 * self.rows).min(ROWS[1]);
         }

@@ -14,6 +14,7 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Lines of a process that wait to be read.
@@ -50,7 +51,10 @@ pub(super) struct Running {
     /// Whether the child ends all that descends from it when it is told to end.
     ends_all: bool,
     /// Its standard input, but while something is written to it.
-    pub(super) input: Option<ChildStdin>,
+    input: Option<ChildStdin>,
+    /// Who writes to its input, which is not closed before it is killed or finished: one that reads the end of it may end, and what it did not
+    /// write whole could no longer be told from what it wrote.
+    writing: Option<JoinHandle<Option<ChildStdin>>>,
     /// Which arrays may stand behind a line that it writes, and how much of one has come.
     pub(super) framing: Arc<Framing>,
     /// What it writes.
@@ -61,7 +65,7 @@ pub(super) struct Running {
     mark: String,
     complaint: Arc<Mutex<Vec<u8>>>,
     /// Reads what it complains of, until its end.
-    listening: Option<std::thread::JoinHandle<()>>,
+    listening: Option<JoinHandle<()>>,
 }
 
 impl Running {
@@ -114,7 +118,7 @@ impl Running {
         });
         let ends_all = starter.is_some();
         let ahead = RefCell::default();
-        Ok(Self { child, ends_all, input, framing, events, ahead, mark, complaint, listening })
+        Ok(Self { child, ends_all, input, writing: None, framing, events, ahead, mark, complaint, listening })
     }
 
     /// What it writes next, waited for so long.
@@ -149,17 +153,30 @@ impl Running {
     }
 
     /// Writes lines in a thread of its own, since a renderer may answer before it has read all.
-    pub(super) fn send(&mut self, text: Vec<u8>) -> Option<std::thread::JoinHandle<Option<ChildStdin>>> {
-        let mut input = self.input.take()?;
-        Some(std::thread::spawn(move || {
+    pub(super) fn send(&mut self, text: Vec<u8>) {
+        let Some(mut input) = self.input.take() else { return };
+        self.writing = Some(std::thread::spawn(move || {
             let written = input.write_all(&text).and_then(|()| input.flush());
             written.is_ok().then_some(input)
-        }))
+        }));
+    }
+
+    /// Whether it has read all that was sent, so that more can be.
+    pub(super) fn has_read(&mut self) -> bool {
+        let is_written = self.writing.as_ref().is_none_or(JoinHandle::is_finished);
+        if is_written && let Some(writing) = self.writing.take() {
+            self.input = writing.join().ok().flatten();
+        }
+        is_written
+    }
+
+    fn close_input(&mut self) {
+        drop((self.input.take(), self.writing.take()));
     }
 
     /// Ends it with its children; how it ended, in words.
     pub(super) fn kill(mut self) -> String {
-        drop(self.input.take());
+        self.close_input();
         if self.ends_all {
             family::terminate(&self.child);
             self.ends_within(MOST_OF_END);
@@ -180,7 +197,7 @@ impl Running {
 
     /// Closes its input and waits until it ends.
     pub(super) fn finish(mut self, limit: Duration, clock: &Clock, is_stopped: impl Fn() -> bool) -> End {
-        drop(self.input.take());
+        self.close_input();
         let (until, mut unread) = (clock.now() + limit, 0);
         let status = loop {
             match self.child.try_wait() {

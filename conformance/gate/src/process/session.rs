@@ -17,9 +17,7 @@ use lightmeter_judge::cases::ExpectedFailure;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::process::ChildStdin;
 use std::sync::mpsc::RecvTimeoutError;
-use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// Cases that are asked at once, at first and at most: twice as many where they were answered in an eighth of what a case may take.
@@ -263,7 +261,7 @@ impl Session {
             version: env!("CARGO_PKG_VERSION").into(),
             folder: self.asking.folder.to_string_lossy().into_owned(),
         };
-        let written = running.send(format!("{greeting}\n").into_bytes());
+        running.send(format!("{greeting}\n").into_bytes());
         let begun = self.clock.now();
         let until = self.over(begun + self.asking.limits.start);
         loop {
@@ -283,9 +281,12 @@ impl Session {
                         self.described.clear();
                         self.hello = *hello;
                         running.framing.has_columns(self.hello.columns);
-                        running.input = written.and_then(|thread| thread.join().ok().flatten());
-                        self.running = Some(running);
-                        return Ok(());
+                        // It may have said its hello before it read ours.
+                        if self.has_read(&mut running, until) {
+                            self.running = Some(running);
+                            return Ok(());
+                        }
+                        "did not read the greeting".to_owned()
                     }
                     Err(message) if hello::is_one(&line) => message,
                     _ => {
@@ -315,7 +316,7 @@ impl Session {
     pub(super) fn batch(&mut self, questions: &mut Questions<'_>, batch: &[usize]) -> (Ended, Vec<usize>) {
         let text = self.requests(questions, batch);
         let Some(mut running) = self.running.take() else { return (Ended::Crashed, batch.to_vec()) };
-        let writing = running.send(text.into_bytes());
+        running.send(text.into_bytes());
         let limits = self.asking.limits;
         let limit = if matches!(questions.all[batch[0]].asks, Asks::Image) { limits.scene } else { limits.case };
         let start = self.clock.now();
@@ -330,7 +331,7 @@ impl Session {
         let mut ended = self.listen(questions, &running, &mut waiting);
         self.read(questions, &waiting.lines);
         if ended == Ended::Answered {
-            if !self.has_read(&mut running, writing, waiting.until) {
+            if !self.has_read(&mut running, waiting.until) {
                 ended = Ended::Deaf;
             }
             if (self.clock.now() - start) * 8 < limit {
@@ -460,23 +461,15 @@ impl Session {
     }
 
     /// Whether the process reads all that it was asked, as one that answers does.
-    pub(super) fn has_read(
-        &self,
-        running: &mut Running,
-        mut writing: Option<JoinHandle<Option<ChildStdin>>>,
-        until: Duration,
-    ) -> bool {
-        let is_written =
-            |thread: &Option<JoinHandle<Option<ChildStdin>>>| thread.as_ref().is_none_or(JoinHandle::is_finished);
+    pub(super) fn has_read(&self, running: &mut Running, until: Duration) -> bool {
         let over = self.over(until);
-        while !is_written(&writing) && self.clock.now() < over && !self.is_stopped() {
+        while !running.has_read() {
+            if self.clock.now() >= over || self.is_stopped() {
+                return false;
+            }
             running.hear_ahead(&self.clock, Duration::from_millis(1));
         }
-        let has_read = is_written(&writing);
-        if has_read {
-            running.input = writing.take().and_then(|thread| thread.join().ok().flatten());
-        }
-        has_read
+        true
     }
 }
 
