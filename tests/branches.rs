@@ -36,6 +36,7 @@ const NEVER: &[(&str, &str)] = &[
 ];
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn every_branch_is_decided_both_ways_by_some_scene() {
     if lightmeter_tests::needs::lacks_driver() {
         return;

@@ -59,6 +59,7 @@ fn every_row_is_filled_or_says_why_not() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn an_adapter_without_timestamps_is_timed_by_the_wall_and_says_so() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -72,6 +73,7 @@ fn an_adapter_without_timestamps_is_timed_by_the_wall_and_says_so() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_wrong_value_disqualifies() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -91,6 +93,7 @@ fn a_wrong_value_disqualifies() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn the_cheapest_below_an_error_is_recommended() {
     if crate::needs::lacks_lavapipe() {
         return;

@@ -4,6 +4,7 @@ use super::{code, eval, folder, json, lightmeter, stderr, stdout};
 use serde_json::Value;
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn all_blend_states_are_judged_or_aliases() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -84,6 +85,7 @@ fn a_page_is_made_of_a_run() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn the_self_test_names_every_fault() {
     let output = lightmeter(&["selftest", "--only", "blend-unit", "--cases", "64"]);
     let text = stdout(&output);

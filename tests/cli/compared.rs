@@ -16,6 +16,7 @@ fn run(filter: &[&str], more: &[&str]) -> (i32, String, String) {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_run_is_no_worse_than_its_baseline_or_says_where() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -62,6 +63,7 @@ fn what_is_no_result_of_a_run_is_no_baseline() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_known_failure_is_expected_on_an_adapter_and_told_when_it_passes() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -209,6 +211,7 @@ fn shards_of_shaders_that_differ_in_their_text_alone_are_no_run() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn shards_of_a_run_and_of_a_gate_merge_into_the_whole() {
     if crate::needs::lacks_lavapipe() {
         return;

@@ -60,6 +60,7 @@ fn one_pixel_is_judged_and_shown_by_its_name() {
 /// Truncation in place of `floor` shows at negative coordinates alone. Mesa's OpenGL cannot draw intermediate results of a wrong image, which
 /// must not keep it from being told.
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_texture_that_is_truncated_fails_on_every_adapter() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -88,6 +89,7 @@ fn a_texture_that_is_truncated_fails_on_every_adapter() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn all_pixels_together_tell_what_none_shows_alone() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -120,6 +122,7 @@ fn all_pixels_together_tell_what_none_shows_alone() {
 
 /// A fragment that is left out has no position either: what is at fault is the cutout, or the alpha that it goes by.
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn what_a_cutout_leaves_out_is_no_wrong_position() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -149,6 +152,7 @@ fn what_a_cutout_leaves_out_is_no_wrong_position() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_wrong_image_names_its_stage_and_leaves_pictures() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -244,6 +248,7 @@ fn what_cannot_be_drawn_is_refused() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_run_makes_the_page_and_its_contact_sheet() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -262,6 +267,7 @@ fn a_run_makes_the_page_and_its_contact_sheet() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn edited_lines_that_no_picture_shows_are_told() {
     if crate::needs::lacks_lavapipe() {
         return;

@@ -87,6 +87,7 @@ fn edited(test: &str, file: &str, edit: impl Fn(&str) -> String) -> PathBuf {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn each_mistake_in_a_shader_fails_by_family() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -188,6 +189,7 @@ fn a_case_beyond_the_number_of_cases_is_run_by_its_name() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn every_profile_passes_on_a_right_driver() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -253,6 +255,7 @@ fn shards_make_the_whole() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn the_embedded_implementation_passes_without_a_driver() {
     let output = command(&["run", "--adapter", "cpu", "--cases", "64"]).env("VK_DRIVER_FILES", "/nowhere").output();
     let output = output.expect("the binary starts");
@@ -285,6 +288,7 @@ fn junit_is_written_to_a_file() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn cases_and_formulas_are_listed() {
     let tree = stdout(&lightmeter(&["list", "fog"]));
     assert!(tree.contains("hard/dmin-equals-dmax") && !tree.contains("lighting"), "{tree}");

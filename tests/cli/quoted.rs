@@ -137,6 +137,7 @@ fn is_in(quoted: &str, line: &str) -> bool {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn what_the_documentation_quotes_is_what_commands_print() {
     if crate::needs::lacks_recorded_lavapipe() {
         return;

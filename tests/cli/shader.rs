@@ -64,6 +64,7 @@ fn words(command: &str, formula: &str, file: &Path, function: &str) -> Vec<Strin
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn each_example_is_judged_and_its_mistake_named() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -86,6 +87,7 @@ fn each_example_is_judged_and_its_mistake_named() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn the_line_in_which_a_mistake_is_made_is_told() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -112,6 +114,7 @@ fn the_line_in_which_a_mistake_is_made_is_told() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_baseline_knows_the_constants_it_was_made_with() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -218,6 +221,7 @@ fn the_same_code_gives_the_same_in_each_language() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_shader_is_told_which_formula_it_is() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -310,6 +314,7 @@ fn a_report_says_how_each_variable_was_found_and_which_inputs_have_none() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_bench_measures_a_shader_beside_the_suites_own() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -546,6 +551,7 @@ fn a_loop_whose_condition_never_ends_it_fails_and_one_that_ends_does_not() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn the_formula_that_is_meant_is_the_nearest_one_and_not_one_that_mistakes_lead_to() {
     if crate::needs::lacks_lavapipe() {
         return;

@@ -251,6 +251,7 @@ fn fog_with_nan(test: &str, id: &str) -> PathBuf {
 
 /// The first, a middle and the last case of a chunk of 65,536.
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_run_loses_no_nan() {
     if crate::needs::lacks_lavapipe() {
         return;

@@ -69,6 +69,7 @@ fn the_text_has_the_worst_input_the_histogram_and_a_command_for_one_input() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn every_ready_made_sweep_runs_in_every_stage_it_has() {
     if crate::needs::lacks_lavapipe() {
         return;
@@ -145,6 +146,7 @@ fn one_wrong_float_among_a_million_is_found() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn nan_and_what_is_never_written_are_told() {
     if crate::needs::lacks_lavapipe() {
         return;

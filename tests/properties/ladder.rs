@@ -99,17 +99,20 @@ fn every_adapter(rung: Rung, share: f64) {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn f64_agrees_with_the_reference() {
     every_adapter(Rung::F64, 1e-12);
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn double_floats_agree_with_the_reference() {
     every_adapter(Rung::DoubleFloat, 2.0_f64.powi(-38));
 }
 
 /// The control: f32 does not.
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn f32_is_found_out() {
     if lightmeter_tests::needs::lacks_driver() {
         return;

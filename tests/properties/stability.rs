@@ -148,6 +148,7 @@ fn cases_near_a_hard_one_are_a_few_ulp_away_on_both_sides() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn stable_forms_keep_their_claims_and_naive_forms_fail_on_every_adapter() {
     if lightmeter_tests::needs::lacks_driver() {
         return;
@@ -192,6 +193,7 @@ fn naive_in_place() -> (Code, BTreeMap<String, &'static str>) {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn each_stable_form_with_the_naive_one_in_its_place_is_found_out() {
     if lightmeter_tests::needs::lacks_driver() {
         return;

@@ -520,6 +520,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "long: ./x campaign long"]
     fn legal_evaluations_are_not_named() {
         seed(2026);
         for member in formulas().iter().filter(|member| ["fog", "attenuation"].contains(&member.spec.family())) {

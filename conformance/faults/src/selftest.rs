@@ -252,6 +252,7 @@ mod tests {
         ["interpolation", "color", "vector", "lighting", "attenuation", "fog", "depth", "blend/mode-*"];
 
     #[test]
+    #[ignore = "long: ./x campaign long"]
     fn every_mistake_shows_in_the_default_cases_of_a_gate() {
         for seed in 1..=5 {
             let options = SelftestOptions {

@@ -295,6 +295,7 @@ const MARKS: [Mark; 57] = [
 ];
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_shader_holds_what_its_effects_call_for_and_nothing_else() {
     let (composer, sets) = (composer(), sets());
     assert!(sets.len() > 10_000, "{} sets", sets.len());
@@ -342,6 +343,7 @@ fn stages_hold_what_they_need() {
 const OF_TECHNIQUES: [&str; 4] = ["fog_factor: f32", "viewer: vec3f", "toward_1", "scene_toward"];
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_technique_is_in_no_shader_that_it_is_not_asked_of() {
     let composer = composer();
     let sets: Vec<Effects> = sets().into_iter().step_by(7).collect();
@@ -411,6 +413,7 @@ const FORMS: [(Effect, usize, &str); 2] = [
 ];
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_shader_never_grows_when_an_effect_leaves() {
     let composer = composer();
     let (lights, surfaces) = (lights(), surfaces());

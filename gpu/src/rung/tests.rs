@@ -120,6 +120,7 @@ fn functions_that_are_wrong_are_found_out() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn shaders_of_scenes_are_valid_at_every_rung() {
     let composer = Composer::new(&built_in()).unwrap_or_else(|error| panic!("{error}"));
     let sets = sets();

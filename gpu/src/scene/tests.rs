@@ -225,6 +225,7 @@ fn frames() -> Vec<(String, Frame)> {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn composed_and_full_shaders_draw_alike_on_every_adapter() {
     if crate::lacks_driver() {
         return;
@@ -247,6 +248,7 @@ fn composed_and_full_shaders_draw_alike_on_every_adapter() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn composed_and_full_shaders_draw_alike_for_sets_of_all_sorts() {
     if crate::lacks_driver() {
         return;
@@ -268,6 +270,7 @@ fn composed_and_full_shaders_draw_alike_for_sets_of_all_sorts() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn stages_are_steps_towards_the_colour() {
     if crate::lacks_driver() {
         return;
@@ -317,6 +320,7 @@ fn apart(a: &[u8], b: &[u8]) -> f32 {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn fog_at_the_vertices_is_fog_where_its_factor_is_constant_and_not_elsewhere() {
     if crate::lacks_driver() {
         return;
@@ -345,6 +349,7 @@ fn fog_at_the_vertices_is_fog_where_its_factor_is_constant_and_not_elsewhere() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn interpolated_vectors_are_the_vectors_unless_they_are_normalised_first() {
     if crate::lacks_driver() {
         return;
@@ -407,6 +412,7 @@ fn a_frame_that_has_no_use_for_a_technique_is_refused() {
 
 /// Timestamps that a driver takes before it has rasterised would tell less than goes by on the wall.
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn timestamps_tell_the_time_that_a_frame_takes() {
     if crate::lacks_driver() {
         return;
@@ -463,6 +469,7 @@ fn a_flat_face_has_the_colour_of_its_provoking_vertex() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn what_the_unit_cannot_blend_and_sets_of_another_frame_are_errors() {
     if crate::lacks_driver() {
         return;
@@ -617,6 +624,7 @@ fn at_rung(gpu: &Gpu, frame: &Frame, recipe: Recipe) -> Option<Vec<f32>> {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_frame_is_drawn_at_every_rung() {
     if crate::lacks_driver() {
         return;
@@ -660,6 +668,7 @@ fn a_frame_is_drawn_at_every_rung() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn the_clip_position_is_of_f32_at_every_rung() {
     if crate::lacks_driver() {
         return;
@@ -677,6 +686,7 @@ fn the_clip_position_is_of_f32_at_every_rung() {
 
 /// Exponentials of what uniforms go into, before loops on uniforms: a branch in them brings Mesa 22.3's lavapipe down.
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn exponential_fog_and_all_effects_are_drawn_at_every_rung() {
     if crate::lacks_driver() {
         return;

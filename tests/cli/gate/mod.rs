@@ -213,6 +213,7 @@ fn the_smallest_failing_case_is_told_with_its_numbers() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn failures_tell_the_interval_of_the_profile_that_they_were_judged_by() {
     let (pack, answers) = answered("profile", &["fog", "lighting/blinn"]);
     let wrong = edit(&answers, |_, line| line.replacen("\"value\":[0", "\"value\":[90", 1) + "\n");
@@ -400,6 +401,7 @@ fn a_fix_is_no_regression_and_an_expected_failure_is_none() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn declaring_less_is_a_regression_and_declaring_more_is_none() {
     let (pack, answers) = answered("declared", &["attenuation/constant", "vector/reflect"]);
     let file = pack.with_file_name("baseline.json");

@@ -71,6 +71,7 @@ fn what_is_described_says_what_computes_a_formula_and_how() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_process_that_fails_in_any_way_costs_that_case_alone() {
     let case = "fog/exp/random/000017";
     // The fault; the exit code; cases that fail, and that are never answered; what is said.
@@ -390,6 +391,7 @@ fn all_is_asked_as_often_as_is_said() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn blending_is_asked_on_every_target_that_is_declared() {
     let of = |fault: &str, more: &[&str]| {
         report(&process(&["blend/{add,min}/src-alpha", "blend/write-mask", "blend/layers"], fault, more))
@@ -462,6 +464,7 @@ fn a_pixel_that_changes_is_unstable() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn declaring_fewer_targets_is_a_regression_in_any_part() {
     let baseline = folder("fewer-targets").join("baseline.json");
     let state = ["blend/add/src-alpha"];
@@ -482,6 +485,7 @@ fn declaring_fewer_targets_is_a_regression_in_any_part() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn crashes_that_are_expected_do_not_add_up() {
     let expected = folder("many-crashes").join("expected.toml");
     std::fs::write(&expected, "[[expected]]\nid = \"fog/exp\"\nreason = \"a trap\"\ncrash = true\n")

@@ -35,6 +35,7 @@ fn named(report: &Value, target: &str, words: &str) -> usize {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn a_pack_is_asked_on_targets_as_a_process_is() {
     let pack = packed("on-targets", &TARGETS);
     for fault in ["", "blends-by=truncate"] {
@@ -89,6 +90,7 @@ fn a_hello_restricts_the_targets_that_a_file_is_judged_on() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn what_a_file_answers_on_targets_is_held_to_its_cases() {
     let pack = packed("wrong-on-targets", &TARGETS);
     let answers = answered(&pack, "");

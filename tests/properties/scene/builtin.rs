@@ -25,6 +25,7 @@ fn every_effect_is_called_for_by_some_scene() {
 
 /// Marked pixels stay below 1 % of an image with 8 subpixel bits and below 4 % with 4.
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn few_pixels_of_a_scene_are_open() {
     for (subpixel_bits, most) in [(8, 1), (4, 4)] {
         let profile = Profile { subpixel_bits, ..WGSL };

@@ -112,6 +112,7 @@ const FRAMES: u64 = 24;
 /// Random frames on a device: the composed shaders and the one with all effects, each pixel legal by the full
 /// reference.
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn devices_draw_random_frames_within_what_is_legal() {
     if lightmeter_tests::needs::lacks_driver() {
         return;
@@ -140,6 +141,7 @@ fn devices_draw_random_frames_within_what_is_legal() {
 
 /// The intermediate results of random frames on a device, where something is drawn for certain.
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn devices_draw_intermediate_results_within_what_is_legal() {
     if lightmeter_tests::needs::lacks_driver() {
         return;

@@ -265,6 +265,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "long: ./x campaign long"]
     fn where_something_is_promised_of_a_run_it_is_of_each_input() {
         let (mut bounded, mut open) = (0_u64, 0_u64);
         for member in swept() {

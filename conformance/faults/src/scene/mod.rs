@@ -126,6 +126,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "long: ./x campaign long"]
     fn what_is_wrong_in_a_part_of_an_image_alone_has_no_name() {
         for (scene, name) in
             [("phong", "diffuse-left-out"), ("teapot", "specular-left-out"), ("spotlight", "spot-as-point")]
@@ -148,6 +149,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "long: ./x campaign long"]
     fn a_wrong_parameter_is_named_with_its_factor() {
         let shininess = |factor: f32| {
             move |frame: &mut Frame| frame.draws.iter_mut().for_each(|draw| draw.material.shininess *= factor)
@@ -167,6 +169,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "long: ./x campaign long"]
     fn a_pixel_that_is_as_bright_as_can_be_says_nothing() {
         let frame = frame("phong");
         let mut image = draw::<f32>(&frame, &[]);

@@ -110,6 +110,7 @@ mod tests {
     use lightmeter_arithmetic::profile::WGSL;
 
     #[test]
+    #[ignore = "long: ./x campaign long"]
     fn every_mistake_is_caught_and_nearly_all_are_named() {
         let record = selftest(40, &WGSL, &Stop::default(), &mut |_| {}).expect("the scenes load");
         assert!(record.alarms.is_empty(), "{:?}", record.alarms);

@@ -87,6 +87,7 @@ fn with(place: usize, (mistake, file, what, by, ..): Mistake) -> Code {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn each_mistake_is_seen_and_said_to_be_where_it_was_made() {
     if lightmeter_tests::needs::lacks_driver() {
         return;
@@ -135,6 +136,7 @@ fn intermediate_results_show_what_pixels_do_not() {
 }
 
 #[test]
+#[ignore = "long: ./x campaign long"]
 fn right_shaders_depart_nowhere() {
     if lightmeter_tests::needs::lacks_driver() {
         return;
